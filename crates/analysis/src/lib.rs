@@ -1,0 +1,3 @@
+//! The incremental database.
+
+pub mod environment;
