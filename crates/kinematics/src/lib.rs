@@ -2,7 +2,26 @@
 //!
 //! Knows numbers only. Must never know the language, files, clocks or threads.
 //! Units everywhere: metres, seconds, radians; x forward, y left, θ counter-clockwise.
+//!
+//! Equation numbers are those of the article "PyDSLRep" (equations 1 to 6):
+//!
+//! | equation | here |
+//! |---|---|
+//! | 1, 2: v = (v_r + v_l)/2, ω = (v_r − v_l)/d | [`Model::forward`] |
+//! | 3: R = d (v_l + v_r) / (2 (v_r − v_l)) | [`Twist::turning_radius`] |
+//! | 4: centre of rotation (x − R sin θ, y + R cos θ) | [`Pose::centre_of_rotation`] |
+//! | 5: the pose after turning about it by ωΔt | [`Pose::advance`] |
+//! | 6: v_r,l = v ± ω d/2, wheel rate v/r | [`Model::inverse`] |
 
 mod drive;
+mod model;
+pub mod motion;
+mod plan;
+mod pose;
+mod profile;
 
 pub use drive::Drive;
+pub use model::{Geometry, Model, ModelError};
+pub use plan::{Action, ActionIndex, Leg, Plan, PlanError, RobotPath, RobotPlan, Run, plan, plan_movement};
+pub use pose::{Pose, Twist, angle_between, wrap_angle};
+pub use profile::SpeedProfile;

@@ -1,0 +1,15 @@
+//! How robots move where neither program nor scene says otherwise.
+//!
+//! The one place where these figures stand: plans, scripts and the simulator all read them here.
+
+/// Length of a simulation step, in seconds (CoppeliaSim's default too).
+pub const STEP: f64 = 0.05;
+
+/// Rim speed of a straight move without `at`, and of every turn, in metres per second.
+pub const RIM_SPEED: f64 = 0.09;
+
+/// How fast the rim speed of a wheel may change, in metres per second squared.
+pub const RIM_ACCELERATION: f64 = 0.5;
+
+/// Effective over geometric track of a skid-steer robot; its wheels scrub in turns.
+pub const SCRUB_FACTOR: f64 = 1.0;
