@@ -1,0 +1,35 @@
+//! What a scene is like where nothing else is said. How robots move by default stands in
+//! [`pydslrep_kinematics::motion`].
+
+use pydslrep_kinematics::{Drive, Geometry, Pose};
+
+use crate::{Body, SensorKind};
+
+/// Distance between wheels.
+pub const GEOMETRY: Geometry = Geometry { track: 0.30, wheelbase: 0.25 };
+
+/// Opening angle of a proximity sensor's cone, 20° in radians.
+pub const CONE: f64 = 20.0 * std::f64::consts::PI / 180.0;
+
+/// Where the robot at `index` (from 0) of an environment starts: (0, −index m, 0°).
+pub fn start(index: usize) -> Pose {
+    let row = u32::try_from(index).unwrap_or(u32::MAX);
+    // Not −row: the first robot starts at 0, not at −0.
+    Pose::new(0.0, 0.0 - f64::from(row), 0.0)
+}
+
+/// The body of a robot with this wheel layout.
+pub fn body(drive: Drive) -> Body {
+    match drive {
+        Drive::TwoWheel => Body { length: 0.30, width: 0.30 },
+        Drive::FourWheel | Drive::FourMecanum => Body { length: 0.36, width: 0.30 },
+    }
+}
+
+/// How far a sensor of this kind sees, metres.
+pub fn range(kind: SensorKind) -> f64 {
+    match kind {
+        SensorKind::Distance => 1.0,
+        SensorKind::Bumper => 0.05,
+    }
+}

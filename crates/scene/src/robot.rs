@@ -1,0 +1,135 @@
+//! One robot as it stands in the scene.
+
+use pydslrep_kinematics::{Drive, Geometry, Model, ModelError, Pose};
+
+use crate::{Mount, defaults, mounts_by_name};
+
+/// A robot: a rectangular body on driven wheels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Robot {
+    /// Its name, which is also its object's name for remote API clients.
+    pub name: String,
+    /// Wheel layout.
+    pub drive: Drive,
+    /// As many as `drive` asks for, in its order.
+    pub wheels: Vec<Wheel>,
+    /// Sensors with their mounts.
+    pub sensors: Vec<Sensor>,
+    /// Where the body's centre stands when a run starts.
+    pub start: Pose,
+    /// Outer size.
+    pub body: Body,
+    /// Distance between wheels; their middle is the body's centre.
+    pub geometry: Geometry,
+}
+
+/// A driven wheel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wheel {
+    /// Its name, which is also its joint's.
+    pub name: String,
+    /// Metres.
+    pub radius: f64,
+}
+
+/// A proximity sensor on a robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sensor {
+    /// Its name, which is also its object's.
+    pub name: String,
+    /// What it measures.
+    pub kind: SensorKind,
+    /// Where it sits and what it sees.
+    pub mount: Mount,
+}
+
+/// Kinds of proximity sensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum SensorKind {
+    /// Sees an obstacle at a distance.
+    Distance,
+    /// Feels an obstacle at contact.
+    Bumper,
+}
+
+/// The outer size of a robot: a rectangle about its centre.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Body {
+    /// Along the heading, metres.
+    pub length: f64,
+    /// Across it, metres.
+    pub width: f64,
+}
+
+impl Body {
+    /// The corners in the body's frame: front left, rear left, rear right, front right.
+    pub fn corners(&self) -> [(f64, f64); 4] {
+        let (x, y) = (self.length / 2.0, self.width / 2.0);
+        [(x, y), (-x, y), (-x, -y), (x, -y)]
+    }
+}
+
+impl Robot {
+    /// A robot of default size at the origin, its sensors placed by name ([`mounts_by_name`]).
+    pub fn new(
+        name: impl Into<String>,
+        drive: Drive,
+        wheels: Vec<Wheel>,
+        sensors: Vec<(String, SensorKind)>,
+    ) -> Self {
+        let body = defaults::body(drive);
+        let mounts = mounts_by_name(&sensors, body);
+        let sensors = sensors
+            .into_iter()
+            .zip(mounts)
+            .map(|((name, kind), mount)| Sensor { name, kind, mount })
+            .collect();
+        Self {
+            name: name.into(),
+            drive,
+            wheels,
+            sensors,
+            start: Pose::default(),
+            body,
+            geometry: defaults::GEOMETRY,
+        }
+    }
+
+    /// The robot's kinematic model.
+    ///
+    /// # Errors
+    /// When wheels and layout do not fit or a length is not above zero.
+    pub fn model(&self) -> Result<Model, ModelError> {
+        let radii: Vec<f64> = self.wheels.iter().map(|wheel| wheel.radius).collect();
+        Model::new(self.drive, &radii, self.geometry)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Scene;
+
+    fn wheels(names: &[&str]) -> Vec<Wheel> {
+        names.iter().map(|&name| Wheel { name: name.to_owned(), radius: 0.035 }).collect()
+    }
+
+    #[test]
+    fn robots_line_up_to_the_right_of_the_first() {
+        let robot = |name: &str| Robot::new(name, Drive::TwoWheel, wheels(&["l", "r"]), vec![]);
+        let scene = Scene::empty_floor(vec![robot("a"), robot("b"), robot("c")]);
+        let starts: Vec<(f64, f64, f64)> =
+            scene.robots.iter().map(|r| (r.start.x, r.start.y, r.start.theta)).collect();
+        assert_eq!(starts, [(0.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, -2.0, 0.0)]);
+        assert!(scene.robots[0].start.y.is_sign_positive(), "the first robot starts at 0, not at -0");
+    }
+
+    #[test]
+    fn the_model_has_the_scenes_geometry() {
+        let mut robot = Robot::new("a", Drive::FourWheel, wheels(&["a", "b", "c", "d"]), vec![]);
+        robot.geometry.track = 0.5;
+        assert!(robot.model().is_ok_and(|model| model.geometry() == robot.geometry));
+        robot.wheels.pop();
+        assert!(robot.model().is_err());
+    }
+}
