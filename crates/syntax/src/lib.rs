@@ -1,1 +1,25 @@
-//! To be written.
+//! The PyDSLRep language as text: tokens, cutting a file into entities, parsing one entity, the syntax tree,
+//! syntax errors.
+//!
+//! Knows one piece of text at a time. Must never know files, names across entities, editors or I/O.
+//!
+//! Parsing never fails: any text gives a tree, as much of it as could be understood, and a list of errors. All spans
+//! are byte offsets from the start of the text that was handed in, so a parsed entity stays valid wherever in a file
+//! it stands.
+
+pub mod ast;
+mod cut;
+mod error;
+mod lexer;
+mod parser;
+mod span;
+mod spelling;
+mod token;
+
+pub use cut::cut;
+pub use error::{Expected, Found, SyntaxError, SyntaxErrorKind};
+pub use lexer::{Lexeme, lex};
+pub use parser::{Parse, Parser, parse};
+pub use span::Span;
+pub use spelling::{closest, is_similar};
+pub use token::{EntityKind, KEYWORDS, Token, TokenSet};

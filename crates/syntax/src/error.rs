@@ -1,0 +1,113 @@
+//! Syntax errors as data. How they are worded is the business of whoever shows them.
+
+use smol_str::SmolStr;
+
+use crate::{EntityKind, Span, Token};
+
+/// One mistake in the text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SyntaxError {
+    /// The smallest text that has to change; empty where something is missing.
+    pub span: Span,
+    /// What is wrong.
+    pub kind: SyntaxErrorKind,
+}
+
+/// The kinds of mistake.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum SyntaxErrorKind {
+    /// Something has to stand between what came before and what comes next.
+    Missing {
+        /// What could stand there.
+        expected: Vec<Expected>,
+        /// What comes next.
+        found: Found,
+        /// The entity it is part of.
+        inside: Option<EntityKind>,
+    },
+    /// Something stands where something else belongs.
+    Unexpected {
+        /// What could stand there.
+        expected: Vec<Expected>,
+        /// What stands there.
+        found: Found,
+        /// The entity it is part of.
+        inside: Option<EntityKind>,
+    },
+    /// A word that is nearly a keyword that could stand there.
+    Misspelt {
+        /// As written.
+        written: SmolStr,
+        /// The nearest keyword.
+        keyword: Token,
+    },
+    /// A keyword where a name belongs; `^` before it would make it one.
+    KeywordAsName {
+        /// As written.
+        written: SmolStr,
+        /// What the name would be of.
+        of: EntityKind,
+    },
+    /// Digits and points that are no number.
+    MalformedNumber {
+        /// As written.
+        written: SmolStr,
+    },
+    /// A port with a fraction, or an address for a port.
+    PortNotWhole {
+        /// As written.
+        written: SmolStr,
+    },
+    /// `{ }` where at least one reference must stand.
+    EmptyList {
+        /// What it should list.
+        of: EntityKind,
+    },
+    /// Characters no token starts with.
+    InvalidCharacter {
+        /// As written.
+        written: SmolStr,
+    },
+    /// `/*` without `*/`.
+    UnterminatedComment,
+    /// `"` without its end on the line.
+    UnterminatedString,
+}
+
+/// What could stand in a place, in a person's terms.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Expected {
+    /// A certain word or sign.
+    Word(Token),
+    /// A name for a new entity.
+    NameOf(EntityKind),
+    /// The name of an entity declared elsewhere.
+    ReferenceTo(EntityKind),
+    /// A wheel's radius.
+    Radius,
+    /// A port.
+    Port,
+    /// An IPv4 address.
+    Address,
+    /// How far to move.
+    Distance,
+    /// How fast to move.
+    Speed,
+    /// How far to turn.
+    Angle,
+    /// A path in quotes.
+    Path,
+    /// Another action.
+    Action,
+    /// The next entity, or nothing.
+    Declaration,
+}
+
+/// What stands where something else was expected.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Found {
+    /// The end of the entity.
+    End,
+    /// This text.
+    Text(SmolStr),
+}

@@ -1,0 +1,134 @@
+//! From text to tokens. Memoryless: what a token is depends on nothing before it.
+
+use logos::Logos;
+
+use crate::{Span, Token};
+
+/// A token and where it stands.
+pub type Lexeme = (Token, Span);
+
+const BYTE_ORDER_MARK: &str = "\u{feff}";
+
+/// All tokens of `text`, comments included, in order. A leading byte order mark is passed over; it can only stand at
+/// the start of a file, because every other text handed in starts at an entity's keyword.
+///
+/// Texts beyond 4 GiB are cut off there.
+pub fn lex(text: &str) -> Vec<Lexeme> {
+    let start = if text.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
+    let mut lexemes: Vec<Lexeme> = Vec::with_capacity(text.len() / 6);
+    for (token, range) in Token::lexer(&text[start..]).spanned() {
+        let (Ok(from), Ok(to)) = (u32::try_from(range.start + start), u32::try_from(range.end + start))
+        else {
+            break;
+        };
+        push(&mut lexemes, token.unwrap_or(Token::Invalid), Span::new(from, to));
+    }
+    lexemes
+}
+
+/// Characters that begin no token come one by one; adjacent ones are one mistake.
+fn push(lexemes: &mut Vec<Lexeme>, token: Token, span: Span) {
+    if let (Token::Invalid, Some((Token::Invalid, last))) = (token, lexemes.last_mut())
+        && last.end == span.start
+    {
+        last.end = span.end;
+        return;
+    }
+    lexemes.push((token, span));
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::{Expect, expect};
+
+    use super::*;
+
+    fn check(text: &str, expected: &Expect) {
+        let listed: Vec<String> =
+            lex(text).into_iter().map(|(token, span)| format!("{token:?} {:?}", span.text(text))).collect();
+        expected.assert_eq(&listed.join("\n"));
+    }
+
+    #[test]
+    fn numbers() {
+        check(
+            "4 -4 4.0 -4.25 127.0.0.1 4. .5 1.2.3 1.2.3.4.5 -1.2.3.4 - 1e5 4meters ..",
+            &expect![[r#"
+                Integer "4"
+                Integer "-4"
+                Float "4.0"
+                Float "-4.25"
+                Ipv4 "127.0.0.1"
+                MalformedNumber "4."
+                MalformedNumber ".5"
+                MalformedNumber "1.2.3"
+                MalformedNumber "1.2.3.4.5"
+                MalformedNumber "-1.2.3.4"
+                Invalid "-"
+                Integer "1"
+                Name "e5"
+                Integer "4"
+                Meters "meters"
+                Invalid "..""#]],
+        );
+    }
+
+    #[test]
+    fn names_and_escapes() {
+        check(
+            "wheelL _x ^robots ^ wheelHx wheelH",
+            &expect![[r#"
+                Name "wheelL"
+                Name "_x"
+                Name "^robots"
+                Invalid "^"
+                Name "wheelHx"
+                WheelH "wheelH""#]],
+        );
+    }
+
+    #[test]
+    fn comments() {
+        check(
+            "// a\r/* b **/ /**/ / * /* c * /",
+            &expect![[r#"
+                LineComment "// a"
+                BlockComment "/* b **/"
+                BlockComment "/**/"
+                Invalid "/"
+                Invalid "*"
+                UnterminatedComment "/* c * /""#]],
+        );
+    }
+
+    #[test]
+    fn an_unterminated_comment_takes_the_rest() {
+        for text in ["/*", "/* a", "/* a *", "/* é\n}\n", "/***"] {
+            assert_eq!(lex(text), [(Token::UnterminatedComment, Span::of(text))], "{text:?}");
+        }
+    }
+
+    #[test]
+    fn strings_end_on_their_line() {
+        check(
+            "\"a/b.pyr\" \"open\nwheel \"",
+            &expect![[r#"
+                String "\"a/b.pyr\""
+                UnterminatedString "\"open"
+                Wheel "wheel"
+                UnterminatedString "\"""#]],
+        );
+    }
+
+    #[test]
+    fn what_is_no_token_is_joined() {
+        check(
+            "\u{feff}wheel §€é;w \u{feff}",
+            &expect![[r#"
+                Wheel "wheel"
+                Invalid "§€é;"
+                Name "w"
+                Invalid "\u{feff}""#]],
+        );
+    }
+}

@@ -1,0 +1,60 @@
+//! The rule for environments.
+
+use chumsky::prelude::{Parser, choice, just};
+
+use super::slot::{NAME, declared_name, keyword, nothing_more, reference, references};
+use super::{Extra, Input, Rule};
+use crate::ast::{Entity, Environment, IpClause, References};
+use crate::{EntityKind, Token, TokenSet};
+
+const WITH: TokenSet = TokenSet::of(&[Token::With]);
+const IP: TokenSet = TokenSet::of(&[Token::Ip]);
+const HAS: TokenSet = TokenSet::of(&[Token::Has]);
+const COMMA: TokenSet = TokenSet::of(&[Token::Comma]);
+const OPEN: TokenSet = TokenSet::of(&[Token::OpenBrace]);
+const CLOSE: TokenSet = TokenSet::of(&[Token::CloseBrace]);
+const ROBOTS: TokenSet = TokenSet::of(&[Token::Robots]);
+const MOVES: TokenSet = TokenSet::of(&[Token::Moves]);
+
+/// What can stand behind the name and the ip.
+const TAIL: TokenSet = HAS.or(OPEN).or(CLOSE).or(ROBOTS);
+
+/// `environment name with ip ip1 has { … } robots with { … } moves`
+pub(super) fn environment<'s>() -> Rule<'s, Option<Entity>> {
+    just(Token::Environment)
+        .ignore_then(declared_name(EntityKind::Environment, WITH.or(COMMA).or(HAS), IP.or(TAIL)))
+        .then(ip_clause().or_not())
+        .then(robots())
+        .then(movements().or_not())
+        .then_ignore(nothing_more())
+        .map(|(((name, ip), robots), movements)| {
+            Some(Entity::Environment(Environment { name, ip, robots: Some(robots), movements }))
+        })
+        .boxed()
+}
+
+fn ip_clause<'s>() -> impl Parser<'s, Input<'s>, IpClause, Extra<'s>> + Clone {
+    let with_comma = choice((
+        just(Token::With).then(keyword(Token::Ip, NAME, TAIL)).to(false),
+        just(Token::Comma).to(true),
+    ));
+    with_comma
+        .then(reference(EntityKind::Ip, HAS, TAIL))
+        .map_with(|(with_comma, name), extra| IpClause { name, span: extra.span(), with_comma })
+        .boxed()
+}
+
+fn robots<'s>() -> Rule<'s, References> {
+    let behind = ROBOTS.or(WITH).or(MOVES);
+    keyword(Token::Has, OPEN, NAME.or(CLOSE).or(behind))
+        .ignore_then(references(EntityKind::Robot, true, behind))
+        .then_ignore(keyword(Token::Robots, WITH, MOVES))
+        .boxed()
+}
+
+fn movements<'s>() -> Rule<'s, References> {
+    just(Token::With)
+        .ignore_then(references(EntityKind::Movement, true, MOVES))
+        .then_ignore(keyword(Token::Moves, TokenSet::default(), TokenSet::default()))
+        .boxed()
+}

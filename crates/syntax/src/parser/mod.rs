@@ -1,0 +1,132 @@
+//! From the tokens of one entity to its tree, with chumsky.
+//!
+//! One parser per kind of entity; [`slot`] holds the way all of them recover, [`tidy`] turns what they report into
+//! one error per mistake.
+
+mod components;
+mod environment;
+mod movement;
+mod robot;
+mod slot;
+mod tidy;
+
+use chumsky::Boxed;
+use chumsky::Parser as _;
+use chumsky::extra::{self, SimpleState};
+use chumsky::input::{Input as _, MappedInput};
+use smol_str::SmolStr;
+
+use self::slot::Fault;
+use crate::ast::Entity;
+use crate::{EntityKind, Lexeme, Span, SyntaxError, Token, cut, lex};
+
+type Input<'s> = MappedInput<'s, Token, Span, &'s [Lexeme]>;
+type Extra<'s> = extra::Full<Fault, SimpleState<&'s str>, ()>;
+type Rule<'s, O> = Boxed<'s, 's, Input<'s>, O, Extra<'s>>;
+
+/// What one piece of a file turned out to be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parse {
+    /// The tree; `None` for what stands before the first entity.
+    pub entity: Option<Entity>,
+    /// In the order of the text.
+    pub errors: Vec<SyntaxError>,
+    /// All tokens, comments included.
+    pub lexemes: Box<[Lexeme]>,
+    /// Names in text that had to be skipped. They may be declarations that a mistake hides, so nobody should be told
+    /// that such a name does not exist.
+    pub skipped_names: Vec<SmolStr>,
+}
+
+/// Cuts and parses a whole text: each piece with the range it covers. The pieces tile the text; spans inside a piece
+/// count from its start. There is always at least one piece, and only the first can be without an entity.
+pub fn parse(text: &str) -> Vec<(Span, Parse)> {
+    let lexemes = lex(text);
+    let end = Span::of(text).end;
+    let starts = cut(&lexemes);
+    let mut pieces = Vec::with_capacity(starts.len() + 1);
+    let first_start = starts.first().map_or(end, |&index| lexemes[index].1.start);
+    if first_start > 0 || starts.is_empty() {
+        pieces.push((0, 0));
+    }
+    pieces.extend(starts.iter().map(|&index| (index, lexemes[index].1.start)));
+    let bounds: Vec<_> = (0..pieces.len())
+        .map(|i| {
+            let (from, start) = pieces[i];
+            let (to, end) = pieces.get(i + 1).copied().unwrap_or((lexemes.len(), end));
+            (&lexemes[from..to], Span::new(start, end))
+        })
+        .collect();
+    parse_pieces(text, &bounds)
+}
+
+fn parse_pieces(text: &str, bounds: &[(&[Lexeme], Span)]) -> Vec<(Span, Parse)> {
+    let relative: Vec<Box<[Lexeme]>> =
+        bounds.iter().map(|(lexemes, span)| relocate(lexemes, span.start)).collect();
+    let significant: Vec<Vec<Lexeme>> = relative.iter().map(|lexemes| without_trivia(lexemes)).collect();
+    let mut parser = Parser::new();
+    let trees: Vec<_> = bounds
+        .iter()
+        .zip(&significant)
+        .map(|((_, span), tokens)| parser.run(span.text(text), tokens))
+        .collect();
+    drop(parser);
+    let mut parses = Vec::with_capacity(trees.len());
+    for (((entity, faults), lexemes), ((_, span), tokens)) in
+        trees.into_iter().zip(relative).zip(bounds.iter().zip(&significant))
+    {
+        let piece = span.text(text);
+        let errors = tidy::tidy(piece, entity.as_ref().and_then(Entity::kind), tokens, &lexemes, &faults);
+        let skipped_names = tidy::skipped_names(piece, tokens, &faults);
+        parses.push((*span, Parse { entity, errors, lexemes, skipped_names }));
+    }
+    parses
+}
+
+fn relocate(lexemes: &[Lexeme], start: u32) -> Box<[Lexeme]> {
+    lexemes.iter().map(|&(token, span)| (token, Span::new(span.start - start, span.end - start))).collect()
+}
+
+fn without_trivia(lexemes: &[Lexeme]) -> Vec<Lexeme> {
+    lexemes.iter().filter(|(token, _)| !token.is_comment() && *token != Token::Invalid).copied().collect()
+}
+
+/// The grammar's rules, each built when it is first needed: building one costs more than parsing an entity with it.
+pub struct Parser<'s> {
+    rules: [Option<Rule<'s, Option<Entity>>>; RULES],
+}
+
+const RULES: usize = 8;
+
+impl<'s> Parser<'s> {
+    fn new() -> Self {
+        Self { rules: [const { None }; RULES] }
+    }
+
+    fn run(&mut self, text: &'s str, tokens: &'s [Lexeme]) -> (Option<Entity>, Vec<Fault>) {
+        let Some(&(first, _)) = tokens.first() else { return (None, Vec::new()) };
+        let (index, build) = rule_for(first);
+        let rule = self.rules[index].get_or_insert_with(build);
+        let input = tokens.split_token_span(Span::at(Span::of(text).end));
+        let (tree, faults) = rule.parse_with_state(input, &mut SimpleState(text)).into_output_errors();
+        (tree.flatten(), faults)
+    }
+}
+
+type Build<'s> = fn() -> Rule<'s, Option<Entity>>;
+
+fn rule_for<'s>(first: Token) -> (usize, Build<'s>) {
+    match first.entity_kind() {
+        Some(EntityKind::Wheel) => (1, || components::wheel()),
+        Some(EntityKind::Sensor) => (2, || components::sensor()),
+        Some(EntityKind::Ip) => (3, || components::ip()),
+        Some(EntityKind::Robot) => (4, || robot::robot()),
+        Some(EntityKind::Movement) => (5, || movement::movement()),
+        Some(EntityKind::Environment) => (6, || environment::environment()),
+        None if first == Token::Import => (7, || components::import()),
+        None => (0, || components::preamble()),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,81 @@
+//! The rule for robots.
+
+use chumsky::prelude::{Parser, choice, just};
+
+use super::slot::{Fault, NAME, NUMBER, declared_name, keyword, nothing_more, references, slot, take};
+use super::{Extra, Input, Rule};
+use crate::ast::{DriveClause, DriveWord, Entity, PortNumber, References, Robot};
+use crate::{EntityKind, Expected, Span, Token, TokenSet};
+
+const TYPE: TokenSet = TokenSet::of(&[Token::Type]);
+const DRIVES: TokenSet = TokenSet::of(&[Token::Tw, Token::Fw, Token::Fwh]);
+const WITH: TokenSet = TokenSet::of(&[Token::With]);
+const PORT: TokenSet = TokenSet::of(&[Token::Port]);
+const HAS: TokenSet = TokenSet::of(&[Token::Has]);
+const OPEN: TokenSet = TokenSet::of(&[Token::OpenBrace]);
+const CLOSE: TokenSet = TokenSet::of(&[Token::CloseBrace]);
+const WHEELS: TokenSet = TokenSet::of(&[Token::Wheels]);
+const SENSORS: TokenSet = TokenSet::of(&[Token::Sensors]);
+
+/// What can stand behind the port clause.
+const TAIL: TokenSet = HAS.or(OPEN).or(CLOSE).or(WHEELS);
+
+/// `robot name type tw with port 19999 has { … } wheels with sensors { … }`
+pub(super) fn robot<'s>() -> Rule<'s, Option<Entity>> {
+    just(Token::Robot)
+        .ignore_then(drive(NAME.or(WITH)).or_not())
+        .then(declared_name(EntityKind::Robot, TYPE.or(WITH), PORT.or(NUMBER).or(TAIL)))
+        .then(drive(WITH.or(PORT)).or_not())
+        .then(port())
+        .then(wheels())
+        .then(sensors().or_not())
+        .then_ignore(nothing_more())
+        .map(|(((((before, name), after), port), wheels), sensors)| {
+            let before = before.map(|clause| DriveClause { before_name: true, ..clause });
+            Some(Entity::Robot(Robot { name, drive: after.or(before), port, wheels: Some(wheels), sensors }))
+        })
+        .boxed()
+}
+
+fn drive<'s>(next: TokenSet) -> impl Parser<'s, Input<'s>, DriveClause, Extra<'s>> + Clone {
+    let word = choice((
+        just(Token::Tw).to(DriveWord::Tw),
+        just(Token::Fw).to(DriveWord::Fw),
+        just(Token::Fwh).to(DriveWord::Fwh),
+    ));
+    just(Token::Type)
+        .ignore_then(slot(word, DRIVES, next.or(PORT).or(NUMBER).or(TAIL)))
+        .map_with(|word, extra| DriveClause { word, span: extra.span(), before_name: false })
+        .boxed()
+}
+
+fn port<'s>() -> Rule<'s, Option<PortNumber>> {
+    let number = take(|token, span, text| NUMBER.has(token).then_some((token, span, text)))
+        .validate(|(token, span, text): (Token, Span, &str), _, emitter| {
+            let whole = token == Token::Integer;
+            if !whole {
+                emitter.emit(Fault::PortNotWhole(span));
+            }
+            PortNumber { value: span.text(text).parse().ok().filter(|port| *port != 0), span, whole }
+        })
+        .labelled(Expected::Port);
+    keyword(Token::With, PORT, NUMBER.or(TAIL))
+        .ignore_then(keyword(Token::Port, NUMBER, TAIL))
+        .ignore_then(slot(number, NUMBER, TAIL))
+        .boxed()
+}
+
+fn wheels<'s>() -> Rule<'s, References> {
+    let behind = WHEELS.or(WITH).or(SENSORS);
+    keyword(Token::Has, OPEN, NAME.or(CLOSE).or(behind))
+        .ignore_then(references(EntityKind::Wheel, true, behind))
+        .then_ignore(keyword(Token::Wheels, WITH, SENSORS))
+        .boxed()
+}
+
+fn sensors<'s>() -> Rule<'s, References> {
+    just(Token::With)
+        .ignore_then(keyword(Token::Sensors, OPEN, NAME.or(CLOSE)))
+        .ignore_then(references(EntityKind::Sensor, false, TokenSet::default()))
+        .boxed()
+}

@@ -1,0 +1,259 @@
+//! How every rule recovers: a program is a row of slots, each of which is filled, empty, or holds something else.
+//!
+//! A slot never fails. Where its content is absent it reports one fault, passes over what fits nowhere up to a token
+//! that the slot itself or something behind it can begin with, and lets the rest of the entity go on.
+
+use chumsky::DefaultExpected;
+use chumsky::IterParser;
+use chumsky::error::{Error, LabelError};
+use chumsky::input::MapExtra;
+use chumsky::prelude::{Parser, any, choice, end, just, via_parser};
+use chumsky::primitive::select;
+use chumsky::util::MaybeRef;
+
+use super::{Extra, Input, Rule};
+use crate::ast::{Name, Number, References};
+use crate::{EntityKind, Expected, Span, Token, TokenSet, is_similar};
+
+/// What a rule reports while it runs; [`super::tidy`] makes errors of it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Fault {
+    /// Something else was expected at this token (or at the end).
+    Expected { at: Span, expected: Vec<Expected> },
+    /// These tokens were passed over.
+    Skipped(Span),
+    /// This token was taken for that keyword.
+    TakenForKeyword(Span, Token),
+    /// This keyword was taken for a name.
+    TakenForName(Span, EntityKind),
+    /// This number is none.
+    MalformedNumber(Span),
+    /// This port has a fraction.
+    PortNotWhole(Span),
+    /// This list must not be empty.
+    EmptyList(Span, EntityKind),
+}
+
+impl<'s> Error<'s, Input<'s>> for Fault {
+    fn merge(mut self, other: Self) -> Self {
+        if let (Self::Expected { expected, .. }, Self::Expected { expected: more, .. }) = (&mut self, other) {
+            expected.extend(more);
+        }
+        self
+    }
+}
+
+impl<'s> LabelError<'s, Input<'s>, DefaultExpected<'s, Token>> for Fault {
+    fn expected_found<E: IntoIterator<Item = DefaultExpected<'s, Token>>>(
+        expected: E,
+        _: Option<MaybeRef<'s, Token>>,
+        at: Span,
+    ) -> Self {
+        let words = expected.into_iter().filter_map(|pattern| match pattern {
+            DefaultExpected::Token(token) => Some(Expected::Word(*token)),
+            _ => None,
+        });
+        Self::Expected { at, expected: words.collect() }
+    }
+}
+
+impl<'s> LabelError<'s, Input<'s>, Expected> for Fault {
+    fn expected_found<E: IntoIterator<Item = Expected>>(
+        expected: E,
+        _: Option<MaybeRef<'s, Token>>,
+        at: Span,
+    ) -> Self {
+        Self::Expected { at, expected: expected.into_iter().collect() }
+    }
+
+    fn label_with(&mut self, label: Expected) {
+        if let Self::Expected { expected, .. } = self {
+            *expected = vec![label];
+        }
+    }
+}
+
+/// One token that `judge` makes something of, from the token, its place and the text.
+pub(super) fn take<'s, O>(
+    judge: impl Fn(Token, Span, &'s str) -> Option<O> + Clone + 's,
+) -> impl Parser<'s, Input<'s>, O, Extra<'s>> + Clone {
+    select(move |token, extra: &mut MapExtra<'s, '_, Input<'s>, Extra<'s>>| {
+        judge(token, extra.span(), extra.state().0)
+    })
+}
+
+/// `part`, or nothing and a fault. `first` is what `part` begins with, `later` what can stand behind it.
+pub(super) fn slot<'s, O: 's>(
+    part: impl Parser<'s, Input<'s>, O, Extra<'s>> + Clone + 's,
+    first: TokenSet,
+    later: TokenSet,
+) -> Rule<'s, Option<O>> {
+    part.clone()
+        .map(Some)
+        .recover_with(via_parser(skip_to(first.or(later)).ignore_then(part.or_not())))
+        .boxed()
+}
+
+/// The keyword (or sign) `word`, forgiving a slip of spelling, or one other token in its place where what follows it
+/// is in `next`.
+pub(super) fn keyword<'s>(word: Token, next: TokenSet, later: TokenSet) -> Rule<'s, Option<Span>> {
+    let first = TokenSet::of(&[word]);
+    let exact = just(word).map_with(|_, extra| extra.span());
+    let misspelt = misspelling(word);
+    let replaced = any()
+        .filter(move |token: &Token| !later.has(*token) || token.is_name())
+        .then_ignore(one_in(next).rewind())
+        .validate(|_, extra, emitter| emitter.emit(Fault::Skipped(extra.span())));
+    exact
+        .map(Some)
+        .recover_with(via_parser(misspelt.map(Some)))
+        .recover_with(via_parser(replaced.to(None)))
+        .recover_with(via_parser(skip_to(first.or(next).or(later)).ignore_then(exact.or_not())))
+        .boxed()
+}
+
+/// A word that is nearly `word`.
+fn misspelling<'s>(word: Token) -> impl Parser<'s, Input<'s>, Span, Extra<'s>> + Clone {
+    take(move |token, span, text| looks_like(token, span, text, word).then_some(span)).validate(
+        move |span, _, emitter| {
+            emitter.emit(Fault::TakenForKeyword(span, word));
+            span
+        },
+    )
+}
+
+fn looks_like(token: Token, span: Span, text: &str, word: Token) -> bool {
+    (token.is_name() || token.is_keyword())
+        && word.spelling().is_some_and(|spelling| is_similar(span.text(text), spelling))
+}
+
+/// Passes over tokens up to one of `until` or the end, and says which.
+fn skip_to<'s>(until: TokenSet) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
+    skip_some(until).or_not().ignored()
+}
+
+/// Like [`skip_to`], but there must be something to pass over.
+pub(super) fn skip_some<'s>(until: TokenSet) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
+    let skipped = any()
+        .filter(move |token: &Token| !until.has(*token))
+        .repeated()
+        .at_least(1)
+        .map_with(|(), extra: &mut MapExtra<'s, '_, Input<'s>, Extra<'s>>| extra.span());
+    skipped.validate(|span, _, emitter| emitter.emit(Fault::Skipped(span)))
+}
+
+/// Passes over one token of `set` that stands right before one of `next`.
+pub(super) fn skip_before<'s>(
+    set: TokenSet,
+    next: TokenSet,
+) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
+    one_in(set)
+        .then_ignore(one_in(next).rewind())
+        .validate(|_, extra, emitter| emitter.emit(Fault::Skipped(extra.span())))
+}
+
+/// One of the tokens of a set.
+fn one_in<'s>(set: TokenSet) -> impl Parser<'s, Input<'s>, Token, Extra<'s>> + Clone {
+    any().filter(move |token: &Token| set.has(*token))
+}
+
+/// Nothing more, or a fault; whatever is left is passed over.
+pub(super) fn nothing_more<'s>() -> Rule<'s, ()> {
+    end().labelled(Expected::Declaration).recover_with(via_parser(skip_to(TokenSet::default()))).boxed()
+}
+
+/// The first tokens of a name.
+pub(super) const NAME: TokenSet = TokenSet::of(&[Token::Name, Token::Distance, Token::Bumper, Token::Import]);
+
+/// The first tokens of a number.
+pub(super) const NUMBER: TokenSet =
+    TokenSet::of(&[Token::Integer, Token::Float, Token::Ipv4, Token::MalformedNumber]);
+
+/// The name of a new entity; a keyword in its place is taken for a name where what follows it is in `next`.
+pub(super) fn declared_name<'s>(kind: EntityKind, next: TokenSet, later: TokenSet) -> Rule<'s, Option<Name>> {
+    name(kind, Expected::NameOf(kind), next, later)
+}
+
+/// The name of an entity declared elsewhere.
+pub(super) fn reference<'s>(kind: EntityKind, next: TokenSet, later: TokenSet) -> Rule<'s, Option<Name>> {
+    name(kind, Expected::ReferenceTo(kind), next, later)
+}
+
+fn name<'s>(kind: EntityKind, label: Expected, next: TokenSet, later: TokenSet) -> Rule<'s, Option<Name>> {
+    let exact = plain_name().labelled(label);
+    let taken = keyword_for_name(kind, TokenSet::default())
+        .then_ignore(choice((one_in(next).ignored(), end())).rewind());
+    exact
+        .clone()
+        .map(Some)
+        .recover_with(via_parser(taken.map(Some)))
+        .recover_with(via_parser(skip_to(NAME.or(next).or(later)).ignore_then(exact.or_not())))
+        .boxed()
+}
+
+fn plain_name<'s>() -> impl Parser<'s, Input<'s>, Name, Extra<'s>> + Clone {
+    take(|token, span, text| token.is_name().then(|| name_at(span, text)))
+}
+
+fn keyword_for_name<'s>(
+    kind: EntityKind,
+    but: TokenSet,
+) -> impl Parser<'s, Input<'s>, Name, Extra<'s>> + Clone {
+    take(move |token, span, text| (token.is_keyword() && !but.has(token)).then(|| name_at(span, text)))
+        .validate(move |name, _, emitter| {
+            emitter.emit(Fault::TakenForName(name.span, kind));
+            name
+        })
+}
+
+fn name_at(span: Span, text: &str) -> Name {
+    Name { text: span.text(text).trim_start_matches('^').into(), span }
+}
+
+/// A number.
+pub(super) fn number<'s>(label: Expected) -> impl Parser<'s, Input<'s>, Number, Extra<'s>> + Clone {
+    take(|token, span, text| NUMBER.has(token).then_some((token, span, text)))
+        .validate(|(token, span, text): (Token, Span, &str), _, emitter| {
+            let value = match token {
+                Token::Integer | Token::Float => span.text(text).parse().ok(),
+                _ => {
+                    emitter.emit(Fault::MalformedNumber(span));
+                    None
+                }
+            };
+            Number { value, span }
+        })
+        .labelled(label)
+}
+
+/// `{ a, b c }` up to and with its closing brace. `later` is what can stand behind the list.
+pub(super) fn references<'s>(
+    kind: EntityKind,
+    may_be_empty: bool,
+    later: TokenSet,
+) -> impl Parser<'s, Input<'s>, References, Extra<'s>> + Clone {
+    let inside = NAME.or(TokenSet::of(&[Token::CloseBrace]));
+    let open = slot(just(Token::OpenBrace).ignored(), TokenSet::of(&[Token::OpenBrace]), inside.or(later));
+    let stop = TokenSet::of(&[Token::CloseBrace]).or(later);
+    let item = plain_name()
+        .labelled(Expected::ReferenceTo(kind))
+        .map(Some)
+        .recover_with(via_parser(keyword_for_name(kind, stop).map(Some)))
+        .recover_with(via_parser(skip_some(NAME.or(stop)).to(None)))
+        .then_ignore(just(Token::Comma).or_not())
+        .boxed();
+    let close = slot(just(Token::CloseBrace).ignored(), TokenSet::of(&[Token::CloseBrace]), later);
+    open.ignore_then(item.repeated().collect::<Vec<_>>())
+        .then_ignore(close)
+        .map_with(|items, extra| {
+            let broken = items.iter().any(Option::is_none);
+            References { names: items.into_iter().flatten().collect(), span: extra.span(), broken }
+        })
+        .validate(move |list, _, emitter| {
+            if list.names.is_empty() && !list.broken && !may_be_empty {
+                emitter.emit(Fault::EmptyList(list.span, kind));
+            }
+            list
+        })
+        .boxed()
+}

@@ -1,0 +1,316 @@
+//! Whole and broken programs: what is understood, and that each mistake is reported once.
+
+use expect_test::{Expect, expect};
+use proptest::prelude::*;
+
+use super::*;
+use crate::ast::{ActionKind, References};
+
+fn list(refs: Option<&References>) -> String {
+    let Some(refs) = refs else { return "-".to_owned() };
+    let names: Vec<&str> = refs.names.iter().map(|name| name.text.as_str()).collect();
+    format!("{{{}}}{}", names.join(" "), if refs.broken { "?" } else { "" })
+}
+
+fn gist(entity: &Entity) -> String {
+    let name = entity.name().map_or("-", |name| name.text.as_str());
+    let rest = match entity {
+        Entity::Import(import) => format!("{:?}", import.path),
+        Entity::Wheel(wheel) => format!("{:?}", wheel.radius.as_ref().and_then(|radius| radius.value)),
+        Entity::Sensor(sensor) => format!("{:?}", sensor.kind.map(|(kind, _)| kind)),
+        Entity::Ip(ip) => format!("{:?}", ip.address.as_ref().map(|(address, _)| address)),
+        Entity::Robot(robot) => format!(
+            "{:?} {:?} {} {}",
+            robot.drive.and_then(|clause| clause.word),
+            robot.port.as_ref().map(|port| port.value),
+            list(robot.wheels.as_ref()),
+            list(robot.sensors.as_ref())
+        ),
+        Entity::Movement(movement) => {
+            let actions: Vec<String> = movement
+                .actions
+                .iter()
+                .map(|action| match &action.kind {
+                    ActionKind::Move(_) => "move".to_owned(),
+                    ActionKind::Turn(_) => "turn".to_owned(),
+                    ActionKind::Slam => "slam".to_owned(),
+                })
+                .collect();
+            format!("{:?} [{}]", movement.robot.as_ref().map(|name| &name.text), actions.join(" "))
+        }
+        Entity::Environment(environment) => format!(
+            "{:?} {} {}",
+            environment.ip.as_ref().and_then(|clause| clause.name.as_ref()).map(|name| &name.text),
+            list(environment.robots.as_ref()),
+            list(environment.movements.as_ref())
+        ),
+    };
+    format!("{} {name} {rest}", entity.kind().map_or("import", EntityKind::noun))
+}
+
+fn render(text: &str) -> String {
+    let mut out = String::new();
+    for (span, parse) in parse(text) {
+        if let Some(entity) = &parse.entity {
+            out += &format!("{}\n", gist(entity));
+        }
+        for error in &parse.errors {
+            let at = error.span.shifted(span.start);
+            out += &format!("  {}..{} {:?}\n", at.start, at.end, error.kind);
+        }
+    }
+    out
+}
+
+fn check(text: &str, expected: &Expect) {
+    expected.assert_eq(&render(text));
+}
+
+#[test]
+fn the_articles_programs_have_no_syntax_errors() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/paper");
+    let mut programs = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+        assert!(parse(&text).iter().all(|(_, parse)| parse.errors.is_empty() && parse.entity.is_some()));
+        programs += 1;
+    }
+    assert_eq!(programs, 6);
+}
+
+#[test]
+fn everything_the_grammar_has() {
+    check(
+        r#"import "parts/wheels.pyr"
+wheelH ^robots with radius 4
+sensor s : bumper sensor t
+ip here 127.0.0.1
+robot type tw r with port 1 has { a, b, } wheels
+robot q with port 70000 has { a b, c d } wheels with sensors { s, t }
+parallel movement m of r { move -4 meters at 9 turn left turn right -30.5 turn left until { s } slam }
+environment e, here has { r } robots
+environment f with ip here has { r q } robots with { m m } moves"#,
+        &expect![[r#"
+            import - Some("parts/wheels.pyr")
+            wheel robots Some(4.0)
+            sensor s Some(Bumper)
+            sensor t None
+            ip here Some("127.0.0.1")
+            robot r Some(Tw) Some(Some(1)) {a b} -
+            robot q None Some(None) {a b c d} {s t}
+            movement m Some("r") [move turn turn turn slam]
+            environment e Some("here") {r} -
+            environment f Some("here") {r q} {m m}
+        "#]],
+    );
+}
+
+#[test]
+fn one_token_missing() {
+    for text in [
+        "wheel with radius 4.5",
+        "wheel w radius 4.5",
+        "wheel w with 4.5",
+        "wheel w with radius",
+        "wheel",
+        "robot r type with port 1 has { a b } wheels",
+        "robot r port 1 has { a b } wheels",
+        "robot r with 1 has { a b } wheels",
+        "robot r with port has { a b } wheels",
+        "robot r with port 1 { a b } wheels",
+        "robot r with port 1 has a b } wheels",
+        "robot r with port 1 has { a b wheels with sensors { s }",
+        "robot r with port 1 has { a b } with sensors { s }",
+        "robot r with port 1 has { a b } wheels with { s }",
+        "robot r with port 1 has { a b } wheels with sensors s }",
+        "robot r with port 1 has { a b } wheels with sensors { s",
+        "robot r has { a b } wheels",
+        "movement m r { slam }",
+        "movement m of { slam }",
+        "movement m of r slam }",
+        "movement m of r { slam",
+        "movement m of r { move meters turn left }",
+        "movement m of r { move 4 turn left }",
+        "movement m of r { move 4 meters at turn left }",
+        "movement m of r { turn 90 slam }",
+        "parallel m of r { slam }",
+        "environment e { r } robots",
+        "environment e has { r robots with { m } moves",
+        "environment e has { r } with { m } moves",
+        "environment e has { r } robots with { m }",
+        "environment e has { r } robots { m } moves",
+        "environment e with i has { r } robots",
+        "ip here",
+    ] {
+        let rendered = render(text);
+        assert_eq!(rendered.matches("\n  ").count(), 1, "{text}\n{rendered}");
+    }
+}
+
+#[test]
+fn misspelt_keywords() {
+    check(
+        "wheel w wiht radius 4 robot r tpye tw with prot 1 has { a b } wheel with sensor { s }
+movement m fo r { mvoe 4 metres turn lefft until { s } slm }
+weel v with radius 3 environment e has { r } robot with { m } move",
+        &expect![[r#"
+            wheel w Some(4.0)
+              8..12 Misspelt { written: "wiht", keyword: With }
+            robot r None Some(Some(1)) {a b} {s}
+              30..34 Misspelt { written: "tpye", keyword: Type }
+              43..47 Misspelt { written: "prot", keyword: Port }
+              62..67 Misspelt { written: "wheel", keyword: Wheels }
+              73..79 Misspelt { written: "sensor", keyword: Sensors }
+            movement m Some("r") [turn]
+              97..99 Misspelt { written: "fo", keyword: Of }
+              104..108 Misspelt { written: "mvoe", keyword: Move }
+              123..128 Misspelt { written: "lefft", keyword: Left }
+              141..144 Misspelt { written: "slm", keyword: Slam }
+              147..151 Misspelt { written: "weel", keyword: Wheel }
+            environment e None {r} {m}
+              192..197 Misspelt { written: "robot", keyword: Robots }
+              209..213 Misspelt { written: "move", keyword: Moves }
+        "#]],
+    );
+}
+
+#[test]
+fn doubled_and_misplaced() {
+    check(
+        "wheel wheel a with with radius radius 4 4
+robot r with port 1 has { { a,, b } } wheels
+movement m of r { move 4 4 meters turn 90 left turn left right , }
+} environment e has ( r ) robots",
+        &expect![[r#"
+            wheel - None
+              5..5 Missing { expected: [NameOf(Wheel)], found: End, inside: Some(Wheel) }
+            wheel a Some(4.0)
+              19..23 Unexpected { expected: [Word(Radius)], found: Text("with"), inside: Some(Wheel) }
+              31..37 Unexpected { expected: [Radius], found: Text("radius"), inside: Some(Wheel) }
+              40..41 Unexpected { expected: [Declaration], found: Text("4"), inside: Some(Wheel) }
+            robot r None Some(Some(1)) {a b}? -
+              68..69 Unexpected { expected: [ReferenceTo(Wheel)], found: Text("{"), inside: Some(Robot) }
+              72..73 Unexpected { expected: [ReferenceTo(Wheel)], found: Text(","), inside: Some(Robot) }
+              78..79 Unexpected { expected: [Word(Wheels)], found: Text("}"), inside: Some(Robot) }
+            movement m Some("r") [move turn turn]
+              112..113 Unexpected { expected: [Word(Meters), Word(Centimeters)], found: Text("4"), inside: Some(Movement) }
+              126..128 Unexpected { expected: [Word(Left), Word(Right)], found: Text("90"), inside: Some(Movement) }
+              144..149 Unexpected { expected: [Word(Until), Angle, Action], found: Text("right"), inside: Some(Movement) }
+              154..155 Unexpected { expected: [Declaration], found: Text("}"), inside: Some(Movement) }
+            environment e None {r} -
+              174..175 InvalidCharacter { written: "(" }
+              178..179 InvalidCharacter { written: ")" }
+        "#]],
+    );
+}
+
+#[test]
+fn keywords_for_names() {
+    check(
+        "wheel left with radius 3 robot r with port 1 has { left radius } wheels movement slam of turn { slam }",
+        &expect![[r#"
+            wheel left Some(3.0)
+              6..10 KeywordAsName { written: "left", of: Wheel }
+            robot r None Some(Some(1)) {left radius} -
+              51..55 KeywordAsName { written: "left", of: Wheel }
+              56..62 KeywordAsName { written: "radius", of: Wheel }
+            movement slam Some("turn") [slam]
+              81..85 KeywordAsName { written: "slam", of: Movement }
+              89..93 KeywordAsName { written: "turn", of: Robot }
+        "#]],
+    );
+}
+
+#[test]
+fn numbers_that_are_none() {
+    check(
+        "wheel a with radius 4. robot r with port 3.5 has { a 3 } wheels movement m of r { move 1.2.3 meters turn left 1.2.3.4 turn left until { } }",
+        &expect![[r#"
+            wheel a None
+              20..22 MalformedNumber { written: "4." }
+            robot r None Some(None) {a}? -
+              41..44 PortNotWhole { written: "3.5" }
+              53..54 Unexpected { expected: [Word(Comma), ReferenceTo(Wheel)], found: Text("3"), inside: Some(Robot) }
+            movement m Some("r") [move turn turn]
+              87..92 MalformedNumber { written: "1.2.3" }
+              110..117 MalformedNumber { written: "1.2.3.4" }
+              134..137 EmptyList { of: Sensor }
+        "#]],
+    );
+}
+
+#[test]
+fn an_open_end_is_reported_at_its_own_entity() {
+    check(
+        "robot r with port 1 has { a b\n\nmovement m of r { move 4.0 meters\n\nwheel w with radius 3",
+        &expect![[r#"
+            robot r None Some(Some(1)) {a b} -
+              29..29 Missing { expected: [Word(CloseBrace), Word(Comma), ReferenceTo(Wheel)], found: End, inside: Some(Robot) }
+            movement m Some("r") [move]
+              64..64 Missing { expected: [Word(CloseBrace), Word(At), Action], found: End, inside: Some(Movement) }
+            wheel w Some(3.0)
+        "#]],
+    );
+}
+
+#[test]
+fn signs_that_are_none() {
+    check(
+        "wheel rüd with radius 4,5 §\n/* open\nwheel a with radius 3",
+        &expect![[r#"
+        wheel r Some(4.0)
+          7..9 InvalidCharacter { written: "ü" }
+          24..25 Unexpected { expected: [Declaration], found: Text(","), inside: Some(Wheel) }
+          27..29 InvalidCharacter { written: "§" }
+          30..32 UnterminatedComment
+    "#]],
+    );
+    check(
+        "import \"a.pyr\nwheel a with radius 3 import b",
+        &expect![[r#"
+        import - Some("a.pyr")
+          7..13 UnterminatedString
+        wheel a Some(3.0)
+          36..42 Unexpected { expected: [Declaration], found: Text("import"), inside: Some(Wheel) }
+    "#]],
+    );
+}
+
+proptest! {
+    #[test]
+    fn any_text_is_parsed_and_tiled(text in any_text()) {
+        let pieces = parse(&text);
+        let mut end = 0;
+        for (span, parse) in &pieces {
+            prop_assert_eq!(span.start, end);
+            end = span.end;
+            for error in &parse.errors {
+                prop_assert!(error.span.end <= span.len());
+                prop_assert!(text.is_char_boundary((span.start + error.span.start) as usize));
+            }
+        }
+        prop_assert_eq!(end as usize, text.len());
+    }
+
+    /// An entity means the same wherever it stands, which is what lets an edit touch it alone.
+    #[test]
+    fn a_piece_parses_alone_as_it_does_in_its_file(text in any_text()) {
+        for (span, parsed) in parse(&text) {
+            let alone = parse(span.text(&text));
+            prop_assert_eq!(alone.len(), 1, "{:?}", span.text(&text));
+            prop_assert_eq!(&alone[0].1, &parsed);
+        }
+    }
+}
+
+fn any_text() -> impl Strategy<Value = String> {
+    let word = prop_oneof![
+        6 => proptest::sample::select(crate::KEYWORDS.map(|(_, word)| word).to_vec()).prop_map(str::to_owned),
+        4 => proptest::sample::select(vec![
+            "{", "}", ",", ":", "/*", "*/", "//", "\"", "\n", "\r", "^", "-", ".", "a", "b1", "4.5", "90", "1.2.3.4", "é", "🤖", "\u{feff}",
+        ])
+        .prop_map(str::to_owned),
+        1 => ".{0,4}",
+    ];
+    proptest::collection::vec(word, 0..40).prop_map(|words| words.join(" "))
+}

@@ -1,0 +1,211 @@
+//! From what the rules report to one error per mistake.
+//!
+//! A mistake makes several slots complain: the one it stands in, and those behind it that find the same token. Only
+//! the first complaint is kept unless some token was understood in between.
+
+use smol_str::SmolStr;
+
+use super::slot::Fault;
+use crate::{EntityKind, Expected, Found, Lexeme, Span, SyntaxError, SyntaxErrorKind, Token, is_similar};
+
+/// The errors behind `faults`. `tokens` is what the parser saw, `lexemes` everything that stands in the text.
+pub(super) fn tidy(
+    text: &str,
+    inside: Option<EntityKind>,
+    tokens: &[Lexeme],
+    lexemes: &[Lexeme],
+    faults: &[Fault],
+) -> Vec<SyntaxError> {
+    let piece = Piece { text, inside, tokens, lexemes, faults };
+    let mut errors: Vec<SyntaxError> =
+        lexemes.iter().filter_map(|lexeme| piece.lexical_error(*lexeme)).collect();
+    errors.extend(faults.iter().filter_map(|fault| piece.plain_error(fault)));
+    errors.extend(piece.expectation_errors());
+    errors.sort_by_key(|error| (error.span.start, error.span.end));
+    errors
+}
+
+/// The names among the tokens that were passed over.
+pub(super) fn skipped_names(text: &str, tokens: &[Lexeme], faults: &[Fault]) -> Vec<SmolStr> {
+    let skipped = |span: Span| {
+        faults.iter().any(
+            |fault| matches!(fault, Fault::Skipped(all) if all.start <= span.start && span.end <= all.end),
+        )
+    };
+    if !faults.iter().any(|fault| matches!(fault, Fault::Skipped(_))) {
+        return Vec::new();
+    }
+    let names = tokens.iter().filter(|(token, span)| token.is_name() && skipped(*span));
+    names.map(|(_, span)| span.text(text).trim_start_matches('^').into()).collect()
+}
+
+/// A string's text without its quotes.
+pub(super) fn unquoted(span: Span, text: &str) -> SmolStr {
+    span.text(text).trim_matches('"').into()
+}
+
+struct Piece<'a> {
+    text: &'a str,
+    inside: Option<EntityKind>,
+    tokens: &'a [Lexeme],
+    lexemes: &'a [Lexeme],
+    faults: &'a [Fault],
+}
+
+/// Complaints about one place.
+struct Complaint<'a> {
+    /// Index into the tokens; their number for the end.
+    index: usize,
+    expected: &'a [Expected],
+}
+
+impl Piece<'_> {
+    fn written(&self, span: Span) -> SmolStr {
+        span.text(self.text).into()
+    }
+
+    fn lexical_error(&self, (token, span): Lexeme) -> Option<SyntaxError> {
+        let (span, kind) = match token {
+            Token::Invalid => (span, SyntaxErrorKind::InvalidCharacter { written: self.written(span) }),
+            Token::UnterminatedComment => {
+                (Span::new(span.start, span.start + 2), SyntaxErrorKind::UnterminatedComment)
+            }
+            Token::UnterminatedString => (span, SyntaxErrorKind::UnterminatedString),
+            _ => return None,
+        };
+        Some(SyntaxError { span, kind })
+    }
+
+    /// Faults that are an error by themselves.
+    fn plain_error(&self, fault: &Fault) -> Option<SyntaxError> {
+        let (span, kind) = match *fault {
+            Fault::TakenForKeyword(span, keyword) => {
+                (span, SyntaxErrorKind::Misspelt { written: self.written(span), keyword })
+            }
+            Fault::TakenForName(span, of) => {
+                (span, SyntaxErrorKind::KeywordAsName { written: self.written(span), of })
+            }
+            Fault::MalformedNumber(span) => {
+                (span, SyntaxErrorKind::MalformedNumber { written: self.written(span) })
+            }
+            Fault::PortNotWhole(span) => {
+                (span, SyntaxErrorKind::PortNotWhole { written: self.written(span) })
+            }
+            Fault::EmptyList(span, of) => (span, SyntaxErrorKind::EmptyList { of }),
+            Fault::Expected { .. } | Fault::Skipped(_) => return None,
+        };
+        Some(SyntaxError { span, kind })
+    }
+
+    fn expectation_errors(&self) -> Vec<SyntaxError> {
+        let mut errors = Vec::new();
+        let mut resumed = None;
+        for complaint in self.complaints() {
+            let repeated = resumed.is_some_and(|resumed| complaint.index <= resumed);
+            let skipped_to = self.skipped_from(complaint.index);
+            let understood = complaint.index;
+            resumed = Some(resumed.unwrap_or(0).max(skipped_to.unwrap_or(understood)));
+            if !repeated && !self.is_consequence(complaint.index) {
+                errors.push(self.expectation_error(&complaint, skipped_to.is_some()));
+            }
+        }
+        errors
+    }
+
+    fn complaints(&self) -> Vec<Complaint<'_>> {
+        let mut complaints: Vec<Complaint> = self
+            .faults
+            .iter()
+            .filter_map(|fault| match fault {
+                Fault::Expected { at, expected } => {
+                    let index = self.tokens.partition_point(|(_, span)| span.start < at.start);
+                    Some(Complaint { index, expected })
+                }
+                _ => None,
+            })
+            .collect();
+        complaints.sort_by_key(|complaint| complaint.index);
+        complaints
+    }
+
+    /// Where reading went on if the token at `index` was passed over.
+    fn skipped_from(&self, index: usize) -> Option<usize> {
+        let start = self.tokens.get(index)?.1.start;
+        self.faults.iter().find_map(|fault| match fault {
+            Fault::Skipped(span) if span.start <= start && start < span.end => {
+                Some(self.tokens.partition_point(|(_, token)| token.start < span.end))
+            }
+            _ => None,
+        })
+    }
+
+    /// Whether the mistake at `index` has been reported otherwise: the token was taken for something, or something
+    /// that is no token stands right before it.
+    fn is_consequence(&self, index: usize) -> bool {
+        let here = self.tokens.get(index).map(|(_, span)| *span);
+        let taken = self.faults.iter().any(|fault| {
+            matches!(fault, Fault::TakenForKeyword(span, _) | Fault::TakenForName(span, _) if Some(*span) == here)
+        });
+        let before = index.checked_sub(1).map_or(0, |previous| self.tokens[previous].1.end);
+        let until = here.map_or(Span::of(self.text).end, |span| span.start);
+        let lexical = |token: Token| {
+            matches!(token, Token::Invalid | Token::UnterminatedComment | Token::UnterminatedString)
+        };
+        let no_token =
+            |(token, span): &Lexeme| lexical(*token) && before <= span.start && span.start <= until;
+        let after_string = index > 0 && self.tokens[index - 1].0 == Token::UnterminatedString;
+        taken || after_string || self.lexemes.iter().any(no_token)
+    }
+
+    fn expectation_error(&self, complaint: &Complaint<'_>, skipped: bool) -> SyntaxError {
+        let mut expected = complaint.expected.to_vec();
+        expected.sort_unstable();
+        expected.dedup();
+        let Some(&(token, span)) = self.tokens.get(complaint.index) else {
+            return self.missing(complaint.index, expected, Found::End);
+        };
+        let written = self.written(span);
+        if !skipped {
+            return self.missing(complaint.index, expected, Found::Text(written));
+        }
+        if let Some(keyword) = meant(token, &written, &expected) {
+            return SyntaxError { span, kind: SyntaxErrorKind::Misspelt { written, keyword } };
+        }
+        let kind = SyntaxErrorKind::Unexpected { expected, found: Found::Text(written), inside: self.inside };
+        SyntaxError { span, kind }
+    }
+
+    fn missing(&self, index: usize, expected: Vec<Expected>, found: Found) -> SyntaxError {
+        let end = index.checked_sub(1).map_or(0, |previous| self.tokens[previous].1.end);
+        let kind = SyntaxErrorKind::Missing { expected, found, inside: self.inside };
+        SyntaxError { span: Span::at(end), kind }
+    }
+}
+
+/// The expected keyword that `written` is a slip for.
+fn meant(token: Token, written: &str, expected: &[Expected]) -> Option<Token> {
+    const BEGINNINGS: [Token; 9] = [
+        Token::Wheel,
+        Token::WheelH,
+        Token::Sensor,
+        Token::Ip,
+        Token::Robot,
+        Token::Parallel,
+        Token::Movement,
+        Token::Environment,
+        Token::Import,
+    ];
+    const ACTIONS: [Token; 3] = [Token::Move, Token::Turn, Token::Slam];
+    if !token.is_name() && !token.is_keyword() {
+        return None;
+    }
+    let words = expected.iter().flat_map(|expected| match expected {
+        Expected::Word(word) => vec![*word],
+        Expected::Action => ACTIONS.to_vec(),
+        Expected::Declaration => BEGINNINGS.to_vec(),
+        _ => Vec::new(),
+    });
+    words
+        .filter(|word| word.spelling().is_some_and(|spelling| is_similar(written, spelling)))
+        .min_by_key(|word| strsim::osa_distance(written, word.spelling().unwrap_or_default()))
+}

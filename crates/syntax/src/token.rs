@@ -1,0 +1,335 @@
+//! The words and signs of the language. The keyword list exists here and nowhere else.
+
+use logos::Logos;
+
+/// A token without its text; the text is found by the span beside it.
+#[derive(Logos, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[logos(skip r"[ \t\r\n\f]+")]
+#[repr(u8)]
+pub enum Token {
+    /// A name, also one escaped by `^`.
+    #[regex(r"\^?[A-Za-z_][A-Za-z0-9_]*")]
+    Name,
+    /// Digits, perhaps with `-` before them.
+    #[regex(r"-?[0-9]+", priority = 8)]
+    Integer,
+    /// Digits on both sides of one point.
+    #[regex(r"-?[0-9]+\.[0-9]+", priority = 8)]
+    Float,
+    /// Four integers joined by points.
+    #[regex(r"[0-9]+\.[0-9]+\.[0-9]+\.[0-9]+", priority = 8)]
+    Ipv4,
+    /// Digits and points that are no number: `4.`, `.5`, `1.2.3`.
+    #[regex(r"-?\.*[0-9][0-9.]*", priority = 4)]
+    MalformedNumber,
+    /// `"…"` on one line.
+    #[regex(r#""[^"\r\n]*""#)]
+    String,
+    /// `"` without its end on the line.
+    #[regex(r#""[^"\r\n]*"#)]
+    UnterminatedString,
+    /// `// …` up to the end of the line.
+    #[regex(r"//[^\r\n]*", allow_greedy = true)]
+    LineComment,
+    /// `/* … */`.
+    #[regex(r"/\*([^*]|\*+[^*/])*\*+/")]
+    BlockComment,
+    /// `/*` without `*/`; it takes the rest of the text, so that cutting never has to look ahead for its end.
+    #[regex(r"/\*([^*]|\*+[^*/])*\**")]
+    UnterminatedComment,
+    /// `{`
+    #[token("{")]
+    OpenBrace,
+    /// `}`
+    #[token("}")]
+    CloseBrace,
+    /// `,`
+    #[token(",")]
+    Comma,
+    /// `:`
+    #[token(":")]
+    Colon,
+    /// `wheel`
+    #[token("wheel")]
+    Wheel,
+    /// `wheelH`
+    #[token("wheelH")]
+    WheelH,
+    /// `with`
+    #[token("with")]
+    With,
+    /// `radius`
+    #[token("radius")]
+    Radius,
+    /// `sensor`
+    #[token("sensor")]
+    Sensor,
+    /// `ip`
+    #[token("ip")]
+    Ip,
+    /// `robot`
+    #[token("robot")]
+    Robot,
+    /// `type`
+    #[token("type")]
+    Type,
+    /// `tw`
+    #[token("tw")]
+    Tw,
+    /// `fw`
+    #[token("fw")]
+    Fw,
+    /// `fwh`
+    #[token("fwh")]
+    Fwh,
+    /// `port`
+    #[token("port")]
+    Port,
+    /// `has`
+    #[token("has")]
+    Has,
+    /// `wheels`
+    #[token("wheels")]
+    Wheels,
+    /// `sensors`
+    #[token("sensors")]
+    Sensors,
+    /// `parallel`
+    #[token("parallel")]
+    Parallel,
+    /// `movement`
+    #[token("movement")]
+    Movement,
+    /// `of`
+    #[token("of")]
+    Of,
+    /// `move`
+    #[token("move")]
+    Move,
+    /// `meters`
+    #[token("meters")]
+    Meters,
+    /// `centimeters`
+    #[token("centimeters")]
+    Centimeters,
+    /// `at`
+    #[token("at")]
+    At,
+    /// `turn`
+    #[token("turn")]
+    Turn,
+    /// `left`
+    #[token("left")]
+    Left,
+    /// `right`
+    #[token("right")]
+    Right,
+    /// `until`
+    #[token("until")]
+    Until,
+    /// `slam`
+    #[token("slam")]
+    Slam,
+    /// `environment`
+    #[token("environment")]
+    Environment,
+    /// `robots`
+    #[token("robots")]
+    Robots,
+    /// `moves`
+    #[token("moves")]
+    Moves,
+    /// `distance`, a word only after a sensor's `:`.
+    #[token("distance")]
+    Distance,
+    /// `bumper`, a word only after a sensor's `:`.
+    #[token("bumper")]
+    Bumper,
+    /// `import`, a word only at the start of an import.
+    #[token("import")]
+    Import,
+    /// Characters no token starts with; adjacent ones are one token.
+    Invalid,
+}
+
+/// Every word with a meaning of its own, in the order of the language's contract; the last three are contextual:
+/// they stay usable as names.
+pub const KEYWORDS: [(Token, &str); 33] = [
+    (Token::Wheel, "wheel"),
+    (Token::WheelH, "wheelH"),
+    (Token::With, "with"),
+    (Token::Radius, "radius"),
+    (Token::Sensor, "sensor"),
+    (Token::Ip, "ip"),
+    (Token::Robot, "robot"),
+    (Token::Type, "type"),
+    (Token::Tw, "tw"),
+    (Token::Fw, "fw"),
+    (Token::Fwh, "fwh"),
+    (Token::Port, "port"),
+    (Token::Has, "has"),
+    (Token::Wheels, "wheels"),
+    (Token::Sensors, "sensors"),
+    (Token::Parallel, "parallel"),
+    (Token::Movement, "movement"),
+    (Token::Of, "of"),
+    (Token::Move, "move"),
+    (Token::Meters, "meters"),
+    (Token::Centimeters, "centimeters"),
+    (Token::At, "at"),
+    (Token::Turn, "turn"),
+    (Token::Left, "left"),
+    (Token::Right, "right"),
+    (Token::Until, "until"),
+    (Token::Slam, "slam"),
+    (Token::Environment, "environment"),
+    (Token::Robots, "robots"),
+    (Token::Moves, "moves"),
+    (Token::Distance, "distance"),
+    (Token::Bumper, "bumper"),
+    (Token::Import, "import"),
+];
+
+impl Token {
+    /// How a keyword or sign is written; `None` for tokens whose text varies.
+    pub fn spelling(self) -> Option<&'static str> {
+        match self {
+            Self::OpenBrace => Some("{"),
+            Self::CloseBrace => Some("}"),
+            Self::Comma => Some(","),
+            Self::Colon => Some(":"),
+            _ => KEYWORDS.iter().find(|(token, _)| *token == self).map(|(_, word)| *word),
+        }
+    }
+
+    /// Whether it is a word that cannot be a name unless escaped by `^`.
+    pub fn is_keyword(self) -> bool {
+        (self as u8) >= (Self::Wheel as u8) && (self as u8) <= (Self::Moves as u8)
+    }
+
+    /// Whether it can stand where a name is wanted.
+    pub fn is_name(self) -> bool {
+        matches!(self, Self::Name | Self::Distance | Self::Bumper | Self::Import)
+    }
+
+    /// Whether the parser passes over it.
+    pub fn is_comment(self) -> bool {
+        matches!(self, Self::LineComment | Self::BlockComment | Self::UnterminatedComment)
+    }
+
+    /// Whether it is written where a number belongs.
+    pub fn is_number(self) -> bool {
+        matches!(self, Self::Integer | Self::Float | Self::Ipv4 | Self::MalformedNumber)
+    }
+
+    /// The kind of entity this keyword begins.
+    pub fn entity_kind(self) -> Option<EntityKind> {
+        Some(match self {
+            Self::Wheel | Self::WheelH => EntityKind::Wheel,
+            Self::Sensor => EntityKind::Sensor,
+            Self::Ip => EntityKind::Ip,
+            Self::Robot => EntityKind::Robot,
+            Self::Movement | Self::Parallel => EntityKind::Movement,
+            Self::Environment => EntityKind::Environment,
+            _ => return None,
+        })
+    }
+}
+
+/// The kinds of entity, each with a namespace of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum EntityKind {
+    /// `wheel` and `wheelH`
+    Wheel,
+    /// `sensor`
+    Sensor,
+    /// `ip`
+    Ip,
+    /// `robot`
+    Robot,
+    /// `movement`
+    Movement,
+    /// `environment`
+    Environment,
+}
+
+impl EntityKind {
+    /// All kinds, bottom up as a program builds them.
+    pub const ALL: [Self; 6] =
+        [Self::Wheel, Self::Sensor, Self::Ip, Self::Robot, Self::Movement, Self::Environment];
+
+    /// What a person calls one of them.
+    pub fn noun(self) -> &'static str {
+        match self {
+            Self::Wheel => "wheel",
+            Self::Sensor => "sensor",
+            Self::Ip => "ip",
+            Self::Robot => "robot",
+            Self::Movement => "movement",
+            Self::Environment => "environment",
+        }
+    }
+
+    /// The noun with its article: `a wheel`, `an ip`.
+    pub fn a_noun(self) -> &'static str {
+        match self {
+            Self::Wheel => "a wheel",
+            Self::Sensor => "a sensor",
+            Self::Ip => "an ip",
+            Self::Robot => "a robot",
+            Self::Movement => "a movement",
+            Self::Environment => "an environment",
+        }
+    }
+}
+
+/// A set of tokens.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct TokenSet(u64);
+
+impl TokenSet {
+    /// The set of these tokens.
+    pub const fn of(tokens: &[Token]) -> Self {
+        let mut bits = 0;
+        let mut i = 0;
+        while i < tokens.len() {
+            bits |= 1 << tokens[i] as u8;
+            i += 1;
+        }
+        Self(bits)
+    }
+
+    /// What is in either.
+    pub const fn or(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Whether `token` is in it.
+    pub const fn has(self, token: Token) -> bool {
+        self.0 & (1 << token as u8) != 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_keyword_is_lexed_as_itself() {
+        for (token, word) in KEYWORDS {
+            assert_eq!(Token::lexer(word).next(), Some(Ok(token)), "{word}");
+            let contextual = matches!(token, Token::Distance | Token::Bumper | Token::Import);
+            assert_eq!(token.is_keyword(), !contextual, "{word}");
+            assert_eq!(token.is_name(), contextual, "{word}");
+        }
+    }
+
+    #[test]
+    fn the_list_is_complete() {
+        let first = Token::Wheel as u8;
+        let listed: Vec<u8> = KEYWORDS.iter().map(|(token, _)| *token as u8).collect();
+        let all: Vec<u8> = (first..Token::Invalid as u8).collect();
+        assert_eq!(listed, all);
+        assert!((Token::Invalid as u8) < 64, "a token set is one word");
+    }
+}
