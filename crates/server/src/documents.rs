@@ -1,0 +1,79 @@
+//! The open documents: what the client shows, exactly as it sent it.
+
+use ropey::Rope;
+use rustc_hash::FxHashMap;
+use tower_lsp::ls_types::{Diagnostic, TextDocumentContentChangeEvent, Uri};
+
+use crate::positions::{self, Encoding};
+
+/// A document that is open in the client.
+#[derive(Debug)]
+pub(crate) struct Document {
+    /// As the client writes it, for it is the client that has to recognise it.
+    pub(crate) uri: Uri,
+    /// The client's number for this text.
+    pub(crate) version: i32,
+    /// The text. It shares its memory with the database's copy and outlives a database that failed.
+    pub(crate) text: Rope,
+    /// What the client was last told about it.
+    pub(crate) published: Vec<Diagnostic>,
+}
+
+impl Document {
+    /// Applies one change; returns the bytes it replaces in the text before it, `None` if it replaces all of them.
+    pub(crate) fn apply(
+        &mut self,
+        change: &TextDocumentContentChangeEvent,
+        encoding: Encoding,
+    ) -> Option<pydslrep_syntax::Span> {
+        let Some(range) = change.range else {
+            self.text = Rope::from_str(&change.text);
+            return None;
+        };
+        let span = positions::to_span(&self.text, range, encoding);
+        let start = self.text.byte_to_char(span.start as usize);
+        let end = self.text.byte_to_char(span.end as usize);
+        self.text.remove(start..end);
+        self.text.insert(start, &change.text);
+        Some(span)
+    }
+}
+
+/// All open documents by [`key`].
+pub(crate) type Documents = FxHashMap<String, Document>;
+
+/// The name under which a document is known, one for all spellings of its address: a file's path, decoded, with the
+/// letter of a drive in upper case; the address itself for what is not a file.
+pub(crate) fn key(uri: &Uri) -> String {
+    if !uri.scheme().as_str().eq_ignore_ascii_case("file") {
+        return uri.as_str().to_owned();
+    }
+    let mut path = uri.path().decode().to_string_lossy().into_owned();
+    if let [b'/', drive, b':', ..] = path.as_bytes()
+        && drive.is_ascii_alphabetic()
+    {
+        path[1..2].make_ascii_uppercase();
+    }
+    // A file on another host (`file://server/share`) is another file.
+    match uri.authority().map(|authority| authority.as_str()) {
+        None | Some("" | "localhost") => path,
+        Some(host) => format!("//{host}{path}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::str::FromStr;
+
+    use super::*;
+
+    #[test]
+    fn spellings_of_one_address_have_one_key() {
+        let key = |uri: &str| super::key(&Uri::from_str(uri).unwrap());
+        assert_eq!(key("file:///c%3A/a%20b/x.pyr"), "/C:/a b/x.pyr");
+        assert_eq!(key("file:///C:/a%20b/x.pyr"), "/C:/a b/x.pyr");
+        assert_eq!(key("file://localhost/home/%C3%A9.pyr"), "/home/é.pyr");
+        assert_eq!(key("file://server/share/x.pyr"), "//server/share/x.pyr");
+        assert_eq!(key("untitled:Untitled-1"), "untitled:Untitled-1");
+    }
+}

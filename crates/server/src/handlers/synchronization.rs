@@ -1,0 +1,126 @@
+//! Documents opened, changed and closed. The client's order is the truth, whatever the version numbers say: an editor
+//! may close a document and open it again with a version that is lower.
+
+use ropey::Rope;
+use tower_lsp::ls_types::{
+    DidChangeTextDocumentParams, DidCloseTextDocumentParams, DidOpenTextDocumentParams,
+};
+
+use crate::documents::{Document, key};
+use crate::state::State;
+
+/// `textDocument/didOpen`; for a document that is open already, its text is replaced.
+pub(crate) fn open(state: &mut State, params: DidOpenTextDocumentParams) {
+    let opened = params.text_document;
+    let key = key(&opened.uri);
+    let published = state.documents.remove(&key).map(|before| before.published).unwrap_or_default();
+    let document =
+        Document { text: Rope::from_str(&opened.text), version: opened.version, uri: opened.uri, published };
+    state.documents.insert(key, document);
+}
+
+/// `textDocument/didChange`; false if the document is not open, and nothing can be done.
+pub(crate) fn change(state: &mut State, params: &DidChangeTextDocumentParams) -> bool {
+    let encoding = state.client.encoding;
+    let Some(document) = state.documents.get_mut(&key(&params.text_document.uri)) else { return false };
+    document.version = params.text_document.version;
+    for change in &params.content_changes {
+        document.apply(change, encoding);
+    }
+    true
+}
+
+/// `textDocument/didClose`.
+pub(crate) fn close(state: &mut State, params: &DidCloseTextDocumentParams) -> bool {
+    state.documents.remove(&key(&params.text_document.uri)).is_some()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::str::FromStr;
+
+    use tower_lsp::ls_types::{
+        Position, Range, TextDocumentContentChangeEvent, TextDocumentIdentifier, TextDocumentItem, Uri,
+        VersionedTextDocumentIdentifier,
+    };
+
+    use super::*;
+
+    const ADDRESS: &str = "file:///tmp/a.pyr";
+
+    fn uri() -> Uri {
+        Uri::from_str(ADDRESS).unwrap()
+    }
+
+    fn open_text(state: &mut State, version: i32, text: &str) {
+        let text_document = TextDocumentItem::new(uri(), "pydslrep".to_owned(), version, text.to_owned());
+        open(state, DidOpenTextDocumentParams { text_document });
+    }
+
+    /// One change after the other: `None` replaces the whole text, else line and column of start and end.
+    fn change_text(state: &mut State, version: i32, changes: &[(Option<[u32; 4]>, &str)]) -> bool {
+        let content_changes = changes
+            .iter()
+            .map(|&(range, text)| TextDocumentContentChangeEvent {
+                range: range.map(|[a, b, c, d]| Range::new(Position::new(a, b), Position::new(c, d))),
+                range_length: None,
+                text: text.to_owned(),
+            })
+            .collect();
+        let text_document = VersionedTextDocumentIdentifier::new(uri(), version);
+        change(state, &DidChangeTextDocumentParams { text_document, content_changes })
+    }
+
+    fn close_text(state: &mut State) -> bool {
+        let text_document = TextDocumentIdentifier::new(uri());
+        close(state, &DidCloseTextDocumentParams { text_document })
+    }
+
+    fn text(state: &State) -> String {
+        state.document(&uri()).unwrap().text.to_string()
+    }
+
+    #[test]
+    fn each_change_of_one_message_is_made_in_the_text_the_one_before_left() {
+        let mut state = State::default();
+        open_text(&mut state, 1, "one\r\ntwo\r\n");
+        let changes = [
+            (Some([0, 3, 1, 0]), " "),
+            (Some([0, 7, 0, 7]), "🤖"),
+            (Some([0, 9, 0, 99]), "!"),
+            (Some([1, 0, 1, 0]), "é"),
+        ];
+        assert!(change_text(&mut state, 2, &changes));
+        assert_eq!(text(&state), "one two🤖!\r\né");
+        assert!(change_text(&mut state, 3, &[(None, "new"), (Some([0, 3, 0, 0]), "er")]));
+        assert_eq!(text(&state), "er", "a reversed range is understood");
+        assert_eq!(state.document(&uri()).unwrap().version, 3);
+    }
+
+    #[test]
+    fn carriage_returns_may_be_joined_and_parted() {
+        let mut state = State::default();
+        open_text(&mut state, 1, "a\r\nb");
+        assert!(change_text(&mut state, 2, &[(Some([0, 1, 1, 0]), "\r"), (Some([1, 0, 1, 0]), "\n")]));
+        assert_eq!(text(&state), "a\r\nb");
+        assert!(change_text(&mut state, 3, &[(Some([1, 0, 1, 0]), "x\ry\n")]));
+        assert_eq!(text(&state), "a\r\nx\ry\nb");
+        assert!(change_text(&mut state, 4, &[(Some([3, 0, 3, 1]), "c")]));
+        assert_eq!(text(&state), "a\r\nx\ry\nc");
+    }
+
+    #[test]
+    fn a_document_may_be_opened_twice_and_again_with_a_lower_version() {
+        let mut state = State::default();
+        assert!(!change_text(&mut state, 1, &[(None, "too early")]));
+        open_text(&mut state, 5, "first");
+        open_text(&mut state, 6, "second");
+        assert_eq!(text(&state), "second");
+        assert!(close_text(&mut state));
+        assert!(!close_text(&mut state));
+        assert!(!change_text(&mut state, 7, &[(None, "too late")]));
+        open_text(&mut state, 0, "third");
+        assert!(change_text(&mut state, 1, &[(Some([0, 0, 0, 1]), "T")]));
+        assert_eq!(text(&state), "Third");
+    }
+}

@@ -1,0 +1,177 @@
+//! Messages: the bytes of a frame as a JSON-RPC request, notification or response, or the error to answer with.
+
+use std::sync::mpsc::Sender;
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+use tower_lsp::jsonrpc::{Error, ErrorCode, Id, Request, Response};
+
+/// What a client may send.
+#[derive(Debug, PartialEq)]
+pub(crate) enum Incoming {
+    /// A request, or a notification if it has no id.
+    Request(Request),
+    /// The answer to a request of ours.
+    Response(Response),
+}
+
+/// Reads one message.
+///
+/// # Errors
+///
+/// The response that tells the client what was wrong: a parse error for what is not JSON, an invalid request for JSON
+/// that is not a message; with the message's id where it has a usable one, else null.
+pub(crate) fn parse(body: &[u8]) -> Result<Incoming, Response> {
+    let value = serde_json::from_slice(body)
+        .map_err(|error| refuse(Id::Null, ErrorCode::ParseError, format!("not JSON: {error}")))?;
+    let Value::Object(mut fields) = value else {
+        return Err(invalid(
+            Id::Null,
+            "a message must be a JSON object; batches are not part of the protocol",
+        ));
+    };
+    let id = fields.remove("id").map(serde_json::from_value::<Id>);
+    let (id, id_usable) = match id {
+        None => (None, true),
+        Some(Ok(id)) => (Some(id), true),
+        Some(Err(_)) => (None, false),
+    };
+    let answer_to = id.clone().unwrap_or_default();
+    if fields.get("jsonrpc").and_then(Value::as_str) != Some("2.0") {
+        return Err(invalid(answer_to, "`jsonrpc` must be \"2.0\""));
+    }
+    if !id_usable {
+        return Err(invalid(Id::Null, "`id` must be an integer or a string"));
+    }
+    match fields.remove("method") {
+        Some(Value::String(method)) => Ok(Incoming::Request(request(method, id, &mut fields))),
+        Some(_) => Err(invalid(answer_to, "`method` must be a string")),
+        None => response(id, &mut fields).ok_or_else(|| {
+            invalid(answer_to, "a message needs a `method`, or an `id` with a `result` or an `error`")
+        }),
+    }
+}
+
+fn request(method: String, id: Option<Id>, fields: &mut Map<String, Value>) -> Request {
+    // Some clients send `{}` where the protocol has no parameters at all.
+    let params = fields.remove("params").filter(|_| method != "shutdown");
+    let mut request = Request::build(method);
+    if let Some(params) = params {
+        request = request.params(params);
+    }
+    if let Some(id) = id {
+        request = request.id(id);
+    }
+    request.finish()
+}
+
+fn response(id: Option<Id>, fields: &mut Map<String, Value>) -> Option<Incoming> {
+    let id = id?;
+    let result = if let Some(error) = fields.remove("error").filter(|error| !error.is_null()) {
+        Err(serde_json::from_value(error).unwrap_or_else(|_| Error::internal_error()))
+    } else {
+        Ok(fields.remove("result")?)
+    };
+    Some(Incoming::Response(Response::from_parts(id, result)))
+}
+
+fn invalid(id: Id, reason: &'static str) -> Response {
+    refuse(id, ErrorCode::InvalidRequest, reason.to_owned())
+}
+
+/// An error response with words of our own.
+pub(crate) fn refuse(id: Id, code: ErrorCode, message: String) -> Response {
+    Response::from_error(id, Error { code, message: message.into(), data: None })
+}
+
+/// Where messages to the client go; it never blocks, and messages arrive in the order in which they were sent.
+#[derive(Debug, Clone)]
+pub struct Outbox(Sender<Option<Vec<u8>>>);
+
+impl Outbox {
+    /// An outbox whose messages, encoded but not framed, come out of `sender`'s receiver; `None` is the last.
+    pub fn new(sender: Sender<Option<Vec<u8>>>) -> Self {
+        Self(sender)
+    }
+
+    /// Sends a response, or a request or notification of ours.
+    pub(crate) fn send(&self, message: &impl Serialize) {
+        // Serialising our own plain structs cannot fail, and without a receiver there is nobody left to tell.
+        if let Ok(body) = serde_json::to_vec(message) {
+            let _ = self.0.send(Some(body));
+        }
+    }
+
+    /// Sends a notification without the detour over a JSON value.
+    pub(crate) fn notify(&self, method: &'static str, params: &impl Serialize) {
+        #[derive(Serialize)]
+        struct Notification<'a, P> {
+            jsonrpc: &'static str,
+            method: &'static str,
+            params: &'a P,
+        }
+        self.send(&Notification { jsonrpc: "2.0", method, params });
+    }
+
+    /// Tells the receiver that nothing follows.
+    #[cfg(feature = "process")]
+    pub(crate) fn close(&self) {
+        let _ = self.0.send(None);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn refusal(body: &[u8]) -> (Id, i64) {
+        let response = parse(body).unwrap_err();
+        (response.id().clone(), response.error().unwrap().code.code())
+    }
+
+    #[test]
+    fn requests_notifications_and_responses_are_told_apart() {
+        let request = parse(br#"{"jsonrpc":"2.0","id":1,"method":"a","params":{"b":2}}"#).unwrap();
+        assert_eq!(request, Incoming::Request(Request::build("a").id(1).params(json!({"b": 2})).finish()));
+        let notification = parse(br#"{"jsonrpc":"2.0","method":"a"}"#).unwrap();
+        assert_eq!(notification, Incoming::Request(Request::build("a").finish()));
+        let response = parse(br#"{"jsonrpc":"2.0","id":"x","result":null}"#).unwrap();
+        assert_eq!(response, Incoming::Response(Response::from_ok("x".into(), Value::Null)));
+        let failure =
+            parse(br#"{"jsonrpc":"2.0","id":3,"error":{"code":-1,"message":"m","more":1}}"#).unwrap();
+        assert_eq!(failure, Incoming::Response(Response::from_error(3.into(), Error::internal_error())));
+    }
+
+    #[test]
+    fn what_is_not_json_is_a_parse_error() {
+        let deep = "[".repeat(100_000);
+        for body in [&b"{"[..], b"", b"nonsense", b"{\"a\":\"\xff\"}", deep.as_bytes()] {
+            assert_eq!(refusal(body), (Id::Null, -32700), "{:?}", String::from_utf8_lossy(body).get(..20));
+        }
+    }
+
+    #[test]
+    fn what_is_not_a_message_is_an_invalid_request() {
+        for (body, id) in [
+            (r"[]", Id::Null),
+            ("1", Id::Null),
+            (r#"{"hello":1}"#, Id::Null),
+            (r#"{"jsonrpc":"2.0"}"#, Id::Null),
+            (r#"{"jsonrpc":"2.0","id":4}"#, 4.into()),
+            (r#"{"jsonrpc":"2.0","id":4,"method":5}"#, 4.into()),
+            (r#"{"jsonrpc":"1.0","id":4,"method":"a"}"#, 4.into()),
+            (r#"{"jsonrpc":"2.0","id":[4],"method":"a"}"#, Id::Null),
+            (r#"{"jsonrpc":"2.0","result":1}"#, Id::Null),
+        ] {
+            assert_eq!(refusal(body.as_bytes()), (id, -32600), "{body}");
+        }
+    }
+
+    #[test]
+    fn shutdown_with_empty_parameters_is_understood() {
+        let request = parse(br#"{"jsonrpc":"2.0","id":1,"method":"shutdown","params":{}}"#).unwrap();
+        assert_eq!(request, Incoming::Request(Request::build("shutdown").id(1).finish()));
+    }
+}

@@ -1,0 +1,65 @@
+//! Leaving when the client has died. The end of the input says so already, unless another child of the client has
+//! inherited the pipe and keeps it open: so the client's process is watched as well, where that costs nothing.
+
+use std::fs;
+use std::thread;
+
+use rustix::event::{PollFd, PollFlags, poll};
+use rustix::process::{Pid, PidfdFlags, pidfd_open};
+
+use crate::server::log;
+
+/// Ends this process, with the exit code of an abrupt end, as soon as the client's has ended.
+///
+/// Only a client that is an ancestor of this process is watched: across a container's border or a remote shell the
+/// same number belongs to someone else.
+pub(crate) fn leave_with(client: u32) {
+    if !is_ancestor(client) {
+        return;
+    }
+    let Some(pid) = i32::try_from(client).ok().and_then(Pid::from_raw) else { return };
+    let Ok(process) = pidfd_open(pid, PidfdFlags::empty()) else { return };
+    let watch = move || {
+        let mut ends = [PollFd::new(&process, PollFlags::IN)];
+        while let Ok(0) | Err(rustix::io::Errno::INTR) = poll(&mut ends, None) {}
+        log(format_args!("the client's process {client} has ended"));
+        std::process::exit(1);
+    };
+    // Without the thread there is still the end of the input.
+    let _ = thread::Builder::new().name("client watch".to_owned()).spawn(watch);
+}
+
+fn is_ancestor(client: u32) -> bool {
+    let mut process = std::os::unix::process::parent_id();
+    // A chain that long can only be one that changed under our eyes.
+    for _ in 0..64 {
+        if process == client {
+            return true;
+        }
+        match parent_of(process) {
+            Some(parent) if parent > 1 => process = parent,
+            _ => return false,
+        }
+    }
+    false
+}
+
+/// The name in `/proc/…/stat` may hold spaces and brackets; the state and the parent follow its last bracket.
+fn parent_of(process: u32) -> Option<u32> {
+    let stat = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
+    let (_, fields) = stat.rsplit_once(')')?;
+    fields.split_ascii_whitespace().nth(1)?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ancestors_are_recognised() {
+        let parent = std::os::unix::process::parent_id();
+        assert!(is_ancestor(parent));
+        assert!(!is_ancestor(std::process::id()));
+        assert_eq!(parent_of(std::process::id()), Some(parent));
+    }
+}

@@ -1,0 +1,50 @@
+//! The server as a process: on standard input and output, or on a socket.
+
+use std::fs::File;
+use std::io;
+use std::net::{Ipv4Addr, TcpStream};
+use std::process::ExitCode;
+
+use crate::message_loop::serve;
+
+/// Serves one client on standard input and output; the exit code is the protocol's: success only after `shutdown`
+/// and `exit`.
+///
+/// # Errors
+///
+/// If standard input or output is closed, or a thread cannot be started.
+pub fn run_stdio() -> io::Result<ExitCode> {
+    let (input, output) = stdio()?;
+    serve(input, output).map(ExitCode::from)
+}
+
+/// Serves the client that listens on a port of this machine; the exit code as for [`run_stdio`].
+///
+/// # Errors
+///
+/// If nothing listens there, or a thread cannot be started.
+pub fn run_socket(port: u16) -> io::Result<ExitCode> {
+    let stream = TcpStream::connect((Ipv4Addr::LOCALHOST, port))?;
+    // Messages are small and awaited: they must not be held back for company.
+    stream.set_nodelay(true)?;
+    let input = stream.try_clone()?;
+    serve(input, stream).map(ExitCode::from)
+}
+
+/// Standard input and output as plain files: the library's own would split each message at its line breaks.
+#[cfg(unix)]
+fn stdio() -> io::Result<(File, File)> {
+    use std::os::fd::AsFd;
+    let input = io::stdin().as_fd().try_clone_to_owned()?;
+    let output = io::stdout().as_fd().try_clone_to_owned()?;
+    Ok((input.into(), output.into()))
+}
+
+/// Standard input and output as plain files: the library's own would split each message at its line breaks.
+#[cfg(windows)]
+fn stdio() -> io::Result<(File, File)> {
+    use std::os::windows::io::AsHandle;
+    let input = io::stdin().as_handle().try_clone_to_owned()?;
+    let output = io::stdout().as_handle().try_clone_to_owned()?;
+    Ok((input.into(), output.into()))
+}
