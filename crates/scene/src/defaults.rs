@@ -11,6 +11,10 @@ pub const GEOMETRY: Geometry = Geometry { track: 0.30, wheelbase: 0.25 };
 /// Opening angle of a proximity sensor's cone, 20° in radians.
 pub const CONE: f64 = 20.0 * std::f64::consts::PI / 180.0;
 
+/// How fast motors can change the rim speed of a wheel, metres per second squared: twice
+/// [`pydslrep_kinematics::motion::RIM_ACCELERATION`], so that a controller which ramps at that rate has room to correct.
+pub const MOTOR_ACCELERATION: f64 = 1.0;
+
 /// Where the robot at `index` (from 0) of an environment starts: (0, −index m, 0°).
 pub fn start(index: usize) -> Pose {
     let row = u32::try_from(index).unwrap_or(u32::MAX);

@@ -21,6 +21,8 @@ pub struct Robot {
     pub body: Body,
     /// Distance between wheels; their middle is the body's centre.
     pub geometry: Geometry,
+    /// How fast the motors can change the wheels' rim speed, metres per second squared.
+    pub motor_acceleration: f64,
 }
 
 /// A driven wheel.
@@ -30,6 +32,16 @@ pub struct Wheel {
     pub name: String,
     /// Metres.
     pub radius: f64,
+    /// Whether its joint's axis points to the body's right (−y): then it rolls the robot backwards when its joint
+    /// turns forwards. Usual is the left.
+    pub mirrored: bool,
+}
+
+impl Wheel {
+    /// A wheel whose joint's axis points to the body's left; `radius` in metres.
+    pub fn new(name: impl Into<String>, radius: f64) -> Self {
+        Self { name: name.into(), radius, mirrored: false }
+    }
 }
 
 /// A proximity sensor on a robot.
@@ -92,6 +104,7 @@ impl Robot {
             start: Pose::default(),
             body,
             geometry: defaults::GEOMETRY,
+            motor_acceleration: defaults::MOTOR_ACCELERATION,
         }
     }
 
@@ -111,7 +124,7 @@ mod tests {
     use crate::Scene;
 
     fn wheels(names: &[&str]) -> Vec<Wheel> {
-        names.iter().map(|&name| Wheel { name: name.to_owned(), radius: 0.035 }).collect()
+        names.iter().map(|&name| Wheel::new(name, 0.035)).collect()
     }
 
     #[test]

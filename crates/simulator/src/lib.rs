@@ -1,1 +1,23 @@
-//! To be written.
+//! The embedded simulator: robots moving in a world, and the remote API by which scripts drive them.
+//!
+//! Knows `kinematics` and `scene`. Must never know the language, and below [`edge`] neither sockets nor threads
+//! nor clocks nor files: [`World`] and [`Session`] are plain state machines that get bytes and times handed in,
+//! so the same requests always give the same trace, bit for bit.
+//!
+//! * [`World`]: robots with wheel joints, stepped in simulation time.
+//! * [`Session`]: the remote API's calls on a world, for several clients that may step it in lockstep.
+//! * [`edge`] (feature `remote`): the same on TCP ports, and [`Simulator`] to embed it all.
+//! * [`picture`]: planned against driven path, as SVG.
+
+#[cfg(feature = "remote")]
+pub mod edge;
+pub mod picture;
+mod remote;
+mod trace;
+mod world;
+
+#[cfg(feature = "remote")]
+pub use edge::{Options, Simulator, StartError};
+pub use remote::{Answer, Session};
+pub use trace::TraceRecord;
+pub use world::{World, WorldError};

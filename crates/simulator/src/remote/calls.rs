@@ -1,0 +1,236 @@
+//! The calls of `sim` that read or command objects; those about time and stepping are in `session`.
+
+use ciborium::Value;
+use nalgebra::{Isometry3, Vector3};
+
+use super::arguments::{self, Arguments, Outcome};
+use super::info;
+use super::objects::{Handle, Kind, Objects};
+use crate::World;
+
+/// What calls work on.
+pub(super) struct Bench<'a> {
+    pub(super) world: &'a mut World,
+    pub(super) objects: &'a Objects,
+    /// Whether the simulation is started, running or paused.
+    pub(super) started: bool,
+}
+
+/// A wheel joint that a call names.
+struct Joint {
+    robot: usize,
+    wheel: usize,
+    /// −1 for a joint whose axis points to the right: its own rate is the opposite of the rolling rate.
+    sense: f64,
+}
+
+/// Answers a call by its name without `sim.`; `None` when there is no such function.
+pub(super) fn call(bench: &mut Bench, function: &str, arguments: &Arguments) -> Option<Outcome> {
+    Some(match function {
+        "getObject" => bench.get_object(arguments),
+        "getObjectAlias" => bench.get_object_alias(arguments),
+        "getObjectParent" => bench.get_object_parent(arguments),
+        "getObjectChild" => bench.get_object_child(arguments),
+        "getObjectType" => bench.get_object_type(arguments),
+        "isHandle" => bench.is_handle(arguments),
+        "getObjectPosition" => bench.frame(arguments).map(|frame| vec![arguments::position(&frame)]),
+        "getObjectOrientation" => bench.frame(arguments).map(|frame| vec![arguments::euler_angles(&frame)]),
+        "getObjectPose" => bench.frame(arguments).map(|frame| vec![arguments::pose(&frame)]),
+        "getObjectMatrix" => bench.frame(arguments).map(|frame| vec![arguments::matrix(&frame)]),
+        "getObjectVelocity" => bench.get_object_velocity(arguments),
+        "getJointPosition" => bench.read_joint(arguments, World::angle).map(|angle| vec![angle.into()]),
+        "getJointVelocity" => bench.read_joint(arguments, World::rate).map(|rate| vec![rate.into()]),
+        "getJointTargetVelocity" => bench.read_joint(arguments, World::target).map(|rate| vec![rate.into()]),
+        "setJointTargetVelocity" => bench.set_joint_target_velocity(arguments),
+        "getJointMode" => {
+            bench.joint(arguments).map(|_| vec![info::JOINT_MODE_DYNAMIC.into(), Value::from(0)])
+        }
+        "getObjectInt32Param" => bench.get_object_int_param(arguments),
+        "setObjectInt32Param" => bench.set_object_int_param(arguments),
+        "getObjectFloatParam" => bench.get_object_float_param(arguments),
+        "readProximitySensor" => bench.read_proximity_sensor(arguments),
+        "handleProximitySensor" => bench.handle_proximity_sensor(arguments),
+        "getInt32Param" => parameter(arguments, info::PARAM_PROGRAM_VERSION, info::PROGRAM_VERSION.into()),
+        "getFloatParam" => parameter(arguments, info::PARAM_TIME_STEP, bench.world.step_length().into()),
+        "getBoolParam" => parameter(arguments, info::PARAM_REAL_TIME, true.into()),
+        "getSimulationTimeStep" => Ok(vec![bench.world.step_length().into()]),
+        "getSimulationTime" => Ok(vec![bench.world.time().into()]),
+        // The clock's pace is the simulator's own option; logs have no window to go to.
+        "setBoolParam" => arguments.integer(0).and_then(|_| arguments.truth(1)).map(|_| vec![]),
+        "addLog" => arguments.integer(0).map(|_| vec![]),
+        _ => return None,
+    })
+}
+
+/// The one readable parameter of a kind.
+fn parameter(arguments: &Arguments, known: i64, value: Value) -> Outcome {
+    if arguments.integer(0)? == known {
+        return Ok(vec![value]);
+    }
+    Err(arguments.failure(316, "invalid parameter."))
+}
+
+impl Bench<'_> {
+    fn get_object(&self, arguments: &Arguments) -> Outcome {
+        let path = arguments.text(0)?;
+        let index = arguments.option(1, "index").and_then(arguments::integer).unwrap_or(0);
+        let proxy = arguments.option(1, "proxy").and_then(arguments::integer);
+        let found = usize::try_from(index).ok().and_then(|index| self.objects.find(path, proxy, index));
+        let tolerant = arguments.option(1, "noError").and_then(Value::as_bool).unwrap_or(false);
+        match found {
+            Some(handle) => Ok(vec![handle.into()]),
+            None if tolerant => Ok(vec![Value::from(-1)]),
+            None => Err(arguments.failure(1308, "object does not exist, or alias/path is ill formatted.")),
+        }
+    }
+
+    /// The object named by the first argument.
+    fn object(&self, arguments: &Arguments) -> Result<(Handle, Kind), arguments::Failure> {
+        let handle = arguments.integer(0)?;
+        match self.objects.get(handle) {
+            Some(object) => Ok((handle, object.kind)),
+            None => Err(arguments.failure(316, "object does not exist.")),
+        }
+    }
+
+    fn get_object_alias(&self, arguments: &Arguments) -> Outcome {
+        let (handle, _) = self.object(arguments)?;
+        let alias = match arguments.integer_or(1, -1)? {
+            1 => self.objects.short_path(handle),
+            2 => self.objects.path(handle),
+            _ => self.objects.get(handle).map(|object| object.alias.clone()),
+        };
+        Ok(vec![alias.unwrap_or_default().into()])
+    }
+
+    fn get_object_parent(&self, arguments: &Arguments) -> Outcome {
+        let (handle, _) = self.object(arguments)?;
+        let parent = self.objects.get(handle).and_then(|object| object.parent);
+        Ok(vec![parent.unwrap_or(-1).into()])
+    }
+
+    fn get_object_child(&self, arguments: &Arguments) -> Outcome {
+        let (parent, _) = self.object(arguments)?;
+        let index = usize::try_from(arguments.integer(1)?).map_err(|_| arguments.wrong_type())?;
+        let mut children = self.objects.iter().filter(|(_, object)| object.parent == Some(parent));
+        Ok(vec![children.nth(index).map_or(-1, |(handle, _)| handle).into()])
+    }
+
+    fn get_object_type(&self, arguments: &Arguments) -> Outcome {
+        let (_, kind) = self.object(arguments)?;
+        let kind = match kind {
+            Kind::Robot(_) => info::TYPE_SHAPE,
+            Kind::Wheel { .. } => info::TYPE_JOINT,
+            Kind::Sensor { .. } => info::TYPE_SENSOR,
+        };
+        Ok(vec![kind.into()])
+    }
+
+    fn is_handle(&self, arguments: &Arguments) -> Outcome {
+        Ok(vec![self.objects.get(arguments.integer(0)?).is_some().into()])
+    }
+
+    /// The frame of the first argument's object, relative to the second argument's (left out: the world).
+    fn frame(&self, arguments: &Arguments) -> Result<Isometry3<f64>, arguments::Failure> {
+        let (handle, _) = self.object(arguments)?;
+        let parent = self.objects.get(handle).and_then(|object| object.parent);
+        let base = match arguments.integer_or(1, info::HANDLE_WORLD)? {
+            info::HANDLE_WORLD | info::HANDLE_SCENE => None,
+            info::HANDLE_PARENT => parent,
+            base => Some(base),
+        };
+        let missing = || arguments.failure(316, "object does not exist.");
+        let frame = |handle| self.objects.frame(handle, self.world).ok_or_else(missing);
+        let own = frame(handle)?;
+        Ok(match base {
+            Some(base) => frame(base)?.inv_mul(&own),
+            None => own,
+        })
+    }
+
+    /// Linear and angular velocity in the world, m/s and rad/s.
+    fn get_object_velocity(&self, arguments: &Arguments) -> Outcome {
+        let (_, kind) = self.object(arguments)?;
+        let Kind::Robot(robot) = kind else {
+            return Err(arguments.failure(316, "object is not a shape."));
+        };
+        let (twist, (sin, cos)) = (self.world.twist(robot), self.world.pose(robot).theta.sin_cos());
+        let linear = Vector3::new(twist.vx * cos - twist.vy * sin, twist.vx * sin + twist.vy * cos, 0.0);
+        Ok(vec![arguments::vector(linear), arguments::vector(Vector3::new(0.0, 0.0, twist.omega))])
+    }
+
+    fn joint(&self, arguments: &Arguments) -> Result<Joint, arguments::Failure> {
+        let (_, kind) = self.object(arguments)?;
+        let Kind::Wheel { robot, wheel } = kind else {
+            return Err(arguments.failure(316, "object is not a joint."));
+        };
+        let parts = self.world.scene().robots.get(robot).and_then(|robot| robot.wheels.get(wheel));
+        let sense = if parts.is_some_and(|wheel| wheel.mirrored) { -1.0 } else { 1.0 };
+        Ok(Joint { robot, wheel, sense })
+    }
+
+    /// A rate or angle of a wheel, in its joint's own sense of rotation.
+    fn read_joint(
+        &self,
+        arguments: &Arguments,
+        read: fn(&World, usize, usize) -> f64,
+    ) -> Result<f64, arguments::Failure> {
+        let Joint { robot, wheel, sense } = self.joint(arguments)?;
+        Ok(sense * read(self.world, robot, wheel))
+    }
+
+    fn set_joint_target_velocity(&mut self, arguments: &Arguments) -> Outcome {
+        let Joint { robot, wheel, sense } = self.joint(arguments)?;
+        self.world.set_target(robot, wheel, sense * arguments.number(1)?);
+        Ok(vec![Value::from(1)])
+    }
+
+    fn get_object_int_param(&self, arguments: &Arguments) -> Outcome {
+        let Joint { robot, wheel, .. } = self.joint(arguments)?;
+        let controlled = self.world.is_controlled(robot, wheel);
+        match arguments.integer(1)? {
+            info::PARAM_CONTROL_MODE if controlled => Ok(vec![info::CONTROL_VELOCITY.into()]),
+            info::PARAM_CONTROL_MODE => Ok(vec![info::CONTROL_FREE.into()]),
+            _ => Err(arguments.failure(316, "invalid parameter.")),
+        }
+    }
+
+    fn set_object_int_param(&mut self, arguments: &Arguments) -> Outcome {
+        let Joint { robot, wheel, .. } = self.joint(arguments)?;
+        let value = arguments.integer(2)?;
+        if arguments.integer(1)? != info::PARAM_CONTROL_MODE {
+            return Err(arguments.failure(316, "invalid parameter."));
+        }
+        self.world.set_controlled(robot, wheel, value == info::CONTROL_VELOCITY);
+        Ok(vec![])
+    }
+
+    fn get_object_float_param(&self, arguments: &Arguments) -> Outcome {
+        let rate = self.read_joint(arguments, World::rate)?;
+        if arguments.integer(1)? != info::PARAM_VELOCITY {
+            return Err(arguments.failure(316, "invalid parameter."));
+        }
+        Ok(vec![rate.into()])
+    }
+
+    fn sensor(&self, arguments: &Arguments) -> Result<(), arguments::Failure> {
+        match self.object(arguments)? {
+            (_, Kind::Sensor { .. }) => Ok(()),
+            _ => Err(arguments.failure(316, "object is not a proximity sensor.")),
+        }
+    }
+
+    /// State, distance, point, handle of what was detected, its normal. The floor has nothing on it to detect.
+    fn read_proximity_sensor(&self, arguments: &Arguments) -> Outcome {
+        self.sensor(arguments)?;
+        let handled = self.started && self.world.steps() > 0;
+        let state = if handled { 0 } else { -1 };
+        let nothing = || arguments::list([0.0; 3]);
+        Ok(vec![Value::from(state), Value::from(0.0), nothing(), Value::from(-1), nothing()])
+    }
+
+    fn handle_proximity_sensor(&self, arguments: &Arguments) -> Outcome {
+        self.sensor(arguments)?;
+        Err(arguments.failure(316, "object not tagged for explicit handling."))
+    }
+}
