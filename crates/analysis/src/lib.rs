@@ -1,3 +1,23 @@
-//! The incremental database.
+//! The incremental database: documents, entities, names, problems, and environments ready to run.
+//!
+//! Knows many files at once, each as a text with an opaque path. Must never know editors and their protocol, where
+//! files come from, threads or clocks.
+//!
+//! The unit of change is the top-level entity. Entities tile their file and carry spans relative to their own start,
+//! so an edit re-reads only the entities it touches, and answers again only for those and for the ones that use a name
+//! whose meaning changed. Whatever is asked of a database that was edited equals what a fresh one would answer.
 
+mod database;
+mod diagnostic;
+pub mod diagnostics;
 pub mod environment;
+mod file;
+mod names;
+mod path;
+
+
+
+pub use database::{Database, EditCounts, EntityId, EntityRef, FileId, Resolution};
+pub use diagnostic::{Diagnostic, Edit, Fix, Related, Severity};
+
+

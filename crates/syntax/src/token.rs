@@ -270,6 +270,18 @@ impl EntityKind {
         }
     }
 
+    /// How one is written, from end to end.
+    pub fn shape(self) -> &'static str {
+        match self {
+            Self::Wheel => "wheel NAME with radius CENTIMETRES",
+            Self::Sensor => "sensor NAME",
+            Self::Ip => "ip NAME 127.0.0.1",
+            Self::Robot => "robot NAME type tw with port 19999 has { WHEELS } wheels",
+            Self::Movement => "movement NAME of ROBOT { ACTIONS }",
+            Self::Environment => "environment NAME has { ROBOTS } robots with { MOVEMENTS } moves",
+        }
+    }
+
     /// The noun with its article: `a wheel`, `an ip`.
     pub fn a_noun(self) -> &'static str {
         match self {

@@ -1,0 +1,259 @@
+//! The database: files in, answers out. How it changes is in [`change`].
+
+mod change;
+
+use pydslrep_syntax::ast::Entity;
+use pydslrep_syntax::{EntityKind, Parse, Span, Token};
+use ropey::Rope;
+use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
+
+use crate::diagnostics::{self, Problem};
+use crate::Diagnostic;
+use crate::file::File;
+use crate::names::Names;
+
+/// A file of the database.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct FileId(u32);
+
+/// An entity of the database; it keeps its id while edits leave its kind and place alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct EntityId(u32);
+
+/// What a name leads to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Resolution {
+    /// This entity; the first of several that bear the name.
+    To(EntityId),
+    /// It cannot be said: the name stands in text that was not understood, or a file to import is not there.
+    Unknown,
+    /// Nothing.
+    Nothing,
+}
+
+impl Resolution {
+    /// The entity, if there is one.
+    pub fn entity(self) -> Option<EntityId> {
+        match self {
+            Self::To(entity) => Some(entity),
+            Self::Unknown | Self::Nothing => None,
+        }
+    }
+}
+
+/// An entity with its place.
+#[derive(Debug, Clone, Copy)]
+pub struct EntityRef<'a> {
+    /// Its id.
+    pub id: EntityId,
+    /// Its file.
+    pub file: FileId,
+    /// From its first byte to where the next entity starts.
+    pub span: Span,
+    /// The tree (`None` for what stands before the first entity), tokens and errors; their spans count from
+    /// `span.start`.
+    pub parse: &'a Parse,
+}
+
+#[derive(Debug)]
+struct EntityData {
+    file: FileId,
+    /// Grows through the file; only its order means anything.
+    order: u64,
+    parse: Parse,
+    problems: Vec<Problem>,
+}
+
+/// Documents and everything known about them.
+#[derive(Debug, Default)]
+pub struct Database {
+    files: Vec<Option<File>>,
+    by_path: FxHashMap<String, FileId>,
+    entities: Vec<Option<EntityData>>,
+    free: Vec<u32>,
+    names: Names,
+    /// The paths each file imports, in order.
+    imports: FxHashMap<FileId, Vec<String>>,
+    last_edit: EditCounts,
+}
+
+/// How much the latest edit cost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct EditCounts {
+    /// Entities read again.
+    pub reparsed: usize,
+    /// Entities whose problems were looked for again.
+    pub revalidated: usize,
+}
+
+impl Database {
+    /// An empty database.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// A file by its path.
+    pub fn file(&self, path: &str) -> Option<FileId> {
+        self.by_path.get(path).copied()
+    }
+
+    /// All open files, in the order of opening.
+    pub fn files(&self) -> impl Iterator<Item = FileId> + '_ {
+        (0..).map(FileId).zip(&self.files).filter(|(_, file)| file.is_some()).map(|(id, _)| id)
+    }
+
+    /// The path a file was opened by; empty for a closed file.
+    pub fn path(&self, file: FileId) -> &str {
+        self.get(file).map_or("", |file| &file.path)
+    }
+
+    /// The text of a file; `None` for a closed one.
+    pub fn text(&self, file: FileId) -> Option<&Rope> {
+        self.get(file).map(|file| &file.text)
+    }
+
+    /// A part of a file's text; empty where it does not fit.
+    pub fn slice(&self, file: FileId, span: Span) -> String {
+        self.get(file).map_or_else(String::new, |file| file.slice(span))
+    }
+
+    /// The line ending a file uses.
+    pub fn line_ending(&self, file: FileId) -> &'static str {
+        self.get(file).map_or("\n", File::line_ending)
+    }
+
+    /// The paths a file imports, whether or not there is such a file.
+    pub fn imports(&self, file: FileId) -> &[String] {
+        self.imports.get(&file).map_or(&[], Vec::as_slice)
+    }
+
+    /// How much the latest edit (or opening) cost.
+    pub fn last_edit(&self) -> EditCounts {
+        self.last_edit
+    }
+
+    /// The entities of a file in the order of the text; also what stands before the first.
+    pub fn entities(&self, file: FileId) -> impl Iterator<Item = EntityRef<'_>> {
+        let pieces = self.get(file).map_or(&[][..], |file| &file.pieces);
+        pieces.iter().scan(0, move |start, piece| {
+            let span = Span::new(*start, *start + piece.len);
+            *start = span.end;
+            Some((piece.entity, span))
+        })
+        .filter_map(|(id, span)| {
+            self.data(id).map(|data| EntityRef { id, file: data.file, span, parse: &data.parse })
+        })
+    }
+
+    /// The entity that holds an offset: at a boundary the one behind it, at the end of the text the last one.
+    pub fn entity_at(&self, file: FileId, offset: u32) -> Option<EntityRef<'_>> {
+        let open = self.get(file)?;
+        let (index, start) = open.piece_at(offset);
+        let piece = open.pieces.get(index)?;
+        let data = self.data(piece.entity)?;
+        Some(EntityRef { id: piece.entity, file, span: Span::new(start, start + piece.len), parse: &data.parse })
+    }
+
+    /// An entity with its place.
+    pub fn entity(&self, id: EntityId) -> Option<EntityRef<'_>> {
+        let data = self.data(id)?;
+        let open = self.get(data.file)?;
+        let index = open.pieces.iter().position(|piece| piece.entity == id)?;
+        let start = open.start_of(index);
+        let span = Span::new(start, start + open.pieces[index].len);
+        Some(EntityRef { id, file: data.file, span, parse: &data.parse })
+    }
+
+    pub(crate) fn parse(&self, id: EntityId) -> Option<&Parse> {
+        self.data(id).map(|data| &data.parse)
+    }
+
+    /// An entity's tree, without its place.
+    pub fn tree(&self, id: EntityId) -> Option<&Entity> {
+        self.data(id)?.parse.entity.as_ref()
+    }
+
+    /// The file an entity is in.
+    pub fn file_of(&self, id: EntityId) -> Option<FileId> {
+        self.data(id).map(|data| data.file)
+    }
+
+    /// What a name means in a file: the first declaration in it, else in the files it imports.
+    pub fn resolve(&self, file: FileId, kind: EntityKind, name: &SmolStr) -> Resolution {
+        if let Some(first) = self.names.defined(&(file, kind, name.clone())).first() {
+            return Resolution::To(*first);
+        }
+        let mut unknown = self.names.is_skipped(file, name);
+        for path in self.imports(file) {
+            let Some(imported) = self.file(path) else {
+                unknown = true;
+                continue;
+            };
+            if let Some(first) = self.names.defined(&(imported, kind, name.clone())).first() {
+                return Resolution::To(*first);
+            }
+            unknown |= self.names.is_skipped(imported, name);
+        }
+        if unknown { Resolution::Unknown } else { Resolution::Nothing }
+    }
+
+    /// All declarations of a name in one file, in the order of the text.
+    pub fn definitions(&self, file: FileId, kind: EntityKind, name: &SmolStr) -> &[EntityId] {
+        self.names.defined(&(file, kind, name.clone()))
+    }
+
+    /// The entities of one file that use a name, in no order.
+    pub fn users(&self, file: FileId, kind: EntityKind, name: &SmolStr) -> &[EntityId] {
+        self.names.used(&(file, kind, name.clone()))
+    }
+
+    /// Every name of a kind that a file sees, sorted, each once.
+    pub fn visible_names(&self, file: FileId, kind: EntityKind) -> Vec<SmolStr> {
+        let imported = self.imports(file).iter().filter_map(|path| self.file(path));
+        let mut names: Vec<SmolStr> =
+            std::iter::once(file).chain(imported).flat_map(|file| self.names.all(file, kind).cloned()).collect();
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+
+    /// What is wrong with a file, in the order of the text.
+    pub fn diagnostics(&self, file: FileId) -> Vec<Diagnostic> {
+        diagnostics::in_file(self, file)
+    }
+
+    /// Whether an import stands behind an entity of another kind.
+    pub(crate) fn is_late_import(&self, id: EntityId) -> bool {
+        let Some(data) = self.data(id) else { return false };
+        let Some(open) = self.get(data.file) else { return false };
+        let first_entity = open
+            .pieces
+            .iter()
+            .filter_map(|piece| self.data(piece.entity))
+            .find(|data| !matches!(data.parse.entity, None | Some(Entity::Import(_))));
+        first_entity.is_some_and(|first| first.order < data.order)
+    }
+
+    /// Whether the file ends inside a comment: whatever stands in it is hidden.
+    pub(crate) fn has_open_comment(&self, file: FileId) -> bool {
+        let last = self.get(file).and_then(|file| file.pieces.last()).and_then(|piece| self.data(piece.entity));
+        last.and_then(|data| data.parse.lexemes.last()).is_some_and(|(token, _)| *token == Token::UnterminatedComment)
+    }
+
+    pub(crate) fn problems(&self, id: EntityId) -> &[Problem] {
+        self.data(id).map_or(&[], |data| &data.problems)
+    }
+
+    pub(crate) fn order(&self, id: EntityId) -> u64 {
+        self.data(id).map_or(0, |data| data.order)
+    }
+
+    fn get(&self, file: FileId) -> Option<&File> {
+        self.files.get(file.0 as usize)?.as_ref()
+    }
+
+    fn data(&self, id: EntityId) -> Option<&EntityData> {
+        self.entities.get(id.0 as usize)?.as_ref()
+    }
+}

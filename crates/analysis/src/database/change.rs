@@ -1,0 +1,383 @@
+//! How the database changes: what an edit replaces, and whose answers it makes doubtful.
+
+use std::ops::Range;
+
+use pydslrep_syntax::ast::Entity;
+use pydslrep_syntax::{EntityKind, Lexeme, Parse, Span, parse};
+use ropey::Rope;
+use rustc_hash::FxHashSet;
+
+use super::{Database, EditCounts, EntityData, EntityId, FileId};
+use crate::diagnostics;
+use crate::file::{File, OfRope, Piece, Window};
+use crate::names::Key;
+use crate::path;
+
+/// The space between the orders of two neighbours in a fresh file.
+const ORDER_STEP: u64 = 1 << 32;
+
+impl Database {
+    /// Opens a file, or replaces its text where it is open already.
+    pub fn open(&mut self, path: &str, text: &str) -> FileId {
+        let file = if let Some(file) = self.file(path) {
+            self.forget(file);
+            file
+        } else {
+            self.new_file(path)
+        };
+        let parses = parse(text);
+        self.last_edit = EditCounts { reparsed: parses.len(), revalidated: 0 };
+        self.files[file.0 as usize] =
+            Some(File { path: path.to_owned(), text: Rope::from_str(text), pieces: Vec::new() });
+        let orders = (1..).map(|index: u64| index * ORDER_STEP);
+        let pieces = parses.into_iter().zip(orders).map(|((span, parse), order)| self.add(file, span, parse, order)).collect();
+        self.set_pieces(file, pieces);
+        self.update_imports(file);
+        self.validate_file(file);
+        self.validate_importers(path);
+        file
+    }
+
+    /// Forgets a file.
+    pub fn close(&mut self, file: FileId) {
+        if self.get(file).is_none() {
+            return;
+        }
+        self.forget(file);
+        self.imports.remove(&file);
+        if let Some(closed) = self.files[file.0 as usize].take() {
+            self.by_path.remove(&closed.path);
+            self.validate_importers(&closed.path);
+        }
+    }
+
+    /// Replaces a range of bytes. A range that does not fit the text, or that cuts a character in two, is moved back
+    /// to where it does.
+    pub fn edit(&mut self, file: FileId, span: Span, text: &str) {
+        let entities = &self.entities;
+        let lexemes = |id: EntityId| -> &[Lexeme] {
+            entities[id.0 as usize].as_ref().map_or(&[], |data| &data.parse.lexemes)
+        };
+        let Some(open) = self.files.get_mut(file.0 as usize).and_then(Option::as_mut) else { return };
+        let span = fit(&open.text, span);
+        let window = open.edit(span, text, lexemes);
+        self.apply(file, window);
+    }
+
+    fn new_file(&mut self, path: &str) -> FileId {
+        let file = FileId(u32::try_from(self.files.len()).unwrap_or(u32::MAX));
+        self.files.push(None);
+        self.by_path.insert(path.to_owned(), file);
+        file
+    }
+
+    /// Removes all entities of a file.
+    fn forget(&mut self, file: FileId) {
+        let pieces = self.files[file.0 as usize].as_mut().map(|file| std::mem::take(&mut file.pieces));
+        for piece in pieces.unwrap_or_default() {
+            self.remove(piece.entity);
+        }
+    }
+
+    fn set_pieces(&mut self, file: FileId, pieces: Vec<Piece>) {
+        if let Some(open) = self.files[file.0 as usize].as_mut() {
+            open.pieces = pieces;
+        }
+    }
+
+    fn apply(&mut self, file: FileId, window: Window) {
+        self.last_edit = EditCounts { reparsed: window.parses.len(), revalidated: 0 };
+        let Window { replaced, parses } = self.without_unchanged_ends(file, window);
+        let old: Vec<EntityId> = self.pieces(file)[replaced.clone()].iter().map(|piece| piece.entity).collect();
+        let had_imports = self.any_import(&old);
+        let mut doubtful = Doubtful::default();
+        let new: Vec<Piece> = if old.len() == parses.len() {
+            old.iter().zip(parses).map(|(id, parsed)| self.update(*id, parsed, &mut doubtful)).collect()
+        } else {
+            self.exchange(file, &replaced, parses, &mut doubtful)
+        };
+        let ids: Vec<EntityId> = new.iter().map(|piece| piece.entity).collect();
+        if let Some(open) = self.files[file.0 as usize].as_mut() {
+            open.pieces.splice(replaced, new);
+        }
+        if had_imports || self.any_import(&ids) {
+            self.update_imports(file);
+            self.validate_file(file);
+        } else if !self.imports(file).is_empty() {
+            doubtful.entities.extend(self.import_entities(file));
+        }
+        doubtful.entities.extend(ids);
+        self.validate_doubtful(doubtful);
+    }
+
+    /// Pieces at either end of a window that read as before keep their entities and all their answers.
+    fn without_unchanged_ends(&mut self, file: FileId, mut window: Window) -> Window {
+        let old = &self.pieces(file)[window.replaced.clone()];
+        let same = |(piece, (_, parse)): &(&Piece, &(Span, Parse))| {
+            self.data(piece.entity).is_some_and(|data| data.parse == *parse)
+        };
+        let head = old.iter().zip(&window.parses).take_while(same).count();
+        let tail = old[head..].iter().rev().zip(window.parses[head..].iter().rev()).take_while(same).count();
+        let lens = |spans: &[(Span, Parse)]| spans.iter().map(|(span, _)| span.len()).collect::<Vec<_>>();
+        let tail_lens = lens(&window.parses[window.parses.len() - tail..]);
+        let head_lens = lens(&window.parses[..head]);
+        let Range { start, end } = window.replaced;
+        if let Some(open) = self.files[file.0 as usize].as_mut() {
+            // A piece can read the same and still have become longer: white space at its end is no token.
+            let heads = open.pieces[start..start + head].iter_mut().zip(head_lens);
+            heads.for_each(|(piece, len)| piece.len = len);
+            let tails = open.pieces[end - tail..end].iter_mut().zip(tail_lens);
+            tails.for_each(|(piece, len)| piece.len = len);
+        }
+        window.parses.truncate(window.parses.len() - tail);
+        window.parses.drain(..head);
+        Window { replaced: start + head..end - tail, parses: window.parses }
+    }
+
+    /// Reads an entity anew in its place.
+    fn update(&mut self, id: EntityId, (span, parse): (Span, Parse), doubtful: &mut Doubtful) -> Piece {
+        let Some(file) = self.file_of(id) else { return Piece { entity: id, len: span.len() } };
+        self.unregister(id, file);
+        if let Some(data) = self.entities[id.0 as usize].as_mut() {
+            if !looks_alike(&data.parse, &parse) {
+                doubtful.keys.extend(visible_keys(file, &data.parse));
+                doubtful.keys.extend(visible_keys(file, &parse));
+            }
+            data.parse = parse;
+        }
+        self.register(id, file);
+        Piece { entity: id, len: span.len() }
+    }
+
+    /// Removes the entities of a range of pieces and adds others.
+    fn exchange(
+        &mut self,
+        file: FileId,
+        replaced: &Range<usize>,
+        parses: Vec<(Span, Parse)>,
+        doubtful: &mut Doubtful,
+    ) -> Vec<Piece> {
+        for id in self.pieces(file)[replaced.clone()].iter().map(|piece| piece.entity).collect::<Vec<_>>() {
+            if let Some(data) = self.data(id) {
+                doubtful.keys.extend(visible_keys(file, &data.parse));
+            }
+            self.remove(id);
+        }
+        let orders = self.orders_between(file, replaced, parses.len());
+        doubtful.keys.extend(parses.iter().flat_map(|(_, parse)| visible_keys(file, parse)));
+        parses.into_iter().zip(orders).map(|((span, parse), order)| self.add(file, span, parse, order)).collect()
+    }
+
+    /// Orders for new entities in place of `replaced`. Where there is no room left the whole file is numbered anew.
+    fn orders_between(&mut self, file: FileId, replaced: &Range<usize>, count: usize) -> Vec<u64> {
+        let count = count as u64;
+        let neighbour = |database: &Self, index: Option<usize>| {
+            let piece = index.and_then(|index| database.pieces(file).get(index).copied());
+            piece.map(|piece| database.order(piece.entity))
+        };
+        let before = neighbour(self, replaced.start.checked_sub(1)).unwrap_or(0);
+        let after = neighbour(self, Some(replaced.end)).unwrap_or(before + (count + 1) * ORDER_STEP);
+        let step = (after - before) / (count + 1);
+        if step > 0 {
+            return (1..=count).map(|index| before + index * step).collect();
+        }
+        let pieces: Vec<Piece> = self.pieces(file).to_vec();
+        let mut order = 0;
+        let mut new = Vec::new();
+        for (index, piece) in pieces.iter().enumerate() {
+            if index == replaced.start {
+                new = (1..=count).map(|index| order + index * ORDER_STEP).collect();
+                order += count * ORDER_STEP;
+            }
+            order += ORDER_STEP;
+            if let Some(data) = self.entities[piece.entity.0 as usize].as_mut() {
+                data.order = order;
+            }
+        }
+        new
+    }
+
+    fn add(&mut self, file: FileId, span: Span, parse: Parse, order: u64) -> Piece {
+        let data = Some(EntityData { file, order, parse, problems: Vec::new() });
+        let id = if let Some(index) = self.free.pop() {
+            self.entities[index as usize] = data;
+            EntityId(index)
+        } else {
+            self.entities.push(data);
+            EntityId(u32::try_from(self.entities.len() - 1).unwrap_or(u32::MAX))
+        };
+        self.register(id, file);
+        Piece { entity: id, len: span.len() }
+    }
+
+    fn remove(&mut self, id: EntityId) {
+        if let Some(file) = self.file_of(id) {
+            self.unregister(id, file);
+            self.entities[id.0 as usize] = None;
+            self.free.push(id.0);
+        }
+    }
+
+    fn register(&mut self, id: EntityId, file: FileId) {
+        let entities = &self.entities;
+        let Some(data) = entities[id.0 as usize].as_ref() else { return };
+        let order = |id: EntityId| entities[id.0 as usize].as_ref().map_or(0, |data| data.order);
+        if let Some(key) = defined_key(file, &data.parse) {
+            self.names.define(key, id, order);
+        }
+        for key in used_keys(file, &data.parse) {
+            self.names.reference(key, id);
+        }
+        for name in &data.parse.skipped_names {
+            self.names.skip(file, name.clone());
+        }
+    }
+
+    fn unregister(&mut self, id: EntityId, file: FileId) {
+        let Some(data) = self.entities[id.0 as usize].as_ref() else { return };
+        if let Some(key) = defined_key(file, &data.parse) {
+            self.names.undefine(&key, id);
+        }
+        for key in used_keys(file, &data.parse) {
+            self.names.unreference(&key, id);
+        }
+        for name in &data.parse.skipped_names {
+            self.names.unskip(file, name);
+        }
+    }
+
+    fn update_imports(&mut self, file: FileId) {
+        let base = self.path(file).to_owned();
+        let ids = self.import_entities(file);
+        let paths = ids.iter().filter_map(|id| match self.tree(*id) {
+            Some(Entity::Import(import)) => import.path.as_ref().map(|relative| path::join(&base, relative)),
+            _ => None,
+        });
+        let paths: Vec<String> = paths.collect();
+        if paths.is_empty() {
+            self.imports.remove(&file);
+        } else {
+            self.imports.insert(file, paths);
+        }
+    }
+
+    fn import_entities(&self, file: FileId) -> Vec<EntityId> {
+        let ids = self.pieces(file).iter().map(|piece| piece.entity);
+        ids.filter(|id| matches!(self.tree(*id), Some(Entity::Import(_)))).collect()
+    }
+
+    fn any_import(&self, ids: &[EntityId]) -> bool {
+        ids.iter().any(|id| matches!(self.tree(*id), Some(Entity::Import(_))))
+    }
+
+    fn importers(&self, path: &str) -> Vec<FileId> {
+        let imports = self.imports.iter();
+        imports.filter(|(_, paths)| paths.iter().any(|other| other == path)).map(|(file, _)| *file).collect()
+    }
+
+    fn validate_importers(&mut self, path: &str) {
+        for file in self.importers(path) {
+            self.validate_file(file);
+        }
+    }
+
+    fn validate_file(&mut self, file: FileId) {
+        for id in self.pieces(file).iter().map(|piece| piece.entity).collect::<Vec<_>>() {
+            self.validate(id);
+        }
+    }
+
+    fn validate_doubtful(&mut self, mut doubtful: Doubtful) {
+        let mut asked: FxHashSet<Key> = FxHashSet::default();
+        while let Some(key) = doubtful.keys.pop() {
+            if !asked.insert(key.clone()) {
+                continue;
+            }
+            for id in self.affected(&key) {
+                doubtful.entities.insert(id);
+                if let Some(data) = self.data(id) {
+                    doubtful.keys.extend(defined_key(data.file, &data.parse).filter(|key| key.1 > EntityKind::Ip));
+                }
+            }
+        }
+        for id in doubtful.entities {
+            self.validate(id);
+        }
+    }
+
+    /// Who must be asked again when the meaning of a name changes: all who declare or use it, here and in the files
+    /// that import this one.
+    fn affected(&self, key: &Key) -> Vec<EntityId> {
+        let (file, kind, name) = key;
+        let mut ids = [self.names.defined(key), self.names.used(key)].concat();
+        for importer in self.importers(self.path(*file)) {
+            ids.extend(self.names.used(&(importer, *kind, name.clone())));
+        }
+        ids
+    }
+
+    fn validate(&mut self, id: EntityId) {
+        if self.data(id).is_none() {
+            return;
+        }
+        let problems = diagnostics::in_entity(self, id);
+        self.last_edit.revalidated += 1;
+        if let Some(data) = self.entities[id.0 as usize].as_mut() {
+            data.problems = problems;
+        }
+    }
+
+    fn pieces(&self, file: FileId) -> &[Piece] {
+        self.get(file).map_or(&[], |file| &file.pieces)
+    }
+}
+
+/// What an edit makes doubtful.
+#[derive(Debug, Default)]
+struct Doubtful {
+    entities: FxHashSet<EntityId>,
+    keys: Vec<Key>,
+}
+
+fn defined_key(file: FileId, parse: &Parse) -> Option<Key> {
+    let entity = parse.entity.as_ref()?;
+    Some((file, entity.kind()?, entity.name()?.text.clone()))
+}
+
+fn used_keys(file: FileId, parse: &Parse) -> impl Iterator<Item = Key> {
+    let references = parse.entity.as_ref().map(Entity::references).unwrap_or_default();
+    references.into_iter().map(move |(kind, name)| (file, kind, name.text.clone()))
+}
+
+/// The names whose meaning depends on an entity: the one it declares, and those that may be hidden in skipped text.
+fn visible_keys(file: FileId, parse: &Parse) -> Vec<Key> {
+    let skipped = parse.skipped_names.iter();
+    let hidden = skipped.flat_map(|name| EntityKind::ALL.map(|kind| (file, kind, name.clone())));
+    hidden.chain(defined_key(file, parse)).collect()
+}
+
+/// Whether two versions of an entity look the same to all others. Places count as looks, because others point at
+/// them; what stands inside a movement's braces does not.
+fn looks_alike(before: &Parse, after: &Parse) -> bool {
+    if before.skipped_names != after.skipped_names {
+        return false;
+    }
+    match (&before.entity, &after.entity) {
+        (Some(Entity::Movement(before)), Some(Entity::Movement(after))) => {
+            (&before.parallel, &before.name, &before.robot) == (&after.parallel, &after.name, &after.robot)
+        }
+        (before, after) => before == after,
+    }
+}
+
+/// The nearest range that fits the text and cuts no character.
+fn fit(text: &Rope, span: Span) -> Span {
+    let whole = Span::of_rope(text);
+    let snap = |offset: u32| {
+        let offset = offset.min(whole.end) as usize;
+        let character = text.byte_to_char(offset);
+        u32::try_from(text.char_to_byte(character)).unwrap_or(whole.end)
+    };
+    let start = snap(span.start);
+    Span::new(start, snap(span.end.max(span.start)))
+}

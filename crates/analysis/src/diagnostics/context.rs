@@ -1,0 +1,195 @@
+//! What a check sees, and what it reports.
+
+use pydslrep_syntax::ast::{Entity, Movement, Name, References, Robot, Wheel};
+use pydslrep_syntax::{EntityKind, Lexeme, Span, SyntaxError, closest};
+
+use super::Rule;
+use crate::{Database, EntityId, FileId, Resolution, Severity};
+
+/// A problem whose places count from the start of the entities they are in, so that it stays true wherever those
+/// move.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Problem {
+    pub(crate) rule: &'static Rule,
+    pub(crate) severity: Severity,
+    pub(crate) span: Span,
+    pub(crate) message: String,
+    pub(crate) help: Option<String>,
+    pub(crate) note: Option<String>,
+    pub(crate) related: Vec<ProblemPlace>,
+    pub(crate) fixes: Vec<ProblemFix>,
+}
+
+/// A second place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct ProblemPlace {
+    pub(crate) entity: EntityId,
+    pub(crate) span: Span,
+    pub(crate) message: String,
+}
+
+/// A fix by edits in any entities.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct ProblemFix {
+    pub(crate) title: String,
+    pub(crate) safe: bool,
+    pub(crate) edits: Vec<ProblemEdit>,
+}
+
+/// A replacement of text in one entity.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct ProblemEdit {
+    pub(crate) entity: EntityId,
+    pub(crate) span: Span,
+    pub(crate) text: String,
+}
+
+impl Rule {
+    /// A problem at `span` of the entity that is checked.
+    pub(super) fn problem(&'static self, span: Span, message: impl Into<String>) -> Problem {
+        Problem {
+            rule: self,
+            severity: self.severity,
+            span,
+            message: message.into(),
+            help: None,
+            note: None,
+            related: Vec::new(),
+            fixes: Vec::new(),
+        }
+    }
+}
+
+impl Problem {
+    pub(super) fn severity(mut self, severity: Severity) -> Self {
+        self.severity = severity;
+        self
+    }
+
+    pub(super) fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    pub(super) fn note(mut self, note: impl Into<String>) -> Self {
+        self.note = Some(note.into());
+        self
+    }
+
+    pub(super) fn related(mut self, entity: EntityId, span: Span, message: impl Into<String>) -> Self {
+        self.related.push(ProblemPlace { entity, span, message: message.into() });
+        self
+    }
+
+    /// A fix that can be applied without asking.
+    pub(super) fn fix(self, title: impl Into<String>, edits: impl Into<Vec<ProblemEdit>>) -> Self {
+        self.add_fix(title.into(), true, edits.into())
+    }
+
+    /// A fix that is only offered.
+    pub(super) fn suggestion(self, title: impl Into<String>, edits: impl Into<Vec<ProblemEdit>>) -> Self {
+        self.add_fix(title.into(), false, edits.into())
+    }
+
+    fn add_fix(mut self, title: String, safe: bool, edits: Vec<ProblemEdit>) -> Self {
+        self.fixes.push(ProblemFix { title, safe, edits });
+        self
+    }
+}
+
+/// The entity that is checked, with the database around it.
+pub(super) struct Context<'a> {
+    pub(super) database: &'a Database,
+    pub(super) file: FileId,
+    pub(super) id: EntityId,
+    /// `None` for what stands before the first entity.
+    pub(super) tree: Option<&'a Entity>,
+    pub(super) errors: &'a [SyntaxError],
+    pub(super) lexemes: &'a [Lexeme],
+}
+
+impl<'a> Context<'a> {
+    pub(super) fn new(database: &'a Database, id: EntityId) -> Option<Self> {
+        let parse = database.parse(id)?;
+        let file = database.file_of(id)?;
+        Some(Self { database, file, id, tree: parse.entity.as_ref(), errors: &parse.errors, lexemes: &parse.lexemes })
+    }
+
+    /// What a reference in this entity leads to.
+    pub(super) fn resolve(&self, kind: EntityKind, name: &Name) -> Resolution {
+        self.database.resolve(self.file, kind, &name.text)
+    }
+
+    /// The wheel a reference leads to.
+    pub(super) fn wheel(&self, name: &Name) -> Option<(EntityId, &'a Wheel)> {
+        let id = self.resolve(EntityKind::Wheel, name).entity()?;
+        match self.database.tree(id)? {
+            Entity::Wheel(wheel) => Some((id, wheel)),
+            _ => None,
+        }
+    }
+
+    /// The robot a reference leads to.
+    pub(super) fn robot(&self, name: &Name) -> Option<(EntityId, &'a Robot)> {
+        let id = self.resolve(EntityKind::Robot, name).entity()?;
+        match self.database.tree(id)? {
+            Entity::Robot(robot) => Some((id, robot)),
+            _ => None,
+        }
+    }
+
+    /// The movement a reference leads to.
+    pub(super) fn movement(&self, name: &Name) -> Option<(EntityId, &'a Movement)> {
+        let id = self.resolve(EntityKind::Movement, name).entity()?;
+        match self.database.tree(id)? {
+            Entity::Movement(movement) => Some((id, movement)),
+            _ => None,
+        }
+    }
+
+    /// The robot of a movement that may stand in another file.
+    pub(super) fn robot_of(&self, id: EntityId, movement: &Movement) -> Option<EntityId> {
+        let file = self.database.file_of(id)?;
+        self.database.resolve(file, EntityKind::Robot, &movement.robot.as_ref()?.text).entity()
+    }
+
+    /// The text of a range of this entity.
+    pub(super) fn text(&self, span: Span) -> String {
+        self.database.entity(self.id).map_or_else(String::new, |entity| {
+            self.database.slice(self.file, span.shifted(entity.span.start))
+        })
+    }
+
+    /// A replacement of text in this entity.
+    pub(super) fn replace(&self, span: Span, text: impl Into<String>) -> ProblemEdit {
+        ProblemEdit { entity: self.id, span, text: text.into() }
+    }
+
+    /// The smallest edit that removes `span` and the white space around it that would be left over.
+    pub(super) fn remove(&self, span: Span) -> ProblemEdit {
+        let before = self.lexemes.iter().rev().find(|(_, other)| other.end <= span.start);
+        let start = before.map_or(span.start, |(_, other)| other.end);
+        self.replace(Span::new(start, span.end), "")
+    }
+
+    /// The visible name of a kind that `name` is most likely a slip for.
+    pub(super) fn nearest(&self, kind: EntityKind, name: &Name) -> Option<String> {
+        let names = self.database.visible_names(self.file, kind);
+        closest(&name.text, names.iter().map(smol_str::SmolStr::as_str)).map(str::to_owned)
+    }
+}
+
+/// The edit that adds a name to a list in braces, which may be in another entity.
+pub(super) fn append(entity: EntityId, list: &References, name: &str, separator: &str) -> ProblemEdit {
+    let (offset, text) = match list.names.last() {
+        Some(last) => (last.span.end, format!("{separator}{}", as_written(name))),
+        None => (list.span.start + 1, format!(" {} ", as_written(name))),
+    };
+    ProblemEdit { entity, span: Span::at(offset), text }
+}
+
+/// A name as a program has to write it: keywords need their `^`.
+pub(crate) fn as_written(name: &str) -> String {
+    let keyword = pydslrep_syntax::KEYWORDS.iter().any(|(token, word)| token.is_keyword() && *word == name);
+    if keyword { format!("^{name}") } else { name.to_owned() }
+}

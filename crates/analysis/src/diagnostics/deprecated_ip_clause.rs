@@ -1,0 +1,44 @@
+//! `deprecated-ip-clause`: `environment a, ip1 has …`.
+
+use pydslrep_syntax::Span;
+use pydslrep_syntax::ast::Entity;
+
+use super::Rule;
+use super::context::{Context, Problem};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "deprecated-ip-clause",
+    severity: Severity::Warning,
+    summary: "an environment's ip is written behind a comma",
+    check,
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Environment(environment)) = context.tree else { return };
+    let Some(clause) = environment.ip.as_ref().filter(|clause| clause.with_comma) else { return };
+    let Some(name) = &clause.name else { return };
+    let comma = Span::new(clause.span.start, name.span.start);
+    problems.push(
+        RULE.problem(clause.span, format!("an ip is given by `with ip {}`", name.text))
+            .fix(format!("write `with ip {}`", name.text), [context.replace(comma, " with ip ")]),
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    const PARTS: &str = "ip here 127.0.0.1\nwheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has { a b } wheels\n";
+
+    #[test]
+    fn the_comma_becomes_words() {
+        check(&format!("{PARTS}environment e, here has {{ r }} robots"), &expect![[r#"
+            warning[deprecated-ip-clause] 5:14 ", here" an ip is given by `with ip here`
+              fix: write `with ip here` -> environment e with ip here has { r } robots
+        "#]]);
+        check_clean(&format!("{PARTS}environment e with ip here has {{ r }} robots"));
+    }
+}

@@ -1,0 +1,68 @@
+//! `duplicate-name`: one name, two entities of a kind.
+
+use super::Rule;
+use super::context::{Context, Problem};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "duplicate-name",
+    severity: Severity::Error,
+    summary: "a second declaration of a name within a kind",
+    check,
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(tree) = context.tree else { return };
+    let (Some(kind), Some(name)) = (tree.kind(), tree.name()) else { return };
+    let all = context.database.definitions(context.file, kind, &name.text);
+    let Some(first) = all.first().filter(|first| **first != context.id) else { return };
+    let Some(first_name) = context.database.tree(*first).and_then(|tree| tree.name()) else { return };
+    let free = free_name(context, kind, &name.text);
+    problems.push(
+        RULE.problem(name.span, format!("there is already {} called `{}`", kind.a_noun(), name.text))
+            .related(*first, first_name.span, "first declared here")
+            .help("give one of them another name")
+            .suggestion(format!("rename this one to `{free}`"), [context.replace(name.span, &free)]),
+    );
+}
+
+/// The name with the first number behind it that nobody of the kind has.
+fn free_name(context: &Context<'_>, kind: pydslrep_syntax::EntityKind, name: &str) -> String {
+    let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
+    let stem = if stem.is_empty() { name } else { stem };
+    let taken = context.database.visible_names(context.file, kind);
+    let mut candidates = (2_u32..).map(|number| format!("{stem}_{number}"));
+    candidates.find(|candidate| !taken.iter().any(|name| name == candidate)).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    #[test]
+    fn the_second_is_reported_and_points_at_the_first() {
+        check("wheel a with radius 4\nwheelH a with radius 5\nwheel a_2 with radius 6", &expect![[r#"
+            error[duplicate-name] 2:8 "a" there is already a wheel called `a`
+              see 1:7 "a" first declared here
+              help: give one of them another name
+              suggestion: rename this one to `a_3` -> wheelH a_3 with radius 5
+        "#]]);
+        check("sensor s_1\nsensor s_1\nsensor s_1", &expect![[r#"
+            error[duplicate-name] 2:8 "s_1" there is already a sensor called `s_1`
+              see 1:8 "s_1" first declared here
+              help: give one of them another name
+              suggestion: rename this one to `s_2` -> sensor s_2
+            error[duplicate-name] 3:8 "s_1" there is already a sensor called `s_1`
+              see 1:8 "s_1" first declared here
+              help: give one of them another name
+              suggestion: rename this one to `s_2` -> sensor s_2
+        "#]]);
+    }
+
+    #[test]
+    fn kinds_do_not_share_names() {
+        check_clean("wheel a with radius 4\nsensor a\nip a 127.0.0.1");
+    }
+}

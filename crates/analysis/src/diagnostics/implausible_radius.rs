@@ -1,0 +1,51 @@
+//! `implausible-radius`: a wheel taller than a person was probably measured in millimetres.
+
+use pydslrep_syntax::ast::Entity;
+
+use super::Rule;
+use super::context::{Context, Problem};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "implausible-radius",
+    severity: Severity::Warning,
+    summary: "a wheel of more than a metre in radius was probably measured in millimetres",
+    check,
+};
+
+/// Centimetres.
+const LARGEST: f64 = 100.0;
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Wheel(wheel)) = context.tree else { return };
+    let Some(radius) = &wheel.radius else { return };
+    let Some(value) = radius.value.filter(|value| value.is_finite() && *value > LARGEST) else { return };
+    let problem = RULE
+        .problem(radius.span, format!("a radius of {value} cm is taller than a robot"))
+        .note("radii are in centimetres; was it measured in millimetres?");
+    let tenth = value / 10.0;
+    problems.push(if tenth <= LARGEST {
+        problem.suggestion(format!("change to {tenth}"), [context.replace(radius.span, tenth.to_string())])
+    } else {
+        problem
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    #[test]
+    fn millimetres_are_suspected() {
+        check("wheel a with radius 450\nwheel b with radius 4500.5", &expect![[r#"
+            warning[implausible-radius] 1:21 "450" a radius of 450 cm is taller than a robot
+              note: radii are in centimetres; was it measured in millimetres?
+              suggestion: change to 45 -> wheel a with radius 45
+            warning[implausible-radius] 2:21 "4500.5" a radius of 4500.5 cm is taller than a robot
+              note: radii are in centimetres; was it measured in millimetres?
+        "#]]);
+        check_clean("wheel a with radius 100");
+    }
+}

@@ -1,0 +1,93 @@
+//! `invalid-angle`: an angle that is none, more than a turn, or the other way round.
+
+use pydslrep_syntax::Span;
+use pydslrep_syntax::ast::{Action, ActionKind, Direction, Entity, Number, Turn, TurnExtent};
+
+use super::Rule;
+use super::context::{Context, Problem};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "invalid-angle",
+    severity: Severity::Warning,
+    summary: "an angle lies above 0 and up to 360 degrees; `left` and `right` say which way",
+    check,
+};
+
+/// Degrees.
+const FULL_TURN: f64 = 360.0;
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Movement(movement)) = context.tree else { return };
+    for action in &movement.actions {
+        let ActionKind::Turn(turn) = &action.kind else { continue };
+        let Some(TurnExtent::Angle(angle)) = &turn.extent else { continue };
+        match angle.value.filter(|value| value.is_finite()) {
+            Some(value) if value < 0.0 => problems.push(backwards(context, turn, angle)),
+            Some(0.0) => problems.push(nothing(context, action, angle)),
+            Some(value) if value > FULL_TURN => problems.push(too_far(context, action, angle, value)),
+            _ => {}
+        }
+    }
+}
+
+fn nothing(context: &Context<'_>, action: &Action, angle: &Number) -> Problem {
+    RULE.problem(angle.span, "turning by 0 degrees does nothing")
+        .fix("remove the turn", [context.remove(action.span)])
+}
+
+fn backwards(context: &Context<'_>, turn: &Turn, angle: &Number) -> Problem {
+    let problem = RULE.problem(angle.span, "a negative angle turns the other way");
+    let Some((direction, span)) = turn.direction else { return problem };
+    let other = match direction {
+        Direction::Left => "right",
+        Direction::Right => "left",
+    };
+    let sign = Span::new(angle.span.start, angle.span.start + 1);
+    problem.fix(format!("turn {other} instead"), [context.replace(span, other), context.replace(sign, "")])
+}
+
+fn too_far(context: &Context<'_>, action: &Action, angle: &Number, value: f64) -> Problem {
+    let rest = value % FULL_TURN;
+    let problem = RULE.problem(angle.span, format!("{value} degrees are more than a full turn of 360"));
+    if rest > 0.0 {
+        problem.suggestion(format!("reduce to {rest}"), [context.replace(angle.span, rest.to_string())])
+    } else {
+        problem
+            .note("it ends at the heading it began with")
+            .suggestion("remove the turn", [context.remove(action.span)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    fn program(action: &str) -> String {
+        format!("wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has {{ a b }} wheels\nmovement m of r {{ slam {action} }}")
+    }
+
+    #[test]
+    fn angles_are_up_to_a_full_turn() {
+        check(&program("turn left 0"), &expect![[r#"
+            warning[invalid-angle] 4:34 "0" turning by 0 degrees does nothing
+              fix: remove the turn -> movement m of r { slam }
+        "#]]);
+        check(&program("turn left 450"), &expect![[r#"
+            warning[invalid-angle] 4:34 "450" 450 degrees are more than a full turn of 360
+              suggestion: reduce to 90 -> movement m of r { slam turn left 90 }
+        "#]]);
+        check(&program("turn left 720"), &expect![[r#"
+            warning[invalid-angle] 4:34 "720" 720 degrees are more than a full turn of 360
+              note: it ends at the heading it began with
+              suggestion: remove the turn -> movement m of r { slam }
+        "#]]);
+        check(&program("turn right -45.5"), &expect![[r#"
+            warning[invalid-angle] 4:35 "-45.5" a negative angle turns the other way
+              fix: turn left instead -> movement m of r { slam turn left 45.5 }
+        "#]]);
+        check_clean(&program("turn right 360 turn left 0.5"));
+    }
+}

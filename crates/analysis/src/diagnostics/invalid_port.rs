@@ -1,0 +1,56 @@
+//! `invalid-port`: a number no port has.
+
+use pydslrep_syntax::ast::Entity;
+
+use super::Rule;
+use super::context::{Context, Problem};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "invalid-port",
+    severity: Severity::Error,
+    summary: "a port lies between 1 and 65535",
+    check,
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Robot(robot)) = context.tree else { return };
+    if let Some(port) = robot.port.as_ref().filter(|port| port.whole && port.value.is_none()) {
+        let written = context.text(port.span);
+        problems.push(
+            RULE.problem(port.span, format!("port {written} is outside 1 to 65535"))
+                .help("CoppeliaSim listens on 23000, V-REP on 19999, unless told otherwise"),
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    #[test]
+    fn ports_have_sixteen_bits() {
+        let program = |port: &str| {
+            format!("wheel a with radius 4\nwheel b with radius 4\nrobot r with port {port} has {{ a b }} wheels")
+        };
+        check(&program("0"), &expect![[r#"
+            error[invalid-port] 3:19 "0" port 0 is outside 1 to 65535
+              help: CoppeliaSim listens on 23000, V-REP on 19999, unless told otherwise
+        "#]]);
+        check(&program("-1"), &expect![[r#"
+            error[invalid-port] 3:19 "-1" port -1 is outside 1 to 65535
+              help: CoppeliaSim listens on 23000, V-REP on 19999, unless told otherwise
+        "#]]);
+        check(&program("65536"), &expect![[r#"
+            error[invalid-port] 3:19 "65536" port 65536 is outside 1 to 65535
+              help: CoppeliaSim listens on 23000, V-REP on 19999, unless told otherwise
+        "#]]);
+        check(&program("99999999999999999999999999"), &expect![[r#"
+            error[invalid-port] 3:19 "99999999999999999999999999" port 99999999999999999999999999 is outside 1 to 65535
+              help: CoppeliaSim listens on 23000, V-REP on 19999, unless told otherwise
+        "#]]);
+        check_clean(&program("65535"));
+    }
+}

@@ -1,0 +1,78 @@
+//! `invalid-speed`: a speed of nothing, or backwards.
+
+use pydslrep_syntax::Span;
+use pydslrep_syntax::ast::{ActionKind, Entity, Move, Number};
+
+use super::Rule;
+use super::context::{Context, Problem};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "invalid-speed",
+    severity: Severity::Error,
+    summary: "a speed must be above zero",
+    check,
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Movement(movement)) = context.tree else { return };
+    for action in &movement.actions {
+        let ActionKind::Move(step) = &action.kind else { continue };
+        let speed = step.speed.as_ref().and_then(|clause| clause.value.as_ref());
+        if let Some(speed) = speed.filter(|speed| speed.value.is_some_and(|value| value <= 0.0)) {
+            problems.push(problem(context, step, speed));
+        }
+    }
+}
+
+fn problem(context: &Context<'_>, step: &Move, speed: &Number) -> Problem {
+    let written = context.text(speed.span);
+    let problem = RULE
+        .problem(speed.span, format!("a speed must be above zero, not {written} cm/s"))
+        .help("a negative distance drives backwards; without `at` the speed is 9.0 cm/s");
+    match &step.distance {
+        Some(distance) if speed.value.is_some_and(|value| value < 0.0) => problem.suggestion(
+            "negate the distance instead",
+            [context.replace(Span::new(speed.span.start, speed.span.start + 1), ""), negated(context, distance)],
+        ),
+        _ => problem,
+    }
+}
+
+fn negated(context: &Context<'_>, distance: &Number) -> super::context::ProblemEdit {
+    if context.text(distance.span).starts_with('-') {
+        context.replace(Span::new(distance.span.start, distance.span.start + 1), "")
+    } else {
+        context.replace(Span::at(distance.span.start), "-")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    fn program(action: &str) -> String {
+        format!("wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has {{ a b }} wheels\nmovement m of r {{ {action} }}")
+    }
+
+    #[test]
+    fn a_speed_is_above_zero() {
+        check(&program("move 4 meters at 0"), &expect![[r#"
+            error[invalid-speed] 4:36 "0" a speed must be above zero, not 0 cm/s
+              help: a negative distance drives backwards; without `at` the speed is 9.0 cm/s
+        "#]]);
+        check(&program("move 4 meters at -9.5"), &expect![[r#"
+            error[invalid-speed] 4:36 "-9.5" a speed must be above zero, not -9.5 cm/s
+              help: a negative distance drives backwards; without `at` the speed is 9.0 cm/s
+              suggestion: negate the distance instead -> movement m of r { move -4 meters at 9.5 }
+        "#]]);
+        check(&program("move -4 meters at -9.5"), &expect![[r#"
+            error[invalid-speed] 4:37 "-9.5" a speed must be above zero, not -9.5 cm/s
+              help: a negative distance drives backwards; without `at` the speed is 9.0 cm/s
+              suggestion: negate the distance instead -> movement m of r { move 4 meters at 9.5 }
+        "#]]);
+        check_clean(&program("move 4 meters at 0.1"));
+    }
+}

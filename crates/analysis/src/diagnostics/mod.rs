@@ -1,0 +1,159 @@
+//! The catalogue of problems: one module per code, with its check, its words, its fixes and its tests.
+
+mod context;
+mod deprecated_ip_clause;
+mod duplicate_name;
+mod implausible_radius;
+mod invalid_angle;
+mod invalid_character;
+mod invalid_ip;
+mod invalid_port;
+mod invalid_radius;
+mod invalid_speed;
+mod misplaced_type;
+mod movement_robot_missing;
+mod number_out_of_range;
+mod parallel_conflict;
+mod sensor_not_on_robot;
+mod syntax_error;
+mod unresolved_reference;
+mod unterminated_comment;
+mod unterminated_string;
+mod wheel_count;
+mod wheel_kind_mismatch;
+mod zero_distance;
+
+#[cfg(test)]
+mod testing;
+
+use pydslrep_syntax::Span;
+use rustc_hash::FxHashMap;
+
+use self::context::Context;
+pub(crate) use self::context::{Problem, ProblemFix};
+use crate::{Database, Diagnostic, Edit, EntityId, FileId, Fix, Related, Severity};
+
+/// A row of the catalogue.
+#[derive(Debug)]
+pub struct Rule {
+    /// Its stable name.
+    pub code: &'static str,
+    /// How bad it usually is.
+    pub severity: Severity,
+    /// What it finds, in one sentence.
+    pub summary: &'static str,
+    check: fn(&Context<'_>, &mut Vec<Problem>),
+}
+
+impl PartialEq for Rule {
+    fn eq(&self, other: &Self) -> bool {
+        self.code == other.code
+    }
+}
+
+/// All rules, in the order of the language's contract.
+pub const CATALOGUE: [&Rule; 21] = [
+    &syntax_error::RULE,
+    &invalid_character::RULE,
+    &unterminated_comment::RULE,
+    &unterminated_string::RULE,
+    &misplaced_type::RULE,
+    &deprecated_ip_clause::RULE,
+    &number_out_of_range::RULE,
+    &invalid_radius::RULE,
+    &implausible_radius::RULE,
+    &invalid_port::RULE,
+    &invalid_ip::RULE,
+    &invalid_speed::RULE,
+    &zero_distance::RULE,
+    &invalid_angle::RULE,
+    &unresolved_reference::RULE,
+    &duplicate_name::RULE,
+    &wheel_count::RULE,
+    &wheel_kind_mismatch::RULE,
+    &sensor_not_on_robot::RULE,
+    &movement_robot_missing::RULE,
+    &parallel_conflict::RULE,
+];
+
+/// The rule with a code.
+pub fn rule(code: &str) -> Option<&'static Rule> {
+    CATALOGUE.into_iter().find(|rule| rule.code == code)
+}
+
+/// The problems of one entity, in the order of the text.
+pub(crate) fn in_entity(database: &Database, id: EntityId) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    if let Some(context) = Context::new(database, id) {
+        for rule in CATALOGUE {
+            (rule.check)(&context, &mut problems);
+        }
+    }
+    problems.sort_by_key(|problem| (problem.span.start, problem.span.end));
+    problems
+}
+
+/// The problems of a file with absolute places.
+pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
+    let hidden = has_hidden_text(database, file);
+    let mut places = Places { database, starts: FxHashMap::default() };
+    let mut diagnostics = Vec::new();
+    for entity in database.entities(file) {
+        for problem in database.problems(entity.id) {
+            if !(hidden && problem.rule == &unresolved_reference::RULE) {
+                diagnostics.push(places.diagnostic(file, entity.span.start, problem));
+            }
+        }
+    }
+    diagnostics
+}
+
+/// Whether declarations may be hidden in a comment that never ends.
+fn has_hidden_text(database: &Database, file: FileId) -> bool {
+    let imported = database.imports(file).iter().filter_map(|path| database.file(path));
+    std::iter::once(file).chain(imported).any(|file| database.has_open_comment(file))
+}
+
+/// Finds where other entities start; files are walked only where a problem points at another entity.
+struct Places<'a> {
+    database: &'a Database,
+    starts: FxHashMap<EntityId, u32>,
+}
+
+impl Places<'_> {
+    fn diagnostic(&mut self, file: FileId, start: u32, problem: &Problem) -> Diagnostic {
+        let related = problem.related.iter().filter_map(|related| {
+            let (file, span) = self.absolute(related.entity, related.span)?;
+            Some(Related { file, span, message: related.message.clone() })
+        });
+        let related = related.collect();
+        let fixes = problem.fixes.iter().filter_map(|fix| self.fix(fix)).collect();
+        Diagnostic {
+            rule: problem.rule,
+            severity: problem.severity,
+            file,
+            span: problem.span.shifted(start),
+            message: problem.message.clone(),
+            help: problem.help.clone(),
+            note: problem.note.clone(),
+            related,
+            fixes,
+        }
+    }
+
+    fn fix(&mut self, fix: &ProblemFix) -> Option<Fix> {
+        let edits = fix.edits.iter().map(|edit| {
+            let (file, span) = self.absolute(edit.entity, edit.span)?;
+            Some(Edit { file, span, text: edit.text.clone() })
+        });
+        Some(Fix { title: fix.title.clone(), safe: fix.safe, edits: edits.collect::<Option<_>>()? })
+    }
+
+    fn absolute(&mut self, id: EntityId, span: Span) -> Option<(FileId, Span)> {
+        let file = self.database.file_of(id)?;
+        if !self.starts.contains_key(&id) {
+            self.starts.extend(self.database.entities(file).map(|entity| (entity.id, entity.span.start)));
+        }
+        Some((file, span.shifted(*self.starts.get(&id)?)))
+    }
+}

@@ -1,0 +1,76 @@
+//! `movement-robot-missing`: an environment runs a movement of a robot that it does not have.
+
+use pydslrep_syntax::EntityKind;
+use pydslrep_syntax::ast::{Entity, Movement, Name, References};
+
+use super::Rule;
+use super::context::{Context, Problem, append};
+use crate::{EntityId, Severity};
+
+pub(super) static RULE: Rule = Rule {
+    code: "movement-robot-missing",
+    severity: Severity::Error,
+    summary: "an environment lists a movement whose robot it does not list",
+    check,
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Environment(environment)) = context.tree else { return };
+    let (Some(robots), Some(movements)) = (&environment.robots, &environment.movements) else { return };
+    if robots.broken {
+        return;
+    }
+    let listed: Vec<EntityId> =
+        robots.names.iter().filter_map(|name| context.resolve(EntityKind::Robot, name).entity()).collect();
+    for name in &movements.names {
+        let Some((id, movement)) = context.movement(name) else { continue };
+        let Some(robot) = context.robot_of(id, movement).filter(|robot| !listed.contains(robot)) else { continue };
+        problems.push(problem(context, name, (id, movement), robot, robots));
+    }
+}
+
+fn problem(
+    context: &Context<'_>,
+    name: &Name,
+    (id, movement): (EntityId, &Movement),
+    robot: EntityId,
+    robots: &References,
+) -> Problem {
+    let driven = movement.robot.as_ref().map_or("", |name| name.text.as_str());
+    let mut problem = RULE
+        .problem(name.span, format!("`{}` moves `{driven}`, which is not among the robots of this environment", name.text));
+    if let Some(reference) = &movement.robot {
+        problem = problem.related(id, reference.span, format!("`{}` is a movement of `{driven}`", name.text));
+    }
+    // The name must mean the same robot here.
+    let visible = movement.robot.as_ref().and_then(|name| context.resolve(EntityKind::Robot, name).entity());
+    if visible == Some(robot) {
+        problem = problem.fix(format!("add `{driven}` to the robots"), [append(context.id, robots, driven, " ")]);
+    }
+    problem
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has { a b } wheels\n\
+                         robot q with port 2 has { a b } wheels\nmovement m of r { slam }\nmovement n of q { slam }\n";
+
+    #[test]
+    fn the_robot_is_added() {
+        check(&format!("{PARTS}environment e has {{ r }} robots with {{ m n }} moves"), &expect![[r#"
+            error[movement-robot-missing] 7:41 "n" `n` moves `q`, which is not among the robots of this environment
+              see 6:15 "q" `n` is a movement of `q`
+              fix: add `q` to the robots -> environment e has { r q } robots with { m n } moves
+        "#]]);
+        check(&format!("{PARTS}environment e has {{}} robots with {{ m }} moves"), &expect![[r#"
+            error[movement-robot-missing] 7:36 "m" `m` moves `r`, which is not among the robots of this environment
+              see 5:15 "r" `m` is a movement of `r`
+              fix: add `r` to the robots -> environment e has { r } robots with { m } moves
+        "#]]);
+        check_clean(&format!("{PARTS}environment e has {{ r, q }} robots with {{ n m n }} moves"));
+    }
+}

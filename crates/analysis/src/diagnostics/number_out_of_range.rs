@@ -1,0 +1,84 @@
+//! `number-out-of-range`: a distance nobody drives, or digits without end.
+
+use pydslrep_syntax::ast::{ActionKind, Entity, Number, TurnExtent};
+
+use super::Rule;
+use super::context::{Context, Problem};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "number-out-of-range",
+    severity: Severity::Error,
+    summary: "a distance beyond 1000 km, or a number too large to compute with",
+    check,
+};
+
+/// Metres.
+const FARTHEST: f64 = 1_000_000.0;
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    match context.tree {
+        Some(Entity::Wheel(wheel)) => problems.extend(infinite(wheel.radius.as_ref())),
+        Some(Entity::Movement(movement)) => {
+            for action in &movement.actions {
+                match &action.kind {
+                    ActionKind::Move(step) => {
+                        let unit = step.unit.map_or(1.0, |(unit, _)| unit.in_metres());
+                        problems.extend(step.distance.as_ref().and_then(|distance| too_far(distance, unit)));
+                        problems.extend(infinite(step.speed.as_ref().and_then(|clause| clause.value.as_ref())));
+                    }
+                    ActionKind::Turn(turn) => {
+                        if let Some(TurnExtent::Angle(angle)) = &turn.extent {
+                            problems.extend(infinite(Some(angle)));
+                        }
+                    }
+                    ActionKind::Slam => {}
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+fn infinite(number: Option<&Number>) -> Option<Problem> {
+    let number = number?;
+    let problem = RULE.problem(number.span, "this number is too large to compute with");
+    (!number.value?.is_finite()).then(|| problem.help("write fewer digits"))
+}
+
+fn too_far(distance: &Number, unit: f64) -> Option<Problem> {
+    if !distance.value?.is_finite() {
+        return infinite(Some(distance));
+    }
+    let problem = RULE.problem(distance.span, "a move can be at most 1000 km (1000000 meters) long");
+    (distance.value?.abs() * unit > FARTHEST).then(|| problem.help("write a shorter distance"))
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    #[test]
+    fn distances_end_at_a_thousand_kilometres() {
+        let program = |distance: &str| {
+            format!(
+                "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has {{ a b }} wheels\nmovement m of r {{ move {distance} }}"
+            )
+        };
+        check(&program("-1000000.1 meters"), &expect![[r#"
+            error[number-out-of-range] 4:24 "-1000000.1" a move can be at most 1000 km (1000000 meters) long
+              help: write a shorter distance
+        "#]]);
+        check_clean(&program("100000000 centimeters"));
+    }
+
+    #[test]
+    fn numbers_are_finite() {
+        check(&format!("wheel a with radius {}", "9".repeat(400)), &expect![[r#"
+            error[number-out-of-range] 1:21 "9999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999" this number is too large to compute with
+              help: write fewer digits
+        "#]]);
+    }
+}

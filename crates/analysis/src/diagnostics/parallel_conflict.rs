@@ -1,0 +1,82 @@
+//! `parallel-conflict`: one robot cannot do two movements at once.
+
+use pydslrep_syntax::ast::{Entity, Name};
+
+use super::Rule;
+use super::context::{Context, Problem};
+use crate::{EntityId, Severity};
+
+pub(super) static RULE: Rule = Rule {
+    code: "parallel-conflict",
+    severity: Severity::Error,
+    summary: "two movements of one robot run at the same time",
+    check,
+};
+
+/// A movement that runs beside others.
+struct Running<'a> {
+    robot: EntityId,
+    name: &'a Name,
+}
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Environment(environment)) = context.tree else { return };
+    let mut group: Vec<Running<'_>> = Vec::new();
+    for name in environment.movements.iter().flat_map(|list| &list.names) {
+        let Some((id, movement)) = context.movement(name) else { continue };
+        if movement.parallel.is_none() {
+            group.clear();
+            continue;
+        }
+        let Some(robot) = context.robot_of(id, movement) else { continue };
+        if let Some(other) = group.iter().find(|other| other.robot == robot) {
+            let driven = movement.robot.as_ref().map_or("", |name| name.text.as_str());
+            problems.push(problem(context, driven, other, name));
+        }
+        group.push(Running { robot, name });
+    }
+}
+
+fn problem(context: &Context<'_>, robot: &str, other: &Running<'_>, name: &Name) -> Problem {
+    let message = if other.name.text == name.text {
+        format!("`{robot}` cannot run `{}` twice at the same time", name.text)
+    } else {
+        format!("`{robot}` cannot run `{}` and `{}` at the same time", other.name.text, name.text)
+    };
+    RULE.problem(name.span, message)
+        .related(context.id, other.name.span, format!("`{}` starts here and runs beside it", other.name.text))
+        .help("put a movement that is not parallel between them, or take `parallel` off one of them")
+        .note("parallel movements that stand side by side in the list start together")
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has { a b } wheels\n\
+                         robot q with port 2 has { a b } wheels\nparallel movement m of r { slam }\nparallel movement n of r { slam }\n\
+                         parallel movement o of q { slam }\nmovement p of q { slam }\n";
+
+    #[test]
+    fn one_robot_does_one_thing_at_a_time() {
+        check(&format!("{PARTS}environment e has {{ r q }} robots with {{ m o n }} moves"), &expect![[r#"
+            error[parallel-conflict] 9:45 "n" `r` cannot run `m` and `n` at the same time
+              see 9:41 "m" `m` starts here and runs beside it
+              help: put a movement that is not parallel between them, or take `parallel` off one of them
+              note: parallel movements that stand side by side in the list start together
+        "#]]);
+        check(&format!("{PARTS}environment e has {{ r q }} robots with {{ p o o }} moves"), &expect![[r#"
+            error[parallel-conflict] 9:45 "o" `q` cannot run `o` twice at the same time
+              see 9:43 "o" `o` starts here and runs beside it
+              help: put a movement that is not parallel between them, or take `parallel` off one of them
+              note: parallel movements that stand side by side in the list start together
+        "#]]);
+    }
+
+    #[test]
+    fn a_serial_movement_parts_groups() {
+        check_clean(&format!("{PARTS}environment e has {{ r q }} robots with {{ m o p n o }} moves"));
+    }
+}

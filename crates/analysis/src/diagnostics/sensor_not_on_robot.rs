@@ -1,0 +1,93 @@
+//! `sensor-not-on-robot`: a turn waits for a sensor that its robot does not carry.
+
+use pydslrep_syntax::ast::{ActionKind, Entity, Name, Robot, TurnExtent};
+use pydslrep_syntax::{EntityKind, Span};
+
+use super::Rule;
+use super::context::{Context, Problem, ProblemEdit, append, as_written};
+use crate::{EntityId, Severity};
+
+pub(super) static RULE: Rule = Rule {
+    code: "sensor-not-on-robot",
+    severity: Severity::Error,
+    summary: "`turn … until` names a sensor that the movement's robot does not carry",
+    check,
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Movement(movement)) = context.tree else { return };
+    let Some((id, robot)) = movement.robot.as_ref().and_then(|name| context.robot(name)) else { return };
+    if robot.sensors.as_ref().is_some_and(|list| list.broken) {
+        return;
+    }
+    for action in &movement.actions {
+        let ActionKind::Turn(turn) = &action.kind else { continue };
+        let Some(TurnExtent::Until(list)) = &turn.extent else { continue };
+        let carried = |name: &Name| robot.sensors.iter().flat_map(|list| &list.names).any(|other| other.text == name.text);
+        let declared = |name: &Name| context.resolve(EntityKind::Sensor, name).entity().is_some();
+        problems.extend(
+            list.names.iter().filter(|name| declared(name) && !carried(name)).map(|name| problem(context, id, robot, name)),
+        );
+    }
+}
+
+fn problem(context: &Context<'_>, id: EntityId, robot: &Robot, sensor: &Name) -> Problem {
+    let Some(name) = &robot.name else { return RULE.problem(sensor.span, "the robot does not carry this sensor") };
+    let carries = robot.sensors.as_ref().map(|list| list.names.iter().map(|name| format!("`{}`", name.text)));
+    let carries = carries.map_or_else(
+        || format!("`{}` has no sensors", name.text),
+        |names| format!("`{}` carries {}", name.text, names.collect::<Vec<_>>().join(", ")),
+    );
+    let problem = RULE
+        .problem(sensor.span, format!("`{}` does not carry the sensor `{}`", name.text, sensor.text))
+        .related(id, name.span, carries);
+    match added(context, id, robot, &sensor.text) {
+        Some(edit) => problem.suggestion(format!("add `{}` to `{}`", sensor.text, name.text), [edit]),
+        None => problem,
+    }
+}
+
+fn added(context: &Context<'_>, id: EntityId, robot: &Robot, sensor: &str) -> Option<ProblemEdit> {
+    if let Some(list) = &robot.sensors {
+        return Some(append(id, list, sensor, ", "));
+    }
+    let lexemes = &context.database.parse(id)?.lexemes;
+    let end = lexemes.iter().rev().find(|(token, _)| !token.is_comment())?.1.end;
+    Some(ProblemEdit { entity: id, span: Span::at(end), text: format!(" with sensors {{ {} }}", as_written(sensor)) })
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nsensor s\nsensor t\n";
+
+    #[test]
+    fn the_sensor_is_added_to_the_robot() {
+        check(
+            &format!("{PARTS}robot r with port 1 has {{ a b }} wheels with sensors {{ s }}\nmovement m of r {{ turn left until {{ s, t }} }}"),
+            &expect![[r#"
+                error[sensor-not-on-robot] 6:40 "t" `r` does not carry the sensor `t`
+                  see 5:7 "r" `r` carries `s`
+                  suggestion: add `t` to `r` -> robot r with port 1 has { a b } wheels with sensors { s, t }
+            "#]],
+        );
+        check(
+            &format!("{PARTS}robot r with port 1 has {{ a b }}\n  wheels\nmovement m of r {{ turn left until {{ s }} }}"),
+            &expect![[r#"
+                error[sensor-not-on-robot] 7:37 "s" `r` does not carry the sensor `s`
+                  see 5:7 "r" `r` has no sensors
+                  suggestion: add `s` to `r` ->   wheels with sensors { s }
+            "#]],
+        );
+    }
+
+    #[test]
+    fn a_carried_sensor_is_fine() {
+        check_clean(&format!(
+            "{PARTS}robot r with port 1 has {{ a b }} wheels with sensors {{ s }}\nmovement m of r {{ turn left until {{ s }} }}"
+        ));
+    }
+}

@@ -1,0 +1,84 @@
+//! How the tests of all rules look at a program.
+
+use expect_test::Expect;
+use pydslrep_syntax::Span;
+
+use crate::{Database, Diagnostic, Edit, FileId};
+
+/// Compares all problems of a program with what is expected, and holds every fix to its promise: the problem is gone
+/// and none has come.
+#[track_caller]
+pub(super) fn check(program: &str, expected: &Expect) {
+    let mut database = Database::new();
+    let file = database.open("test.pyr", program);
+    let diagnostics = database.diagnostics(file);
+    let rendered: String = diagnostics.iter().map(|diagnostic| render(program, diagnostic)).collect();
+    expected.assert_eq(&rendered);
+    for diagnostic in &diagnostics {
+        for fix in &diagnostic.fixes {
+            check_fix(program, &diagnostics, diagnostic, &apply(program, file, &fix.edits));
+        }
+    }
+}
+
+/// No problem at all.
+#[track_caller]
+pub(super) fn check_clean(program: &str) {
+    check(program, &expect_test::expect![""]);
+}
+
+fn check_fix(program: &str, before: &[Diagnostic], mended: &Diagnostic, after: &str) {
+    let mut database = Database::new();
+    let file = database.open("test.pyr", after);
+    let left = database.diagnostics(file);
+    let count = |list: &[Diagnostic], code: &str| list.iter().filter(|other| other.code() == code).count();
+    let code = mended.code();
+    assert!(count(&left, code) < count(before, code), "the fix does not mend it\n{program}\n->\n{after}\n{left:#?}");
+    for other in &left {
+        let code = other.code();
+        assert!(count(&left, code) <= count(before, code), "the fix brings {code}\n{program}\n->\n{after}\n{left:#?}");
+    }
+}
+
+/// The program after edits.
+pub(super) fn apply(program: &str, file: FileId, edits: &[Edit]) -> String {
+    let mut edits: Vec<&Edit> = edits.iter().filter(|edit| edit.file == file).collect();
+    edits.sort_by_key(|edit| std::cmp::Reverse(edit.span.start));
+    let mut text = program.to_owned();
+    for edit in edits {
+        text.replace_range(std::ops::Range::from(edit.span), &edit.text);
+    }
+    text
+}
+
+fn render(program: &str, diagnostic: &Diagnostic) -> String {
+    let mut out = format!(
+        "{}[{}] {} {}\n",
+        diagnostic.severity.word(),
+        diagnostic.code(),
+        place(program, diagnostic.span),
+        diagnostic.message
+    );
+    for related in &diagnostic.related {
+        out += &format!("  see {} {}\n", place(program, related.span), related.message);
+    }
+    for (word, text) in [("help", &diagnostic.help), ("note", &diagnostic.note)] {
+        if let Some(text) = text {
+            out += &format!("  {word}: {text}\n");
+        }
+    }
+    for fix in &diagnostic.fixes {
+        let changed = apply(program, diagnostic.file, &fix.edits);
+        let lines: Vec<&str> = changed.lines().filter(|line| !program.lines().any(|old| old == *line)).collect();
+        let sort = if fix.safe { "fix" } else { "suggestion" };
+        out += &format!("  {sort}: {} -> {}\n", fix.title, lines.join(" ⏎ "));
+    }
+    out
+}
+
+fn place(program: &str, span: Span) -> String {
+    let before = &program[..span.start as usize];
+    let line = before.matches('\n').count() + 1;
+    let column = before.len() - before.rfind('\n').map_or(0, |newline| newline + 1) + 1;
+    format!("{line}:{column} {:?}", span.text(program))
+}

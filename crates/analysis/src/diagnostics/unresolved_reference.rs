@@ -1,0 +1,156 @@
+//! `unresolved-reference`: a name nothing of that kind bears.
+
+use pydslrep_syntax::ast::{DriveWord, Entity, Name, Robot};
+use pydslrep_syntax::{EntityKind, Span};
+
+use super::Rule;
+use super::context::{Context, Problem, ProblemEdit, as_written};
+use crate::{Resolution, Severity};
+
+pub(super) static RULE: Rule = Rule {
+    code: "unresolved-reference",
+    severity: Severity::Error,
+    summary: "a name that is not declared",
+    check,
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(tree) = context.tree else { return };
+    let references = tree.references();
+    for (kind, name) in &references {
+        if context.resolve(*kind, name) == Resolution::Nothing {
+            let taken: Vec<&str> = references.iter().map(|(_, other)| other.text.as_str()).collect();
+            problems.push(problem(context, tree, *kind, name, &taken));
+        }
+    }
+}
+
+fn problem(context: &Context<'_>, tree: &Entity, kind: EntityKind, name: &Name, taken: &[&str]) -> Problem {
+    let mut problem = RULE.problem(name.span, message(context, kind, name));
+    // A name that the list has already would only make another problem.
+    let nearest = context.nearest(kind, name).filter(|nearest| !taken.contains(&nearest.as_str()));
+    if let Some(nearest) = nearest {
+        let edit = context.replace(name.span, as_written(&nearest));
+        problem = problem.help(format!("did you mean `{nearest}`?")).suggestion(format!("change to `{nearest}`"), [edit]);
+    } else if let Some(known) = known(context, kind) {
+        problem = problem.help(known);
+    }
+    match declaration(context, tree, kind, name) {
+        Some(edit) => problem.suggestion(format!("declare the {} `{}`", kind.noun(), name.text), [edit]),
+        None => problem,
+    }
+}
+
+fn message(context: &Context<'_>, kind: EntityKind, name: &Name) -> String {
+    let other = EntityKind::ALL
+        .into_iter()
+        .find(|other| *other != kind && context.resolve(*other, name).entity().is_some());
+    match other {
+        Some(other) => format!("`{}` is {}, not {}", name.text, other.a_noun(), kind.a_noun()),
+        None => format!("there is no {} called `{}`", kind.noun(), name.text),
+    }
+}
+
+/// The few names there are, where there are few.
+fn known(context: &Context<'_>, kind: EntityKind) -> Option<String> {
+    const FEW: usize = 4;
+    let names = context.database.visible_names(context.file, kind);
+    match names.len() {
+        0 => Some(format!("declare it: `{}`", kind.shape())),
+        1 => Some(format!("the only {} is `{}`", kind.noun(), names[0])),
+        2..=FEW => {
+            let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+            Some(format!("the {}s are {}", kind.noun(), quoted.join(", ")))
+        }
+        _ => None,
+    }
+}
+
+/// The declaration of a part, right before the entity that wants it. Robots and movements are more than a line and
+/// are left to the person.
+fn declaration(context: &Context<'_>, tree: &Entity, kind: EntityKind, name: &Name) -> Option<ProblemEdit> {
+    let name = as_written(&name.text);
+    let line = match (kind, tree) {
+        (EntityKind::Wheel, Entity::Robot(robot)) => wheel(context, robot, &name),
+        (EntityKind::Sensor, _) => format!("sensor {name}"),
+        (EntityKind::Ip, _) => format!("ip {name} 127.0.0.1"),
+        _ => return None,
+    };
+    Some(context.replace(Span::at(0), format!("{line}{}", context.database.line_ending(context.file))))
+}
+
+/// A wheel like the robot's other wheels.
+fn wheel(context: &Context<'_>, robot: &Robot, name: &str) -> String {
+    let others = robot.wheels.iter().flat_map(|list| &list.names).filter_map(|other| context.wheel(other));
+    let others: Vec<_> = others.map(|(_, wheel)| wheel).collect();
+    let drive = robot.drive.and_then(|clause| clause.word);
+    let mecanum = others.first().map_or(drive == Some(DriveWord::Fwh), |wheel| wheel.mecanum);
+    let radius = others.iter().filter_map(|wheel| wheel.radius.as_ref()?.value).find(|radius| *radius > 0.0);
+    format!("{} {name} with radius {}", if mecanum { "wheelH" } else { "wheel" }, radius.unwrap_or(4.5))
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    #[test]
+    fn the_nearest_name_is_offered() {
+        check(
+            "wheel wheelL with radius 5\nwheel wheelR with radius 5\nrobot r with port 1 has { wheelL whelR } wheels",
+            &expect![[r#"
+                error[unresolved-reference] 3:34 "whelR" there is no wheel called `whelR`
+                  help: did you mean `wheelR`?
+                  suggestion: change to `wheelR` -> robot r with port 1 has { wheelL wheelR } wheels
+                  suggestion: declare the wheel `whelR` -> wheel whelR with radius 5
+            "#]],
+        );
+    }
+
+    #[test]
+    fn another_kind_is_recognised() {
+        check("wheel a with radius 4\nsensor left\nrobot r with port 1 has { a left } wheels", &expect![[r#"
+            error[syntax-error] 2:8 "left" `left` is a word of the language, so a sensor cannot be called that
+              help: write `^left` to use it as a name, or choose another name
+              fix: write `^left` -> sensor ^left
+            error[syntax-error] 3:29 "left" `left` is a word of the language, so a wheel cannot be called that
+              help: write `^left` to use it as a name, or choose another name
+              fix: write `^left` -> robot r with port 1 has { a ^left } wheels
+            error[unresolved-reference] 3:29 "left" `left` is a sensor, not a wheel
+              help: the only wheel is `a`
+              suggestion: declare the wheel `left` -> wheel ^left with radius 4
+        "#]]);
+    }
+
+    #[test]
+    fn robots_and_movements_are_named() {
+        check("movement m of r { slam }\nenvironment e with ip i has { q } robots with { n } moves", &expect![[r#"
+            error[unresolved-reference] 1:15 "r" there is no robot called `r`
+              help: declare it: `robot NAME type tw with port 19999 has { WHEELS } wheels`
+            error[unresolved-reference] 2:23 "i" there is no ip called `i`
+              help: declare it: `ip NAME 127.0.0.1`
+              suggestion: declare the ip `i` -> ip i 127.0.0.1
+            error[unresolved-reference] 2:31 "q" there is no robot called `q`
+              help: declare it: `robot NAME type tw with port 19999 has { WHEELS } wheels`
+            error[unresolved-reference] 2:49 "n" there is no movement called `n`
+              help: the only movement is `m`
+        "#]]);
+    }
+
+    #[test]
+    fn text_that_was_not_understood_may_declare_the_name() {
+        check(
+            "wheel a with radius 4\nweel b with radius 4\nrobot r with port 1 has { a b } wheels",
+            &expect![[r#"
+                error[syntax-error] 2:1 "weel" `weel` is not a word of the language; did you mean `wheel`?
+                  fix: change to `wheel` -> wheel b with radius 4
+            "#]],
+        );
+    }
+
+    #[test]
+    fn order_and_kind_do_not_matter() {
+        check_clean("robot a with port 1 has { a b } wheels\nwheel a with radius 4\nwheel b with radius 4");
+    }
+}

@@ -1,0 +1,41 @@
+//! `unterminated-string`: `"` without its end on the line.
+
+use pydslrep_syntax::{Span, SyntaxErrorKind};
+
+use super::Rule;
+use super::context::{Context, Problem};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "unterminated-string",
+    severity: Severity::Error,
+    summary: "a path in quotes that has no end on its line",
+    check,
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    for error in context.errors.iter().filter(|error| error.kind == SyntaxErrorKind::UnterminatedString) {
+        problems.push(
+            RULE.problem(error.span, "this path has no closing quote on its line")
+                .help("end it with `\"`")
+                .fix("add the closing quote", [context.replace(Span::at(error.span.end), "\"")]),
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    #[test]
+    fn the_quote_is_added() {
+        check("import \"parts.pyr\nwheel a with radius 4", &expect![[r#"
+            error[unterminated-string] 1:8 "\"parts.pyr" this path has no closing quote on its line
+              help: end it with `"`
+              fix: add the closing quote -> import "parts.pyr"
+        "#]]);
+        check_clean("import \"parts.pyr\"\nwheel a with radius 4");
+    }
+}

@@ -1,0 +1,113 @@
+//! `wheel-count`: a type of robot has a certain number of wheels.
+
+use pydslrep_syntax::Span;
+use pydslrep_syntax::ast::{DriveWord, Entity, References, Robot};
+
+use super::Rule;
+use super::context::{Context, Problem};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "wheel-count",
+    severity: Severity::Error,
+    summary: "`tw` needs 2 wheels, `fw` and `fwh` need 4",
+    check,
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Robot(robot)) = context.tree else { return };
+    let Some(list) = robot.wheels.as_ref().filter(|list| understood(context, list)) else { return };
+    let drive = robot.drive.and_then(|clause| clause.word);
+    if robot.drive.is_some() && drive.is_none() {
+        return;
+    }
+    let wanted = match drive {
+        Some(DriveWord::Tw) => &[2][..],
+        Some(DriveWord::Fw | DriveWord::Fwh) => &[4],
+        None => &[2, 4],
+    };
+    if !wanted.contains(&list.names.len()) {
+        problems.push(problem(context, robot, list, drive));
+    }
+}
+
+/// A list with a syntax error in or right around it says nothing about how many wheels were meant.
+fn understood(context: &Context<'_>, list: &References) -> bool {
+    !list.broken && !context.errors.iter().any(|error| list.span.touches(error.span.start))
+}
+
+fn problem(context: &Context<'_>, robot: &Robot, list: &References, drive: Option<DriveWord>) -> Problem {
+    let count = list.names.len();
+    let wanted = match drive {
+        Some(DriveWord::Tw) => "a two-wheel robot (`tw`) has 2 wheels",
+        Some(DriveWord::Fw) => "a four-wheel robot (`fw`) has 4 wheels",
+        Some(DriveWord::Fwh) => "a mecanum robot (`fwh`) has 4 wheels",
+        None => "a robot has 2 or 4 wheels",
+    };
+    let lists = if count == 0 { "none".to_owned() } else { count.to_string() };
+    let problem = RULE
+        .problem(list.span, format!("{wanted}, but this list names {lists}"))
+        .help("two wheels stand in the order left, right; four in the order left front, left rear, right front, right rear");
+    match (robot.drive, fitting(context, list)) {
+        (Some(clause), Some(word)) => {
+            let edit = context.replace(clause.span, format!("type {}", word.spelling()));
+            problem.suggestion(format!("change the type to `{}`", word.spelling()), [edit])
+        }
+        _ => problem,
+    }
+}
+
+/// The type that these wheels make, if all are known and of one kind.
+pub(super) fn fitting(context: &Context<'_>, list: &References) -> Option<DriveWord> {
+    let kinds: Option<Vec<bool>> =
+        list.names.iter().map(|name| context.wheel(name).map(|(_, wheel)| wheel.mecanum)).collect();
+    match kinds?[..] {
+        [false, false] => Some(DriveWord::Tw),
+        [false, false, false, false] => Some(DriveWord::Fw),
+        [true, true, true, true] => Some(DriveWord::Fwh),
+        _ => None,
+    }
+}
+
+/// Where the type is written or could be.
+pub(super) fn type_place(robot: &Robot) -> Option<Span> {
+    robot.drive.map(|clause| clause.span).or(robot.name.as_ref().map(|name| name.span))
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    const WHEELS: &str =
+        "wheel a with radius 4\nwheel b with radius 4\nwheel c with radius 4\nwheel d with radius 4\n";
+
+    #[test]
+    fn each_type_has_its_number() {
+        check(&format!("{WHEELS}robot r type tw with port 1 has {{ a b c d }} wheels"), &expect![[r#"
+            error[wheel-count] 5:33 "{ a b c d }" a two-wheel robot (`tw`) has 2 wheels, but this list names 4
+              help: two wheels stand in the order left, right; four in the order left front, left rear, right front, right rear
+              suggestion: change the type to `fw` -> robot r type fw with port 1 has { a b c d } wheels
+        "#]]);
+        check(&format!("{WHEELS}robot r type fwh with port 1 has {{ a b }} wheels"), &expect![[r#"
+            error[wheel-count] 5:34 "{ a b }" a mecanum robot (`fwh`) has 4 wheels, but this list names 2
+              help: two wheels stand in the order left, right; four in the order left front, left rear, right front, right rear
+              suggestion: change the type to `tw` -> robot r type tw with port 1 has { a b } wheels
+        "#]]);
+        check(&format!("{WHEELS}robot r type fw with port 1 has {{ }} wheels"), &expect![[r#"
+            error[wheel-count] 5:33 "{ }" a four-wheel robot (`fw`) has 4 wheels, but this list names none
+              help: two wheels stand in the order left, right; four in the order left front, left rear, right front, right rear
+        "#]]);
+        check(&format!("{WHEELS}robot r with port 1 has {{ a b c }} wheels"), &expect![[r#"
+            error[wheel-count] 5:25 "{ a b c }" a robot has 2 or 4 wheels, but this list names 3
+              help: two wheels stand in the order left, right; four in the order left front, left rear, right front, right rear
+        "#]]);
+    }
+
+    #[test]
+    fn the_right_number_is_fine() {
+        check_clean(&format!("{WHEELS}robot r with port 1 has {{ a b c d }} wheels"));
+        check_clean(&format!("{WHEELS}robot r type tw with port 1 has {{ a, b }} wheels"));
+    }
+}

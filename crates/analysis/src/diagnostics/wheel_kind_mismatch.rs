@@ -1,0 +1,127 @@
+//! `wheel-kind-mismatch`: the wheels are not of the kind that the robot's type drives on.
+
+use pydslrep_syntax::Span;
+use pydslrep_syntax::ast::{DriveWord, Entity, Name, Robot};
+
+use super::Rule;
+use super::context::{Context, Problem};
+use super::wheel_count::{fitting, type_place};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "wheel-kind-mismatch",
+    severity: Severity::Error,
+    summary: "`tw` and `fw` drive on `wheel`, `fwh` on `wheelH`",
+    check,
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Robot(robot)) = context.tree else { return };
+    let Some(list) = robot.wheels.as_ref().filter(|list| !list.broken) else { return };
+    let drive = robot.drive.and_then(|clause| clause.word);
+    let counts = match drive {
+        Some(DriveWord::Tw) => list.names.len() == 2,
+        Some(_) => list.names.len() == 4,
+        None => robot.drive.is_none() && matches!(list.names.len(), 2 | 4),
+    };
+    let kinds: Option<Vec<bool>> =
+        list.names.iter().map(|name| context.wheel(name).map(|(_, wheel)| wheel.mecanum)).collect();
+    let Some(kinds) = kinds.filter(|_| counts) else { return };
+    let mecanum = kinds.iter().filter(|mecanum| **mecanum).count();
+    let wants_mecanum = drive == Some(DriveWord::Fwh) || (drive.is_none() && mecanum == 4);
+    if mecanum == if wants_mecanum { kinds.len() } else { 0 } {
+        return;
+    }
+    let odd = list.names.iter().zip(&kinds).find(|(_, mecanum)| **mecanum != wants_mecanum).map(|(name, _)| name);
+    let Some(place) = type_place(robot).or(odd.map(|name| name.span)) else { return };
+    let problem = match (drive, mecanum) {
+        (Some(DriveWord::Fw), 4) => all_mecanum(place),
+        _ => mixed(context, place, drive, odd),
+    };
+    let problem = problem.note("a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways");
+    problems.push(with_type(context, robot, problem, fitting(context, list)));
+}
+
+fn all_mecanum(place: Span) -> Problem {
+    RULE.problem(place, "four `wheelH` make a mecanum robot, which is type `fwh`")
+        .severity(Severity::Warning)
+        .help("it is driven as `fwh`; write the type that it is")
+}
+
+fn mixed(context: &Context<'_>, place: Span, drive: Option<DriveWord>, odd: Option<&Name>) -> Problem {
+    let (wanted, other) = if drive == Some(DriveWord::Fwh) { ("wheelH", "wheel") } else { ("wheel", "wheelH") };
+    let drives = match drive {
+        Some(word) => format!("a robot of type `{}` drives on `{wanted}`", word.spelling()),
+        None => "a robot's wheels are of one kind, and a mecanum robot has four".to_owned(),
+    };
+    let message = match odd {
+        Some(name) => format!("{drives}, but `{}` is a `{other}`", name.text),
+        None => drives,
+    };
+    let problem = RULE.problem(place, message).help(format!("list only `{wanted}`, or change the robot's type"));
+    match odd.and_then(|name| context.wheel(name)) {
+        Some((id, wheel)) => problem.related(id, wheel.keyword, "declared here"),
+        None => problem,
+    }
+}
+
+fn with_type(context: &Context<'_>, robot: &Robot, problem: Problem, fitting: Option<DriveWord>) -> Problem {
+    let (Some(clause), Some(word)) = (robot.drive, fitting) else { return problem };
+    let spelling = word.spelling();
+    problem.fix(format!("change the type to `{spelling}`"), [context.replace(clause.span, format!("type {spelling}"))])
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    const WHEELS: &str = "wheel a with radius 4\nwheel b with radius 4\nwheel c with radius 4\nwheel d with radius 4\n\
+                          wheelH e with radius 4\nwheelH f with radius 4\nwheelH g with radius 4\nwheelH h with radius 4\n";
+
+    #[test]
+    fn four_mecanum_wheels_are_fwh() {
+        check(&format!("{WHEELS}robot r type fw with port 1 has {{ e f g h }} wheels"), &expect![[r#"
+            warning[wheel-kind-mismatch] 9:9 "type fw" four `wheelH` make a mecanum robot, which is type `fwh`
+              help: it is driven as `fwh`; write the type that it is
+              note: a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways
+              fix: change the type to `fwh` -> robot r type fwh with port 1 has { e f g h } wheels
+        "#]]);
+    }
+
+    #[test]
+    fn kinds_do_not_mix() {
+        check(&format!("{WHEELS}robot r type fwh with port 1 has {{ a b c d }} wheels"), &expect![[r#"
+            error[wheel-kind-mismatch] 9:9 "type fwh" a robot of type `fwh` drives on `wheelH`, but `a` is a `wheel`
+              see 1:1 "wheel" declared here
+              help: list only `wheelH`, or change the robot's type
+              note: a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways
+              fix: change the type to `fw` -> robot r type fw with port 1 has { a b c d } wheels
+        "#]]);
+        check(&format!("{WHEELS}robot r type fw with port 1 has {{ a b c h }} wheels"), &expect![[r#"
+            error[wheel-kind-mismatch] 9:9 "type fw" a robot of type `fw` drives on `wheel`, but `h` is a `wheelH`
+              see 8:1 "wheelH" declared here
+              help: list only `wheel`, or change the robot's type
+              note: a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways
+        "#]]);
+        check(&format!("{WHEELS}robot r type tw with port 1 has {{ e f }} wheels"), &expect![[r#"
+            error[wheel-kind-mismatch] 9:9 "type tw" a robot of type `tw` drives on `wheel`, but `e` is a `wheelH`
+              see 5:1 "wheelH" declared here
+              help: list only `wheel`, or change the robot's type
+              note: a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways
+        "#]]);
+        check(&format!("{WHEELS}robot r with port 1 has {{ a f }} wheels"), &expect![[r#"
+            error[wheel-kind-mismatch] 9:7 "r" a robot's wheels are of one kind, and a mecanum robot has four, but `f` is a `wheelH`
+              see 6:1 "wheelH" declared here
+              help: list only `wheel`, or change the robot's type
+              note: a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways
+        "#]]);
+    }
+
+    #[test]
+    fn one_kind_that_fits_is_fine() {
+        check_clean(&format!("{WHEELS}robot r with port 1 has {{ e f g h }} wheels"));
+        check_clean(&format!("{WHEELS}robot r type fw with port 1 has {{ a b c d }} wheels"));
+    }
+}

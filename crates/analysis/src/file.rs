@@ -1,0 +1,156 @@
+//! One document: its text and the entities that tile it, and how an edit finds the few that it touches.
+
+use std::ops::Range;
+
+use pydslrep_syntax::{Parse, Span, Token, cut, lex, parse};
+use ropey::Rope;
+
+use crate::EntityId;
+
+/// One document.
+#[derive(Debug)]
+pub(crate) struct File {
+    pub(crate) path: String,
+    pub(crate) text: Rope,
+    /// In the order of the text; their lengths add up to the text's.
+    pub(crate) pieces: Vec<Piece>,
+}
+
+/// Where an entity is in its file, without its absolute position: that would change with every edit before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Piece {
+    pub(crate) entity: EntityId,
+    pub(crate) len: u32,
+}
+
+/// The pieces an edit replaces, and what replaces them.
+#[derive(Debug)]
+pub(crate) struct Window {
+    pub(crate) replaced: Range<usize>,
+    pub(crate) parses: Vec<(Span, Parse)>,
+}
+
+impl File {
+    /// The text of a range.
+    pub(crate) fn slice(&self, span: Span) -> String {
+        self.text.get_byte_slice(Range::from(span)).map_or_else(String::new, |slice| slice.to_string())
+    }
+
+    /// The line ending that the file uses.
+    pub(crate) fn line_ending(&self) -> &'static str {
+        match self.text.lines().next() {
+            Some(line) if line.len_chars() >= 2 && line.char(line.len_chars() - 2) == '\r' => "\r\n",
+            _ => "\n",
+        }
+    }
+
+    /// The piece that holds `offset` (the last one at the end of the text) and where it starts.
+    pub(crate) fn piece_at(&self, offset: u32) -> (usize, u32) {
+        let mut start = 0;
+        for (index, piece) in self.pieces.iter().enumerate() {
+            if offset < start + piece.len {
+                return (index, start);
+            }
+            start += piece.len;
+        }
+        let last = self.pieces.len().saturating_sub(1);
+        (last, start - self.pieces.last().map_or(0, |piece| piece.len))
+    }
+
+    /// Where the piece at `index` starts.
+    pub(crate) fn start_of(&self, index: usize) -> u32 {
+        self.pieces[..index].iter().map(|piece| piece.len).sum()
+    }
+
+    /// Replaces `span` by `text` and reads again what the edit may have changed. The caller puts the new pieces in
+    /// place. `lexemes_of` gives the tokens of a piece as they were.
+    pub(crate) fn edit<'a>(
+        &mut self,
+        span: Span,
+        text: &str,
+        lexemes_of: impl Fn(EntityId) -> &'a [(Token, Span)],
+    ) -> Window {
+        let (first, first_start) = self.window_start(span.start, lexemes_of);
+        let (touched, touched_start) = self.piece_at(span.end);
+        let old_len = Span::of_rope(&self.text).len();
+        self.replace(span, text);
+        let grown = i64::from(Span::of_rope(&self.text).len()) - i64::from(old_len);
+        let mut end = touched + 1;
+        let mut end_offset = touched_start + self.pieces[touched].len;
+        let mut growth = 1;
+        loop {
+            if end >= self.pieces.len() {
+                let window = Span::new(first_start, Span::of_rope(&self.text).len());
+                return Window { replaced: first..self.pieces.len(), parses: parse(&self.slice(window)) };
+            }
+            let boundary = shift(end_offset, grown);
+            if let Some(parses) = self.read_up_to(first_start, boundary, end, grown, end_offset) {
+                return Window { replaced: first..end, parses };
+            }
+            let next_end = (end + growth).min(self.pieces.len());
+            end_offset += self.pieces[end..next_end].iter().map(|piece| piece.len).sum::<u32>();
+            end = next_end;
+            growth *= 2;
+        }
+    }
+
+    /// Reads from `start` to `boundary`, if the old boundary there still holds: a token begins on it and still begins
+    /// an entity. Whether it does depends on nothing behind the next token, which the two pieces after it contain;
+    /// from there on nothing can have changed.
+    fn read_up_to(
+        &self,
+        start: u32,
+        boundary: u32,
+        end: usize,
+        grown: i64,
+        end_offset: u32,
+    ) -> Option<Vec<(Span, Parse)>> {
+        let ahead: u32 = self.pieces[end..].iter().take(2).map(|piece| piece.len).sum();
+        let text = self.slice(Span::new(start, shift(end_offset + ahead, grown)));
+        let lexemes = lex(&text);
+        let holds = cut(&lexemes).into_iter().any(|index| lexemes[index].1.start + start == boundary);
+        holds.then(|| parse(Span::new(0, boundary - start).text(&text)))
+    }
+
+    /// The first piece to read again. Whether a piece begins where it does depends on its first token, the one behind
+    /// it and what stands before; so two of its tokens must lie wholly before the edit.
+    fn window_start<'a>(
+        &self,
+        offset: u32,
+        lexemes_of: impl Fn(EntityId) -> &'a [(Token, Span)],
+    ) -> (usize, u32) {
+        let (mut index, mut start) = self.piece_at(offset);
+        let mut untouched = 0;
+        loop {
+            let before = |(token, span): &&(Token, Span)| !token.is_comment() && span.end + start < offset;
+            untouched += lexemes_of(self.pieces[index].entity).iter().filter(before).take(2).count();
+            if index == 0 || untouched >= 2 {
+                return (index, start);
+            }
+            index -= 1;
+            start -= self.pieces[index].len;
+        }
+    }
+
+    fn replace(&mut self, span: Span, text: &str) {
+        let from = self.text.byte_to_char(span.start as usize);
+        let to = self.text.byte_to_char(span.end as usize);
+        self.text.remove(from..to);
+        self.text.insert(from, text);
+    }
+}
+
+fn shift(offset: u32, by: i64) -> u32 {
+    u32::try_from(i64::from(offset) + by).unwrap_or(u32::MAX)
+}
+
+/// The range of a whole document.
+pub(crate) trait OfRope {
+    fn of_rope(rope: &Rope) -> Span;
+}
+
+impl OfRope for Span {
+    fn of_rope(rope: &Rope) -> Span {
+        Span::new(0, u32::try_from(rope.len_bytes()).unwrap_or(u32::MAX))
+    }
+}

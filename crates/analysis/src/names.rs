@@ -1,0 +1,90 @@
+//! Who declares a name, and who uses it.
+
+use pydslrep_syntax::EntityKind;
+use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
+
+use crate::{EntityId, FileId};
+
+/// A name of one kind as seen from one file.
+pub(crate) type Key = (FileId, EntityKind, SmolStr);
+
+/// The index of names over all files. Names of different files never meet here; what an import makes visible is
+/// looked up file by file.
+#[derive(Debug, Default)]
+pub(crate) struct Names {
+    defined: FxHashMap<Key, Vec<EntityId>>,
+    used: FxHashMap<Key, Vec<EntityId>>,
+    skipped: FxHashMap<(FileId, SmolStr), u32>,
+}
+
+impl Names {
+    /// The entities that declare a name, in the order of the text.
+    pub(crate) fn defined(&self, key: &Key) -> &[EntityId] {
+        self.defined.get(key).map_or(&[], Vec::as_slice)
+    }
+
+    /// The entities that use a name, each as often as it does.
+    pub(crate) fn used(&self, key: &Key) -> &[EntityId] {
+        self.used.get(key).map_or(&[], Vec::as_slice)
+    }
+
+    /// Every declared name of a kind in a file, in no order.
+    pub(crate) fn all(&self, file: FileId, kind: EntityKind) -> impl Iterator<Item = &SmolStr> {
+        self.defined.keys().filter(move |key| key.0 == file && key.1 == kind).map(|key| &key.2)
+    }
+
+    /// Whether the name stands in text that had to be skipped, and may be declared there.
+    pub(crate) fn is_skipped(&self, file: FileId, name: &SmolStr) -> bool {
+        self.skipped.contains_key(&(file, name.clone()))
+    }
+
+    /// Adds a declaration; `order` tells where in the file an entity stands.
+    pub(crate) fn define(&mut self, key: Key, entity: EntityId, order: impl Fn(EntityId) -> u64) {
+        let entities = self.defined.entry(key).or_default();
+        let place = entities.partition_point(|other| order(*other) < order(entity));
+        entities.insert(place, entity);
+    }
+
+    /// Removes a declaration.
+    pub(crate) fn undefine(&mut self, key: &Key, entity: EntityId) {
+        remove(&mut self.defined, key, entity);
+    }
+
+    /// Adds a use.
+    pub(crate) fn reference(&mut self, key: Key, entity: EntityId) {
+        self.used.entry(key).or_default().push(entity);
+    }
+
+    /// Removes one use.
+    pub(crate) fn unreference(&mut self, key: &Key, entity: EntityId) {
+        remove(&mut self.used, key, entity);
+    }
+
+    /// Adds a name in skipped text.
+    pub(crate) fn skip(&mut self, file: FileId, name: SmolStr) {
+        *self.skipped.entry((file, name)).or_default() += 1;
+    }
+
+    /// Removes a name in skipped text.
+    pub(crate) fn unskip(&mut self, file: FileId, name: &SmolStr) {
+        let key = (file, name.clone());
+        if let Some(count) = self.skipped.get_mut(&key) {
+            *count -= 1;
+            if *count == 0 {
+                self.skipped.remove(&key);
+            }
+        }
+    }
+}
+
+fn remove(map: &mut FxHashMap<Key, Vec<EntityId>>, key: &Key, entity: EntityId) {
+    if let Some(entities) = map.get_mut(key) {
+        if let Some(place) = entities.iter().position(|other| *other == entity) {
+            entities.remove(place);
+        }
+        if entities.is_empty() {
+            map.remove(key);
+        }
+    }
+}
