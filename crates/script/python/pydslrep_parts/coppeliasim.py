@@ -1,0 +1,257 @@
+#: if standalone
+"""All contact with the simulator CoppeliaSim."""
+
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import zmq
+from coppeliasim_zmqremoteapi_client import RemoteAPIClient  # type: ignore[import-untyped]
+
+from .drive import Drive
+from .errors import SetupError, SimulatorError
+from .pose import Pose
+from .settings import CONNECT_TIMEOUT, REPLY_TIMEOUT, STOP_TIMEOUT
+
+#: endif
+
+
+def dot(a: Sequence[float], b: Sequence[float]) -> float:
+    """The scalar product."""
+    return sum(p * q for p, q in zip(a, b, strict=True))
+
+
+@dataclass(frozen=True)
+class RobotModel:
+    """What the program says of a robot; the scene tells the rest."""
+
+    name: str
+    port: int
+    drive: type[Drive]
+    wheels: Mapping[str, float]  # radius in metres by the joint's name
+    #: if until
+    sensors: Sequence[str] = ()
+    #: endif
+
+
+class SimulatedRobot:
+    """A robot in CoppeliaSim: everything a script needs of it goes through this class.
+
+    For a robot of metal write a class with the same public methods: `pose` from its
+    odometry or a camera, `set_wheel_rates` to its motors, `advance` to wait for `time_step`.
+    """
+
+    def __init__(self, model: RobotModel, host: str, port: int, realtime: bool) -> None:
+        """Connects to the simulator and finds the robot; raises SetupError."""
+        self.model = model
+        self.time = 0.0  # s of simulation time, after the last step
+        self._address = f"{host}:{port}"
+        self._realtime = realtime
+        self._started = self._stepping = self._lost = False
+        self._step_due: float | None = None
+        self._rates: list[float] = []
+        try:
+            self._client = RemoteAPIClient(host, port)
+            self._open_socket(CONNECT_TIMEOUT)
+            self._sim = self._client.require("sim")
+            self._client.socket.rcvtimeo = int(REPLY_TIMEOUT * 1000)
+        except zmq.Again:
+            raise SetupError(
+                f"robot {model.name}: no simulator answers at {self._address}; start CoppeliaSim "
+                "with the ZeroMQ remote API on that port, or give --host and --port"
+            ) from None
+        except Exception as error:
+            raise SetupError(
+                f"robot {model.name}: cannot talk to {self._address}: {error}"
+            ) from error
+        try:
+            self._find_objects()
+        except SimulatorError as error:
+            raise SetupError(f"robot {model.name}: {error}") from error
+
+    def pose(self) -> Pose:
+        """Where the middle of the wheels is, and the robot's heading."""
+        body = self._ask(self._sim.getObjectMatrix, self._body)
+        (cx, cy), (xx, yx), (xy, yy) = (
+            self._center,
+            (body[0], body[4]),
+            (body[1], body[5]),
+        )
+        return Pose(
+            body[3] + cx * xx + cy * xy, body[7] + cx * yx + cy * yy, math.atan2(yx, xx)
+        )
+
+    def set_wheel_rates(self, rates: Sequence[float]) -> None:
+        """Sets how fast the wheels turn, in rad/s, forward where positive."""
+        for index, rate in enumerate(rates):
+            # Changes that nobody could see are not worth a call, but rest is rest.
+            if abs(rate - self._rates[index]) > (1e-4 if rate else 0.0):
+                velocity = rate * self._senses[index]
+                joint = self._joints[index]
+                self._ask(self._sim.setJointTargetVelocity, joint, velocity)
+                self._rates[index] = rate
+
+    #: if until
+    def detects(self, sensor: str) -> bool:
+        """Whether a proximity sensor sees something."""
+        handle = self._sensors[sensor]
+        state = self._ask(self._sim.readProximitySensor, handle)[0]
+        if (
+            state < 0
+        ):  # never handled yet: its scene leaves that to scripts like this one
+            state = self._ask(self._sim.handleProximitySensor, handle)[0]
+        return bool(state > 0)
+
+    #: endif
+    def advance(self) -> None:
+        """Lets one step of simulation time pass."""
+        self._ask(self._sim.step)
+        if self._step_due is None:
+            self.time = self._ask(self._sim.getSimulationTime)
+            self._step_due = time.monotonic()
+        else:
+            self.time += self.time_step
+        self._step_due += self.time_step
+        if self._realtime:
+            time.sleep(max(0.0, self._step_due - time.monotonic()))
+
+    def start(self) -> None:
+        """Starts the simulation, unless it runs already."""
+        if self._ask(self._sim.getSimulationState) == self._sim.simulation_stopped:
+            self._ask(self._sim.startSimulation)
+            self._started = True
+
+    def hold_time(self) -> None:
+        """From now on time only passes when `advance` is called."""
+        if not self._stepping:
+            self._ask(self._sim.setStepping, True)
+            self._stepping = True
+            self._step_due = None
+
+    def release_time(self) -> None:
+        """From now on this robot does not hold up time."""
+        if self._stepping:
+            self._ask(self._sim.setStepping, False)
+            self._stepping = False
+
+    def why_it_stands(self) -> str:
+        """What may keep the robot in place although its wheels should turn."""
+        state = self._ask(self._sim.getSimulationState)
+        if not state & self._sim.simulation_advancing:
+            return "the simulation was stopped or paused"
+        mode = self._sim.jointintparam_dynctrlmode
+        for name, joint in zip(self.model.wheels, self._joints, strict=True):
+            found = self._ask(self._sim.getObjectInt32Param, joint, mode)
+            if found != self._sim.jointdynctrl_velocity:
+                return (
+                    f"joint {name} ignores velocities: set its control mode to velocity"
+                )
+        return "something may be in its way"
+
+    def stop(self) -> None:
+        """Stops the wheels, whatever happened before.
+
+        A call that was cut off leaves its socket unusable: a new one, under the same
+        client id, continues.
+        """
+        try:
+            self._open_socket(STOP_TIMEOUT)
+            for joint in self._joints:
+                self._ask(self._sim.setJointTargetVelocity, joint, 0.0)
+            self.release_time()
+        except SimulatorError:
+            self._lost = True  # the error that led here says more
+
+    def close(self) -> None:
+        """Stops the simulation where this robot started it, and hangs up."""
+        try:
+            if self._started and not self._lost:
+                self._ask(self._sim.stopSimulation)
+                self._wait_until_stopped()
+        except SimulatorError:
+            pass
+        self._client.socket.close(linger=0)
+
+    def _wait_until_stopped(self) -> None:
+        deadline = time.monotonic() + STOP_TIMEOUT
+        while self._ask(self._sim.getSimulationState) != self._sim.simulation_stopped:
+            if time.monotonic() > deadline:
+                break
+            time.sleep(0.02)
+
+    def _find_objects(self) -> None:
+        """Finds the robot's parts and measures them: nothing about them is assumed."""
+        name = self.model.name
+        self._missing: list[str] = []
+        self._body = self._find(f"/{name}")
+        self._joints = [
+            self._find(f"/{name}/{wheel}", f"/{wheel}_{name}")
+            for wheel in self.model.wheels
+        ]
+        #: if until
+        self._sensors = {
+            sensor: self._find(f"/{name}/{sensor}", f"/{sensor}_{name}")
+            for sensor in self.model.sensors
+        }
+        #: endif
+        if self._missing:
+            raise SetupError(
+                f"robot {name}: the scene at {self._address} has no object "
+                + "; and no object ".join(self._missing)
+            )
+        self.time_step: float = self._ask(self._sim.getSimulationTimeStep)
+        self._measure()
+
+    def _find(self, *paths: str) -> int:
+        for path in paths:
+            handle: int = self._ask(self._sim.getObject, path, {"noError": True})
+            if handle >= 0:
+                return handle
+        self._missing.append(" or ".join(paths))
+        return -1
+
+    def _measure(self) -> None:
+        """Reads from the scene where the wheels are and which way round their joints turn."""
+        body = self._ask(self._sim.getObjectMatrix, self._body)
+        x_axis, y_axis = (body[0], body[4], body[8]), (body[1], body[5], body[9])
+        mounts, self._senses = [], []
+        for joint in self._joints:
+            matrix = self._ask(self._sim.getObjectMatrix, joint)
+            arm = [matrix[i] - body[i] for i in (3, 7, 11)]
+            mounts.append((dot(x_axis, arm), dot(y_axis, arm)))
+            # A joint turns about its z axis: towards the body's left, it rolls forward.
+            axis = (matrix[2], matrix[6], matrix[10])
+            self._senses.append(math.copysign(1.0, dot(y_axis, axis)))
+        self._center = tuple(
+            sum(side) / len(mounts) for side in zip(*mounts, strict=True)
+        )
+        try:
+            self.drive = self.model.drive(mounts, list(self.model.wheels.values()))
+        except SetupError as error:
+            raise SetupError(f"robot {self.model.name}: {error}") from None
+        self._rates = [math.inf] * len(
+            self._joints
+        )  # unknown, so the first is always set
+
+    def _open_socket(self, timeout: float) -> None:
+        """Replaces the client's socket, which would wait for ever, by one with time limits."""
+        self._client.socket.close(linger=0)
+        self._client.socket = self._client.context.socket(zmq.REQ)
+        self._client.socket.linger = 0
+        self._client.socket.sndtimeo = self._client.socket.rcvtimeo = int(
+            timeout * 1000
+        )
+        self._client.socket.connect(f"tcp://{self._address}")
+
+    def _ask(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        """Calls a function of the simulator; raises SimulatorError."""
+        try:
+            return function(*arguments)
+        except zmq.ZMQError as error:
+            raise SimulatorError(
+                f"lost the simulator at {self._address}: {error}"
+            ) from error
+        except Exception as error:  # the client has no class of its own for errors
+            raise SimulatorError(f"{self._address} answered: {error}") from error

@@ -1,0 +1,107 @@
+#: if standalone
+"""The robots of an environment and the movements they make."""
+
+from collections.abc import Iterable
+from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
+from threading import Event, Lock
+
+from .coppeliasim import RobotModel, SimulatedRobot
+from .errors import MovementCancelledError, SimulatorError
+from .movement import Movement
+from .robot import Robot
+from .trace import Trace
+
+#: endif
+
+
+class Fleet:
+    """The robots of the environment, and which of them hold the time."""
+
+    def __init__(self, trace: Trace) -> None:
+        self._trace = trace
+        self._robots: dict[str, Robot] = {}
+        #: if parallel
+        self._cancelled = Event()
+        self._lock = Lock()
+        self._driving = 0
+        #: endif
+
+    def connect(self, model: RobotModel, host: str, port: int, realtime: bool) -> None:
+        """Adds a robot; raises SetupError."""
+        robot = Robot(SimulatedRobot(model, host, port, realtime), self._trace)
+        #: if parallel
+        robot.cancelled = self._cancelled
+        #: endif
+        self._robots[model.name] = robot
+
+    def start(self) -> None:
+        """Starts the simulation, but lets no time pass before the first movement."""
+        robots = list(self._robots.values())
+        self._hold_time(robots[:1])
+        for robot in robots:
+            robot.body.start()
+
+    def run(self, movement: Movement) -> None:
+        """Runs a movement to its end; raises MovementError."""
+        self._hold_time([self._robots[movement.robot]])
+        self._drive(movement)
+        self._trace.write()
+
+    #: if parallel
+    def run_together(self, *movements: Movement) -> None:
+        """Runs movements at the same time, a thread each; raises MovementError."""
+        self._hold_time([self._robots[movement.robot] for movement in movements])
+        self._driving = len(movements)
+        with ThreadPoolExecutor(len(movements)) as pool:
+            runs = [pool.submit(self._drive_among, movement) for movement in movements]
+            try:
+                wait(runs, return_when=FIRST_EXCEPTION)
+            except KeyboardInterrupt:
+                self._cancelled.set()
+                raise
+        self._trace.write()
+        errors = [error for run in runs if (error := run.exception())]
+        # What stopped the others comes first.
+        errors.sort(key=lambda error: isinstance(error, MovementCancelledError))
+        if errors:
+            raise errors[0]
+
+    def _drive_among(self, movement: Movement) -> None:
+        body = self._robots[movement.robot].body
+        try:
+            self._drive(movement)
+        except BaseException:
+            self._cancelled.set()
+            body.stop()  # which also lets the others go on, to see that they are to stop
+            raise
+        with self._lock:
+            self._driving -= 1
+            if self._driving > 0:
+                # The others need not wait for this robot; the last one keeps the time.
+                body.release_time()
+
+    #: endif
+    def _drive(self, movement: Movement) -> None:
+        robot = self._robots[movement.robot]
+        robot.begin(movement.name)
+        try:
+            movement.actions(robot)
+        except SimulatorError as error:
+            raise robot.failure(error) from error
+
+    def _hold_time(self, robots: Iterable[Robot]) -> None:
+        """Time passes only as these robots advance; it stands still in between."""
+        holding = list(robots)
+        for robot in holding:
+            robot.body.hold_time()
+        for robot in self._robots.values():
+            if robot not in holding:
+                robot.body.release_time()
+
+    def shut_down(self) -> None:
+        """Stops all wheels, and the simulation where the script started it."""
+        for robot in self._robots.values():
+            robot.body.stop()
+        for robot in self._robots.values():
+            robot.body.close()
+        self._trace.write()

@@ -1,0 +1,163 @@
+#: if standalone
+"""How robots carry out their actions."""
+
+import math
+from collections.abc import Sequence
+from threading import Event
+from typing import Literal
+
+from .approach import Approach
+from .coppeliasim import SimulatedRobot
+from .errors import MovementCancelledError, MovementError
+from .pose import Pose, wrap_angle
+from .settings import RIM_SPEED, STALL_TIME
+from .trace import Trace
+
+#: endif
+
+
+class Robot:
+    """A robot that moves and turns: a command per step, from the pose it has by then.
+
+    Every action starts where the last one should have ended, so errors do not add up.
+    """
+
+    def __init__(self, body: SimulatedRobot, trace: Trace) -> None:
+        self.body = body
+        self._trace = trace
+        self._planned: Pose | None = None
+        self._rates: Sequence[float] = ()
+        self._movement = self._action = ""
+        self._actions = 0
+        #: if parallel
+        self.cancelled = Event()
+        #: endif
+
+    def move(self, distance: float, speed: float = RIM_SPEED) -> None:
+        """Drives straight on, in metres (backwards where negative) and m/s."""
+        here = self._begin(f"move {distance:g} m")
+        goal = self._start(here).ahead(distance)
+        approach = Approach(speed, self.body.time_step)
+        while True:
+            offset = here.seen_from(goal)
+            to_go = -offset.x
+            if approach.arrived(to_go):
+                break
+            self._check_progress(approach, to_go)
+            rim_speed = approach.next_speed(to_go)
+            here = self._step(self.body.drive.follow_line(rim_speed, offset, to_go))
+        self._planned = goal
+        # It may have come to rest slightly turned.
+        here = self._rotate(self._come_to_rest(here), 0.0)
+        self._report(here)
+
+    def turn(self, degrees: float) -> None:
+        """Turns in place, to the left where positive."""
+        side = "left" if degrees >= 0.0 else "right"
+        here = self._begin(f"turn {side} {abs(degrees):g} deg")
+        here = self._rotate(here, math.radians(degrees))
+        self._report(here)
+
+    #: if until
+    def turn_until_free(self, side: Literal["left", "right"], *sensors: str) -> None:
+        """Turns in place until none of the sensors detects anything."""
+        names = ", ".join(sensors)
+        here = self._begin(f"turn {side} until {names} detect nothing")
+        here = self._step(
+            self._standstill()
+        )  # before the first step, sensors are blind
+        start = self._start(here)
+        radius = self.body.drive.turning_radius
+        full_turn = math.tau * radius * (1.0 if side == "left" else -1.0)
+        approach = Approach(RIM_SPEED, self.body.time_step)
+        turned = 0.0
+        while (busy := any(map(self.body.detects, sensors))) or approach.speed != 0.0:
+            to_go = full_turn - turned * radius
+            if approach.arrived(to_go):
+                raise self.failure(f"after a full turn {names} still detect something")
+            self._check_progress(approach, to_go)
+            rim_speed = approach.next_speed(to_go) if busy else approach.slowed_down()
+            offset, before = here.seen_from(start), here
+            here = self._step(self.body.drive.turn_in_place(rim_speed, offset))
+            turned += wrap_angle(here.theta - before.theta)
+        here = self._come_to_rest(here)
+        self._planned = Pose(start.x, start.y, here.theta)
+        self._report(here)
+
+    #: endif
+    def begin(self, movement: str) -> None:
+        """Says which movement the next actions belong to."""
+        self._movement, self._action, self._actions = movement, "start", 0
+
+    def failure(self, reason: object) -> MovementError:
+        """An error that says what the robot was doing."""
+        name = self.body.model.name
+        return MovementError(
+            f"robot {name}, movement {self._movement}, action {self._action}: {reason}"
+        )
+
+    def _begin(self, action: str) -> Pose:
+        self._actions += 1
+        self._action = f"{self._actions}: {action}"
+        return self.body.pose()
+
+    def _start(self, here: Pose) -> Pose:
+        """Where the action starts: where the last one should have ended."""
+        return self._planned or here
+
+    def _rotate(self, here: Pose, angle: float) -> Pose:
+        """Turns by an angle in radians, of any number of full turns."""
+        start = self._start(here)
+        goal = start.turned(angle)
+        drive = self.body.drive
+        approach = Approach(RIM_SPEED, self.body.time_step)
+        turned = wrap_angle(here.theta - start.theta)
+        while not approach.arrived(to_go := (angle - turned) * drive.turning_radius):
+            self._check_progress(approach, to_go)
+            rim_speed = approach.next_speed(to_go)
+            offset, before = here.seen_from(goal), here
+            here = self._step(drive.turn_in_place(rim_speed, offset))
+            turned += wrap_angle(here.theta - before.theta)
+        self._planned = goal
+        return self._come_to_rest(here)
+
+    def _step(self, rates: Sequence[float]) -> Pose:
+        """Sets the wheels, lets a step of time pass, and looks where the robot is by then."""
+        #: if parallel
+        if self.cancelled.is_set():
+            raise MovementCancelledError
+        #: endif
+        self._rates = rates
+        self.body.set_wheel_rates(rates)
+        self.body.advance()
+        here = self.body.pose()
+        name = self.body.model.name
+        self._trace.add(self.body.time, name, here, rates, self._movement, self._action)
+        return here
+
+    def _come_to_rest(self, here: Pose) -> Pose:
+        """Stops the wheels and waits a moment for the robot to stand."""
+        if any(self._rates):
+            for _ in range(20):
+                before, here = here, self._step(self._standstill())
+                drift = here.seen_from(before)
+                if max(abs(drift.x), abs(drift.y), abs(drift.theta)) < 1e-5:
+                    break
+        return here
+
+    def _standstill(self) -> list[float]:
+        return [0.0] * len(self.body.model.wheels)
+
+    def _check_progress(self, approach: Approach, to_go: float) -> None:
+        if approach.stalled(to_go):
+            raise self.failure(
+                f"came no nearer to its goal for {STALL_TIME:g} s, {abs(to_go):.3f} m before it; "
+                + self.body.why_it_stands()
+            )
+
+    def _report(self, here: Pose) -> None:
+        print(
+            f"{self.body.time:9.2f} s  {self.body.model.name}  {self._movement}  {self._action}"
+            f"  at x {here.x:.3f} m, y {here.y:.3f} m, {math.degrees(here.theta):.1f} deg",
+            flush=True,
+        )

@@ -1,0 +1,300 @@
+"""A small kinematic simulation behind the interface of CoppeliaSim's client.
+
+It shares no code with the parts under test: wheels follow their targets with a limited acceleration, and
+bodies follow their wheels by the least-squares motion of all of them.
+"""
+
+import math
+import random
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from threading import Condition
+from typing import Any
+
+SUBSTEPS = 20
+
+
+@dataclass
+class FakeJoint:
+    """A wheel's joint: where it is mounted, what it should do and what it does."""
+
+    name: str
+    x: float
+    y: float
+    radius: float = 0.045
+    roller: float = 0.0  # 0 for standard wheels, +1 or -1 for the two ways round of mecanum rollers
+    sense: float = 1.0  # -1: the joint's axis points to the body's right
+    mode: int = 4  # velocity
+    target: float = 0.0
+    rate: float = 0.0
+
+
+@dataclass
+class FakeRobot:
+    """A body with wheels; its pose is that of the body's origin."""
+
+    name: str
+    joints: list[FakeJoint]
+    x: float = 0.0
+    y: float = 0.0
+    theta: float = 0.0
+    motor_acceleration: float = 40.0  # rad/s²
+    slip: float = 0.0  # standard deviation of each wheel's grip
+    wall: float = math.inf  # the body's x cannot exceed this
+    sensors: dict[str, Callable[["FakeRobot"], bool]] = field(default_factory=dict)
+    rolled: list[list[float]] = field(default_factory=list)
+
+    def advance(self, dt: float, noise: random.Random) -> None:
+        """Moves by dt."""
+        grips = [1.0 + noise.gauss(0.0, self.slip) if self.slip else 1.0 for _ in self.joints]
+        for _ in range(SUBSTEPS):
+            self._substep(dt / SUBSTEPS, grips)
+        self.rolled.append([joint.sense * joint.rate for joint in self.joints])
+
+    def _substep(self, dt: float, grips: Sequence[float]) -> None:
+        for joint in self.joints:
+            change = joint.target - joint.rate if joint.mode == 4 else -joint.rate
+            limit = self.motor_acceleration * dt
+            joint.rate += max(-limit, min(limit, change))
+        vx, vy, omega = self._twist(grips)
+        middle = self.theta + omega * dt / 2.0
+        if self.x + (vx * math.cos(middle) - vy * math.sin(middle)) * dt > self.wall:
+            return
+        self.x += (vx * math.cos(middle) - vy * math.sin(middle)) * dt
+        self.y += (vx * math.sin(middle) + vy * math.cos(middle)) * dt
+        self.theta += omega * dt
+
+    def _twist(self, grips: Sequence[float]) -> tuple[float, float, float]:
+        """Body motion of the origin from the wheels; rims are symmetric about their centre."""
+        cx = sum(joint.x for joint in self.joints) / len(self.joints)
+        cy = sum(joint.y for joint in self.joints) / len(self.joints)
+        rims = [
+            joint.sense * joint.rate * joint.radius * grip
+            for joint, grip in zip(self.joints, grips, strict=True)
+        ]
+        arms = [
+            (joint.y - cy) - joint.roller * (joint.x - cx) for joint in self.joints
+        ]  # rim = vx + roller vy - arm omega
+        vx = sum(rims) / len(rims)
+        rollers = [joint.roller for joint in self.joints]
+        vy = sum(r * s for r, s in zip(rims, rollers, strict=True)) / (sum(s * s for s in rollers) or 1.0)
+        omega = -sum(r * a for r, a in zip(rims, arms, strict=True)) / sum(a * a for a in arms)
+        # from the wheels' centre to the body's origin
+        return vx + omega * cy, vy - omega * cx, omega
+
+
+def two_wheel_joints(track: float = 0.3, **options: Any) -> list[FakeJoint]:
+    """Joints named as in the article."""
+    return [
+        FakeJoint("wheelL", 0.0, track / 2.0, **options),
+        FakeJoint("wheelR", 0.0, -track / 2.0, **options),
+    ]
+
+
+def four_wheel_joints(
+    track: float = 0.3, wheelbase: float = 0.25, *, mecanum: bool = False, **options: Any
+) -> list[FakeJoint]:
+    """Joints named as in the article, in its order."""
+    x, y = wheelbase / 2.0, track / 2.0
+    places = {"wheelL0": (x, y), "wheelL1": (-x, y), "wheelR0": (x, -y), "wheelR1": (-x, -y)}
+    return [
+        FakeJoint(name, px, py, roller=-math.copysign(1.0, px * py) if mecanum else 0.0, **options)
+        for name, (px, py) in places.items()
+    ]
+
+
+class FakeWorld:
+    """The simulator: robots, time, and the clients that hold it."""
+
+    def __init__(self, *robots: FakeRobot, dt: float = 0.05, seed: int = 1) -> None:
+        self.robots = {robot.name: robot for robot in robots}
+        self.dt = dt
+        self.steps = 0
+        self.running = False
+        self.calls: Counter[str] = Counter()
+        self.aliases: dict[str, str] = {}
+        self.before_step: Callable[[], None] = lambda: None
+        self.condition = Condition()
+        self.holders: dict[str, int] = {}
+        self.waiting: set[str] = set()
+        self.noise = random.Random(seed)
+        self.objects: list[Any] = []
+        self.paths: dict[str, int] = {}
+        for robot in robots:
+            self._add(f"/{robot.name}", robot)
+            for joint in robot.joints:
+                self._add(f"/{robot.name}/{joint.name}", (robot, joint))
+            for sensor in robot.sensors:
+                self._add(f"/{robot.name}/{sensor}", (robot, sensor))
+
+    def _add(self, path: str, thing: Any) -> None:
+        self.paths[path] = len(self.objects) + 10
+        self.objects.append(thing)
+
+    def object(self, handle: int) -> Any:
+        """What a handle stands for."""
+        return self.objects[handle - 10]
+
+    def step(self) -> None:
+        """Everybody moves."""
+        self.before_step()
+        for robot in self.robots.values():
+            robot.advance(self.dt, self.noise)
+        self.steps += 1
+
+    def client(self, uuid: str) -> "FakeClient":
+        """A new client, as `RemoteAPIClient` makes one."""
+        return FakeClient(self, uuid)
+
+    def factory(self) -> Callable[[str, int], "FakeClient"]:
+        """What takes the place of the class `RemoteAPIClient`."""
+        return lambda host, port: self.client(f"{host}:{port}/{len(self.clients())}")
+
+    def clients(self) -> list["FakeClient"]:
+        """All clients so far."""
+        return FakeClient.made.setdefault(id(self), [])
+
+
+class FakeSocket:
+    """Takes the settings of a real one."""
+
+    linger = sndtimeo = rcvtimeo = -1
+
+    def connect(self, address: str) -> None:
+        """Connects to nothing."""
+
+    def close(self, linger: int | None = None) -> None:
+        """Closes nothing."""
+
+
+class FakeContext:
+    """Makes sockets."""
+
+    def socket(self, kind: int) -> FakeSocket:
+        """A socket."""
+        return FakeSocket()
+
+
+class FakeClient:
+    """The client's class, as far as scripts use it."""
+
+    made: dict[int, list["FakeClient"]] = {}  # noqa: RUF012
+
+    def __init__(self, world: FakeWorld, uuid: str) -> None:
+        world.clients().append(self)
+        self.socket, self.context = FakeSocket(), FakeContext()
+        self.world, self.uuid = world, uuid
+
+    def require(self, name: str) -> "FakeSim":
+        """The simulator's functions."""
+        assert name == "sim"
+        return FakeSim(self.world, self.uuid)
+
+
+class FakeSim:
+    """The functions and constants that scripts use, as the specification of the remote API describes them."""
+
+    simulation_stopped = 0
+    simulation_advancing = 16
+    jointintparam_dynctrlmode = 2039
+    jointdynctrl_velocity = 4
+
+    def __init__(self, world: FakeWorld, uuid: str) -> None:
+        self._world, self._uuid = world, uuid
+
+    def __getattribute__(self, name: str) -> Any:
+        """Counts calls."""
+        value = object.__getattribute__(self, name)
+        if not name.startswith("_") and callable(value):
+            with self._world.condition:
+                self._world.calls[name] += 1
+        return value
+
+    def getObject(self, path: str, options: dict[str, Any]) -> int:  # noqa: N802
+        """A handle, or -1."""
+        assert options == {"noError": True}
+        return self._world.paths.get(path, -1)
+
+    def getObjectMatrix(self, handle: int) -> list[float]:  # noqa: N802
+        """Rows of rotation and translation."""
+        thing = self._world.object(handle)
+        robot, joint = thing if isinstance(thing, tuple) else (thing, None)
+        c, s = math.cos(robot.theta), math.sin(robot.theta)
+        if joint is None:
+            return [c, -s, 0.0, robot.x, s, c, 0.0, robot.y, 0.0, 0.0, 1.0, 0.1]
+        # the joint's z axis points to the left, or right; its x axis ahead
+        x, y = robot.x + c * joint.x - s * joint.y, robot.y + s * joint.x + c * joint.y
+        k = joint.sense
+        return [c, 0.0, -s * k, x, s, 0.0, c * k, y, 0.0, -k, 0.0, 0.045]
+
+    def setJointTargetVelocity(self, handle: int, velocity: float) -> int:  # noqa: N802
+        """Sets a motor's target."""
+        assert math.isfinite(velocity)
+        self._world.object(handle)[1].target = velocity
+        return 1
+
+    def readProximitySensor(self, handle: int) -> tuple[Any, ...]:  # noqa: N802
+        """State and more; blind before the first step."""
+        robot, sensor = self._world.object(handle)
+        state = -1 if self._world.steps == 0 else int(robot.sensors[sensor](robot))
+        return (state, 0.0, [0.0, 0.0, 0.0], -1, [0.0, 0.0, 0.0])
+
+    def handleProximitySensor(self, handle: int) -> tuple[Any, ...]:  # noqa: N802
+        """Only for sensors of another kind."""
+        raise Exception("316: in sim.handleProximitySensor: object not tagged for explicit handling.")
+
+    def getObjectInt32Param(self, handle: int, parameter: int) -> int:  # noqa: N802
+        """The joint's control mode."""
+        assert parameter == self.jointintparam_dynctrlmode
+        mode: int = self._world.object(handle)[1].mode
+        return mode
+
+    def getSimulationTimeStep(self) -> float:  # noqa: N802
+        """Seconds."""
+        return self._world.dt
+
+    def getSimulationTime(self) -> float:  # noqa: N802
+        """Seconds."""
+        return self._world.steps * self._world.dt
+
+    def getSimulationState(self) -> int:  # noqa: N802
+        """Stopped or running."""
+        return 17 if self._world.running else 0
+
+    def startSimulation(self) -> None:  # noqa: N802
+        """Starts."""
+        self._world.running = True
+
+    def stopSimulation(self) -> None:  # noqa: N802
+        """Stops."""
+        self._world.running = False
+
+    def setStepping(self, enable: bool) -> int:  # noqa: N802
+        """Counts levels per client."""
+        world = self._world
+        with world.condition:
+            level = world.holders.get(self._uuid, 0)
+            world.holders[self._uuid] = max(0, level + (1 if enable else -1))
+            self._step_if_all_wait()
+            return level
+
+    def step(self) -> None:
+        """Returns after the next step, which waits for all that hold the time."""
+        world = self._world
+        if not world.running:
+            return
+        with world.condition:
+            assert world.holders.get(self._uuid, 0) > 0, "steps without holding the time"
+            world.waiting.add(self._uuid)
+            before = world.steps
+            self._step_if_all_wait()
+            assert world.condition.wait_for(lambda: world.steps > before, timeout=20.0), "nobody steps"
+
+    def _step_if_all_wait(self) -> None:
+        world = self._world
+        holders = {uuid for uuid, level in world.holders.items() if level > 0}
+        if world.waiting and world.waiting >= holders:
+            world.waiting.clear()
+            world.step()
+            world.condition.notify_all()

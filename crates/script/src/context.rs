@@ -1,0 +1,216 @@
+//! What the template is given: an environment in the words of the script.
+
+use std::net::Ipv4Addr;
+
+use pydslrep_analysis::environment::{Action, ActionKind, Environment, Movement, Robot, Source};
+use pydslrep_kinematics::{Drive, motion::RIM_SPEED};
+use serde::Serialize;
+
+use crate::ScriptError;
+
+/// Longer names would break lines that everything else leaves whole.
+const LONGEST_NAME_IN_IDENTIFIER: usize = 40;
+
+/// Everything the template `environment.py.j2` reads.
+#[derive(Debug, Serialize)]
+pub(crate) struct Script {
+    name: String,
+    host: String,
+    /// The classes of all drives in use, each once.
+    drives: Vec<&'static str>,
+    two_wheel: bool,
+    four_wheel: bool,
+    four_mecanum: bool,
+    /// Whether some movements run at the same time.
+    parallel: bool,
+    /// Whether some action looks at sensors.
+    until: bool,
+    /// Always false: the parts of a script do not stand alone.
+    standalone: bool,
+    robots: Vec<RobotModel>,
+    movements: Vec<MovementFunction>,
+    /// The functions of each group.
+    schedule: Vec<Vec<String>>,
+}
+
+#[derive(Debug, Serialize)]
+struct RobotModel {
+    name: String,
+    port: u16,
+    drive: &'static str,
+    wheels: Vec<WheelModel>,
+    /// Only those that some action looks at.
+    sensors: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct WheelModel {
+    name: String,
+    radius: String,
+}
+
+#[derive(Debug, Serialize)]
+struct MovementFunction {
+    function: String,
+    name: String,
+    robot: String,
+    comment: String,
+    actions: Vec<CommentedAction>,
+}
+
+#[derive(Debug, Serialize)]
+struct CommentedAction {
+    #[serde(flatten)]
+    call: Call,
+    comment: String,
+}
+
+/// Numbers are Python literals.
+#[derive(Debug, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+enum Call {
+    /// Metres, and metres per second where that is not the default.
+    Move { distance: String, speed: Option<String> },
+    /// Degrees.
+    Turn { degrees: String },
+    /// A side, and the sensors' names.
+    Until { side: &'static str, sensors: Vec<String> },
+}
+
+impl Script {
+    /// The environment's data; an error where scripts cannot do some action yet.
+    pub(crate) fn new(environment: &Environment) -> Result<Self, ScriptError> {
+        let has = |drive| environment.robots.iter().any(|robot| robot.drive == drive);
+        let (two_wheel, four_wheel, four_mecanum) =
+            (has(Drive::TwoWheel), has(Drive::FourWheel), has(Drive::FourMecanum));
+        let drives = [Drive::TwoWheel, Drive::FourWheel, Drive::FourMecanum];
+        let movements = &environment.movements;
+        let functions: Vec<String> =
+            movements.iter().enumerate().map(|(index, movement)| function_name(index, &movement.name)).collect();
+        Ok(Self {
+            name: environment.name.clone(),
+            host: environment.host.unwrap_or(Ipv4Addr::LOCALHOST).to_string(),
+            drives: drives.into_iter().filter(|&drive| has(drive)).map(class).collect(),
+            two_wheel,
+            four_wheel,
+            four_mecanum,
+            parallel: environment.schedule.iter().any(|group| group.len() > 1),
+            until: movements.iter().flat_map(|movement| &movement.actions).any(looks_at_sensors),
+            standalone: false,
+            robots: environment.robots.iter().enumerate().map(|(index, r)| robot(index, r, movements)).collect(),
+            movements: movements
+                .iter()
+                .zip(&functions)
+                .map(|(m, function)| movement_function(m, function, &environment.robots[m.robot]))
+                .collect::<Result<_, _>>()?,
+            schedule: environment
+                .schedule
+                .iter()
+                .filter(|group| !group.is_empty())
+                .map(|group| group.iter().map(|&index| functions[index].clone()).collect())
+                .collect(),
+        })
+    }
+}
+
+/// The Python class of a drive.
+fn class(drive: Drive) -> &'static str {
+    match drive {
+        Drive::TwoWheel => "TwoWheelDrive",
+        Drive::FourWheel => "FourWheelDrive",
+        Drive::FourMecanum => "FourMecanumDrive",
+    }
+}
+
+/// `movement_` and the name, so that it is neither a keyword nor any other name in the script; a number for the
+/// name where that is no short identifier.
+fn function_name(index: usize, name: &str) -> String {
+    let is_identifier = name.chars().all(|c| c == '_' || c.is_ascii_alphanumeric())
+        && !name.starts_with(|c: char| c.is_ascii_digit());
+    if is_identifier && (1..=LONGEST_NAME_IN_IDENTIFIER).contains(&name.len()) {
+        format!("movement_{name}")
+    } else {
+        format!("movement_{}", index + 1)
+    }
+}
+
+fn looks_at_sensors(action: &Action) -> bool {
+    matches!(action.kind, ActionKind::TurnUntil { .. })
+}
+
+fn robot(index: usize, robot: &Robot, movements: &[Movement]) -> RobotModel {
+    let mut looked_at = vec![false; robot.sensors.len()];
+    for action in movements.iter().filter(|movement| movement.robot == index).flat_map(|m| &m.actions) {
+        if let ActionKind::TurnUntil { sensors, .. } = &action.kind {
+            sensors.iter().for_each(|&sensor| looked_at[sensor] = true);
+        }
+    }
+    let sensors = robot.sensors.iter().zip(looked_at).filter(|(_, looked_at)| *looked_at);
+    RobotModel {
+        name: robot.name.clone(),
+        port: robot.port,
+        drive: class(robot.drive),
+        wheels: robot
+            .wheels
+            .iter()
+            .map(|wheel| WheelModel { name: wheel.name.clone(), radius: float(wheel.radius) })
+            .collect(),
+        sensors: sensors.map(|(sensor, _)| sensor.name.clone()).collect(),
+    }
+}
+
+fn movement_function(movement: &Movement, function: &str, robot: &Robot) -> Result<MovementFunction, ScriptError> {
+    Ok(MovementFunction {
+        function: function.to_owned(),
+        name: movement.name.clone(),
+        robot: robot.name.clone(),
+        comment: place(&movement.source),
+        actions: movement
+            .actions
+            .iter()
+            .map(|action| commented_action(action, movement, robot))
+            .collect::<Result<_, _>>()?,
+    })
+}
+
+fn commented_action(action: &Action, movement: &Movement, robot: &Robot) -> Result<CommentedAction, ScriptError> {
+    let call = match &action.kind {
+        ActionKind::Move { distance, speed } => Call::Move {
+            distance: float(*distance),
+            // The program's cm/s need not divide into exactly the same number.
+            speed: ((speed - RIM_SPEED).abs() > 1e-12).then(|| float(*speed)),
+        },
+        ActionKind::Turn { degrees } => Call::Turn { degrees: float(*degrees) },
+        ActionKind::TurnUntil { left, sensors } => Call::Until {
+            side: if *left { "left" } else { "right" },
+            sensors: sensors.iter().map(|&sensor| robot.sensors[sensor].name.clone()).collect(),
+        },
+        ActionKind::Slam => {
+            return Err(ScriptError::UnsupportedAction {
+                action: action.text.clone(),
+                movement: movement.name.clone(),
+                file: action.source.file.clone(),
+                line: action.source.line,
+            });
+        }
+    };
+    Ok(CommentedAction { call, comment: format!("{}: {}", place(&action.source), comment(&action.text)) })
+}
+
+/// A place in the program, for a comment.
+fn place(source: &Source) -> String {
+    match &source.file {
+        Some(file) => format!("{}, line {}", comment(file), source.line),
+        None => format!("line {}", source.line),
+    }
+}
+
+/// The text with everything that could end a comment, or make it look like something else, replaced.
+fn comment(text: &str) -> String {
+    text.chars().map(|c| if c == ' ' || c.is_ascii_graphic() || c.is_alphanumeric() { c } else { '?' }).collect()
+}
+
+/// A Python literal of the same value.
+fn float(value: f64) -> String {
+    format!("{value:?}")
+}

@@ -1,0 +1,117 @@
+//! Environments to generate scripts from.
+
+use pydslrep_analysis::environment::{Action, ActionKind, Environment, Movement, Robot, Sensor, SensorKind, Source, Wheel};
+use pydslrep_kinematics::Drive;
+
+/// A line of the environment's own file.
+pub fn line(line: u32) -> Source {
+    Source { file: None, line }
+}
+
+/// A robot with wheels named as in the article.
+pub fn robot(name: &str, drive: Drive, port: u16) -> Robot {
+    let wheels = match drive {
+        Drive::TwoWheel => vec!["wheelL", "wheelR"],
+        Drive::FourWheel | Drive::FourMecanum => vec!["wheelL0", "wheelL1", "wheelR0", "wheelR1"],
+    };
+    Robot {
+        name: name.to_owned(),
+        drive,
+        port,
+        wheels: wheels.into_iter().map(|name| Wheel { name: name.to_owned(), radius: 0.045 }).collect(),
+        sensors: Vec::new(),
+        source: line(4),
+    }
+}
+
+/// The same robot with distance sensors.
+pub fn with_sensors(mut robot: Robot, names: &[&str]) -> Robot {
+    robot.sensors =
+        names.iter().map(|name| Sensor { name: (*name).to_owned(), kind: SensorKind::Distance }).collect();
+    robot
+}
+
+/// `move D meters`, at the default speed.
+pub fn move_by(distance: f64, at: u32) -> Action {
+    Action {
+        kind: ActionKind::Move { distance, speed: 0.09 },
+        text: format!("move {distance:?} meters"),
+        source: line(at),
+    }
+}
+
+/// `move D meters at V`, V in cm/s.
+pub fn move_at(distance: f64, speed: f64, at: u32) -> Action {
+    Action {
+        kind: ActionKind::Move { distance, speed: speed / 100.0 },
+        text: format!("move {distance:?} meters at {speed:?}"),
+        source: line(at),
+    }
+}
+
+/// `turn left A` or `turn right A`.
+pub fn turn(degrees: f64, at: u32) -> Action {
+    let side = if degrees < 0.0 { "right" } else { "left" };
+    let text = if degrees.abs() == 90.0 { format!("turn {side}") } else { format!("turn {side} {:?}", degrees.abs()) };
+    Action { kind: ActionKind::Turn { degrees }, text, source: line(at) }
+}
+
+/// `turn right until { … }`; `sensors` are indices and `names` what the text calls them.
+pub fn turn_until(sensors: &[usize], names: &str, at: u32) -> Action {
+    Action {
+        kind: ActionKind::TurnUntil { left: false, sensors: sensors.to_vec() },
+        text: format!("turn right until {{{names}}}"),
+        source: line(at),
+    }
+}
+
+/// A movement of the robot with that index.
+pub fn movement(name: &str, robot: usize, actions: Vec<Action>) -> Movement {
+    Movement { name: name.to_owned(), robot, actions, source: line(6) }
+}
+
+/// An environment on this machine.
+pub fn environment(name: &str, robots: Vec<Robot>, movements: Vec<Movement>, schedule: Vec<Vec<usize>>) -> Environment {
+    Environment { name: name.to_owned(), host: None, robots, movements, schedule, source: line(14) }
+}
+
+/// The article's table 2: three sides of a square.
+pub fn area_1(drive: Drive) -> Environment {
+    let actions =
+        vec![move_by(4.0, 7), turn(-90.0, 8), move_by(4.0, 9), turn(-90.0, 10), Action {
+            text: "move 400.0 centimeters".to_owned(),
+            ..move_by(4.0, 11)
+        }];
+    environment("area_1", vec![robot("robot_1", drive, 19999)], vec![movement("mov_1", 0, actions)], vec![vec![0]])
+}
+
+/// Table 6: turns until sensors are free.
+pub fn sensors() -> Environment {
+    let robot = with_sensors(robot("robot_1", Drive::TwoWheel, 19999), &["fSensor", "lSensor", "rSensor"]);
+    let actions = vec![
+        move_by(4.0, 15),
+        turn_until(&[0, 2], "fSensor, rSensor", 16),
+        move_by(4.0, 17),
+        turn_until(&[0, 2], "fSensor, rSensor", 18),
+        move_by(4.0, 19),
+    ];
+    environment("sensors", vec![robot], vec![movement("mov_1", 0, actions)], vec![vec![0]])
+}
+
+/// Four robots of all kinds that drive at the same time, and then one alone.
+pub fn four_robots() -> Environment {
+    let robots = vec![
+        robot("robot_1", Drive::TwoWheel, 19997),
+        robot("robot_2", Drive::FourWheel, 19998),
+        robot("robot_3", Drive::FourMecanum, 19999),
+        robot("robot_4", Drive::TwoWheel, 20000),
+    ];
+    let movements = vec![
+        movement("mov_1", 0, vec![move_by(1.0, 20), turn(90.0, 21), move_at(0.5, 20.0, 22)]),
+        movement("mov_2", 1, vec![turn(45.0, 26), move_by(0.7, 27)]),
+        movement("mov_3", 2, vec![move_by(-0.8, 31), turn(-120.0, 32), move_by(0.3, 33)]),
+        movement("mov_4", 3, vec![turn(-30.5, 37), move_by(0.6, 38)]),
+        movement("back", 0, vec![turn(180.0, 42), move_by(0.5, 43)]),
+    ];
+    environment("factory", robots, movements, vec![vec![0, 1, 2, 3], vec![4]])
+}
