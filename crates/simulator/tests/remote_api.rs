@@ -1,5 +1,8 @@
 //! The simulator on real ports, driven by another implementation of ZeroMQ, and by strangers.
 
+// Clippy spares functions marked as tests only, not what they share.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::time::Duration;

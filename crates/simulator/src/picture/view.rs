@@ -1,0 +1,140 @@
+//! From metres on the floor to pixels in the picture.
+
+use pydslrep_kinematics::Pose;
+
+use super::Route;
+
+/// The widest and highest the floor may become, pixels.
+const MOST_WIDTH: f64 = 760.0;
+const MOST_HEIGHT: f64 = 640.0;
+
+/// The least the floor may be, pixels; a straight line is a strip otherwise.
+const LEAST_SIDE: f64 = 300.0;
+
+/// No floor is shown smaller than this, metres: a robot that stands still has surroundings too.
+const LEAST_SPAN: f64 = 1.5;
+
+/// Free floor around everything, as part of the longer side.
+const MARGIN: f64 = 0.06;
+
+/// Least distance between ticks, pixels: a label fits between two.
+const TICK_SPACING: f64 = 52.0;
+
+/// The part of the floor that is shown, and where.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct View {
+    /// The floor's place in the picture, pixels.
+    pub(super) left: f64,
+    pub(super) top: f64,
+    pub(super) width: f64,
+    pub(super) height: f64,
+    /// Pixels per metre.
+    pub(super) scale: f64,
+    x_min: f64,
+    y_max: f64,
+}
+
+impl View {
+    /// A view that holds all paths with the robots' bodies, its upper left corner at (`left`, `top`).
+    pub(super) fn of(routes: &[Route], left: f64, top: f64) -> Self {
+        let (mut x, mut y) = (Span::EMPTY, Span::EMPTY);
+        for route in routes {
+            let reach = route.body.length.hypot(route.body.width) / 2.0;
+            for pose in route.planned.iter().chain(&route.driven).filter(|pose| is_finite(pose)) {
+                x.include(pose.x, reach);
+                y.include(pose.y, reach);
+            }
+        }
+        let (mut x, mut y) = (x.at_least(LEAST_SPAN / 2.0), y.at_least(LEAST_SPAN / 2.0));
+        let longer = x.length().max(y.length()).max(LEAST_SPAN);
+        x.widen(x.length() + 2.0 * MARGIN * longer);
+        y.widen(y.length() + 2.0 * MARGIN * longer);
+        let scale = (MOST_WIDTH / x.length()).min(MOST_HEIGHT / y.length());
+        x.widen(LEAST_SIDE / scale);
+        y.widen(LEAST_SIDE / scale);
+        Self {
+            left,
+            top,
+            width: x.length() * scale,
+            height: y.length() * scale,
+            scale,
+            x_min: x.low,
+            y_max: y.high,
+        }
+    }
+
+    /// Where a point of the floor is in the picture.
+    pub(super) fn place(&self, x: f64, y: f64) -> (f64, f64) {
+        (self.left + (x - self.x_min) * self.scale, self.top + (self.y_max - y) * self.scale)
+    }
+
+    /// Where the point (x, y) of a body at `pose` is in the picture.
+    pub(super) fn place_on(&self, pose: &Pose, (x, y): (f64, f64)) -> (f64, f64) {
+        let point = pose.compose(&Pose { x, y, theta: 0.0 });
+        self.place(point.x, point.y)
+    }
+
+    /// The distance of grid lines, metres: 1, 2 or 5 times a power of ten.
+    pub(super) fn tick(&self) -> f64 {
+        let least = TICK_SPACING / self.scale;
+        let power = 10_f64.powf(least.log10().floor());
+        [1.0, 2.0, 5.0]
+            .into_iter()
+            .map(|step| step * power)
+            .find(|&tick| tick >= least)
+            .unwrap_or(10.0 * power)
+    }
+
+    /// Metres along x where vertical grid lines stand.
+    pub(super) fn x_ticks(&self) -> Vec<f64> {
+        ticks(self.x_min, self.x_min + self.width / self.scale, self.tick())
+    }
+
+    /// Metres along y where horizontal grid lines stand.
+    pub(super) fn y_ticks(&self) -> Vec<f64> {
+        ticks(self.y_max - self.height / self.scale, self.y_max, self.tick())
+    }
+}
+
+/// Poses with numbers that are none cannot be drawn.
+pub(super) fn is_finite(pose: &Pose) -> bool {
+    pose.x.is_finite() && pose.y.is_finite() && pose.theta.is_finite()
+}
+
+fn ticks(low: f64, high: f64, step: f64) -> Vec<f64> {
+    let first = (low / step).ceil();
+    // Fewer than a hundred fit, whatever the numbers are.
+    (0..100).map(|i| (first + f64::from(i)) * step).take_while(|&tick| tick <= high).collect()
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Span {
+    low: f64,
+    high: f64,
+}
+
+impl Span {
+    const EMPTY: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY };
+
+    fn include(&mut self, value: f64, reach: f64) {
+        self.low = self.low.min(value - reach);
+        self.high = self.high.max(value + reach);
+    }
+
+    /// This span, or one of the given length about 0 when nothing is in it.
+    fn at_least(self, length: f64) -> Self {
+        let mut span = if self.low <= self.high { self } else { Self { low: 0.0, high: 0.0 } };
+        span.widen(length);
+        span
+    }
+
+    fn length(&self) -> f64 {
+        self.high - self.low
+    }
+
+    fn widen(&mut self, length: f64) {
+        let more = (length - self.length()).max(0.0) / 2.0;
+        self.low -= more;
+        self.high += more;
+    }
+}
