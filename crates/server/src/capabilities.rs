@@ -1,9 +1,14 @@
 //! What the client can do, and what we tell it that we can.
 
 use tower_lsp::ls_types::{
-    ClientCapabilities, InitializeResult, ServerCapabilities, ServerInfo, TextDocumentSyncCapability,
-    TextDocumentSyncKind, TextDocumentSyncOptions,
+    ClientCapabilities, CodeActionKind, CodeActionOptions, CompletionOptions, DiagnosticOptions,
+    DiagnosticServerCapabilities, DiagnosticTag, ExecuteCommandOptions, HoverProviderCapability,
+    InitializeResult, MarkupKind, OneOf, ResourceOperationKind, SemanticTokensFullOptions,
+    SemanticTokensOptions, ServerCapabilities, ServerInfo, TextDocumentClientCapabilities,
+    TextDocumentSyncCapability, TextDocumentSyncKind, TextDocumentSyncOptions, WorkspaceClientCapabilities,
 };
+
+use crate::handlers::code_actions;
 
 use crate::positions::Encoding;
 
@@ -15,16 +20,100 @@ pub(crate) struct ClientFeatures {
     pub(crate) encoding: Encoding,
     /// It asks for diagnostics; then they are not pushed.
     pub(crate) pull_diagnostics: bool,
+    /// It shows second places of a diagnostic; else they are told in its message.
+    pub(crate) related_information: bool,
+    /// What else it can show about a diagnostic's text: that it is unnecessary, or deprecated.
+    pub(crate) diagnostic_tags: Vec<DiagnosticTag>,
+    /// It links a diagnostic's code to its page.
+    pub(crate) code_description: bool,
+    /// Hovers may be Markdown.
+    pub(crate) markdown_hover: bool,
+    /// Documentation of completions may be Markdown.
+    pub(crate) markdown_completion: bool,
+    /// Completions may have places to fill in.
+    pub(crate) snippets: bool,
+    /// Definitions may say which text leads to them.
+    pub(crate) definition_links: bool,
+    /// Document symbols may be a tree.
+    pub(crate) symbol_tree: bool,
+    /// Code actions may be more than commands.
+    pub(crate) action_literals: bool,
+    /// Actions that cannot be used may be shown, with the reason.
+    pub(crate) disabled_actions: bool,
+    /// An action's edit may be made when the action is chosen.
+    pub(crate) resolve_edits: bool,
+    /// Edits may say for which version of a document they are.
+    pub(crate) versioned_edits: bool,
+    /// Edits may create files.
+    pub(crate) create_files: bool,
 }
 
 impl ClientFeatures {
     /// Reads them from what `initialize` brings.
     pub(crate) fn new(client: &ClientCapabilities) -> Self {
+        let mut features = Self::default();
         let offered = client.general.as_ref().and_then(|general| general.position_encodings.as_deref());
-        let document = client.text_document.as_ref();
-        Self {
-            encoding: Encoding::negotiate(offered),
-            pull_diagnostics: document.is_some_and(|document| document.diagnostic.is_some()),
+        features.encoding = Encoding::negotiate(offered);
+        if let Some(workspace) = &client.workspace {
+            features.read_workspace(workspace);
+        }
+        if let Some(document) = &client.text_document {
+            features.read_diagnostics(document);
+            features.read_documents(document);
+        }
+        features
+    }
+
+    fn read_workspace(&mut self, workspace: &WorkspaceClientCapabilities) {
+        let Some(edit) = &workspace.workspace_edit else { return };
+        let operations = edit.resource_operations.as_deref().unwrap_or_default();
+        self.versioned_edits = edit.document_changes == Some(true);
+        self.create_files = self.versioned_edits && operations.contains(&ResourceOperationKind::Create);
+    }
+
+    fn read_diagnostics(&mut self, document: &TextDocumentClientCapabilities) {
+        self.pull_diagnostics = document.diagnostic.is_some();
+        if let Some(pushed) = &document.publish_diagnostics {
+            self.related_information = pushed.related_information == Some(true);
+            self.diagnostic_tags = pushed.tag_support.clone().map(|tags| tags.value_set).unwrap_or_default();
+            self.code_description = pushed.code_description_support == Some(true);
+        }
+        if let Some(pulled) = &document.diagnostic {
+            // Clients of the protocol before 3.18 say these things for pushed diagnostics only.
+            self.related_information |= pulled.related_information == Some(true);
+            if pulled.tag_support.is_some() {
+                self.diagnostic_tags = vec![DiagnosticTag::UNNECESSARY, DiagnosticTag::DEPRECATED];
+            }
+            self.code_description |= pulled.code_description_support == Some(true);
+        }
+    }
+
+    fn read_documents(&mut self, document: &TextDocumentClientCapabilities) {
+        let has_markdown = |formats: Option<&Vec<MarkupKind>>| {
+            formats.is_some_and(|formats| formats.contains(&MarkupKind::Markdown))
+        };
+        self.markdown_hover =
+            has_markdown(document.hover.as_ref().and_then(|hover| hover.content_format.as_ref()));
+        if let Some(item) =
+            document.completion.as_ref().and_then(|completion| completion.completion_item.as_ref())
+        {
+            self.markdown_completion = has_markdown(item.documentation_format.as_ref());
+            self.snippets = item.snippet_support == Some(true);
+        }
+        self.definition_links =
+            document.definition.as_ref().is_some_and(|goto| goto.link_support == Some(true));
+        self.symbol_tree = document
+            .document_symbol
+            .as_ref()
+            .is_some_and(|symbols| symbols.hierarchical_document_symbol_support == Some(true));
+        if let Some(action) = &document.code_action {
+            self.action_literals = action.code_action_literal_support.is_some();
+            self.disabled_actions = action.disabled_support == Some(true);
+            self.resolve_edits = action.data_support == Some(true)
+                && action
+                    .resolve_support
+                    .as_ref()
+                    .is_some_and(|support| support.properties.iter().any(|property| property == "edit"));
         }
     }
 }
@@ -49,6 +138,26 @@ fn server_capabilities(client: &ClientFeatures) -> ServerCapabilities {
             change: Some(TextDocumentSyncKind::INCREMENTAL),
             ..TextDocumentSyncOptions::default()
         })),
+        diagnostic_provider: client.pull_diagnostics.then(|| {
+            DiagnosticServerCapabilities::Options(DiagnosticOptions {
+                identifier: Some("pydslrep".to_owned()),
+                inter_file_dependencies: true,
+                workspace_diagnostics: false,
+                ..DiagnosticOptions::default()
+            })
+        }),
+        code_action_provider: Some(
+            CodeActionOptions {
+                code_action_kinds: Some(vec![CodeActionKind::QUICKFIX, code_actions::GENERATE_SCRIPT_KIND]),
+                resolve_provider: Some(client.resolve_edits),
+                ..CodeActionOptions::default()
+            }
+            .into(),
+        ),
+        execute_command_provider: Some(ExecuteCommandOptions {
+            commands: vec![code_actions::GENERATE_SCRIPT.to_owned()],
+            ..ExecuteCommandOptions::default()
+        }),
         ..ServerCapabilities::default()
     }
 }

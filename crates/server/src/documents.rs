@@ -1,5 +1,7 @@
 //! The open documents: what the client shows, exactly as it sent it.
 
+use pydslrep_analysis::FileId;
+use pydslrep_syntax::Span;
 use ropey::Rope;
 use rustc_hash::FxHashMap;
 use tower_lsp::ls_types::{Diagnostic, TextDocumentContentChangeEvent, Uri};
@@ -15,8 +17,10 @@ pub(crate) struct Document {
     pub(crate) version: i32,
     /// The text. It shares its memory with the database's copy and outlives a database that failed.
     pub(crate) text: Rope,
-    /// What the client was last told about it.
-    pub(crate) published: Vec<Diagnostic>,
+    /// Its number in the database; `None` if it cannot be analysed.
+    pub(crate) file: Option<FileId>,
+    /// What the client was last told about it, if anything.
+    pub(crate) published: Option<Vec<Diagnostic>>,
 }
 
 impl Document {
@@ -25,7 +29,7 @@ impl Document {
         &mut self,
         change: &TextDocumentContentChangeEvent,
         encoding: Encoding,
-    ) -> Option<pydslrep_syntax::Span> {
+    ) -> Option<Span> {
         let Some(range) = change.range else {
             self.text = Rope::from_str(&change.text);
             return None;

@@ -23,6 +23,9 @@ pub(crate) enum Incoming {
 /// that is not a message; with the message's id where it has a usable one, else null.
 pub(crate) fn parse(body: &[u8]) -> Result<Incoming, Response> {
     let value = serde_json::from_slice(body)
+        .or_else(|error| {
+            without_lone_surrogates(body).map_or(Err(error), |mended| serde_json::from_slice(&mended))
+        })
         .map_err(|error| refuse(Id::Null, ErrorCode::ParseError, format!("not JSON: {error}")))?;
     let Value::Object(mut fields) = value else {
         return Err(invalid(
@@ -50,6 +53,30 @@ pub(crate) fn parse(body: &[u8]) -> Result<Incoming, Response> {
             invalid(answer_to, "a message needs a `method`, or an `id` with a `result` or an `error`")
         }),
     }
+}
+
+/// An editor's text may hold half a surrogate pair, which no Unicode text can. A replacement character, as long in
+/// UTF-16, keeps document and positions in step, where refusing the message would lose the edit for good. `None` if
+/// there is no such half.
+fn without_lone_surrogates(body: &[u8]) -> Option<Vec<u8>> {
+    let escape = |at: usize| -> Option<u16> {
+        let digits = body.get(at..)?.strip_prefix(b"\\u")?.get(..4)?;
+        u16::from_str_radix(str::from_utf8(digits).ok()?, 16).ok()
+    };
+    let mut mended = body.to_vec();
+    let mut at = 0;
+    while at < body.len() {
+        at += match (body[at], escape(at)) {
+            (b'\\', Some(0xD800..=0xDBFF)) if matches!(escape(at + 6), Some(0xDC00..=0xDFFF)) => 12,
+            (b'\\', Some(0xD800..=0xDFFF)) => {
+                mended[at..at + 6].copy_from_slice(b"\\ufffd");
+                6
+            }
+            (b'\\', _) => 2,
+            _ => 1,
+        };
+    }
+    (mended != body).then_some(mended)
 }
 
 fn request(method: String, id: Option<Id>, fields: &mut Map<String, Value>) -> Request {
@@ -150,6 +177,20 @@ mod tests {
         for body in [&b"{"[..], b"", b"nonsense", b"{\"a\":\"\xff\"}", deep.as_bytes()] {
             assert_eq!(refusal(body), (Id::Null, -32700), "{:?}", String::from_utf8_lossy(body).get(..20));
         }
+    }
+
+    #[test]
+    fn half_a_surrogate_pair_does_not_lose_the_message() {
+        let message = |text: &str| parse(format!(r#"{{"jsonrpc":"2.0","method":"{text}"}}"#).as_bytes());
+        let method = |text: &str| match message(text) {
+            Ok(Incoming::Request(request)) => request.method().to_owned(),
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(method(r"a\ud83d"), "a\u{fffd}");
+        assert_eq!(method(r"\uDD16\ud83e\uDD16\ud83e"), "\u{fffd}🤖\u{fffd}");
+        assert_eq!(method(r"\\ud83e \ud83e"), "\\ud83e \u{fffd}", "an escaped backslash begins no escape");
+        assert!(message(r"\ud83e\x").is_err());
+        assert!(message(r"\ud83").is_err());
     }
 
     #[test]

@@ -494,9 +494,15 @@ mod tests {
             self.client.write_all(bytes).unwrap();
         }
 
+        /// The next answer, whatever notifications come before it.
         fn hear(&mut self) -> Value {
-            let Some(Frame::Body(body)) = self.answers.next().unwrap() else { panic!("no answer") };
-            serde_json::from_slice(&body).unwrap()
+            loop {
+                let Some(Frame::Body(body)) = self.answers.next().unwrap() else { panic!("no answer") };
+                let message: Value = serde_json::from_slice(&body).unwrap();
+                if message["method"].is_null() {
+                    return message;
+                }
+            }
         }
     }
 

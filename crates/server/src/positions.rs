@@ -100,9 +100,13 @@ pub(crate) fn to_range(text: &Rope, span: Span, encoding: Encoding) -> Range {
     Range::new(to_position(text, span.start, encoding), to_position(text, span.end, encoding))
 }
 
-/// Converts many offsets of one text: worth its one pass over the text from some thousand offsets on.
+/// Converts many offsets of one text, or of a part of it: worth its one pass over the text from some hundred on.
 pub(crate) struct LineTable {
     text: String,
+    /// Where the text starts in its document.
+    offset: u32,
+    line: u32,
+    /// Where its lines start in it.
     starts: Vec<u32>,
     encoding: Encoding,
     /// The line of the last answer: offsets usually come in order.
@@ -112,6 +116,19 @@ pub(crate) struct LineTable {
 impl LineTable {
     /// Reads the whole text once.
     pub(crate) fn new(text: &Rope, encoding: Encoding) -> Self {
+        Self::read(text.slice(..), 0, 0, encoding)
+    }
+
+    /// Reads only the lines that `span` touches; offsets outside them are clamped to them.
+    pub(crate) fn of_part(text: &Rope, span: Span, encoding: Encoding) -> Self {
+        let line_of = |offset: u32| text.byte_to_line((offset as usize).min(text.len_bytes()));
+        let (first, after) = (line_of(span.start), line_of(span.end) + 1);
+        let start = text.line_to_char(first);
+        let part = text.slice(start..text.line_to_char(after));
+        Self::read(part, text.char_to_byte(start), first, encoding)
+    }
+
+    fn read(text: RopeSlice<'_>, offset: usize, line: usize, encoding: Encoding) -> Self {
         let text = text.to_string();
         let mut starts = vec![0];
         let bytes = text.as_bytes();
@@ -120,25 +137,17 @@ impl LineTable {
                 starts.push(to_u32(at + 1));
             }
         }
-        Self { text, starts, encoding, last: Cell::new(0) }
-    }
-
-    /// The text itself.
-    pub(crate) fn text(&self) -> &str {
-        &self.text
+        Self { text, offset: to_u32(offset), line: to_u32(line), starts, encoding, last: Cell::new(0) }
     }
 
     /// As [`to_position`].
     pub(crate) fn position(&self, offset: u32) -> Position {
-        let mut offset = (offset as usize).min(self.text.len());
-        while !self.text.is_char_boundary(offset) {
-            offset -= 1;
-        }
+        let offset = self.clamp(offset);
         let line = self.line_of(to_u32(offset));
         let before = &self.text[self.starts[line] as usize..offset];
         // Only between the two characters of a CRLF does this take anything away.
         let before = before.strip_suffix('\r').unwrap_or(before);
-        Position::new(to_u32(line), self.encoding.length(before))
+        Position::new(self.line + to_u32(line), self.encoding.length(before))
     }
 
     /// As [`to_range`].
@@ -146,11 +155,26 @@ impl LineTable {
         Range::new(self.position(span.start), self.position(span.end))
     }
 
-    /// Where the line that holds `offset` ends, its ending not counted.
-    pub(crate) fn end_of_line(&self, offset: u32) -> u32 {
-        let rest = self.text.get(offset as usize..).unwrap_or_default();
-        let length = rest.find(['\n', '\r']).unwrap_or(rest.len());
-        offset + to_u32(length)
+    /// The pieces of a span that lie on one line each, line endings left out.
+    pub(crate) fn lines(&self, span: Span) -> impl Iterator<Item = (Position, &str)> {
+        let start = self.clamp(span.start);
+        let text = &self.text[start..self.clamp(span.end).max(start)];
+        let mut at = 0;
+        text.split_inclusive(['\n', '\r']).filter_map(move |line| {
+            let offset = self.offset + to_u32(start + at);
+            at += line.len();
+            let content = line.trim_end_matches(['\n', '\r']);
+            (!content.is_empty()).then(|| (self.position(offset), content))
+        })
+    }
+
+    /// An offset in the document as one in the text, at a character's start.
+    fn clamp(&self, offset: u32) -> usize {
+        let mut offset = (offset.saturating_sub(self.offset) as usize).min(self.text.len());
+        while !self.text.is_char_boundary(offset) {
+            offset -= 1;
+        }
+        offset
     }
 
     fn line_of(&self, offset: u32) -> usize {
@@ -290,8 +314,32 @@ mod tests {
     }
 
     #[test]
-    fn lines_of_a_table_end_before_their_endings() {
-        let table = LineTable::new(&Rope::from_str("ab\r\ncd"), Encoding::Utf8);
-        assert_eq!([table.end_of_line(0), table.end_of_line(2), table.end_of_line(4)], [2, 2, 6]);
+    fn a_table_of_a_part_agrees_with_the_whole() {
+        for text in TEXTS {
+            let rope = Rope::from_str(text);
+            let length = to_u32(text.len());
+            for encoding in ALL {
+                for (start, end) in
+                    (0..=length).flat_map(|start| (start..=length).map(move |end| (start, end)))
+                {
+                    let part = LineTable::of_part(&rope, Span { start, end }, encoding);
+                    for offset in start..=end {
+                        assert_eq!(
+                            part.position(offset),
+                            to_position(&rope, offset, encoding),
+                            "{text:?} at {offset} of {start}..{end}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn spans_are_cut_into_lines() {
+        let table = LineTable::new(&Rope::from_str("a/*\r\n\n 🤖\r*/b"), Encoding::Utf16);
+        let lines: Vec<_> = table.lines(Span { start: 1, end: 14 }).collect();
+        let at = Position::new;
+        assert_eq!(lines, [(at(0, 1), "/*"), (at(2, 0), " 🤖"), (at(3, 0), "*/")]);
     }
 }

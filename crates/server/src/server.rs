@@ -4,12 +4,12 @@ use std::fmt;
 use std::io::{self, Write};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use tower_lsp::jsonrpc::Result;
+use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::*;
 use tower_lsp::{Client, LanguageServer};
 
 use crate::capabilities::{self, ClientFeatures};
-use crate::handlers::synchronization;
+use crate::handlers::{code_actions, diagnostics, scripts, synchronization};
 use crate::message::Outbox;
 use crate::state::State;
 
@@ -62,14 +62,35 @@ impl LanguageServer for Server {
     }
 
     async fn did_change(&self, params: DidChangeTextDocumentParams) {
-        if !synchronization::change(&mut self.state(), &params) {
-            log(format_args!("change to a document that is not open: {}", params.text_document.uri.as_str()));
-        }
+        synchronization::change(&mut self.state(), &params);
     }
 
     async fn did_close(&self, params: DidCloseTextDocumentParams) {
-        if !synchronization::close(&mut self.state(), &params) {
-            log(format_args!("close of a document that is not open: {}", params.text_document.uri.as_str()));
+        synchronization::close(&mut self.state(), params, &self.outbox);
+    }
+
+    //// What is wrong ////
+
+    async fn diagnostic(&self, params: DocumentDiagnosticParams) -> Result<DocumentDiagnosticReportResult> {
+        Ok(diagnostics::pull(&self.state(), &params))
+    }
+
+    async fn code_action(&self, params: CodeActionParams) -> Result<Option<CodeActionResponse>> {
+        Ok(code_actions::code_actions(&self.state(), &params))
+    }
+
+    async fn code_action_resolve(&self, action: CodeAction) -> Result<CodeAction> {
+        code_actions::resolve(&self.state(), action)
+    }
+
+    async fn execute_command(&self, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
+        match params.command.as_str() {
+            code_actions::GENERATE_SCRIPT => {
+                let written = scripts::execute(&self.state(), &params)?;
+                self.client.show_message(MessageType::INFO, format!("wrote {}", written.display())).await;
+                Ok(None)
+            }
+            other => Err(Error::invalid_params(format!("no command `{other}`"))),
         }
     }
 }
@@ -77,10 +98,14 @@ impl LanguageServer for Server {
 /// What happens between messages; the loop calls these.
 impl Server {
     /// All messages that had arrived are handled: time to tell the client what they changed.
-    pub(crate) fn settle(&self) {}
+    pub(crate) fn settle(&self) {
+        diagnostics::publish(&mut self.state(), &self.outbox);
+    }
 
     /// A handler panicked and may have left the analysis half changed: it is made anew from the documents.
-    pub(crate) fn recover(&self) {}
+    pub(crate) fn recover(&self) {
+        self.state().rebuild();
+    }
 }
 
 /// Writes a line to standard error, the only place where a language server may say something of its own.

@@ -1,21 +1,136 @@
 //! What the server knows between two messages.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use pydslrep_analysis::{Database, FileId};
+use pydslrep_syntax::Span;
+use ropey::Rope;
+use rustc_hash::FxHashSet;
+use tower_lsp::ls_types::{
+    DidChangeTextDocumentParams, Location, Position, Range, TextDocumentItem, TextDocumentPositionParams, Uri,
+};
+
 use crate::capabilities::ClientFeatures;
 use crate::documents::{Document, Documents, key};
-use tower_lsp::ls_types::Uri;
+use crate::positions::{to_offset, to_range, to_span};
 
 /// Documents, their analysis, and what the client can do.
 #[derive(Debug, Default)]
 pub(crate) struct State {
     /// What the client can do.
     pub(crate) client: ClientFeatures,
+    /// The analysis of the open documents.
+    pub(crate) database: Database,
     /// The open documents.
     pub(crate) documents: Documents,
+    /// Whether anything was opened, changed or closed since diagnostics were last told.
+    pub(crate) changed: bool,
 }
 
 impl State {
+    /// Takes in a document; one that is open already gets the new text.
+    pub(crate) fn open(&mut self, opened: TextDocumentItem) {
+        let key = key(&opened.uri);
+        let published = self.documents.remove(&key).and_then(|before| before.published);
+        let document = Document {
+            text: Rope::from_str(&opened.text),
+            version: opened.version,
+            uri: opened.uri,
+            file: None,
+            published,
+        };
+        self.changed = true;
+        let document = self.documents.entry(key.clone()).insert_entry(document).into_mut();
+        document.file = Some(self.database.open(&key, &opened.text));
+    }
+
+    /// Makes the changes of one message; false if the document is not open.
+    pub(crate) fn change(&mut self, params: &DidChangeTextDocumentParams) -> bool {
+        let encoding = self.client.encoding;
+        let key = key(&params.text_document.uri);
+        let Some(document) = self.documents.get_mut(&key) else { return false };
+        document.version = params.text_document.version;
+        self.changed = true;
+        // All of the document before any of the analysis: should that fail, the document is still right.
+        let spans: Vec<Option<Span>> =
+            params.content_changes.iter().map(|change| document.apply(change, encoding)).collect();
+        let Some(file) = document.file else { return true };
+        for (change, span) in params.content_changes.iter().zip(spans) {
+            match span {
+                Some(span) => self.database.edit(file, span, &change.text),
+                None => document.file = Some(self.database.open(&key, &change.text)),
+            }
+        }
+        true
+    }
+
+    /// Lets go of a document; false if it is not open.
+    pub(crate) fn close(&mut self, uri: &Uri) -> bool {
+        let Some(document) = self.documents.remove(&key(uri)) else { return false };
+        self.changed = true;
+        if let Some(file) = document.file {
+            self.database.close(file);
+        }
+        true
+    }
+
+    /// Analyses all documents afresh, after a defect that may have left the database half changed. A document that
+    /// brings the defect up again stays open, but without answers until it is opened anew.
+    pub(crate) fn rebuild(&mut self) {
+        let mut left_out = FxHashSet::default();
+        while let Some(failed) = self.try_rebuild(&left_out) {
+            left_out.insert(failed);
+        }
+    }
+
+    /// The key of the document that cannot be analysed, if one cannot.
+    fn try_rebuild(&mut self, left_out: &FxHashSet<String>) -> Option<String> {
+        self.database = Database::new();
+        self.changed = true;
+        for (key, document) in &mut self.documents {
+            document.file = None;
+            if left_out.contains(key) {
+                continue;
+            }
+            let text = document.text.to_string();
+            let opening = AssertUnwindSafe(|| self.database.open(key, &text));
+            match catch_unwind(opening) {
+                Ok(file) => document.file = Some(file),
+                Err(_) => return Some(key.clone()),
+            }
+        }
+        None
+    }
+
     /// The open document at an address.
     pub(crate) fn document(&self, uri: &Uri) -> Option<&Document> {
         self.documents.get(&key(uri))
+    }
+
+    /// The open document at an address, if it could be analysed.
+    pub(crate) fn analysed(&self, uri: &Uri) -> Option<(&Document, FileId)> {
+        let document = self.document(uri)?;
+        Some((document, document.file?))
+    }
+
+    /// The open document that the database knows as `file`.
+    pub(crate) fn document_of(&self, file: FileId) -> Option<&Document> {
+        self.documents.values().find(|document| document.file == Some(file))
+    }
+
+    /// A range as the bytes it covers.
+    pub(crate) fn span(&self, document: &Document, range: Range) -> Span {
+        to_span(&document.text, range, self.client.encoding)
+    }
+
+    /// Bytes as the range they cover.
+    pub(crate) fn range(&self, document: &Document, span: Span) -> Range {
+        to_range(&document.text, span, self.client.encoding)
+    }
+
+    /// A place in any open document.
+    pub(crate) fn location(&self, file: FileId, span: Span) -> Option<Location> {
+        let document = self.document_of(file)?;
+        Some(Location::new(document.uri.clone(), self.range(document, span)))
     }
 }

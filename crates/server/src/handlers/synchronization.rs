@@ -1,38 +1,36 @@
 //! Documents opened, changed and closed. The client's order is the truth, whatever the version numbers say: an editor
 //! may close a document and open it again with a version that is lower.
 
-use ropey::Rope;
 use tower_lsp::ls_types::{
     DidChangeTextDocumentParams, DidCloseTextDocumentParams, DidOpenTextDocumentParams,
 };
 
-use crate::documents::{Document, key};
+use crate::handlers::diagnostics;
+use crate::message::Outbox;
+use crate::server::log;
 use crate::state::State;
 
-/// `textDocument/didOpen`; for a document that is open already, its text is replaced.
+/// `textDocument/didOpen`.
 pub(crate) fn open(state: &mut State, params: DidOpenTextDocumentParams) {
-    let opened = params.text_document;
-    let key = key(&opened.uri);
-    let published = state.documents.remove(&key).map(|before| before.published).unwrap_or_default();
-    let document =
-        Document { text: Rope::from_str(&opened.text), version: opened.version, uri: opened.uri, published };
-    state.documents.insert(key, document);
+    state.open(params.text_document);
 }
 
-/// `textDocument/didChange`; false if the document is not open, and nothing can be done.
-pub(crate) fn change(state: &mut State, params: &DidChangeTextDocumentParams) -> bool {
-    let encoding = state.client.encoding;
-    let Some(document) = state.documents.get_mut(&key(&params.text_document.uri)) else { return false };
-    document.version = params.text_document.version;
-    for change in &params.content_changes {
-        document.apply(change, encoding);
+/// `textDocument/didChange`.
+pub(crate) fn change(state: &mut State, params: &DidChangeTextDocumentParams) {
+    if !state.change(params) {
+        let uri = params.text_document.uri.as_str();
+        log(format_args!("a change to a document that is not open: {uri}"));
     }
-    true
 }
 
-/// `textDocument/didClose`.
-pub(crate) fn close(state: &mut State, params: &DidCloseTextDocumentParams) -> bool {
-    state.documents.remove(&key(&params.text_document.uri)).is_some()
+/// `textDocument/didClose`: its diagnostics go with it.
+pub(crate) fn close(state: &mut State, params: DidCloseTextDocumentParams, outbox: &Outbox) {
+    let uri = params.text_document.uri;
+    if !state.close(&uri) {
+        log(format_args!("a document was closed that is not open: {}", uri.as_str()));
+    } else if !state.client.pull_diagnostics {
+        diagnostics::clear(uri, outbox);
+    }
 }
 
 #[cfg(test)]
@@ -40,7 +38,7 @@ mod tests {
     use std::str::FromStr;
 
     use tower_lsp::ls_types::{
-        Position, Range, TextDocumentContentChangeEvent, TextDocumentIdentifier, TextDocumentItem, Uri,
+        Position, Range, TextDocumentContentChangeEvent, TextDocumentItem, Uri,
         VersionedTextDocumentIdentifier,
     };
 
@@ -68,16 +66,14 @@ mod tests {
             })
             .collect();
         let text_document = VersionedTextDocumentIdentifier::new(uri(), version);
-        change(state, &DidChangeTextDocumentParams { text_document, content_changes })
+        state.change(&DidChangeTextDocumentParams { text_document, content_changes })
     }
 
-    fn close_text(state: &mut State) -> bool {
-        let text_document = TextDocumentIdentifier::new(uri());
-        close(state, &DidCloseTextDocumentParams { text_document })
-    }
-
+    /// The document's text; the database must have the same.
     fn text(state: &State) -> String {
-        state.document(&uri()).unwrap().text.to_string()
+        let (document, file) = state.analysed(&uri()).unwrap();
+        assert_eq!(Some(&document.text), state.database.text(file));
+        document.text.to_string()
     }
 
     #[test]
@@ -116,8 +112,8 @@ mod tests {
         open_text(&mut state, 5, "first");
         open_text(&mut state, 6, "second");
         assert_eq!(text(&state), "second");
-        assert!(close_text(&mut state));
-        assert!(!close_text(&mut state));
+        assert!(state.close(&uri()));
+        assert!(!state.close(&uri()));
         assert!(!change_text(&mut state, 7, &[(None, "too late")]));
         open_text(&mut state, 0, "third");
         assert!(change_text(&mut state, 1, &[(Some([0, 0, 0, 1]), "T")]));

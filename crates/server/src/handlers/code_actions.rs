@@ -1,0 +1,175 @@
+//! Code actions: quick fixes of diagnostics first, then **Generate script** for every environment.
+
+use pydslrep_analysis as analysis;
+use pydslrep_analysis::{EntityId, FileId};
+use rustc_hash::FxHashMap;
+use tower_lsp::jsonrpc::{Error, Result};
+use tower_lsp::ls_types::{
+    CodeAction, CodeActionDisabled, CodeActionKind, CodeActionOrCommand, CodeActionParams,
+    CodeActionResponse, Command, Diagnostic, DocumentChanges, OneOf, OptionalVersionedTextDocumentIdentifier,
+    TextDocumentEdit, TextEdit, Uri, WorkspaceEdit,
+};
+
+use crate::documents::Document;
+use crate::handlers::diagnostics;
+use crate::handlers::scripts::{self, ScriptOf};
+use crate::state::State;
+
+/// The kind of the action that generates a script; editors may run it on save.
+pub(crate) const GENERATE_SCRIPT_KIND: CodeActionKind = CodeActionKind::new("source.generateScript");
+
+/// The command behind it, where the client cannot create files.
+pub(crate) const GENERATE_SCRIPT: &str = "pydslrep.generateScript";
+
+/// `textDocument/codeAction`.
+pub(crate) fn code_actions(state: &State, params: &CodeActionParams) -> Option<CodeActionResponse> {
+    let (document, file) = state.analysed(&params.text_document.uri)?;
+    let wanted = |kind: &CodeActionKind| {
+        params.context.only.as_ref().is_none_or(|only| only.iter().any(|wish| covers(wish, kind)))
+    };
+    let mut actions = Vec::new();
+    if wanted(&CodeActionKind::QUICKFIX) && state.client.action_literals {
+        actions.extend(quick_fixes(state, document, file, params));
+    }
+    if wanted(&GENERATE_SCRIPT_KIND) {
+        actions.extend(script_actions(state, document, file));
+    }
+    Some(actions)
+}
+
+/// Kinds are paths: `source` covers `source.generateScript`, and the empty kind covers everything.
+fn covers(wish: &CodeActionKind, kind: &CodeActionKind) -> bool {
+    let rest = kind.as_str().strip_prefix(wish.as_str());
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.') || wish.as_str().is_empty())
+}
+
+/// The fixes of every diagnostic that touches the range.
+fn quick_fixes(
+    state: &State,
+    document: &Document,
+    file: FileId,
+    params: &CodeActionParams,
+) -> Vec<CodeActionOrCommand> {
+    let range = state.span(document, params.range);
+    let mut actions = Vec::new();
+    for found in state.database.diagnostics(file) {
+        if found.fixes.is_empty() || found.span.end < range.start || range.end < found.span.start {
+            continue;
+        }
+        let shown = diagnostics::convert(state, document, &found);
+        let shown = as_the_client_has_it(&params.context.diagnostics, shown);
+        for fix in &found.fixes {
+            let preferred = fix.safe && found.fixes.len() == 1;
+            actions.push(CodeActionOrCommand::CodeAction(CodeAction {
+                title: fix.title.clone(),
+                kind: Some(CodeActionKind::QUICKFIX),
+                diagnostics: Some(vec![shown.clone()]),
+                edit: Some(workspace_edit(state, &fix.edits)),
+                is_preferred: preferred.then_some(true),
+                ..CodeAction::default()
+            }));
+        }
+    }
+    actions
+}
+
+/// Clients find the diagnostic an action belongs to by comparing: their own copy is the one that matches.
+fn as_the_client_has_it(theirs: &[Diagnostic], ours: Diagnostic) -> Diagnostic {
+    let same = |their: &&Diagnostic| their.range == ours.range && their.code == ours.code;
+    theirs.iter().find(same).cloned().unwrap_or(ours)
+}
+
+/// Edits of open documents in the form this client understands best.
+fn workspace_edit(state: &State, edits: &[analysis::Edit]) -> WorkspaceEdit {
+    let mut by_file: FxHashMap<FileId, Vec<TextEdit>> = FxHashMap::default();
+    for edit in edits {
+        if let Some(document) = state.document_of(edit.file) {
+            let range = state.range(document, edit.span);
+            by_file.entry(edit.file).or_default().push(TextEdit::new(range, edit.text.clone()));
+        }
+    }
+    let of_documents = by_file
+        .into_iter()
+        .filter_map(|(file, edits)| state.document_of(file).map(|document| (document, edits)));
+    if state.client.versioned_edits {
+        let changes = of_documents.map(|(document, edits)| TextDocumentEdit {
+            text_document: OptionalVersionedTextDocumentIdentifier {
+                uri: document.uri.clone(),
+                version: Some(document.version),
+            },
+            edits: edits.into_iter().map(OneOf::Left).collect(),
+        });
+        let document_changes = Some(DocumentChanges::Edits(changes.collect()));
+        WorkspaceEdit { document_changes, ..WorkspaceEdit::default() }
+    } else {
+        let changes = of_documents.map(|(document, edits)| (document.uri.clone(), edits)).collect();
+        WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }
+    }
+}
+
+/// **Generate script** for every environment of the document.
+fn script_actions(state: &State, document: &Document, file: FileId) -> Vec<CodeActionOrCommand> {
+    let environments = state.database.environments(file);
+    environments
+        .iter()
+        .filter_map(|(id, name)| script_action(state, &document.uri, *id, &name.text))
+        .collect()
+}
+
+fn script_action(state: &State, uri: &Uri, id: EntityId, name: &str) -> Option<CodeActionOrCommand> {
+    let script = match scripts::of_environment(state, uri, id) {
+        Ok(script) => script,
+        Err(reason) => return disabled(state, name, reason),
+    };
+    let title = format!("Generate script {}", script.file_name());
+    let which = ScriptOf { uri: uri.clone(), environment: name.to_owned() };
+    let argument = serde_json::to_value(&which).ok()?;
+    let client = &state.client;
+    if !client.action_literals {
+        return Some(Command::new(title, GENERATE_SCRIPT.to_owned(), Some(vec![argument])).into());
+    }
+    let mut action = script_code_action(title);
+    if !client.create_files {
+        let title = action.title.clone();
+        action.command = Some(Command::new(title, GENERATE_SCRIPT.to_owned(), Some(vec![argument])));
+    } else if client.resolve_edits {
+        action.data = Some(argument);
+    } else {
+        action.edit = Some(scripts::edit(&script));
+    }
+    Some(action.into())
+}
+
+fn script_code_action(title: String) -> CodeAction {
+    CodeAction { title, kind: Some(GENERATE_SCRIPT_KIND), ..CodeAction::default() }
+}
+
+/// An action that says why there is no script; nothing where the client cannot show it as such.
+fn disabled(state: &State, name: &str, reason: String) -> Option<CodeActionOrCommand> {
+    state.client.disabled_actions.then(|| {
+        let action = script_code_action(format!("Generate script of {name}"));
+        CodeAction { disabled: Some(CodeActionDisabled { reason }), ..action }.into()
+    })
+}
+
+/// `codeAction/resolve`: generates the script of an action that was chosen.
+pub(crate) fn resolve(state: &State, action: CodeAction) -> Result<CodeAction> {
+    let Some(data) = &action.data else { return Ok(action) };
+    let which: ScriptOf = serde_json::from_value(data.clone())
+        .map_err(|error| Error::invalid_params(format!("not an action of this server: {error}")))?;
+    let script = scripts::generate(state, &which)?;
+    Ok(CodeAction { edit: Some(scripts::edit(&script)), ..action })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kinds_cover_what_is_below_them() {
+        let covers = |wish: &'static str| covers(&CodeActionKind::new(wish), &GENERATE_SCRIPT_KIND);
+        assert!(covers("") && covers("source") && covers("source.generateScript"));
+        assert!(!covers("sour") && !covers("source.generate") && !covers("quickfix"));
+        assert!(!covers("source.generateScript.more"));
+    }
+}

@@ -1,0 +1,147 @@
+//! The script of an environment: where it goes, and how it gets there in every client.
+
+use std::fs;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use pydslrep_analysis::EntityId;
+use pydslrep_script::Target;
+use serde::{Deserialize, Serialize};
+use tower_lsp::jsonrpc::{self, Error, ErrorCode};
+use tower_lsp::ls_types::{
+    CreateFile, CreateFileOptions, DocumentChangeOperation, DocumentChanges, ExecuteCommandParams, OneOf,
+    OptionalVersionedTextDocumentIdentifier, Position, Range, ResourceOp, TextDocumentEdit, TextEdit, Uri,
+    WorkspaceEdit,
+};
+
+use crate::state::State;
+
+/// A line behind the last of any script: the protocol clamps it to the document's end.
+const BEHIND_THE_END: u32 = 1 << 30;
+
+/// Which script is meant: what an action carries until it is chosen, and the arguments of the command.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct ScriptOf {
+    /// The program.
+    pub(crate) uri: Uri,
+    /// The environment in it.
+    pub(crate) environment: String,
+}
+
+/// A script, ready to be put in its place.
+pub(crate) struct Script {
+    /// Where it goes.
+    pub(crate) uri: Uri,
+    /// Its text.
+    pub(crate) text: String,
+}
+
+impl Script {
+    /// Its name without the folder.
+    pub(crate) fn file_name(&self) -> &str {
+        self.uri.as_str().rsplit('/').next().unwrap_or_default()
+    }
+}
+
+/// Generates a script.
+///
+/// # Errors
+///
+/// If the document is not open, has no place for a script, or the environment is missing or has errors.
+pub(crate) fn generate(state: &State, which: &ScriptOf) -> jsonrpc::Result<Script> {
+    let (document, file) = state
+        .analysed(&which.uri)
+        .ok_or_else(|| failure(format!("`{}` is not open in the editor", which.uri.as_str())))?;
+    let declared = state.database.environments(file);
+    let (id, _) = declared
+        .iter()
+        .find(|(_, name)| name.text == which.environment)
+        .ok_or_else(|| failure(format!("there is no environment `{}`", which.environment)))?;
+    of_environment(state, &document.uri, *id).map_err(failure)
+}
+
+/// Generates the script of an environment; the error says why there is none.
+pub(crate) fn of_environment(state: &State, program: &Uri, id: EntityId) -> Result<Script, String> {
+    let environment = state.database.environment(id).map_err(|blocked| blocked.reason())?;
+    let uri = address(program, &pydslrep_script::file_name(&environment)).ok_or(NO_PLACE)?;
+    let text =
+        pydslrep_script::generate(&environment, Target::CoppeliaSim).map_err(|error| error.to_string())?;
+    Ok(Script { uri, text })
+}
+
+/// Why a document that was never saved has no script.
+const NO_PLACE: &str = "save the program first: its script goes into the same folder";
+
+/// Where the script of a program goes: into the same folder. `None` if the program is in none.
+fn address(program: &Uri, file_name: &str) -> Option<Uri> {
+    let whole = program.as_str();
+    let address = whole.split(['?', '#']).next()?;
+    let (folder, _) = address.rsplit_once('/')?;
+    Uri::from_str(&format!("{folder}/{file_name}")).ok()
+}
+
+/// The edit that creates or replaces a script.
+///
+/// A file that is there keeps its identity: its whole text is replaced, in the editor's buffer if it is open there,
+/// so nothing is lost that cannot be undone. Only a file that is not there is created; and if that cannot be known,
+/// it is created empty first and its text replaced all the same, which is right either way.
+pub(crate) fn edit(script: &Script) -> WorkspaceEdit {
+    let is_there = path(&script.uri).map(|path| path.exists());
+    let end = if is_there == Some(false) { Position::new(0, 0) } else { Position::new(BEHIND_THE_END, 0) };
+    let replace = TextEdit::new(Range::new(Position::new(0, 0), end), script.text.clone());
+    let text_document = OptionalVersionedTextDocumentIdentifier { uri: script.uri.clone(), version: None };
+    let edit = TextDocumentEdit { text_document, edits: vec![OneOf::Left(replace)] };
+    let mut operations = vec![DocumentChangeOperation::Edit(edit)];
+    if is_there != Some(true) {
+        let options = CreateFileOptions { overwrite: Some(true), ignore_if_exists: None };
+        let create = CreateFile { uri: script.uri.clone(), options: Some(options), annotation_id: None };
+        operations.insert(0, DocumentChangeOperation::Op(ResourceOp::Create(create)));
+    }
+    let document_changes = Some(DocumentChanges::Operations(operations));
+    WorkspaceEdit { document_changes, ..WorkspaceEdit::default() }
+}
+
+/// The command `pydslrep.generateScript`, for clients that cannot create files: writes the script itself and tells
+/// where.
+pub(crate) fn execute(state: &State, params: &ExecuteCommandParams) -> jsonrpc::Result<PathBuf> {
+    let which = match params.arguments.as_slice() {
+        [argument] => serde_json::from_value(argument.clone()).ok(),
+        _ => None,
+    };
+    let expected = "one argument is expected: {\"uri\": of the program, \"environment\": its name}";
+    let script = generate(state, &which.ok_or_else(|| Error::invalid_params(expected))?)?;
+    let path = path(&script.uri).ok_or_else(|| failure(NO_PLACE.to_owned()))?;
+    fs::write(&path, &script.text)
+        .map_err(|error| failure(format!("cannot write {}: {error}", path.display())))?;
+    Ok(path)
+}
+
+fn failure(message: String) -> Error {
+    // The protocol's code for a request that is right in form but cannot be done.
+    Error { code: ErrorCode::ServerError(-32803), message: message.into(), data: None }
+}
+
+fn path(uri: &Uri) -> Option<PathBuf> {
+    if !uri.scheme().as_str().eq_ignore_ascii_case("file") {
+        return None;
+    }
+    uri.to_file_path().map(std::borrow::Cow::into_owned)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_script_goes_beside_its_program() {
+        let address = |program: &str| {
+            address(&Uri::from_str(program).unwrap(), "area_1.py").map(|uri| uri.as_str().to_owned())
+        };
+        assert_eq!(address("file:///c%3A/a%20b/x.pyr").as_deref(), Some("file:///c%3A/a%20b/area_1.py"));
+        assert_eq!(
+            address("vscode-vfs://github/o/r/x.pyr?q=/1#f").as_deref(),
+            Some("vscode-vfs://github/o/r/area_1.py")
+        );
+        assert_eq!(address("untitled:Untitled-1"), None);
+    }
+}

@@ -1,0 +1,44 @@
+"""Where the programs under test are, and a client that talks to the server like an editor."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+
+import pytest
+import pytest_lsp
+from editor import capabilities
+from lsprotocol import types
+from pytest_lsp import ClientServerConfig, LanguageClient
+
+ROOT = pathlib.Path(__file__).parents[2]
+DEBUG = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "debug"
+SERVER = os.environ.get("PYDSLREP_LSP", str(DEBUG / "pydslrep-lsp"))
+COMMAND = os.environ.get("PYDSLREP", str(DEBUG / "pydslrep"))
+
+
+@pytest.fixture
+def server() -> str:
+    """The language server's program."""
+    return SERVER
+
+
+@pytest.fixture
+def command() -> str:
+    """The program `pydslrep`."""
+    return COMMAND
+
+
+@pytest.fixture
+def table_2() -> str:
+    """The article's first program: two wheels, three straight lines, two turns."""
+    return (ROOT / "tests" / "paper" / "table2_two_wheels.pyr").read_text(encoding="utf-8")
+
+
+@pytest_lsp.fixture(config=ClientServerConfig(server_command=[SERVER, "--stdio"]))
+async def client(lsp_client: LanguageClient, request: pytest.FixtureRequest):
+    """A client in a session; a test may parametrise it by the name of an editor of `editor.py`."""
+    wanted = capabilities(getattr(request, "param", "complete"))
+    await lsp_client.initialize_session(types.InitializeParams(capabilities=wanted))
+    yield lsp_client
+    await lsp_client.shutdown_session()

@@ -1,0 +1,85 @@
+"""The server at the level of bytes: for what a well-behaved client library cannot do."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from typing import Any
+
+
+class RawServer:
+    """A running server and its pipes. Every wait ends with the server: no clock is involved."""
+
+    def __init__(self, *command: str) -> None:
+        self.process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+        )
+        assert self.process.stdin
+        assert self.process.stdout
+        self.input = self.process.stdin
+        self.output = self.process.stdout
+
+    def __enter__(self) -> RawServer:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.process.kill()
+        self.process.wait()
+        self.input.close()
+        self.output.close()
+
+    def send(self, *messages: bytes) -> None:
+        """Sends messages in one write."""
+        self.input.write(b"".join(messages))
+        self.input.flush()
+
+    def initialize(self) -> None:
+        """Begins a session."""
+        self.send(request(0, "initialize", {"capabilities": {}}), notification("initialized", {}))
+        self.answer(0)
+
+    def answer(self, ident: int | str | None) -> dict[str, Any]:
+        """The answer to a request; what comes before it is dropped."""
+        while (message := self.read()) is not None:
+            if "method" not in message and message.get("id") == ident:
+                return message
+        raise AssertionError(f"the server left without an answer to {ident}")
+
+    def published_before(self, ident: int) -> list[int]:
+        """The versions of the diagnostics pushed before the answer to a request."""
+        versions = []
+        while (message := self.read()) is not None and message.get("id") != ident:
+            if message["method"] == "textDocument/publishDiagnostics":
+                versions.append(message["params"]["version"])
+        return versions
+
+    def read(self) -> dict[str, Any] | None:
+        """The next message, `None` when the server has closed its output."""
+        length = None
+        while line := self.output.readline():
+            if line == b"\r\n":
+                assert length is not None, "a frame without length"
+                return json.loads(self.output.read(length))
+            name, _, value = line.partition(b": ")
+            assert name == b"Content-Length", f"not a frame: {line!r}"
+            length = int(value)
+        return None
+
+    def leave(self) -> int:
+        """The exit code, once the server has ended by itself."""
+        return self.process.wait()
+
+
+def frame(body: bytes) -> bytes:
+    """A message with its header."""
+    return b"Content-Length: %d\r\n\r\n" % len(body) + body
+
+
+def request(ident: int | str, method: str, params: object) -> bytes:
+    """A request."""
+    return frame(json.dumps({"jsonrpc": "2.0", "id": ident, "method": method, "params": params}).encode())
+
+
+def notification(method: str, params: object) -> bytes:
+    """A notification."""
+    return frame(json.dumps({"jsonrpc": "2.0", "method": method, "params": params}).encode())

@@ -1,0 +1,154 @@
+"""Order, malformed input and endings, at the level of bytes."""
+
+from __future__ import annotations
+
+import socket
+import subprocess
+import sys
+
+import pytest
+from raw import RawServer, frame, notification, request
+
+URI = "file:///burst.pyr"
+EXIT = notification("exit", None)
+SHUTDOWN = request("bye", "shutdown", None)
+
+
+def opened(text: str) -> bytes:
+    document = {"uri": URI, "languageId": "pydslrep", "version": 1, "text": text}
+    return notification("textDocument/didOpen", {"textDocument": document})
+
+
+def inserted(version: int, text: str) -> bytes:
+    start = {"line": 0, "character": 0}
+    changes = [{"range": {"start": start, "end": start}, "text": text}]
+    document = {"uri": URI, "version": version}
+    return notification("textDocument/didChange", {"textDocument": document, "contentChanges": changes})
+
+
+def outline(ident: int) -> bytes:
+    return request(ident, "textDocument/documentSymbol", {"textDocument": {"uri": URI}})
+
+
+def test_every_read_sees_exactly_the_changes_sent_before_it(server: str) -> None:
+    with RawServer(server, "--stdio") as raw:
+        raw.initialize()
+        burst = [opened("")]
+        for change in range(1, 1001):
+            burst.append(inserted(change + 1, f"wheel w{change} with radius 4.5\n"))
+            if change % 50 == 0:
+                burst.append(outline(change))
+        raw.send(*burst, SHUTDOWN, EXIT)
+        for change in range(50, 1001, 50):
+            names = [symbol["name"] for symbol in raw.answer(change)["result"]]
+            assert names == [f"w{number}" for number in range(change, 0, -1)]
+        assert raw.leave() == 0
+
+
+def test_diagnostics_of_a_burst_end_with_those_of_its_last_version(server: str) -> None:
+    with RawServer(server, "--stdio") as raw:
+        raw.initialize()
+        raw.send(opened(""), *(inserted(version, "wheel ") for version in range(2, 502)), outline(1))
+        versions = raw.published_before(1)
+        # Once the first answer is there and nothing else has been sent, diagnostics come before the second.
+        raw.send(outline(2))
+        versions += raw.published_before(2)
+        assert versions == sorted(versions)
+        assert versions[-1] == 501
+
+
+@pytest.mark.parametrize(
+    ("goodbye", "code"),
+    [
+        ([SHUTDOWN, EXIT], 0),
+        ([EXIT], 1),
+    ],
+)
+def test_exit_ends_the_server_while_its_input_stays_open(server: str, goodbye: list[bytes], code: int) -> None:
+    with RawServer(server, "--stdio") as raw:
+        raw.initialize()
+        raw.send(*goodbye)
+        assert raw.leave() == code
+        assert not raw.input.closed
+
+
+@pytest.mark.parametrize("before", [[], [SHUTDOWN]])
+def test_the_end_of_the_input_ends_the_server(server: str, before: list[bytes]) -> None:
+    with RawServer(server, "--stdio") as raw:
+        raw.initialize()
+        raw.send(*before)
+        raw.input.close()
+        assert raw.leave() == 1
+
+
+def test_malformed_input_is_answered_and_read_past(server: str) -> None:
+    with RawServer(server, "--stdio") as raw:
+        raw.initialize()
+        raw.send(
+            frame(b"{"),
+            frame(b'{"jsonrpc": "2.0", "id": 1, "method": "\xff"}'),
+            frame(b"[]"),
+            frame(b'{"hello": "world"}'),
+            b'Content-Length: 99999999999999\r\n\r\n{"garbage": 1}',
+            b"\x00\x01\x02 no header at all\r\n\r\n",
+            frame(b'{"jsonrpc": "2.0", "id": 99, "result": "to nothing that was asked"}'),
+            request(2, "no/suchMethod", {}),
+            request(3, "textDocument/hover", {"nonsense": True}),
+            opened("wheel a with radius 4.5"),
+            outline(4),
+        )
+        codes = [raw.answer(None)["error"]["code"] for _ in range(5)]
+        assert codes == [-32700, -32700, -32600, -32600, -32700]
+        assert raw.answer(2)["error"]["code"] == -32601
+        assert raw.answer(3)["error"]["code"] == -32602
+        assert [symbol["name"] for symbol in raw.answer(4)["result"]] == ["a"]
+
+
+def test_requests_before_initialize_are_refused(server: str) -> None:
+    with RawServer(server, "--stdio") as raw:
+        raw.send(outline(1))
+        assert raw.answer(1)["error"]["code"] == -32002
+        raw.initialize()
+        raw.send(outline(2))
+        assert "error" not in raw.answer(2)
+
+
+@pytest.mark.parametrize("spelling", [["--socket", "{}"], ["--socket={}"]])
+def test_the_server_connects_to_a_clients_socket(server: str, spelling: list[str]) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        port = listener.getsockname()[1]
+        process = subprocess.Popen([server, *(part.format(port) for part in spelling)], stdout=subprocess.PIPE)
+        connection, _ = listener.accept()
+        with connection, connection.makefile("rb") as answers:
+            connection.sendall(request(1, "initialize", {"capabilities": {}}) + SHUTDOWN + EXIT)
+            assert b'"capabilities"' in answers.read()
+        output, _ = process.communicate()
+        assert (process.returncode, output) == (0, b"")
+
+
+@pytest.mark.parametrize("arguments", [[], ["--stdoi"], ["--socket"], ["--socket", "x"], ["--stdio", "--socket=1"]])
+def test_wrong_arguments_are_refused(server: str, arguments: list[str]) -> None:
+    done = subprocess.run([server, *arguments], capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert "--help" in done.stderr
+
+
+def test_a_port_where_nobody_listens_is_an_outside_failure(server: str) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        free = listener.getsockname()[1]
+    done = subprocess.run([server, f"--socket={free}"], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert str(free) in done.stderr
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="processes are watched on Linux only")
+def test_a_client_that_dies_takes_the_server_with_it(server: str) -> None:
+    """Even if someone else holds the server's input open, as this test does."""
+    client = "import subprocess, sys; subprocess.Popen([sys.argv[1], '--stdio']).wait()"
+    with RawServer(sys.executable, "-c", client, server) as raw:
+        raw.send(request(1, "initialize", {"processId": raw.process.pid, "capabilities": {}}))
+        raw.answer(1)
+        raw.process.kill()
+        assert raw.read() is None
+        assert not raw.input.closed
