@@ -1,19 +1,21 @@
 //! The database: files in, answers out. How it changes is in [`change`].
 
 mod change;
+#[cfg(test)]
+mod differential;
 
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Parse, Span, Token};
 use ropey::Rope;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
-use crate::diagnostics::{self, Problem};
 use crate::Diagnostic;
+use crate::diagnostics::{self, Problem};
 use crate::file::File;
 use crate::names::Names;
 
-/// A file of the database.
+/// A file of the database; the same for the same path, also after closing and opening it again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FileId(u32);
 
@@ -73,9 +75,19 @@ pub struct Database {
     entities: Vec<Option<EntityData>>,
     free: Vec<u32>,
     names: Names,
-    /// The paths each file imports, in order.
-    imports: FxHashMap<FileId, Vec<String>>,
+    /// Only of files that import anything.
+    imports: FxHashMap<FileId, Imports>,
+    /// Entities whose problems speak of all names there are ("did you mean …"), not only of those they use.
+    seekers: FxHashSet<EntityId>,
     last_edit: EditCounts,
+}
+
+/// The imports of a file, in order.
+#[derive(Debug, Default)]
+struct Imports {
+    entities: Vec<EntityId>,
+    /// Of those that name one.
+    paths: Vec<String>,
 }
 
 /// How much the latest edit cost.
@@ -93,9 +105,9 @@ impl Database {
         Self::default()
     }
 
-    /// A file by its path.
+    /// An open file by its path.
     pub fn file(&self, path: &str) -> Option<FileId> {
-        self.by_path.get(path).copied()
+        self.by_path.get(path).copied().filter(|file| self.get(*file).is_some())
     }
 
     /// All open files, in the order of opening.
@@ -125,7 +137,7 @@ impl Database {
 
     /// The paths a file imports, whether or not there is such a file.
     pub fn imports(&self, file: FileId) -> &[String] {
-        self.imports.get(&file).map_or(&[], Vec::as_slice)
+        self.imports.get(&file).map_or(&[], |imports| &imports.paths)
     }
 
     /// How much the latest edit (or opening) cost.
@@ -136,14 +148,16 @@ impl Database {
     /// The entities of a file in the order of the text; also what stands before the first.
     pub fn entities(&self, file: FileId) -> impl Iterator<Item = EntityRef<'_>> {
         let pieces = self.get(file).map_or(&[][..], |file| &file.pieces);
-        pieces.iter().scan(0, move |start, piece| {
-            let span = Span::new(*start, *start + piece.len);
-            *start = span.end;
-            Some((piece.entity, span))
-        })
-        .filter_map(|(id, span)| {
-            self.data(id).map(|data| EntityRef { id, file: data.file, span, parse: &data.parse })
-        })
+        pieces
+            .iter()
+            .scan(0, move |start, piece| {
+                let span = Span::new(*start, *start + piece.len);
+                *start = span.end;
+                Some((piece.entity, span))
+            })
+            .filter_map(|(id, span)| {
+                self.data(id).map(|data| EntityRef { id, file: data.file, span, parse: &data.parse })
+            })
     }
 
     /// The entity that holds an offset: at a boundary the one behind it, at the end of the text the last one.
@@ -152,7 +166,12 @@ impl Database {
         let (index, start) = open.piece_at(offset);
         let piece = open.pieces.get(index)?;
         let data = self.data(piece.entity)?;
-        Some(EntityRef { id: piece.entity, file, span: Span::new(start, start + piece.len), parse: &data.parse })
+        Some(EntityRef {
+            id: piece.entity,
+            file,
+            span: Span::new(start, start + piece.len),
+            parse: &data.parse,
+        })
     }
 
     /// An entity with its place.
@@ -211,8 +230,10 @@ impl Database {
     /// Every name of a kind that a file sees, sorted, each once.
     pub fn visible_names(&self, file: FileId, kind: EntityKind) -> Vec<SmolStr> {
         let imported = self.imports(file).iter().filter_map(|path| self.file(path));
-        let mut names: Vec<SmolStr> =
-            std::iter::once(file).chain(imported).flat_map(|file| self.names.all(file, kind).cloned()).collect();
+        let mut names: Vec<SmolStr> = std::iter::once(file)
+            .chain(imported)
+            .flat_map(|file| self.names.all(file, kind).cloned())
+            .collect();
         names.sort_unstable();
         names.dedup();
         names
@@ -237,8 +258,10 @@ impl Database {
 
     /// Whether the file ends inside a comment: whatever stands in it is hidden.
     pub(crate) fn has_open_comment(&self, file: FileId) -> bool {
-        let last = self.get(file).and_then(|file| file.pieces.last()).and_then(|piece| self.data(piece.entity));
-        last.and_then(|data| data.parse.lexemes.last()).is_some_and(|(token, _)| *token == Token::UnterminatedComment)
+        let last =
+            self.get(file).and_then(|file| file.pieces.last()).and_then(|piece| self.data(piece.entity));
+        last.and_then(|data| data.parse.lexemes.last())
+            .is_some_and(|(token, _)| *token == Token::UnterminatedComment)
     }
 
     pub(crate) fn problems(&self, id: EntityId) -> &[Problem] {

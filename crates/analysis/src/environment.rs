@@ -3,6 +3,7 @@
 use std::net::Ipv4Addr;
 
 use pydslrep_kinematics::Drive;
+pub use pydslrep_scene::SensorKind;
 
 /// One environment, ready to run. Indices refer to the vectors of this struct.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,15 +55,6 @@ pub struct Sensor {
     pub name: String,
     /// What it measures.
     pub kind: SensorKind,
-}
-
-/// Kinds of proximity sensor.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SensorKind {
-    /// Sees an obstacle at a distance.
-    Distance,
-    /// Feels an obstacle at contact.
-    Bumper,
 }
 
 /// A movement of one robot.

@@ -27,6 +27,9 @@ pub(crate) struct Piece {
 #[derive(Debug)]
 pub(crate) struct Window {
     pub(crate) replaced: Range<usize>,
+    /// How many pieces at the window's head and tail the edit did not touch; they were read for what stands around
+    /// them, and can turn out as before.
+    pub(crate) untouched: (usize, usize),
     pub(crate) parses: Vec<(Span, Parse)>,
 }
 
@@ -72,6 +75,8 @@ impl File {
     ) -> Window {
         let (first, first_start) = self.window_start(span.start, lexemes_of);
         let (touched, touched_start) = self.piece_at(span.end);
+        let before = self.piece_at(span.start).0 - first;
+        let untouched = |window: &Range<usize>| (before, window.end - touched - 1);
         let old_len = Span::of_rope(&self.text).len();
         self.replace(span, text);
         let grown = i64::from(Span::of_rope(&self.text).len()) - i64::from(old_len);
@@ -81,11 +86,16 @@ impl File {
         loop {
             if end >= self.pieces.len() {
                 let window = Span::new(first_start, Span::of_rope(&self.text).len());
-                return Window { replaced: first..self.pieces.len(), parses: parse(&self.slice(window)) };
+                let replaced = first..self.pieces.len();
+                return Window {
+                    untouched: untouched(&replaced),
+                    replaced,
+                    parses: parse(&self.slice(window)),
+                };
             }
             let boundary = shift(end_offset, grown);
             if let Some(parses) = self.read_up_to(first_start, boundary, end, grown, end_offset) {
-                return Window { replaced: first..end, parses };
+                return Window { untouched: untouched(&(first..end)), replaced: first..end, parses };
             }
             let next_end = (end + growth).min(self.pieces.len());
             end_offset += self.pieces[end..next_end].iter().map(|piece| piece.len).sum::<u32>();

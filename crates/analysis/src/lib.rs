@@ -14,10 +14,10 @@ pub mod environment;
 mod file;
 mod names;
 mod path;
-
-
+mod plan;
+mod resolve;
 
 pub use database::{Database, EditCounts, EntityId, EntityRef, FileId, Resolution};
 pub use diagnostic::{Diagnostic, Edit, Fix, Related, Severity};
-
-
+pub use plan::{plan, scene};
+pub use resolve::Blocked;

@@ -1,0 +1,71 @@
+//! From an environment to numbers: the scene its robots stand in, and the paths they are to drive.
+
+use pydslrep_kinematics as kinematics;
+use pydslrep_scene as scenery;
+
+use crate::environment::{ActionKind, Environment, Movement, Robot};
+
+/// The environment's robots on an empty floor.
+pub fn scene(environment: &Environment) -> scenery::Scene {
+    scenery::Scene::empty_floor(environment.robots.iter().map(robot).collect())
+}
+
+fn robot(robot: &Robot) -> scenery::Robot {
+    let wheels = robot.wheels.iter().map(|wheel| scenery::Wheel::new(&wheel.name, wheel.radius));
+    let sensors = robot.sensors.iter().map(|sensor| (sensor.name.clone(), sensor.kind));
+    scenery::Robot::new(&robot.name, robot.drive, wheels.collect(), sensors.collect())
+}
+
+/// The paths that the environment's robots are to drive in a scene, and when. The group, run and action of a leg are
+/// those of [`Environment::schedule`].
+///
+/// # Errors
+/// When a robot of the scene cannot drive, because a length in it is not above zero.
+pub fn plan(
+    environment: &Environment,
+    scene: &scenery::Scene,
+) -> Result<kinematics::Plan, kinematics::ModelError> {
+    let robots = scene
+        .robots
+        .iter()
+        .map(|robot| Ok(kinematics::RobotPlan { model: robot.model()?, start: robot.start }));
+    let robots: Vec<_> = robots.collect::<Result<_, _>>()?;
+    let run = |index: &usize| environment.movements.get(*index).map(self::run);
+    let schedule: Vec<Vec<kinematics::Run>> =
+        environment.schedule.iter().map(|group| group.iter().filter_map(run).collect()).collect();
+    // Robots are listed by the environment itself, so no run can name another one.
+    Ok(kinematics::plan(&robots, &schedule)
+        .unwrap_or(kinematics::Plan { robots: Vec::new(), duration: None }))
+}
+
+fn run(movement: &Movement) -> kinematics::Run {
+    let actions = movement.actions.iter().map(|action| step(&action.kind)).collect();
+    kinematics::Run { robot: movement.robot, actions }
+}
+
+fn step(kind: &ActionKind) -> kinematics::Action {
+    match *kind {
+        ActionKind::Move { distance, speed } => kinematics::Action::Move { distance, speed },
+        ActionKind::Turn { degrees } => kinematics::Action::Turn { angle: degrees.to_radians() },
+        ActionKind::TurnUntil { .. } | ActionKind::Slam => kinematics::Action::Unknown,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Database;
+
+    #[test]
+    fn the_articles_square_ends_where_it_says() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/paper/table2_two_wheels.pyr");
+        let mut database = Database::new();
+        let file = database.open("square.pyr", &std::fs::read_to_string(path).unwrap());
+        let environment = database.environment(database.environments(file)[0].0).unwrap();
+        let plan = plan(&environment, &scene(&environment)).unwrap();
+        let end = plan.robots[0].end();
+        assert!(end.distance(&kinematics::Pose::new(0.0, -4.0, 0.0)) < 1e-9, "{end:?}");
+        assert!((end.theta.abs() - std::f64::consts::PI).abs() < 1e-9, "{end:?}");
+        assert!(plan.duration.is_some_and(|seconds| seconds > 3.0 * 4.0 / 0.09));
+    }
+}

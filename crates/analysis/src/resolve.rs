@@ -1,0 +1,355 @@
+//! From an environment's declaration to everything it runs, with every name resolved.
+
+use pydslrep_kinematics::{Drive, motion};
+use pydslrep_scene::SensorKind;
+use pydslrep_syntax::ast::{self, ActionKind as Statement, DriveWord, Entity, Name, TurnExtent};
+use pydslrep_syntax::{EntityKind, Span, Token};
+
+use crate::environment::{Action, ActionKind, Environment, Movement, Robot, Sensor, Source, Wheel};
+use crate::{Database, Diagnostic, EntityId, FileId, Severity, diagnostics};
+
+/// Why an environment cannot run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Blocked {
+    /// The environment's name.
+    pub environment: String,
+    /// The errors in it and in everything it uses; never empty.
+    pub errors: Vec<Diagnostic>,
+}
+
+impl Blocked {
+    /// It in one sentence.
+    pub fn reason(&self) -> String {
+        let more = match self.errors.len() {
+            0 | 1 => String::new(),
+            count => format!(" (and {} more)", count - 1),
+        };
+        let first = self.errors.first().map_or("it is not complete", |error| &error.message);
+        format!("`{}` has errors: {first}{more}", self.environment)
+    }
+}
+
+impl Database {
+    /// The environments of a file in the order of the text: each with its name and where it stands.
+    pub fn environments(&self, file: FileId) -> Vec<(EntityId, Name)> {
+        let environments = self.entities(file).filter_map(|entity| match &entity.parse.entity {
+            Some(Entity::Environment(environment)) => {
+                let name = environment.name.clone()?;
+                Some((entity.id, Name { span: name.span.shifted(entity.span.start), ..name }))
+            }
+            _ => None,
+        });
+        environments.collect()
+    }
+
+    /// An environment ready to run.
+    ///
+    /// # Errors
+    /// When it or anything it uses has errors.
+    pub fn environment(&self, id: EntityId) -> Result<Environment, Blocked> {
+        let parts = Parts { database: self, file: self.file_of(id) };
+        let name =
+            self.tree(id).and_then(Entity::name).map_or_else(String::new, |name| name.text.to_string());
+        let mut errors = diagnostics::of_entities(self, &parts.reached_from(id));
+        errors.retain(|diagnostic| diagnostic.severity == Severity::Error);
+        match parts.environment(id) {
+            Some(environment) if errors.is_empty() => Ok(environment),
+            _ => {
+                if errors.is_empty() {
+                    // A declaration it needs is hidden in text that was not understood; those errors are the cause.
+                    errors = self.files().flat_map(|file| self.diagnostics(file)).collect();
+                    errors.retain(|diagnostic| diagnostic.severity == Severity::Error);
+                }
+                Err(Blocked { environment: name, errors })
+            }
+        }
+    }
+
+    /// The wheel layout of a robot: its type, else what its wheels make it. Four mecanum wheels are never `fw`.
+    pub fn drive(&self, robot: EntityId) -> Option<Drive> {
+        let file = self.file_of(robot)?;
+        let Entity::Robot(tree) = self.tree(robot)? else { return None };
+        let wheels = &tree.wheels.as_ref()?.names;
+        let mecanum = |name: &Name| {
+            let wheel =
+                self.resolve(file, EntityKind::Wheel, &name.text).entity().and_then(|id| self.tree(id));
+            matches!(wheel, Some(Entity::Wheel(wheel)) if wheel.mecanum)
+        };
+        let all_mecanum = wheels.len() == 4 && wheels.iter().all(mecanum);
+        match (tree.drive.map(|clause| clause.word), wheels.len()) {
+            (Some(Some(DriveWord::Tw)), _) | (None, 2) => Some(Drive::TwoWheel),
+            (Some(Some(DriveWord::Fwh)), _) => Some(Drive::FourMecanum),
+            (Some(Some(DriveWord::Fw)), _) | (None, 4) => {
+                Some(if all_mecanum { Drive::FourMecanum } else { Drive::FourWheel })
+            }
+            (Some(None) | None, _) => None,
+        }
+    }
+}
+
+/// Builds the parts of an environment; `None` wherever one is missing or broken.
+struct Parts<'a> {
+    database: &'a Database,
+    /// The environment's own file.
+    file: Option<FileId>,
+}
+
+impl<'a> Parts<'a> {
+    fn reached_from(&self, id: EntityId) -> Vec<EntityId> {
+        let mut reached = vec![id];
+        let mut next = 0;
+        while let Some(&id) = reached.get(next) {
+            next += 1;
+            let (Some(file), Some(tree)) = (self.database.file_of(id), self.database.tree(id)) else {
+                continue;
+            };
+            for (kind, name) in tree.references() {
+                if let Some(id) = self.database.resolve(file, kind, &name.text).entity()
+                    && !reached.contains(&id)
+                {
+                    reached.push(id);
+                }
+            }
+        }
+        reached
+    }
+
+    fn environment(&self, id: EntityId) -> Option<Environment> {
+        let Entity::Environment(tree) = self.database.tree(id)? else { return None };
+        let host = match &tree.ip {
+            Some(clause) => Some(self.host(id, clause.name.as_ref()?)?),
+            None => None,
+        };
+        let robot_ids = self.resolve_all(id, EntityKind::Robot, &tree.robots.as_ref()?.names)?;
+        let robot_ids = without_repeats(&robot_ids);
+        let listed = tree.movements.as_ref().map_or(&[][..], |list| &list.names);
+        let runs = self.resolve_all(id, EntityKind::Movement, listed)?;
+        let movement_ids = without_repeats(&runs);
+        Some(Environment {
+            name: tree.name.as_ref()?.text.to_string(),
+            host,
+            robots: robot_ids.iter().map(|id| self.robot(*id)).collect::<Option<_>>()?,
+            movements: movement_ids.iter().map(|id| self.movement(*id, &robot_ids)).collect::<Option<_>>()?,
+            schedule: self.schedule(&runs, &movement_ids),
+            source: self.source(id, 0)?,
+        })
+    }
+
+    fn host(&self, environment: EntityId, name: &Name) -> Option<std::net::Ipv4Addr> {
+        let id = self.resolve(environment, EntityKind::Ip, name)?;
+        let Entity::Ip(ip) = self.database.tree(id)? else { return None };
+        let octets: Option<Vec<u8>> =
+            ip.address.as_ref()?.0.split('.').map(|octet| octet.parse().ok()).collect();
+        let octets: [u8; 4] = octets?.try_into().ok()?;
+        Some(octets.into())
+    }
+
+    /// Maximal runs of parallel movements, each a group; any other movement is a group by itself.
+    fn schedule(&self, runs: &[EntityId], movements: &[EntityId]) -> Vec<Vec<usize>> {
+        let parallel = |id: &EntityId| matches!(self.database.tree(*id), Some(Entity::Movement(movement)) if movement.parallel.is_some());
+        let groups = runs.chunk_by(|before, after| parallel(before) && parallel(after));
+        let index = |id: &EntityId| movements.iter().position(|other| other == id);
+        groups.map(|group| group.iter().filter_map(index).collect()).collect()
+    }
+
+    fn robot(&self, id: EntityId) -> Option<Robot> {
+        let Entity::Robot(tree) = self.database.tree(id)? else { return None };
+        let drive = self.database.drive(id)?;
+        let wheels = self.resolve_all(id, EntityKind::Wheel, &tree.wheels.as_ref()?.names)?;
+        let sensors = tree.sensors.as_ref().map_or(&[][..], |list| &list.names);
+        let sensors = without_repeats(&self.resolve_all(id, EntityKind::Sensor, sensors)?);
+        (wheels.len() == drive.wheel_count()).then_some(())?;
+        Some(Robot {
+            name: tree.name.as_ref()?.text.to_string(),
+            drive,
+            port: tree.port.as_ref()?.value?,
+            wheels: wheels.iter().map(|id| self.wheel(*id)).collect::<Option<_>>()?,
+            sensors: sensors.iter().map(|id| self.sensor(*id)).collect::<Option<_>>()?,
+            source: self.source(id, 0)?,
+        })
+    }
+
+    fn wheel(&self, id: EntityId) -> Option<Wheel> {
+        let Entity::Wheel(wheel) = self.database.tree(id)? else { return None };
+        let radius = wheel.radius.as_ref()?.value? / 100.0;
+        Some(Wheel { name: wheel.name.as_ref()?.text.to_string(), radius })
+    }
+
+    fn sensor(&self, id: EntityId) -> Option<Sensor> {
+        let Entity::Sensor(sensor) = self.database.tree(id)? else { return None };
+        let kind = match sensor.kind {
+            Some((ast::SensorKind::Bumper, _)) => SensorKind::Bumper,
+            Some((ast::SensorKind::Distance, _)) | None => SensorKind::Distance,
+        };
+        Some(Sensor { name: sensor.name.as_ref()?.text.to_string(), kind })
+    }
+
+    fn movement(&self, id: EntityId, robots: &[EntityId]) -> Option<Movement> {
+        let Entity::Movement(tree) = self.database.tree(id)? else { return None };
+        let robot_id = self.resolve(id, EntityKind::Robot, tree.robot.as_ref()?)?;
+        let robot = robots.iter().position(|other| *other == robot_id)?;
+        let sensors = self.robot(robot_id)?.sensors;
+        Some(Movement {
+            name: tree.name.as_ref()?.text.to_string(),
+            robot,
+            actions: tree
+                .actions
+                .iter()
+                .map(|action| self.action(id, action, &sensors))
+                .collect::<Option<_>>()?,
+            source: self.source(id, 0)?,
+        })
+    }
+
+    fn action(&self, id: EntityId, action: &ast::Action, sensors: &[Sensor]) -> Option<Action> {
+        Some(Action {
+            kind: action_kind(&action.kind, sensors)?,
+            text: self.folded_text(id, action.span)?,
+            source: self.source(id, action.span.start)?,
+        })
+    }
+
+    /// The tokens of a range with single spaces between them and no comments.
+    fn folded_text(&self, id: EntityId, span: Span) -> Option<String> {
+        let entity = self.database.entity(id)?;
+        let tokens = entity.parse.lexemes.iter().filter(|(token, place)| {
+            !token.is_comment() && span.start <= place.start && place.end <= span.end
+        });
+        let mut text = String::new();
+        for (token, place) in tokens {
+            if !text.is_empty() && *token != Token::Comma {
+                text.push(' ');
+            }
+            text += &self.database.slice(entity.file, place.shifted(entity.span.start));
+        }
+        Some(text)
+    }
+
+    fn resolve(&self, from: EntityId, kind: EntityKind, name: &Name) -> Option<EntityId> {
+        self.database.resolve(self.database.file_of(from)?, kind, &name.text).entity()
+    }
+
+    fn resolve_all(&self, from: EntityId, kind: EntityKind, names: &'a [Name]) -> Option<Vec<EntityId>> {
+        names.iter().map(|name| self.resolve(from, kind, name)).collect()
+    }
+
+    fn source(&self, id: EntityId, offset: u32) -> Option<Source> {
+        let entity = self.database.entity(id)?;
+        let line = self.database.text(entity.file)?.byte_to_line((entity.span.start + offset) as usize) + 1;
+        let path = self.database.path(entity.file);
+        let file =
+            (Some(entity.file) != self.file).then(|| path.rsplit('/').next().unwrap_or(path).to_owned());
+        Some(Source { file, line: u32::try_from(line).ok()? })
+    }
+}
+
+fn action_kind(statement: &Statement, sensors: &[Sensor]) -> Option<ActionKind> {
+    Some(match statement {
+        Statement::Move(step) => ActionKind::Move {
+            distance: distance(step)?,
+            speed: match &step.speed {
+                Some(clause) => clause.value.as_ref()?.value? / 100.0,
+                None => motion::RIM_SPEED,
+            },
+        },
+        Statement::Turn(turn) => {
+            let left = turn.direction?.0 == ast::Direction::Left;
+            let sign = if left { 1.0 } else { -1.0 };
+            match &turn.extent {
+                None => ActionKind::Turn { degrees: sign * DEFAULT_ANGLE },
+                Some(TurnExtent::Angle(angle)) => ActionKind::Turn { degrees: sign * angle.value? },
+                Some(TurnExtent::Until(list)) => {
+                    ActionKind::TurnUntil { left, sensors: indices(&list.names, sensors)? }
+                }
+            }
+        }
+        Statement::Slam => ActionKind::Slam,
+    })
+}
+
+/// How far a `turn` without an angle turns, in degrees.
+pub(crate) const DEFAULT_ANGLE: f64 = 90.0;
+
+/// Metres. Centimetres are divided, not multiplied, so that `400 centimeters` is exactly 4.
+fn distance(step: &ast::Move) -> Option<f64> {
+    let value = step.distance.as_ref()?.value?;
+    Some(match step.unit?.0 {
+        ast::Unit::Meters => value,
+        ast::Unit::Centimeters => value / 100.0,
+    })
+}
+
+fn indices(names: &[Name], sensors: &[Sensor]) -> Option<Vec<usize>> {
+    let index = |name: &Name| sensors.iter().position(|sensor| sensor.name == name.text);
+    let all: Vec<usize> = names.iter().map(index).collect::<Option<_>>()?;
+    Some(without_repeats(&all))
+}
+
+fn without_repeats<T: Copy + PartialEq>(all: &[T]) -> Vec<T> {
+    let mut kept: Vec<T> = Vec::with_capacity(all.len());
+    for item in all {
+        if !kept.contains(item) {
+            kept.push(*item);
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn only(program: &str) -> Result<Environment, Blocked> {
+        let mut database = Database::new();
+        let file = database.open("test.pyr", program);
+        let environments = database.environments(file);
+        assert_eq!(environments.len(), 1);
+        database.environment(environments[0].0)
+    }
+
+    const PROGRAM: &str = "\
+ip here 10.0.0.7
+wheelH a with radius 5 wheelH b with radius 5 wheelH c with radius 5 wheelH d with radius 5
+sensor s sensor t : bumper
+robot ^left type fw with port 19999 has { a b c d } wheels with sensors { s t s }
+robot q with port 20000 has { a b } wheels
+parallel movement m of ^left { move -40 centimeters at 18 turn right // far
+  turn left until { t , /* and */ s t } }
+parallel movement n of q { slam }
+movement o of q { turn left 30 }
+environment e with ip here has { ^left q q } robots with { m n o m } moves";
+
+    #[test]
+    fn everything_is_resolved() {
+        let program = PROGRAM.replace("has { a b } wheels", "has { x y } wheels")
+            + "\nwheel x with radius 4 wheel y with radius 4";
+        let environment = only(&program).unwrap();
+        assert_eq!(environment.host, Some([10, 0, 0, 7].into()));
+        assert_eq!(environment.robots.len(), 2);
+        assert_eq!(environment.robots[0].drive, Drive::FourMecanum);
+        assert_eq!(environment.robots[0].name, "left");
+        assert_eq!(environment.robots[0].sensors.len(), 2);
+        assert_eq!(environment.robots[1].drive, Drive::TwoWheel);
+        assert_eq!(environment.schedule, [vec![0, 1], vec![2], vec![0]]);
+        let actions = &environment.movements[0].actions;
+        assert_eq!(actions[0].kind, ActionKind::Move { distance: -0.4, speed: 0.18 });
+        assert_eq!(actions[1].kind, ActionKind::Turn { degrees: -90.0 });
+        assert_eq!(actions[2].kind, ActionKind::TurnUntil { left: true, sensors: vec![1, 0] });
+        assert_eq!(actions[2].text, "turn left until { t, s t }");
+        assert_eq!(actions[2].source, Source { file: None, line: 7 });
+    }
+
+    #[test]
+    fn errors_anywhere_below_block_it() {
+        let blocked = only(PROGRAM).unwrap_err();
+        assert_eq!(blocked.errors.len(), 1, "{blocked:#?}");
+        assert_eq!(blocked.errors[0].code(), "wheel-kind-mismatch");
+        assert!(blocked.reason().starts_with("`e` has errors: "));
+    }
+
+    #[test]
+    fn a_declaration_hidden_by_a_mistake_blocks_it() {
+        let program = "weel a with radius 4 wheel b with radius 4 robot r with port 1 has { a b } wheels environment e has { r } robots";
+        assert_eq!(only(program).unwrap_err().errors[0].code(), "syntax-error");
+    }
+}

@@ -7,7 +7,7 @@ use pydslrep_syntax::{EntityKind, Lexeme, Parse, Span, parse};
 use ropey::Rope;
 use rustc_hash::FxHashSet;
 
-use super::{Database, EditCounts, EntityData, EntityId, FileId};
+use super::{Database, EditCounts, EntityData, EntityId, FileId, Imports};
 use crate::diagnostics;
 use crate::file::{File, OfRope, Piece, Window};
 use crate::names::Key;
@@ -19,18 +19,18 @@ const ORDER_STEP: u64 = 1 << 32;
 impl Database {
     /// Opens a file, or replaces its text where it is open already.
     pub fn open(&mut self, path: &str, text: &str) -> FileId {
-        let file = if let Some(file) = self.file(path) {
-            self.forget(file);
-            file
-        } else {
-            self.new_file(path)
-        };
+        let file = self.file_for(path);
+        self.forget(file);
         let parses = parse(text);
         self.last_edit = EditCounts { reparsed: parses.len(), revalidated: 0 };
         self.files[file.0 as usize] =
             Some(File { path: path.to_owned(), text: Rope::from_str(text), pieces: Vec::new() });
         let orders = (1..).map(|index: u64| index * ORDER_STEP);
-        let pieces = parses.into_iter().zip(orders).map(|((span, parse), order)| self.add(file, span, parse, order)).collect();
+        let pieces = parses
+            .into_iter()
+            .zip(orders)
+            .map(|((span, parse), order)| self.add(file, span, parse, order))
+            .collect();
         self.set_pieces(file, pieces);
         self.update_imports(file);
         self.validate_file(file);
@@ -46,7 +46,6 @@ impl Database {
         self.forget(file);
         self.imports.remove(&file);
         if let Some(closed) = self.files[file.0 as usize].take() {
-            self.by_path.remove(&closed.path);
             self.validate_importers(&closed.path);
         }
     }
@@ -64,7 +63,10 @@ impl Database {
         self.apply(file, window);
     }
 
-    fn new_file(&mut self, path: &str) -> FileId {
+    fn file_for(&mut self, path: &str) -> FileId {
+        if let Some(known) = self.by_path.get(path) {
+            return *known;
+        }
         let file = FileId(u32::try_from(self.files.len()).unwrap_or(u32::MAX));
         self.files.push(None);
         self.by_path.insert(path.to_owned(), file);
@@ -87,8 +89,9 @@ impl Database {
 
     fn apply(&mut self, file: FileId, window: Window) {
         self.last_edit = EditCounts { reparsed: window.parses.len(), revalidated: 0 };
-        let Window { replaced, parses } = self.without_unchanged_ends(file, window);
-        let old: Vec<EntityId> = self.pieces(file)[replaced.clone()].iter().map(|piece| piece.entity).collect();
+        let Window { replaced, parses, .. } = self.without_unchanged_ends(file, window);
+        let old: Vec<EntityId> =
+            self.pieces(file)[replaced.clone()].iter().map(|piece| piece.entity).collect();
         let had_imports = self.any_import(&old);
         let mut doubtful = Doubtful::default();
         let new: Vec<Piece> = if old.len() == parses.len() {
@@ -103,35 +106,28 @@ impl Database {
         if had_imports || self.any_import(&ids) {
             self.update_imports(file);
             self.validate_file(file);
-        } else if !self.imports(file).is_empty() {
-            doubtful.entities.extend(self.import_entities(file));
+        } else if let Some(imports) = self.imports.get(&file) {
+            // Whether an import comes too late depends on what stands before it.
+            doubtful.entities.extend(&imports.entities);
         }
         doubtful.entities.extend(ids);
         self.validate_doubtful(doubtful);
     }
 
-    /// Pieces at either end of a window that read as before keep their entities and all their answers.
-    fn without_unchanged_ends(&mut self, file: FileId, mut window: Window) -> Window {
-        let old = &self.pieces(file)[window.replaced.clone()];
-        let same = |(piece, (_, parse)): &(&Piece, &(Span, Parse))| {
-            self.data(piece.entity).is_some_and(|data| data.parse == *parse)
+    /// Pieces at either end of a window that the edit did not touch and that read as before keep their entities and
+    /// all their answers.
+    fn without_unchanged_ends(&self, file: FileId, window: Window) -> Window {
+        let Window { replaced, untouched, mut parses } = window;
+        let old = &self.pieces(file)[replaced.clone()];
+        let same = |(piece, (span, parse)): &(&Piece, &(Span, Parse))| {
+            piece.len == span.len() && self.data(piece.entity).is_some_and(|data| data.parse == *parse)
         };
-        let head = old.iter().zip(&window.parses).take_while(same).count();
-        let tail = old[head..].iter().rev().zip(window.parses[head..].iter().rev()).take_while(same).count();
-        let lens = |spans: &[(Span, Parse)]| spans.iter().map(|(span, _)| span.len()).collect::<Vec<_>>();
-        let tail_lens = lens(&window.parses[window.parses.len() - tail..]);
-        let head_lens = lens(&window.parses[..head]);
-        let Range { start, end } = window.replaced;
-        if let Some(open) = self.files[file.0 as usize].as_mut() {
-            // A piece can read the same and still have become longer: white space at its end is no token.
-            let heads = open.pieces[start..start + head].iter_mut().zip(head_lens);
-            heads.for_each(|(piece, len)| piece.len = len);
-            let tails = open.pieces[end - tail..end].iter_mut().zip(tail_lens);
-            tails.for_each(|(piece, len)| piece.len = len);
-        }
-        window.parses.truncate(window.parses.len() - tail);
-        window.parses.drain(..head);
-        Window { replaced: start + head..end - tail, parses: window.parses }
+        let head = old.iter().zip(&parses).take(untouched.0).take_while(same).count();
+        let (old, rest) = (&old[head..], &parses[head..]);
+        let tail = old.iter().rev().zip(rest.iter().rev()).take(untouched.1).take_while(same).count();
+        parses.truncate(parses.len() - tail);
+        parses.drain(..head);
+        Window { replaced: replaced.start + head..replaced.end - tail, untouched: (0, 0), parses }
     }
 
     /// Reads an entity anew in its place.
@@ -165,7 +161,11 @@ impl Database {
         }
         let orders = self.orders_between(file, replaced, parses.len());
         doubtful.keys.extend(parses.iter().flat_map(|(_, parse)| visible_keys(file, parse)));
-        parses.into_iter().zip(orders).map(|((span, parse), order)| self.add(file, span, parse, order)).collect()
+        parses
+            .into_iter()
+            .zip(orders)
+            .map(|((span, parse), order)| self.add(file, span, parse, order))
+            .collect()
     }
 
     /// Orders for new entities in place of `replaced`. Where there is no room left the whole file is numbered anew.
@@ -213,6 +213,7 @@ impl Database {
     fn remove(&mut self, id: EntityId) {
         if let Some(file) = self.file_of(id) {
             self.unregister(id, file);
+            self.seekers.remove(&id);
             self.entities[id.0 as usize] = None;
             self.free.push(id.0);
         }
@@ -248,22 +249,19 @@ impl Database {
 
     fn update_imports(&mut self, file: FileId) {
         let base = self.path(file).to_owned();
-        let ids = self.import_entities(file);
-        let paths = ids.iter().filter_map(|id| match self.tree(*id) {
+        let is_import = |id: &EntityId| matches!(self.tree(*id), Some(Entity::Import(_)));
+        let entities: Vec<EntityId> =
+            self.pieces(file).iter().map(|piece| piece.entity).filter(is_import).collect();
+        let path = |id: &EntityId| match self.tree(*id) {
             Some(Entity::Import(import)) => import.path.as_ref().map(|relative| path::join(&base, relative)),
             _ => None,
-        });
-        let paths: Vec<String> = paths.collect();
-        if paths.is_empty() {
+        };
+        let paths = entities.iter().filter_map(path).collect();
+        if entities.is_empty() {
             self.imports.remove(&file);
         } else {
-            self.imports.insert(file, paths);
+            self.imports.insert(file, Imports { entities, paths });
         }
-    }
-
-    fn import_entities(&self, file: FileId) -> Vec<EntityId> {
-        let ids = self.pieces(file).iter().map(|piece| piece.entity);
-        ids.filter(|id| matches!(self.tree(*id), Some(Entity::Import(_)))).collect()
     }
 
     fn any_import(&self, ids: &[EntityId]) -> bool {
@@ -272,7 +270,10 @@ impl Database {
 
     fn importers(&self, path: &str) -> Vec<FileId> {
         let imports = self.imports.iter();
-        imports.filter(|(_, paths)| paths.iter().any(|other| other == path)).map(|(file, _)| *file).collect()
+        imports
+            .filter(|(_, imports)| imports.paths.iter().any(|other| other == path))
+            .map(|(file, _)| *file)
+            .collect()
     }
 
     fn validate_importers(&mut self, path: &str) {
@@ -288,6 +289,9 @@ impl Database {
     }
 
     fn validate_doubtful(&mut self, mut doubtful: Doubtful) {
+        if !doubtful.keys.is_empty() {
+            doubtful.entities.extend(&self.seekers);
+        }
         let mut asked: FxHashSet<Key> = FxHashSet::default();
         while let Some(key) = doubtful.keys.pop() {
             if !asked.insert(key.clone()) {
@@ -296,7 +300,9 @@ impl Database {
             for id in self.affected(&key) {
                 doubtful.entities.insert(id);
                 if let Some(data) = self.data(id) {
-                    doubtful.keys.extend(defined_key(data.file, &data.parse).filter(|key| key.1 > EntityKind::Ip));
+                    doubtful
+                        .keys
+                        .extend(defined_key(data.file, &data.parse).filter(|key| key.1 > EntityKind::Ip));
                 }
             }
         }
@@ -322,6 +328,11 @@ impl Database {
         }
         let problems = diagnostics::in_entity(self, id);
         self.last_edit.revalidated += 1;
+        if problems.iter().any(|problem| problem.rule.seeks_names) {
+            self.seekers.insert(id);
+        } else {
+            self.seekers.remove(&id);
+        }
         if let Some(data) = self.entities[id.0 as usize].as_mut() {
             data.problems = problems;
         }
@@ -366,7 +377,7 @@ fn looks_alike(before: &Parse, after: &Parse) -> bool {
         (Some(Entity::Movement(before)), Some(Entity::Movement(after))) => {
             (&before.parallel, &before.name, &before.robot) == (&after.parallel, &after.name, &after.robot)
         }
-        (before, after) => before == after,
+        (tree, changed) => tree == changed && before.lexemes == after.lexemes,
     }
 }
 

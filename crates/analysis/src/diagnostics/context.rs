@@ -41,6 +41,7 @@ pub(crate) struct ProblemFix {
 pub(crate) struct ProblemEdit {
     pub(crate) entity: EntityId,
     pub(crate) span: Span,
+    /// With `\n` for the end of a line, whatever the file uses; which it is may change with any edit.
     pub(crate) text: String,
 }
 
@@ -112,7 +113,14 @@ impl<'a> Context<'a> {
     pub(super) fn new(database: &'a Database, id: EntityId) -> Option<Self> {
         let parse = database.parse(id)?;
         let file = database.file_of(id)?;
-        Some(Self { database, file, id, tree: parse.entity.as_ref(), errors: &parse.errors, lexemes: &parse.lexemes })
+        Some(Self {
+            database,
+            file,
+            id,
+            tree: parse.entity.as_ref(),
+            errors: &parse.errors,
+            lexemes: &parse.lexemes,
+        })
     }
 
     /// What a reference in this entity leads to.

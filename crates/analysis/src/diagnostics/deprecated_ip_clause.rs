@@ -11,6 +11,7 @@ pub(super) static RULE: Rule = Rule {
     code: "deprecated-ip-clause",
     severity: Severity::Warning,
     summary: "an environment's ip is written behind a comma",
+    seeks_names: false,
     check,
 };
 
@@ -35,10 +36,13 @@ mod tests {
 
     #[test]
     fn the_comma_becomes_words() {
-        check(&format!("{PARTS}environment e, here has {{ r }} robots"), &expect![[r#"
+        check(
+            &format!("{PARTS}environment e, here has {{ r }} robots"),
+            &expect![[r#"
             warning[deprecated-ip-clause] 5:14 ", here" an ip is given by `with ip here`
               fix: write `with ip here` -> environment e with ip here has { r } robots
-        "#]]);
+        "#]],
+        );
         check_clean(&format!("{PARTS}environment e with ip here has {{ r }} robots"));
     }
 }

@@ -8,6 +8,7 @@ pub(super) static RULE: Rule = Rule {
     code: "duplicate-name",
     severity: Severity::Error,
     summary: "a second declaration of a name within a kind",
+    seeks_names: true,
     check,
 };
 
@@ -43,13 +44,18 @@ mod tests {
 
     #[test]
     fn the_second_is_reported_and_points_at_the_first() {
-        check("wheel a with radius 4\nwheelH a with radius 5\nwheel a_2 with radius 6", &expect![[r#"
+        check(
+            "wheel a with radius 4\nwheelH a with radius 5\nwheel a_2 with radius 6",
+            &expect![[r#"
             error[duplicate-name] 2:8 "a" there is already a wheel called `a`
               see 1:7 "a" first declared here
               help: give one of them another name
               suggestion: rename this one to `a_3` -> wheelH a_3 with radius 5
-        "#]]);
-        check("sensor s_1\nsensor s_1\nsensor s_1", &expect![[r#"
+        "#]],
+        );
+        check(
+            "sensor s_1\nsensor s_1\nsensor s_1",
+            &expect![[r#"
             error[duplicate-name] 2:8 "s_1" there is already a sensor called `s_1`
               see 1:8 "s_1" first declared here
               help: give one of them another name
@@ -58,7 +64,8 @@ mod tests {
               see 1:8 "s_1" first declared here
               help: give one of them another name
               suggestion: rename this one to `s_2` -> sensor s_2
-        "#]]);
+        "#]],
+        );
     }
 
     #[test]

@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "implausible-radius",
     severity: Severity::Warning,
     summary: "a wheel of more than a metre in radius was probably measured in millimetres",
+    seeks_names: false,
     check,
 };
 
@@ -39,13 +40,16 @@ mod tests {
 
     #[test]
     fn millimetres_are_suspected() {
-        check("wheel a with radius 450\nwheel b with radius 4500.5", &expect![[r#"
+        check(
+            "wheel a with radius 450\nwheel b with radius 4500.5",
+            &expect![[r#"
             warning[implausible-radius] 1:21 "450" a radius of 450 cm is taller than a robot
               note: radii are in centimetres; was it measured in millimetres?
               suggestion: change to 45 -> wheel a with radius 45
             warning[implausible-radius] 2:21 "4500.5" a radius of 4500.5 cm is taller than a robot
               note: radii are in centimetres; was it measured in millimetres?
-        "#]]);
+        "#]],
+        );
         check_clean("wheel a with radius 100");
     }
 }

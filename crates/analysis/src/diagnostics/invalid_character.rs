@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "invalid-character",
     severity: Severity::Error,
     summary: "characters that have no meaning in the language",
+    seeks_names: false,
     check,
 };
 
@@ -33,14 +34,17 @@ mod tests {
 
     #[test]
     fn adjacent_ones_are_one_problem() {
-        check("wheel a with §§ radius 4.5;", &expect![[r#"
+        check(
+            "wheel a with §§ radius 4.5;",
+            &expect![[r#"
             error[invalid-character] 1:14 "§§" `§§` have no meaning here
               help: names are made of the letters a to z and A to Z, digits and `_`
               suggestion: remove `§§` -> wheel a with  radius 4.5;
             error[invalid-character] 1:29 ";" `;` has no meaning here
               help: names are made of the letters a to z and A to Z, digits and `_`
               suggestion: remove `;` -> wheel a with §§ radius 4.5
-        "#]]);
+        "#]],
+        );
         check_clean("wheel a with radius 4.5 // §");
     }
 }

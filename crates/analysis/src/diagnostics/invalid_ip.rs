@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "invalid-ip",
     severity: Severity::Error,
     summary: "the numbers of an address lie between 0 and 255",
+    seeks_names: false,
     check,
 };
 
@@ -32,10 +33,13 @@ mod tests {
 
     #[test]
     fn octets_are_bytes() {
-        check("ip a 127.0.0.256", &expect![[r#"
+        check(
+            "ip a 127.0.0.256",
+            &expect![[r#"
             error[invalid-ip] 1:6 "127.0.0.256" `256` in this address is above 255
               help: an address is four numbers from 0 to 255, such as `127.0.0.1`
-        "#]]);
+        "#]],
+        );
         check_clean("ip a 255.0.10.007");
     }
 }

@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "invalid-port",
     severity: Severity::Error,
     summary: "a port lies between 1 and 65535",
+    seeks_names: false,
     check,
 };
 
@@ -33,24 +34,38 @@ mod tests {
     #[test]
     fn ports_have_sixteen_bits() {
         let program = |port: &str| {
-            format!("wheel a with radius 4\nwheel b with radius 4\nrobot r with port {port} has {{ a b }} wheels")
+            format!(
+                "wheel a with radius 4\nwheel b with radius 4\nrobot r with port {port} has {{ a b }} wheels"
+            )
         };
-        check(&program("0"), &expect![[r#"
+        check(
+            &program("0"),
+            &expect![[r#"
             error[invalid-port] 3:19 "0" port 0 is outside 1 to 65535
               help: CoppeliaSim listens on 23000, V-REP on 19999, unless told otherwise
-        "#]]);
-        check(&program("-1"), &expect![[r#"
+        "#]],
+        );
+        check(
+            &program("-1"),
+            &expect![[r#"
             error[invalid-port] 3:19 "-1" port -1 is outside 1 to 65535
               help: CoppeliaSim listens on 23000, V-REP on 19999, unless told otherwise
-        "#]]);
-        check(&program("65536"), &expect![[r#"
+        "#]],
+        );
+        check(
+            &program("65536"),
+            &expect![[r#"
             error[invalid-port] 3:19 "65536" port 65536 is outside 1 to 65535
               help: CoppeliaSim listens on 23000, V-REP on 19999, unless told otherwise
-        "#]]);
-        check(&program("99999999999999999999999999"), &expect![[r#"
+        "#]],
+        );
+        check(
+            &program("99999999999999999999999999"),
+            &expect![[r#"
             error[invalid-port] 3:19 "99999999999999999999999999" port 99999999999999999999999999 is outside 1 to 65535
               help: CoppeliaSim listens on 23000, V-REP on 19999, unless told otherwise
-        "#]]);
+        "#]],
+        );
         check_clean(&program("65535"));
     }
 }

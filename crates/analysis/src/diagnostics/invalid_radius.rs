@@ -10,12 +10,15 @@ pub(super) static RULE: Rule = Rule {
     code: "invalid-radius",
     severity: Severity::Error,
     summary: "a wheel's radius must be above zero",
+    seeks_names: false,
     check,
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Wheel(wheel)) = context.tree else { return };
-    if let Some(radius) = wheel.radius.as_ref().filter(|radius| radius.value.is_some_and(|value| value <= 0.0)) {
+    if let Some(radius) =
+        wheel.radius.as_ref().filter(|radius| radius.value.is_some_and(|value| value <= 0.0))
+    {
         let written = context.text(radius.span);
         problems.push(
             RULE.problem(radius.span, format!("a wheel's radius must be above zero, not {written} cm"))
@@ -32,12 +35,15 @@ mod tests {
 
     #[test]
     fn a_radius_is_above_zero() {
-        check("wheel a with radius 0\nwheel b with radius -4.5", &expect![[r#"
+        check(
+            "wheel a with radius 0\nwheel b with radius -4.5",
+            &expect![[r#"
             error[invalid-radius] 1:21 "0" a wheel's radius must be above zero, not 0 cm
               help: write the radius in centimetres, such as `4.5`
             error[invalid-radius] 2:21 "-4.5" a wheel's radius must be above zero, not -4.5 cm
               help: write the radius in centimetres, such as `4.5`
-        "#]]);
+        "#]],
+        );
         check_clean("wheel a with radius 0.1");
     }
 }

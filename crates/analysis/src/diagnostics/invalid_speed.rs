@@ -11,6 +11,7 @@ pub(super) static RULE: Rule = Rule {
     code: "invalid-speed",
     severity: Severity::Error,
     summary: "a speed must be above zero",
+    seeks_names: false,
     check,
 };
 
@@ -33,7 +34,10 @@ fn problem(context: &Context<'_>, step: &Move, speed: &Number) -> Problem {
     match &step.distance {
         Some(distance) if speed.value.is_some_and(|value| value < 0.0) => problem.suggestion(
             "negate the distance instead",
-            [context.replace(Span::new(speed.span.start, speed.span.start + 1), ""), negated(context, distance)],
+            [
+                context.replace(Span::new(speed.span.start, speed.span.start + 1), ""),
+                negated(context, distance),
+            ],
         ),
         _ => problem,
     }
@@ -54,25 +58,36 @@ mod tests {
     use crate::diagnostics::testing::{check, check_clean};
 
     fn program(action: &str) -> String {
-        format!("wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has {{ a b }} wheels\nmovement m of r {{ {action} }}")
+        format!(
+            "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has {{ a b }} wheels\nmovement m of r {{ {action} }}"
+        )
     }
 
     #[test]
     fn a_speed_is_above_zero() {
-        check(&program("move 4 meters at 0"), &expect![[r#"
+        check(
+            &program("move 4 meters at 0"),
+            &expect![[r#"
             error[invalid-speed] 4:36 "0" a speed must be above zero, not 0 cm/s
               help: a negative distance drives backwards; without `at` the speed is 9.0 cm/s
-        "#]]);
-        check(&program("move 4 meters at -9.5"), &expect![[r#"
+        "#]],
+        );
+        check(
+            &program("move 4 meters at -9.5"),
+            &expect![[r#"
             error[invalid-speed] 4:36 "-9.5" a speed must be above zero, not -9.5 cm/s
               help: a negative distance drives backwards; without `at` the speed is 9.0 cm/s
               suggestion: negate the distance instead -> movement m of r { move -4 meters at 9.5 }
-        "#]]);
-        check(&program("move -4 meters at -9.5"), &expect![[r#"
+        "#]],
+        );
+        check(
+            &program("move -4 meters at -9.5"),
+            &expect![[r#"
             error[invalid-speed] 4:37 "-9.5" a speed must be above zero, not -9.5 cm/s
               help: a negative distance drives backwards; without `at` the speed is 9.0 cm/s
               suggestion: negate the distance instead -> movement m of r { move 4 meters at 9.5 }
-        "#]]);
+        "#]],
+        );
         check_clean(&program("move 4 meters at 0.1"));
     }
 }

@@ -11,12 +11,15 @@ pub(super) static RULE: Rule = Rule {
     code: "misplaced-type",
     severity: Severity::Warning,
     summary: "a robot's type stands before its name",
+    seeks_names: false,
     check,
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Robot(robot)) = context.tree else { return };
-    let (Some(clause), Some(name)) = (robot.drive.filter(|clause| clause.before_name), &robot.name) else { return };
+    let (Some(clause), Some(name)) = (robot.drive.filter(|clause| clause.before_name), &robot.name) else {
+        return;
+    };
     let moved = context.text(clause.span);
     let edits = [
         context.replace(Span::new(clause.span.start, name.span.start), ""),
@@ -38,10 +41,13 @@ mod tests {
 
     #[test]
     fn it_is_moved_behind_the_name() {
-        check(&format!("{WHEELS}robot type tw r with port 1 has {{ a b }} wheels"), &expect![[r#"
+        check(
+            &format!("{WHEELS}robot type tw r with port 1 has {{ a b }} wheels"),
+            &expect![[r#"
             warning[misplaced-type] 3:7 "type tw" the type stands behind the name: `robot r type tw`
               fix: move it behind the name -> robot r type tw with port 1 has { a b } wheels
-        "#]]);
+        "#]],
+        );
         check_clean(&format!("{WHEELS}robot r type tw with port 1 has {{ a b }} wheels"));
     }
 }

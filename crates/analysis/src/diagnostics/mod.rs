@@ -42,6 +42,8 @@ pub struct Rule {
     pub severity: Severity,
     /// What it finds, in one sentence.
     pub summary: &'static str,
+    /// Whether its words depend on which other names there are.
+    pub(crate) seeks_names: bool,
     check: fn(&Context<'_>, &mut Vec<Problem>),
 }
 
@@ -108,6 +110,18 @@ pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
     diagnostics
 }
 
+/// The problems of some entities, wherever they are, with absolute places.
+pub(crate) fn of_entities(database: &Database, ids: &[EntityId]) -> Vec<Diagnostic> {
+    let mut places = Places { database, starts: FxHashMap::default() };
+    let mut diagnostics = Vec::new();
+    for entity in ids.iter().filter_map(|id| database.entity(*id)) {
+        for problem in database.problems(entity.id) {
+            diagnostics.push(places.diagnostic(entity.file, entity.span.start, problem));
+        }
+    }
+    diagnostics
+}
+
 /// Whether declarations may be hidden in a comment that never ends.
 fn has_hidden_text(database: &Database, file: FileId) -> bool {
     let imported = database.imports(file).iter().filter_map(|path| database.file(path));
@@ -144,7 +158,7 @@ impl Places<'_> {
     fn fix(&mut self, fix: &ProblemFix) -> Option<Fix> {
         let edits = fix.edits.iter().map(|edit| {
             let (file, span) = self.absolute(edit.entity, edit.span)?;
-            Some(Edit { file, span, text: edit.text.clone() })
+            Some(Edit { file, span, text: edit.text.replace('\n', self.database.line_ending(file)) })
         });
         Some(Fix { title: fix.title.clone(), safe: fix.safe, edits: edits.collect::<Option<_>>()? })
     }

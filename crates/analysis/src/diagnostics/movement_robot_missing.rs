@@ -11,6 +11,7 @@ pub(super) static RULE: Rule = Rule {
     code: "movement-robot-missing",
     severity: Severity::Error,
     summary: "an environment lists a movement whose robot it does not list",
+    seeks_names: false,
     check,
 };
 
@@ -24,7 +25,9 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         robots.names.iter().filter_map(|name| context.resolve(EntityKind::Robot, name).entity()).collect();
     for name in &movements.names {
         let Some((id, movement)) = context.movement(name) else { continue };
-        let Some(robot) = context.robot_of(id, movement).filter(|robot| !listed.contains(robot)) else { continue };
+        let Some(robot) = context.robot_of(id, movement).filter(|robot| !listed.contains(robot)) else {
+            continue;
+        };
         problems.push(problem(context, name, (id, movement), robot, robots));
     }
 }
@@ -37,15 +40,18 @@ fn problem(
     robots: &References,
 ) -> Problem {
     let driven = movement.robot.as_ref().map_or("", |name| name.text.as_str());
-    let mut problem = RULE
-        .problem(name.span, format!("`{}` moves `{driven}`, which is not among the robots of this environment", name.text));
+    let mut problem = RULE.problem(
+        name.span,
+        format!("`{}` moves `{driven}`, which is not among the robots of this environment", name.text),
+    );
     if let Some(reference) = &movement.robot {
         problem = problem.related(id, reference.span, format!("`{}` is a movement of `{driven}`", name.text));
     }
     // The name must mean the same robot here.
     let visible = movement.robot.as_ref().and_then(|name| context.resolve(EntityKind::Robot, name).entity());
     if visible == Some(robot) {
-        problem = problem.fix(format!("add `{driven}` to the robots"), [append(context.id, robots, driven, " ")]);
+        problem =
+            problem.fix(format!("add `{driven}` to the robots"), [append(context.id, robots, driven, " ")]);
     }
     problem
 }
@@ -61,16 +67,22 @@ mod tests {
 
     #[test]
     fn the_robot_is_added() {
-        check(&format!("{PARTS}environment e has {{ r }} robots with {{ m n }} moves"), &expect![[r#"
+        check(
+            &format!("{PARTS}environment e has {{ r }} robots with {{ m n }} moves"),
+            &expect![[r#"
             error[movement-robot-missing] 7:41 "n" `n` moves `q`, which is not among the robots of this environment
               see 6:15 "q" `n` is a movement of `q`
               fix: add `q` to the robots -> environment e has { r q } robots with { m n } moves
-        "#]]);
-        check(&format!("{PARTS}environment e has {{}} robots with {{ m }} moves"), &expect![[r#"
+        "#]],
+        );
+        check(
+            &format!("{PARTS}environment e has {{}} robots with {{ m }} moves"),
+            &expect![[r#"
             error[movement-robot-missing] 7:36 "m" `m` moves `r`, which is not among the robots of this environment
               see 5:15 "r" `m` is a movement of `r`
               fix: add `r` to the robots -> environment e has { r } robots with { m } moves
-        "#]]);
+        "#]],
+        );
         check_clean(&format!("{PARTS}environment e has {{ r, q }} robots with {{ n m n }} moves"));
     }
 }

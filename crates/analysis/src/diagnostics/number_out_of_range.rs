@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "number-out-of-range",
     severity: Severity::Error,
     summary: "a distance beyond 1000 km, or a number too large to compute with",
+    seeks_names: false,
     check,
 };
 
@@ -25,7 +26,8 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
                     ActionKind::Move(step) => {
                         let unit = step.unit.map_or(1.0, |(unit, _)| unit.in_metres());
                         problems.extend(step.distance.as_ref().and_then(|distance| too_far(distance, unit)));
-                        problems.extend(infinite(step.speed.as_ref().and_then(|clause| clause.value.as_ref())));
+                        problems
+                            .extend(infinite(step.speed.as_ref().and_then(|clause| clause.value.as_ref())));
                     }
                     ActionKind::Turn(turn) => {
                         if let Some(TurnExtent::Angle(angle)) = &turn.extent {
@@ -67,18 +69,24 @@ mod tests {
                 "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has {{ a b }} wheels\nmovement m of r {{ move {distance} }}"
             )
         };
-        check(&program("-1000000.1 meters"), &expect![[r#"
+        check(
+            &program("-1000000.1 meters"),
+            &expect![[r#"
             error[number-out-of-range] 4:24 "-1000000.1" a move can be at most 1000 km (1000000 meters) long
               help: write a shorter distance
-        "#]]);
+        "#]],
+        );
         check_clean(&program("100000000 centimeters"));
     }
 
     #[test]
     fn numbers_are_finite() {
-        check(&format!("wheel a with radius {}", "9".repeat(400)), &expect![[r#"
+        check(
+            &format!("wheel a with radius {}", "9".repeat(400)),
+            &expect![[r#"
             error[number-out-of-range] 1:21 "9999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999" this number is too large to compute with
               help: write fewer digits
-        "#]]);
+        "#]],
+        );
     }
 }

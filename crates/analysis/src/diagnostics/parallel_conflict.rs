@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "parallel-conflict",
     severity: Severity::Error,
     summary: "two movements of one robot run at the same time",
+    seeks_names: false,
     check,
 };
 
@@ -61,18 +62,24 @@ mod tests {
 
     #[test]
     fn one_robot_does_one_thing_at_a_time() {
-        check(&format!("{PARTS}environment e has {{ r q }} robots with {{ m o n }} moves"), &expect![[r#"
+        check(
+            &format!("{PARTS}environment e has {{ r q }} robots with {{ m o n }} moves"),
+            &expect![[r#"
             error[parallel-conflict] 9:45 "n" `r` cannot run `m` and `n` at the same time
               see 9:41 "m" `m` starts here and runs beside it
               help: put a movement that is not parallel between them, or take `parallel` off one of them
               note: parallel movements that stand side by side in the list start together
-        "#]]);
-        check(&format!("{PARTS}environment e has {{ r q }} robots with {{ p o o }} moves"), &expect![[r#"
+        "#]],
+        );
+        check(
+            &format!("{PARTS}environment e has {{ r q }} robots with {{ p o o }} moves"),
+            &expect![[r#"
             error[parallel-conflict] 9:45 "o" `q` cannot run `o` twice at the same time
               see 9:43 "o" `o` starts here and runs beside it
               help: put a movement that is not parallel between them, or take `parallel` off one of them
               note: parallel movements that stand side by side in the list start together
-        "#]]);
+        "#]],
+        );
     }
 
     #[test]

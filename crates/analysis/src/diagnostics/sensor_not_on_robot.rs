@@ -11,6 +11,7 @@ pub(super) static RULE: Rule = Rule {
     code: "sensor-not-on-robot",
     severity: Severity::Error,
     summary: "`turn … until` names a sensor that the movement's robot does not carry",
+    seeks_names: false,
     check,
 };
 
@@ -23,16 +24,23 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     for action in &movement.actions {
         let ActionKind::Turn(turn) = &action.kind else { continue };
         let Some(TurnExtent::Until(list)) = &turn.extent else { continue };
-        let carried = |name: &Name| robot.sensors.iter().flat_map(|list| &list.names).any(|other| other.text == name.text);
+        let carried = |name: &Name| {
+            robot.sensors.iter().flat_map(|list| &list.names).any(|other| other.text == name.text)
+        };
         let declared = |name: &Name| context.resolve(EntityKind::Sensor, name).entity().is_some();
         problems.extend(
-            list.names.iter().filter(|name| declared(name) && !carried(name)).map(|name| problem(context, id, robot, name)),
+            list.names
+                .iter()
+                .filter(|name| declared(name) && !carried(name))
+                .map(|name| problem(context, id, robot, name)),
         );
     }
 }
 
 fn problem(context: &Context<'_>, id: EntityId, robot: &Robot, sensor: &Name) -> Problem {
-    let Some(name) = &robot.name else { return RULE.problem(sensor.span, "the robot does not carry this sensor") };
+    let Some(name) = &robot.name else {
+        return RULE.problem(sensor.span, "the robot does not carry this sensor");
+    };
     let carries = robot.sensors.as_ref().map(|list| list.names.iter().map(|name| format!("`{}`", name.text)));
     let carries = carries.map_or_else(
         || format!("`{}` has no sensors", name.text),
@@ -53,7 +61,11 @@ fn added(context: &Context<'_>, id: EntityId, robot: &Robot, sensor: &str) -> Op
     }
     let lexemes = &context.database.parse(id)?.lexemes;
     let end = lexemes.iter().rev().find(|(token, _)| !token.is_comment())?.1.end;
-    Some(ProblemEdit { entity: id, span: Span::at(end), text: format!(" with sensors {{ {} }}", as_written(sensor)) })
+    Some(ProblemEdit {
+        entity: id,
+        span: Span::at(end),
+        text: format!(" with sensors {{ {} }}", as_written(sensor)),
+    })
 }
 
 #[cfg(test)]
@@ -67,7 +79,9 @@ mod tests {
     #[test]
     fn the_sensor_is_added_to_the_robot() {
         check(
-            &format!("{PARTS}robot r with port 1 has {{ a b }} wheels with sensors {{ s }}\nmovement m of r {{ turn left until {{ s, t }} }}"),
+            &format!(
+                "{PARTS}robot r with port 1 has {{ a b }} wheels with sensors {{ s }}\nmovement m of r {{ turn left until {{ s, t }} }}"
+            ),
             &expect![[r#"
                 error[sensor-not-on-robot] 6:40 "t" `r` does not carry the sensor `t`
                   see 5:7 "r" `r` carries `s`
@@ -75,7 +89,9 @@ mod tests {
             "#]],
         );
         check(
-            &format!("{PARTS}robot r with port 1 has {{ a b }}\n  wheels\nmovement m of r {{ turn left until {{ s }} }}"),
+            &format!(
+                "{PARTS}robot r with port 1 has {{ a b }}\n  wheels\nmovement m of r {{ turn left until {{ s }} }}"
+            ),
             &expect![[r#"
                 error[sensor-not-on-robot] 7:37 "s" `r` does not carry the sensor `s`
                   see 5:7 "r" `r` has no sensors

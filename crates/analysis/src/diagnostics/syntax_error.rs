@@ -11,6 +11,7 @@ pub(super) static RULE: Rule = Rule {
     code: "syntax-error",
     severity: Severity::Error,
     summary: "the text does not follow the grammar",
+    seeks_names: false,
     check,
 };
 
@@ -22,15 +23,25 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 fn problem(context: &Context<'_>, error: &SyntaxError) -> Option<Problem> {
     let span = error.span;
     Some(match &error.kind {
-        SyntaxErrorKind::Missing { expected, found, inside } => missing(context, span, expected, found, *inside),
-        SyntaxErrorKind::Unexpected { expected, found, inside } => unexpected(context, span, expected, found, *inside),
+        SyntaxErrorKind::Missing { expected, found, inside } => {
+            missing(context, span, expected, found, *inside)
+        }
+        SyntaxErrorKind::Unexpected { expected, found, inside } => {
+            unexpected(context, span, expected, found, *inside)
+        }
         SyntaxErrorKind::Misspelt { written, keyword } => {
             let keyword = keyword.spelling().unwrap_or_default();
-            RULE.problem(span, format!("`{written}` is not a word of the language; did you mean `{keyword}`?"))
-                .fix(format!("change to `{keyword}`"), [context.replace(span, keyword)])
+            RULE.problem(
+                span,
+                format!("`{written}` is not a word of the language; did you mean `{keyword}`?"),
+            )
+            .fix(format!("change to `{keyword}`"), [context.replace(span, keyword)])
         }
         SyntaxErrorKind::KeywordAsName { written, of } => RULE
-            .problem(span, format!("`{written}` is a word of the language, so {} cannot be called that", of.a_noun()))
+            .problem(
+                span,
+                format!("`{written}` is a word of the language, so {} cannot be called that", of.a_noun()),
+            )
             .help(format!("write `^{written}` to use it as a name, or choose another name"))
             .fix(format!("write `^{written}`"), [context.replace(Span::at(span.start), "^")]),
         SyntaxErrorKind::MalformedNumber { written } => RULE
@@ -79,7 +90,7 @@ fn insert(context: &Context<'_>, problem: Problem, span: Span, word: Token) -> P
     let text = match context.lexemes.iter().find(|(_, other)| other.end == span.start) {
         // A brace that closes a movement gets a line of its own where the movement has several.
         Some(_) if braces_body && context.text(Span::new(0, span.start)).contains(['\n', '\r']) => {
-            format!("{}{spelling}", context.database.line_ending(context.file))
+            format!("\n{spelling}")
         }
         _ => format!(" {spelling}"),
     };
@@ -105,14 +116,19 @@ fn unexpected(
     };
     if expected.contains(&Expected::Declaration) {
         return RULE
-            .problem(span, format!("`{text}` does not belong here: the {} before it is complete", kind.noun()))
-            .help(format!("{}; the next declaration starts with its keyword", shape(kind, &[])))
+            .problem(
+                span,
+                format!("`{text}` does not belong here: the {} before it is complete", kind.noun()),
+            )
+            .help(format!("{}; the next declaration starts with its keyword", shape(kind, &[])));
     }
     let is_keyword = context.lexemes.iter().any(|(token, other)| *other == span && token.is_keyword());
-    let wants_name = expected.iter().any(|expected| matches!(expected, Expected::NameOf(_) | Expected::ReferenceTo(_)));
+    let wants_name =
+        expected.iter().any(|expected| matches!(expected, Expected::NameOf(_) | Expected::ReferenceTo(_)));
     let problem = RULE.problem(span, format!("expected {}, found `{text}`", listed(&expected)));
     if is_keyword && wants_name {
-        return problem.help(format!("`{text}` is a word of the language; write `^{text}` to use it as a name"));
+        return problem
+            .help(format!("`{text}` is a word of the language; write `^{text}` to use it as a name"));
     }
     problem.help(shape(kind, &expected))
 }
@@ -143,8 +159,10 @@ fn telling(expected: &[Expected]) -> Vec<Expected> {
     let ends = expected.contains(&Expected::Declaration);
     let keep = |expected: &&Expected| match expected {
         Expected::Word(Token::Comma) => !lists,
-        Expected::ReferenceTo(_) | Expected::Action | Expected::Angle => !closes,
-        Expected::Word(Token::At | Token::Until) => !closes,
+        Expected::ReferenceTo(_)
+        | Expected::Action
+        | Expected::Angle
+        | Expected::Word(Token::At | Token::Until) => !closes,
         Expected::Word(_) => !ends,
         _ => true,
     };
@@ -187,8 +205,12 @@ fn late_import(context: &Context<'_>) -> Option<Problem> {
     let last = context.lexemes.iter().rev().find(|(token, _)| !token.is_comment())?.1;
     let span = first.to(last);
     let top = context.database.entities(context.file).next()?.id;
-    let text = format!("{}{}", context.text(span), context.database.line_ending(context.file));
-    let start = if context.database.parse(top)?.entity.is_none() { context.database.entities(context.file).nth(1)?.id } else { top };
+    let text = format!("{}\n", context.text(span).replace("\r\n", "\n"));
+    let start = if context.database.parse(top)?.entity.is_none() {
+        context.database.entities(context.file).nth(1)?.id
+    } else {
+        top
+    };
     let insert = super::context::ProblemEdit { entity: start, span: Span::at(0), text };
     Some(
         RULE.problem(span, "an import must stand before everything else")
@@ -207,33 +229,52 @@ mod tests {
 
     #[test]
     fn a_missing_word_is_inserted() {
-        check("wheel a radius 4.5", &expect![[r#"
+        check(
+            "wheel a radius 4.5",
+            &expect![[r#"
             error[syntax-error] 1:8 "" missing `with` before `radius`
               help: a wheel is written `wheel NAME with radius CENTIMETRES`
               fix: insert `with` -> wheel a with radius 4.5
-        "#]]);
-        check(&format!("{PARTS}robot r with port 1 has {{ a b wheels with sensors {{ s }}"), &expect![[r#"
+        "#]],
+        );
+        check(
+            &format!("{PARTS}robot r with port 1 has {{ a b wheels with sensors {{ s }}"),
+            &expect![[r#"
             error[syntax-error] 4:30 "" missing `}` before `wheels`
               help: a robot is written `robot NAME type tw with port 19999 has { WHEELS } wheels`
               fix: insert `}` -> robot r with port 1 has { a b } wheels with sensors { s }
-        "#]]);
+        "#]],
+        );
     }
 
     #[test]
     fn a_missing_part_is_named() {
-        check("wheel", &expect![[r#"
+        check(
+            "wheel",
+            &expect![[r#"
             error[syntax-error] 1:6 "" missing a name for the wheel at the end of this wheel
               help: a wheel is written `wheel NAME with radius CENTIMETRES`
-        "#]]);
-        check("wheel a with radius", &expect![[r#"
+        "#]],
+        );
+        check(
+            "wheel a with radius",
+            &expect![[r#"
             error[syntax-error] 1:20 "" missing a radius in centimetres at the end of this wheel
               help: a wheel is written `wheel NAME with radius CENTIMETRES`
-        "#]]);
-        check(&format!("{PARTS}robot r has {{ a b }} wheels"), &expect![[r#"
+        "#]],
+        );
+        check(
+            &format!("{PARTS}robot r has {{ a b }} wheels"),
+            &expect![[r#"
             error[syntax-error] 4:8 "" missing `with` or `type` before `has`
               help: a robot is written `robot NAME type tw with port 19999 has { WHEELS } wheels`
-        "#]]);
-        check(&format!("{PARTS}robot r with port 1 has {{ a b }} wheels\nmovement m of r {{\n  move 4\n  turn 90\n"), &expect![[r#"
+        "#]],
+        );
+        check(
+            &format!(
+                "{PARTS}robot r with port 1 has {{ a b }} wheels\nmovement m of r {{\n  move 4\n  turn 90\n"
+            ),
+            &expect![[r#"
             error[syntax-error] 6:9 "" missing `meters` or `centimeters` before `turn`
               help: an action is written `move 4.0 meters`, `move 40 centimeters at 9.0`, `turn left 90`, `turn right until { SENSORS }` or `slam`
             error[syntax-error] 7:7 "" missing `left` or `right` before `90`
@@ -241,57 +282,82 @@ mod tests {
             error[syntax-error] 7:10 "" missing `}` at the end of this movement
               help: a movement is written `movement NAME of ROBOT { ACTIONS }`
               fix: insert `}` -> }
-        "#]]);
+        "#]],
+        );
     }
 
     #[test]
     fn a_slip_of_spelling_is_recognised() {
-        check("wheel a with radios 4.5", &expect![[r#"
+        check(
+            "wheel a with radios 4.5",
+            &expect![[r#"
             error[syntax-error] 1:14 "radios" `radios` is not a word of the language; did you mean `radius`?
               fix: change to `radius` -> wheel a with radius 4.5
-        "#]]);
-        check("weel a with radius 4.5", &expect![[r#"
+        "#]],
+        );
+        check(
+            "weel a with radius 4.5",
+            &expect![[r#"
             error[syntax-error] 1:1 "weel" `weel` is not a word of the language; did you mean `wheel`?
               fix: change to `wheel` -> wheel a with radius 4.5
-        "#]]);
+        "#]],
+        );
     }
 
     #[test]
     fn what_does_not_belong_is_shown() {
-        check("wheel a with radius 4.5 4.5", &expect![[r#"
+        check(
+            "wheel a with radius 4.5 4.5",
+            &expect![[r#"
             error[syntax-error] 1:25 "4.5" `4.5` does not belong here: the wheel before it is complete
               help: a wheel is written `wheel NAME with radius CENTIMETRES`; the next declaration starts with its keyword
-        "#]]);
-        check("}\nwheel a with radius 4.5", &expect![[r#"
+        "#]],
+        );
+        check(
+            "}\nwheel a with radius 4.5",
+            &expect![[r#"
             error[syntax-error] 1:1 "}" a program cannot start with `}`
               help: a program is made of `import`, `wheel`, `wheelH`, `sensor`, `ip`, `robot`, `movement` and `environment`
-        "#]]);
-        check("wheel left with radius 4.5", &expect![[r#"
+        "#]],
+        );
+        check(
+            "wheel left with radius 4.5",
+            &expect![[r#"
             error[syntax-error] 1:7 "left" `left` is a word of the language, so a wheel cannot be called that
               help: write `^left` to use it as a name, or choose another name
               fix: write `^left` -> wheel ^left with radius 4.5
-        "#]]);
-        check(&format!("{PARTS}robot r with port 1.5 has {{ a 7 b }} wheels with sensors {{ }}"), &expect![[r#"
+        "#]],
+        );
+        check(
+            &format!("{PARTS}robot r with port 1.5 has {{ a 7 b }} wheels with sensors {{ }}"),
+            &expect![[r#"
             error[syntax-error] 4:19 "1.5" a port is a whole number, and `1.5` is not
               help: write a whole number from 1 to 65535, such as `19999`
             error[syntax-error] 4:31 "7" expected the name of a wheel, found `7`
               help: a robot is written `robot NAME type tw with port 19999 has { WHEELS } wheels`
             error[syntax-error] 4:57 "{ }" this list must name at least one sensor
               help: name a sensor between the braces, or leave the whole clause out
-        "#]]);
-        check("wheel a with radius 4.", &expect![[r#"
+        "#]],
+        );
+        check(
+            "wheel a with radius 4.",
+            &expect![[r#"
             error[syntax-error] 1:21 "4." `4.` is not a number
               help: write digits, and at most one point between them, such as `4` or `4.5`
-        "#]]);
+        "#]],
+        );
     }
 
     #[test]
     fn an_import_comes_first() {
-        check("// top\nwheel a with radius 4.5\nimport \"b.pyr\"\n", &expect![[r#"
+        check(
+            "// top\nwheel a with radius 4.5\nimport \"b.pyr\"\n",
+            &expect![[r#"
             error[syntax-error] 3:1 "import \"b.pyr\"" an import must stand before everything else
               help: move it to the top of the file
               fix: move to the top -> 
-        "#]]);
+        "#]],
+        );
         check_clean("import \"b.pyr\"\nwheel a with radius 4.5\n");
     }
 }

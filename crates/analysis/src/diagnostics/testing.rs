@@ -33,10 +33,16 @@ fn check_fix(program: &str, before: &[Diagnostic], mended: &Diagnostic, after: &
     let left = database.diagnostics(file);
     let count = |list: &[Diagnostic], code: &str| list.iter().filter(|other| other.code() == code).count();
     let code = mended.code();
-    assert!(count(&left, code) < count(before, code), "the fix does not mend it\n{program}\n->\n{after}\n{left:#?}");
+    assert!(
+        count(&left, code) < count(before, code),
+        "the fix does not mend it\n{program}\n->\n{after}\n{left:#?}"
+    );
     for other in &left {
         let code = other.code();
-        assert!(count(&left, code) <= count(before, code), "the fix brings {code}\n{program}\n->\n{after}\n{left:#?}");
+        assert!(
+            count(&left, code) <= count(before, code),
+            "the fix brings {code}\n{program}\n->\n{after}\n{left:#?}"
+        );
     }
 }
 
@@ -69,7 +75,8 @@ fn render(program: &str, diagnostic: &Diagnostic) -> String {
     }
     for fix in &diagnostic.fixes {
         let changed = apply(program, diagnostic.file, &fix.edits);
-        let lines: Vec<&str> = changed.lines().filter(|line| !program.lines().any(|old| old == *line)).collect();
+        let lines: Vec<&str> =
+            changed.lines().filter(|line| !program.lines().any(|old| old == *line)).collect();
         let sort = if fix.safe { "fix" } else { "suggestion" };
         out += &format!("  {sort}: {} -> {}\n", fix.title, lines.join(" ⏎ "));
     }

@@ -11,6 +11,7 @@ pub(super) static RULE: Rule = Rule {
     code: "unresolved-reference",
     severity: Severity::Error,
     summary: "a name that is not declared",
+    seeks_names: true,
     check,
 };
 
@@ -31,7 +32,9 @@ fn problem(context: &Context<'_>, tree: &Entity, kind: EntityKind, name: &Name, 
     let nearest = context.nearest(kind, name).filter(|nearest| !taken.contains(&nearest.as_str()));
     if let Some(nearest) = nearest {
         let edit = context.replace(name.span, as_written(&nearest));
-        problem = problem.help(format!("did you mean `{nearest}`?")).suggestion(format!("change to `{nearest}`"), [edit]);
+        problem = problem
+            .help(format!("did you mean `{nearest}`?"))
+            .suggestion(format!("change to `{nearest}`"), [edit]);
     } else if let Some(known) = known(context, kind) {
         problem = problem.help(known);
     }
@@ -76,7 +79,7 @@ fn declaration(context: &Context<'_>, tree: &Entity, kind: EntityKind, name: &Na
         (EntityKind::Ip, _) => format!("ip {name} 127.0.0.1"),
         _ => return None,
     };
-    Some(context.replace(Span::at(0), format!("{line}{}", context.database.line_ending(context.file))))
+    Some(context.replace(Span::at(0), format!("{line}\n")))
 }
 
 /// A wheel like the robot's other wheels.
@@ -110,7 +113,9 @@ mod tests {
 
     #[test]
     fn another_kind_is_recognised() {
-        check("wheel a with radius 4\nsensor left\nrobot r with port 1 has { a left } wheels", &expect![[r#"
+        check(
+            "wheel a with radius 4\nsensor left\nrobot r with port 1 has { a left } wheels",
+            &expect![[r#"
             error[syntax-error] 2:8 "left" `left` is a word of the language, so a sensor cannot be called that
               help: write `^left` to use it as a name, or choose another name
               fix: write `^left` -> sensor ^left
@@ -120,12 +125,15 @@ mod tests {
             error[unresolved-reference] 3:29 "left" `left` is a sensor, not a wheel
               help: the only wheel is `a`
               suggestion: declare the wheel `left` -> wheel ^left with radius 4
-        "#]]);
+        "#]],
+        );
     }
 
     #[test]
     fn robots_and_movements_are_named() {
-        check("movement m of r { slam }\nenvironment e with ip i has { q } robots with { n } moves", &expect![[r#"
+        check(
+            "movement m of r { slam }\nenvironment e with ip i has { q } robots with { n } moves",
+            &expect![[r#"
             error[unresolved-reference] 1:15 "r" there is no robot called `r`
               help: declare it: `robot NAME type tw with port 19999 has { WHEELS } wheels`
             error[unresolved-reference] 2:23 "i" there is no ip called `i`
@@ -135,7 +143,8 @@ mod tests {
               help: declare it: `robot NAME type tw with port 19999 has { WHEELS } wheels`
             error[unresolved-reference] 2:49 "n" there is no movement called `n`
               help: the only movement is `m`
-        "#]]);
+        "#]],
+        );
     }
 
     #[test]

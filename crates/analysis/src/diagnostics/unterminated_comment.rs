@@ -10,19 +10,21 @@ pub(super) static RULE: Rule = Rule {
     code: "unterminated-comment",
     severity: Severity::Error,
     summary: "a comment that is never closed hides the rest of the file",
+    seeks_names: false,
     check,
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     for error in context.errors.iter().filter(|error| error.kind == SyntaxErrorKind::UnterminatedComment) {
-        let line_end = context.lexemes.iter().map(|(_, span)| span).find(|span| span.start == error.span.start).map_or(
-            error.span.end,
-            |span| {
-                let text = context.text(*span);
-                let line = text.find(['\n', '\r']).unwrap_or(text.len());
-                span.start + u32::try_from(line).unwrap_or(u32::MAX)
-            },
-        );
+        let line_end =
+            context.lexemes.iter().map(|(_, span)| span).find(|span| span.start == error.span.start).map_or(
+                error.span.end,
+                |span| {
+                    let text = context.text(*span);
+                    let line = text.find(['\n', '\r']).unwrap_or(text.len());
+                    span.start + u32::try_from(line).unwrap_or(u32::MAX)
+                },
+            );
         problems.push(
             RULE.problem(error.span, "this comment is never closed, so everything behind it is ignored")
                 .help("end it with `*/`")
@@ -39,11 +41,14 @@ mod tests {
 
     #[test]
     fn it_is_reported_at_its_opening_and_hides_what_it_swallows() {
-        check("robot r with port 1 has { a b } wheels\n/* wheels\nwheel a with radius 4\nwheel b with radius 4", &expect![[r#"
+        check(
+            "robot r with port 1 has { a b } wheels\n/* wheels\nwheel a with radius 4\nwheel b with radius 4",
+            &expect![[r#"
             error[unterminated-comment] 2:1 "/*" this comment is never closed, so everything behind it is ignored
               help: end it with `*/`
               suggestion: close it at the end of the line -> /* wheels */
-        "#]]);
+        "#]],
+        );
         check_clean("wheel a with radius 4 /* wheel */");
     }
 }

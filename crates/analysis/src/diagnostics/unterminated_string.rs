@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "unterminated-string",
     severity: Severity::Error,
     summary: "a path in quotes that has no end on its line",
+    seeks_names: false,
     check,
 };
 
@@ -31,11 +32,14 @@ mod tests {
 
     #[test]
     fn the_quote_is_added() {
-        check("import \"parts.pyr\nwheel a with radius 4", &expect![[r#"
+        check(
+            "import \"parts.pyr\nwheel a with radius 4",
+            &expect![[r#"
             error[unterminated-string] 1:8 "\"parts.pyr" this path has no closing quote on its line
               help: end it with `"`
               fix: add the closing quote -> import "parts.pyr"
-        "#]]);
+        "#]],
+        );
         check_clean("import \"parts.pyr\"\nwheel a with radius 4");
     }
 }

@@ -11,6 +11,7 @@ pub(super) static RULE: Rule = Rule {
     code: "wheel-count",
     severity: Severity::Error,
     summary: "`tw` needs 2 wheels, `fw` and `fwh` need 4",
+    seeks_names: false,
     check,
 };
 
@@ -85,24 +86,36 @@ mod tests {
 
     #[test]
     fn each_type_has_its_number() {
-        check(&format!("{WHEELS}robot r type tw with port 1 has {{ a b c d }} wheels"), &expect![[r#"
+        check(
+            &format!("{WHEELS}robot r type tw with port 1 has {{ a b c d }} wheels"),
+            &expect![[r#"
             error[wheel-count] 5:33 "{ a b c d }" a two-wheel robot (`tw`) has 2 wheels, but this list names 4
               help: two wheels stand in the order left, right; four in the order left front, left rear, right front, right rear
               suggestion: change the type to `fw` -> robot r type fw with port 1 has { a b c d } wheels
-        "#]]);
-        check(&format!("{WHEELS}robot r type fwh with port 1 has {{ a b }} wheels"), &expect![[r#"
+        "#]],
+        );
+        check(
+            &format!("{WHEELS}robot r type fwh with port 1 has {{ a b }} wheels"),
+            &expect![[r#"
             error[wheel-count] 5:34 "{ a b }" a mecanum robot (`fwh`) has 4 wheels, but this list names 2
               help: two wheels stand in the order left, right; four in the order left front, left rear, right front, right rear
               suggestion: change the type to `tw` -> robot r type tw with port 1 has { a b } wheels
-        "#]]);
-        check(&format!("{WHEELS}robot r type fw with port 1 has {{ }} wheels"), &expect![[r#"
+        "#]],
+        );
+        check(
+            &format!("{WHEELS}robot r type fw with port 1 has {{ }} wheels"),
+            &expect![[r#"
             error[wheel-count] 5:33 "{ }" a four-wheel robot (`fw`) has 4 wheels, but this list names none
               help: two wheels stand in the order left, right; four in the order left front, left rear, right front, right rear
-        "#]]);
-        check(&format!("{WHEELS}robot r with port 1 has {{ a b c }} wheels"), &expect![[r#"
+        "#]],
+        );
+        check(
+            &format!("{WHEELS}robot r with port 1 has {{ a b c }} wheels"),
+            &expect![[r#"
             error[wheel-count] 5:25 "{ a b c }" a robot has 2 or 4 wheels, but this list names 3
               help: two wheels stand in the order left, right; four in the order left front, left rear, right front, right rear
-        "#]]);
+        "#]],
+        );
     }
 
     #[test]

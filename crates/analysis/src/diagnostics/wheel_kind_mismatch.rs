@@ -12,6 +12,7 @@ pub(super) static RULE: Rule = Rule {
     code: "wheel-kind-mismatch",
     severity: Severity::Error,
     summary: "`tw` and `fw` drive on `wheel`, `fwh` on `wheelH`",
+    seeks_names: false,
     check,
 };
 
@@ -32,13 +33,15 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     if mecanum == if wants_mecanum { kinds.len() } else { 0 } {
         return;
     }
-    let odd = list.names.iter().zip(&kinds).find(|(_, mecanum)| **mecanum != wants_mecanum).map(|(name, _)| name);
+    let odd =
+        list.names.iter().zip(&kinds).find(|(_, mecanum)| **mecanum != wants_mecanum).map(|(name, _)| name);
     let Some(place) = type_place(robot).or(odd.map(|name| name.span)) else { return };
     let problem = match (drive, mecanum) {
         (Some(DriveWord::Fw), 4) => all_mecanum(place),
         _ => mixed(context, place, drive, odd),
     };
-    let problem = problem.note("a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways");
+    let problem =
+        problem.note("a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways");
     problems.push(with_type(context, robot, problem, fitting(context, list)));
 }
 
@@ -49,7 +52,8 @@ fn all_mecanum(place: Span) -> Problem {
 }
 
 fn mixed(context: &Context<'_>, place: Span, drive: Option<DriveWord>, odd: Option<&Name>) -> Problem {
-    let (wanted, other) = if drive == Some(DriveWord::Fwh) { ("wheelH", "wheel") } else { ("wheel", "wheelH") };
+    let (wanted, other) =
+        if drive == Some(DriveWord::Fwh) { ("wheelH", "wheel") } else { ("wheel", "wheelH") };
     let drives = match drive {
         Some(word) => format!("a robot of type `{}` drives on `{wanted}`", word.spelling()),
         None => "a robot's wheels are of one kind, and a mecanum robot has four".to_owned(),
@@ -58,7 +62,8 @@ fn mixed(context: &Context<'_>, place: Span, drive: Option<DriveWord>, odd: Opti
         Some(name) => format!("{drives}, but `{}` is a `{other}`", name.text),
         None => drives,
     };
-    let problem = RULE.problem(place, message).help(format!("list only `{wanted}`, or change the robot's type"));
+    let problem =
+        RULE.problem(place, message).help(format!("list only `{wanted}`, or change the robot's type"));
     match odd.and_then(|name| context.wheel(name)) {
         Some((id, wheel)) => problem.related(id, wheel.keyword, "declared here"),
         None => problem,
@@ -68,7 +73,10 @@ fn mixed(context: &Context<'_>, place: Span, drive: Option<DriveWord>, odd: Opti
 fn with_type(context: &Context<'_>, robot: &Robot, problem: Problem, fitting: Option<DriveWord>) -> Problem {
     let (Some(clause), Some(word)) = (robot.drive, fitting) else { return problem };
     let spelling = word.spelling();
-    problem.fix(format!("change the type to `{spelling}`"), [context.replace(clause.span, format!("type {spelling}"))])
+    problem.fix(
+        format!("change the type to `{spelling}`"),
+        [context.replace(clause.span, format!("type {spelling}"))],
+    )
 }
 
 #[cfg(test)]
@@ -82,41 +90,56 @@ mod tests {
 
     #[test]
     fn four_mecanum_wheels_are_fwh() {
-        check(&format!("{WHEELS}robot r type fw with port 1 has {{ e f g h }} wheels"), &expect![[r#"
+        check(
+            &format!("{WHEELS}robot r type fw with port 1 has {{ e f g h }} wheels"),
+            &expect![[r#"
             warning[wheel-kind-mismatch] 9:9 "type fw" four `wheelH` make a mecanum robot, which is type `fwh`
               help: it is driven as `fwh`; write the type that it is
               note: a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways
               fix: change the type to `fwh` -> robot r type fwh with port 1 has { e f g h } wheels
-        "#]]);
+        "#]],
+        );
     }
 
     #[test]
     fn kinds_do_not_mix() {
-        check(&format!("{WHEELS}robot r type fwh with port 1 has {{ a b c d }} wheels"), &expect![[r#"
+        check(
+            &format!("{WHEELS}robot r type fwh with port 1 has {{ a b c d }} wheels"),
+            &expect![[r#"
             error[wheel-kind-mismatch] 9:9 "type fwh" a robot of type `fwh` drives on `wheelH`, but `a` is a `wheel`
               see 1:1 "wheel" declared here
               help: list only `wheelH`, or change the robot's type
               note: a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways
               fix: change the type to `fw` -> robot r type fw with port 1 has { a b c d } wheels
-        "#]]);
-        check(&format!("{WHEELS}robot r type fw with port 1 has {{ a b c h }} wheels"), &expect![[r#"
+        "#]],
+        );
+        check(
+            &format!("{WHEELS}robot r type fw with port 1 has {{ a b c h }} wheels"),
+            &expect![[r#"
             error[wheel-kind-mismatch] 9:9 "type fw" a robot of type `fw` drives on `wheel`, but `h` is a `wheelH`
               see 8:1 "wheelH" declared here
               help: list only `wheel`, or change the robot's type
               note: a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways
-        "#]]);
-        check(&format!("{WHEELS}robot r type tw with port 1 has {{ e f }} wheels"), &expect![[r#"
+        "#]],
+        );
+        check(
+            &format!("{WHEELS}robot r type tw with port 1 has {{ e f }} wheels"),
+            &expect![[r#"
             error[wheel-kind-mismatch] 9:9 "type tw" a robot of type `tw` drives on `wheel`, but `e` is a `wheelH`
               see 5:1 "wheelH" declared here
               help: list only `wheel`, or change the robot's type
               note: a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways
-        "#]]);
-        check(&format!("{WHEELS}robot r with port 1 has {{ a f }} wheels"), &expect![[r#"
+        "#]],
+        );
+        check(
+            &format!("{WHEELS}robot r with port 1 has {{ a f }} wheels"),
+            &expect![[r#"
             error[wheel-kind-mismatch] 9:7 "r" a robot's wheels are of one kind, and a mecanum robot has four, but `f` is a `wheelH`
               see 6:1 "wheelH" declared here
               help: list only `wheel`, or change the robot's type
               note: a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways
-        "#]]);
+        "#]],
+        );
     }
 
     #[test]

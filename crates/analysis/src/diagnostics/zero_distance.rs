@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "zero-distance",
     severity: Severity::Warning,
     summary: "a move over no distance does nothing",
+    seeks_names: false,
     check,
 };
 
@@ -33,17 +34,22 @@ mod tests {
     use crate::diagnostics::testing::{check, check_clean};
 
     fn program(actions: &str) -> String {
-        format!("wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has {{ a b }} wheels\nmovement m of r {{{actions}}}")
+        format!(
+            "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has {{ a b }} wheels\nmovement m of r {{{actions}}}"
+        )
     }
 
     #[test]
     fn the_move_is_removed() {
-        check(&program("\n  turn left // first\n  move 0.0 meters\n  move -0 meters at 4\n  slam\n"), &expect![[r#"
+        check(
+            &program("\n  turn left // first\n  move 0.0 meters\n  move -0 meters at 4\n  slam\n"),
+            &expect![[r#"
             warning[zero-distance] 6:8 "0.0" this move goes nowhere
               fix: remove the move -> 
             warning[zero-distance] 7:8 "-0" this move goes nowhere
               fix: remove the move -> 
-        "#]]);
+        "#]],
+        );
         check_clean(&program(" move 0.001 centimeters "));
     }
 }
