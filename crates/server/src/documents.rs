@@ -69,6 +69,9 @@ pub(crate) fn key(uri: &Uri) -> String {
 mod tests {
     use std::str::FromStr;
 
+    use proptest::prelude::*;
+    use tower_lsp::ls_types::{Position, Range};
+
     use super::*;
 
     #[test]
@@ -79,5 +82,59 @@ mod tests {
         assert_eq!(key("file://localhost/home/%C3%A9.pyr"), "/home/é.pyr");
         assert_eq!(key("file://server/share/x.pyr"), "//server/share/x.pyr");
         assert_eq!(key("untitled:Untitled-1"), "untitled:Untitled-1");
+    }
+
+    /// The offset of a position by the protocol's words, one character at a time.
+    fn naive_offset(text: &str, position: Position, encoding: Encoding) -> usize {
+        let mut lines = vec![0];
+        for (at, character) in text.char_indices() {
+            let next = text[at + character.len_utf8()..].chars().next();
+            if character == '\n' || (character == '\r' && next != Some('\n')) {
+                lines.push(at + 1);
+            }
+        }
+        let Some(&start) = lines.get(position.line as usize) else { return text.len() };
+        let mut units = 0;
+        for (at, character) in text[start..].char_indices() {
+            units += match encoding {
+                Encoding::Utf8 => character.len_utf8(),
+                Encoding::Utf16 => character.len_utf16(),
+                Encoding::Utf32 => 1,
+            };
+            if units > position.character as usize || matches!(character, '\n' | '\r') {
+                return start + at;
+            }
+        }
+        text.len()
+    }
+
+    fn position() -> impl Strategy<Value = Position> {
+        (0_u32..6, 0_u32..12).prop_map(|(line, character)| Position::new(line, character))
+    }
+
+    proptest! {
+        #[test]
+        fn changes_do_what_the_protocol_says(
+            text in "[a\r\n🤖é日]{0,24}",
+            changes in prop::collection::vec((position(), position(), "[b\r\n🤖é]{0,4}"), 1..6),
+            encoding in prop::sample::select(vec![Encoding::Utf8, Encoding::Utf16, Encoding::Utf32]),
+        ) {
+            let mut expected = text.clone();
+            let mut document = Document {
+                uri: Uri::from_str("file:///a.pyr").unwrap(),
+                version: 0,
+                text: Rope::from_str(&text),
+                file: None,
+                published: None,
+            };
+            for (a, b, new_text) in changes {
+                let (start, end) = (naive_offset(&expected, a, encoding), naive_offset(&expected, b, encoding));
+                expected.replace_range(start.min(end)..start.max(end), &new_text);
+                let range = Some(Range::new(a, b));
+                let change = TextDocumentContentChangeEvent { range, range_length: None, text: new_text };
+                document.apply(&change, encoding);
+                prop_assert_eq!(document.text.to_string(), expected.clone());
+            }
+        }
     }
 }

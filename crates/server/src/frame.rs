@@ -118,6 +118,8 @@ fn content_length(line: &[u8], anywhere: bool) -> Option<Header> {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     fn read(input: &[u8]) -> Vec<String> {
@@ -169,5 +171,20 @@ mod tests {
             assert!(read(&whole[..cut]).is_empty(), "after {cut} bytes");
         }
         assert!(read(b"Content-Length: 200000000\r\n\r\n{}").is_empty());
+    }
+
+    proptest! {
+        #[test]
+        fn any_bytes_are_read_to_their_end(bytes: Vec<u8>) {
+            let mut reader = FrameReader::new(&bytes[..]);
+            while reader.next().unwrap().is_some() {}
+        }
+
+        /// Garbage swallows nothing but, if it looks like a header, what it asked for.
+        #[test]
+        fn a_frame_after_garbage_is_found(garbage in "[a-zA-Z{}:\\- \n\u{e9}]{0,80}") {
+            let input = format!("{garbage}\r\n\r\nContent-Length: 2\r\n\r\n{{}}");
+            prop_assert_eq!(read(input.as_bytes()).pop(), Some("{}".to_owned()));
+        }
     }
 }

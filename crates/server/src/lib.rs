@@ -4,13 +4,14 @@
 //! `pydslrep-ide` and `pydslrep-script`, and turns their plain answers into messages. Must never have features of its
 //! own, nor know the simulator.
 //!
-//! * [`Server`] (`server.rs`) lists everything a client can ask for; each entry calls one plain function in
+//! * `Server` (`server.rs`) lists everything a client can ask for; each entry calls one plain function in
 //!   `handlers`, a function of the state and the request's parameters.
-//! * `message_loop` runs them. Its one guarantee: every handler runs, in arrival order, up to its first `.await`,
-//!   before the next message is looked at. The state is a plain mutex that is never held across an `.await`.
+//! * [`Session`] runs them. Its one guarantee: every handler runs, in arrival order, up to its first `.await`, before
+//!   the next message is looked at. The state is a plain mutex that is never held across an `.await`.
+//! * `message_loop` feeds a session from a stream; `process` finds the stream.
 //! * `positions` is the only place where lines and columns meet byte offsets.
 //!
-//! With the feature `process` off there is no runtime, no stdio and no socket, only the handlers.
+//! With the feature `process` off there is no runtime, no stdio and no socket: a browser feeds a session itself.
 
 mod capabilities;
 mod documents;
@@ -27,9 +28,10 @@ mod positions;
 #[cfg(feature = "process")]
 mod process;
 mod server;
+mod session;
 mod state;
 
 pub use message::Outbox;
 #[cfg(feature = "process")]
 pub use process::{run_socket, run_stdio};
-pub use server::Server;
+pub use session::{Ending, Session};

@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use tower_lsp::jsonrpc::{Error, Result};
+#[allow(clippy::wildcard_imports, reason = "this file names half of the protocol")]
 use tower_lsp::ls_types::*;
 use tower_lsp::{Client, LanguageServer};
 
@@ -15,10 +16,10 @@ use crate::state::State;
 
 /// The server's end of one session; clones share it.
 ///
-/// Every method changes or reads the state before it awaits anything. That, and the order in which the loop calls
+/// Every method changes or reads the state before it awaits anything. That, and the order in which the session calls
 /// them, is why an answer is always about the latest text the client sent before its question.
 #[derive(Debug, Clone)]
-pub struct Server {
+pub(crate) struct Server {
     state: Arc<Mutex<State>>,
     client: Client,
     outbox: Outbox,
@@ -26,7 +27,7 @@ pub struct Server {
 
 impl Server {
     /// A session that talks to `client`; notifications of ours go to `outbox`, in order with the answers.
-    pub fn new(client: Client, outbox: Outbox) -> Self {
+    pub(crate) fn new(client: Client, outbox: Outbox) -> Self {
         Self { state: Arc::default(), client, outbox }
     }
 
@@ -95,7 +96,7 @@ impl LanguageServer for Server {
     }
 }
 
-/// What happens between messages; the loop calls these.
+/// What happens between messages; the session calls these.
 impl Server {
     /// All messages that had arrived are handled: time to tell the client what they changed.
     pub(crate) fn settle(&self) {

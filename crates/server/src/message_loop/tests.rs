@@ -1,0 +1,345 @@
+//! The session and its loop together, over pipes in memory.
+
+use std::io::{Cursor, PipeReader, PipeWriter, pipe};
+use std::str::FromStr;
+use std::sync::{Arc, Mutex};
+use std::task::Poll;
+
+use pydslrep_analysis::Database;
+use serde_json::{Value, json};
+use tower_lsp::LspService;
+use tower_lsp::jsonrpc;
+use tower_lsp::ls_types::{TextDocumentIdentifier, Uri};
+
+use super::*;
+use crate::server::Server;
+
+const DOCUMENT: &str = "file:///tmp/a.pyr";
+
+/// Questions and misbehaviour that only tests have a use for.
+#[expect(clippy::unused_async, reason = "the router wants futures")]
+impl Server {
+    /// The text as the analysis has it.
+    async fn test_text(&self, document: TextDocumentIdentifier) -> jsonrpc::Result<String> {
+        let state = self.state();
+        let analysed = state.analysed(&document.uri).and_then(|(_, file)| state.database.text(file));
+        Ok(analysed.map(ToString::to_string).unwrap_or_default())
+    }
+
+    async fn test_panic(&self) -> jsonrpc::Result<()> {
+        let mut state = self.state();
+        state.database = Database::new();
+        panic!("on purpose");
+    }
+
+    async fn test_panic_later(&self) -> jsonrpc::Result<()> {
+        let mut waited = false;
+        std::future::poll_fn(|context| {
+            context.waker().wake_by_ref();
+            if std::mem::replace(&mut waited, true) { Poll::Ready(()) } else { Poll::Pending }
+        })
+        .await;
+        panic!("on purpose");
+    }
+
+    async fn test_panic_notified(&self) {
+        panic!("on purpose");
+    }
+
+    async fn test_forever(&self) -> jsonrpc::Result<()> {
+        std::future::pending().await
+    }
+}
+
+fn serve_in_test(input: impl Read, output: impl Write + Send + 'static) -> Ending {
+    let start = |outbox: Outbox, runtime: runtime::Handle| {
+        let (service, socket) = LspService::build(|client| Server::new(client, outbox.clone()))
+            .custom_method("test/text", Server::test_text)
+            .custom_method("test/panic", Server::test_panic)
+            .custom_method("test/panicLater", Server::test_panic_later)
+            .custom_method("test/panicNotified", Server::test_panic_notified)
+            .custom_method("test/forever", Server::test_forever)
+            .finish();
+        Session::of_service(
+            service,
+            socket,
+            outbox,
+            Box::new(move |unfinished| drop(runtime.spawn(unfinished))),
+        )
+    };
+    serve_with(input, output, start).unwrap()
+}
+
+fn frame(body: impl AsRef<[u8]>) -> Vec<u8> {
+    let body = body.as_ref();
+    [format!("Content-Length: {}\r\n\r\n", body.len()).as_bytes(), body].concat()
+}
+
+fn message(value: Value) -> Vec<u8> {
+    let Value::Object(mut fields) = value else { panic!("not a message") };
+    fields.insert("jsonrpc".to_owned(), json!("2.0"));
+    frame(Value::Object(fields).to_string())
+}
+
+fn request(id: i64, method: &str, params: impl Into<Value>) -> Vec<u8> {
+    message(json!({"id": id, "method": method, "params": params.into()}))
+}
+
+fn notification(method: &str, params: impl Into<Value>) -> Vec<u8> {
+    message(json!({"method": method, "params": params.into()}))
+}
+
+fn initialize() -> Vec<u8> {
+    let hello = request(0, "initialize", json!({"capabilities": {}}));
+    [hello, notification("initialized", json!({}))].concat()
+}
+
+fn open(text: &str) -> Vec<u8> {
+    let document = json!({"uri": DOCUMENT, "languageId": "pydslrep", "version": 1, "text": text});
+    notification("textDocument/didOpen", json!({"textDocument": document}))
+}
+
+fn insert(version: i32, line: u32, character: u32, text: &str) -> Vec<u8> {
+    let at = json!({"line": line, "character": character});
+    let changes = json!([{"range": {"start": at, "end": at}, "text": text}]);
+    let document = json!({"uri": DOCUMENT, "version": version});
+    notification("textDocument/didChange", json!({"textDocument": document, "contentChanges": changes}))
+}
+
+fn ask_text(id: i64) -> Vec<u8> {
+    request(id, "test/text", json!({"uri": DOCUMENT}))
+}
+
+fn goodbye() -> Vec<u8> {
+    [request(-1, "shutdown", Value::Null), notification("exit", Value::Null)].concat()
+}
+
+/// Output that can be looked at afterwards.
+#[derive(Clone, Default)]
+struct Shared(Arc<Mutex<Vec<u8>>>);
+
+impl Write for Shared {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.lock().unwrap().write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Sends everything in one write; returns all that came back.
+fn session(parts: &[Vec<u8>]) -> (Ending, Vec<Value>) {
+    let output = Shared::default();
+    let ending = serve_in_test(Cursor::new(parts.concat()), output.clone());
+    let bytes = output.0.lock().unwrap().clone();
+    let mut frames = FrameReader::new(&bytes[..]);
+    let mut messages = Vec::new();
+    while let Some(found) = frames.next().unwrap() {
+        let Frame::Body(body) = found else { panic!("a bad frame on the output") };
+        messages.push(serde_json::from_slice(&body).unwrap());
+    }
+    (ending, messages)
+}
+
+fn answer(messages: &[Value], id: i64) -> &Value {
+    let answers: Vec<_> = messages.iter().filter(|message| message["id"] == id).collect();
+    assert_eq!(answers.len(), 1, "answers to {id} in {messages:#?}");
+    answers[0]
+}
+
+fn error_code(messages: &[Value], id: i64) -> i64 {
+    answer(messages, id)["error"]["code"].as_i64().unwrap()
+}
+
+#[test]
+fn every_read_sees_exactly_the_changes_sent_before_it() {
+    let mut parts = vec![initialize(), open("")];
+    for change in 1..=1000 {
+        parts.push(insert(change + 1, 0, 0, if change % 2 == 0 { "é" } else { "🤖" }));
+        if change % 50 == 0 {
+            parts.push(ask_text(i64::from(change)));
+        }
+    }
+    parts.push(goodbye());
+    let (ending, messages) = session(&parts);
+    for change in (50..=1000).step_by(50) {
+        let text = answer(&messages, change)["result"].as_str().unwrap();
+        assert_eq!(text, "é🤖".repeat(usize::try_from(change).unwrap() / 2));
+    }
+    assert_eq!(ending, Ending::Orderly);
+}
+
+#[test]
+fn the_ending_is_orderly_only_after_shutdown() {
+    assert_eq!(session(&[initialize(), goodbye()]).0, Ending::Orderly);
+    assert_eq!(session(&[initialize(), notification("exit", Value::Null)]).0, Ending::Abrupt);
+    assert_eq!(session(&[notification("exit", Value::Null)]).0, Ending::Abrupt);
+    assert_eq!(session(&[initialize()]).0, Ending::Abrupt, "end of the input");
+    assert_eq!(session(&[initialize(), request(1, "shutdown", Value::Null)]).0, Ending::Abrupt);
+    assert_eq!(session(&[goodbye()]).0, Ending::Abrupt, "shutdown was refused before initialize");
+    assert_eq!(session(&[]).0, Ending::Abrupt);
+}
+
+#[test]
+fn exit_ends_the_session_while_the_input_stays_open_and_a_request_hangs() {
+    let (input, mut client) = pipe().unwrap();
+    client.write_all(&[initialize(), request(1, "test/forever", Value::Null), goodbye()].concat()).unwrap();
+    assert_eq!(serve_in_test(input, io::sink()), Ending::Orderly);
+    drop(client);
+}
+
+#[test]
+fn requests_out_of_turn_get_their_errors() {
+    let hover = json!({"textDocument": {"uri": DOCUMENT}, "position": {"line": 0, "character": 0}});
+    let (_, messages) = session(&[
+        request(1, "textDocument/hover", hover.clone()),
+        initialize(),
+        request(2, "no/suchMethod", json!({})),
+        request(3, "initialize", json!({"capabilities": {}})),
+        request(4, "textDocument/hover", json!({"nonsense": true})),
+        notification("no/suchNotification", json!({})),
+        notification("$/optional", json!({})),
+        request(5, "shutdown", Value::Null),
+        request(6, "textDocument/hover", hover),
+    ]);
+    let codes: Vec<_> = (1..=6).filter(|&id| id != 5).map(|id| error_code(&messages, id)).collect();
+    assert_eq!(codes, [-32002, -32601, -32600, -32602, -32600]);
+    assert_eq!(answer(&messages, 5)["result"], Value::Null);
+    assert_eq!(messages.len(), 7, "{messages:#?}");
+}
+
+#[test]
+fn malformed_input_is_answered_and_the_session_goes_on() {
+    let (ending, messages) = session(&[
+        initialize(),
+        open("text"),
+        frame("{"),
+        frame(b"{\"jsonrpc\":\"2.0\",\"method\":\"\xff\"}"),
+        frame("[]"),
+        frame(r#"{"hello":"world"}"#),
+        b"Content-Length: x\r\n\r\n{\"garbage\":1}".to_vec(),
+        message(json!({"id": 77, "result": "to nothing that was asked"})),
+        message(json!({"id": "what", "error": {"code": 1, "message": "m"}})),
+        ask_text(1),
+        goodbye(),
+    ]);
+    let refused: Vec<_> = messages
+        .iter()
+        .filter(|message| message["id"].is_null())
+        .map(|m| m["error"]["code"].clone())
+        .collect();
+    assert_eq!(refused, [-32700, -32700, -32600, -32600, -32700].map(Value::from));
+    assert_eq!(answer(&messages, 1)["result"], "text");
+    assert_eq!(ending, Ending::Orderly);
+}
+
+#[test]
+fn a_panic_answers_its_request_and_nothing_else() {
+    let (ending, messages) = session(&[
+        initialize(),
+        open("text"),
+        request(1, "test/panic", Value::Null),
+        notification("test/panicNotified", Value::Null),
+        insert(2, 0, 4, "!"),
+        ask_text(2),
+        // The same id once more: nothing of the first is left.
+        request(1, "test/panic", Value::Null),
+        goodbye(),
+    ]);
+    let panics: Vec<_> = messages.iter().filter(|message| message["id"] == 1).collect();
+    assert_eq!(panics.len(), 2);
+    for panic in panics {
+        assert_eq!(panic["error"]["code"], -32603);
+        assert!(panic["error"]["message"].as_str().unwrap().contains("test/panic: on purpose"));
+    }
+    assert_eq!(answer(&messages, 2)["result"], "text!");
+    assert_eq!(ending, Ending::Orderly);
+}
+
+/// A client that reads answers while it goes on writing.
+struct Conversation {
+    client: PipeWriter,
+    answers: FrameReader<PipeReader>,
+    server: thread::JoinHandle<Ending>,
+}
+
+impl Conversation {
+    fn start() -> Self {
+        let (input, client) = pipe().unwrap();
+        let (answers, output) = pipe().unwrap();
+        let server = thread::spawn(|| serve_in_test(input, output));
+        let mut conversation = Self { client, answers: FrameReader::new(answers), server };
+        conversation.say(&initialize());
+        assert_eq!(conversation.hear()["id"], 0);
+        conversation
+    }
+
+    fn say(&mut self, bytes: &[u8]) {
+        self.client.write_all(bytes).unwrap();
+    }
+
+    /// The next answer, whatever notifications come before it.
+    fn hear(&mut self) -> Value {
+        loop {
+            let Some(Frame::Body(body)) = self.answers.next().unwrap() else { panic!("no answer") };
+            let message: Value = serde_json::from_slice(&body).unwrap();
+            if message["method"].is_null() {
+                return message;
+            }
+        }
+    }
+}
+
+#[test]
+fn slow_requests_hold_up_nothing_and_can_be_cancelled() {
+    let mut conversation = Conversation::start();
+    let slow: Vec<u8> = (1..=10).flat_map(|id| request(id, "test/forever", Value::Null)).collect();
+    conversation.say(&[slow, open("a"), insert(2, 0, 1, "b"), ask_text(99)].concat());
+    assert_eq!(conversation.hear(), json!({"jsonrpc": "2.0", "id": 99, "result": "ab"}));
+    let cancel: Vec<u8> =
+        (1..=10).flat_map(|id| notification("$/cancelRequest", json!({"id": id}))).collect();
+    conversation.say(&cancel);
+    let mut cancelled: Vec<_> = (1..=10)
+        .map(|_| conversation.hear())
+        .map(|answer| (answer["id"].as_i64().unwrap(), answer["error"]["code"].as_i64().unwrap()))
+        .collect();
+    cancelled.sort_unstable();
+    assert_eq!(cancelled, (1..=10).map(|id| (id, -32800)).collect::<Vec<_>>());
+    conversation.say(&goodbye());
+    assert_eq!(conversation.server.join().unwrap(), Ending::Orderly);
+}
+
+#[test]
+fn a_panic_after_an_await_is_contained_too() {
+    let mut conversation = Conversation::start();
+    conversation.say(&request(1, "test/panicLater", Value::Null));
+    assert_eq!(conversation.hear()["error"]["code"], -32603);
+    conversation.say(&[open("still here"), ask_text(2)].concat());
+    assert_eq!(conversation.hear()["result"], "still here");
+}
+
+#[test]
+fn a_client_may_write_much_before_it_reads() {
+    let mut conversation = Conversation::start();
+    // More answers than a pipe holds, none of them read yet.
+    conversation.say(&open(&"wheel ".repeat(10_000)));
+    for id in 1..=100 {
+        conversation.say(&ask_text(id));
+    }
+    for id in 1..=100 {
+        assert_eq!(conversation.hear()["id"], id);
+    }
+}
+
+#[test]
+fn documents_are_known_by_any_spelling_of_their_address() {
+    let uri = Uri::from_str("file:///c%3A/a.pyr").unwrap();
+    let document = json!({"uri": uri.as_str(), "languageId": "pydslrep", "version": 1, "text": "x"});
+    let (_, messages) = session(&[
+        initialize(),
+        notification("textDocument/didOpen", json!({"textDocument": document})),
+        request(1, "test/text", json!({"uri": "file:///C:/a.pyr"})),
+    ]);
+    assert_eq!(answer(&messages, 1)["result"], "x");
+}

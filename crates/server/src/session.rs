@@ -1,0 +1,177 @@
+//! One client's session: messages in, handlers run, answers out, without threads, streams or clocks.
+//!
+//! Every handler runs, in arrival order, up to its first `.await`, before the next message is looked at; what is then
+//! still unfinished is handed to the caller to run to its end. A panic answers its request with an error and nothing
+//! else; a message that is none is answered too.
+
+use std::any::Any;
+use std::fmt;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::task::{Context, Poll, Waker};
+
+use futures::future::BoxFuture;
+use futures::{FutureExt, SinkExt, StreamExt};
+use tower_lsp::jsonrpc::{ErrorCode, Id, Request, Response};
+use tower_lsp::{ClientSocket, ExitedError, LspService};
+use tower_service::Service;
+
+use crate::message::{Incoming, Outbox, parse, refuse};
+use crate::server::{Server, log};
+
+/// How a session ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ending {
+    /// `shutdown`, then `exit`.
+    Orderly,
+    /// `exit` without `shutdown`, or the end of the input.
+    Abrupt,
+}
+
+/// Runs a future to its end, somewhere else.
+type Spawn = Box<dyn Fn(BoxFuture<'static, ()>)>;
+
+type Reply = Result<Option<Response>, ExitedError>;
+
+/// One client's session.
+pub struct Session {
+    service: LspService<Server>,
+    server: Server,
+    responses: Box<dyn FnMut(Response)>,
+    spawn: Spawn,
+    outbox: Outbox,
+    shut_down: bool,
+}
+
+impl fmt::Debug for Session {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Session").field("server", &self.server).finish_non_exhaustive()
+    }
+}
+
+impl Session {
+    /// A session whose messages to the client go to `outbox`. `spawn` runs what outlasts the message that began it.
+    pub fn new(outbox: Outbox, spawn: impl Fn(BoxFuture<'static, ()>) + 'static) -> Self {
+        let (service, socket) = LspService::new(|client| Server::new(client, outbox.clone()));
+        Self::of_service(service, socket, outbox, Box::new(spawn))
+    }
+
+    /// A session with a service of the caller's making.
+    pub(crate) fn of_service(
+        service: LspService<Server>,
+        socket: ClientSocket,
+        outbox: Outbox,
+        spawn: Spawn,
+    ) -> Self {
+        let (requests, mut responses) = socket.split();
+        let forward = outbox.clone();
+        let forwarding = requests.for_each(move |request| {
+            forward.send(&request);
+            std::future::ready(())
+        });
+        spawn(forwarding.boxed());
+        let server = service.inner().clone();
+        let responses = Box::new(move |response| {
+            let _ = responses.send(response).now_or_never();
+        });
+        Self { service, server, responses, spawn, outbox, shut_down: false }
+    }
+
+    /// Handles one message, the bytes of a frame; says how the session ended, if it did.
+    pub fn handle(&mut self, body: &[u8]) -> Option<Ending> {
+        match parse(body) {
+            Ok(Incoming::Request(request)) if request.method() == "exit" => {
+                return Some(if self.shut_down { Ending::Orderly } else { Ending::Abrupt });
+            }
+            Ok(Incoming::Request(request)) => self.call(request),
+            Ok(Incoming::Response(response)) => self.pass_on(response),
+            Err(refusal) => self.outbox.send(&refusal),
+        }
+        None
+    }
+
+    /// Answers input that is no message at all.
+    pub fn refuse(&self, reason: &str) {
+        self.outbox.send(&refuse(Id::Null, ErrorCode::ParseError, reason.to_owned()));
+    }
+
+    /// To be called when all messages that had arrived are handled: tells the client what they changed.
+    pub fn settle(&self) {
+        if let Err(panic) = catch_unwind(AssertUnwindSafe(|| self.server.settle())) {
+            report_panic(&self.server, &self.outbox, "diagnostics", None, panic.as_ref());
+        }
+    }
+
+    /// Runs a handler up to its first `.await`; hands over what remains.
+    fn call(&mut self, request: Request) {
+        let id = request.id().cloned();
+        let method = request.method().to_owned();
+        let started = catch_unwind(AssertUnwindSafe(|| {
+            let mut running = self.service.call(request);
+            let mut unheard = Context::from_waker(Waker::noop());
+            match running.poll_unpin(&mut unheard) {
+                Poll::Ready(reply) => Ok(reply),
+                Poll::Pending => Err(running),
+            }
+        }));
+        match started {
+            Ok(Ok(reply)) => {
+                self.shut_down |=
+                    method == "shutdown" && matches!(&reply, Ok(Some(answer)) if answer.is_ok());
+                send_reply(&self.outbox, reply);
+            }
+            Ok(Err(running)) => self.finish_elsewhere(running, method, id),
+            Err(panic) => {
+                self.forget(id.as_ref());
+                report_panic(&self.server, &self.outbox, &method, id, panic.as_ref());
+            }
+        }
+    }
+
+    fn finish_elsewhere(&self, running: BoxFuture<'static, Reply>, method: String, id: Option<Id>) {
+        let (server, outbox) = (self.server.clone(), self.outbox.clone());
+        let finish = async move {
+            match AssertUnwindSafe(running).catch_unwind().await {
+                Ok(reply) => send_reply(&outbox, reply),
+                Err(panic) => report_panic(&server, &outbox, &method, id, panic.as_ref()),
+            }
+        };
+        (self.spawn)(finish.boxed());
+    }
+
+    /// The router remembers a request until its handler returns, which one that panicked never does.
+    fn forget(&mut self, id: Option<&Id>) {
+        if let Some(id) = id.and_then(|id| serde_json::to_value(id).ok()) {
+            let cancel = Request::build("$/cancelRequest").params(serde_json::json!({ "id": id })).finish();
+            let _ = self.service.call(cancel).now_or_never();
+        }
+    }
+
+    fn pass_on(&mut self, response: Response) {
+        if catch_unwind(AssertUnwindSafe(|| (self.responses)(response))).is_err() {
+            log(format_args!("an answer from the client to nothing that was asked"));
+        }
+    }
+}
+
+fn send_reply(outbox: &Outbox, reply: Reply) {
+    if let Ok(Some(response)) = reply {
+        outbox.send(&response);
+    }
+}
+
+/// The panic itself, with its place, is on standard error already.
+fn report_panic(server: &Server, outbox: &Outbox, method: &str, id: Option<Id>, panic: &(dyn Any + Send)) {
+    let words = panic
+        .downcast_ref::<&str>()
+        .copied()
+        .or_else(|| panic.downcast_ref::<String>().map(String::as_str))
+        .unwrap_or("no message");
+    let message = format!("a defect of the server in {method}: {words}; the session goes on");
+    log(format_args!("{message}"));
+    if let Some(id) = id {
+        outbox.send(&refuse(id, ErrorCode::InternalError, message));
+    }
+    if catch_unwind(AssertUnwindSafe(|| server.recover())).is_err() {
+        log(format_args!("and another one while starting afresh"));
+    }
+}
