@@ -3,15 +3,17 @@
 //! Knows numbers only. Must never know the language, files, clocks or threads.
 //! Units everywhere: metres, seconds, radians; x forward, y left, θ counter-clockwise.
 //!
-//! Equation numbers are those of the article "PyDSLRep" (equations 1 to 6):
+//! The formulas for two wheels are equations 1 to 6 of the article "PyDSLRep: A domain-specific language for
+//! robotic simulation in V-Rep" (doi 10.1371/journal.pone.0235271), with rim speeds `v_l` and `v_r`,
+//! wheel radius r and wheel separation d:
 //!
-//! | equation | here |
+//! | formula | here |
 //! |---|---|
-//! | 1, 2: v = (v_r + v_l)/2, ω = (v_r − v_l)/d | [`Model::forward`] |
-//! | 3: R = d (v_l + v_r) / (2 (v_r − v_l)) | [`Twist::turning_radius`] |
-//! | 4: centre of rotation (x − R sin θ, y + R cos θ) | [`Pose::centre_of_rotation`] |
-//! | 5: the pose after turning about it by ωΔt | [`Pose::advance`] |
-//! | 6: v_r,l = v ± ω d/2, wheel rate v/r | [`Model::inverse`] |
+//! | v = (`v_r` + `v_l`)/2, ω = (`v_r` − `v_l`)/d | [`Model::forward`] |
+//! | R = d (`v_l` + `v_r`) / (2 (`v_r` − `v_l`)) | [`Twist::turning_radius`] |
+//! | centre of rotation (x − R sin θ, y + R cos θ) | [`Pose::centre_of_rotation`] |
+//! | the pose after turning about it by ωΔt | [`Pose::advance`] |
+//! | `v_r` = v + ω d/2, `v_l` = v − ω d/2, wheel rate v/r | [`Model::inverse`] |
 
 mod drive;
 mod model;

@@ -114,15 +114,20 @@ impl Model {
         &self.radii
     }
 
-    /// Wheel rates (rad/s, in the order of [`Drive`]) for a twist: rim speeds by equation 6, for mecanum wheels
-    /// lf = vx − vy − Kω, rf = vx + vy + Kω, lr = vx + vy − Kω, rr = vx − vy + Kω with K = (wheelbase + track)/2;
-    /// each divided by that wheel's own radius. Layouts without sideways motion ignore `vy`.
+    /// Wheel rates (rad/s, in the order of [`Drive`]) for a twist.
+    ///
+    /// Rim speeds are v ± ω d/2 (equations 1 to 6 of the article), for mecanum wheels lf = vx − vy − Kω,
+    /// rf = vx + vy + Kω, lr = vx + vy − Kω, rr = vx − vy + Kω with K = (wheelbase + track)/2 (Lynch and Park,
+    /// "Modern Robotics", 13.2); each is divided by that wheel's own radius. Layouts that cannot move sideways
+    /// ignore `vy`.
     pub fn inverse(&self, twist: Twist) -> Vec<f64> {
         self.rim_speeds(twist).iter().zip(&self.radii).map(|(rim, radius)| rim / radius).collect()
     }
 
-    /// The twist for wheel rates (rad/s, in the order of [`Drive`]; missing ones count as 0): equations 1 and 2,
-    /// for more wheels than degrees of freedom their least-squares solution.
+    /// The twist for wheel rates (rad/s, in the order of [`Drive`]; missing ones count as 0).
+    ///
+    /// v = (right + left)/2 and ω = (right − left)/d of the rim speeds (equations 1 to 6 of the article); with more
+    /// wheels than degrees of freedom the least-squares solution.
     pub fn forward(&self, rates: &[f64]) -> Twist {
         let rim = DVector::from_fn(self.radii.len(), |i, _| rates.get(i).unwrap_or(&0.0) * self.radii[i]);
         // The columns are orthogonal, so the pseudo-inverse is a projection on each of them.

@@ -25,8 +25,9 @@ pub struct Twist {
 }
 
 impl Twist {
-    /// The signed distance R from the body to its centre of rotation, to the left, in metres (equation 3);
-    /// `None` while the body does not turn. Sideways motion moves the centre fore or aft, not to the side.
+    /// The signed distance R from the body to its centre of rotation, to the left, in metres (R of the
+    /// article's equations 1 to 6); `None` while the body does not turn. Sideways motion moves the centre fore or
+    /// aft, not to the side.
     pub fn turning_radius(&self) -> Option<f64> {
         (self.omega != 0.0).then(|| self.vx / self.omega)
     }
@@ -40,9 +41,9 @@ impl Pose {
 
     /// The pose after `seconds` of a constant twist.
     ///
-    /// Exact: the body turns about its centre of rotation by ωΔt (equation 5, with sideways motion the
-    /// exponential map of SE(2), Lynch and Park, "Modern Robotics", 3.3.3). With a = ωΔt the displacement is
-    /// (sin a / a, (1 − cos a) / a) applied to the velocity; the second factor is computed as
+    /// Exact: the body turns about its centre of rotation by ωΔt (the article's equations 1 to 6; with sideways
+    /// motion the exponential map of SE(2), Lynch and Park, "Modern Robotics", 3.3.3). With a = ωΔt the
+    /// displacement is (sin a / a, (1 − cos a) / a) applied to the velocity; the second factor is computed as
     /// sin(a/2) · sin(a/2)/(a/2), which unlike 1 − cos a cancels nothing, so ω → 0 loses no precision.
     #[must_use]
     pub fn advance(&self, twist: Twist, seconds: f64) -> Self {
@@ -82,8 +83,8 @@ impl Pose {
         (other.x - self.x).hypot(other.y - self.y)
     }
 
-    /// The point a body here turns about, in metres: (x − R sin θ, y + R cos θ) of equation 4, moved along the
-    /// heading by −vy/ω for sideways motion; `None` while it does not turn.
+    /// The point a body here turns about, in metres: (x − R sin θ, y + R cos θ) of the article's equations 1 to
+    /// 6, moved along the heading by −vy/ω for sideways motion; `None` while it does not turn.
     pub fn centre_of_rotation(&self, twist: Twist) -> Option<(f64, f64)> {
         let radius = twist.turning_radius()?;
         let along = -twist.vy / twist.omega;
@@ -191,7 +192,9 @@ mod tests {
         }
 
         #[test]
-        fn slowing_turns_become_the_straight_line_smoothly(start in poses(), vx in -1.0..1.0, vy in -1.0..1.0, exponent in 3..300i32) {
+        fn slowing_turns_become_the_straight_line_smoothly(
+            start in poses(), vx in -1.0..1.0, vy in -1.0..1.0, exponent in 3..300i32,
+        ) {
             let omega = 10f64.powi(-exponent);
             let straight = start.advance(Twist { vx, vy, omega: 0.0 }, 1.0);
             let curved = start.advance(Twist { vx, vy, omega }, 1.0);
