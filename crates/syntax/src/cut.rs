@@ -58,7 +58,8 @@ fn is_string(token: Token) -> bool {
 }
 
 fn closes_list(previous: Option<Token>, next: Option<Token>) -> bool {
-    previous == Some(Token::CloseBrace) && !next.is_some_and(|token| token.is_name() && token != Token::Import)
+    previous == Some(Token::CloseBrace)
+        && !next.is_some_and(|token| token.is_name() && token != Token::Import)
 }
 
 #[cfg(test)]

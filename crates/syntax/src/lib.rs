@@ -19,7 +19,7 @@ mod token;
 pub use cut::cut;
 pub use error::{Expected, Found, SyntaxError, SyntaxErrorKind};
 pub use lexer::{Lexeme, lex};
-pub use parser::{Parse, Parser, parse};
+pub use parser::{Parse, expected_after, parse};
 pub use span::Span;
 pub use spelling::{closest, is_similar};
 pub use token::{EntityKind, KEYWORDS, Token, TokenSet};

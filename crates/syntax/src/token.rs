@@ -150,6 +150,8 @@ pub enum Token {
     Import,
     /// Characters no token starts with; adjacent ones are one token.
     Invalid,
+    /// Never in a text: fits nowhere, so that the parser says what would. See [`crate::expected_after`].
+    Cursor,
 }
 
 /// Every word with a meaning of its own, in the order of the language's contract; the last three are contextual:
@@ -342,6 +344,6 @@ mod tests {
         let listed: Vec<u8> = KEYWORDS.iter().map(|(token, _)| *token as u8).collect();
         let all: Vec<u8> = (first..Token::Invalid as u8).collect();
         assert_eq!(listed, all);
-        assert!((Token::Invalid as u8) < 64, "a token set is one word");
+        assert!((Token::Cursor as u8) < 64, "a token set is one word");
     }
 }

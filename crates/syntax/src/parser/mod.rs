@@ -18,7 +18,7 @@ use smol_str::SmolStr;
 
 use self::slot::Fault;
 use crate::ast::Entity;
-use crate::{EntityKind, Lexeme, Span, SyntaxError, Token, cut, lex};
+use crate::{EntityKind, Expected, Lexeme, Span, SyntaxError, Token, cut, lex};
 
 type Input<'s> = MappedInput<'s, Token, Span, &'s [Lexeme]>;
 type Extra<'s> = extra::Full<Fault, SimpleState<&'s str>, ()>;
@@ -60,6 +60,26 @@ pub fn parse(text: &str) -> Vec<(Span, Parse)> {
     parse_pieces(text, &bounds)
 }
 
+/// What could stand behind these tokens of one entity, each kind of thing once; `lexemes` are places in `text`. This is
+/// the grammar's own answer: the parser is asked what it expects at a token that fits nowhere.
+pub fn expected_after(text: &str, lexemes: &[Lexeme]) -> Vec<Expected> {
+    let mut tokens = without_trivia(lexemes);
+    if tokens.is_empty() {
+        return vec![Expected::Declaration];
+    }
+    let cursor = tokens.last().map_or(0, |(_, span)| span.end);
+    tokens.push((Token::Cursor, Span::at(cursor)));
+    let (_, faults) = Parser::new().run(text, &tokens);
+    let expected = faults.iter().find_map(|fault| match fault {
+        Fault::Expected { at, expected } if at.start >= cursor => Some(expected.clone()),
+        _ => None,
+    });
+    let mut expected = expected.unwrap_or_default();
+    expected.sort_unstable();
+    expected.dedup();
+    expected
+}
+
 fn parse_pieces(text: &str, bounds: &[(&[Lexeme], Span)]) -> Vec<(Span, Parse)> {
     let relative: Vec<Box<[Lexeme]>> =
         bounds.iter().map(|(lexemes, span)| relocate(lexemes, span.start)).collect();
@@ -92,7 +112,7 @@ fn without_trivia(lexemes: &[Lexeme]) -> Vec<Lexeme> {
 }
 
 /// The grammar's rules, each built when it is first needed: building one costs more than parsing an entity with it.
-pub struct Parser<'s> {
+struct Parser<'s> {
     rules: [Option<Rule<'s, Option<Entity>>>; RULES],
 }
 

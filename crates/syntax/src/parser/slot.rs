@@ -101,7 +101,7 @@ pub(super) fn keyword<'s>(word: Token, next: TokenSet, later: TokenSet) -> Rule<
     let exact = just(word).map_with(|_, extra| extra.span());
     let misspelt = misspelling(word);
     let replaced = any()
-        .filter(move |token: &Token| !later.has(*token) || token.is_name())
+        .filter(move |token: &Token| (!later.has(*token) || token.is_name()) && !CURSOR.has(*token))
         .then_ignore(one_in(next).rewind())
         .validate(|_, extra, emitter| emitter.emit(Fault::Skipped(extra.span())));
     exact
@@ -135,7 +135,7 @@ fn skip_to<'s>(until: TokenSet) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + C
 /// Like [`skip_to`], but there must be something to pass over.
 pub(super) fn skip_some<'s>(until: TokenSet) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
     let skipped = any()
-        .filter(move |token: &Token| !until.has(*token))
+        .filter(move |token: &Token| !until.or(CURSOR).has(*token))
         .repeated()
         .at_least(1)
         .map_with(|(), extra: &mut MapExtra<'s, '_, Input<'s>, Extra<'s>>| extra.span());
@@ -161,6 +161,9 @@ fn one_in<'s>(set: TokenSet) -> impl Parser<'s, Input<'s>, Token, Extra<'s>> + C
 pub(super) fn nothing_more<'s>() -> Rule<'s, ()> {
     end().labelled(Expected::Declaration).recover_with(via_parser(skip_to(TokenSet::default()))).boxed()
 }
+
+/// Nothing passes over the cursor: what could stand there is what was asked.
+const CURSOR: TokenSet = TokenSet::of(&[Token::Cursor]);
 
 /// The first tokens of a name.
 pub(super) const NAME: TokenSet = TokenSet::of(&[Token::Name, Token::Distance, Token::Bumper, Token::Import]);

@@ -276,6 +276,37 @@ fn signs_that_are_none() {
     );
 }
 
+fn check_expected(text: &str, expected: &Expect) {
+    expected.assert_eq(&format!("{:?}", expected_after(text, &lex(text))));
+}
+
+#[test]
+fn the_grammar_says_what_can_follow() {
+    check_expected("", &expect!["[Declaration]"]);
+    check_expected("wheel", &expect!["[NameOf(Wheel)]"]);
+    check_expected("wheel a", &expect!["[Word(With)]"]);
+    check_expected("wheel a with radius 4", &expect!["[Declaration]"]);
+    check_expected("sensor s", &expect!["[Word(Colon), Declaration]"]);
+    check_expected("sensor s :", &expect!["[Word(Distance), Word(Bumper)]"]);
+    check_expected("robot r", &expect!["[Word(With), Word(Type)]"]);
+    check_expected("robot r type", &expect!["[Word(Tw), Word(Fw), Word(Fwh)]"]);
+    check_expected("robot r with", &expect!["[Word(Port)]"]);
+    check_expected("robot r with port 1 has {", &expect!["[Word(CloseBrace), ReferenceTo(Wheel)]"]);
+    check_expected("robot r with port 1 has { a", &expect!["[Word(CloseBrace), Word(Comma), ReferenceTo(Wheel)]"]);
+    check_expected("robot r with port 1 has { a b } wheels", &expect!["[Word(With), Declaration]"]);
+    check_expected("robot r with port 1 has { a b } wheels with sensors {", &expect!["[Word(CloseBrace), ReferenceTo(Sensor)]"]);
+    check_expected("movement m of", &expect!["[ReferenceTo(Robot)]"]);
+    check_expected("movement m of r {", &expect!["[Word(CloseBrace), Action]"]);
+    check_expected("movement m of r { move 4", &expect!["[Word(Meters), Word(Centimeters)]"]);
+    check_expected("movement m of r { move 4 meters", &expect!["[Word(CloseBrace), Word(At), Action]"]);
+    check_expected("movement m of r { turn left", &expect!["[Word(CloseBrace), Word(Until), Angle, Action]"]);
+    check_expected("movement m of r { turn left until { s", &expect!["[Word(CloseBrace), Word(Comma), ReferenceTo(Sensor)]"]);
+    check_expected("environment e", &expect!["[Word(Comma), Word(With), Word(Has)]"]);
+    check_expected("environment e has { r } robots with {", &expect!["[Word(CloseBrace), ReferenceTo(Movement)]"]);
+    // A mistake before the cursor does not change what fits at it.
+    check_expected("robot r tpye tw with port has { a } wheel with", &expect!["[Word(Sensors)]"]);
+}
+
 proptest! {
     #[test]
     fn any_text_is_parsed_and_tiled(text in any_text()) {
