@@ -4,7 +4,7 @@ use pydslrep_kinematics::{Pose, angle_between};
 use svg::node::element::{Group, Rectangle};
 
 use super::view::is_finite;
-use super::{END_FILL, INK, QUIET, Route, colour, line, pixels, shorten, text};
+use super::{DRIVEN_OPACITY, DRIVEN_WIDTH, END_FILL, INK, QUIET, Route, colour, line, pixels, shorten, text};
 
 /// Pixels.
 pub(super) const WIDTH: f64 = 252.0;
@@ -59,7 +59,7 @@ fn key(routes: &[Route], left: f64, top: f64) -> Group {
         samples.push(("planned", Box::new(dashed)));
     }
     if routes.iter().any(|route| !route.driven.is_empty()) {
-        samples.push(("driven", Box::new(stroke(3.5))));
+        samples.push(("driven", Box::new(stroke(DRIVEN_WIDTH).set("stroke-opacity", DRIVEN_OPACITY))));
     }
     if !routes.is_empty() {
         samples.push(("at the start", Box::new(outline(0.0, 1.2))));

@@ -33,6 +33,10 @@ const FINENESS: f64 = 0.7;
 /// How dark the body at the end is.
 const END_FILL: f64 = 0.22;
 
+/// The driven line, pixels, and how dark it is: the dashes of the planned one must stand out on it.
+const DRIVEN_WIDTH: f64 = 5.0;
+const DRIVEN_OPACITY: f64 = 0.6;
+
 /// How wide a letter of the title is at most, pixels.
 const TITLE_LETTER: f64 = 12.0;
 
@@ -155,7 +159,10 @@ fn tick_label(tick: f64, step: f64) -> String {
 
 /// The driven line in the robot's colour, and on it the planned one, dashed.
 fn lines(view: &View, route: &Route, colour: &str) -> Group {
-    let driven = polyline(view, &route.driven).set("stroke", colour).set("stroke-width", 3.5);
+    let driven = polyline(view, &route.driven)
+        .set("stroke", colour)
+        .set("stroke-width", DRIVEN_WIDTH)
+        .set("stroke-opacity", DRIVEN_OPACITY);
     let stroke = if route.driven.is_empty() { colour } else { INK };
     let planned = polyline(view, &route.planned)
         .set("stroke", stroke)
