@@ -19,5 +19,5 @@ mod resolve;
 
 pub use database::{Database, EditCounts, EntityId, EntityRef, FileId, Resolution};
 pub use diagnostic::{Diagnostic, Edit, Fix, Related, Severity};
-pub use plan::{plan, scene};
+pub use plan::{plan, plan_movement, scene};
 pub use resolve::Blocked;

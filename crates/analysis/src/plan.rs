@@ -38,6 +38,18 @@ pub fn plan(
         .unwrap_or(kinematics::Plan { robots: Vec::new(), duration: None }))
 }
 
+/// The path of one movement alone, from the origin at time 0, with a robot of default size.
+///
+/// # Errors
+/// When the robot cannot drive, because a radius is not above zero.
+pub fn plan_movement(
+    driven: &Robot,
+    movement: &Movement,
+) -> Result<kinematics::RobotPath, kinematics::ModelError> {
+    let model = robot(driven).model()?;
+    Ok(kinematics::plan_movement(&model, kinematics::Pose::default(), &run(movement).actions))
+}
+
 fn run(movement: &Movement) -> kinematics::Run {
     let actions = movement.actions.iter().map(|action| step(&action.kind)).collect();
     kinematics::Run { robot: movement.robot, actions }

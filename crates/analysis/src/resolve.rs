@@ -65,6 +65,19 @@ impl Database {
         }
     }
 
+    /// A robot with all its parts; `None` where one is missing or broken.
+    pub fn robot(&self, id: EntityId) -> Option<Robot> {
+        Parts { database: self, file: self.file_of(id) }.robot(id)
+    }
+
+    /// A movement with its robot, whose index in it is 0; `None` where something is missing or broken.
+    pub fn movement(&self, id: EntityId) -> Option<(Robot, Movement)> {
+        let parts = Parts { database: self, file: self.file_of(id) };
+        let Entity::Movement(tree) = self.tree(id)? else { return None };
+        let robot = parts.resolve(id, EntityKind::Robot, tree.robot.as_ref()?)?;
+        Some((parts.robot(robot)?, parts.movement(id, &[robot])?))
+    }
+
     /// The wheel layout of a robot: its type, else what its wheels make it. Four mecanum wheels are never `fw`.
     pub fn drive(&self, robot: EntityId) -> Option<Drive> {
         let file = self.file_of(robot)?;

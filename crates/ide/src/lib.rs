@@ -1,1 +1,35 @@
-//! To be written.
+//! Editor features, one file each: a database and a place in, plain structs out.
+//!
+//! Knows `analysis` and what lies below it. Must never know the editors' protocol, lines and columns (places are byte
+//! offsets), files on a disk, or threads.
+
+mod completion;
+mod cursor;
+mod definition;
+mod hover;
+mod quick_fixes;
+mod reference;
+mod semantic_tokens;
+mod symbols;
+
+#[cfg(test)]
+mod fixture;
+
+pub use completion::{Completion, CompletionKind, completions};
+pub use definition::{Definition, Target, goto_definition};
+pub use hover::{Hover, hover};
+pub use quick_fixes::{QuickFix, quick_fixes};
+pub use reference::{KeywordPage, keyword_page};
+pub use semantic_tokens::{Modifier, SemanticToken, TokenKind, semantic_tokens};
+pub use symbols::{Symbol, SymbolKind, document_symbols};
+
+use pydslrep_analysis::FileId;
+
+/// A place in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FilePosition {
+    /// Which file.
+    pub file: FileId,
+    /// Bytes from its start.
+    pub offset: u32,
+}

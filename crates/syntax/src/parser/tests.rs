@@ -292,17 +292,29 @@ fn the_grammar_says_what_can_follow() {
     check_expected("robot r type", &expect!["[Word(Tw), Word(Fw), Word(Fwh)]"]);
     check_expected("robot r with", &expect!["[Word(Port)]"]);
     check_expected("robot r with port 1 has {", &expect!["[Word(CloseBrace), ReferenceTo(Wheel)]"]);
-    check_expected("robot r with port 1 has { a", &expect!["[Word(CloseBrace), Word(Comma), ReferenceTo(Wheel)]"]);
+    check_expected(
+        "robot r with port 1 has { a",
+        &expect!["[Word(CloseBrace), Word(Comma), ReferenceTo(Wheel)]"],
+    );
     check_expected("robot r with port 1 has { a b } wheels", &expect!["[Word(With), Declaration]"]);
-    check_expected("robot r with port 1 has { a b } wheels with sensors {", &expect!["[Word(CloseBrace), ReferenceTo(Sensor)]"]);
+    check_expected(
+        "robot r with port 1 has { a b } wheels with sensors {",
+        &expect!["[Word(CloseBrace), ReferenceTo(Sensor)]"],
+    );
     check_expected("movement m of", &expect!["[ReferenceTo(Robot)]"]);
     check_expected("movement m of r {", &expect!["[Word(CloseBrace), Action]"]);
     check_expected("movement m of r { move 4", &expect!["[Word(Meters), Word(Centimeters)]"]);
     check_expected("movement m of r { move 4 meters", &expect!["[Word(CloseBrace), Word(At), Action]"]);
     check_expected("movement m of r { turn left", &expect!["[Word(CloseBrace), Word(Until), Angle, Action]"]);
-    check_expected("movement m of r { turn left until { s", &expect!["[Word(CloseBrace), Word(Comma), ReferenceTo(Sensor)]"]);
+    check_expected(
+        "movement m of r { turn left until { s",
+        &expect!["[Word(CloseBrace), Word(Comma), ReferenceTo(Sensor)]"],
+    );
     check_expected("environment e", &expect!["[Word(Comma), Word(With), Word(Has)]"]);
-    check_expected("environment e has { r } robots with {", &expect!["[Word(CloseBrace), ReferenceTo(Movement)]"]);
+    check_expected(
+        "environment e has { r } robots with {",
+        &expect!["[Word(CloseBrace), ReferenceTo(Movement)]"],
+    );
     // A mistake before the cursor does not change what fits at it.
     check_expected("robot r tpye tw with port has { a } wheel with", &expect!["[Word(Sensors)]"]);
 }

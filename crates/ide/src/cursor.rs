@@ -1,0 +1,78 @@
+//! What stands at a place.
+
+use pydslrep_analysis::{Database, EntityId, EntityRef, FileId};
+use pydslrep_syntax::ast::{Entity, Name};
+use pydslrep_syntax::{EntityKind, Lexeme, Span};
+
+use crate::FilePosition;
+
+/// A name at the cursor.
+#[derive(Debug, Clone)]
+pub(crate) struct NameAt {
+    pub(crate) kind: EntityKind,
+    pub(crate) name: Name,
+    /// Where it stands in the file.
+    pub(crate) span: Span,
+}
+
+/// The name that touches the cursor.
+pub(crate) fn name_at(database: &Database, position: FilePosition) -> Option<NameAt> {
+    entities_at(database, position).into_iter().find_map(|entity| name_in(&entity, position.offset))
+}
+
+fn name_in(entity: &EntityRef<'_>, offset: u32) -> Option<NameAt> {
+    let tree = entity.parse.entity.as_ref()?;
+    let touches = |name: &Name| name.span.shifted(entity.span.start).touches(offset);
+    let found =
+        |kind, name: &Name| NameAt { kind, span: name.span.shifted(entity.span.start), name: name.clone() };
+    if let (Some(kind), Some(name)) = (tree.kind(), tree.name().filter(|name| touches(name))) {
+        return Some(found(kind, name));
+    }
+    let mut references = tree.references().into_iter();
+    references.find(|(_, name)| touches(name)).map(|(kind, name)| found(kind, name))
+}
+
+/// The entity that holds the cursor, and the one that ends right before it.
+pub(crate) fn entities_at(database: &Database, position: FilePosition) -> Vec<EntityRef<'_>> {
+    let at = database.entity_at(position.file, position.offset);
+    let before = position.offset.checked_sub(1).and_then(|offset| database.entity_at(position.file, offset));
+    let before = before.filter(|before| at.is_none_or(|at| at.id != before.id));
+    at.into_iter().chain(before).collect()
+}
+
+/// The token that touches the cursor, with its place in the file; of two the one behind it, unless that is a sign.
+pub(crate) fn lexeme_at(database: &Database, position: FilePosition) -> Option<Lexeme> {
+    let in_file = |entity: &EntityRef<'_>| {
+        let start = entity.span.start;
+        let touching = |(_, span): &&Lexeme| span.shifted(start).touches(position.offset);
+        let found: Vec<Lexeme> = entity
+            .parse
+            .lexemes
+            .iter()
+            .filter(touching)
+            .map(|(token, span)| (*token, span.shifted(start)))
+            .collect();
+        found
+    };
+    let found: Vec<Lexeme> = entities_at(database, position).iter().flat_map(in_file).collect();
+    let word = |(token, _): &&Lexeme| token.is_name() || token.is_keyword() || token.is_number();
+    found.iter().find(word).or(found.first()).copied()
+}
+
+/// The whole of an entity: from its keyword to its last token, comments behind it left out.
+pub(crate) fn body(entity: &EntityRef<'_>) -> Span {
+    let last = entity.parse.lexemes.iter().rev().find(|(token, _)| !token.is_comment());
+    let end = last.map_or(entity.span.start, |(_, span)| entity.span.start + span.end);
+    Span::new(entity.span.start, end)
+}
+
+/// The tree that a name leads to, as seen from a file.
+pub(crate) fn resolved<'a>(
+    database: &'a Database,
+    file: FileId,
+    kind: EntityKind,
+    name: &Name,
+) -> Option<(EntityId, &'a Entity)> {
+    let id = database.resolve(file, kind, &name.text).entity()?;
+    Some((id, database.tree(id)?))
+}

@@ -1,0 +1,132 @@
+//! Go to definition: from a name to the declarations that bear it, from an import to its file.
+
+use pydslrep_analysis::{Database, EntityRef, FileId};
+use pydslrep_syntax::Span;
+use pydslrep_syntax::ast::Entity;
+
+use crate::FilePosition;
+use crate::cursor::{body, entities_at, name_at};
+
+/// Where a name leads.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Definition {
+    /// The name (or path) at the cursor.
+    pub origin: Span,
+    /// The declarations; several where a name is declared twice.
+    pub targets: Vec<Target>,
+}
+
+/// A declaration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Target {
+    /// The file it is in.
+    pub file: FileId,
+    /// The whole of it.
+    pub full: Span,
+    /// Its name.
+    pub focus: Span,
+}
+
+/// The declarations of the name at a place.
+pub fn goto_definition(database: &Database, position: FilePosition) -> Option<Definition> {
+    import_at(database, position).or_else(|| declarations(database, position))
+}
+
+fn declarations(database: &Database, position: FilePosition) -> Option<Definition> {
+    let at = name_at(database, position)?;
+    let first = database.resolve(position.file, at.kind, &at.name.text).entity()?;
+    let all = database.definitions(database.file_of(first)?, at.kind, &at.name.text);
+    let targets = all.iter().filter_map(|id| target(&database.entity(*id)?)).collect();
+    Some(Definition { origin: at.span, targets })
+}
+
+fn target(entity: &EntityRef<'_>) -> Option<Target> {
+    let name = entity.parse.entity.as_ref()?.name()?;
+    Some(Target { file: entity.file, full: body(entity), focus: name.span.shifted(entity.span.start) })
+}
+
+fn import_at(database: &Database, position: FilePosition) -> Option<Definition> {
+    let entity = entities_at(database, position).into_iter().find(|entity| {
+        matches!(&entity.parse.entity, Some(Entity::Import(import))
+            if import.path_span.is_some_and(|span| span.shifted(entity.span.start).touches(position.offset)))
+    })?;
+    let Some(Entity::Import(import)) = &entity.parse.entity else { return None };
+    let origin = import.path_span?.shifted(entity.span.start);
+    let imports = database
+        .entities(position.file)
+        .filter(|other| matches!(&other.parse.entity, Some(Entity::Import(import)) if import.path.is_some()));
+    let index = imports.take_while(|other| other.id != entity.id).count();
+    let file = database.file(database.imports(position.file).get(index)?)?;
+    let start = Span::at(0);
+    Some(Definition { origin, targets: vec![Target { file, full: start, focus: start }] })
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::{Expect, expect};
+
+    use super::*;
+    use crate::fixture::{PARTS, at_cursor};
+
+    fn check(fixture: &str, expected: &Expect) {
+        let (database, position) = at_cursor(fixture);
+        let found = goto_definition(&database, position).map(|definition| {
+            let targets = definition.targets.iter().map(|target| {
+                let text = |span| database.slice(target.file, span);
+                format!(
+                    "{}..{} {:?} in {:?}",
+                    target.focus.start,
+                    target.focus.end,
+                    text(target.focus),
+                    text(target.full)
+                )
+            });
+            targets.collect::<Vec<_>>().join("\n")
+        });
+        expected.assert_eq(&found.unwrap_or_else(|| "nothing".to_owned()));
+    }
+
+    #[test]
+    fn a_reference_leads_to_its_declaration() {
+        check(
+            "robot r with port 1 has { a$0 b } wheels\nwheel a with radius 4 // mine\nsensor a",
+            &expect![[r#"45..46 "a" in "wheel a with radius 4""#]],
+        );
+        check(
+            &format!("{PARTS}movement m of $0rover {{ turn left until {{ front }} }}"),
+            &expect![[
+                r#"98..103 "rover" in "robot rover type tw with port 19999 has { wheelL wheelR } wheels with sensors { front }""#
+            ]],
+        );
+        check(
+            &format!("{PARTS}movement m of rover {{ turn left until {{ front$0 }} }}"),
+            &expect![[r#"65..70 "front" in "sensor front""#]],
+        );
+    }
+
+    #[test]
+    fn a_declaration_leads_to_itself_and_its_twins() {
+        check(
+            "wheel $0a with radius 4\nwheel a with radius 5",
+            &expect![[r#"
+            6..7 "a" in "wheel a with radius 4"
+            28..29 "a" in "wheel a with radius 5""#]],
+        );
+    }
+
+    #[test]
+    fn other_places_lead_nowhere() {
+        check("wh$0eel a with radius 4", &expect!["nothing"]);
+        check("robot r with port 1 has { nobody$0 } wheels", &expect!["nothing"]);
+    }
+
+    #[test]
+    fn an_import_leads_to_its_file() {
+        let mut database = Database::new();
+        let parts = database.open("d/parts.pyr", "wheel a with radius 4\n");
+        let file = database.open("d/main.pyr", "import \"parts.pyr\"\nrobot r with port 1 has { a } wheels");
+        let to = |offset| goto_definition(&database, FilePosition { file, offset }).unwrap().targets[0];
+        assert_eq!(to(10), Target { file: parts, full: Span::at(0), focus: Span::at(0) });
+        assert_eq!(to(45).file, parts);
+    }
+}

@@ -1,0 +1,109 @@
+//! Wheels, sensors, ips and robots.
+
+use std::f64::consts::TAU;
+
+use pydslrep_analysis::environment::Robot;
+use pydslrep_analysis::{Database, EntityId};
+use pydslrep_kinematics::Drive;
+use pydslrep_scene::defaults;
+use pydslrep_syntax::EntityKind;
+use pydslrep_syntax::ast::{Entity, SensorKind};
+
+use super::drawing::{names, number};
+
+pub(super) fn wheel(database: &Database, id: EntityId) -> Option<String> {
+    let Entity::Wheel(wheel) = database.tree(id)? else { return None };
+    let radius = wheel.radius.as_ref()?.value?;
+    let kind = if wheel.mecanum { "Mecanum wheel" } else { "Wheel" };
+    let (radius, circumference) = (number(radius, 3), number(radius * TAU, 1));
+    Some(format!(
+        "{kind}: radius {radius} cm, {circumference} cm a turn. {}",
+        used_by(database, id, EntityKind::Wheel)
+    ))
+}
+
+pub(super) fn sensor(database: &Database, id: EntityId) -> Option<String> {
+    let Entity::Sensor(sensor) = database.tree(id)? else { return None };
+    let kind = match sensor.kind {
+        Some((SensorKind::Bumper, _)) => "Bumper: feels an obstacle at contact.",
+        _ => "Distance sensor: sees an obstacle ahead of it.",
+    };
+    Some(format!("{kind} {}", used_by(database, id, EntityKind::Sensor)))
+}
+
+pub(super) fn ip(database: &Database, id: EntityId) -> Option<String> {
+    let Entity::Ip(ip) = database.tree(id)? else { return None };
+    let (address, _) = ip.address.as_ref()?;
+    Some(format!("The machine at {address}. {}", used_by(database, id, EntityKind::Ip)))
+}
+
+pub(super) fn robot(database: &Database, id: EntityId) -> Option<String> {
+    let robot = database.robot(id)?;
+    let mut text = format!("{}, port {}.\n\n", drive_name(robot.drive), robot.port);
+    text += "| wheel | position | radius |\n|---|---|---|\n";
+    for (wheel, position) in robot.wheels.iter().zip(positions(robot.drive)) {
+        text += &format!("| `{}` | {position} | {} cm |\n", wheel.name, number(wheel.radius * 100.0, 3));
+    }
+    if !robot.sensors.is_empty() {
+        text += &format!("\nSensors: {}.\n", names(robot.sensors.iter().map(|sensor| sensor.name.as_str())));
+    }
+    text += &equations(&robot);
+    text += &format!("\n{}", used_by(database, id, EntityKind::Robot));
+    Some(text)
+}
+
+fn drive_name(drive: Drive) -> &'static str {
+    match drive {
+        Drive::TwoWheel => "Two-wheel differential drive (`tw`)",
+        Drive::FourWheel => "Four-wheel skid-steer drive (`fw`)",
+        Drive::FourMecanum => "Mecanum drive (`fwh`)",
+    }
+}
+
+fn positions(drive: Drive) -> &'static [&'static str] {
+    match drive {
+        Drive::TwoWheel => &["left", "right"],
+        Drive::FourWheel | Drive::FourMecanum => &["left front", "left rear", "right front", "right rear"],
+    }
+}
+
+/// The inverse kinematics with this robot's radius; distances are read from the scene, so they stay letters.
+fn equations(robot: &Robot) -> String {
+    let radius = robot.wheels.first().map_or_else(String::new, |wheel| number(wheel.radius, 4));
+    let lines: &[&str] = match robot.drive {
+        Drive::TwoWheel => &["left  = (v − ω d/2) / r", "right = (v + ω d/2) / r"],
+        Drive::FourWheel => {
+            &["left front, left rear   = (v − ω d/2) / r", "right front, right rear = (v + ω d/2) / r"]
+        }
+        Drive::FourMecanum => &[
+            "left front  = (vx − vy − K ω) / r",
+            "left rear   = (vx + vy − K ω) / r",
+            "right front = (vx + vy + K ω) / r",
+            "right rear  = (vx − vy + K ω) / r",
+        ],
+    };
+    let geometry = defaults::GEOMETRY;
+    let (track, base) = (number(geometry.track, 3), number(geometry.wheelbase, 3));
+    let lengths = match robot.drive {
+        Drive::FourMecanum => {
+            let sum = number(f64::midpoint(geometry.track, geometry.wheelbase), 3);
+            format!("K = {sum} m (half of track {track} m and wheelbase {base} m)")
+        }
+        Drive::TwoWheel | Drive::FourWheel => format!("d = {track} m"),
+    };
+    format!(
+        "\nWheel rates in rad/s:\n```text\n{}\n```\nr = {radius} m, {lengths} unless the scene says otherwise.\n",
+        lines.join("\n")
+    )
+}
+
+/// Who uses an entity, of those in its own file.
+pub(super) fn used_by(database: &Database, id: EntityId, kind: EntityKind) -> String {
+    let name = database.tree(id).and_then(Entity::name).map(|name| &name.text);
+    let (Some(file), Some(name)) = (database.file_of(id), name) else { return String::new() };
+    let users = database.users(file, kind, name).iter().filter_map(|user| database.tree(*user)?.name());
+    let mut users: Vec<&str> = users.map(|name| name.text.as_str()).collect();
+    users.sort_unstable();
+    users.dedup();
+    if users.is_empty() { "Nothing here uses it.".to_owned() } else { format!("Used by {}.", names(users)) }
+}

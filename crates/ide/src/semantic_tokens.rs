@@ -1,0 +1,194 @@
+//! Semantic tokens: what every word of a file is, for colouring.
+
+use pydslrep_analysis::{Database, EntityRef, FileId};
+use pydslrep_syntax::ast::Entity;
+use pydslrep_syntax::{EntityKind, Lexeme, Span, Token};
+
+/// A coloured piece of text; never reaches over a line's end.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SemanticToken {
+    /// Where it stands.
+    pub span: Span,
+    /// What it is.
+    pub kind: TokenKind,
+    /// What else is to be said of it.
+    pub modifiers: Vec<Modifier>,
+}
+
+/// What a token is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum TokenKind {
+    /// A word of the language.
+    Keyword,
+    /// A number or an address.
+    Number,
+    /// A path in quotes.
+    String,
+    /// A comment.
+    Comment,
+    /// The name of an entity.
+    Name(EntityKind),
+}
+
+/// What else a token is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Modifier {
+    /// Here the entity gets its name.
+    Declaration,
+    /// It names a part that never changes while the program runs.
+    Readonly,
+    /// An older spelling.
+    Deprecated,
+}
+
+/// The tokens of a file, or of the entities that touch a range of it, in the order of the text.
+pub fn semantic_tokens(database: &Database, file: FileId, range: Option<Span>) -> Vec<SemanticToken> {
+    let wanted = |entity: &EntityRef<'_>| {
+        range.is_none_or(|range| entity.span.start <= range.end && range.start <= entity.span.end)
+    };
+    let mut tokens = Vec::new();
+    for entity in database.entities(file).filter(wanted) {
+        entity_tokens(database, &entity, &mut tokens);
+    }
+    if let Some(range) = range {
+        tokens.retain(|token| token.span.start < range.end && range.start < token.span.end);
+    }
+    tokens
+}
+
+fn entity_tokens(database: &Database, entity: &EntityRef<'_>, tokens: &mut Vec<SemanticToken>) {
+    let names = Names::of(entity.parse.entity.as_ref());
+    for lexeme in &entity.parse.lexemes {
+        if let Some((kind, modifiers)) = names.classify(*lexeme) {
+            let span = lexeme.1.shifted(entity.span.start);
+            push_lines(database, entity.file, SemanticToken { span, kind, modifiers }, tokens);
+        }
+    }
+}
+
+/// Only block comments reach over lines; editors want a token for each.
+fn push_lines(database: &Database, file: FileId, token: SemanticToken, tokens: &mut Vec<SemanticToken>) {
+    if token.kind != TokenKind::Comment {
+        tokens.push(token);
+        return;
+    }
+    let mut start = token.span.start;
+    for line in database.slice(file, token.span).split(['\n', '\r']) {
+        let end = start + Span::of(line).end;
+        if end > start {
+            tokens.push(SemanticToken { span: Span::new(start, end), ..token.clone() });
+        }
+        start = end + 1;
+    }
+}
+
+/// The names of an entity by place, in the order of the text.
+struct Names<'a> {
+    tree: Option<&'a Entity>,
+    all: Vec<(Span, EntityKind, bool)>,
+    deprecated: Option<Span>,
+}
+
+impl<'a> Names<'a> {
+    fn of(tree: Option<&'a Entity>) -> Self {
+        let mut all = Vec::new();
+        if let Some(tree) = tree {
+            all.extend(tree.kind().zip(tree.name()).map(|(kind, name)| (name.span, kind, true)));
+            all.extend(tree.references().into_iter().map(|(kind, name)| (name.span, kind, false)));
+        }
+        all.sort_unstable_by_key(|(span, ..)| span.start);
+        let deprecated = match tree {
+            Some(Entity::Robot(robot)) => {
+                robot.drive.filter(|clause| clause.before_name).map(|clause| clause.span)
+            }
+            _ => None,
+        };
+        Self { tree, all, deprecated }
+    }
+
+    fn classify(&self, (token, span): Lexeme) -> Option<(TokenKind, Vec<Modifier>)> {
+        if let Ok(index) = self.all.binary_search_by_key(&span.start, |(span, ..)| span.start) {
+            let (_, kind, declares) = self.all[index];
+            let readonly = matches!(kind, EntityKind::Wheel | EntityKind::Sensor | EntityKind::Ip);
+            let modifiers = [(declares, Modifier::Declaration), (readonly, Modifier::Readonly)];
+            let modifiers = modifiers.into_iter().filter(|(holds, _)| *holds).map(|(_, modifier)| modifier);
+            return Some((TokenKind::Name(kind), modifiers.collect()));
+        }
+        let kind = match token {
+            Token::String | Token::UnterminatedString => TokenKind::String,
+            Token::Import if matches!(self.tree, Some(Entity::Import(_))) => TokenKind::Keyword,
+            Token::Distance | Token::Bumper if matches!(self.tree, Some(Entity::Sensor(_))) => {
+                TokenKind::Keyword
+            }
+            token if token.is_comment() => TokenKind::Comment,
+            token if token.is_number() => TokenKind::Number,
+            token if token.is_keyword() => TokenKind::Keyword,
+            _ => return None,
+        };
+        let old = self.deprecated.is_some_and(|old| old.start <= span.start && span.end <= old.end);
+        Some((kind, if old { vec![Modifier::Deprecated] } else { Vec::new() }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::{Expect, expect};
+
+    use super::*;
+
+    fn check(text: &str, range: Option<Span>, expected: &Expect) {
+        let mut database = Database::new();
+        let file = database.open("a.pyr", text);
+        let rendered = semantic_tokens(&database, file, range)
+            .into_iter()
+            .map(|token| format!("{:?} {:?} {:?}\n", token.span.text(text), token.kind, token.modifiers));
+        expected.assert_eq(&rendered.collect::<String>());
+    }
+
+    #[test]
+    fn every_word_has_its_colour() {
+        check(
+            "import \"a.pyr\" /* two\r\nlines */ wheel distance with radius 4.5\nsensor s : distance\nrobot type tw r with port 1 has { distance, } wheels with sensors { s }",
+            None,
+            &expect![[r#"
+                "import" Keyword []
+                "\"a.pyr\"" String []
+                "/* two" Comment []
+                "lines */" Comment []
+                "wheel" Keyword []
+                "distance" Name(Wheel) [Declaration, Readonly]
+                "with" Keyword []
+                "radius" Keyword []
+                "4.5" Number []
+                "sensor" Keyword []
+                "s" Name(Sensor) [Declaration, Readonly]
+                "distance" Keyword []
+                "robot" Keyword []
+                "type" Keyword [Deprecated]
+                "tw" Keyword [Deprecated]
+                "r" Name(Robot) [Declaration]
+                "with" Keyword []
+                "port" Keyword []
+                "1" Number []
+                "has" Keyword []
+                "distance" Name(Wheel) [Readonly]
+                "wheels" Keyword []
+                "with" Keyword []
+                "sensors" Keyword []
+                "s" Name(Sensor) [Readonly]
+            "#]],
+        );
+    }
+
+    #[test]
+    fn a_range_has_only_its_own() {
+        check(
+            "wheel a with radius 4\nwheel b with radius 5\n",
+            Some(Span::new(23, 29)),
+            &expect![[r#"
+            "wheel" Keyword []
+            "b" Name(Wheel) [Declaration, Readonly]
+        "#]],
+        );
+    }
+}

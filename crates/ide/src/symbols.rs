@@ -1,0 +1,167 @@
+//! Document symbols: the outline of a file.
+
+use pydslrep_analysis::{Database, EntityRef, FileId};
+use pydslrep_syntax::ast::{Action, ActionKind, Entity, References};
+use pydslrep_syntax::{EntityKind, Span};
+
+use crate::cursor::body;
+
+/// A line of the outline.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Symbol {
+    /// Its name.
+    pub name: String,
+    /// What is worth knowing of it at a glance.
+    pub detail: String,
+    /// What it is.
+    pub kind: SymbolKind,
+    /// The whole of it.
+    pub full: Span,
+    /// Its name's place.
+    pub focus: Span,
+    /// What is inside it.
+    pub children: Vec<Symbol>,
+}
+
+/// What a symbol is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SymbolKind {
+    /// A declared entity.
+    Entity(EntityKind),
+    /// An action of a movement.
+    Action,
+}
+
+/// The named entities of a file in the order of the text, movements with their actions.
+pub fn document_symbols(database: &Database, file: FileId) -> Vec<Symbol> {
+    database.entities(file).filter_map(|entity| symbol(database, &entity)).collect()
+}
+
+fn symbol(database: &Database, entity: &EntityRef<'_>) -> Option<Symbol> {
+    let tree = entity.parse.entity.as_ref()?;
+    let name = tree.name()?;
+    Some(Symbol {
+        name: name.text.to_string(),
+        detail: detail(tree),
+        kind: SymbolKind::Entity(tree.kind()?),
+        full: body(entity),
+        focus: name.span.shifted(entity.span.start),
+        children: children(database, entity, tree),
+    })
+}
+
+fn detail(tree: &Entity) -> String {
+    match tree {
+        Entity::Wheel(wheel) => {
+            let kind = if wheel.mecanum { "mecanum, " } else { "" };
+            let radius = wheel.radius.as_ref().and_then(|radius| radius.value);
+            radius.map_or_else(String::new, |radius| format!("{kind}radius {radius} cm"))
+        }
+        Entity::Sensor(sensor) => match sensor.kind {
+            Some((pydslrep_syntax::ast::SensorKind::Bumper, _)) => "bumper".to_owned(),
+            _ => "distance".to_owned(),
+        },
+        Entity::Ip(ip) => ip.address.as_ref().map(|(address, _)| address.to_string()).unwrap_or_default(),
+        Entity::Robot(robot) => {
+            let drive =
+                robot.drive.and_then(|clause| clause.word).map(|word| format!("{}, ", word.spelling()));
+            let port = robot.port.as_ref().and_then(|port| port.value).map(|port| format!("port {port}"));
+            format!("{}{}", drive.unwrap_or_default(), port.unwrap_or_default())
+        }
+        Entity::Movement(movement) => {
+            let parallel = if movement.parallel.is_some() { "parallel, " } else { "" };
+            let robot = movement.robot.as_ref().map_or("", |robot| robot.text.as_str());
+            format!("{parallel}of {robot}, {}", counted(movement.actions.len(), "action"))
+        }
+        Entity::Environment(environment) => {
+            let count = |list: &Option<References>| list.as_ref().map_or(0, |list| list.names.len());
+            let robots = counted(count(&environment.robots), "robot");
+            format!("{robots}, {}", counted(count(&environment.movements), "movement"))
+        }
+        Entity::Import(_) => String::new(),
+    }
+}
+
+fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+fn children(database: &Database, entity: &EntityRef<'_>, tree: &Entity) -> Vec<Symbol> {
+    let Entity::Movement(movement) = tree else { return Vec::new() };
+    let child = |action: &Action| {
+        let full = action.span.shifted(entity.span.start);
+        let text = database.slice(entity.file, full);
+        let mut words = text.split_whitespace();
+        Symbol {
+            name: words.next().unwrap_or_default().to_owned(),
+            detail: words.collect::<Vec<_>>().join(" "),
+            kind: SymbolKind::Action,
+            full,
+            focus: Span::new(full.start, full.start + keyword_length(action)),
+            children: Vec::new(),
+        }
+    };
+    movement.actions.iter().map(child).collect()
+}
+
+fn keyword_length(action: &Action) -> u32 {
+    let word = match action.kind {
+        ActionKind::Move(_) => "move",
+        ActionKind::Turn(_) => "turn",
+        ActionKind::Slam => "slam",
+    };
+    u32::try_from(word.len()).unwrap_or(0).min(action.span.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use super::*;
+    use crate::fixture::PARTS;
+
+    fn render(symbols: &[Symbol], depth: usize, out: &mut String) {
+        for symbol in symbols {
+            let kind = match symbol.kind {
+                SymbolKind::Entity(kind) => kind.noun(),
+                SymbolKind::Action => "action",
+            };
+            let (full, focus) = (symbol.full, symbol.focus);
+            *out += &format!(
+                "{}{kind} {} ({}) {}..{} {}..{}\n",
+                "  ".repeat(depth),
+                symbol.name,
+                symbol.detail,
+                full.start,
+                full.end,
+                focus.start,
+                focus.end
+            );
+            render(&symbol.children, depth + 1, out);
+        }
+    }
+
+    #[test]
+    fn the_outline_has_every_entity_and_action() {
+        let mut database = Database::new();
+        let text = format!(
+            "{PARTS}ip here 127.0.0.1 // home\nwheel\nparallel movement m of rover {{ move 4  meters\n at 9 slam }}\nenvironment e has {{ rover }} robots"
+        );
+        let file = database.open("a.pyr", &text);
+        let mut out = String::new();
+        render(&document_symbols(&database, file), 0, &mut out);
+        expect![[r#"
+            wheel wheelL (radius 4.5 cm) 0..28 6..12
+            wheel wheelR (radius 4.5 cm) 29..57 35..41
+            sensor front (distance) 58..70 65..70
+            sensor back (bumper) 71..91 78..82
+            robot rover (tw, port 19999) 92..179 98..103
+            ip here (127.0.0.1) 180..197 183..187
+            movement m (parallel, of rover, 2 actions) 212..270 230..231
+              action move (4 meters at 9) 243..263 243..247
+              action slam () 264..268 264..268
+            environment e (1 robot, 0 movements) 271..305 283..284
+        "#]]
+        .assert_eq(&out);
+    }
+}
