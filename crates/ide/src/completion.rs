@@ -67,6 +67,8 @@ struct Place<'a> {
     text: String,
     /// Its tokens before the word at the cursor.
     before: Vec<Lexeme>,
+    /// Whether nothing of the entity is written behind that word.
+    at_end: bool,
     /// The cursor, from the entity's start.
     offset: u32,
     /// The word at the cursor, in the file.
@@ -83,8 +85,11 @@ impl<'a> Place<'a> {
             _ => at,
         };
         let start = at.span.start;
-        let before = at.parse.lexemes.iter().take_while(|(_, span)| span.end + start <= word.start).copied();
+        let significant = at.parse.lexemes.iter().filter(|(token, _)| !token.is_comment());
+        let at_end = !significant.clone().any(|(_, span)| span.start + start >= word.end);
+        let before = significant.take_while(|(_, span)| span.end + start <= word.start).copied();
         Some(Self {
+            at_end,
             database,
             file: position.file,
             entity: at.parse.entity.as_ref().map(|tree| (at.id, tree)),
@@ -112,10 +117,12 @@ impl<'a> Place<'a> {
     /// A word, followed by those that can only follow it.
     fn word(&self, word: Token) -> Option<Completion> {
         let spelling = word.spelling().filter(|_| !matches!(word, Token::Comma))?;
-        let (insert, is_snippet) = self.continued(word);
+        let Continued { insert, is_snippet, last } = self.continued(word);
         let label =
             insert.replace(" $0 ", " … ").replace("$0", "…").split_whitespace().collect::<Vec<_>>().join(" ");
-        let page = keyword_page(word);
+        // `with` and braces say little by themselves; the word they lead to says it.
+        let leads = matches!(word, Token::With | Token::Has | Token::OpenBrace | Token::CloseBrace);
+        let page = keyword_page(if leads { last } else { word });
         Some(Completion {
             label: if word == Token::OpenBrace { label } else { label.trim_end_matches(" …").to_owned() },
             kind: CompletionKind::Keyword,
@@ -129,30 +136,31 @@ impl<'a> Place<'a> {
         })
     }
 
-    /// `with` continues to `with port`, `has` to `has { $0 } wheels`: as long as only one word can follow.
-    fn continued(&self, word: Token) -> (String, bool) {
+    /// `with` continues to `with port`, `has` to `has { $0 } wheels`: as long as only one word can follow, and nothing
+    /// is written there yet.
+    fn continued(&self, word: Token) -> Continued {
         const MOST: usize = 6;
         let mut before = self.before.clone();
-        let mut insert = word.spelling().unwrap_or_default().to_owned();
-        let mut is_snippet = false;
-        let mut next = word;
-        for _ in 0..MOST {
+        let insert = word.spelling().unwrap_or_default().to_owned();
+        let mut continued = Continued { insert, is_snippet: false, last: word };
+        for _ in 0..if self.at_end { MOST } else { 0 } {
             let end = Span::at(before.last().map_or(0, |(_, span)| span.end));
-            before.push((next, end));
-            if next == Token::OpenBrace && self.lists_names(&before) {
-                insert += " $0 }";
-                is_snippet = true;
+            before.push((continued.last, end));
+            if continued.last == Token::OpenBrace && self.lists_names(&before) {
+                continued.insert += " $0 }";
+                continued.is_snippet = true;
                 before.extend([(Token::Name, end), (Token::CloseBrace, end)]);
             }
             match expected_after(&self.text, &before)[..] {
                 [Expected::Word(word)] if word != Token::Comma && word != Token::CloseBrace => {
-                    insert = format!("{insert} {}", word.spelling().unwrap_or_default());
-                    next = word;
+                    continued.insert =
+                        format!("{} {}", continued.insert, word.spelling().unwrap_or_default());
+                    continued.last = word;
                 }
                 _ => break,
             }
         }
-        (insert, is_snippet)
+        continued
     }
 
     fn lists_names(&self, before: &[Lexeme]) -> bool {
@@ -308,6 +316,14 @@ impl<'a> Place<'a> {
     }
 }
 
+/// A word with those that can only follow it.
+struct Continued {
+    insert: String,
+    is_snippet: bool,
+    /// The last of the words.
+    last: Token,
+}
+
 /// The first port offered: V-REP's.
 const FIRST_PORT: u16 = 19999;
 
@@ -460,28 +476,28 @@ mod tests {
         check(
             "wheel w $0",
             &expect![[r#"
-            with radius [with …] "" -> "with radius"
-        "#]],
+                with radius [with radius CENTIMETRES] "" -> "with radius"
+            "#]],
         );
         check(
             &format!("{PARTS}robot r $0"),
             &expect![[r#"
-            type [type tw | fw | fwh] "" -> "type"
-            with port [with …] "" -> "with port"
-        "#]],
+                type [type tw | fw | fwh] "" -> "type"
+                with port [with port NUMBER] "" -> "with port"
+            "#]],
         );
         check(
             &format!("{PARTS}robot r with port 1 $0"),
             &expect![[r#"
-            has { … } wheels [has { … }] "" -> "has { $0 } wheels"
-        "#]],
+                has { … } wheels [has { WHEELS } wheels] "" -> "has { $0 } wheels"
+            "#]],
         );
         check(
             &format!("{PARTS}environment e $0"),
             &expect![[r#"
-            has { … } robots [has { … }] "" -> "has { $0 } robots"
-            with ip [with …] "" -> "with ip"
-        "#]],
+                has { … } robots [has { ROBOTS } robots] "" -> "has { $0 } robots"
+                with ip [ip NAME 127.0.0.1] "" -> "with ip"
+            "#]],
         );
         check(
             "robot r type $0",
@@ -500,26 +516,44 @@ mod tests {
     }
 
     #[test]
+    fn words_bring_nothing_that_is_there_already() {
+        check(
+            &format!("{PARTS}robot r type $0 with port 1 has {{ wheelL wheelR }} wheels"),
+            &expect![[r#"
+            fw [type tw | fw | fwh] "" -> "fw"
+            fwh [type tw | fw | fwh] "" -> "fwh"
+            tw [type tw | fw | fwh] "" -> "tw"
+        "#]],
+        );
+        check(
+            &format!("{PARTS}robot r with port 1 h$0 {{ wheelL wheelR }} wheels"),
+            &expect![[r#"
+            has [has { … }] "h" -> "has"
+        "#]],
+        );
+    }
+
+    #[test]
     fn a_list_offers_what_it_does_not_have() {
         check(
             &format!("{PARTS}robot r type tw with port 1 has {{ wheelL $0 }} wheels"),
             &expect![[r#"
-            wheelR [wheel] "" -> "wheelR"
-            } wheels [] "" -> "} wheels"
-        "#]],
+                wheelR [wheel] "" -> "wheelR"
+                } [] "" -> "}"
+            "#]],
         );
         check(
             &format!("{PARTS}robot r type fwh with port 1 has {{ $0 }} wheels"),
             &expect![[r#"
-            } wheels [] "" -> "} wheels"
-        "#]],
+                } [] "" -> "}"
+            "#]],
         );
         check(
             &format!("{PARTS}robot r type tw with port 1 has {{ wheelL whe$0 }} wheels"),
             &expect![[r#"
-            wheelR [wheel] "whe" -> "wheelR"
-            } wheels [] "whe" -> "} wheels"
-        "#]],
+                wheelR [wheel] "whe" -> "wheelR"
+                } [] "whe" -> "}"
+            "#]],
         );
     }
 
@@ -542,7 +576,7 @@ mod tests {
             ),
             &expect![[r#"
                 m [movement] "" -> "m"
-                } moves [] "" -> "} moves"
+                } moves [with { MOVEMENTS } moves] "" -> "} moves"
             "#]],
         );
     }

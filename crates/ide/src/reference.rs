@@ -27,6 +27,7 @@ const MOVE: &str = "move DISTANCE meters at SPEED";
 const TYPE: &str = "type tw | fw | fwh";
 
 /// The page of a word; `None` for what is no word of the language.
+#[expect(clippy::too_many_lines, reason = "a table, a row a word")]
 pub fn keyword_page(token: Token) -> Option<KeywordPage> {
     let page = |syntax, meaning, example| KeywordPage { syntax, meaning, example };
     Some(match token {

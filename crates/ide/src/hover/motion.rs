@@ -104,8 +104,8 @@ fn row(environment: &Environment, plan: &Plan, group: usize, run: usize, movemen
     let path = plan.robots.get(movement.robot)?;
     let mut legs = path.legs.iter().filter(|leg| (leg.index.group, leg.index.run) == (group, run));
     let start = legs.next().and_then(|leg| leg.start);
-    let planned = path.legs.iter().filter(|leg| (leg.index.group, leg.index.run) == (group, run));
-    let end = planned.last().and_then(Leg::end).filter(|_| ends(path, group, run));
+    let mut planned = path.legs.iter().filter(|leg| (leg.index.group, leg.index.run) == (group, run));
+    let end = planned.next_back().and_then(Leg::end).filter(|_| ends(path, group, run));
     let cell = |seconds: Option<f64>| seconds.map_or_else(|| "?".to_owned(), time);
     Some(format!("| {} | {} | `{}` | `{}` |\n", cell(start), cell(end), robot.name, movement.name))
 }
