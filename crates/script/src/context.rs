@@ -1,6 +1,6 @@
 //! What the template is given: an environment in the words of the script.
 
-use std::net::Ipv4Addr;
+use std::{collections::HashSet, net::Ipv4Addr};
 
 use pydslrep_analysis::environment::{Action, ActionKind, Environment, Movement, Robot, Source};
 use pydslrep_kinematics::{Drive, motion::RIM_SPEED};
@@ -13,6 +13,7 @@ const LONGEST_NAME_IN_IDENTIFIER: usize = 40;
 
 /// Everything the template `environment.py.j2` reads.
 #[derive(Debug, Serialize)]
+#[allow(clippy::struct_excessive_bools, reason = "each answers a question of the template")]
 pub(crate) struct Script {
     name: String,
     host: String,
@@ -80,15 +81,22 @@ enum Call {
 impl Script {
     /// The environment's data; an error where scripts cannot do some action yet.
     pub(crate) fn new(environment: &Environment) -> Result<Self, ScriptError> {
-        let has = |drive| environment.robots.iter().any(|robot| robot.drive == drive);
+        // Without robots there is still a class that says what a robot's drive would be.
+        let has = |drive| match environment.robots.as_slice() {
+            [] => drive == Drive::TwoWheel,
+            robots => robots.iter().any(|robot| robot.drive == drive),
+        };
         let (two_wheel, four_wheel, four_mecanum) =
             (has(Drive::TwoWheel), has(Drive::FourWheel), has(Drive::FourMecanum));
         let drives = [Drive::TwoWheel, Drive::FourWheel, Drive::FourMecanum];
         let movements = &environment.movements;
-        let functions: Vec<String> =
-            movements.iter().enumerate().map(|(index, movement)| function_name(index, &movement.name)).collect();
+        let functions: Vec<String> = movements
+            .iter()
+            .enumerate()
+            .map(|(index, movement)| function_name(index, &movement.name))
+            .collect();
         Ok(Self {
-            name: environment.name.clone(),
+            name: plain(&environment.name),
             host: environment.host.unwrap_or(Ipv4Addr::LOCALHOST).to_string(),
             drives: drives.into_iter().filter(|&drive| has(drive)).map(class).collect(),
             two_wheel,
@@ -97,7 +105,12 @@ impl Script {
             parallel: environment.schedule.iter().any(|group| group.len() > 1),
             until: movements.iter().flat_map(|movement| &movement.actions).any(looks_at_sensors),
             standalone: false,
-            robots: environment.robots.iter().enumerate().map(|(index, r)| robot(index, r, movements)).collect(),
+            robots: environment
+                .robots
+                .iter()
+                .enumerate()
+                .map(|(index, r)| robot(index, r, movements))
+                .collect::<Result<_, _>>()?,
             movements: movements
                 .iter()
                 .zip(&functions)
@@ -138,15 +151,12 @@ fn looks_at_sensors(action: &Action) -> bool {
     matches!(action.kind, ActionKind::TurnUntil { .. })
 }
 
-fn robot(index: usize, robot: &Robot, movements: &[Movement]) -> RobotModel {
-    let mut looked_at = vec![false; robot.sensors.len()];
-    for action in movements.iter().filter(|movement| movement.robot == index).flat_map(|m| &m.actions) {
-        if let ActionKind::TurnUntil { sensors, .. } = &action.kind {
-            sensors.iter().for_each(|&sensor| looked_at[sensor] = true);
-        }
+fn robot(index: usize, robot: &Robot, movements: &[Movement]) -> Result<RobotModel, ScriptError> {
+    let mut names = HashSet::new();
+    if let Some(repeated) = robot.wheels.iter().find(|wheel| !names.insert(&wheel.name)) {
+        return Err(ScriptError::RepeatedWheel { robot: robot.name.clone(), wheel: repeated.name.clone() });
     }
-    let sensors = robot.sensors.iter().zip(looked_at).filter(|(_, looked_at)| *looked_at);
-    RobotModel {
+    Ok(RobotModel {
         name: robot.name.clone(),
         port: robot.port,
         drive: class(robot.drive),
@@ -155,11 +165,28 @@ fn robot(index: usize, robot: &Robot, movements: &[Movement]) -> RobotModel {
             .iter()
             .map(|wheel| WheelModel { name: wheel.name.clone(), radius: float(wheel.radius) })
             .collect(),
-        sensors: sensors.map(|(sensor, _)| sensor.name.clone()).collect(),
-    }
+        sensors: sensors_looked_at(index, robot, movements),
+    })
 }
 
-fn movement_function(movement: &Movement, function: &str, robot: &Robot) -> Result<MovementFunction, ScriptError> {
+fn sensors_looked_at(index: usize, robot: &Robot, movements: &[Movement]) -> Vec<String> {
+    let mut looked_at = vec![false; robot.sensors.len()];
+    for action in movements.iter().filter(|movement| movement.robot == index).flat_map(|m| &m.actions) {
+        if let ActionKind::TurnUntil { sensors, .. } = &action.kind {
+            for &sensor in sensors {
+                looked_at[sensor] = true;
+            }
+        }
+    }
+    let sensors = robot.sensors.iter().zip(looked_at).filter(|(_, looked_at)| *looked_at);
+    sensors.map(|(sensor, _)| sensor.name.clone()).collect()
+}
+
+fn movement_function(
+    movement: &Movement,
+    function: &str,
+    robot: &Robot,
+) -> Result<MovementFunction, ScriptError> {
     Ok(MovementFunction {
         function: function.to_owned(),
         name: movement.name.clone(),
@@ -173,7 +200,11 @@ fn movement_function(movement: &Movement, function: &str, robot: &Robot) -> Resu
     })
 }
 
-fn commented_action(action: &Action, movement: &Movement, robot: &Robot) -> Result<CommentedAction, ScriptError> {
+fn commented_action(
+    action: &Action,
+    movement: &Movement,
+    robot: &Robot,
+) -> Result<CommentedAction, ScriptError> {
     let call = match &action.kind {
         ActionKind::Move { distance, speed } => Call::Move {
             distance: float(*distance),
@@ -207,7 +238,14 @@ fn place(source: &Source) -> String {
 
 /// The text with everything that could end a comment, or make it look like something else, replaced.
 fn comment(text: &str) -> String {
-    text.chars().map(|c| if c == ' ' || c.is_ascii_graphic() || c.is_alphanumeric() { c } else { '?' }).collect()
+    text.chars()
+        .map(|c| if c == ' ' || c.is_ascii_graphic() || c.is_alphanumeric() { c } else { '?' })
+        .collect()
+}
+
+/// A name for running text: nothing in it can end a docstring.
+fn plain(name: &str) -> String {
+    name.chars().map(|c| if c == '_' || c.is_ascii_alphanumeric() { c } else { '?' }).collect()
 }
 
 /// A Python literal of the same value.

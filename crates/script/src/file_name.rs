@@ -6,7 +6,8 @@ use pydslrep_analysis::environment::Environment;
 const STANDARD_MODULES: &str = include_str!("standard_modules.txt");
 
 /// Modules that the script's client imports, or looks for, beside the standard ones.
-const CLIENT_MODULES: [&str; 6] = ["cbor", "cbor2", "cffi", "coppeliasim_zmqremoteapi_client", "numpy", "zmq"];
+const CLIENT_MODULES: [&str; 6] =
+    ["cbor", "cbor2", "cffi", "coppeliasim_zmqremoteapi_client", "numpy", "zmq"];
 
 /// The name of the file for the script of `environment`: `<environment>.py`, or `<environment>_env.py` where the
 /// former would hide a module that the script imports, or cannot be a file's name on Windows.

@@ -42,6 +42,13 @@ pub enum ScriptError {
         /// 1-based.
         line: u32,
     },
+    /// A robot lists one wheel more than once, so it has no joint of its own for each.
+    RepeatedWheel {
+        /// The robot's name.
+        robot: String,
+        /// The wheel's name.
+        wheel: String,
+    },
     /// The template and what it is given do not fit: a mistake in PyDSLRep.
     Template(String),
 }
@@ -56,7 +63,15 @@ impl fmt::Display for ScriptError {
                 }
                 write!(f, "line {line}) is not supported in scripts yet: remove it or leave the movement out")
             }
-            Self::Template(reason) => write!(f, "cannot put the script together, a mistake in PyDSLRep: {reason}"),
+            Self::RepeatedWheel { robot, wheel } => {
+                write!(
+                    f,
+                    "robot `{robot}` lists wheel `{wheel}` twice: give each of its wheels a name of its own"
+                )
+            }
+            Self::Template(reason) => {
+                write!(f, "cannot put the script together, a mistake in PyDSLRep: {reason}")
+            }
         }
     }
 }
@@ -67,7 +82,7 @@ impl std::error::Error for ScriptError {}
 ///
 /// # Errors
 ///
-/// When a movement contains `slam`, which scripts cannot do yet.
+/// When a movement contains `slam`, which scripts cannot do yet, or a robot lists a wheel twice.
 pub fn generate(environment: &Environment, target: Target) -> Result<String, ScriptError> {
     match target {
         Target::CoppeliaSim => render::script(&context::Script::new(environment)?),

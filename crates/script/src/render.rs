@@ -1,6 +1,8 @@
 //! Puts the template and the Python parts together.
 
-use minijinja::{AutoEscape, Environment as Templates, Error, UndefinedBehavior, syntax::SyntaxConfig, value::Serde};
+use minijinja::{
+    AutoEscape, Environment as Templates, Error, UndefinedBehavior, syntax::SyntaxConfig, value::Serde,
+};
 
 use crate::{ScriptError, context::Script};
 
@@ -22,7 +24,7 @@ const SOURCES: [(&str, &str); 15] = [
     ("robot.py", include_str!("../python/pydslrep_parts/robot.py")),
     ("settings.py", include_str!("../python/pydslrep_parts/settings.py")),
     ("steering.py", include_str!("../python/pydslrep_parts/steering.py")),
-    ("trace.py", include_str!("../python/pydslrep_parts/trace.py")),
+    ("trace_file.py", include_str!("../python/pydslrep_parts/trace_file.py")),
 ];
 
 /// The text of a script.

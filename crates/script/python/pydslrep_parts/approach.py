@@ -35,17 +35,21 @@ class Approach:
 
     def _braking_speed(self, distance: float) -> float:
         """The speed from which the ramp down ends at the goal: a root, then a line."""
-        linear = RIM_ACCELERATION / self._closing_rate**2
+        # Speeds hold for a whole step, in which the curve goes on falling: start earlier.
+        deceleration = 0.75 * RIM_ACCELERATION
+        linear = deceleration / self._closing_rate**2
         if distance < linear:
             return self._closing_rate * distance
-        return math.sqrt(2.0 * RIM_ACCELERATION * (distance - linear / 2.0))
+        return math.sqrt(2.0 * deceleration * (distance - linear / 2.0))
 
+    #: if until
     def slowed_down(self) -> float:
         """The rim speed for the next step where the robot shall come to rest."""
         change = RIM_ACCELERATION * self.time_step
         self.speed = math.copysign(max(0.0, abs(self.speed) - change), self.speed)
         return self.speed
 
+    #: endif
     def arrived(self, to_go: float) -> bool:
         """Whether the goal is reached, or as near as it will get."""
         self._close_steps = self._close_steps + 1 if abs(to_go) <= CLOSE else 0

@@ -11,7 +11,7 @@ from pathlib import Path
 from .coppeliasim import RobotModel
 from .errors import MovementError, SetupError, SimulatorError
 from .fleet import Fleet
-from .trace import Trace
+from .trace_file import Trace
 
 #: endif
 

@@ -3,7 +3,7 @@
 
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,6 +36,44 @@ class RobotModel:
     #: endif
 
 
+class LimitedSocket:
+    """The client's own socket would wait for ever; this one does not.
+
+    An answer may take any number of rounds, but no longer than the limit.
+    """
+
+    def __init__(self, client: Any, address: str, limit: float) -> None:
+        """Takes the place of the client's socket."""
+        client.socket.close(linger=0)
+        client.socket = self
+        self.limit = limit
+        self._deadline = 0.0
+        self._address = address
+        self._socket = client.context.socket(zmq.REQ)
+        self._socket.linger = 0
+        self._socket.connect(f"tcp://{address}")
+
+    def begin(self) -> None:
+        """Starts the time for a new call."""
+        self._deadline = time.monotonic() + self.limit
+
+    def send(self, request: bytes) -> None:
+        """Sends a request."""
+        self._socket.send(request, zmq.NOBLOCK)
+
+    def recv(self) -> bytes:
+        """The answer; raises SimulatorError."""
+        left = max(0.0, self._deadline - time.monotonic())
+        if not self._socket.poll(1000.0 * left):
+            raise SimulatorError(f"no answer from {self._address} for {self.limit:g} s")
+        answer: bytes = self._socket.recv()
+        return answer
+
+    def close(self, linger: int = 0) -> None:
+        """Hangs up."""
+        self._socket.close(linger)
+
+
 class SimulatedRobot:
     """A robot in CoppeliaSim: everything a script needs of it goes through this class.
 
@@ -49,27 +87,19 @@ class SimulatedRobot:
         self.time = 0.0  # s of simulation time, after the last step
         self._address = f"{host}:{port}"
         self._realtime = realtime
-        self._started = self._stepping = self._lost = False
+        self._started = self._holds_time = self._is_lost = self._in_call = False
         self._step_due: float | None = None
-        self._rates: list[float] = []
         try:
             self._client = RemoteAPIClient(host, port)
-            self._open_socket(CONNECT_TIMEOUT)
-            self._sim = self._client.require("sim")
-            self._client.socket.rcvtimeo = int(REPLY_TIMEOUT * 1000)
-        except zmq.Again:
-            raise SetupError(
-                f"robot {model.name}: no simulator answers at {self._address}; start CoppeliaSim "
-                "with the ZeroMQ remote API on that port, or give --host and --port"
-            ) from None
-        except Exception as error:
-            raise SetupError(
-                f"robot {model.name}: cannot talk to {self._address}: {error}"
-            ) from error
-        try:
+            self._socket = LimitedSocket(self._client, self._address, CONNECT_TIMEOUT)
+            self._sim = self._ask(self._client.require, "sim")
+            self._socket.limit = REPLY_TIMEOUT
             self._find_objects()
-        except SimulatorError as error:
-            raise SetupError(f"robot {model.name}: {error}") from error
+        except (SimulatorError, zmq.ZMQError) as error:
+            raise SetupError(
+                f"robot {model.name}: {error}. Is CoppeliaSim running there, with its ZeroMQ "
+                "remote API on that port? --host and --port choose another place."
+            ) from error
 
     def pose(self) -> Pose:
         """Where the middle of the wheels is, and the robot's heading."""
@@ -120,21 +150,21 @@ class SimulatedRobot:
     def start(self) -> None:
         """Starts the simulation, unless it runs already."""
         if self._ask(self._sim.getSimulationState) == self._sim.simulation_stopped:
-            self._ask(self._sim.startSimulation)
             self._started = True
+            self._ask(self._sim.startSimulation)
 
     def hold_time(self) -> None:
         """From now on time only passes when `advance` is called."""
-        if not self._stepping:
+        if not self._holds_time:
+            self._holds_time = True
             self._ask(self._sim.setStepping, True)
-            self._stepping = True
             self._step_due = None
 
     def release_time(self) -> None:
         """From now on this robot does not hold up time."""
-        if self._stepping:
+        if self._holds_time:
             self._ask(self._sim.setStepping, False)
-            self._stepping = False
+            self._holds_time = False
 
     def why_it_stands(self) -> str:
         """What may keep the robot in place although its wheels should turn."""
@@ -151,28 +181,30 @@ class SimulatedRobot:
         return "something may be in its way"
 
     def stop(self) -> None:
-        """Stops the wheels, whatever happened before.
-
-        A call that was cut off leaves its socket unusable: a new one, under the same
-        client id, continues.
-        """
+        """Stops the wheels, whatever happened before."""
+        if self._is_lost:
+            return
+        if self._in_call:
+            # A call that was cut off leaves its socket unusable. A new one serves the same
+            # client, which may still hold the time.
+            self._socket = LimitedSocket(self._client, self._address, STOP_TIMEOUT)
         try:
-            self._open_socket(STOP_TIMEOUT)
             for joint in self._joints:
                 self._ask(self._sim.setJointTargetVelocity, joint, 0.0)
-            self.release_time()
         except SimulatorError:
-            self._lost = True  # the error that led here says more
+            self._is_lost = True  # what led here says why
 
     def close(self) -> None:
         """Stops the simulation where this robot started it, and hangs up."""
         try:
-            if self._started and not self._lost:
+            if self._started and not self._is_lost:
                 self._ask(self._sim.stopSimulation)
                 self._wait_until_stopped()
+            if not self._is_lost:
+                self.release_time()
         except SimulatorError:
-            pass
-        self._client.socket.close(linger=0)
+            self._is_lost = True
+        self._socket.close()
 
     def _wait_until_stopped(self) -> None:
         deadline = time.monotonic() + STOP_TIMEOUT
@@ -186,23 +218,23 @@ class SimulatedRobot:
         name = self.model.name
         self._missing: list[str] = []
         self._body = self._find(f"/{name}")
-        self._joints = [
-            self._find(f"/{name}/{wheel}", f"/{wheel}_{name}")
-            for wheel in self.model.wheels
-        ]
+        self._joints = self._find_parts(self.model.wheels)
         #: if until
-        self._sensors = {
-            sensor: self._find(f"/{name}/{sensor}", f"/{sensor}_{name}")
-            for sensor in self.model.sensors
-        }
+        self._sensors = dict(
+            zip(self.model.sensors, self._find_parts(self.model.sensors), strict=True)
+        )
         #: endif
         if self._missing:
             raise SetupError(
                 f"robot {name}: the scene at {self._address} has no object "
-                + "; and no object ".join(self._missing)
+                + ", no object ".join(self._missing)
             )
         self.time_step: float = self._ask(self._sim.getSimulationTimeStep)
         self._measure()
+
+    def _find_parts(self, names: Iterable[str]) -> list[int]:
+        robot = self.model.name
+        return [self._find(f"/{robot}/{name}", f"/{name}_{robot}") for name in names]
 
     def _find(self, *paths: str) -> int:
         for path in paths:
@@ -235,23 +267,18 @@ class SimulatedRobot:
             self._joints
         )  # unknown, so the first is always set
 
-    def _open_socket(self, timeout: float) -> None:
-        """Replaces the client's socket, which would wait for ever, by one with time limits."""
-        self._client.socket.close(linger=0)
-        self._client.socket = self._client.context.socket(zmq.REQ)
-        self._client.socket.linger = 0
-        self._client.socket.sndtimeo = self._client.socket.rcvtimeo = int(
-            timeout * 1000
-        )
-        self._client.socket.connect(f"tcp://{self._address}")
-
     def _ask(self, function: Callable[..., Any], *arguments: Any) -> Any:
         """Calls a function of the simulator; raises SimulatorError."""
+        self._socket.begin()
+        self._in_call = True
         try:
-            return function(*arguments)
+            result = function(*arguments)
+        except SimulatorError:
+            raise
         except zmq.ZMQError as error:
-            raise SimulatorError(
-                f"lost the simulator at {self._address}: {error}"
-            ) from error
-        except Exception as error:  # the client has no class of its own for errors
+            raise SimulatorError(f"lost {self._address}: {error}") from error
+        except Exception as error:  # the client has no class of its own for these
+            self._in_call = False
             raise SimulatorError(f"{self._address} answered: {error}") from error
+        self._in_call = False
+        return result

@@ -2,14 +2,15 @@
 """The robots of an environment and the movements they make."""
 
 from collections.abc import Iterable
-from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
+from concurrent.futures import ThreadPoolExecutor, wait
+from contextlib import suppress
 from threading import Event, Lock
 
 from .coppeliasim import RobotModel, SimulatedRobot
 from .errors import MovementCancelledError, SimulatorError
 from .movement import Movement
 from .robot import Robot
-from .trace import Trace
+from .trace_file import Trace
 
 #: endif
 
@@ -39,6 +40,7 @@ class Fleet:
         robots = list(self._robots.values())
         self._hold_time(robots[:1])
         for robot in robots:
+            robot.body.set_wheel_rates([0.0] * len(robot.body.model.wheels))
             robot.body.start()
 
     def run(self, movement: Movement) -> None:
@@ -55,7 +57,8 @@ class Fleet:
         with ThreadPoolExecutor(len(movements)) as pool:
             runs = [pool.submit(self._drive_among, movement) for movement in movements]
             try:
-                wait(runs, return_when=FIRST_EXCEPTION)
+                while wait(runs, timeout=0.5).not_done:
+                    pass  # waking up every now and then lets Ctrl-C through on any system
             except KeyboardInterrupt:
                 self._cancelled.set()
                 raise
@@ -72,7 +75,9 @@ class Fleet:
             self._drive(movement)
         except BaseException:
             self._cancelled.set()
-            body.stop()  # which also lets the others go on, to see that they are to stop
+            body.stop()
+            with suppress(SimulatorError):
+                body.release_time()  # for the others to go on, and see that they must stop
             raise
         with self._lock:
             self._driving -= 1

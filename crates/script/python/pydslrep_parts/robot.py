@@ -11,7 +11,7 @@ from .coppeliasim import SimulatedRobot
 from .errors import MovementCancelledError, MovementError
 from .pose import Pose, wrap_angle
 from .settings import RIM_SPEED, STALL_TIME
-from .trace import Trace
+from .trace_file import Trace
 
 #: endif
 
@@ -156,8 +156,11 @@ class Robot:
             )
 
     def _report(self, here: Pose) -> None:
+        # Adding zero makes a rounded -0 a 0.
+        x, y = round(here.x, 3) + 0.0, round(here.y, 3) + 0.0
+        degrees = round(math.degrees(here.theta), 1) + 0.0
         print(
-            f"{self.body.time:9.2f} s  {self.body.model.name}  {self._movement}  {self._action}"
-            f"  at x {here.x:.3f} m, y {here.y:.3f} m, {math.degrees(here.theta):.1f} deg",
+            f"{self.body.time:8.2f} s  {self.body.model.name}  {self._movement}  "
+            f"{self._action}  at x {x:.3f} m, y {y:.3f} m, {degrees:.1f} deg",
             flush=True,
         )

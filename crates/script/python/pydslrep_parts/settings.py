@@ -9,5 +9,5 @@ CLOSE = 0.001  # m at the rim: ... and this near, it has after CLOSE_TIME of try
 CLOSE_TIME = 1.0  # s of simulation time
 STALL_TIME = 5.0  # s of simulation time without progress that fail an action
 CONNECT_TIMEOUT = 5.0  # s to wait for the first answer of a simulator
-REPLY_TIMEOUT = 20.0  # s to wait for any later answer
+REPLY_TIMEOUT = 10.0  # s to wait for any later answer
 STOP_TIMEOUT = 1.0  # s to wait for an answer while stopping after an error

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from threading import Condition
 from typing import Any
 
-SUBSTEPS = 20
+SUBSTEPS = 8
 
 
 @dataclass
@@ -23,7 +23,9 @@ class FakeJoint:
     x: float
     y: float
     radius: float = 0.045
-    roller: float = 0.0  # 0 for standard wheels, +1 or -1 for the two ways round of mecanum rollers
+    roller: float = (
+        0.0  # 0 for standard wheels, +1 or -1 for the two ways round of mecanum rollers
+    )
     sense: float = 1.0  # -1: the joint's axis points to the body's right
     mode: int = 4  # velocity
     target: float = 0.0
@@ -47,7 +49,9 @@ class FakeRobot:
 
     def advance(self, dt: float, noise: random.Random) -> None:
         """Moves by dt."""
-        grips = [1.0 + noise.gauss(0.0, self.slip) if self.slip else 1.0 for _ in self.joints]
+        grips = [
+            1.0 + noise.gauss(0.0, self.slip) if self.slip else 1.0 for _ in self.joints
+        ]
         for _ in range(SUBSTEPS):
             self._substep(dt / SUBSTEPS, grips)
         self.rolled.append([joint.sense * joint.rate for joint in self.joints])
@@ -57,7 +61,7 @@ class FakeRobot:
             change = joint.target - joint.rate if joint.mode == 4 else -joint.rate
             limit = self.motor_acceleration * dt
             joint.rate += max(-limit, min(limit, change))
-        vx, vy, omega = self._twist(grips)
+        vx, vy, omega = self.twist(grips)
         middle = self.theta + omega * dt / 2.0
         if self.x + (vx * math.cos(middle) - vy * math.sin(middle)) * dt > self.wall:
             return
@@ -65,7 +69,7 @@ class FakeRobot:
         self.y += (vx * math.sin(middle) + vy * math.cos(middle)) * dt
         self.theta += omega * dt
 
-    def _twist(self, grips: Sequence[float]) -> tuple[float, float, float]:
+    def twist(self, grips: Sequence[float]) -> tuple[float, float, float]:
         """Body motion of the origin from the wheels; rims are symmetric about their centre."""
         cx = sum(joint.x for joint in self.joints) / len(self.joints)
         cy = sum(joint.y for joint in self.joints) / len(self.joints)
@@ -78,8 +82,12 @@ class FakeRobot:
         ]  # rim = vx + roller vy - arm omega
         vx = sum(rims) / len(rims)
         rollers = [joint.roller for joint in self.joints]
-        vy = sum(r * s for r, s in zip(rims, rollers, strict=True)) / (sum(s * s for s in rollers) or 1.0)
-        omega = -sum(r * a for r, a in zip(rims, arms, strict=True)) / sum(a * a for a in arms)
+        vy = sum(r * s for r, s in zip(rims, rollers, strict=True)) / (
+            sum(s * s for s in rollers) or 1.0
+        )
+        omega = -sum(r * a for r, a in zip(rims, arms, strict=True)) / sum(
+            a * a for a in arms
+        )
         # from the wheels' centre to the body's origin
         return vx + omega * cy, vy - omega * cx, omega
 
@@ -93,13 +101,28 @@ def two_wheel_joints(track: float = 0.3, **options: Any) -> list[FakeJoint]:
 
 
 def four_wheel_joints(
-    track: float = 0.3, wheelbase: float = 0.25, *, mecanum: bool = False, **options: Any
+    track: float = 0.3,
+    wheelbase: float = 0.25,
+    *,
+    mecanum: bool = False,
+    **options: Any,
 ) -> list[FakeJoint]:
     """Joints named as in the article, in its order."""
     x, y = wheelbase / 2.0, track / 2.0
-    places = {"wheelL0": (x, y), "wheelL1": (-x, y), "wheelR0": (x, -y), "wheelR1": (-x, -y)}
+    places = {
+        "wheelL0": (x, y),
+        "wheelL1": (-x, y),
+        "wheelR0": (x, -y),
+        "wheelR1": (-x, -y),
+    }
     return [
-        FakeJoint(name, px, py, roller=-math.copysign(1.0, px * py) if mecanum else 0.0, **options)
+        FakeJoint(
+            name,
+            px,
+            py,
+            roller=-math.copysign(1.0, px * py) if mecanum else 0.0,
+            **options,
+        )
         for name, (px, py) in places.items()
     ]
 
@@ -211,12 +234,12 @@ class FakeSim:
                 self._world.calls[name] += 1
         return value
 
-    def getObject(self, path: str, options: dict[str, Any]) -> int:  # noqa: N802
+    def getObject(self, path: str, options: dict[str, Any]) -> int:
         """A handle, or -1."""
         assert options == {"noError": True}
         return self._world.paths.get(path, -1)
 
-    def getObjectMatrix(self, handle: int) -> list[float]:  # noqa: N802
+    def getObjectMatrix(self, handle: int) -> list[float]:
         """Rows of rotation and translation."""
         thing = self._world.object(handle)
         robot, joint = thing if isinstance(thing, tuple) else (thing, None)
@@ -228,49 +251,51 @@ class FakeSim:
         k = joint.sense
         return [c, 0.0, -s * k, x, s, 0.0, c * k, y, 0.0, -k, 0.0, 0.045]
 
-    def setJointTargetVelocity(self, handle: int, velocity: float) -> int:  # noqa: N802
+    def setJointTargetVelocity(self, handle: int, velocity: float) -> int:
         """Sets a motor's target."""
         assert math.isfinite(velocity)
         self._world.object(handle)[1].target = velocity
         return 1
 
-    def readProximitySensor(self, handle: int) -> tuple[Any, ...]:  # noqa: N802
+    def readProximitySensor(self, handle: int) -> tuple[Any, ...]:
         """State and more; blind before the first step."""
         robot, sensor = self._world.object(handle)
         state = -1 if self._world.steps == 0 else int(robot.sensors[sensor](robot))
         return (state, 0.0, [0.0, 0.0, 0.0], -1, [0.0, 0.0, 0.0])
 
-    def handleProximitySensor(self, handle: int) -> tuple[Any, ...]:  # noqa: N802
+    def handleProximitySensor(self, handle: int) -> tuple[Any, ...]:
         """Only for sensors of another kind."""
-        raise Exception("316: in sim.handleProximitySensor: object not tagged for explicit handling.")
+        raise Exception(
+            "316: in sim.handleProximitySensor: object not tagged for explicit handling."
+        )
 
-    def getObjectInt32Param(self, handle: int, parameter: int) -> int:  # noqa: N802
+    def getObjectInt32Param(self, handle: int, parameter: int) -> int:
         """The joint's control mode."""
         assert parameter == self.jointintparam_dynctrlmode
         mode: int = self._world.object(handle)[1].mode
         return mode
 
-    def getSimulationTimeStep(self) -> float:  # noqa: N802
+    def getSimulationTimeStep(self) -> float:
         """Seconds."""
         return self._world.dt
 
-    def getSimulationTime(self) -> float:  # noqa: N802
+    def getSimulationTime(self) -> float:
         """Seconds."""
         return self._world.steps * self._world.dt
 
-    def getSimulationState(self) -> int:  # noqa: N802
+    def getSimulationState(self) -> int:
         """Stopped or running."""
         return 17 if self._world.running else 0
 
-    def startSimulation(self) -> None:  # noqa: N802
+    def startSimulation(self) -> None:
         """Starts."""
         self._world.running = True
 
-    def stopSimulation(self) -> None:  # noqa: N802
+    def stopSimulation(self) -> None:
         """Stops."""
         self._world.running = False
 
-    def setStepping(self, enable: bool) -> int:  # noqa: N802
+    def setStepping(self, enable: bool) -> int:
         """Counts levels per client."""
         world = self._world
         with world.condition:
@@ -285,11 +310,15 @@ class FakeSim:
         if not world.running:
             return
         with world.condition:
-            assert world.holders.get(self._uuid, 0) > 0, "steps without holding the time"
+            assert world.holders.get(self._uuid, 0) > 0, (
+                "steps without holding the time"
+            )
             world.waiting.add(self._uuid)
             before = world.steps
             self._step_if_all_wait()
-            assert world.condition.wait_for(lambda: world.steps > before, timeout=20.0), "nobody steps"
+            assert world.condition.wait_for(
+                lambda: world.steps > before, timeout=20.0
+            ), "nobody steps"
 
     def _step_if_all_wait(self) -> None:
         world = self._world

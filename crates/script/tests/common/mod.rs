@@ -1,15 +1,17 @@
 //! Environments to generate scripts from.
 
-use pydslrep_analysis::environment::{Action, ActionKind, Environment, Movement, Robot, Sensor, SensorKind, Source, Wheel};
+use pydslrep_analysis::environment::{
+    Action, ActionKind, Environment, Movement, Robot, Sensor, SensorKind, Source, Wheel,
+};
 use pydslrep_kinematics::Drive;
 
 /// A line of the environment's own file.
-pub fn line(line: u32) -> Source {
+pub(crate) fn line(line: u32) -> Source {
     Source { file: None, line }
 }
 
 /// A robot with wheels named as in the article.
-pub fn robot(name: &str, drive: Drive, port: u16) -> Robot {
+pub(crate) fn robot(name: &str, drive: Drive, port: u16) -> Robot {
     let wheels = match drive {
         Drive::TwoWheel => vec!["wheelL", "wheelR"],
         Drive::FourWheel | Drive::FourMecanum => vec!["wheelL0", "wheelL1", "wheelR0", "wheelR1"],
@@ -25,14 +27,14 @@ pub fn robot(name: &str, drive: Drive, port: u16) -> Robot {
 }
 
 /// The same robot with distance sensors.
-pub fn with_sensors(mut robot: Robot, names: &[&str]) -> Robot {
+pub(crate) fn with_sensors(mut robot: Robot, names: &[&str]) -> Robot {
     robot.sensors =
         names.iter().map(|name| Sensor { name: (*name).to_owned(), kind: SensorKind::Distance }).collect();
     robot
 }
 
 /// `move D meters`, at the default speed.
-pub fn move_by(distance: f64, at: u32) -> Action {
+pub(crate) fn move_by(distance: f64, at: u32) -> Action {
     Action {
         kind: ActionKind::Move { distance, speed: 0.09 },
         text: format!("move {distance:?} meters"),
@@ -41,7 +43,7 @@ pub fn move_by(distance: f64, at: u32) -> Action {
 }
 
 /// `move D meters at V`, V in cm/s.
-pub fn move_at(distance: f64, speed: f64, at: u32) -> Action {
+pub(crate) fn move_at(distance: f64, speed: f64, at: u32) -> Action {
     Action {
         kind: ActionKind::Move { distance, speed: speed / 100.0 },
         text: format!("move {distance:?} meters at {speed:?}"),
@@ -49,15 +51,15 @@ pub fn move_at(distance: f64, speed: f64, at: u32) -> Action {
     }
 }
 
-/// `turn left A` or `turn right A`.
-pub fn turn(degrees: f64, at: u32) -> Action {
+/// `turn left A` or `turn right A`, A in degrees.
+pub(crate) fn turn(degrees: f64, at: u32) -> Action {
     let side = if degrees < 0.0 { "right" } else { "left" };
-    let text = if degrees.abs() == 90.0 { format!("turn {side}") } else { format!("turn {side} {:?}", degrees.abs()) };
+    let text = format!("turn {side} {:?}", degrees.abs());
     Action { kind: ActionKind::Turn { degrees }, text, source: line(at) }
 }
 
 /// `turn right until { … }`; `sensors` are indices and `names` what the text calls them.
-pub fn turn_until(sensors: &[usize], names: &str, at: u32) -> Action {
+pub(crate) fn turn_until(sensors: &[usize], names: &str, at: u32) -> Action {
     Action {
         kind: ActionKind::TurnUntil { left: false, sensors: sensors.to_vec() },
         text: format!("turn right until {{{names}}}"),
@@ -66,27 +68,39 @@ pub fn turn_until(sensors: &[usize], names: &str, at: u32) -> Action {
 }
 
 /// A movement of the robot with that index.
-pub fn movement(name: &str, robot: usize, actions: Vec<Action>) -> Movement {
+pub(crate) fn movement(name: &str, robot: usize, actions: Vec<Action>) -> Movement {
     Movement { name: name.to_owned(), robot, actions, source: line(6) }
 }
 
 /// An environment on this machine.
-pub fn environment(name: &str, robots: Vec<Robot>, movements: Vec<Movement>, schedule: Vec<Vec<usize>>) -> Environment {
+pub(crate) fn environment(
+    name: &str,
+    robots: Vec<Robot>,
+    movements: Vec<Movement>,
+    schedule: Vec<Vec<usize>>,
+) -> Environment {
     Environment { name: name.to_owned(), host: None, robots, movements, schedule, source: line(14) }
 }
 
 /// The article's table 2: three sides of a square.
-pub fn area_1(drive: Drive) -> Environment {
-    let actions =
-        vec![move_by(4.0, 7), turn(-90.0, 8), move_by(4.0, 9), turn(-90.0, 10), Action {
-            text: "move 400.0 centimeters".to_owned(),
-            ..move_by(4.0, 11)
-        }];
-    environment("area_1", vec![robot("robot_1", drive, 19999)], vec![movement("mov_1", 0, actions)], vec![vec![0]])
+pub(crate) fn area_1(drive: Drive) -> Environment {
+    let actions = vec![
+        move_by(4.0, 7),
+        turn(-90.0, 8),
+        move_by(4.0, 9),
+        turn(-90.0, 10),
+        Action { text: "move 400.0 centimeters".to_owned(), ..move_by(4.0, 11) },
+    ];
+    environment(
+        "area_1",
+        vec![robot("robot_1", drive, 19999)],
+        vec![movement("mov_1", 0, actions)],
+        vec![vec![0]],
+    )
 }
 
 /// Table 6: turns until sensors are free.
-pub fn sensors() -> Environment {
+pub(crate) fn sensors() -> Environment {
     let robot = with_sensors(robot("robot_1", Drive::TwoWheel, 19999), &["fSensor", "lSensor", "rSensor"]);
     let actions = vec![
         move_by(4.0, 15),
@@ -99,7 +113,7 @@ pub fn sensors() -> Environment {
 }
 
 /// Four robots of all kinds that drive at the same time, and then one alone.
-pub fn four_robots() -> Environment {
+pub(crate) fn four_robots() -> Environment {
     let robots = vec![
         robot("robot_1", Drive::TwoWheel, 19997),
         robot("robot_2", Drive::FourWheel, 19998),

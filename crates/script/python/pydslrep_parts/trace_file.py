@@ -32,10 +32,10 @@ class Trace:
         row = {
             "t": round(time, 6),
             "robot": robot,
-            "x": round(pose.x, 6),
-            "y": round(pose.y, 6),
-            "theta": round(pose.theta, 6),
-            "wheels": [round(rate, 6) for rate in wheels],
+            "x": round(pose.x, 6) + 0.0,  # no -0
+            "y": round(pose.y, 6) + 0.0,
+            "theta": round(pose.theta, 6) + 0.0,
+            "wheels": [round(rate, 6) + 0.0 for rate in wheels],
             "movement": movement,
             "action": action,
         }

@@ -1,0 +1,96 @@
+//! Writes scripts for many kinds of environment into a folder, for `python/check.py` to run ruff and mypy on them.
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use std::{env, error::Error, fs, path::Path};
+
+use common::{
+    area_1, environment, four_robots, move_at, move_by, movement, robot, sensors, turn, turn_until,
+    with_sensors,
+};
+use pydslrep_analysis::environment::{Action, Environment, Source};
+use pydslrep_kinematics::Drive;
+use pydslrep_script::{Target, file_name, generate};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folder = env::args().nth(1).ok_or("usage: variants FOLDER")?;
+    for environment in variants() {
+        let script = generate(&environment, Target::CoppeliaSim)?;
+        fs::write(Path::new(&folder).join(file_name(&environment)), script)?;
+    }
+    Ok(())
+}
+
+fn variants() -> Vec<Environment> {
+    let named = |name: &str, environment: Environment| Environment { name: name.to_owned(), ..environment };
+    let mut variants = vec![
+        named("two_wheel", area_1(Drive::TwoWheel)),
+        named("four_wheel", area_1(Drive::FourWheel)),
+        named("four_mecanum", area_1(Drive::FourMecanum)),
+        sensors(),
+        four_robots(),
+        named("math", area_1(Drive::TwoWheel)),
+        environment("nothing", vec![], vec![], vec![]),
+        environment(
+            "idle",
+            vec![robot("r", Drive::FourWheel, 1)],
+            vec![movement("m", 0, vec![])],
+            vec![vec![0]],
+        ),
+        numbers(),
+        imported(),
+    ];
+    variants.extend((1..=200).map(names_of));
+    variants
+}
+
+/// Numbers of all sizes.
+fn numbers() -> Environment {
+    let actions = [1e-9, 0.1 + 0.2, 1e6, 123_456.789_012_345, -1e-7]
+        .iter()
+        .flat_map(|&number| [move_by(number, 1), move_at(number, number.abs(), 2), turn(number, 3)])
+        .collect();
+    environment(
+        "numbers",
+        vec![robot("r", Drive::TwoWheel, 1)],
+        vec![movement("m", 0, actions)],
+        vec![vec![0]],
+    )
+}
+
+/// Actions from another file, whose name is not plain.
+fn imported() -> Environment {
+    let source = |line| Source { file: Some("größe/机器人.pyr".to_owned()), line };
+    let actions: Vec<Action> = (1..60)
+        .map(|length| Action { text: "x".repeat(length), source: source(1), ..move_by(1.0, 1) })
+        .collect();
+    environment(
+        "imported",
+        vec![robot("r", Drive::TwoWheel, 1)],
+        vec![movement("m", 0, actions)],
+        vec![vec![0]],
+    )
+}
+
+/// All names of this length: of wheels, sensors, robots, movements.
+fn names_of(length: usize) -> Environment {
+    // The last letter differs.
+    let name = |last: &str| "n".repeat(length - 1) + last;
+    let (long, other) = (name("a"), name("b"));
+    let mut robots = vec![
+        with_sensors(robot(&long, Drive::TwoWheel, 19997), &[&long, &other]),
+        robot(&other, Drive::FourMecanum, 19998),
+    ];
+    for robot in &mut robots {
+        for (wheel, last) in robot.wheels.iter_mut().zip(["a", "b", "c", "d"]) {
+            wheel.name = name(last);
+        }
+    }
+    let until = |sensors: &[usize]| turn_until(sensors, &format!("{long}, {other}"), 9);
+    let movements = vec![
+        movement(&long, 0, vec![move_by(1.0, 8), until(&[0]), until(&[0, 1])]),
+        movement(&other, 1, vec![turn(45.0, 8)]),
+    ];
+    environment(&format!("names_{length}"), robots, movements, vec![vec![0], vec![0, 1]])
+}

@@ -1,0 +1,64 @@
+"""Checks all Python of this crate: the parts, generated scripts of every kind, and their tests.
+
+Run it from anywhere with a Python that has tests/requirements.txt installed, and with cargo on the path:
+
+    python crates/script/python/check.py
+"""
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+PYTHON = Path(__file__).resolve().parent
+ROOT = PYTHON.parents[2]
+SNAPSHOTS = PYTHON.parent / "snapshots"
+
+
+def run(*command: str | Path) -> None:
+    """Runs a command in the repository; ends the checks where it fails."""
+    words = [str(word) for word in command]
+    print("+", " ".join(words), flush=True)
+    code = subprocess.run(words, cwd=ROOT, check=False).returncode
+    if code:
+        sys.exit(code)
+
+
+def tool(name: str, *arguments: str | Path) -> None:
+    """Runs a tool that is installed beside this Python."""
+    run(sys.executable, "-m", name, *arguments)
+
+
+def check_scripts(folder: Path) -> None:
+    """Generated scripts must please the tools as a user has them, without this repository's settings."""
+    tool("ruff", "check", "--isolated", "--no-cache", folder)
+    tool("ruff", "format", "--isolated", "--no-cache", "--check", folder)
+    for path in sorted(folder.glob("*.py")):
+        # Scripts whose names have another length only are alike to mypy.
+        if not path.stem.startswith("names_") or path.stem == "names_150":
+            tool("mypy", "--strict", "--python-version", "3.10", "--config-file=", path)
+
+
+def main() -> None:
+    """Runs all checks."""
+    tool("ruff", "check", PYTHON, SNAPSHOTS)
+    tool("ruff", "format", "--check", PYTHON, SNAPSHOTS)
+    tool("mypy", PYTHON)
+    with tempfile.TemporaryDirectory() as folder:
+        run(
+            "cargo",
+            "run",
+            "-q",
+            "-p",
+            "pydslrep-script",
+            "--example",
+            "variants",
+            "--",
+            folder,
+        )
+        check_scripts(Path(folder))
+    tool("pytest", PYTHON / "tests")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,74 @@
+"""Tests of `approach`."""
+
+import math
+
+import pytest
+from pydslrep_parts.approach import Approach
+from pydslrep_parts.settings import ARRIVED, CLOSE, RIM_ACCELERATION, STALL_TIME
+
+
+@pytest.mark.parametrize("dt", [0.005, 0.05, 0.2])
+@pytest.mark.parametrize("top_speed", [0.00001, 0.09, 3.0])
+@pytest.mark.parametrize("way", [0.0005, 0.004, 0.05, 7.0])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_ramps_up_cruises_and_ends_at_the_goal(
+    dt: float, top_speed: float, way: float, side: float
+) -> None:
+    if way / top_speed > 1e4:
+        way = top_speed * 100.0
+    approach = Approach(top_speed, dt)
+    to_go, speed, fastest, steps = way * side, 0.0, 0.0, 0
+    while not approach.arrived(to_go):
+        assert not approach.stalled(to_go)
+        before, speed = speed, approach.next_speed(to_go)
+        assert abs(speed - before) <= RIM_ACCELERATION * dt * 1.01, "a wheel jumps"
+        assert abs(speed) <= top_speed
+        fastest = max(fastest, abs(speed))
+        to_go -= speed * dt
+        steps += 1
+    # A robot that creeps is taken to be as near as it will get.
+    assert abs(to_go) <= (ARRIVED if top_speed > 0.01 else CLOSE)
+    if way > 2.0 * top_speed**2 / RIM_ACCELERATION + 2.0 * top_speed * dt:
+        assert fastest == top_speed
+        # a trapezoid's time, and a moment for the soft ending
+        assert (
+            steps * dt
+            <= way / top_speed + top_speed / RIM_ACCELERATION + 1.0 + 20.0 * dt
+        )
+
+
+def test_a_delay_of_the_wheels_does_not_make_it_swing() -> None:
+    approach, dt = Approach(0.09, 0.05), 0.05
+    to_go, speed = 1.0, 0.0
+    while not approach.arrived(to_go):
+        wanted = approach.next_speed(to_go)
+        to_go -= dt * (speed + wanted) / 2.0
+        speed = wanted
+        assert to_go > -0.001
+
+
+def test_comes_to_rest_in_steps() -> None:
+    approach = Approach(0.09, 0.05)
+    approach.speed = -0.06
+    assert [approach.slowed_down() for _ in range(4)] == pytest.approx(
+        [-0.035, -0.01, 0.0, 0.0]
+    )
+
+
+def test_near_enough_counts_after_a_while() -> None:
+    approach = Approach(0.09, 0.05)
+    steps = next(step for step in range(1000) if approach.arrived(0.0005))
+    assert steps == pytest.approx(20, abs=1)
+    assert not any(Approach(0.09, 0.05).arrived(0.002) for _ in range(1000))
+
+
+def test_stalls_only_without_progress() -> None:
+    approach = Approach(0.09, 0.05)
+    assert not any(approach.stalled(1.0 - 0.001 * step) for step in range(900))
+    stuck = next(step for step in range(1000) if approach.stalled(0.1))
+    assert stuck * 0.05 == pytest.approx(STALL_TIME, abs=0.3)
+
+
+def test_moving_away_is_no_progress() -> None:
+    approach = Approach(0.09, 0.05)
+    assert any(approach.stalled(1.0 + math.sin(step)) for step in range(200))

@@ -1,0 +1,92 @@
+"""Tests of the drives' kinematics against the simulation's, which is written the other way round."""
+
+import math
+import random
+
+import pytest
+from driving import DRIVES, joints
+from fake_simulator import FakeRobot
+from pydslrep_parts.drive_four_mecanum import FourMecanumDrive
+from pydslrep_parts.drive_four_wheel import FourWheelDrive
+from pydslrep_parts.drive_two_wheel import TwoWheelDrive
+from pydslrep_parts.errors import SetupError
+from pydslrep_parts.pose import Pose
+from pydslrep_parts.steering import steer
+
+CHANCE = random.Random(3)
+TWISTS = [tuple(CHANCE.uniform(-1.0, 1.0) for _ in range(3)) for _ in range(20)]
+
+
+def twist_of(robot: FakeRobot, rates: list[float]) -> tuple[float, float, float]:
+    """How the simulated robot moves when its wheels turn at these rates."""
+    for joint, rate in zip(robot.joints, rates, strict=True):
+        joint.rate = rate
+    return robot.twist([1.0] * len(rates))
+
+
+@pytest.mark.parametrize("radii", [[0.045] * 2, [0.03, 0.06]])
+@pytest.mark.parametrize(("v", "omega", "_unused"), TWISTS)
+def test_two_wheels(v: float, omega: float, _unused: float, radii: list[float]) -> None:
+    robot = FakeRobot("r", joints("two-wheel", track=0.4))
+    for joint, radius in zip(robot.joints, radii, strict=True):
+        joint.radius = radius
+    drive = TwoWheelDrive([(j.x, j.y) for j in robot.joints], radii)
+    assert twist_of(robot, drive.wheel_rates(v, omega)) == pytest.approx(
+        (v, 0.0, omega)
+    )
+
+
+@pytest.mark.parametrize(("v", "omega", "_unused"), TWISTS)
+def test_four_wheels(v: float, omega: float, _unused: float) -> None:
+    robot = FakeRobot("r", joints("four-wheel", track=0.4, wheelbase=0.2))
+    drive = FourWheelDrive([(j.x, j.y) for j in robot.joints], [0.045] * 4)
+    rates = drive.wheel_rates(v, omega)
+    assert rates[0] == rates[1]
+    assert rates[2] == rates[3]
+    assert twist_of(robot, rates) == pytest.approx((v, 0.0, omega))
+
+
+@pytest.mark.parametrize(("vx", "vy", "omega"), TWISTS)
+def test_mecanum_wheels(vx: float, vy: float, omega: float) -> None:
+    robot = FakeRobot("r", joints("mecanum", track=0.4, wheelbase=0.2))
+    drive = FourMecanumDrive([(j.x, j.y) for j in robot.joints], [0.045] * 4)
+    assert twist_of(robot, drive.wheel_rates(vx, vy, omega)) == pytest.approx(
+        (vx, vy, omega)
+    )
+
+
+def test_mecanum_rates_are_those_of_rollers_that_form_an_x() -> None:
+    drive = FourMecanumDrive(
+        [(0.1, 0.2), (-0.1, 0.2), (0.1, -0.2), (-0.1, -0.2)], [0.05] * 4
+    )
+    assert drive.wheel_rates(1.0, 0.0, 0.0) == pytest.approx([20.0] * 4)
+    assert drive.wheel_rates(0.0, 1.0, 0.0) == pytest.approx([-20.0, 20.0, 20.0, -20.0])
+    assert drive.wheel_rates(0.0, 0.0, 1.0) == pytest.approx([-6.0, -6.0, 6.0, 6.0])
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+def test_wheels_on_the_wrong_side_are_an_error(drive: str) -> None:
+    mounts = [(joint.x, -joint.y) for joint in joints(drive)]
+    with pytest.raises(SetupError, match="left"):
+        DRIVES[drive](mounts, [0.045] * len(mounts))
+
+
+def test_rear_wheels_in_front_are_an_error() -> None:
+    mounts = [(-joint.x, joint.y) for joint in joints("mecanum")]
+    with pytest.raises(SetupError, match="front"):
+        FourMecanumDrive(mounts, [0.045] * 4)
+
+
+@pytest.mark.parametrize("speed", [0.09, -0.09, 2.0])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_steering_leads_back_to_the_line(speed: float, side: float) -> None:
+    x, y, theta, dt = 0.0, 0.1 * side, 0.0, 0.05
+    way = 20.0 * max(0.15, 0.5 * abs(speed))
+    widest = abs(y)
+    for _ in range(round(way / abs(speed) / dt)):
+        theta += dt * steer(speed, Pose(x, y, theta), 100.0)
+        x += dt * speed * math.cos(theta)
+        y += dt * speed * math.sin(theta)
+        widest = max(widest, abs(y))
+    assert (y, theta) == pytest.approx((0.0, 0.0), abs=1e-4)
+    assert widest < 0.101

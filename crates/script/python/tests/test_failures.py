@@ -1,0 +1,179 @@
+"""Tests of what goes wrong: blocked robots, missing objects, simulators that fall silent."""
+
+import threading
+from collections.abc import Iterator
+
+import cbor2
+import pytest
+import zmq
+from driving import connected, drive_alone, joints, model
+from fake_simulator import FakeRobot, FakeWorld
+from pydslrep_parts import coppeliasim
+from pydslrep_parts.coppeliasim import SimulatedRobot
+from pydslrep_parts.errors import MovementError, SetupError
+from pydslrep_parts.movement import Movement
+from pydslrep_parts.robot import Robot
+
+
+def move_a_metre(robot: Robot) -> None:
+    """The second action of its movement."""
+    robot.turn(0.0)
+    robot.move(1.0)
+
+
+def test_a_blocked_robot_fails_its_action(monkeypatch: pytest.MonkeyPatch) -> None:
+    fake = FakeRobot("r", joints("two-wheel"), wall=0.4)
+    world = FakeWorld(fake)
+    with pytest.raises(MovementError) as error:
+        drive_alone(world, monkeypatch, "two-wheel", move_a_metre)
+    assert str(error.value) == (
+        "robot r, movement m, action 2: move 1 m: came no nearer to its goal for 5 s, 0.600 m before it; "
+        "something may be in its way"
+    )
+    assert all(joint.target == 0.0 for joint in fake.joints)
+    assert not world.running
+    assert 5.0 < world.steps * world.dt < 12.0
+
+
+def test_a_joint_in_another_mode_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    fake = FakeRobot("r", joints("two-wheel"))
+    for joint in fake.joints:
+        joint.mode = 8
+    with pytest.raises(
+        MovementError,
+        match="wheelL ignores velocities: set its control mode to velocity",
+    ):
+        drive_alone(FakeWorld(fake), monkeypatch, "two-wheel", move_a_metre)
+
+
+def test_a_stopped_simulation_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    world = FakeWorld(FakeRobot("r", joints("two-wheel")))
+
+    def stop() -> None:
+        world.running = world.steps < 20
+
+    world.before_step = stop
+    with pytest.raises(MovementError, match="the simulation was stopped or paused"):
+        drive_alone(world, monkeypatch, "two-wheel", move_a_metre)
+
+
+def test_all_missing_objects_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    fake = FakeRobot("r", joints("two-wheel"), sensors={"eye": lambda _: False})
+    world = FakeWorld(fake)
+    del world.paths["/r/wheelR"], world.paths["/r/eye"]
+    with pytest.raises(SetupError) as error:
+        drive_alone(world, monkeypatch, "two-wheel", move_a_metre)
+    assert str(error.value) == (
+        "robot r: the scene at 127.0.0.1:19999 has no object /r/wheelR or /wheelR_r, no object /r/eye or /eye_r"
+    )
+
+
+def test_parts_are_found_by_their_flat_names(monkeypatch: pytest.MonkeyPatch) -> None:
+    fake = FakeRobot("r", joints("two-wheel"))
+    world = FakeWorld(fake)
+    world.paths["/wheelR_r"] = world.paths.pop("/r/wheelR")
+    drive_alone(world, monkeypatch, "two-wheel", move_a_metre)
+    assert fake.x == pytest.approx(1.0, abs=0.001)
+
+
+def test_swapped_wheels_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    wheels = joints("two-wheel")
+    fake = FakeRobot("r", wheels[::-1])
+    with pytest.raises(
+        SetupError, match="robot r: the left wheel does not stand to the left"
+    ):
+        drive_alone(FakeWorld(fake), monkeypatch, "two-wheel", move_a_metre)
+
+
+def test_a_running_simulation_is_left_running(monkeypatch: pytest.MonkeyPatch) -> None:
+    world = FakeWorld(FakeRobot("r", joints("two-wheel")))
+    world.running = True
+    drive_alone(world, monkeypatch, "two-wheel", move_a_metre)
+    assert world.running
+    assert set(world.holders.values()) == {0}
+
+
+def test_ctrl_c_stops_the_wheels(monkeypatch: pytest.MonkeyPatch) -> None:
+    fake = FakeRobot("r", joints("two-wheel"))
+    world = FakeWorld(fake)
+    world.running = True
+
+    def interrupt() -> None:
+        if world.steps == 30:
+            raise KeyboardInterrupt
+
+    world.before_step = interrupt
+    with (
+        pytest.raises(KeyboardInterrupt),
+        connected(world, monkeypatch, "two-wheel") as fleet,
+    ):
+        fleet.run(Movement("m", "r", move_a_metre))
+    assert fake.joints[0].rate > 0.0
+    assert all(joint.target == 0.0 for joint in fake.joints)
+    assert set(world.holders.values()) == {0}
+
+
+class Replies(threading.Thread):
+    """A server that gives every request the same reply, until told to stop."""
+
+    def __init__(self, reply: object) -> None:
+        super().__init__()
+        self.context = zmq.Context()
+        self.socket = self.context.socket(zmq.REP)
+        self.port = self.socket.bind_to_random_port("tcp://127.0.0.1")
+        self.reply = reply if isinstance(reply, bytes) else cbor2.dumps(reply)
+        self.done = threading.Event()
+
+    def run(self) -> None:
+        """Answers."""
+        while not self.done.is_set():
+            if self.socket.poll(20):
+                self.socket.recv()
+                self.socket.send(self.reply)
+        self.socket.close(linger=0)
+        self.context.term()
+
+
+@pytest.fixture(name="short_wait")
+def fixture_short_wait(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Makes the script less patient."""
+    monkeypatch.setattr(coppeliasim, "CONNECT_TIMEOUT", 0.2)
+
+
+@pytest.fixture(name="server")
+def fixture_server(request: pytest.FixtureRequest) -> Iterator[Replies]:
+    """A running server with the reply of the test's parameter."""
+    server = Replies(request.param)
+    server.start()
+    yield server
+    server.done.set()
+    server.join()
+
+
+def connect(port: int) -> None:
+    """Tries to connect with the client's real class."""
+    robot = model(FakeRobot("r", joints("two-wheel")), "two-wheel")
+    SimulatedRobot(robot, "127.0.0.1", port, realtime=False)
+
+
+@pytest.mark.usefixtures("short_wait")
+def test_nobody_there() -> None:
+    with pytest.raises(SetupError, match=r"no answer from 127\.0\.0\.1:9 for 0\.2 s"):
+        connect(9)
+
+
+@pytest.mark.usefixtures("short_wait")
+@pytest.mark.parametrize("server", [{"func": "_*wait*_", "args": []}], indirect=True)
+def test_endless_wait_rounds_have_a_limit(server: Replies) -> None:
+    with pytest.raises(SetupError, match="no answer from"):
+        connect(server.port)
+
+
+@pytest.mark.parametrize(
+    "server",
+    [b"HTTP/1.1 400 Bad Request\r\n", {"err": "no such module"}, [1, 2]],
+    indirect=True,
+)
+def test_nonsense_is_told(server: Replies) -> None:
+    with pytest.raises(SetupError, match=f"robot r: 127.0.0.1:{server.port} answered"):
+        connect(server.port)

@@ -1,0 +1,167 @@
+"""Tests of moves and turns: where robots end, whatever the angle, the distance and the start."""
+
+import itertools
+import math
+import random
+from collections.abc import Callable
+
+import pytest
+from driving import DRIVES, drive_alone, errors, joints, wheel_middle
+from fake_simulator import FakeRobot, FakeWorld
+from pydslrep_parts.pose import Pose
+from pydslrep_parts.robot import Robot
+from pydslrep_parts.settings import RIM_ACCELERATION
+
+POSITION = 0.001  # m; the requirement is 0.005
+HEADING = 0.1  # degrees; the requirement is 0.5
+
+# What scenes do to robots.
+BODIES: dict[str, Callable[[FakeRobot], None]] = {}
+
+
+def body(change: Callable[[FakeRobot], None]) -> None:
+    """Adds a kind of robot."""
+    BODIES[change.__name__] = change
+
+
+@body
+def strong(robot: FakeRobot) -> None:
+    """Is the usual one."""
+
+
+@body
+def weak(robot: FakeRobot) -> None:
+    robot.motor_acceleration = 25.0
+
+
+@body
+def mirrored(robot: FakeRobot) -> None:
+    for joint in robot.joints[::2]:
+        joint.sense = -1.0
+
+
+@body
+def off_centre(robot: FakeRobot) -> None:
+    for joint in robot.joints:
+        joint.x += 0.07
+        joint.y -= 0.03
+
+
+def make_robot(drive: str, body: str, chance: random.Random) -> FakeRobot:
+    """A robot that stands anywhere."""
+    x, y, theta = (chance.uniform(-5.0, 5.0) for _ in range(3))
+    robot = FakeRobot("r", joints(drive), x, y, theta)
+    BODIES[body](robot)
+    return robot
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize("body", BODIES)
+@pytest.mark.parametrize("seed", range(4))
+def test_every_action_ends_where_planned(
+    drive: str, body: str, seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    chance = random.Random(f"{drive} {body} {seed}")
+    fake = make_robot(drive, body, chance)
+    world = FakeWorld(fake)
+    planned = Pose(*wheel_middle(fake), fake.theta)
+
+    def actions(robot: Robot) -> None:
+        nonlocal planned
+        for _ in range(5):
+            angle = chance.uniform(-400.0, 400.0)
+            robot.turn(angle)
+            planned = planned.turned(math.radians(angle))
+            check()
+            distance = chance.uniform(-1.5, 1.5)
+            robot.move(distance, chance.choice([0.05, 0.09, 0.4]))
+            planned = planned.ahead(distance)
+            check()
+
+    def check() -> None:
+        distance, angle = errors(fake, planned.x, planned.y, planned.theta)
+        assert distance < POSITION
+        assert angle < HEADING
+
+    drive_alone(world, monkeypatch, drive, actions)
+    assert all(joint.target == 0.0 for joint in fake.joints)
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+def test_no_wheel_jumps(drive: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    fake = FakeRobot("r", joints(drive), motor_acceleration=1e9)
+
+    def actions(robot: Robot) -> None:
+        robot.move(0.5)
+        robot.turn(77.0)
+        robot.move(-0.3, 0.3)
+
+    drive_alone(FakeWorld(fake), monkeypatch, drive, actions)
+    rims = [
+        [rate * 0.045 for rate in row]
+        for row in [[0.0] * len(fake.joints), *fake.rolled]
+    ]
+    jumps = [
+        abs(b - a)
+        for before, after in itertools.pairwise(rims)
+        for a, b in zip(before, after, strict=True)
+    ]
+    assert max(jumps) <= RIM_ACCELERATION * 0.05 * 1.1
+    assert max(jumps) >= RIM_ACCELERATION * 0.05 * 0.9
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize("seed", range(5))
+def test_slipping_wheels_still_arrive(
+    drive: str, seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fake = FakeRobot("r", joints(drive), slip=0.05)
+
+    def actions(robot: Robot) -> None:
+        for _ in range(3):
+            robot.move(2.0)
+            robot.turn(-90.0)
+        robot.move(2.0)
+
+    drive_alone(FakeWorld(fake, seed=seed), monkeypatch, drive, actions)
+    distance, angle = errors(fake, 0.0, 0.0, math.radians(90.0))
+    assert distance < 0.005
+    assert angle < 0.5
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize("dt", [0.01, 0.1])
+def test_other_steps(drive: str, dt: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    fake = FakeRobot("r", joints(drive))
+
+    def actions(robot: Robot) -> None:
+        robot.move(1.0)
+        robot.turn(30.0)
+
+    drive_alone(FakeWorld(fake, dt=dt), monkeypatch, drive, actions)
+    distance, angle = errors(fake, 1.0, 0.0, math.radians(30.0))
+    assert distance < POSITION
+    assert angle < HEADING
+
+
+def test_a_pushed_robot_returns_to_its_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    fake = FakeRobot("r", joints("two-wheel"))
+    world = FakeWorld(fake)
+
+    def push() -> None:
+        if world.steps == 100:
+            fake.y += 0.05
+            fake.theta += 0.2
+
+    world.before_step = push
+    drive_alone(world, monkeypatch, "two-wheel", lambda robot: robot.move(3.0))
+    distance, angle = errors(fake, 3.0, 0.0, 0.0)
+    assert distance < POSITION
+    assert angle < HEADING
+
+
+def test_few_calls_per_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    world = FakeWorld(FakeRobot("r", joints("two-wheel")))
+    drive_alone(world, monkeypatch, "two-wheel", lambda robot: robot.move(4.0))
+    assert 880 < world.steps < 920
+    assert world.calls.total() < 2.2 * world.steps

@@ -1,0 +1,290 @@
+//! Whole scripts: what is in them, what is not, and that names stay names.
+//!
+//! The files in `snapshots/` are scripts as users get them; `python/check.py` runs ruff, mypy and pytest on them.
+//! `UPDATE_EXPECT=1 cargo test -p pydslrep-script` rewrites them.
+
+#![allow(clippy::expect_used, reason = "helpers of tests are tests, too")]
+
+mod common;
+
+use std::net::Ipv4Addr;
+
+use common::{area_1, environment, four_robots, line, move_by, movement, robot, sensors, turn};
+use expect_test::{expect, expect_file};
+use pydslrep_analysis::environment::{Action, ActionKind, Environment, Source};
+use pydslrep_kinematics::Drive;
+use pydslrep_script::{REQUIREMENTS, ScriptError, Target, file_name, generate};
+
+fn script(environment: &Environment) -> String {
+    generate(environment, Target::CoppeliaSim).expect("a script")
+}
+
+/// The program's own part of a script: what follows `# The robots of the program`, without the shared parts.
+fn own_lines(script: &str) -> String {
+    let after = |start: &str| script.split_once(start).expect(start).1;
+    let until_stage = |text: &str| text.split("# ====").next().unwrap_or_default().trim_end().to_owned();
+    let robots = until_stage(after("# The robots of the program.\n"));
+    let movements = until_stage(after("Movement(name, of, actions)\n"));
+    format!("{robots}{movements}\n\n\ndef drive({}", after("\ndef drive("))
+}
+
+#[test]
+fn two_wheels() {
+    expect_file!["../snapshots/area_1.py"].assert_eq(&script(&area_1(Drive::TwoWheel)));
+}
+
+#[test]
+fn turning_until_sensors_are_free() {
+    expect_file!["../snapshots/sensors.py"].assert_eq(&script(&sensors()));
+}
+
+#[test]
+fn four_robots_in_parallel() {
+    expect_file!["../snapshots/factory.py"].assert_eq(&script(&four_robots()));
+}
+
+#[test]
+fn same_environment_same_bytes() {
+    assert_eq!(script(&four_robots()), script(&four_robots()));
+}
+
+#[test]
+fn only_what_is_needed() {
+    let all = [
+        "TwoWheelDrive",
+        "FourWheelDrive",
+        "FourMecanumDrive",
+        "steer(",
+        "Lock",
+        "turn_until",
+        "Proximity",
+        "Cancelled",
+    ];
+    let check = |environment: &Environment, wanted: &[&str]| {
+        let script = script(environment);
+        for word in all {
+            assert_eq!(script.contains(word), wanted.contains(&word), "{word} in {}", environment.name);
+        }
+        assert!(!script.contains("#:"), "a template statement is left in {}", environment.name);
+        assert!(!script.contains("from ."), "an import of a part is left in {}", environment.name);
+    };
+    check(&area_1(Drive::TwoWheel), &["TwoWheelDrive", "steer("]);
+    check(&area_1(Drive::FourWheel), &["FourWheelDrive", "steer("]);
+    check(&area_1(Drive::FourMecanum), &["FourMecanumDrive"]);
+    check(&sensors(), &["TwoWheelDrive", "steer(", "turn_until", "Proximity"]);
+    check(
+        &four_robots(),
+        &["TwoWheelDrive", "FourWheelDrive", "FourMecanumDrive", "steer(", "Lock", "Cancelled"],
+    );
+    let script = script(&area_1(Drive::TwoWheel));
+    assert!(!script.to_lowercase().contains("mecanum"));
+    assert!(!script.contains("thread"));
+}
+
+#[test]
+fn stages_follow_each_other() {
+    let script = script(&four_robots());
+    let places: Vec<_> =
+        ["# 1. Kinematics", "# 2. Robots", "ROBOTS = ", "# 3. Movements", "@movement(", "# 4. Environment"]
+            .iter()
+            .map(|title| script.find(title).expect(title))
+            .collect();
+    assert!(places.is_sorted(), "{places:?}");
+}
+
+#[test]
+fn names_that_python_or_the_script_uses_stay_names() {
+    let mut robot = robot("class", Drive::TwoWheel, 19999);
+    "print".clone_into(&mut robot.wheels[0].name);
+    "class".clone_into(&mut robot.wheels[1].name);
+    let movements =
+        ["class", "print", "main", "Robot", "_"].map(|name| movement(name, 0, vec![move_by(0.5, 7)]));
+    let environment =
+        environment("None", vec![robot], movements.into(), vec![vec![0], vec![1], vec![2], vec![3], vec![4]]);
+    expect![[r#"
+        ROBOTS = (
+            RobotModel(
+                name="class",
+                port=19999,
+                drive=TwoWheelDrive,
+                wheels={
+                    "print": 0.045,
+                    "class": 0.045,
+                },
+            ),
+        )
+
+        @movement("class", of="class")  # line 6
+        def movement_class(robot: Robot) -> None:
+            robot.move(0.5)  # line 7: move 0.5 meters
+
+
+        @movement("print", of="class")  # line 6
+        def movement_print(robot: Robot) -> None:
+            robot.move(0.5)  # line 7: move 0.5 meters
+
+
+        @movement("main", of="class")  # line 6
+        def movement_main(robot: Robot) -> None:
+            robot.move(0.5)  # line 7: move 0.5 meters
+
+
+        @movement("Robot", of="class")  # line 6
+        def movement_Robot(robot: Robot) -> None:
+            robot.move(0.5)  # line 7: move 0.5 meters
+
+
+        @movement("_", of="class")  # line 6
+        def movement__(robot: Robot) -> None:
+            robot.move(0.5)  # line 7: move 0.5 meters
+
+
+        def drive(fleet: Fleet) -> None:
+            """Environment None: its movements in their order."""
+            fleet.run(movement_class)
+            fleet.run(movement_print)
+            fleet.run(movement_main)
+            fleet.run(movement_Robot)
+            fleet.run(movement__)
+
+
+        if __name__ == "__main__":
+            sys.exit(main(__doc__, HOST, ROBOTS, drive))
+    "#]]
+    .assert_eq(&own_lines(&script(&environment)));
+}
+
+#[test]
+fn long_names_stand_where_no_line_can_break() {
+    let long = "n".repeat(200);
+    let mut robot = robot(&long, Drive::TwoWheel, 19999);
+    long.clone_into(&mut robot.wheels[0].name);
+    let environment =
+        environment(&long, vec![robot], vec![movement(&long, 0, vec![turn(45.0, 7)])], vec![vec![0]]);
+    let script = script(&environment).replace(&long, "<long>");
+    expect![[r#"
+        ROBOTS = (
+            RobotModel(
+                name="<long>",
+                port=19999,
+                drive=TwoWheelDrive,
+                wheels={
+                    "<long>": 0.045,
+                    "wheelR": 0.045,
+                },
+            ),
+        )
+
+        # line 6
+        @movement(
+            "<long>",
+            of="<long>",
+        )
+        def movement_1(robot: Robot) -> None:
+            robot.turn(45.0)  # line 7: turn left 45.0
+
+
+        def drive(fleet: Fleet) -> None:
+            """Environment <long>: its movements in their order."""
+            fleet.run(movement_1)
+
+
+        if __name__ == "__main__":
+            sys.exit(main(__doc__, HOST, ROBOTS, drive))
+    "#]]
+    .assert_eq(&own_lines(&script));
+}
+
+#[test]
+fn nothing_breaks_out_of_its_place() {
+    let evil = "x\"\"\"\\\"\nimport os\u{2028}é";
+    let mut robot = robot(evil, Drive::TwoWheel, 1);
+    evil.clone_into(&mut robot.wheels[0].name);
+    let action = Action {
+        text: evil.to_owned(),
+        source: Source { file: Some(evil.to_owned()), line: 3 },
+        ..move_by(1.0, 1)
+    };
+    let environment = environment(evil, vec![robot], vec![movement(evil, 0, vec![action])], vec![vec![0]]);
+    let script = script(&environment);
+    assert!(!script.lines().any(|line| line.trim_start().starts_with("import os")), "{script}");
+    assert!(
+        script.starts_with("\"\"\"Drives environment x????"),
+        "{}",
+        script.lines().next().unwrap_or_default()
+    );
+    assert!(script.contains(r#"name="x\"\"\"\\\"\U0000000aimport os\U00002028\U000000e9","#));
+    let comment = "# x\"\"\"\\\"?import os?é, line 3: x\"\"\"\\\"?import os?é\n";
+    assert!(script.contains(&format!("    robot.move(1.0)  {comment}")));
+    assert!(script.contains("def movement_1("));
+}
+
+#[test]
+fn another_host() {
+    let environment = Environment { host: Some(Ipv4Addr::new(192, 168, 0, 7)), ..area_1(Drive::TwoWheel) };
+    assert!(script(&environment).contains("HOST = \"192.168.0.7\"\n"));
+}
+
+#[test]
+fn empty_environments_and_movements_are_programs() {
+    let nothing = environment("nothing", vec![], vec![], vec![]);
+    assert!(script(&nothing).contains("ROBOTS: tuple[RobotModel, ...] = ()\n"));
+    assert!(script(&nothing).contains("in their order.\"\"\"\n\n\nif __name__"));
+    let idle = environment(
+        "idle",
+        vec![robot("r", Drive::TwoWheel, 1)],
+        vec![movement("m", 0, vec![])],
+        vec![vec![0]],
+    );
+    assert!(script(&idle).contains("def movement_m(robot: Robot) -> None:\n    pass\n"));
+}
+
+#[test]
+fn slam_is_not_supported_yet() {
+    let slam = Action { kind: ActionKind::Slam, text: "slam".to_owned(), source: line(14) };
+    let mut environment = area_1(Drive::TwoWheel);
+    environment.movements[0].actions.push(slam);
+    let error = generate(&environment, Target::CoppeliaSim).expect_err("no script");
+    assert!(matches!(error, ScriptError::UnsupportedAction { line: 14, .. }), "{error:?}");
+    expect!["`slam` of movement `mov_1` (line 14) is not supported in scripts yet: remove it or leave the movement out"]
+        .assert_eq(&error.to_string());
+}
+
+#[test]
+fn a_wheel_listed_twice_is_an_error() {
+    let mut environment = area_1(Drive::TwoWheel);
+    "wheelL".clone_into(&mut environment.robots[0].wheels[1].name);
+    let error = generate(&environment, Target::CoppeliaSim).expect_err("no script");
+    expect!["robot `robot_1` lists wheel `wheelL` twice: give each of its wheels a name of its own"]
+        .assert_eq(&error.to_string());
+}
+
+#[test]
+fn file_names_hide_no_module_and_exist_on_windows() {
+    let named = |name: &str| file_name(&Environment { name: name.to_owned(), ..area_1(Drive::TwoWheel) });
+    for name in ["area_1", "Math", "comet", "com10", "zmq_"] {
+        assert_eq!(named(name), format!("{name}.py"));
+    }
+    for name in [
+        "math",
+        "json",
+        "tomllib",
+        "distutils",
+        "annotationlib",
+        "zmq",
+        "cbor2",
+        "con",
+        "NUL",
+        "Com7",
+        "lpt1",
+    ] {
+        assert_eq!(named(name), format!("{name}_env.py"));
+    }
+}
+
+#[test]
+fn every_requirement_has_a_fixed_version() {
+    let requirements: Vec<_> = REQUIREMENTS.lines().filter(|line| !line.starts_with('#')).collect();
+    assert!(requirements.contains(&"coppeliasim-zmqremoteapi-client==2.0.4"), "{requirements:?}");
+    assert!(requirements.iter().all(|line| line.contains("==")), "{requirements:?}");
+}
