@@ -39,11 +39,9 @@ fn name(database: &Database, position: FilePosition) -> Option<Hover> {
     };
     let entity = database.entity(id)?;
     let declaration = database.slice(entity.file, body(&entity));
-    let first_lines = declaration.lines().next().unwrap_or_default();
-    Some(Hover {
-        span: at.span,
-        markdown: format!("```pydslrep\n{first_lines}\n```\n{}", facts.unwrap_or_default()),
-    })
+    let first_line = declaration.lines().next().unwrap_or_default();
+    let facts = facts.unwrap_or_else(|| "There is more to say of it once its errors are mended.".to_owned());
+    Some(Hover { span: at.span, markdown: format!("```pydslrep\n{first_line}\n```\n{facts}") })
 }
 
 /// An action, where the cursor is on one of its words.
@@ -290,24 +288,24 @@ mod tests {
         check(
             "robot $0r with port 1 has { a b } wheels",
             &expect![[r#"
-            r
-            ---
-            ```pydslrep
-            robot r with port 1 has { a b } wheels
-            ```
-
-        "#]],
+                r
+                ---
+                ```pydslrep
+                robot r with port 1 has { a b } wheels
+                ```
+                There is more to say of it once its errors are mended.
+            "#]],
         );
         check(
             "movement $0m of nobody { slam }",
             &expect![[r#"
-            m
-            ---
-            ```pydslrep
-            movement m of nobody { slam }
-            ```
-
-        "#]],
+                m
+                ---
+                ```pydslrep
+                movement m of nobody { slam }
+                ```
+                There is more to say of it once its errors are mended.
+            "#]],
         );
     }
 }
