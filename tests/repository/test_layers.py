@@ -1,0 +1,81 @@
+"""The arrows between the crates are those of docs/architecture.md."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+# Lowest first. A crate may know those named here and nothing else of ours.
+MAY_KNOW: dict[str, set[str]] = {
+    "syntax": set(),
+    "kinematics": set(),
+    "scene": {"kinematics"},
+    "analysis": {"syntax", "kinematics", "scene"},
+    "ide": {"analysis", "syntax", "kinematics", "scene"},
+    "script": {"analysis", "kinematics"},
+    "simulator": {"kinematics", "scene"},
+    "server": {"ide", "script", "analysis", "syntax"},
+    "cli": {"syntax", "kinematics", "scene", "analysis", "ide", "script", "simulator", "server"},
+}
+
+# Who may know what of the world outside.
+ONLY_IN: dict[str, set[str]] = {
+    "tower-lsp": {"server"},
+    "clap": {"cli", "server"},
+    "tokio": {"server", "simulator", "cli"},
+    "chumsky": {"syntax"},
+    "logos": {"syntax"},
+    "ropey": {"analysis", "server"},
+    "minijinja": {"script"},
+}
+
+# Files, clocks, threads and sockets stay out of what is to run in a browser.
+PURE = ["syntax", "kinematics", "scene", "analysis", "ide", "script"]
+IMPURE = re.compile(r"\bstd::(fs|net::(Tcp|Udp)|thread|process|time::(Instant|SystemTime)|env)\b")
+
+
+def manifest(crate: str) -> dict[str, dict[str, object]]:
+    return tomllib.loads((ROOT / "crates" / crate / "Cargo.toml").read_text(encoding="utf-8"))
+
+
+def test_every_crate_is_on_the_map() -> None:
+    assert {folder.name for folder in (ROOT / "crates").iterdir()} == set(MAY_KNOW)
+    for crate in MAY_KNOW:
+        assert manifest(crate)["package"]["name"] == f"pydslrep-{crate}"
+
+
+@pytest.mark.parametrize("crate", MAY_KNOW)
+def test_a_crate_knows_only_what_lies_below_it(crate: str) -> None:
+    ours = {name.removeprefix("pydslrep-") for name in manifest(crate)["dependencies"] if name.startswith("pydslrep-")}
+    assert ours <= MAY_KNOW[crate]
+
+
+@pytest.mark.parametrize("crate", MAY_KNOW)
+def test_libraries_stay_in_their_layer(crate: str) -> None:
+    for library in manifest(crate)["dependencies"]:
+        assert crate in ONLY_IN.get(library, {crate}), f"{library} does not belong into {crate}"
+
+
+def without_tests(text: str) -> str:
+    return text.split("#[cfg(test)]\nmod tests", maxsplit=1)[0]
+
+
+@pytest.mark.parametrize("crate", PURE)
+def test_lower_crates_do_no_io(crate: str) -> None:
+    for file in (ROOT / "crates" / crate / "src").rglob("*.rs"):
+        if file.name in {"tests.rs", "differential.rs", "testing.rs", "fixture.rs"}:
+            continue
+        found = IMPURE.search(without_tests(file.read_text(encoding="utf-8")))
+        assert not found, f"{file.relative_to(ROOT)} uses {found.group()}" if found else ""
+
+
+@pytest.mark.parametrize("crate", MAY_KNOW)
+def test_every_crate_says_what_it_must_never_know(crate: str) -> None:
+    top = ROOT / "crates" / crate / "src" / ("main.rs" if crate == "cli" else "lib.rs")
+    head = [line for line in top.read_text(encoding="utf-8").splitlines() if line.startswith("//!")]
+    text = " ".join(head)
+    assert re.search(r"\b[Kk]nows\b", text), f"{top.relative_to(ROOT)} does not say what it knows"
+    assert re.search(r"[Mm]ust never", text), f"{top.relative_to(ROOT)} does not say what it must never know"

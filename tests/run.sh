@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Everything that must hold, in one command: formats, lints, tests of every crate, and whole behaviour through the
+# command, the protocol and the generated scripts. Needs Rust and Python; the rest it sets up in .venv and target.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+step() { printf '\n== %s\n' "$*"; }
+
+step "Python environment"
+if ! python3 -c 'import ensurepip' 2>/dev/null; then
+  # Debian keeps ensurepip, which `venv` needs, in a package of its own.
+  if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
+    apt-get update -qq && apt-get install -y -qq --no-install-recommends python3-venv
+  else
+    echo "Python's venv is missing: install it (on Debian and Ubuntu: apt install python3-venv) and run this again" >&2
+    exit 2
+  fi
+fi
+stamp=.venv/requirements.txt
+if ! cmp -s tests/requirements.txt "$stamp"; then
+  rm -rf .venv
+  python3 -m venv .venv
+  .venv/bin/pip install --quiet --disable-pip-version-check --requirement tests/requirements.txt
+  cp tests/requirements.txt "$stamp"
+fi
+
+step "Rust: format and lints"
+cargo fmt --all --check
+cargo clippy --workspace --all-targets --locked -- --deny warnings
+
+step "Rust: build and test"
+cargo build --workspace --locked
+if cargo nextest --version >/dev/null 2>&1; then
+  cargo nextest run --workspace --locked --no-fail-fast
+else
+  cargo test --workspace --locked --no-fail-fast
+fi
+# The simulator without sockets is what a browser would get.
+cargo check --package pydslrep-simulator --no-default-features --locked
+
+step "Python: format, lints, types and tests"
+.venv/bin/ruff check .
+.venv/bin/ruff format --check .
+.venv/bin/mypy
+.venv/bin/pytest
