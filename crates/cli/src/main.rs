@@ -1,1 +1,51 @@
-fn main() {}
+//! The command `pydslrep`.
+//!
+//! Knows every other crate, files, the terminal and processes; it opens, prints, draws and starts things. Must never
+//! have logic of the language, of motion or of scripts: that is asked of the crates below.
+//!
+//! * [`arguments`]: the command line; each command's own arguments stand with it in [`commands`].
+//! * [`sources`]: programs and what they import, from files into the database.
+//! * [`render`], [`json`]: problems for people and for programs.
+//! * [`commands`]: one file per command.
+//! * [`python`], [`driver`], [`progress`], [`driven`], [`outcome`]: a run, from an interpreter to its result.
+
+mod arguments;
+mod commands;
+mod driven;
+mod driver;
+mod failure;
+mod interrupt;
+mod json;
+mod outcome;
+mod output;
+mod place;
+mod program;
+mod progress;
+mod python;
+mod render;
+mod sources;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::arguments::{Arguments, Command};
+use crate::failure::Failure;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    arguments.color.write_global();
+    let outcome = match arguments.command {
+        Command::Check(arguments) => commands::check::run(&arguments),
+        Command::Build(arguments) => commands::build::run(&arguments),
+        Command::Run(arguments) => commands::run::run(&arguments),
+        Command::Plan(arguments) => commands::plan::run(&arguments),
+        Command::New(arguments) => commands::new::run(&arguments),
+        Command::Lsp(arguments) => commands::lsp::run(&arguments),
+        Command::Completions(arguments) => commands::completions::run(&arguments),
+    };
+    outcome.unwrap_or_else(|failure| {
+        output::fail(&failure);
+        ExitCode::from(Failure::EXIT_CODE)
+    })
+}

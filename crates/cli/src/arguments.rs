@@ -1,0 +1,85 @@
+//! The command line.
+
+use clap::builder::styling::{AnsiColor, Effects, Styles};
+use clap::{Parser, Subcommand, ValueEnum};
+
+use crate::commands::{build, check, completions, lsp, new, plan, run};
+
+/// Cargo's own colours.
+const STYLES: Styles = Styles::styled()
+    .header(AnsiColor::BrightGreen.on_default().effects(Effects::BOLD))
+    .usage(AnsiColor::BrightGreen.on_default().effects(Effects::BOLD))
+    .literal(AnsiColor::BrightCyan.on_default().effects(Effects::BOLD))
+    .placeholder(AnsiColor::Cyan.on_default());
+
+const EXAMPLES: &str = "\
+Examples:
+  pydslrep new patrol                    start with a program that drives a square
+  pydslrep check patrol/patrol.pyr       see what is wrong with it
+  pydslrep run patrol/patrol.pyr         drive it in the embedded simulator
+  pydslrep build patrol/patrol.pyr       write its Python script for CoppeliaSim
+
+Exit codes: 0 fine, 1 errors in the program or a movement that failed, 2 wrong use or
+an outside failure (file, port, missing Python), 130 interrupted.";
+
+/// Programs for mobile robots: checked, planned, turned into Python scripts for the simulator CoppeliaSim, and driven.
+#[derive(Debug, Parser)]
+#[command(name = "pydslrep", version, styles = STYLES, after_help = EXAMPLES, propagate_version = true)]
+#[command(max_term_width = 100)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    /// When to use colours; `auto` is on terminals and where `NO_COLOR` is not set.
+    #[arg(
+        long,
+        global = true,
+        value_enum,
+        default_value_t,
+        value_name = "WHEN",
+        hide_possible_values = true
+    )]
+    #[arg(help = "When to use colours: auto, always or never")]
+    pub(crate) color: Color,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    Check(check::Arguments),
+    Build(build::Arguments),
+    Run(run::Arguments),
+    Plan(plan::Arguments),
+    New(new::Arguments),
+    Lsp(lsp::Arguments),
+    Completions(completions::Arguments),
+}
+
+/// When to use colours.
+#[derive(Debug, Clone, Copy, Default, ValueEnum)]
+pub(crate) enum Color {
+    #[default]
+    Auto,
+    Always,
+    Never,
+}
+
+impl Color {
+    /// Makes it hold for everything that is printed from now on.
+    pub(crate) fn write_global(self) {
+        match self {
+            Self::Auto => anstream::ColorChoice::Auto,
+            Self::Always => anstream::ColorChoice::Always,
+            Self::Never => anstream::ColorChoice::Never,
+        }
+        .write_global();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        super::Arguments::command().debug_assert();
+    }
+}

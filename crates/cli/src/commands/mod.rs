@@ -1,0 +1,9 @@
+//! One file per command: its arguments, and what it does.
+
+pub(crate) mod build;
+pub(crate) mod check;
+pub(crate) mod completions;
+pub(crate) mod lsp;
+pub(crate) mod new;
+pub(crate) mod plan;
+pub(crate) mod run;

@@ -1,0 +1,91 @@
+//! `pydslrep new`: a program to start from.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Args;
+
+use crate::failure::Failure;
+use crate::output;
+use crate::sources::EXTENSION;
+
+const EXAMPLES: &str = "\
+Examples:
+  pydslrep new patrol           makes patrol/patrol.pyr
+  pydslrep run patrol/patrol.pyr";
+
+/// Start a program: a robot that drives a square
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Arguments {
+    /// Name of the folder, the program and its environment; letters, digits and `_`
+    name: PathBuf,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// When the name does not fit, is taken, or cannot be written.
+pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let folder = &arguments.name;
+    let name =
+        folder.file_name().and_then(|name| name.to_str()).filter(|name| is_name(name)).ok_or_else(|| {
+            Failure::new(format!("`{}` cannot be a name in a program", folder.display()))
+                .help("use letters, digits and `_`, with no digit in front: `pydslrep new patrol_1`")
+        })?;
+    if folder.exists() {
+        return Err(Failure::new(format!("{} exists already", folder.display())).help("choose another name"));
+    }
+    let program = folder.join(format!("{name}.{EXTENSION}"));
+    fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, &error))?;
+    fs::write(&program, text(name)).map_err(|error| Failure::unwritten(&program, &error))?;
+    output::print(&next_steps(&program))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn is_name(name: &str) -> bool {
+    name.chars().all(|c| c == '_' || c.is_ascii_alphanumeric())
+        && !name.starts_with(|c: char| c.is_ascii_digit())
+}
+
+/// The program. The ending of its environment's name keeps it from being a word of the language or hiding a module of
+/// Python's.
+fn text(name: &str) -> String {
+    format!(
+        "\
+// {name}: a two-wheeled robot drives a square and comes back to where it started.
+//
+//   pydslrep check {name}.{EXTENSION}    what is wrong with this program
+//   pydslrep run {name}.{EXTENSION}      drive it in the embedded simulator
+//   pydslrep build {name}.{EXTENSION}    write its Python script for CoppeliaSim
+
+// Parts. A wheel's name is also that of its joint in the simulator; radii are in centimetres.
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+
+// A robot of type `tw` has two wheels: left, right.
+robot robot_1 type tw with port 23000 has {{ wheelL wheelR }} wheels
+
+// Moves go straight ahead (at 9 cm/s if nothing is said), turns are in place and in degrees (90 if nothing is said).
+movement square of robot_1 {{
+  move 1 meters
+  turn left
+  move 1 meters
+  turn left
+  move 100 centimeters at 15
+  turn left
+  move 1 meters
+  turn left
+}}
+
+// The environment says which robots there are and which movements they make, one after the other.
+environment {name}_area has {{ robot_1 }} robots with {{ square }} moves
+",
+    )
+}
+
+fn next_steps(program: &Path) -> String {
+    let program = program.display();
+    format!("Made {program}. Drive it with\n\n    pydslrep run {program}\n")
+}

@@ -1,0 +1,295 @@
+//! `pydslrep plan`: where and when robots are to be, without a simulator.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+use pydslrep_analysis::environment::{Environment, Movement};
+use pydslrep_kinematics::{ActionIndex, Leg, Plan};
+use pydslrep_scene::Scene;
+use pydslrep_simulator::picture::{self, Route};
+use serde::Serialize;
+
+use crate::driven::Driven;
+use crate::failure::Failure;
+use crate::sources::Sources;
+use crate::{output, program};
+
+const EXAMPLES: &str = "\
+Examples:
+  pydslrep plan patrol.pyr
+  pydslrep plan patrol.pyr --json
+  pydslrep plan patrol.pyr --picture patrol.svg";
+
+/// Points of a planned leg in a picture.
+const POINTS_PER_LEG: u32 = 24;
+
+/// Show the planned path of each robot: poses, times and wheel rates
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Arguments {
+    /// A program, or `-` for standard input
+    program: PathBuf,
+    /// Only the environment of this name
+    #[arg(long, value_name = "NAME")]
+    environment: Option<String>,
+    /// Print JSON instead of a table
+    #[arg(long)]
+    json: bool,
+    /// Draw the path into a file, as SVG
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
+}
+
+/// An environment with its plan.
+pub(crate) struct Planned {
+    pub(crate) environment: Environment,
+    pub(crate) scene: Scene,
+    pub(crate) plan: Plan,
+}
+
+impl Planned {
+    /// Plans an environment on an empty floor.
+    ///
+    /// # Errors
+    /// When a robot cannot drive.
+    pub(crate) fn new(environment: Environment) -> Result<Self, Failure> {
+        let scene = pydslrep_analysis::scene(&environment);
+        let plan = plan(&environment, &scene)?;
+        Ok(Self { environment, scene, plan })
+    }
+
+    /// Plans it again from where robots really started, where a scene that is not ours put them.
+    ///
+    /// # Errors
+    /// When a robot cannot drive.
+    pub(crate) fn start_from(&mut self, driven: &Driven) -> Result<(), Failure> {
+        for (robot, path) in self.scene.robots.iter_mut().zip(driven.paths()) {
+            robot.start = path.start().unwrap_or(robot.start);
+        }
+        self.plan = plan(&self.environment, &self.scene)?;
+        Ok(())
+    }
+
+    /// What to draw of each robot, with nothing driven yet.
+    pub(crate) fn routes(&self) -> Vec<Route> {
+        let robots = self.scene.robots.iter().zip(&self.plan.robots);
+        let routes = robots.map(|(robot, path)| Route {
+            name: robot.name.clone(),
+            body: robot.body,
+            planned: path.sample(POINTS_PER_LEG),
+            unknown_after: path.unknown_after.is_some(),
+            driven: Vec::new(),
+        });
+        routes.collect()
+    }
+
+    fn movement(&self, index: ActionIndex) -> Option<&Movement> {
+        self.environment.movements.get(*self.environment.schedule.get(index.group)?.get(index.run)?)
+    }
+
+    /// The movement of an action and the action as the program writes it.
+    fn words(&self, index: ActionIndex) -> (String, String) {
+        let movement = self.movement(index);
+        let action = movement.and_then(|movement| movement.actions.get(index.action));
+        (
+            movement.map_or_else(String::new, |movement| movement.name.clone()),
+            action.map_or_else(String::new, |action| action.text.clone()),
+        )
+    }
+}
+
+fn plan(environment: &Environment, scene: &Scene) -> Result<Plan, Failure> {
+    pydslrep_analysis::plan(environment, scene)
+        .map_err(|error| Failure::new(format!("`{}` cannot be planned: {error}", environment.name)))
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// When the program cannot be read, or nothing can be written.
+pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let (sources, file) = Sources::open_one(&arguments.program)?;
+    let ids = program::environments(&sources, file, arguments.environment.as_deref());
+    if ids.is_empty() || arguments.picture.is_some() {
+        // A picture shows one environment; and where there is none, this says which there are.
+        program::environment(&sources, file, arguments.environment.as_deref())?;
+    }
+    let prepared = program::prepare(&sources, file, &ids);
+    let plans: Vec<Planned> =
+        prepared.environments.into_iter().map(Planned::new).collect::<Result<_, _>>()?;
+    output::print(&if arguments.json { json(&plans)? } else { plans.iter().map(table).collect() })?;
+    if let (Some(path), Some(planned)) = (&arguments.picture, plans.first()) {
+        let title = format!("{}: planned path", planned.environment.name);
+        let drawing = picture::draw(&title, &planned.routes());
+        fs::write(path, drawing).map_err(|error| Failure::unwritten(path, &error))?;
+        output::say(&format!("Picture: {}\n", path.display()));
+    }
+    Ok(ExitCode::from(u8::from(prepared.has_errors)))
+}
+
+fn table(planned: &Planned) -> String {
+    let mut table = output::table([
+        "robot",
+        "movement",
+        "action",
+        "from s",
+        "to s",
+        "x m",
+        "y m",
+        "heading °",
+        "wheels rad/s",
+    ]);
+    for (robot, path) in planned.scene.robots.iter().zip(&planned.plan.robots) {
+        let start = path.start;
+        let pose = |pose: pydslrep_kinematics::Pose| {
+            [fixed(pose.x, 3), fixed(pose.y, 3), fixed(pose.theta.to_degrees(), 1)]
+        };
+        let [x, y, heading] = pose(start);
+        let blank = String::new;
+        table.add_row([
+            robot.name.clone(),
+            blank(),
+            "start".to_owned(),
+            blank(),
+            blank(),
+            x,
+            y,
+            heading,
+            blank(),
+        ]);
+        for leg in &path.legs {
+            let (movement, action) = planned.words(leg.index);
+            let [x, y, heading] = pose(leg.to);
+            let rates: Vec<String> = leg.rates.iter().map(|rate| format!("{:>5}", fixed(*rate, 2))).collect();
+            table.add_row([
+                blank(),
+                movement,
+                action,
+                time(leg.start),
+                time(leg.end()),
+                x,
+                y,
+                heading,
+                rates.join(" "),
+            ]);
+        }
+        if let Some(index) = path.unknown_after {
+            let (movement, action) = planned.words(index);
+            let unknown = || "?".to_owned();
+            table.add_row([
+                blank(),
+                movement,
+                action,
+                unknown(),
+                unknown(),
+                unknown(),
+                unknown(),
+                unknown(),
+                blank(),
+            ]);
+        }
+    }
+    output::align_right(&mut table, &[3, 4, 5, 6, 7]);
+    let duration = match planned.plan.duration {
+        Some(seconds) => format!("{} s", fixed(seconds, 2)),
+        None => "as long as the world makes it: what is marked ? depends on what the robot meets".to_owned(),
+    };
+    format!("{}: {duration}\n\n{}\n\n", planned.environment.name, table.trim_fmt())
+}
+
+fn time(seconds: Option<f64>) -> String {
+    seconds.map_or_else(|| "?".to_owned(), |seconds| fixed(seconds, 2))
+}
+
+/// A number with so many digits after the point, and no −0.
+pub(crate) fn fixed(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    match text.strip_prefix('-') {
+        Some(positive) if positive.chars().all(|c| c == '0' || c == '.') => positive.to_owned(),
+        _ => text,
+    }
+}
+
+#[derive(Serialize)]
+struct JsonPlan<'a> {
+    environment: &'a str,
+    robots: Vec<JsonRobot<'a>>,
+    /// Seconds.
+    duration: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct JsonRobot<'a> {
+    name: &'a str,
+    poses: Vec<JsonPose<'a>>,
+    unknown_after: Option<JsonAction<'a>>,
+}
+
+/// Where an action stands.
+#[derive(Serialize)]
+struct JsonAction<'a> {
+    movement: &'a str,
+    /// Among all movements that the environment runs, from 1, in the order it lists them.
+    run: usize,
+    /// In the movement, from 1.
+    action: usize,
+}
+
+/// The end of an action: seconds, metres, radians.
+#[derive(Serialize)]
+struct JsonPose<'a> {
+    #[serde(flatten)]
+    action: JsonAction<'a>,
+    t: Option<f64>,
+    x: f64,
+    y: f64,
+    theta: f64,
+}
+
+fn json(plans: &[Planned]) -> Result<String, Failure> {
+    let plans: Vec<JsonPlan> = plans.iter().map(json_plan).collect();
+    let text = serde_json::to_string_pretty(&plans);
+    Ok(text.map_err(|error| Failure::new(format!("cannot write JSON: {error}")))? + "\n")
+}
+
+fn json_plan(planned: &Planned) -> JsonPlan<'_> {
+    let robots = planned.environment.robots.iter().zip(&planned.plan.robots);
+    let robots = robots.map(|(robot, path)| JsonRobot {
+        name: &robot.name,
+        poses: path.legs.iter().map(|leg| json_pose(planned, leg)).collect(),
+        unknown_after: path.unknown_after.map(|index| json_action(planned, index)),
+    });
+    JsonPlan {
+        environment: &planned.environment.name,
+        robots: robots.collect(),
+        duration: planned.plan.duration,
+    }
+}
+
+fn json_pose<'a>(planned: &'a Planned, leg: &Leg) -> JsonPose<'a> {
+    let action = json_action(planned, leg.index);
+    JsonPose { action, t: leg.end(), x: leg.to.x, y: leg.to.y, theta: leg.to.theta }
+}
+
+fn json_action(planned: &Planned, index: ActionIndex) -> JsonAction<'_> {
+    let before = planned.environment.schedule.iter().take(index.group).map(Vec::len).sum::<usize>();
+    JsonAction {
+        movement: planned.movement(index).map_or("", |movement| &movement.name),
+        run: before + index.run + 1,
+        action: index.action + 1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::fixed;
+
+    #[test]
+    fn zero_has_no_sign() {
+        assert_eq!(fixed(-0.0001, 3), "0.000");
+        assert_eq!(fixed(-0.0006, 3), "-0.001");
+        assert_eq!(fixed(4.0, 2), "4.00");
+    }
+}

@@ -1,0 +1,214 @@
+//! `pydslrep run`: from a program to a driven path.
+
+use std::ffi::OsString;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+use clap::Args;
+use pydslrep_script::{Target, file_name, generate};
+use pydslrep_simulator::{Options, Simulator, picture};
+use tempfile::TempDir;
+
+use super::plan::Planned;
+use crate::driven::Driven;
+use crate::driver::{Ending, Script, drive};
+use crate::failure::Failure;
+use crate::interrupt::{self, Interrupts};
+use crate::outcome::Outcome;
+use crate::progress::Progress;
+use crate::sources::Sources;
+use crate::{output, program, python};
+
+const EXAMPLES: &str = "\
+Examples:
+  pydslrep run patrol.pyr                          in the embedded simulator
+  pydslrep run patrol.pyr --picture patrol.svg     and draw planned and driven path
+  pydslrep run patrol.pyr --host 127.0.0.1 --port 23000
+                                                   in a CoppeliaSim that runs there
+
+The first run makes a virtual environment for Python in the user's cache folder and installs
+the client of CoppeliaSim's remote API into it, which needs Python 3.10 or later and network.";
+
+/// Drive a program: check it, generate its script, and run that in the embedded simulator
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Arguments {
+    /// A program, or `-` for standard input
+    program: PathBuf,
+    /// The environment to run; needed where there are several
+    #[arg(long, value_name = "NAME")]
+    environment: Option<String>,
+    /// Draw planned and driven path into a file, as SVG
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
+    /// Write every step into a file, as JSON lines
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
+    /// Show no progress
+    #[arg(long)]
+    no_progress: bool,
+    /// Use the CoppeliaSim on this machine instead of the embedded simulator
+    #[arg(long, value_name = "ADDRESS")]
+    host: Option<String>,
+    /// Port of that CoppeliaSim, for all robots or for one; may be repeated
+    #[arg(long, value_name = "[ROBOT=]PORT", requires = "host")]
+    port: Vec<String>,
+    /// The Python to run the script with [default: python3]
+    #[arg(long, value_name = "PATH")]
+    python: Option<PathBuf>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// When anything outside of the program fails.
+pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let (sources, file) = Sources::open_one(&arguments.program)?;
+    let id = program::environment(&sources, file, arguments.environment.as_deref())?;
+    let Some(environment) = program::prepare(&sources, file, &[id]).environments.pop() else {
+        return Ok(ExitCode::FAILURE);
+    };
+    let name = file_name(&environment);
+    let text = match generate(&environment, Target::CoppeliaSim) {
+        Ok(text) => text,
+        Err(error) => {
+            output::error(&error.to_string(), None);
+            return Ok(ExitCode::FAILURE);
+        }
+    };
+    let run = Run { arguments, planned: Planned::new(environment)? };
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let code = runtime.map_err(|error| unstarted(&error))?.block_on(run.drive(&name, &text))?;
+    Ok(ExitCode::from(code))
+}
+
+fn unstarted(error: &dyn std::fmt::Display) -> Failure {
+    Failure::new(format!("cannot start a run: {error}"))
+}
+
+struct Run<'a> {
+    arguments: &'a Arguments,
+    planned: Planned,
+}
+
+impl Run<'_> {
+    async fn drive(mut self, name: &str, text: &str) -> Result<u8, Failure> {
+        let mut interrupts = Interrupts::listen().map_err(|error| unstarted(&error))?;
+        let python = tokio::select! {
+            python = python::prepare(self.arguments.python.as_deref(), self.arguments.no_progress) => python?,
+            () = interrupts.next() => return Ok(interrupt::EXIT_CODE),
+        };
+        let simulator = if self.arguments.host.is_none() { Some(self.simulator()?) } else { None };
+        let folder =
+            tempfile::Builder::new().prefix("pydslrep-").tempdir().map_err(|error| unstarted(&error))?;
+        let path = folder.path().join(name);
+        fs::write(&path, text).map_err(|error| Failure::unwritten(&path, &error))?;
+        let trace = self.trace(&folder)?;
+        let script =
+            Script { python, arguments: self.script_arguments(&path, trace.as_deref(), simulator.as_ref()) };
+        let mut driven = Driven::new(self.planned.environment.robots.iter().map(|robot| robot.name.as_str()));
+        let mut progress = Progress::new(&self.planned, self.arguments.no_progress);
+        let begin = Instant::now();
+        let ending = drive(&script, simulator.as_ref(), &mut driven, &mut progress, &mut interrupts).await;
+        let wall = begin.elapsed();
+        progress.clear();
+        drop(simulator);
+        if let (Some(trace), true) = (&trace, self.arguments.host.is_some()) {
+            // Nothing was driven where there is no trace.
+            let _ = driven.read(trace);
+            self.planned.start_from(&driven)?;
+        }
+        self.report(ending?, &driven, wall)
+    }
+
+    fn simulator(&self) -> Result<Simulator, Failure> {
+        let options = Options {
+            ports: self.planned.environment.robots.iter().map(|robot| robot.port).collect(),
+            any_port_if_taken: true,
+            ..Options::default()
+        };
+        Simulator::start(self.planned.scene.clone(), &options)
+            .map_err(|error| Failure::new(error.to_string()))
+    }
+
+    /// Where the script writes its trace: where the user wants it, else only if it is the only source of the path.
+    fn trace(&self, folder: &TempDir) -> Result<Option<PathBuf>, Failure> {
+        match (&self.arguments.trace, &self.arguments.host) {
+            (Some(path), _) => {
+                // The script would say so too, but only after the simulator was started.
+                fs::File::create(path).map_err(|error| Failure::unwritten(path, &error))?;
+                Ok(Some(path.clone()))
+            }
+            (None, Some(_)) => Ok(Some(folder.path().join("trace.jsonl"))),
+            (None, None) => Ok(None),
+        }
+    }
+
+    fn script_arguments(
+        &self,
+        path: &Path,
+        trace: Option<&Path>,
+        simulator: Option<&Simulator>,
+    ) -> Vec<OsString> {
+        let mut all: Vec<OsString> = vec![path.into()];
+        let host = self.arguments.host.as_deref().unwrap_or("127.0.0.1");
+        all.extend(["--host".into(), host.into()]);
+        let robots = &self.planned.environment.robots;
+        let ports: Vec<String> = match simulator {
+            Some(simulator) => robots
+                .iter()
+                .zip(simulator.ports())
+                .map(|(robot, port)| format!("{}={port}", robot.name))
+                .collect(),
+            None => self.arguments.port.clone(),
+        };
+        for port in ports {
+            all.extend(["--port".into(), port.into()]);
+        }
+        if let Some(trace) = trace {
+            all.extend(["--trace".into(), trace.into()]);
+        }
+        all
+    }
+
+    fn report(&self, ending: Ending, driven: &Driven, wall: std::time::Duration) -> Result<u8, Failure> {
+        let outcome = Outcome { planned: &self.planned, driven, wall };
+        let code = match ending {
+            Ending::Done => 0,
+            Ending::Failed(words) => {
+                complain(&words);
+                1
+            }
+            Ending::Broken(words) => {
+                complain(&words);
+                return Ok(Failure::EXIT_CODE);
+            }
+            Ending::Interrupted => {
+                output::say("interrupted\n");
+                interrupt::EXIT_CODE
+            }
+        };
+        if let Some(path) = &self.arguments.picture {
+            let title = format!("{}: planned and driven path", self.planned.environment.name);
+            let drawing = picture::draw(&title, &outcome.routes());
+            fs::write(path, drawing).map_err(|error| Failure::unwritten(path, &error))?;
+        }
+        output::print(&outcome.table())?;
+        for (what, path) in [("picture", &self.arguments.picture), ("trace", &self.arguments.trace)] {
+            if let Some(path) = path {
+                output::say(&format!("{what}: {}\n", path.display()));
+            }
+        }
+        Ok(code)
+    }
+}
+
+/// What a script said, as this command says it.
+fn complain(words: &str) {
+    match words.strip_prefix("error: ") {
+        Some(message) if !message.contains('\n') => output::error(message, None),
+        _ => output::say(&format!("{words}\n")),
+    }
+}

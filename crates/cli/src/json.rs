@@ -1,0 +1,77 @@
+//! Problems for programs: the elements of `check --format json`.
+
+use pydslrep_analysis::{Diagnostic, Edit, Fix, Related};
+use serde::Serialize;
+
+use crate::place::{self, PlaceRange};
+use crate::sources::Sources;
+
+#[derive(Debug, Serialize)]
+struct Problem<'a> {
+    file: &'a str,
+    code: &'a str,
+    severity: &'a str,
+    message: &'a str,
+    range: PlaceRange,
+    related: Vec<SecondPlace<'a>>,
+    fix: Option<FirstFix<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct SecondPlace<'a> {
+    message: &'a str,
+    file: &'a str,
+    range: PlaceRange,
+}
+
+#[derive(Debug, Serialize)]
+struct FirstFix<'a> {
+    title: &'a str,
+    edits: Vec<Replacement<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct Replacement<'a> {
+    range: PlaceRange,
+    text: &'a str,
+}
+
+/// The problems as one array.
+///
+/// # Errors
+/// Never, with what is handed in here.
+pub(crate) fn array(sources: &Sources, diagnostics: &[Diagnostic]) -> serde_json::Result<String> {
+    let problems: Vec<Problem> = diagnostics.iter().map(|diagnostic| problem(sources, diagnostic)).collect();
+    serde_json::to_string_pretty(&problems)
+}
+
+fn problem<'a>(sources: &'a Sources, diagnostic: &'a Diagnostic) -> Problem<'a> {
+    let file = diagnostic.file;
+    // An edit has no file of its own here, so only fixes within the file can be told.
+    let fix = diagnostic.fixes.iter().find(|fix| fix.edits.iter().all(|edit| edit.file == file));
+    Problem {
+        file: sources.shown(file),
+        code: diagnostic.code(),
+        severity: diagnostic.severity.word(),
+        message: &diagnostic.message,
+        range: place::range(&sources.database, file, diagnostic.span),
+        related: diagnostic.related.iter().map(|related| second_place(sources, related)).collect(),
+        fix: fix.map(|fix| first_fix(sources, fix)),
+    }
+}
+
+fn second_place<'a>(sources: &'a Sources, related: &'a Related) -> SecondPlace<'a> {
+    SecondPlace {
+        message: &related.message,
+        file: sources.shown(related.file),
+        range: place::range(&sources.database, related.file, related.span),
+    }
+}
+
+fn first_fix<'a>(sources: &Sources, fix: &'a Fix) -> FirstFix<'a> {
+    let replacement = |edit: &'a Edit| Replacement {
+        range: place::range(&sources.database, edit.file, edit.span),
+        text: &edit.text,
+    };
+    FirstFix { title: &fix.title, edits: fix.edits.iter().map(replacement).collect() }
+}

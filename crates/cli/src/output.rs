@@ -1,0 +1,75 @@
+//! Results go to standard output, everything else to standard error; colours only where they are wanted.
+
+use std::io::{self, Write};
+
+use annotate_snippets::renderer::DecorStyle;
+use annotate_snippets::{Group, Level, Renderer};
+use comfy_table::{CellAlignment, LineStyle, Table, presets};
+
+use crate::failure::Failure;
+
+/// Prints a result.
+///
+/// # Errors
+/// When it cannot be written.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    let mut out = anstream::stdout().lock();
+    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|error| unprinted(&error))
+}
+
+fn unprinted(error: &io::Error) -> Failure {
+    match error.kind() {
+        io::ErrorKind::BrokenPipe => Failure::Unheard,
+        _ => Failure::new(format!("cannot write to standard output: {error}")),
+    }
+}
+
+/// Says something beside the result. Where that is not possible, nobody wants to know.
+pub(crate) fn say(text: &str) {
+    let _ = anstream::stderr().lock().write_all(text.as_bytes());
+}
+
+/// Says what failed.
+pub(crate) fn fail(failure: &Failure) {
+    if let Failure::Told { message, help } = failure {
+        error(message, help.as_deref());
+    }
+}
+
+/// Says what is wrong, and what to do.
+pub(crate) fn error(message: &str, help: Option<&str>) {
+    let mut group = Group::with_title(Level::ERROR.primary_title(message));
+    if let Some(help) = help {
+        group = group.element(Level::HELP.message(help));
+    }
+    say(&format!("{}\n", renderer().render(&[group])));
+}
+
+/// How problems and failures look.
+pub(crate) fn renderer() -> Renderer {
+    Renderer::styled().decor_style(DecorStyle::Ascii)
+}
+
+/// "1 error", "2 errors".
+pub(crate) fn count(number: usize, noun: &str) -> String {
+    let plural = if number == 1 { "" } else { "s" };
+    format!("{number} {noun}{plural}")
+}
+
+/// An empty table with a line under its head.
+pub(crate) fn table<const COLUMNS: usize>(head: [&str; COLUMNS]) -> Table {
+    let mut table = Table::new();
+    table
+        .load_style(presets::NOTHING.header_separator(LineStyle::none().fill('─').junction('─')))
+        .set_header(head);
+    table
+}
+
+/// Aligns columns of numbers.
+pub(crate) fn align_right(table: &mut Table, columns: &[usize]) {
+    for column in columns {
+        if let Some(column) = table.column_mut(*column) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+}

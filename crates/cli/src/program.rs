@@ -1,0 +1,95 @@
+//! One program and the environments in it.
+
+use pydslrep_analysis::environment::Environment;
+use pydslrep_analysis::{Diagnostic, EntityId, FileId};
+
+use crate::failure::Failure;
+use crate::output::{count, say};
+use crate::render;
+use crate::sources::Sources;
+
+/// The environments of a program that were asked for: all, or those of that name.
+pub(crate) fn environments(sources: &Sources, file: FileId, name: Option<&str>) -> Vec<EntityId> {
+    let all = sources.database.environments(file).into_iter();
+    all.filter(|(_, other)| name.is_none_or(|name| other.text == name)).map(|(id, _)| id).collect()
+}
+
+/// The one environment to work on.
+///
+/// # Errors
+/// When there is none, or several and none was chosen.
+pub(crate) fn environment(sources: &Sources, file: FileId, name: Option<&str>) -> Result<EntityId, Failure> {
+    let shown = sources.shown(file);
+    match (environments(sources, file, name).as_slice(), name) {
+        ([one], _) => Ok(*one),
+        // Of several with the same name the first one counts, as everywhere.
+        ([first, ..], Some(_)) => Ok(*first),
+        ([], None) => Err(Failure::new(format!("{shown} has no environment")).help(known(sources, &[file]))),
+        (several, None) => Err(Failure::new(format!("{shown} has {}", count(several.len(), "environment")))
+            .help(format!("choose one by --environment NAME; {}", known(sources, &[file])))),
+        ([], Some(name)) => Err(no_environment(sources, &[file], name)),
+    }
+}
+
+/// That no program has an environment of that name.
+pub(crate) fn no_environment(sources: &Sources, files: &[FileId], name: &str) -> Failure {
+    let shown: Vec<&str> = files.iter().map(|file| sources.shown(*file)).collect();
+    Failure::new(format!("there is no environment `{name}` in {}", shown.join(", ")))
+        .help(known(sources, files))
+}
+
+/// Which environments there are, in words.
+fn known(sources: &Sources, files: &[FileId]) -> String {
+    let environments = files.iter().flat_map(|file| sources.database.environments(*file));
+    let names: Vec<String> = environments.map(|(_, name)| format!("`{}`", name.text)).collect();
+    match names.as_slice() {
+        [] => "add one: `environment NAME has { ROBOTS } robots with { MOVEMENTS } moves`".to_owned(),
+        [one] => format!("the only one is {one}"),
+        several => format!("there are {}", several.join(", ")),
+    }
+}
+
+/// Environments ready to run, and what keeps the others from it.
+pub(crate) struct Prepared {
+    /// In the order asked for.
+    pub(crate) environments: Vec<Environment>,
+    /// Whether something keeps an environment from being ready, or its program has other errors.
+    pub(crate) has_errors: bool,
+}
+
+/// Makes environments of a program ready to run. The problems of the program are shown on the way, and those of other
+/// files where they stand in the way.
+pub(crate) fn prepare(sources: &Sources, file: FileId, ids: &[EntityId]) -> Prepared {
+    let mut problems = sources.diagnostics(file);
+    let mut prepared = Vec::new();
+    let mut stuck = Vec::new();
+    for id in ids {
+        match sources.database.environment(*id) {
+            Ok(environment) => prepared.push(environment),
+            Err(blocked) => {
+                add(&mut problems, &blocked.errors);
+                stuck.push(blocked.environment);
+            }
+        }
+    }
+    show(sources, &problems);
+    for name in &stuck {
+        say(&format!("environment `{name}` has errors, so there is nothing to make of it\n"));
+    }
+    let is_error = |problem: &Diagnostic| problem.severity == pydslrep_analysis::Severity::Error;
+    Prepared { environments: prepared, has_errors: !stuck.is_empty() || problems.iter().any(is_error) }
+}
+
+fn add(problems: &mut Vec<Diagnostic>, more: &[Diagnostic]) {
+    for problem in more {
+        if !problems.contains(problem) {
+            problems.push(problem.clone());
+        }
+    }
+}
+
+fn show(sources: &Sources, problems: &[Diagnostic]) {
+    if !problems.is_empty() {
+        say(&format!("{}{}.\n", render::diagnostics(sources, problems), render::summary(problems)));
+    }
+}

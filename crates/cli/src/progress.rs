@@ -1,0 +1,142 @@
+//! What is seen of a run while it lasts: simulated and wall time, and what each robot does.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use indicatif::{MultiProgress, ProgressBar, ProgressState, ProgressStyle};
+
+use crate::commands::plan::{Planned, fixed};
+
+/// More robots than these are not shown one by one.
+const MOST_ROBOTS: usize = 12;
+
+/// The bar, and a line for each robot. Draws on standard error, and only where that is a terminal.
+pub(crate) struct Progress {
+    tasks: Vec<Tasks>,
+    bars: MultiProgress,
+    time: ProgressBar,
+    lines: Vec<ProgressBar>,
+}
+
+/// What a robot has still to do, in order.
+struct Tasks {
+    robot: String,
+    left: VecDeque<Task>,
+}
+
+struct Task {
+    group: usize,
+    text: String,
+}
+
+impl Progress {
+    /// Begins to show the run of a plan; `quiet` shows nothing.
+    pub(crate) fn new(planned: &Planned, quiet: bool) -> Self {
+        let bars = MultiProgress::new();
+        if quiet {
+            bars.set_draw_target(indicatif::ProgressDrawTarget::hidden());
+        }
+        let time = bars.add(time_bar(planned.plan.duration));
+        let tasks = tasks(planned);
+        let line = |_: &Tasks| {
+            let style = ProgressStyle::with_template("  {msg}");
+            let bar = ProgressBar::new_spinner();
+            bars.add(bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner())))
+        };
+        let lines = tasks.iter().take(MOST_ROBOTS).map(line).collect();
+        let progress = Self { tasks, bars, time, lines };
+        progress.show_tasks();
+        progress
+    }
+
+    /// Shows the simulation's time, seconds.
+    pub(crate) fn pass(&self, seconds: f64) {
+        self.time.set_position(milliseconds(seconds));
+        self.time.tick();
+    }
+
+    /// Reads a line that the script printed: an action has ended. Returns its simulation time, seconds.
+    pub(crate) fn read(&mut self, line: &str) -> Option<f64> {
+        let mut fields = line.split("  ").map(str::trim).filter(|field| !field.is_empty());
+        let seconds = fields.next()?.strip_suffix(" s")?.parse().ok()?;
+        let robot = fields.next()?;
+        if let Some(tasks) = self.tasks.iter_mut().find(|tasks| tasks.robot == robot) {
+            tasks.left.pop_front();
+        }
+        self.show_tasks();
+        Some(seconds)
+    }
+
+    /// Takes everything off the screen.
+    pub(crate) fn clear(&self) {
+        // That a terminal cannot be cleared is no reason to fail.
+        let _ = self.bars.clear();
+    }
+
+    fn show_tasks(&self) {
+        let group = self.group();
+        for (line, tasks) in self.lines.iter().zip(&self.tasks) {
+            line.set_message(format!("{}  {}", tasks.robot, tasks.now(group)));
+        }
+    }
+
+    /// The group of movements that runs.
+    fn group(&self) -> Option<usize> {
+        self.tasks.iter().filter_map(|tasks| tasks.left.front()).map(|task| task.group).min()
+    }
+}
+
+impl Tasks {
+    fn now(&self, group: Option<usize>) -> &str {
+        match self.left.front() {
+            None => "done",
+            Some(task) if Some(task.group) == group => &task.text,
+            Some(_) => "waits for others",
+        }
+    }
+}
+
+fn tasks(planned: &Planned) -> Vec<Tasks> {
+    let environment = &planned.environment;
+    let mut all: Vec<Tasks> = environment
+        .robots
+        .iter()
+        .map(|robot| Tasks { robot: robot.name.clone(), left: VecDeque::new() })
+        .collect();
+    for (group, runs) in environment.schedule.iter().enumerate() {
+        for movement in runs.iter().filter_map(|run| environment.movements.get(*run)) {
+            let texts = movement.actions.iter().map(|action| format!("{}: {}", movement.name, action.text));
+            if let Some(tasks) = all.get_mut(movement.robot) {
+                tasks.left.extend(texts.map(|text| Task { group, text }));
+            }
+        }
+    }
+    all
+}
+
+fn time_bar(duration: Option<f64>) -> ProgressBar {
+    let seconds = |milliseconds: u64| Duration::from_millis(milliseconds).as_secs_f64();
+    let (template, length) = match duration {
+        Some(duration) => {
+            ("{bar:32} {simulated} of {planned} s simulated in {wall} s", milliseconds(duration))
+        }
+        None => ("{spinner} {simulated} s simulated in {wall} s", 0),
+    };
+    let style = ProgressStyle::with_template(template)
+        .unwrap_or_else(|_| ProgressStyle::default_bar())
+        .with_key("simulated", move |state: &ProgressState, out: &mut dyn std::fmt::Write| {
+            let _ = out.write_str(&fixed(seconds(state.pos()), 1));
+        })
+        .with_key("planned", move |state: &ProgressState, out: &mut dyn std::fmt::Write| {
+            let _ = out.write_str(&fixed(seconds(state.len().unwrap_or(0)), 1));
+        })
+        .with_key("wall", |state: &ProgressState, out: &mut dyn std::fmt::Write| {
+            let _ = out.write_str(&fixed(state.elapsed().as_secs_f64(), 1));
+        });
+    ProgressBar::new(length).with_style(style)
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates, and is only shown
+fn milliseconds(seconds: f64) -> u64 {
+    (seconds * 1000.0) as u64
+}

@@ -1,0 +1,228 @@
+//! A Python that can run scripts: a private virtual environment with what they need, made on first use.
+
+use std::env;
+use std::ffi::OsStr;
+use std::fs;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::{Output, Stdio};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use pydslrep_script::REQUIREMENTS;
+use tempfile::TempDir;
+use tokio::process::Command;
+use tokio::time::timeout;
+
+use crate::failure::Failure;
+
+/// What scripts are written for.
+const OLDEST: (u32, u32) = (3, 10);
+
+/// Looking at an interpreter, making an environment, installing: none may hang for ever.
+const ASK_LIMIT: Duration = Duration::from_secs(30);
+const MAKE_LIMIT: Duration = Duration::from_secs(120);
+const INSTALL_LIMIT: Duration = Duration::from_secs(600);
+
+/// Prints version and place, one per line; works from Python 2 on, so that old ones can be told from broken ones.
+const QUESTION: &str = "import sys; print('%d.%d.%d' % sys.version_info[:3]); print(sys.executable)";
+
+/// How to get a Python, by system.
+const INSTALL_PYTHON: &str = if cfg!(target_os = "macos") {
+    "install Python 3.10 or later, e.g. `brew install python`, or name one by --python PATH"
+} else if cfg!(windows) {
+    "install Python 3.10 or later, e.g. `winget install Python.Python.3.13`, or name one by --python PATH"
+} else {
+    "install Python 3.10 or later, e.g. `sudo apt install python3 python3-venv`, or name one by --python PATH"
+};
+
+/// A Python interpreter on this machine.
+struct Interpreter {
+    path: PathBuf,
+    version: String,
+}
+
+/// The interpreter of an environment with everything that scripts need. The first call makes the environment; calls at
+/// the same time do not disturb each other. `quiet` leaves out the progress.
+///
+/// # Errors
+/// When there is no suitable Python, or the environment cannot be made.
+pub(crate) async fn prepare(chosen: Option<&Path>, quiet: bool) -> Result<PathBuf, Failure> {
+    let base = interpreter(chosen).await?;
+    let cache = cache()?;
+    let home = cache.join(name(&base));
+    if works(&home) {
+        return Ok(python_in(&home));
+    }
+    let progress = if quiet { ProgressBar::hidden() } else { spinner() };
+    let made = make(&base, &cache, &progress).await;
+    progress.finish_and_clear();
+    keep(made?, &home)?;
+    Ok(python_in(&home))
+}
+
+fn spinner() -> ProgressBar {
+    let style = ProgressStyle::with_template("{spinner} {msg} ({elapsed})");
+    let bar =
+        ProgressBar::new_spinner().with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+    bar.enable_steady_tick(Duration::from_millis(100));
+    bar
+}
+
+async fn interpreter(chosen: Option<&Path>) -> Result<Interpreter, Failure> {
+    let Some(chosen) = chosen else {
+        let mut found = Err(Failure::new("there is no Python on this machine's PATH").help(INSTALL_PYTHON));
+        for name in ["python3", "python"] {
+            found = match ask(Path::new(name)).await {
+                Ok(interpreter) => return Ok(interpreter),
+                // What is there but does not do says more than that nothing is there.
+                Err(Some(failure)) => Err(failure),
+                Err(None) => found,
+            };
+        }
+        return found;
+    };
+    ask(chosen).await.map_err(|failure| {
+        let missing =
+            || Failure::new(format!("there is no Python at {}", chosen.display())).help(INSTALL_PYTHON);
+        failure.unwrap_or_else(missing)
+    })
+}
+
+/// What an interpreter is; `Err(None)` where there is none.
+async fn ask(path: &Path) -> Result<Interpreter, Option<Failure>> {
+    let mut command = Command::new(path);
+    command.args(["-c", QUESTION]);
+    let output = match output(&mut command, ASK_LIMIT).await {
+        Ok(output) => output,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Err(None),
+        Err(error) => return Err(Some(unusable(path, &error.to_string()))),
+    };
+    let text = String::from_utf8_lossy(&output.stdout);
+    let mut lines = text.lines();
+    let (Some(version), Some(place), true) = (lines.next(), lines.next(), output.status.success()) else {
+        return Err(Some(unusable(path, "it does not answer like a Python")));
+    };
+    let mut numbers = version.split('.').map_while(|number| number.parse::<u32>().ok());
+    let release = (numbers.next().unwrap_or(0), numbers.next().unwrap_or(0));
+    if release < OLDEST {
+        return Err(Some(unusable(path, &format!("it is version {version}, scripts need 3.10 or later"))));
+    }
+    Ok(Interpreter { path: place.into(), version: version.to_owned() })
+}
+
+fn unusable(path: &Path, reason: &str) -> Failure {
+    Failure::new(format!("cannot use the Python `{}`: {reason}", path.display())).help(INSTALL_PYTHON)
+}
+
+/// The folder for what can be made again.
+fn cache() -> Result<PathBuf, Failure> {
+    let folder = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let cache = folder("XDG_CACHE_HOME")
+        .or_else(|| folder("LOCALAPPDATA").filter(|_| cfg!(windows)))
+        .or_else(|| Some(folder("HOME")?.join(".cache")));
+    let cache = cache.ok_or_else(|| {
+        Failure::new("there is no place for the Python environment that runs scripts")
+            .help("set HOME or XDG_CACHE_HOME to a folder")
+    })?;
+    let cache = cache.join("pydslrep");
+    fs::create_dir_all(&cache).map_err(|error| uncached(&cache, &error))?;
+    Ok(cache)
+}
+
+fn uncached(path: &Path, error: &io::Error) -> Failure {
+    Failure::unwritten(path, error)
+        .help("the Python environment that runs scripts goes there; XDG_CACHE_HOME chooses another place")
+}
+
+/// Another Python or other requirements make another environment.
+fn name(base: &Interpreter) -> String {
+    let mut hasher = DefaultHasher::new();
+    (REQUIREMENTS, &base.version, &base.path).hash(&mut hasher);
+    format!("venv-{:016x}", hasher.finish())
+}
+
+fn python_in(home: &Path) -> PathBuf {
+    if cfg!(windows) { home.join("Scripts").join("python.exe") } else { home.join("bin").join("python") }
+}
+
+/// Whether it is there and the Python it was made from still is.
+fn works(home: &Path) -> bool {
+    python_in(home).exists()
+}
+
+/// Makes a whole environment in a folder of its own.
+async fn make(base: &Interpreter, cache: &Path, progress: &ProgressBar) -> Result<TempDir, Failure> {
+    progress.set_message("preparing Python for the first run: making a virtual environment");
+    let folder = tempfile::Builder::new().prefix("venv-new-").tempdir_in(cache);
+    let folder = folder.map_err(|error| uncached(cache, &error))?;
+    let mut venv = Command::new(&base.path);
+    venv.args(["-I", "-m", "venv"]).arg(folder.path());
+    succeed(&mut venv, MAKE_LIMIT, "cannot make a virtual environment").await.map_err(|failure| {
+        failure.help(format!(
+            "{} needs its modules venv and ensurepip, e.g. `sudo apt install python3-venv`; or name another Python by \
+             --python PATH",
+            base.path.display()
+        ))
+    })?;
+    progress.set_message("preparing Python for the first run: installing CoppeliaSim's client from PyPI");
+    let requirements = folder.path().join("requirements.txt");
+    fs::write(&requirements, REQUIREMENTS).map_err(|error| uncached(&requirements, &error))?;
+    let mut pip = Command::new(python_in(folder.path()));
+    pip.args(["-I", "-m", "pip", "install", "--quiet", "--no-input", "--disable-pip-version-check"]);
+    pip.arg("--requirement").arg(&requirements);
+    succeed(&mut pip, INSTALL_LIMIT, "cannot install what scripts need").await.map_err(|failure| {
+        failure.help(
+            "the first run needs PyPI: check the network, or tell pip of a proxy or mirror by HTTPS_PROXY or \
+             PIP_INDEX_URL",
+        )
+    })?;
+    Ok(folder)
+}
+
+/// Gives the environment its place; where another run was faster, its environment is the one to use.
+fn keep(made: TempDir, home: &Path) -> Result<(), Failure> {
+    if home.exists() && !works(home) {
+        // Its Python is gone, so nobody runs it.
+        let _ = fs::remove_dir_all(home);
+    }
+    match fs::rename(made.path(), home) {
+        Ok(()) => {
+            // There is nothing left at its old place to remove.
+            let _ = made.keep();
+            Ok(())
+        }
+        Err(_) if works(home) => Ok(()),
+        Err(error) => Err(uncached(home, &error)),
+    }
+}
+
+/// Runs a command that has to succeed.
+async fn succeed(command: &mut Command, limit: Duration, what_if_not: &str) -> Result<(), Failure> {
+    let output =
+        output(command, limit).await.map_err(|error| Failure::new(format!("{what_if_not}: {error}")))?;
+    if output.status.success() {
+        return Ok(());
+    }
+    let text = [output.stderr, output.stdout].concat();
+    let text = String::from_utf8_lossy(&text);
+    let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    // Tools say at the end what it was all about, and pip marks it.
+    let reason = lines.clone().find(|line| line.starts_with("ERROR:")).or_else(|| lines.next_back());
+    Err(Failure::new(format!("{what_if_not}: {}", reason.unwrap_or("it failed without a word"))))
+}
+
+/// What a command printed; it is ended where nobody waits for it any more.
+async fn output(command: &mut Command, limit: Duration) -> io::Result<Output> {
+    for name in ["PYTHONHOME", "PYTHONPATH", "__PYVENV_LAUNCHER__"].map(OsStr::new) {
+        command.env_remove(name);
+    }
+    command.stdin(Stdio::null()).kill_on_drop(true);
+    match timeout(limit, command.output()).await {
+        Ok(output) => output,
+        Err(_) => {
+            Err(io::Error::new(io::ErrorKind::TimedOut, format!("it took longer than {} s", limit.as_secs())))
+        }
+    }
+}
