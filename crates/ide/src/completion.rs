@@ -2,12 +2,15 @@
 //!
 //! Which words fit is asked of the parser itself ([`expected_after`]), so it cannot drift from the language.
 
+mod snippets;
+
 use pydslrep_analysis::{Database, EntityId, FileId};
 use pydslrep_syntax::ast::{
     Action, ActionKind, DriveWord, Entity, Movement, Name, References, Robot, TurnExtent,
 };
 use pydslrep_syntax::{EntityKind, Expected, KEYWORDS, Lexeme, Span, Token, expected_after};
 
+use self::snippets::{ACTIONS, ENTITIES, Snippet, without_stops};
 use crate::FilePosition;
 use crate::cursor::{body, resolved};
 use crate::reference::keyword_page;
@@ -339,60 +342,6 @@ const BEGINNINGS: [Token; 9] = [
     Token::Import,
 ];
 
-/// A pattern to fill in.
-struct Snippet {
-    label: &'static str,
-    detail: &'static str,
-    insert: &'static str,
-}
-
-const ENTITIES: &[Snippet] = &[
-    Snippet { label: "wheel …", detail: "a whole wheel", insert: "wheel ${1:wheelL} with radius ${2:4.5}" },
-    Snippet {
-        label: "wheelH …",
-        detail: "a whole mecanum wheel",
-        insert: "wheelH ${1:wheelLF} with radius ${2:4.5}",
-    },
-    Snippet { label: "sensor …", detail: "a whole sensor", insert: "sensor ${1:front}" },
-    Snippet { label: "ip …", detail: "a whole address", insert: "ip ${1:lab} ${2:127.0.0.1}" },
-    Snippet {
-        label: "robot …",
-        detail: "a whole robot",
-        insert: "robot ${1:rover} type ${2:tw} with port ${3:19999} has { ${4:wheelL wheelR} } wheels",
-    },
-    Snippet {
-        label: "movement …",
-        detail: "a whole movement",
-        insert: "movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}",
-    },
-    Snippet {
-        label: "parallel movement …",
-        detail: "a movement that runs beside others",
-        insert: "parallel movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}",
-    },
-    Snippet {
-        label: "environment …",
-        detail: "a whole environment",
-        insert: "environment ${1:area} has { ${2:rover} } robots with { ${3:patrol} } moves",
-    },
-];
-
-const ACTIONS: &[Snippet] = &[
-    Snippet { label: "move … meters", detail: "straight ahead", insert: "move ${1:1.0} meters" },
-    Snippet {
-        label: "move … centimeters at …",
-        detail: "straight ahead, with a speed",
-        insert: "move ${1:50} centimeters at ${2:9.0}",
-    },
-    Snippet { label: "turn left", detail: "in place", insert: "turn left ${1:90}" },
-    Snippet { label: "turn right", detail: "in place", insert: "turn right ${1:90}" },
-    Snippet {
-        label: "turn … until",
-        detail: "until the way is free",
-        insert: "turn ${1:right} until { $0 }",
-    },
-];
-
 /// The word before and behind the cursor; `None` inside comments and strings, where nothing is completed.
 fn word_at(database: &Database, position: FilePosition) -> Option<Span> {
     let entity = database.entity_at(position.file, position.offset)?;
@@ -409,24 +358,6 @@ fn word_at(database: &Database, position: FilePosition) -> Option<Span> {
     }
     let is_word = token.is_name() || token.is_keyword();
     Some(if is_word { span.shifted(entity.span.start) } else { Span::at(position.offset) })
-}
-
-/// A snippet as it reads once it is inserted.
-fn without_stops(insert: &str) -> String {
-    let mut out = String::new();
-    let mut rest = insert;
-    while let Some(dollar) = rest.find('$') {
-        out += &rest[..dollar];
-        rest = &rest[dollar + 1..];
-        if let Some(inner) = rest.strip_prefix('{') {
-            let end = inner.find('}').unwrap_or(inner.len());
-            out += inner[..end].split_once(':').map_or("", |(_, text)| text);
-            rest = inner.get(end + 1..).unwrap_or_default();
-        } else {
-            rest = rest.trim_start_matches(|c: char| c.is_ascii_digit());
-        }
-    }
-    out + rest
 }
 
 #[cfg(test)]

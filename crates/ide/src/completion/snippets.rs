@@ -1,0 +1,99 @@
+//! Patterns to fill in: whole entities and whole actions.
+
+/// A pattern to fill in.
+pub(super) struct Snippet {
+    pub(super) label: &'static str,
+    pub(super) detail: &'static str,
+    pub(super) insert: &'static str,
+}
+
+/// Whole entities.
+pub(super) const ENTITIES: &[Snippet] = &[
+    Snippet { label: "wheel …", detail: "a whole wheel", insert: "wheel ${1:wheelL} with radius ${2:4.5}" },
+    Snippet {
+        label: "wheelH …",
+        detail: "a whole mecanum wheel",
+        insert: "wheelH ${1:wheelLF} with radius ${2:4.5}",
+    },
+    Snippet { label: "sensor …", detail: "a whole sensor", insert: "sensor ${1:front}" },
+    Snippet { label: "ip …", detail: "a whole address", insert: "ip ${1:lab} ${2:127.0.0.1}" },
+    Snippet {
+        label: "robot …",
+        detail: "a whole robot",
+        insert: "robot ${1:rover} type ${2:tw} with port ${3:19999} has { ${4:wheelL wheelR} } wheels",
+    },
+    Snippet {
+        label: "movement …",
+        detail: "a whole movement",
+        insert: "movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}",
+    },
+    Snippet {
+        label: "parallel movement …",
+        detail: "a movement that runs beside others",
+        insert: "parallel movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}",
+    },
+    Snippet {
+        label: "environment …",
+        detail: "a whole environment",
+        insert: "environment ${1:area} has { ${2:rover} } robots with { ${3:patrol} } moves",
+    },
+];
+
+/// Whole actions.
+pub(super) const ACTIONS: &[Snippet] = &[
+    Snippet { label: "move … meters", detail: "straight ahead", insert: "move ${1:1.0} meters" },
+    Snippet {
+        label: "move … centimeters at …",
+        detail: "straight ahead, with a speed",
+        insert: "move ${1:50} centimeters at ${2:9.0}",
+    },
+    Snippet { label: "turn left", detail: "in place", insert: "turn left ${1:90}" },
+    Snippet { label: "turn right", detail: "in place", insert: "turn right ${1:90}" },
+    Snippet {
+        label: "turn … until",
+        detail: "until the way is free",
+        insert: "turn ${1:right} until { $0 }",
+    },
+];
+
+/// A snippet as it reads once it is inserted.
+pub(super) fn without_stops(insert: &str) -> String {
+    let mut out = String::new();
+    let mut rest = insert;
+    while let Some(dollar) = rest.find('$') {
+        out += &rest[..dollar];
+        rest = &rest[dollar + 1..];
+        if let Some(inner) = rest.strip_prefix('{') {
+            let end = inner.find('}').unwrap_or(inner.len());
+            out += inner[..end].split_once(':').map_or("", |(_, text)| text);
+            rest = inner.get(end + 1..).unwrap_or_default();
+        } else {
+            rest = rest.trim_start_matches(|c: char| c.is_ascii_digit());
+        }
+    }
+    out + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stops_leave_their_text() {
+        assert_eq!(without_stops("a ${1:b} {\n  $0\n}"), "a b {\n  \n}");
+    }
+
+    #[test]
+    fn every_pattern_is_a_program_once_it_is_filled_in() {
+        let in_movement = |text: String| format!("movement m of r {{ {text} }}");
+        let entities = ENTITIES.iter().map(|snippet| without_stops(snippet.insert));
+        // A list must not be empty, and `until`'s is for the person to fill in.
+        let actions =
+            ACTIONS.iter().map(|snippet| in_movement(without_stops(snippet.insert).replace("{  }", "{ s }")));
+        for text in entities.chain(actions) {
+            for (_, parse) in pydslrep_syntax::parse(&text) {
+                assert_eq!(parse.errors, [], "{text}");
+            }
+        }
+    }
+}
