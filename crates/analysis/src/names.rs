@@ -1,7 +1,7 @@
 //! Who declares a name, and who uses it.
 
 use pydslrep_syntax::EntityKind;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use crate::{EntityId, FileId};
@@ -14,6 +14,8 @@ pub(crate) type Key = (FileId, EntityKind, SmolStr);
 #[derive(Debug, Default)]
 pub(crate) struct Names {
     defined: FxHashMap<Key, Vec<EntityId>>,
+    /// The names of `defined`, by file and kind.
+    by_kind: FxHashMap<(FileId, EntityKind), FxHashSet<SmolStr>>,
     used: FxHashMap<Key, Vec<EntityId>>,
     skipped: FxHashMap<(FileId, SmolStr), u32>,
 }
@@ -31,7 +33,7 @@ impl Names {
 
     /// Every declared name of a kind in a file, in no order.
     pub(crate) fn all(&self, file: FileId, kind: EntityKind) -> impl Iterator<Item = &SmolStr> {
-        self.defined.keys().filter(move |key| key.0 == file && key.1 == kind).map(|key| &key.2)
+        self.by_kind.get(&(file, kind)).into_iter().flatten()
     }
 
     /// Whether the name stands in text that had to be skipped, and may be declared there.
@@ -41,6 +43,7 @@ impl Names {
 
     /// Adds a declaration; `order` tells where in the file an entity stands.
     pub(crate) fn define(&mut self, key: Key, entity: EntityId, order: impl Fn(EntityId) -> u64) {
+        self.by_kind.entry((key.0, key.1)).or_default().insert(key.2.clone());
         let entities = self.defined.entry(key).or_default();
         let place = entities.partition_point(|other| order(*other) < order(entity));
         entities.insert(place, entity);
@@ -49,6 +52,11 @@ impl Names {
     /// Removes a declaration.
     pub(crate) fn undefine(&mut self, key: &Key, entity: EntityId) {
         remove(&mut self.defined, key, entity);
+        if !self.defined.contains_key(key)
+            && let Some(names) = self.by_kind.get_mut(&(key.0, key.1))
+        {
+            names.remove(&key.2);
+        }
     }
 
     /// Adds a use.
