@@ -5,7 +5,7 @@ use std::time::Duration;
 use pydslrep_kinematics::Pose;
 use pydslrep_simulator::picture::Route;
 
-use crate::commands::plan::{Planned, fixed};
+use crate::commands::plan::{Planned, fixed, heading};
 use crate::driven::Driven;
 use crate::output;
 
@@ -69,7 +69,7 @@ impl Outcome<'_> {
 fn words(pose: Option<Pose>) -> [String; 3] {
     pose.map_or_else(
         || ["?", "?", "?"].map(str::to_owned),
-        |pose| [fixed(pose.x, 3), fixed(pose.y, 3), fixed(pose.theta.to_degrees(), 1)],
+        |pose| [fixed(pose.x, 3), fixed(pose.y, 3), heading(pose.theta)],
     )
 }
 

@@ -156,10 +156,9 @@ impl Sources {
             .help(format!("move the file, or put a {PROJECT_FILE} into the folder that holds both")));
         }
         self.open_file(&near).map_err(|failure| match failure {
-            Failure::Told { message, help } => Failure::Told {
-                message: format!("{importer} imports a file that is not there or broken: {message}"),
-                help,
-            },
+            Failure::Told { message, help } => {
+                Failure::Told { message: format!("cannot import into {importer}: {message}"), help }
+            }
             Failure::Unheard => Failure::Unheard,
         })
     }

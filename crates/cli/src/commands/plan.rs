@@ -143,9 +143,8 @@ fn table(planned: &Planned) -> String {
     ]);
     for (robot, path) in planned.scene.robots.iter().zip(&planned.plan.robots) {
         let start = path.start;
-        let pose = |pose: pydslrep_kinematics::Pose| {
-            [fixed(pose.x, 3), fixed(pose.y, 3), fixed(pose.theta.to_degrees(), 1)]
-        };
+        let pose =
+            |pose: pydslrep_kinematics::Pose| [fixed(pose.x, 3), fixed(pose.y, 3), heading(pose.theta)];
         let [x, y, heading] = pose(start);
         let blank = String::new;
         table.add_row([
@@ -201,6 +200,12 @@ fn table(planned: &Planned) -> String {
 
 fn time(seconds: Option<f64>) -> String {
     seconds.map_or_else(|| "?".to_owned(), |seconds| fixed(seconds, 2))
+}
+
+/// A heading in degrees, in (−180, 180] also when rounded.
+pub(crate) fn heading(radians: f64) -> String {
+    let text = fixed(radians.to_degrees(), 1);
+    if text == "-180.0" { "180.0".to_owned() } else { text }
 }
 
 /// A number with so many digits after the point, and no −0.
@@ -284,12 +289,13 @@ fn json_action(planned: &Planned, index: ActionIndex) -> JsonAction<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::fixed;
+    use super::{fixed, heading};
 
     #[test]
     fn zero_has_no_sign() {
         assert_eq!(fixed(-0.0001, 3), "0.000");
         assert_eq!(fixed(-0.0006, 3), "-0.001");
         assert_eq!(fixed(4.0, 2), "4.00");
+        assert_eq!([-3.14159, 3.14159, -3.1].map(heading), ["180.0", "180.0", "-177.6"]);
     }
 }
