@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pathlib
+from collections.abc import AsyncIterator
 
 import pytest
 import pytest_lsp
@@ -32,11 +33,15 @@ def command() -> str:
 @pytest.fixture
 def table_2() -> str:
     """The article's first program: two wheels, three straight lines, two turns."""
-    return (ROOT / "tests" / "paper" / "table2_two_wheels.pyr").read_text(encoding="utf-8")
+    return (ROOT / "tests" / "paper" / "table2_two_wheels.pyr").read_text(
+        encoding="utf-8"
+    )
 
 
 @pytest_lsp.fixture(config=ClientServerConfig(server_command=[SERVER, "--stdio"]))
-async def client(lsp_client: LanguageClient, request: pytest.FixtureRequest):
+async def client(
+    lsp_client: LanguageClient, request: pytest.FixtureRequest
+) -> AsyncIterator[LanguageClient]:
     """A client in a session; a test may parametrise it by the name of an editor of `editor.py`."""
     wanted = capabilities(getattr(request, "param", "complete"))
     await lsp_client.initialize_session(types.InitializeParams(capabilities=wanted))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import pathlib
 import re
+import subprocess
 from typing import TYPE_CHECKING
 from urllib.parse import unquote, urlsplit
 
@@ -23,21 +24,27 @@ LINE_ENDING = re.compile(r"\r\n|\n|\r")
 
 def capabilities(editor: str) -> types.ClientCapabilities:
     """Capabilities of a client: `complete` (all we know, diagnostics pushed), `pulling` (it asks for diagnostics),
-    `eager` (it cannot resolve edits later), `textual` (it cannot create files) or `bare` (it says nothing at all)."""
-    if editor == "bare":
-        return types.ClientCapabilities()
-    operations = [] if editor == "textual" else [types.ResourceOperationKind.Create]
+    or `eager` (it cannot resolve edits later)."""
     resolve = types.ClientCodeActionResolveOptions(properties=["edit"])
     document = types.TextDocumentClientCapabilities(
         publish_diagnostics=types.PublishDiagnosticsClientCapabilities(
-            related_information=True, version_support=True, code_description_support=True
+            related_information=True,
+            version_support=True,
+            code_description_support=True,
         ),
-        diagnostic=types.DiagnosticClientCapabilities() if editor == "pulling" else None,
+        diagnostic=types.DiagnosticClientCapabilities()
+        if editor == "pulling"
+        else None,
         completion=types.CompletionClientCapabilities(
-            completion_item=types.ClientCompletionItemOptions(snippet_support=True)
+            completion_item=types.ClientCompletionItemOptions(
+                snippet_support=True, documentation_format=[types.MarkupKind.Markdown]
+            )
         ),
+        hover=types.HoverClientCapabilities(content_format=[types.MarkupKind.Markdown]),
         definition=types.DefinitionClientCapabilities(link_support=True),
-        document_symbol=types.DocumentSymbolClientCapabilities(hierarchical_document_symbol_support=True),
+        document_symbol=types.DocumentSymbolClientCapabilities(
+            hierarchical_document_symbol_support=True
+        ),
         code_action=types.CodeActionClientCapabilities(
             code_action_literal_support=types.ClientCodeActionLiteralOptions(
                 code_action_kind=types.ClientCodeActionKindOptions(value_set=[])
@@ -48,7 +55,10 @@ def capabilities(editor: str) -> types.ClientCapabilities:
         ),
     )
     workspace = types.WorkspaceClientCapabilities(
-        workspace_edit=types.WorkspaceEditClientCapabilities(document_changes=True, resource_operations=operations)
+        workspace_edit=types.WorkspaceEditClientCapabilities(
+            document_changes=True,
+            resource_operations=[types.ResourceOperationKind.Create],
+        )
     )
     return types.ClientCapabilities(text_document=document, workspace=workspace)
 
@@ -68,17 +78,40 @@ def offset(text: str, position: types.Position) -> int:
 def position(text: str, index: int) -> types.Position:
     """Position, counted in UTF-16, of an index into a Python string."""
     lines = [0, *(match.end() for match in LINE_ENDING.finditer(text, 0, index))]
-    return types.Position(len(lines) - 1, len(text[lines[-1] : index].encode("utf-16-le")) // 2)
+    return types.Position(
+        len(lines) - 1, len(text[lines[-1] : index].encode("utf-16-le")) // 2
+    )
 
 
 def apply_edits(text: str, edits: Sequence[types.TextEdit]) -> str:
     """The text after edits that all refer to the text before."""
     spans = sorted(
-        ((offset(text, edit.range.start), offset(text, edit.range.end), edit.new_text) for edit in edits), reverse=True
+        (
+            (
+                offset(text, edit.range.start),
+                offset(text, edit.range.end),
+                edit.new_text,
+            )
+            for edit in edits
+        ),
+        reverse=True,
     )
     for start, end, new_text in spans:
         text = text[:start] + new_text + text[end:]
     return text
+
+
+def built(command: str, folder: pathlib.Path, text: str) -> str:
+    """The script of a program as the command line builds it."""
+    program = folder / "built.pyr"
+    program.write_text(text, encoding="utf-8")
+    done = subprocess.run(
+        [command, "build", "--stdout", program],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return done.stdout
 
 
 def to_path(uri: str) -> pathlib.Path:
@@ -106,7 +139,9 @@ class Editor:
         if name.endswith(".pyr"):
             self.versions[uri] = 1
             document = types.TextDocumentItem(uri, "pydslrep", 1, text)
-            self.client.text_document_did_open(types.DidOpenTextDocumentParams(document))
+            self.client.text_document_did_open(
+                types.DidOpenTextDocumentParams(document)
+            )
         return uri
 
     def replace(self, uri: str, old: str, new: str) -> None:
@@ -114,7 +149,12 @@ class Editor:
         text = self.buffers[uri]
         assert text.count(old) == 1, f"{old!r} in {text!r}"
         at = text.index(old)
-        self.edit(uri, types.TextEdit(types.Range(position(text, at), position(text, at + len(old))), new))
+        self.edit(
+            uri,
+            types.TextEdit(
+                types.Range(position(text, at), position(text, at + len(old))), new
+            ),
+        )
 
     def edit(self, uri: str, edit: types.TextEdit) -> None:
         """Makes one edit."""
@@ -123,11 +163,15 @@ class Editor:
             self.versions[uri] += 1
             document = types.VersionedTextDocumentIdentifier(self.versions[uri], uri)
             change = types.TextDocumentContentChangePartial(edit.range, edit.new_text)
-            self.client.text_document_did_change(types.DidChangeTextDocumentParams(document, [change]))
+            self.client.text_document_did_change(
+                types.DidChangeTextDocumentParams(document, [change])
+            )
 
     async def diagnostics(self, uri: str) -> list[types.Diagnostic]:
         """The next diagnostics pushed for a document; they must be about its present text."""
-        pushed = await self.client.wait_for_notification(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)
+        pushed = await self.client.wait_for_notification(
+            types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS
+        )
         assert pushed.uri == uri
         assert pushed.version == self.versions[uri]
         return list(pushed.diagnostics)
@@ -142,12 +186,22 @@ class Editor:
             else:
                 assert isinstance(change, types.TextDocumentEdit)
                 expected = change.text_document.version
-                assert expected is None or expected == self.versions[change.text_document.uri]
-                self._change(change.text_document.uri, [e for e in change.edits if isinstance(e, types.TextEdit)])
+                assert (
+                    expected is None
+                    or expected == self.versions[change.text_document.uri]
+                )
+                self._change(
+                    change.text_document.uri,
+                    [e for e in change.edits if isinstance(e, types.TextEdit)],
+                )
 
     def text(self, uri: str) -> str:
         """What the user sees: the buffer, else the file."""
-        return self.buffers[uri] if uri in self.buffers else to_path(uri).read_text(encoding="utf-8")
+        return (
+            self.buffers[uri]
+            if uri in self.buffers
+            else to_path(uri).read_text(encoding="utf-8")
+        )
 
     def _create(self, change: types.CreateFile) -> None:
         path, options = to_path(change.uri), change.options or types.CreateFileOptions()
@@ -159,10 +213,16 @@ class Editor:
 
     def _change(self, uri: str, edits: Sequence[types.TextEdit]) -> None:
         if uri in self.versions:
-            for edit in sorted(edits, key=lambda e: (e.range.start.line, e.range.start.character), reverse=True):
+            for edit in sorted(
+                edits,
+                key=lambda e: (e.range.start.line, e.range.start.character),
+                reverse=True,
+            ):
                 self.edit(uri, edit)
         elif uri in self.buffers:
             self.buffers[uri] = apply_edits(self.buffers[uri], edits)
         else:
             path = to_path(uri)
-            path.write_text(apply_edits(path.read_text(encoding="utf-8"), edits), encoding="utf-8")
+            path.write_text(
+                apply_edits(path.read_text(encoding="utf-8"), edits), encoding="utf-8"
+            )

@@ -12,7 +12,10 @@ class RawServer:
 
     def __init__(self, *command: str) -> None:
         self.process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
         )
         assert self.process.stdin
         assert self.process.stdout
@@ -33,9 +36,12 @@ class RawServer:
         self.input.write(b"".join(messages))
         self.input.flush()
 
-    def initialize(self) -> None:
+    def initialize(self, capabilities: dict[str, Any] | None = None) -> None:
         """Begins a session."""
-        self.send(request(0, "initialize", {"capabilities": {}}), notification("initialized", {}))
+        self.send(
+            request(0, "initialize", {"capabilities": capabilities or {}}),
+            notification("initialized", {}),
+        )
         self.answer(0)
 
     def answer(self, ident: int | str | None) -> dict[str, Any]:
@@ -44,6 +50,13 @@ class RawServer:
             if "method" not in message and message.get("id") == ident:
                 return message
         raise AssertionError(f"the server left without an answer to {ident}")
+
+    def read_until(self, method: str) -> dict[str, Any]:
+        """The next notification or request of a kind."""
+        while (message := self.read()) is not None:
+            if message.get("method") == method:
+                return message
+        raise AssertionError(f"the server left without {method}")
 
     def published_before(self, ident: int) -> list[int]:
         """The versions of the diagnostics pushed before the answer to a request."""
@@ -77,9 +90,20 @@ def frame(body: bytes) -> bytes:
 
 def request(ident: int | str, method: str, params: object) -> bytes:
     """A request."""
-    return frame(json.dumps({"jsonrpc": "2.0", "id": ident, "method": method, "params": params}).encode())
+    return frame(
+        json.dumps(
+            {"jsonrpc": "2.0", "id": ident, "method": method, "params": params}
+        ).encode()
+    )
 
 
 def notification(method: str, params: object) -> bytes:
     """A notification."""
-    return frame(json.dumps({"jsonrpc": "2.0", "method": method, "params": params}).encode())
+    return frame(
+        json.dumps({"jsonrpc": "2.0", "method": method, "params": params}).encode()
+    )
+
+
+def answer(ident: int | str, result: object) -> bytes:
+    """The answer to a request of the server's."""
+    return frame(json.dumps({"jsonrpc": "2.0", "id": ident, "result": result}).encode())

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import pathlib
 import socket
 import subprocess
 import sys
+from typing import Any
 
 import pytest
-from raw import RawServer, frame, notification, request
+from editor import built
+from raw import RawServer, answer, frame, notification, request
 
 URI = "file:///burst.pyr"
 EXIT = notification("exit", None)
 SHUTDOWN = request("bye", "shutdown", None)
 
 
-def opened(text: str) -> bytes:
-    document = {"uri": URI, "languageId": "pydslrep", "version": 1, "text": text}
+def opened(text: str, uri: str = URI) -> bytes:
+    document = {"uri": uri, "languageId": "pydslrep", "version": 1, "text": text}
     return notification("textDocument/didOpen", {"textDocument": document})
 
 
@@ -23,7 +26,9 @@ def inserted(version: int, text: str) -> bytes:
     start = {"line": 0, "character": 0}
     changes = [{"range": {"start": start, "end": start}, "text": text}]
     document = {"uri": URI, "version": version}
-    return notification("textDocument/didChange", {"textDocument": document, "contentChanges": changes})
+    return notification(
+        "textDocument/didChange", {"textDocument": document, "contentChanges": changes}
+    )
 
 
 def outline(ident: int) -> bytes:
@@ -48,7 +53,11 @@ def test_every_read_sees_exactly_the_changes_sent_before_it(server: str) -> None
 def test_diagnostics_of_a_burst_end_with_those_of_its_last_version(server: str) -> None:
     with RawServer(server, "--stdio") as raw:
         raw.initialize()
-        raw.send(opened(""), *(inserted(version, "wheel ") for version in range(2, 502)), outline(1))
+        raw.send(
+            opened(""),
+            *(inserted(version, "wheel ") for version in range(2, 502)),
+            outline(1),
+        )
         versions = raw.published_before(1)
         # Once the first answer is there and nothing else has been sent, diagnostics come before the second.
         raw.send(outline(2))
@@ -64,7 +73,9 @@ def test_diagnostics_of_a_burst_end_with_those_of_its_last_version(server: str) 
         ([EXIT], 1),
     ],
 )
-def test_exit_ends_the_server_while_its_input_stays_open(server: str, goodbye: list[bytes], code: int) -> None:
+def test_exit_ends_the_server_while_its_input_stays_open(
+    server: str, goodbye: list[bytes], code: int
+) -> None:
     with RawServer(server, "--stdio") as raw:
         raw.initialize()
         raw.send(*goodbye)
@@ -91,7 +102,9 @@ def test_malformed_input_is_answered_and_read_past(server: str) -> None:
             frame(b'{"hello": "world"}'),
             b'Content-Length: 99999999999999\r\n\r\n{"garbage": 1}',
             b"\x00\x01\x02 no header at all\r\n\r\n",
-            frame(b'{"jsonrpc": "2.0", "id": 99, "result": "to nothing that was asked"}'),
+            frame(
+                b'{"jsonrpc": "2.0", "id": 99, "result": "to nothing that was asked"}'
+            ),
             request(2, "no/suchMethod", {}),
             request(3, "textDocument/hover", {"nonsense": True}),
             opened("wheel a with radius 4.5"),
@@ -114,21 +127,36 @@ def test_requests_before_initialize_are_refused(server: str) -> None:
 
 
 @pytest.mark.parametrize("spelling", [["--socket", "{}"], ["--socket={}"]])
-def test_the_server_connects_to_a_clients_socket(server: str, spelling: list[str]) -> None:
+def test_the_server_connects_to_a_clients_socket(
+    server: str, spelling: list[str]
+) -> None:
     with socket.create_server(("127.0.0.1", 0)) as listener:
         port = listener.getsockname()[1]
-        process = subprocess.Popen([server, *(part.format(port) for part in spelling)], stdout=subprocess.PIPE)
+        process = subprocess.Popen(
+            [server, *(part.format(port) for part in spelling)], stdout=subprocess.PIPE
+        )
         connection, _ = listener.accept()
         with connection, connection.makefile("rb") as answers:
-            connection.sendall(request(1, "initialize", {"capabilities": {}}) + SHUTDOWN + EXIT)
+            connection.sendall(
+                request(1, "initialize", {"capabilities": {}}) + SHUTDOWN + EXIT
+            )
             assert b'"capabilities"' in answers.read()
         output, _ = process.communicate()
         assert (process.returncode, output) == (0, b"")
 
 
-@pytest.mark.parametrize("arguments", [[], ["--stdoi"], ["--socket"], ["--socket", "x"], ["--stdio", "--socket=1"]])
+@pytest.mark.parametrize(
+    "arguments",
+    [[], ["--stdoi"], ["--socket"], ["--socket", "x"], ["--stdio", "--socket=1"]],
+)
 def test_wrong_arguments_are_refused(server: str, arguments: list[str]) -> None:
-    done = subprocess.run([server, *arguments], capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False)
+    done = subprocess.run(
+        [server, *arguments],
+        capture_output=True,
+        text=True,
+        stdin=subprocess.DEVNULL,
+        check=False,
+    )
     assert done.returncode == 2
     assert done.stdout == ""
     assert "--help" in done.stderr
@@ -137,17 +165,79 @@ def test_wrong_arguments_are_refused(server: str, arguments: list[str]) -> None:
 def test_a_port_where_nobody_listens_is_an_outside_failure(server: str) -> None:
     with socket.create_server(("127.0.0.1", 0)) as listener:
         free = listener.getsockname()[1]
-    done = subprocess.run([server, f"--socket={free}"], capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [server, f"--socket={free}"], capture_output=True, text=True, check=False
+    )
     assert done.returncode == 2
     assert str(free) in done.stderr
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="processes are watched on Linux only")
+LITERALS: dict[str, Any] = {
+    "codeActionLiteralSupport": {"codeActionKind": {"valueSet": []}}
+}
+
+
+@pytest.mark.parametrize("code_action", [{}, LITERALS])
+def test_the_server_writes_the_script_where_the_client_cannot_create_files(
+    server: str,
+    command: str,
+    tmp_path: pathlib.Path,
+    table_2: str,
+    code_action: dict[str, Any],
+) -> None:
+    uri = (tmp_path / "table2.pyr").as_uri()
+    start = {"line": 0, "character": 0}
+    context = {"diagnostics": [], "only": ["source"]}
+    anywhere = {
+        "textDocument": {"uri": uri},
+        "range": {"start": start, "end": start},
+        "context": context,
+    }
+    with RawServer(server, "--stdio") as raw:
+        raw.initialize(
+            {
+                "textDocument": {"codeAction": code_action},
+                "window": {"showDocument": {"support": True}},
+            }
+        )
+        raw.send(opened(table_2, uri), request(1, "textDocument/codeAction", anywhere))
+        [action] = raw.answer(1)["result"]
+        chosen = action["command"] if code_action else action
+        assert chosen["command"] == "pydslrep.generateScript"
+        raw.send(
+            request(
+                2,
+                "workspace/executeCommand",
+                {k: chosen[k] for k in ("command", "arguments")},
+            )
+        )
+        told = raw.read_until("window/showMessage")
+        assert "area_1.py" in told["params"]["message"]
+        asked = raw.read_until("window/showDocument")
+        assert asked["params"]["uri"] == (tmp_path / "area_1.py").as_uri()
+        raw.send(answer(asked["id"], {"success": True}))
+        assert raw.answer(2)["result"] is None
+        assert (tmp_path / "area_1.py").read_text(encoding="utf-8") == built(
+            command, tmp_path, table_2
+        )
+        wrong = {
+            "command": "pydslrep.generateScript",
+            "arguments": [{"uri": uri, "environment": "nowhere"}],
+        }
+        raw.send(request(3, "workspace/executeCommand", wrong))
+        assert "`nowhere`" in raw.answer(3)["error"]["message"]
+
+
+@pytest.mark.skipif(
+    sys.platform != "linux", reason="processes are watched on Linux only"
+)
 def test_a_client_that_dies_takes_the_server_with_it(server: str) -> None:
     """Even if someone else holds the server's input open, as this test does."""
     client = "import subprocess, sys; subprocess.Popen([sys.argv[1], '--stdio']).wait()"
     with RawServer(sys.executable, "-c", client, server) as raw:
-        raw.send(request(1, "initialize", {"processId": raw.process.pid, "capabilities": {}}))
+        raw.send(
+            request(1, "initialize", {"processId": raw.process.pid, "capabilities": {}})
+        )
         raw.answer(1)
         raw.process.kill()
         assert raw.read() is None

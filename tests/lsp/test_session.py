@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import pathlib
-import subprocess
 
 import pytest
-from editor import Editor, position
+from editor import Editor, built, position
 from lsprotocol import types
 from pytest_lsp import LanguageClient
 
@@ -15,18 +14,12 @@ pytestmark = pytest.mark.asyncio
 KIND = "source.generateScript"
 
 
-def built(command: str, folder: pathlib.Path, text: str) -> str:
-    """The script as the command line builds it."""
-    program = folder / "built.pyr"
-    program.write_text(text, encoding="utf-8")
-    done = subprocess.run([command, "build", "--stdout", program], capture_output=True, text=True, check=True)
-    return done.stdout
-
-
 async def script_actions(client: LanguageClient, uri: str) -> list[types.CodeAction]:
     anywhere = types.Range(types.Position(0, 0), types.Position(0, 0))
     context = types.CodeActionContext(diagnostics=[], only=[KIND])
-    params = types.CodeActionParams(types.TextDocumentIdentifier(uri), anywhere, context)
+    params = types.CodeActionParams(
+        types.TextDocumentIdentifier(uri), anywhere, context
+    )
     actions = await client.text_document_code_action_async(params) or []
     assert all(isinstance(action, types.CodeAction) for action in actions)
     return [action for action in actions if isinstance(action, types.CodeAction)]
@@ -45,7 +38,9 @@ async def test_from_a_typo_to_the_script(
 
     [error] = await editor.diagnostics(uri)
     at = broken.index("weelR")
-    assert error.range == types.Range(position(broken, at), position(broken, at + len("weelR")))
+    assert error.range == types.Range(
+        position(broken, at), position(broken, at + len("weelR"))
+    )
     assert error.severity == types.DiagnosticSeverity.Error
     assert error.code == "unresolved-reference"
     assert "wheelR" in error.message
@@ -63,7 +58,9 @@ async def test_from_a_typo_to_the_script(
     labels = [item.label for item in answer.items]
     assert "wheelR" in labels
     assert "wheelL" not in labels, "the robot has that one already"
-    assert not {"robot_1", "mov_1", "area_1"} & set(labels), "only wheels can stand here"
+    assert not {"robot_1", "mov_1", "area_1"} & set(labels), (
+        "only wheels can stand here"
+    )
     completion = next(item.text_edit for item in answer.items if item.label == "wheelR")
     assert isinstance(completion, types.TextEdit)
     editor.edit(uri, completion)
@@ -79,9 +76,16 @@ async def test_from_a_typo_to_the_script(
 
 
 @pytest.mark.parametrize("client", ["complete", "eager"], indirect=True)
-@pytest.mark.parametrize("there", ["nothing", "file", "buffer over a file", "changed buffer", "unsaved buffer"])
+@pytest.mark.parametrize(
+    "there",
+    ["nothing", "file", "buffer over a file", "changed buffer", "unsaved buffer"],
+)
 async def test_a_script_replaces_whatever_was_there(
-    client: LanguageClient, tmp_path: pathlib.Path, table_2: str, command: str, there: str
+    client: LanguageClient,
+    tmp_path: pathlib.Path,
+    table_2: str,
+    command: str,
+    there: str,
 ) -> None:
     editor = Editor(client, tmp_path)
     uri = editor.open("table2.pyr", table_2)
@@ -102,31 +106,14 @@ async def test_a_script_replaces_whatever_was_there(
     assert editor.text(script) == built(command, tmp_path, table_2)
 
 
-@pytest.mark.parametrize("client", ["textual", "bare"], indirect=True)
-async def test_the_server_writes_the_script_where_the_client_cannot(
-    client: LanguageClient, tmp_path: pathlib.Path, table_2: str, command: str
-) -> None:
-    editor = Editor(client, tmp_path)
-    uri = editor.open("table2.pyr", table_2)
-    anywhere = types.Range(types.Position(2, 0), types.Position(2, 0))
-    context = types.CodeActionContext(diagnostics=[])
-    params = types.CodeActionParams(types.TextDocumentIdentifier(uri), anywhere, context)
-    [action] = await client.text_document_code_action_async(params) or []
-    chosen_command = action.command if isinstance(action, types.CodeAction) else action
-    assert chosen_command
-    assert isinstance(chosen_command, types.Command)
-    assert chosen_command.command == "pydslrep.generateScript"
-    arguments = types.ExecuteCommandParams(chosen_command.command, chosen_command.arguments)
-    await client.workspace_execute_command_async(arguments)
-    assert (tmp_path / "area_1.py").read_text(encoding="utf-8") == built(command, tmp_path, table_2)
-
-
 @pytest.mark.parametrize("client", ["pulling"], indirect=True)
 async def test_a_client_that_pulls_diagnostics_is_not_pushed_to(
     client: LanguageClient, tmp_path: pathlib.Path, table_2: str
 ) -> None:
     editor = Editor(client, tmp_path)
-    uri = editor.open("table2.pyr", table_2.replace("{ wheelL wheelR }", "{ wheelL weelR }"))
+    uri = editor.open(
+        "table2.pyr", table_2.replace("{ wheelL wheelR }", "{ wheelL weelR }")
+    )
     params = types.DocumentDiagnosticParams(types.TextDocumentIdentifier(uri))
     first = await client.text_document_diagnostic_async(params)
     assert isinstance(first, types.RelatedFullDocumentDiagnosticReport)
@@ -137,7 +124,7 @@ async def test_a_client_that_pulls_diagnostics_is_not_pushed_to(
     editor.replace(uri, "weelR", "wheelR")
     mended = await client.text_document_diagnostic_async(params)
     assert isinstance(mended, types.RelatedFullDocumentDiagnosticReport)
-    assert mended.items == []
+    assert list(mended.items) == []
     assert client.diagnostics == {}
 
 
@@ -145,60 +132,97 @@ async def test_diagnostics_are_told_once_and_cleared_on_close(
     client: LanguageClient, tmp_path: pathlib.Path, table_2: str
 ) -> None:
     editor = Editor(client, tmp_path)
-    uri = editor.open("table2.pyr", table_2.replace("{ wheelL wheelR }", "{ wheelL weelR }"))
+    uri = editor.open(
+        "table2.pyr", table_2.replace("{ wheelL wheelR }", "{ wheelL weelR }")
+    )
     assert len(await editor.diagnostics(uri)) == 1
     client.diagnostics.clear()
-    editor.edit(uri, types.TextEdit(types.Range(types.Position(99, 0), types.Position(99, 0)), "// the end\n"))
+    editor.edit(
+        uri,
+        types.TextEdit(
+            types.Range(types.Position(99, 0), types.Position(99, 0)), "// the end\n"
+        ),
+    )
     params = types.DocumentSymbolParams(types.TextDocumentIdentifier(uri))
     await client.text_document_document_symbol_async(params)
     assert client.diagnostics == {}, "nothing has changed for the reader"
-    client.text_document_did_close(types.DidCloseTextDocumentParams(types.TextDocumentIdentifier(uri)))
-    cleared = await client.wait_for_notification(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)
+    client.text_document_did_close(
+        types.DidCloseTextDocumentParams(types.TextDocumentIdentifier(uri))
+    )
+    cleared = await client.wait_for_notification(
+        types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS
+    )
     assert (cleared.uri, list(cleared.diagnostics)) == (uri, [])
 
 
-async def test_a_quick_fix_mends_the_typo(client: LanguageClient, tmp_path: pathlib.Path, table_2: str) -> None:
+async def test_a_quick_fix_mends_the_typo(
+    client: LanguageClient, tmp_path: pathlib.Path, table_2: str
+) -> None:
     editor = Editor(client, tmp_path)
-    uri = editor.open("table2.pyr", table_2.replace("{ wheelL wheelR }", "{ wheelL weelR }"))
+    uri = editor.open(
+        "table2.pyr", table_2.replace("{ wheelL wheelR }", "{ wheelL weelR }")
+    )
     [error] = await editor.diagnostics(uri)
-    context = types.CodeActionContext(diagnostics=[error], only=[types.CodeActionKind.QuickFix])
-    params = types.CodeActionParams(types.TextDocumentIdentifier(uri), error.range, context)
+    context = types.CodeActionContext(
+        diagnostics=[error], only=[types.CodeActionKind.QuickFix]
+    )
+    params = types.CodeActionParams(
+        types.TextDocumentIdentifier(uri), error.range, context
+    )
     actions = await client.text_document_code_action_async(params) or []
     fix = next(action for action in actions if "`wheelR`" in action.title)
     assert isinstance(fix, types.CodeAction)
-    assert fix.diagnostics == [error]
+    assert list(fix.diagnostics or []) == [error]
     assert fix.edit
     editor.apply(fix.edit)
     assert editor.text(uri) == table_2
     assert await editor.diagnostics(uri) == []
 
 
-async def test_what_an_editor_shows_of_a_program(client: LanguageClient, tmp_path: pathlib.Path, table_2: str) -> None:
+async def test_what_an_editor_shows_of_a_program(
+    client: LanguageClient, tmp_path: pathlib.Path, table_2: str
+) -> None:
     editor = Editor(client, tmp_path)
     uri = editor.open("table2.pyr", table_2)
     document = types.TextDocumentIdentifier(uri)
     reference = position(table_2, table_2.index("{ wheelL") + 2)
     declaration = table_2.index("wheelL")
 
-    links = await client.text_document_definition_async(types.DefinitionParams(document, reference))
+    links = await client.text_document_definition_async(
+        types.DefinitionParams(document, reference)
+    )
     assert isinstance(links, list)
     [link] = links
     assert isinstance(link, types.LocationLink)
     assert link.target_uri == uri
     assert link.target_selection_range.start == position(table_2, declaration)
 
-    hover = await client.text_document_hover_async(types.HoverParams(document, reference))
+    hover = await client.text_document_hover_async(
+        types.HoverParams(document, reference)
+    )
     assert hover
     assert isinstance(hover.contents, types.MarkupContent)
     assert "4.5" in hover.contents.value
 
-    symbols = await client.text_document_document_symbol_async(types.DocumentSymbolParams(document))
-    assert [symbol.name for symbol in symbols or []] == ["wheelR", "wheelL", "robot_1", "mov_1", "area_1"]
+    symbols = await client.text_document_document_symbol_async(
+        types.DocumentSymbolParams(document)
+    )
+    assert [symbol.name for symbol in symbols or []] == [
+        "wheelR",
+        "wheelL",
+        "robot_1",
+        "mov_1",
+        "area_1",
+    ]
 
-    tokens = await client.text_document_semantic_tokens_full_async(types.SemanticTokensParams(document))
+    tokens = await client.text_document_semantic_tokens_full_async(
+        types.SemanticTokensParams(document)
+    )
     assert tokens
     whole = types.Range(types.Position(0, 0), types.Position(99, 0))
-    part = await client.text_document_semantic_tokens_range_async(types.SemanticTokensRangeParams(document, whole))
+    part = await client.text_document_semantic_tokens_range_async(
+        types.SemanticTokensRangeParams(document, whole)
+    )
     assert part
     assert part.data == tokens.data
     assert len(tokens.data) % 5 == 0

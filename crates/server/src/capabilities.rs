@@ -8,7 +8,7 @@ use tower_lsp::ls_types::{
     TextDocumentSyncCapability, TextDocumentSyncKind, TextDocumentSyncOptions, WorkspaceClientCapabilities,
 };
 
-use crate::handlers::code_actions;
+use crate::handlers::{code_actions, semantic_tokens};
 
 use crate::positions::Encoding;
 
@@ -26,10 +26,10 @@ pub(crate) struct ClientFeatures {
     pub(crate) diagnostic_tags: Vec<DiagnosticTag>,
     /// It links a diagnostic's code to its page.
     pub(crate) code_description: bool,
-    /// Hovers may be Markdown.
-    pub(crate) markdown_hover: bool,
-    /// Documentation of completions may be Markdown.
-    pub(crate) markdown_completion: bool,
+    /// How a hover is to be written, if it says.
+    pub(crate) hover_format: Option<MarkupKind>,
+    /// How the documentation of a completion is to be written, if it says.
+    pub(crate) completion_format: Option<MarkupKind>,
     /// Completions may have places to fill in.
     pub(crate) snippets: bool,
     /// Definitions may say which text leads to them.
@@ -46,6 +46,8 @@ pub(crate) struct ClientFeatures {
     pub(crate) versioned_edits: bool,
     /// Edits may create files.
     pub(crate) create_files: bool,
+    /// It can be asked to show a file.
+    pub(crate) show_document: bool,
 }
 
 impl ClientFeatures {
@@ -54,6 +56,8 @@ impl ClientFeatures {
         let mut features = Self::default();
         let offered = client.general.as_ref().and_then(|general| general.position_encodings.as_deref());
         features.encoding = Encoding::negotiate(offered);
+        let show_document = client.window.as_ref().and_then(|window| window.show_document.as_ref());
+        features.show_document = show_document.is_some_and(|show| show.support);
         if let Some(workspace) = &client.workspace {
             features.read_workspace(workspace);
         }
@@ -67,8 +71,9 @@ impl ClientFeatures {
     fn read_workspace(&mut self, workspace: &WorkspaceClientCapabilities) {
         let Some(edit) = &workspace.workspace_edit else { return };
         let operations = edit.resource_operations.as_deref().unwrap_or_default();
-        self.versioned_edits = edit.document_changes == Some(true);
-        self.create_files = self.versioned_edits && operations.contains(&ResourceOperationKind::Create);
+        self.create_files = operations.contains(&ResourceOperationKind::Create);
+        // Neovim names operations, which only versioned edits can hold, and nothing else.
+        self.versioned_edits = edit.document_changes == Some(true) || !operations.is_empty();
     }
 
     fn read_diagnostics(&mut self, document: &TextDocumentClientCapabilities) {
@@ -89,15 +94,15 @@ impl ClientFeatures {
     }
 
     fn read_documents(&mut self, document: &TextDocumentClientCapabilities) {
-        let has_markdown = |formats: Option<&Vec<MarkupKind>>| {
-            formats.is_some_and(|formats| formats.contains(&MarkupKind::Markdown))
+        let best = |formats: Option<&Vec<MarkupKind>>| {
+            let offers = |kind: &MarkupKind| formats.is_some_and(|formats| formats.contains(kind));
+            [MarkupKind::Markdown, MarkupKind::PlainText].into_iter().find(offers)
         };
-        self.markdown_hover =
-            has_markdown(document.hover.as_ref().and_then(|hover| hover.content_format.as_ref()));
+        self.hover_format = best(document.hover.as_ref().and_then(|hover| hover.content_format.as_ref()));
         if let Some(item) =
             document.completion.as_ref().and_then(|completion| completion.completion_item.as_ref())
         {
-            self.markdown_completion = has_markdown(item.documentation_format.as_ref());
+            self.completion_format = best(item.documentation_format.as_ref());
             self.snippets = item.snippet_support == Some(true);
         }
         self.definition_links =
@@ -146,6 +151,22 @@ fn server_capabilities(client: &ClientFeatures) -> ServerCapabilities {
                 ..DiagnosticOptions::default()
             })
         }),
+        completion_provider: Some(CompletionOptions {
+            trigger_characters: Some([" ", "{"].map(str::to_owned).to_vec()),
+            ..CompletionOptions::default()
+        }),
+        hover_provider: Some(HoverProviderCapability::Simple(true)),
+        definition_provider: Some(OneOf::Left(true)),
+        document_symbol_provider: Some(OneOf::Left(true)),
+        semantic_tokens_provider: Some(
+            SemanticTokensOptions {
+                legend: semantic_tokens::legend(),
+                range: Some(true),
+                full: Some(SemanticTokensFullOptions::Bool(true)),
+                ..SemanticTokensOptions::default()
+            }
+            .into(),
+        ),
         code_action_provider: Some(
             CodeActionOptions {
                 code_action_kinds: Some(vec![CodeActionKind::QUICKFIX, code_actions::GENERATE_SCRIPT_KIND]),

@@ -155,19 +155,6 @@ impl LineTable {
         Range::new(self.position(span.start), self.position(span.end))
     }
 
-    /// The pieces of a span that lie on one line each, line endings left out.
-    pub(crate) fn lines(&self, span: Span) -> impl Iterator<Item = (Position, &str)> {
-        let start = self.clamp(span.start);
-        let text = &self.text[start..self.clamp(span.end).max(start)];
-        let mut at = 0;
-        text.split_inclusive(['\n', '\r']).filter_map(move |line| {
-            let offset = self.offset + to_u32(start + at);
-            at += line.len();
-            let content = line.trim_end_matches(['\n', '\r']);
-            (!content.is_empty()).then(|| (self.position(offset), content))
-        })
-    }
-
     /// An offset in the document as one in the text, at a character's start.
     fn clamp(&self, offset: u32) -> usize {
         let mut offset = (offset.saturating_sub(self.offset) as usize).min(self.text.len());
@@ -333,13 +320,5 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn spans_are_cut_into_lines() {
-        let table = LineTable::new(&Rope::from_str("a/*\r\n\n 🤖\r*/b"), Encoding::Utf16);
-        let lines: Vec<_> = table.lines(Span { start: 1, end: 14 }).collect();
-        let at = Position::new;
-        assert_eq!(lines, [(at(0, 1), "/*"), (at(2, 0), " 🤖"), (at(3, 0), "*/")]);
     }
 }

@@ -10,7 +10,10 @@ use tower_lsp::ls_types::*;
 use tower_lsp::{Client, LanguageServer};
 
 use crate::capabilities::{self, ClientFeatures};
-use crate::handlers::{code_actions, diagnostics, scripts, synchronization};
+use crate::handlers::{
+    code_actions, completion, diagnostics, document_symbols, hover, navigation, scripts, semantic_tokens,
+    synchronization,
+};
 use crate::message::Outbox;
 use crate::state::State;
 
@@ -87,12 +90,47 @@ impl LanguageServer for Server {
     async fn execute_command(&self, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
         match params.command.as_str() {
             code_actions::GENERATE_SCRIPT => {
-                let written = scripts::execute(&self.state(), &params)?;
-                self.client.show_message(MessageType::INFO, format!("wrote {}", written.display())).await;
+                let written = scripts::execute(&self.state(), &params, &self.outbox)?;
+                if self.state().client.show_document {
+                    // The script is there, whether or not the client then shows it.
+                    let _ = self.client.show_document(scripts::show(written)).await;
+                }
                 Ok(None)
             }
             other => Err(Error::invalid_params(format!("no command `{other}`"))),
         }
+    }
+
+    //// What is there ////
+
+    async fn completion(&self, params: CompletionParams) -> Result<Option<CompletionResponse>> {
+        Ok(completion::completion(&self.state(), &params))
+    }
+
+    async fn hover(&self, params: HoverParams) -> Result<Option<Hover>> {
+        Ok(hover::hover(&self.state(), &params))
+    }
+
+    async fn goto_definition(&self, params: GotoDefinitionParams) -> Result<Option<GotoDefinitionResponse>> {
+        Ok(navigation::definition(&self.state(), &params))
+    }
+
+    async fn document_symbol(&self, params: DocumentSymbolParams) -> Result<Option<DocumentSymbolResponse>> {
+        Ok(document_symbols::document_symbols(&self.state(), &params))
+    }
+
+    async fn semantic_tokens_full(
+        &self,
+        params: SemanticTokensParams,
+    ) -> Result<Option<SemanticTokensResult>> {
+        Ok(semantic_tokens::full(&self.state(), &params).map(Into::into))
+    }
+
+    async fn semantic_tokens_range(
+        &self,
+        params: SemanticTokensRangeParams,
+    ) -> Result<Option<SemanticTokensRangeResult>> {
+        Ok(semantic_tokens::range(&self.state(), &params).map(Into::into))
     }
 }
 

@@ -3,6 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use pydslrep_analysis::{Database, FileId};
+use pydslrep_ide::FilePosition;
 use pydslrep_syntax::Span;
 use ropey::Rope;
 use rustc_hash::FxHashSet;
@@ -113,9 +114,20 @@ impl State {
         Some((document, document.file?))
     }
 
+    /// What a position in a document points at.
+    pub(crate) fn place(&self, at: &TextDocumentPositionParams) -> Option<Place<'_>> {
+        let (document, file) = self.analysed(&at.text_document.uri)?;
+        Some(Place { document, file, offset: self.offset(document, at.position) })
+    }
+
     /// The open document that the database knows as `file`.
     pub(crate) fn document_of(&self, file: FileId) -> Option<&Document> {
         self.documents.values().find(|document| document.file == Some(file))
+    }
+
+    /// A position as a byte offset.
+    pub(crate) fn offset(&self, document: &Document, position: Position) -> u32 {
+        to_offset(&document.text, position, self.client.encoding)
     }
 
     /// A range as the bytes it covers.
@@ -132,5 +144,22 @@ impl State {
     pub(crate) fn location(&self, file: FileId, span: Span) -> Option<Location> {
         let document = self.document_of(file)?;
         Some(Location::new(document.uri.clone(), self.range(document, span)))
+    }
+}
+
+/// A place in a document.
+pub(crate) struct Place<'a> {
+    /// The document.
+    pub(crate) document: &'a Document,
+    /// Its number in the database.
+    pub(crate) file: FileId,
+    /// The byte offset in it.
+    pub(crate) offset: u32,
+}
+
+impl Place<'_> {
+    /// As the features want it.
+    pub(crate) fn position(&self) -> FilePosition {
+        FilePosition { file: self.file, offset: self.offset }
     }
 }

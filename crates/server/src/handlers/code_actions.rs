@@ -2,6 +2,7 @@
 
 use pydslrep_analysis as analysis;
 use pydslrep_analysis::{EntityId, FileId};
+use pydslrep_ide as ide;
 use rustc_hash::FxHashMap;
 use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::{
@@ -51,26 +52,18 @@ fn quick_fixes(
     params: &CodeActionParams,
 ) -> Vec<CodeActionOrCommand> {
     let range = state.span(document, params.range);
-    let mut actions = Vec::new();
-    for found in state.database.diagnostics(file) {
-        if found.fixes.is_empty() || found.span.end < range.start || range.end < found.span.start {
-            continue;
-        }
-        let shown = diagnostics::convert(state, document, &found);
-        let shown = as_the_client_has_it(&params.context.diagnostics, shown);
-        for fix in &found.fixes {
-            let preferred = fix.safe && found.fixes.len() == 1;
-            actions.push(CodeActionOrCommand::CodeAction(CodeAction {
-                title: fix.title.clone(),
-                kind: Some(CodeActionKind::QUICKFIX),
-                diagnostics: Some(vec![shown.clone()]),
-                edit: Some(workspace_edit(state, &fix.edits)),
-                is_preferred: preferred.then_some(true),
-                ..CodeAction::default()
-            }));
-        }
-    }
-    actions
+    let fixes = ide::quick_fixes(&state.database, file, range).into_iter().map(|found| {
+        let shown = diagnostics::convert(state, document, &found.diagnostic);
+        CodeActionOrCommand::CodeAction(CodeAction {
+            title: found.fix.title,
+            kind: Some(CodeActionKind::QUICKFIX),
+            diagnostics: Some(vec![as_the_client_has_it(&params.context.diagnostics, shown)]),
+            edit: Some(workspace_edit(state, &found.fix.edits)),
+            is_preferred: found.is_preferred.then_some(true),
+            ..CodeAction::default()
+        })
+    });
+    fixes.collect()
 }
 
 /// Clients find the diagnostic an action belongs to by comparing: their own copy is the one that matches.

@@ -1,6 +1,11 @@
 //! One file per group of requests: plain functions of the state and the parameters, without a runtime.
 
 pub(crate) mod code_actions;
+pub(crate) mod completion;
 pub(crate) mod diagnostics;
+pub(crate) mod document_symbols;
+pub(crate) mod hover;
+pub(crate) mod navigation;
 pub(crate) mod scripts;
+pub(crate) mod semantic_tokens;
 pub(crate) mod synchronization;

@@ -9,11 +9,12 @@ use pydslrep_script::Target;
 use serde::{Deserialize, Serialize};
 use tower_lsp::jsonrpc::{self, Error, ErrorCode};
 use tower_lsp::ls_types::{
-    CreateFile, CreateFileOptions, DocumentChangeOperation, DocumentChanges, ExecuteCommandParams, OneOf,
-    OptionalVersionedTextDocumentIdentifier, Position, Range, ResourceOp, TextDocumentEdit, TextEdit, Uri,
-    WorkspaceEdit,
+    CreateFile, CreateFileOptions, DocumentChangeOperation, DocumentChanges, ExecuteCommandParams,
+    MessageType, OneOf, OptionalVersionedTextDocumentIdentifier, Position, Range, ResourceOp,
+    ShowDocumentParams, ShowMessageParams, TextDocumentEdit, TextEdit, Uri, WorkspaceEdit,
 };
 
+use crate::message::Outbox;
 use crate::state::State;
 
 /// A line behind the last of any script: the protocol clamps it to the document's end.
@@ -83,16 +84,16 @@ fn address(program: &Uri, file_name: &str) -> Option<Uri> {
 /// The edit that creates or replaces a script.
 ///
 /// A file that is there keeps its identity: its whole text is replaced, in the editor's buffer if it is open there,
-/// so nothing is lost that cannot be undone. Only a file that is not there is created; and if that cannot be known,
-/// it is created empty first and its text replaced all the same, which is right either way.
+/// so nothing is lost that cannot be undone. Only where none is known to be there, one is created. Its text is
+/// replaced too, not inserted: a buffer of that name may be open unsaved, and Neovim would keep the empty line that
+/// its empty buffers have.
 pub(crate) fn edit(script: &Script) -> WorkspaceEdit {
-    let is_there = path(&script.uri).map(|path| path.exists());
-    let end = if is_there == Some(false) { Position::new(0, 0) } else { Position::new(BEHIND_THE_END, 0) };
-    let replace = TextEdit::new(Range::new(Position::new(0, 0), end), script.text.clone());
+    let everything = Range::new(Position::new(0, 0), Position::new(BEHIND_THE_END, 0));
+    let replace = TextEdit::new(everything, script.text.clone());
     let text_document = OptionalVersionedTextDocumentIdentifier { uri: script.uri.clone(), version: None };
     let edit = TextDocumentEdit { text_document, edits: vec![OneOf::Left(replace)] };
     let mut operations = vec![DocumentChangeOperation::Edit(edit)];
-    if is_there != Some(true) {
+    if !path(&script.uri).is_some_and(|path| path.exists()) {
         let options = CreateFileOptions { overwrite: Some(true), ignore_if_exists: None };
         let create = CreateFile { uri: script.uri.clone(), options: Some(options), annotation_id: None };
         operations.insert(0, DocumentChangeOperation::Op(ResourceOp::Create(create)));
@@ -103,7 +104,7 @@ pub(crate) fn edit(script: &Script) -> WorkspaceEdit {
 
 /// The command `pydslrep.generateScript`, for clients that cannot create files: writes the script itself and tells
 /// where.
-pub(crate) fn execute(state: &State, params: &ExecuteCommandParams) -> jsonrpc::Result<PathBuf> {
+pub(crate) fn execute(state: &State, params: &ExecuteCommandParams, outbox: &Outbox) -> jsonrpc::Result<Uri> {
     let which = match params.arguments.as_slice() {
         [argument] => serde_json::from_value(argument.clone()).ok(),
         _ => None,
@@ -113,7 +114,14 @@ pub(crate) fn execute(state: &State, params: &ExecuteCommandParams) -> jsonrpc::
     let path = path(&script.uri).ok_or_else(|| failure(NO_PLACE.to_owned()))?;
     fs::write(&path, &script.text)
         .map_err(|error| failure(format!("cannot write {}: {error}", path.display())))?;
-    Ok(path)
+    let message = format!("wrote {}", path.display());
+    outbox.notify("window/showMessage", &ShowMessageParams { typ: MessageType::INFO, message });
+    Ok(script.uri)
+}
+
+/// The request to show a script beside its program.
+pub(crate) fn show(uri: Uri) -> ShowDocumentParams {
+    ShowDocumentParams { uri, external: Some(false), take_focus: Some(false), selection: None }
 }
 
 fn failure(message: String) -> Error {

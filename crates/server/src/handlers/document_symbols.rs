@@ -1,0 +1,77 @@
+//! `textDocument/documentSymbol`.
+
+use pydslrep_ide as ide;
+use pydslrep_syntax::EntityKind;
+use tower_lsp::ls_types::{
+    DocumentSymbol, DocumentSymbolParams, DocumentSymbolResponse, Location, SymbolInformation, SymbolKind,
+    Uri,
+};
+
+use crate::positions::LineTable;
+use crate::state::State;
+
+/// The outline of a document.
+pub(crate) fn document_symbols(
+    state: &State,
+    params: &DocumentSymbolParams,
+) -> Option<DocumentSymbolResponse> {
+    let (document, file) = state.analysed(&params.text_document.uri)?;
+    let symbols = ide::document_symbols(&state.database, file);
+    let table = LineTable::new(&document.text, state.client.encoding);
+    if state.client.symbol_tree {
+        let tree = symbols.into_iter().map(|symbol| convert(&table, symbol)).collect();
+        return Some(DocumentSymbolResponse::Nested(tree));
+    }
+    let mut flat = Vec::new();
+    flatten(&table, &document.uri, symbols, None, &mut flat);
+    Some(DocumentSymbolResponse::Flat(flat))
+}
+
+#[expect(deprecated, reason = "the field must be filled even where it is not used")]
+fn convert(table: &LineTable, symbol: ide::Symbol) -> DocumentSymbol {
+    let children: Vec<_> = symbol.children.into_iter().map(|child| convert(table, child)).collect();
+    DocumentSymbol {
+        name: symbol.name,
+        detail: Some(symbol.detail).filter(|detail| !detail.is_empty()),
+        kind: kind(symbol.kind),
+        tags: None,
+        deprecated: None,
+        range: table.range(symbol.full),
+        selection_range: table.range(symbol.focus),
+        children: (!children.is_empty()).then_some(children),
+    }
+}
+
+/// For clients that know lists only: each symbol says what it is in.
+#[expect(deprecated, reason = "the form, and the field, that old clients know")]
+fn flatten(
+    table: &LineTable,
+    uri: &Uri,
+    symbols: Vec<ide::Symbol>,
+    container: Option<&str>,
+    flat: &mut Vec<SymbolInformation>,
+) {
+    for symbol in symbols {
+        flat.push(SymbolInformation {
+            name: symbol.name.clone(),
+            kind: kind(symbol.kind),
+            tags: None,
+            deprecated: None,
+            location: Location::new(uri.clone(), table.range(symbol.full)),
+            container_name: container.map(str::to_owned),
+        });
+        flatten(table, uri, symbol.children, Some(&symbol.name), flat);
+    }
+}
+
+fn kind(kind: ide::SymbolKind) -> SymbolKind {
+    match kind {
+        ide::SymbolKind::Entity(EntityKind::Wheel) => SymbolKind::VARIABLE,
+        ide::SymbolKind::Entity(EntityKind::Sensor) => SymbolKind::PROPERTY,
+        ide::SymbolKind::Entity(EntityKind::Ip) => SymbolKind::CONSTANT,
+        ide::SymbolKind::Entity(EntityKind::Robot) => SymbolKind::CLASS,
+        ide::SymbolKind::Entity(EntityKind::Movement) => SymbolKind::FUNCTION,
+        ide::SymbolKind::Entity(EntityKind::Environment) => SymbolKind::NAMESPACE,
+        ide::SymbolKind::Action => SymbolKind::EVENT,
+    }
+}
