@@ -8,7 +8,7 @@ and a running CoppeliaSim with the robots in its scene.
 
 The stages of the program follow each other: kinematics, robots, movements, environment.
 What the program says is at the end of stage 2 and in stages 3 and 4; all else is the same
-in every script. To drive robots of metal, replace the class SimulatedRobot.
+in every script. To drive physical robots, replace the class SimulatedRobot.
 """
 
 import argparse
@@ -293,8 +293,9 @@ class LimitedSocket:
 class SimulatedRobot:
     """A robot in CoppeliaSim: everything a script needs of it goes through this class.
 
-    For a robot of metal write a class with the same public methods: `pose` from its
-    odometry or a camera, `set_wheel_rates` to its motors, `advance` to wait for `time_step`.
+    For a physical robot write a class with the same public methods and attributes: `pose`
+    from its odometry or a camera, `set_wheel_rates` to its motors, and `advance` to wait for
+    `time_step`; those that start, hold and release time have nothing to do there.
     """
 
     def __init__(self, model: RobotModel, host: str, port: int, realtime: bool) -> None:
@@ -320,13 +321,11 @@ class SimulatedRobot:
     def pose(self) -> Pose:
         """Where the middle of the wheels is, and the robot's heading."""
         body = self._ask(self._sim.getObjectMatrix, self._body)
-        (cx, cy), (xx, yx), (xy, yy) = (
-            self._center,
-            (body[0], body[4]),
-            (body[1], body[5]),
-        )
+        x, y = self._center
         return Pose(
-            body[3] + cx * xx + cy * xy, body[7] + cx * yx + cy * yy, math.atan2(yx, xx)
+            body[0] * x + body[1] * y + body[3],
+            body[4] * x + body[5] * y + body[7],
+            math.atan2(body[4], body[0]),
         )
 
     def set_wheel_rates(self, rates: Sequence[float]) -> None:
@@ -353,9 +352,10 @@ class SimulatedRobot:
 
     def start(self) -> None:
         """Starts the simulation, unless it runs already."""
-        if self._ask(self._sim.getSimulationState) == self._sim.simulation_stopped:
+        if self._is_stopped():
             self._started = True
             self._ask(self._sim.startSimulation)
+            self._wait_until_stopped(False)
 
     def hold_time(self) -> None:
         """From now on time only passes when `advance` is called."""
@@ -396,25 +396,28 @@ class SimulatedRobot:
             for joint in self._joints:
                 self._ask(self._sim.setJointTargetVelocity, joint, 0.0)
         except SimulatorError:
-            self._is_lost = True  # what led here says why
+            self._is_lost = self._in_call  # what led here says why
 
     def close(self) -> None:
         """Stops the simulation where this robot started it, and hangs up."""
         try:
             if self._started and not self._is_lost:
                 self._ask(self._sim.stopSimulation)
-                self._wait_until_stopped()
+                self._wait_until_stopped(True)
             if not self._is_lost:
                 self.release_time()
         except SimulatorError:
             self._is_lost = True
         self._socket.close()
 
-    def _wait_until_stopped(self) -> None:
+    def _is_stopped(self) -> bool:
+        state = self._ask(self._sim.getSimulationState)
+        return bool(state == self._sim.simulation_stopped)
+
+    def _wait_until_stopped(self, stopped: bool) -> None:
+        """Starting and stopping take effect a moment after the simulator has answered."""
         deadline = time.monotonic() + STOP_TIMEOUT
-        while self._ask(self._sim.getSimulationState) != self._sim.simulation_stopped:
-            if time.monotonic() > deadline:
-                break
+        while self._is_stopped() != stopped and time.monotonic() < deadline:
             time.sleep(0.02)
 
     def _find_objects(self) -> None:
@@ -663,8 +666,9 @@ class Fleet:
         robots = list(self._robots.values())
         self._hold_time(robots[:1])
         for robot in robots:
-            robot.body.set_wheel_rates([0.0] * len(robot.body.model.wheels))
             robot.body.start()
+            # Whoever drove them before may have left them driving.
+            robot.body.set_wheel_rates([0.0] * len(robot.body.model.wheels))
 
     def run(self, movement: Movement) -> None:
         """Runs a movement to its end; raises MovementError."""

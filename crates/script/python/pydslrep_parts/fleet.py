@@ -40,8 +40,9 @@ class Fleet:
         robots = list(self._robots.values())
         self._hold_time(robots[:1])
         for robot in robots:
-            robot.body.set_wheel_rates([0.0] * len(robot.body.model.wheels))
             robot.body.start()
+            # Whoever drove them before may have left them driving.
+            robot.body.set_wheel_rates([0.0] * len(robot.body.model.wheels))
 
     def run(self, movement: Movement) -> None:
         """Runs a movement to its end; raises MovementError."""

@@ -206,7 +206,8 @@ class FakeClient:
 
     def __init__(self, world: FakeWorld, uuid: str) -> None:
         world.clients().append(self)
-        self.socket, self.context = FakeSocket(), FakeContext()
+        self.socket: Any = FakeSocket()
+        self.context = FakeContext()
         self.world, self.uuid = world, uuid
 
     def require(self, name: str) -> "FakeSim":

@@ -90,3 +90,10 @@ def test_steering_leads_back_to_the_line(speed: float, side: float) -> None:
         widest = max(widest, abs(y))
     assert (y, theta) == pytest.approx((0.0, 0.0), abs=1e-4)
     assert widest < 0.101
+
+
+def test_at_the_end_of_a_line_only_the_heading_counts() -> None:
+    beside = Pose(0.0, 0.05, 0.0)
+    assert steer(0.09, beside, 1.0) < -0.1
+    assert steer(0.09, beside, 0.0) == 0.0
+    assert steer(0.09, Pose(0.0, 0.05, 0.1), 0.0) < -0.1

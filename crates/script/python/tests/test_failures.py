@@ -13,6 +13,7 @@ from pydslrep_parts.coppeliasim import SimulatedRobot
 from pydslrep_parts.errors import MovementError, SetupError
 from pydslrep_parts.movement import Movement
 from pydslrep_parts.robot import Robot
+from pydslrep_parts.settings import STOP_TIMEOUT
 
 
 def move_a_metre(robot: Robot) -> None:
@@ -109,6 +110,10 @@ def test_ctrl_c_stops_the_wheels(monkeypatch: pytest.MonkeyPatch) -> None:
     ):
         fleet.run(Movement("m", "r", move_a_metre))
     assert fake.joints[0].rate > 0.0
+    (client,) = world.clients()
+    assert client.socket.limit == STOP_TIMEOUT, (
+        "the socket was left in the middle of a call"
+    )
     assert all(joint.target == 0.0 for joint in fake.joints)
     assert set(world.holders.values()) == {0}
 

@@ -8,6 +8,7 @@ import pytest
 from driving import connected, errors, joints, model
 from fake_simulator import FakeRobot, FakeWorld
 from pydslrep_parts import coppeliasim
+from pydslrep_parts.coppeliasim import SimulatedRobot
 from pydslrep_parts.errors import MovementError
 from pydslrep_parts.fleet import Fleet
 from pydslrep_parts.movement import Movement, movement
@@ -116,7 +117,17 @@ def test_every_run_leaves_the_same_trace(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_one_failure_stops_all(monkeypatch: pytest.MonkeyPatch) -> None:
     world = four_robots()
     world.running = True
-    world.robots["c"].wall = 0.2
+    failing = world.robots["c"]
+    failing.wall = 0.2
+    standing = []
+    release_time = SimulatedRobot.release_time
+
+    def watch(body: SimulatedRobot) -> None:
+        if body.model.name == failing.name and body._holds_time:
+            standing.append(all(joint.target == 0.0 for joint in failing.joints))
+        release_time(body)
+
+    monkeypatch.setattr(SimulatedRobot, "release_time", watch)
     with (
         pytest.raises(
             MovementError, match="robot c, movement c_moves, action 1: move 5 m"
@@ -124,6 +135,7 @@ def test_one_failure_stops_all(monkeypatch: pytest.MonkeyPatch) -> None:
         connected(world, monkeypatch, *DRIVES) as fleet,
     ):
         fleet.run_together(*ways({"a": 5.0, "b": 5.0, "c": 5.0, "d": 0.1}))
+    assert standing[0], "the others went on before its wheels stopped"
     assert world.robots["a"].x < 1.0
     assert all(
         joint.target == 0.0 for robot in world.robots.values() for joint in robot.joints

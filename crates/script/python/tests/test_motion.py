@@ -160,6 +160,23 @@ def test_a_pushed_robot_returns_to_its_line(monkeypatch: pytest.MonkeyPatch) -> 
     assert angle < HEADING
 
 
+def test_a_robot_that_ends_turned_is_turned_back(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    fake = FakeRobot("r", joints("two-wheel"))
+    world = FakeWorld(fake)
+    pushes = iter([0.03])
+
+    def push() -> None:
+        if fake.x > 0.9995:
+            fake.theta += next(pushes, 0.0)
+
+    world.before_step = push
+    drive_alone(world, monkeypatch, "two-wheel", lambda robot: robot.move(1.0))
+    assert next(pushes, None) is None
+    assert errors(fake, 1.0, 0.0, 0.0)[1] < HEADING
+
+
 def test_few_calls_per_step(monkeypatch: pytest.MonkeyPatch) -> None:
     world = FakeWorld(FakeRobot("r", joints("two-wheel")))
     drive_alone(world, monkeypatch, "two-wheel", lambda robot: robot.move(4.0))

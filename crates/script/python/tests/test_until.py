@@ -23,6 +23,7 @@ def test_turns_until_none_detects(drive: str, monkeypatch: pytest.MonkeyPatch) -
     fake = FakeRobot("r", joints(drive), sensors=sensors)
 
     def actions(robot: Robot) -> None:
+        robot.turn(10.0)
         robot.turn_until_free("right", "f", "l")
         assert -77.0 < math.degrees(fake.theta) < -70.0
         heading = fake.theta
