@@ -38,7 +38,7 @@ def table_2() -> str:
     )
 
 
-@pytest_lsp.fixture(config=ClientServerConfig(server_command=[SERVER, "--stdio"]))
+@pytest_lsp.fixture(config=ClientServerConfig(server_command=[SERVER, "--stdio"]))  # type: ignore[untyped-decorator]
 async def client(
     lsp_client: LanguageClient, request: pytest.FixtureRequest
 ) -> AsyncIterator[LanguageClient]:

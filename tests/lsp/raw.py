@@ -72,7 +72,8 @@ class RawServer:
         while line := self.output.readline():
             if line == b"\r\n":
                 assert length is not None, "a frame without length"
-                return json.loads(self.output.read(length))
+                message: dict[str, Any] = json.loads(self.output.read(length))
+                return message
             name, _, value = line.partition(b": ")
             assert name == b"Content-Length", f"not a frame: {line!r}"
             length = int(value)
