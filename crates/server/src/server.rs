@@ -4,7 +4,8 @@ use std::fmt;
 use std::io::{self, Write};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use tower_lsp::jsonrpc::{Error, Result};
+use serde::{Deserialize, Serialize};
+use tower_lsp::jsonrpc::{Error, Request, Result};
 #[allow(clippy::wildcard_imports, reason = "this file names half of the protocol")]
 use tower_lsp::ls_types::*;
 use tower_lsp::{Client, LanguageServer};
@@ -134,8 +135,32 @@ impl LanguageServer for Server {
     }
 }
 
-/// What happens between messages; the session calls these.
+/// What the session calls besides the handlers.
 impl Server {
+    /// Answers a request whose answer may be megabytes, if this is one: the router would build a JSON value of it first,
+    /// which takes several times as long as all the rest. Whatever is wrong with the request is left to the router.
+    pub(crate) fn answer_bulk(&self, request: &Request) -> bool {
+        match request.method() {
+            "textDocument/documentSymbol" => {
+                self.answer_directly(request, document_symbols::document_symbols)
+            }
+            "textDocument/semanticTokens/full" => self.answer_directly(request, semantic_tokens::full),
+            _ => false,
+        }
+    }
+
+    fn answer_directly<P, R>(&self, request: &Request, handler: fn(&State, &P) -> R) -> bool
+    where
+        P: for<'a> Deserialize<'a>,
+        R: Serialize,
+    {
+        let (Some(id), Some(params)) = (request.id(), request.params()) else { return false };
+        let Ok(params) = P::deserialize(params) else { return false };
+        let result = handler(&self.state(), &params);
+        self.outbox.answer(id, &result);
+        true
+    }
+
     /// All messages that had arrived are handled: time to tell the client what they changed.
     pub(crate) fn settle(&self) {
         diagnostics::publish(&mut self.state(), &self.outbox);

@@ -39,7 +39,15 @@ pub struct Session {
     responses: Box<dyn FnMut(Response)>,
     spawn: Spawn,
     outbox: Outbox,
-    shut_down: bool,
+    stage: Stage,
+}
+
+/// How far a session is, which decides what may be asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    Starting,
+    Serving,
+    ShutDown,
 }
 
 impl fmt::Debug for Session {
@@ -73,14 +81,15 @@ impl Session {
         let responses = Box::new(move |response| {
             let _ = responses.send(response).now_or_never();
         });
-        Self { service, server, responses, spawn, outbox, shut_down: false }
+        Self { service, server, responses, spawn, outbox, stage: Stage::Starting }
     }
 
     /// Handles one message, the bytes of a frame; says how the session ended, if it did.
     pub fn handle(&mut self, body: &[u8]) -> Option<Ending> {
         match parse(body) {
             Ok(Incoming::Request(request)) if request.method() == "exit" => {
-                return Some(if self.shut_down { Ending::Orderly } else { Ending::Abrupt });
+                let orderly = self.stage == Stage::ShutDown;
+                return Some(if orderly { Ending::Orderly } else { Ending::Abrupt });
             }
             Ok(Incoming::Request(request)) => self.call(request),
             Ok(Incoming::Response(response)) => self.pass_on(response),
@@ -106,6 +115,9 @@ impl Session {
         let id = request.id().cloned();
         let method = request.method().to_owned();
         let started = catch_unwind(AssertUnwindSafe(|| {
+            if self.stage == Stage::Serving && self.server.answer_bulk(&request) {
+                return Ok(Ok(None));
+            }
             let mut running = self.service.call(request);
             let mut unheard = Context::from_waker(Waker::noop());
             match running.poll_unpin(&mut unheard) {
@@ -115,8 +127,9 @@ impl Session {
         }));
         match started {
             Ok(Ok(reply)) => {
-                self.shut_down |=
-                    method == "shutdown" && matches!(&reply, Ok(Some(answer)) if answer.is_ok());
+                if matches!(&reply, Ok(Some(answer)) if answer.is_ok()) {
+                    self.advance(&method);
+                }
                 send_reply(&self.outbox, reply);
             }
             Ok(Err(running)) => self.finish_elsewhere(running, method, id),
@@ -124,6 +137,14 @@ impl Session {
                 self.forget(id.as_ref());
                 report_panic(&self.server, &self.outbox, &method, id, panic.as_ref());
             }
+        }
+    }
+
+    fn advance(&mut self, answered: &str) {
+        match answered {
+            "initialize" => self.stage = Stage::Serving,
+            "shutdown" => self.stage = Stage::ShutDown,
+            _ => {}
         }
     }
 
