@@ -75,6 +75,8 @@ pub struct Database {
     entities: Vec<Option<EntityData>>,
     free: Vec<u32>,
     names: Names,
+    /// How many entities of a kind a file has, named or not.
+    counts: FxHashMap<(FileId, EntityKind), u32>,
     /// Only of files that import anything.
     imports: FxHashMap<FileId, Imports>,
     /// Entities whose problems speak of all names there are ("did you mean …"), not only of those they use.
@@ -242,6 +244,22 @@ impl Database {
     /// What is wrong with a file, in the order of the text.
     pub fn diagnostics(&self, file: FileId) -> Vec<Diagnostic> {
         diagnostics::in_file(self, file)
+    }
+
+    /// How many entities of a kind a file has.
+    pub(crate) fn count(&self, file: FileId, kind: EntityKind) -> u32 {
+        self.counts.get(&(file, kind)).copied().unwrap_or(0)
+    }
+
+    /// Whether another open file imports this one, and may use what nothing in it does.
+    pub(crate) fn is_imported(&self, file: FileId) -> bool {
+        let path = self.path(file);
+        self.imports.values().any(|imports| imports.paths.iter().any(|other| other == path))
+    }
+
+    /// Whether text of the file had to be skipped with names in it that may be declarations.
+    pub(crate) fn has_skipped_names(&self, file: FileId) -> bool {
+        self.names.any_skipped(file)
     }
 
     /// Whether an import stands behind an entity of another kind.

@@ -41,6 +41,11 @@ impl Names {
         self.skipped.contains_key(&(file, name.clone()))
     }
 
+    /// Whether any name of the file stands in skipped text.
+    pub(crate) fn any_skipped(&self, file: FileId) -> bool {
+        self.skipped.keys().any(|(other, _)| *other == file)
+    }
+
     /// Adds a declaration; `order` tells where in the file an entity stands.
     pub(crate) fn define(&mut self, key: Key, entity: EntityId, order: impl Fn(EntityId) -> u64) {
         self.by_kind.entry((key.0, key.1)).or_default().insert(key.2.clone());

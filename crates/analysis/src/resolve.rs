@@ -328,7 +328,7 @@ robot ^left type fw with port 19999 has { a b c d } wheels with sensors { s t s 
 robot q with port 20000 has { a b } wheels
 parallel movement m of ^left { move -40 centimeters at 18 turn right // far
   turn left until { t , /* and */ s t } }
-parallel movement n of q { slam }
+parallel movement n of q { move 1 meters }
 movement o of q { turn left 30 }
 environment e with ip here has { ^left q q } robots with { m n o m } moves";
 

@@ -5,9 +5,7 @@
 mod snippets;
 
 use pydslrep_analysis::{Database, EntityId, FileId};
-use pydslrep_syntax::ast::{
-    Action, ActionKind, DriveWord, Entity, Movement, Name, References, Robot, TurnExtent,
-};
+use pydslrep_syntax::ast::{Action, DriveWord, Entity, Movement, Name, References, Robot};
 use pydslrep_syntax::{EntityKind, Expected, KEYWORDS, Lexeme, Span, Token, expected_after};
 
 use self::snippets::{ACTIONS, ENTITIES, Snippet, without_stops};
@@ -265,13 +263,7 @@ impl<'a> Place<'a> {
 
     fn until_list<'m>(&self, movement: &'m Movement) -> Option<&'m References> {
         let around = |action: &&Action| action.span.touches(self.offset);
-        movement.actions.iter().filter(around).find_map(|action| match &action.kind {
-            ActionKind::Turn(turn) => match &turn.extent {
-                Some(TurnExtent::Until(list)) => Some(list),
-                _ => None,
-            },
-            _ => None,
-        })
+        movement.actions.iter().filter(around).find_map(Action::until)
     }
 
     /// Whether a name makes sense at the cursor.

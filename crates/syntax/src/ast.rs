@@ -62,11 +62,7 @@ impl Entity {
             Self::Movement(movement) => {
                 found.extend(movement.robot.iter().map(|name| (EntityKind::Robot, name)));
                 for action in &movement.actions {
-                    if let ActionKind::Turn(Turn { extent: Some(TurnExtent::Until(sensors)), .. }) =
-                        &action.kind
-                    {
-                        extend(&mut found, EntityKind::Sensor, Some(sensors));
-                    }
+                    extend(&mut found, EntityKind::Sensor, action.until());
                 }
             }
             Self::Environment(environment) => {
@@ -244,6 +240,16 @@ pub struct Action {
     pub kind: ActionKind,
     /// From its keyword to its last word.
     pub span: Span,
+}
+
+impl Action {
+    /// The sensors of a `turn … until`.
+    pub fn until(&self) -> Option<&References> {
+        match &self.kind {
+            ActionKind::Turn(Turn { extent: Some(TurnExtent::Until(sensors)), .. }) => Some(sensors),
+            _ => None,
+        }
+    }
 }
 
 /// The three actions.

@@ -25,6 +25,7 @@ impl Database {
         self.last_edit = EditCounts { reparsed: parses.len(), revalidated: 0 };
         self.files[file.0 as usize] =
             Some(File { path: path.to_owned(), text: Rope::from_str(text), pieces: Vec::new() });
+        let before = self.imports(file).to_vec();
         let orders = (1..).map(|index: u64| index * ORDER_STEP);
         let pieces = parses
             .into_iter()
@@ -35,6 +36,7 @@ impl Database {
         self.update_imports(file);
         self.validate_file(file);
         self.validate_importers(path);
+        self.validate_imported(file, &before);
         file
     }
 
@@ -44,10 +46,11 @@ impl Database {
             return;
         }
         self.forget(file);
-        self.imports.remove(&file);
+        let before = self.imports.remove(&file).unwrap_or_default().paths;
         if let Some(closed) = self.files[file.0 as usize].take() {
             self.validate_importers(&closed.path);
         }
+        self.validate_imported(file, &before);
     }
 
     /// Replaces a range of bytes. A range that does not fit the text, or that cuts a character in two, is moved back
@@ -93,6 +96,7 @@ impl Database {
         let old: Vec<EntityId> =
             self.pieces(file)[replaced.clone()].iter().map(|piece| piece.entity).collect();
         let had_imports = self.any_import(&old);
+        let had_environments = self.count(file, EntityKind::Environment) > 0;
         let mut doubtful = Doubtful::default();
         let new: Vec<Piece> = if old.len() == parses.len() {
             old.iter().zip(parses).map(|(id, parsed)| self.update(*id, parsed, &mut doubtful)).collect()
@@ -103,10 +107,17 @@ impl Database {
         if let Some(open) = self.files[file.0 as usize].as_mut() {
             open.pieces.splice(replaced, new);
         }
+        let has_environments = self.count(file, EntityKind::Environment) > 0;
         if had_imports || self.any_import(&ids) {
+            let before = self.imports(file).to_vec();
             self.update_imports(file);
             self.validate_file(file);
-        } else if let Some(imports) = self.imports.get(&file) {
+            self.validate_imported(file, &before);
+        } else if had_environments != has_environments {
+            // Whether anything is unused is only asked where something could be used.
+            self.validate_file(file);
+        }
+        if let Some(imports) = self.imports.get(&file) {
             // Whether an import comes too late depends on what stands before it.
             doubtful.entities.extend(&imports.entities);
         }
@@ -135,6 +146,7 @@ impl Database {
         let Some(file) = self.file_of(id) else { return Piece { entity: id, len: span.len() } };
         self.unregister(id, file);
         if let Some(data) = self.entities[id.0 as usize].as_mut() {
+            doubtful.uses.extend(changed_uses(file, &data.parse, &parse));
             if !looks_alike(&data.parse, &parse) {
                 doubtful.keys.extend(visible_keys(file, &data.parse));
                 doubtful.keys.extend(visible_keys(file, &parse));
@@ -156,11 +168,13 @@ impl Database {
         for id in self.pieces(file)[replaced.clone()].iter().map(|piece| piece.entity).collect::<Vec<_>>() {
             if let Some(data) = self.data(id) {
                 doubtful.keys.extend(visible_keys(file, &data.parse));
+                doubtful.uses.extend(used_keys(file, &data.parse));
             }
             self.remove(id);
         }
         let orders = self.orders_between(file, replaced, parses.len());
         doubtful.keys.extend(parses.iter().flat_map(|(_, parse)| visible_keys(file, parse)));
+        doubtful.uses.extend(parses.iter().flat_map(|(_, parse)| used_keys(file, parse)));
         parses
             .into_iter()
             .zip(orders)
@@ -222,6 +236,9 @@ impl Database {
     fn register(&mut self, id: EntityId, file: FileId) {
         let entities = &self.entities;
         let Some(data) = entities[id.0 as usize].as_ref() else { return };
+        if let Some(kind) = data.parse.entity.as_ref().and_then(Entity::kind) {
+            *self.counts.entry((file, kind)).or_default() += 1;
+        }
         let order = |id: EntityId| entities[id.0 as usize].as_ref().map_or(0, |data| data.order);
         if let Some(key) = defined_key(file, &data.parse) {
             self.names.define(key, id, order);
@@ -236,6 +253,11 @@ impl Database {
 
     fn unregister(&mut self, id: EntityId, file: FileId) {
         let Some(data) = self.entities[id.0 as usize].as_ref() else { return };
+        if let Some(kind) = data.parse.entity.as_ref().and_then(Entity::kind)
+            && let Some(count) = self.counts.get_mut(&(file, kind))
+        {
+            *count -= 1;
+        }
         if let Some(key) = defined_key(file, &data.parse) {
             self.names.undefine(&key, id);
         }
@@ -282,6 +304,18 @@ impl Database {
         }
     }
 
+    /// Files that a file imports, or did before, may use what nothing in them does.
+    fn validate_imported(&mut self, file: FileId, before: &[String]) {
+        let now = self.imports(file);
+        let changed = before
+            .iter()
+            .filter(|path| !now.contains(path))
+            .chain(now.iter().filter(|path| !before.contains(path)));
+        for imported in changed.filter_map(|path| self.file(path)).collect::<Vec<_>>() {
+            self.validate_file(imported);
+        }
+    }
+
     fn validate_file(&mut self, file: FileId) {
         for id in self.pieces(file).iter().map(|piece| piece.entity).collect::<Vec<_>>() {
             self.validate(id);
@@ -305,6 +339,18 @@ impl Database {
                         .extend(defined_key(data.file, &data.parse).filter(|key| key.1 > EntityKind::Ip));
                 }
             }
+        }
+        // How an environment runs its movements is also a question to the movements.
+        for id in &doubtful.entities {
+            if let Some(data) =
+                self.data(*id).filter(|data| matches!(data.parse.entity, Some(Entity::Environment(_))))
+            {
+                doubtful.uses.extend(used_keys(data.file, &data.parse));
+            }
+        }
+        for key in &doubtful.uses {
+            doubtful.entities.extend(self.names.defined(key));
+            doubtful.entities.extend(self.names.used(key));
         }
         for id in doubtful.entities {
             self.validate(id);
@@ -347,7 +393,10 @@ impl Database {
 #[derive(Debug, Default)]
 struct Doubtful {
     entities: FxHashSet<EntityId>,
+    /// Names whose meaning changed.
     keys: Vec<Key>,
+    /// Names that are used more, less or otherwise than before.
+    uses: Vec<Key>,
 }
 
 fn defined_key(file: FileId, parse: &Parse) -> Option<Key> {
@@ -358,6 +407,13 @@ fn defined_key(file: FileId, parse: &Parse) -> Option<Key> {
 fn used_keys(file: FileId, parse: &Parse) -> impl Iterator<Item = Key> {
     let references = parse.entity.as_ref().map(Entity::references).unwrap_or_default();
     references.into_iter().map(move |(kind, name)| (file, kind, name.text.clone()))
+}
+
+/// The names that one version of an entity uses and the other does not, or otherwise.
+fn changed_uses(file: FileId, before: &Parse, after: &Parse) -> Vec<Key> {
+    let (before, after): (Vec<Key>, Vec<Key>) =
+        (used_keys(file, before).collect(), used_keys(file, after).collect());
+    if before == after { Vec::new() } else { [before, after].concat() }
 }
 
 /// The names whose meaning depends on an entity: the one it declares, and those that may be hidden in skipped text.

@@ -180,6 +180,23 @@ impl<'a> Context<'a> {
         self.replace(Span::new(start, span.end), "")
     }
 
+    /// Removes one item of a list with the comma before it, or else the one behind it.
+    pub(super) fn remove_item(&self, item: Span) -> ProblemEdit {
+        let before = self.lexemes.iter().rev().find(|(_, span)| span.end <= item.start);
+        match before {
+            Some((pydslrep_syntax::Token::Comma, comma)) => self.remove(comma.to(item)),
+            _ => self.remove(item),
+        }
+    }
+
+    /// Removes the whole entity; `None` where a comment behind it would go with it.
+    pub(super) fn whole(&self) -> Option<ProblemEdit> {
+        let end = self.database.entity(self.id)?.span.len();
+        let comment = self.lexemes.iter().find(|(token, _)| token.is_comment());
+        let end = comment.map_or(end, |(_, span)| span.start);
+        Some(self.replace(Span::new(0, end), ""))
+    }
+
     /// The visible name of a kind that `name` is most likely a slip for.
     pub(super) fn nearest(&self, kind: EntityKind, name: &Name) -> Option<String> {
         let names = self.database.visible_names(self.file, kind);

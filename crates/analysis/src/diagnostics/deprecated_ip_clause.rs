@@ -39,9 +39,9 @@ mod tests {
         check(
             &format!("{PARTS}environment e, here has {{ r }} robots"),
             &expect![[r#"
-            warning[deprecated-ip-clause] 5:14 ", here" an ip is given by `with ip here`
-              fix: write `with ip here` -> environment e with ip here has { r } robots
-        "#]],
+                warning[deprecated-ip-clause] 5:14 ", here" an ip is given by `with ip here`
+                  fix: write `with ip here` -> environment e with ip here has { r } robots
+            "#]],
         );
         check_clean(&format!("{PARTS}environment e with ip here has {{ r }} robots"));
     }

@@ -68,7 +68,7 @@ mod tests {
 
     fn program(action: &str) -> String {
         format!(
-            "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has {{ a b }} wheels\nmovement m of r {{ slam {action} }}"
+            "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has {{ a b }} wheels\nmovement m of r {{ move 1 meters {action} }}"
         )
     }
 
@@ -77,31 +77,31 @@ mod tests {
         check(
             &program("turn left 0"),
             &expect![[r#"
-            warning[invalid-angle] 4:34 "0" turning by 0 degrees does nothing
-              fix: remove the turn -> movement m of r { slam }
-        "#]],
+                warning[invalid-angle] 4:43 "0" turning by 0 degrees does nothing
+                  fix: remove the turn -> movement m of r { move 1 meters }
+            "#]],
         );
         check(
             &program("turn left 450"),
             &expect![[r#"
-            warning[invalid-angle] 4:34 "450" 450 degrees are more than a full turn of 360
-              suggestion: reduce to 90 -> movement m of r { slam turn left 90 }
-        "#]],
+                warning[invalid-angle] 4:43 "450" 450 degrees are more than a full turn of 360
+                  suggestion: reduce to 90 -> movement m of r { move 1 meters turn left 90 }
+            "#]],
         );
         check(
             &program("turn left 720"),
             &expect![[r#"
-            warning[invalid-angle] 4:34 "720" 720 degrees are more than a full turn of 360
-              note: it ends at the heading it began with
-              suggestion: remove the turn -> movement m of r { slam }
-        "#]],
+                warning[invalid-angle] 4:43 "720" 720 degrees are more than a full turn of 360
+                  note: it ends at the heading it began with
+                  suggestion: remove the turn -> movement m of r { move 1 meters }
+            "#]],
         );
         check(
             &program("turn right -45.5"),
             &expect![[r#"
-            warning[invalid-angle] 4:35 "-45.5" a negative angle turns the other way
-              fix: turn left instead -> movement m of r { slam turn left 45.5 }
-        "#]],
+                warning[invalid-angle] 4:44 "-45.5" a negative angle turns the other way
+                  fix: turn left instead -> movement m of r { move 1 meters turn left 45.5 }
+            "#]],
         );
         check_clean(&program("turn right 360 turn left 0.5"));
     }

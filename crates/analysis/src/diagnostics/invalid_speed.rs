@@ -68,25 +68,25 @@ mod tests {
         check(
             &program("move 4 meters at 0"),
             &expect![[r#"
-            error[invalid-speed] 4:36 "0" a speed must be above zero, not 0 cm/s
-              help: a negative distance drives backwards; without `at` the speed is 9.0 cm/s
-        "#]],
+                error[invalid-speed] 4:36 "0" a speed must be above zero, not 0 cm/s
+                  help: a negative distance drives backwards; without `at` the speed is 9.0 cm/s
+            "#]],
         );
         check(
             &program("move 4 meters at -9.5"),
             &expect![[r#"
-            error[invalid-speed] 4:36 "-9.5" a speed must be above zero, not -9.5 cm/s
-              help: a negative distance drives backwards; without `at` the speed is 9.0 cm/s
-              suggestion: negate the distance instead -> movement m of r { move -4 meters at 9.5 }
-        "#]],
+                error[invalid-speed] 4:36 "-9.5" a speed must be above zero, not -9.5 cm/s
+                  help: a negative distance drives backwards; without `at` the speed is 9.0 cm/s
+                  suggestion: negate the distance instead -> movement m of r { move -4 meters at 9.5 }
+            "#]],
         );
         check(
             &program("move -4 meters at -9.5"),
             &expect![[r#"
-            error[invalid-speed] 4:37 "-9.5" a speed must be above zero, not -9.5 cm/s
-              help: a negative distance drives backwards; without `at` the speed is 9.0 cm/s
-              suggestion: negate the distance instead -> movement m of r { move 4 meters at 9.5 }
-        "#]],
+                error[invalid-speed] 4:37 "-9.5" a speed must be above zero, not -9.5 cm/s
+                  help: a negative distance drives backwards; without `at` the speed is 9.0 cm/s
+                  suggestion: negate the distance instead -> movement m of r { move 4 meters at 9.5 }
+            "#]],
         );
         check_clean(&program("move 4 meters at 0.1"));
     }

@@ -1,8 +1,12 @@
 //! The catalogue of problems: one module per code, with its check, its words, its fixes and its tests.
 
+mod ambiguous_import;
 mod context;
 mod deprecated_ip_clause;
 mod duplicate_name;
+mod empty_environment;
+mod empty_movement;
+mod idle_robot;
 mod implausible_radius;
 mod invalid_angle;
 mod invalid_character;
@@ -11,16 +15,26 @@ mod invalid_port;
 mod invalid_radius;
 mod invalid_speed;
 mod misplaced_type;
+mod mixed_radii;
 mod movement_robot_missing;
+mod no_environment;
 mod number_out_of_range;
 mod parallel_conflict;
+mod repeated_robot;
+mod repeated_sensor;
+mod repeated_wheel;
 mod sensor_not_on_robot;
+mod single_parallel;
+mod slam_robot;
+mod slam_sensors;
 mod syntax_error;
 mod unresolved_reference;
 mod unterminated_comment;
 mod unterminated_string;
+mod unused_declaration;
 mod wheel_count;
 mod wheel_kind_mismatch;
+mod wheel_order;
 mod zero_distance;
 
 #[cfg(test)]
@@ -54,7 +68,7 @@ impl PartialEq for Rule {
 }
 
 /// All rules, in the order of the language's contract.
-pub const CATALOGUE: [&Rule; 21] = [
+pub const CATALOGUE: [&Rule; 35] = [
     &syntax_error::RULE,
     &invalid_character::RULE,
     &unterminated_comment::RULE,
@@ -70,12 +84,26 @@ pub const CATALOGUE: [&Rule; 21] = [
     &zero_distance::RULE,
     &invalid_angle::RULE,
     &unresolved_reference::RULE,
+    &ambiguous_import::RULE,
     &duplicate_name::RULE,
+    &unused_declaration::RULE,
     &wheel_count::RULE,
     &wheel_kind_mismatch::RULE,
+    &mixed_radii::RULE,
+    &repeated_wheel::RULE,
+    &repeated_sensor::RULE,
+    &wheel_order::RULE,
     &sensor_not_on_robot::RULE,
+    &slam_robot::RULE,
+    &slam_sensors::RULE,
+    &empty_movement::RULE,
+    &empty_environment::RULE,
+    &repeated_robot::RULE,
     &movement_robot_missing::RULE,
+    &idle_robot::RULE,
     &parallel_conflict::RULE,
+    &single_parallel::RULE,
+    &no_environment::RULE,
 ];
 
 /// The rule with a code.
@@ -107,6 +135,7 @@ pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
             }
         }
     }
+    diagnostics.extend(no_environment::in_file(database, file));
     diagnostics
 }
 

@@ -63,25 +63,27 @@ mod tests {
     use crate::diagnostics::testing::{check, check_clean};
 
     const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has { a b } wheels\n\
-                         robot q with port 2 has { a b } wheels\nmovement m of r { slam }\nmovement n of q { slam }\n";
+                         robot q with port 2 has { a b } wheels\nmovement m of r { turn left }\nmovement n of q { turn left }\n";
 
     #[test]
     fn the_robot_is_added() {
         check(
             &format!("{PARTS}environment e has {{ r }} robots with {{ m n }} moves"),
             &expect![[r#"
-            error[movement-robot-missing] 7:41 "n" `n` moves `q`, which is not among the robots of this environment
-              see 6:15 "q" `n` is a movement of `q`
-              fix: add `q` to the robots -> environment e has { r q } robots with { m n } moves
-        "#]],
+                error[movement-robot-missing] 7:41 "n" `n` moves `q`, which is not among the robots of this environment
+                  see 6:15 "q" `n` is a movement of `q`
+                  fix: add `q` to the robots -> environment e has { r q } robots with { m n } moves
+            "#]],
         );
         check(
             &format!("{PARTS}environment e has {{}} robots with {{ m }} moves"),
             &expect![[r#"
-            error[movement-robot-missing] 7:36 "m" `m` moves `r`, which is not among the robots of this environment
-              see 5:15 "r" `m` is a movement of `r`
-              fix: add `r` to the robots -> environment e has { r } robots with { m } moves
-        "#]],
+                warning[empty-environment] 7:19 "{}" this environment has no robots, so nothing drives in it
+                  help: name its robots between the braces
+                error[movement-robot-missing] 7:36 "m" `m` moves `r`, which is not among the robots of this environment
+                  see 5:15 "r" `m` is a movement of `r`
+                  fix: add `r` to the robots -> environment e has { r } robots with { m } moves
+            "#]],
         );
         check_clean(&format!("{PARTS}environment e has {{ r, q }} robots with {{ n m n }} moves"));
     }

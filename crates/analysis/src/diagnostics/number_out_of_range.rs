@@ -72,9 +72,9 @@ mod tests {
         check(
             &program("-1000000.1 meters"),
             &expect![[r#"
-            error[number-out-of-range] 4:24 "-1000000.1" a move can be at most 1000 km (1000000 meters) long
-              help: write a shorter distance
-        "#]],
+                error[number-out-of-range] 4:24 "-1000000.1" a move can be at most 1000 km (1000000 meters) long
+                  help: write a shorter distance
+            "#]],
         );
         check_clean(&program("100000000 centimeters"));
     }

@@ -57,28 +57,28 @@ mod tests {
     use crate::diagnostics::testing::{check, check_clean};
 
     const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has { a b } wheels\n\
-                         robot q with port 2 has { a b } wheels\nparallel movement m of r { slam }\nparallel movement n of r { slam }\n\
-                         parallel movement o of q { slam }\nmovement p of q { slam }\n";
+                         robot q with port 2 has { a b } wheels\nparallel movement m of r { turn left }\nparallel movement n of r { turn left }\n\
+                         parallel movement o of q { turn left }\nmovement p of q { turn left }\n";
 
     #[test]
     fn one_robot_does_one_thing_at_a_time() {
         check(
             &format!("{PARTS}environment e has {{ r q }} robots with {{ m o n }} moves"),
             &expect![[r#"
-            error[parallel-conflict] 9:45 "n" `r` cannot run `m` and `n` at the same time
-              see 9:41 "m" `m` starts here and runs beside it
-              help: put a movement that is not parallel between them, or take `parallel` off one of them
-              note: parallel movements that stand side by side in the list start together
-        "#]],
+                error[parallel-conflict] 9:45 "n" `r` cannot run `m` and `n` at the same time
+                  see 9:41 "m" `m` starts here and runs beside it
+                  help: put a movement that is not parallel between them, or take `parallel` off one of them
+                  note: parallel movements that stand side by side in the list start together
+            "#]],
         );
         check(
             &format!("{PARTS}environment e has {{ r q }} robots with {{ p o o }} moves"),
             &expect![[r#"
-            error[parallel-conflict] 9:45 "o" `q` cannot run `o` twice at the same time
-              see 9:43 "o" `o` starts here and runs beside it
-              help: put a movement that is not parallel between them, or take `parallel` off one of them
-              note: parallel movements that stand side by side in the list start together
-        "#]],
+                error[parallel-conflict] 9:45 "o" `q` cannot run `o` twice at the same time
+                  see 9:43 "o" `o` starts here and runs beside it
+                  help: put a movement that is not parallel between them, or take `parallel` off one of them
+                  note: parallel movements that stand side by side in the list start together
+            "#]],
         );
     }
 

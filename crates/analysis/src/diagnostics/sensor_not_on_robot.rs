@@ -1,6 +1,6 @@
 //! `sensor-not-on-robot`: a turn waits for a sensor that its robot does not carry.
 
-use pydslrep_syntax::ast::{ActionKind, Entity, Name, Robot, TurnExtent};
+use pydslrep_syntax::ast::{Entity, Name, Robot};
 use pydslrep_syntax::{EntityKind, Span};
 
 use super::Rule;
@@ -22,8 +22,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         return;
     }
     for action in &movement.actions {
-        let ActionKind::Turn(turn) = &action.kind else { continue };
-        let Some(TurnExtent::Until(list)) = &turn.extent else { continue };
+        let Some(list) = action.until() else { continue };
         let carried = |name: &Name| {
             robot.sensors.iter().flat_map(|list| &list.names).any(|other| other.text == name.text)
         };

@@ -275,14 +275,14 @@ mod tests {
                 "{PARTS}robot r with port 1 has {{ a b }} wheels\nmovement m of r {{\n  move 4\n  turn 90\n"
             ),
             &expect![[r#"
-            error[syntax-error] 6:9 "" missing `meters` or `centimeters` before `turn`
-              help: an action is written `move 4.0 meters`, `move 40 centimeters at 9.0`, `turn left 90`, `turn right until { SENSORS }` or `slam`
-            error[syntax-error] 7:7 "" missing `left` or `right` before `90`
-              help: an action is written `move 4.0 meters`, `move 40 centimeters at 9.0`, `turn left 90`, `turn right until { SENSORS }` or `slam`
-            error[syntax-error] 7:10 "" missing `}` at the end of this movement
-              help: a movement is written `movement NAME of ROBOT { ACTIONS }`
-              fix: insert `}` -> }
-        "#]],
+                error[syntax-error] 6:9 "" missing `meters` or `centimeters` before `turn`
+                  help: an action is written `move 4.0 meters`, `move 40 centimeters at 9.0`, `turn left 90`, `turn right until { SENSORS }` or `slam`
+                error[syntax-error] 7:7 "" missing `left` or `right` before `90`
+                  help: an action is written `move 4.0 meters`, `move 40 centimeters at 9.0`, `turn left 90`, `turn right until { SENSORS }` or `slam`
+                error[syntax-error] 7:10 "" missing `}` at the end of this movement
+                  help: a movement is written `movement NAME of ROBOT { ACTIONS }`
+                  fix: insert `}` -> }
+            "#]],
         );
     }
 

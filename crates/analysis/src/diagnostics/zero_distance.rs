@@ -42,13 +42,13 @@ mod tests {
     #[test]
     fn the_move_is_removed() {
         check(
-            &program("\n  turn left // first\n  move 0.0 meters\n  move -0 meters at 4\n  slam\n"),
+            &program("\n  turn left // first\n  move 0.0 meters\n  move -0 meters at 4\n  turn right\n"),
             &expect![[r#"
-            warning[zero-distance] 6:8 "0.0" this move goes nowhere
-              fix: remove the move -> 
-            warning[zero-distance] 7:8 "-0" this move goes nowhere
-              fix: remove the move -> 
-        "#]],
+                warning[zero-distance] 6:8 "0.0" this move goes nowhere
+                  fix: remove the move -> 
+                warning[zero-distance] 7:8 "-0" this move goes nowhere
+                  fix: remove the move -> 
+            "#]],
         );
         check_clean(&program(" move 0.001 centimeters "));
     }

@@ -1,0 +1,78 @@
+//! `ambiguous-import`: two imported files declare what a name could mean.
+
+use pydslrep_syntax::EntityKind;
+use pydslrep_syntax::ast::Name;
+
+use crate::EntityId;
+
+use super::Rule;
+use super::context::{Context, Problem};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "ambiguous-import",
+    severity: Severity::Error,
+    summary: "two imported files both declare a name that is used here",
+    seeks_names: false,
+    check,
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(tree) = context.tree else { return };
+    for (kind, name) in tree.references() {
+        if let [first, second, ..] = imported(context, kind, name)[..] {
+            problems.push(problem(context, kind, name, [first, second]));
+        }
+    }
+}
+
+/// The first declaration of a name in each imported file; none where this file declares it itself.
+fn imported(context: &Context<'_>, kind: EntityKind, name: &Name) -> Vec<EntityId> {
+    let database = context.database;
+    if !database.definitions(context.file, kind, &name.text).is_empty() {
+        return Vec::new();
+    }
+    let mut files: Vec<_> =
+        database.imports(context.file).iter().filter_map(|path| database.file(path)).collect();
+    files.sort_unstable();
+    files.dedup();
+    files
+        .into_iter()
+        .filter_map(|file| database.definitions(file, kind, &name.text).first().copied())
+        .collect()
+}
+
+fn problem(context: &Context<'_>, kind: EntityKind, name: &Name, declared: [EntityId; 2]) -> Problem {
+    let problem = RULE
+        .problem(name.span, format!("two imported files declare {} called `{}`", kind.a_noun(), name.text))
+        .help("rename one of them, or declare the one that is meant in this file");
+    declared.into_iter().fold(problem, |problem, id| {
+        match context.database.tree(id).and_then(|tree| tree.name()) {
+            Some(name) => problem.related(id, name.span, "declared here"),
+            None => problem,
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Database;
+
+    #[test]
+    fn a_name_comes_from_one_file() {
+        let mut database = Database::new();
+        database.open("a.pyr", "wheel w with radius 4");
+        let b = database.open("b.pyr", "wheel w with radius 5 wheel v with radius 5");
+        let file = database
+            .open("main.pyr", "import \"a.pyr\" import \"b.pyr\"\nrobot r with port 1 has { w v } wheels");
+        let codes = |database: &Database| -> Vec<_> {
+            database.diagnostics(file).iter().map(crate::Diagnostic::code).collect()
+        };
+        assert_eq!(codes(&database), ["ambiguous-import", "mixed-radii"]);
+        assert_eq!(database.diagnostics(file)[0].related.len(), 2);
+        database.open("b.pyr", "wheel v with radius 4");
+        assert_eq!(codes(&database), [""; 0]);
+        database.close(b);
+        assert_eq!(codes(&database), [""; 0]);
+    }
+}

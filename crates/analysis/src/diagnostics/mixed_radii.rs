@@ -1,0 +1,66 @@
+//! `mixed-radii`: wheels of one robot differ in radius.
+
+use pydslrep_syntax::ast::{Entity, Name, Wheel};
+
+use crate::EntityId;
+
+use super::Rule;
+use super::context::{Context, Problem};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "mixed-radii",
+    severity: Severity::Warning,
+    summary: "the wheels of a robot differ in radius",
+    seeks_names: false,
+    check,
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Robot(robot)) = context.tree else { return };
+    let Some(list) = &robot.wheels else { return };
+    let mut known = list.names.iter().filter_map(|name| radius(context, name));
+    let Some(first) = known.next() else { return };
+    #[expect(clippy::float_cmp, reason = "radii are compared as they are written")]
+    let Some(other) = known.find(|(.., radius)| *radius != first.3) else { return };
+    let (name, id, wheel, radius) = other;
+    let Some(place) = &wheel.radius else { return };
+    problems.push(
+        RULE.problem(
+            name.span,
+            format!("`{}` has a radius of {radius} cm, `{}` one of {} cm", name.text, first.0.text, first.3),
+        )
+        .related(id, place.span, "the other radius")
+        .note("it is driven at the same rim speed, so its wheels turn at different rates"),
+    );
+}
+
+fn radius<'a>(context: &Context<'a>, name: &'a Name) -> Option<(&'a Name, EntityId, &'a Wheel, f64)> {
+    let (id, wheel) = context.wheel(name)?;
+    Some((name, id, wheel, wheel.radius.as_ref()?.value?))
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    #[test]
+    fn radii_are_alike() {
+        let program = |radius: &str| {
+            format!(
+                "wheel a with radius 4\nwheel b with radius {radius}\nrobot r with port 1 has {{ a b }} wheels"
+            )
+        };
+        check(
+            &program("4.5"),
+            &expect![[r#"
+            warning[mixed-radii] 3:29 "b" `b` has a radius of 4.5 cm, `a` one of 4 cm
+              see 2:21 "4.5" the other radius
+              note: it is driven at the same rim speed, so its wheels turn at different rates
+        "#]],
+        );
+        check_clean(&program("4.0"));
+    }
+}

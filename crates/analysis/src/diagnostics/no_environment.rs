@@ -1,0 +1,93 @@
+//! `no-environment`: robots and movements, but nothing that runs them.
+
+use pydslrep_syntax::{EntityKind, Span};
+
+use super::Rule;
+use super::context::{Context, Problem, as_written};
+use crate::{Database, Diagnostic, Edit, EntityRef, FileId, Fix, Severity};
+
+pub(super) static RULE: Rule = Rule {
+    code: "no-environment",
+    severity: Severity::Information,
+    summary: "robots and movements, but no environment to run them",
+    seeks_names: false,
+    check,
+};
+
+/// It is a problem of the whole file, see [`in_file`].
+fn check(_: &Context<'_>, _: &mut Vec<Problem>) {}
+
+/// The problem, if the file has it, at its last entity.
+pub(super) fn in_file(database: &Database, file: FileId) -> Option<Diagnostic> {
+    let has = |kind| database.count(file, kind) > 0;
+    let wanted = has(EntityKind::Robot)
+        && has(EntityKind::Movement)
+        && !has(EntityKind::Environment)
+        && !database.is_imported(file)
+        && !database.has_open_comment(file)
+        && !database.has_skipped_names(file);
+    if !wanted {
+        return None;
+    }
+    let last = database.entities(file).filter(|entity| entity.parse.entity.is_some()).last()?;
+    let name = last.parse.entity.as_ref()?.name();
+    let span = name.map_or(last.parse.lexemes.first()?.1, |name| name.span).shifted(last.span.start);
+    Some(Diagnostic {
+        rule: &RULE,
+        severity: RULE.severity,
+        file,
+        span,
+        message: "no environment runs these robots, so there is nothing to generate".to_owned(),
+        help: Some(format!("add one: `{}`", EntityKind::Environment.shape())),
+        note: None,
+        related: Vec::new(),
+        fixes: vec![with_all(database, &last)],
+    })
+}
+
+/// An environment with every robot and every movement of the file, behind its last entity.
+fn with_all(database: &Database, last: &EntityRef<'_>) -> Fix {
+    let names = |wanted: EntityKind| {
+        let named = database.entities(last.file).filter_map(|entity| {
+            let tree = entity.parse.entity.as_ref().filter(|tree| tree.kind() == Some(wanted))?;
+            tree.name().map(|name| as_written(&name.text))
+        });
+        let mut names: Vec<String> = named.collect();
+        names.dedup();
+        names.join(" ")
+    };
+    let ending = database.line_ending(last.file);
+    let tokens = last.parse.lexemes.iter().rev();
+    let end = tokens.map(|(_, span)| span.end).next().unwrap_or(last.span.len()) + last.span.start;
+    let (robots, movements) = (names(EntityKind::Robot), names(EntityKind::Movement));
+    let text =
+        format!("{ending}{ending}environment area has {{ {robots} }} robots with {{ {movements} }} moves");
+    Fix {
+        title: "add an environment with all robots and movements".to_owned(),
+        safe: false,
+        edits: vec![Edit { file: last.file, span: Span::at(end), text }],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check_whole, check_whole_clean};
+
+    const PARTS: &str =
+        "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has { a b } wheels\n";
+
+    #[test]
+    fn an_environment_is_offered() {
+        check_whole(
+            &format!("{PARTS}movement m of r {{ turn left }} // end\n"),
+            &expect![[r#"
+            information[no-environment] 4:10 "m" no environment runs these robots, so there is nothing to generate
+              help: add one: `environment NAME has { ROBOTS } robots with { MOVEMENTS } moves`
+              suggestion: add an environment with all robots and movements ->  ⏎ environment area has { r } robots with { m } moves
+        "#]],
+        );
+        check_whole_clean(PARTS);
+    }
+}

@@ -1,0 +1,63 @@
+//! `repeated-sensor`: a list names a sensor twice.
+
+use pydslrep_syntax::ast::{Action, Entity, References};
+
+use super::Rule;
+use super::context::{Context, Problem};
+use super::repeated_wheel::repeats;
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "repeated-sensor",
+    severity: Severity::Warning,
+    summary: "a list names a sensor twice",
+    seeks_names: false,
+    check,
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    for list in lists(context.tree) {
+        for (first, again) in repeats(&list.names) {
+            problems.push(
+                RULE.problem(again.span, format!("`{}` is in this list already", again.text))
+                    .related(context.id, first.span, "first listed here")
+                    .fix(format!("remove the second `{}`", again.text), [context.remove_item(again.span)]),
+            );
+        }
+    }
+}
+
+fn lists(tree: Option<&Entity>) -> Vec<&References> {
+    match tree {
+        Some(Entity::Robot(robot)) => robot.sensors.iter().collect(),
+        Some(Entity::Movement(movement)) => movement.actions.iter().filter_map(Action::until).collect(),
+        _ => Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nsensor s\nsensor t\n";
+
+    #[test]
+    fn a_sensor_is_listed_once() {
+        check(
+            &format!(
+                "{PARTS}robot r with port 1 has {{ a b }} wheels with sensors {{ s, t, s }}\nmovement m of r {{ turn left until {{ t, t }} }}"
+            ),
+            &expect![[r#"
+                warning[repeated-sensor] 5:61 "s" `s` is in this list already
+                  see 5:55 "s" first listed here
+                  fix: remove the second `s` -> robot r with port 1 has { a b } wheels with sensors { s, t }
+                warning[repeated-sensor] 6:40 "t" `t` is in this list already
+                  see 6:37 "t" first listed here
+                  fix: remove the second `t` -> movement m of r { turn left until { t } }
+            "#]],
+        );
+        check_clean(&format!("{PARTS}robot r with port 1 has {{ a b }} wheels with sensors {{ s, t }}"));
+    }
+}

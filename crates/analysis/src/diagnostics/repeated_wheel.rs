@@ -1,0 +1,57 @@
+//! `repeated-wheel`: a robot lists a wheel twice.
+
+use pydslrep_syntax::ast::{Entity, Name};
+
+use super::Rule;
+use super::context::{Context, Problem};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "repeated-wheel",
+    severity: Severity::Error,
+    summary: "a robot lists a wheel twice",
+    seeks_names: false,
+    check,
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Robot(robot)) = context.tree else { return };
+    for (first, again) in robot.wheels.iter().flat_map(|list| repeats(&list.names)) {
+        problems.push(
+            RULE.problem(
+                again.span,
+                format!("`{}` is listed twice, but a robot has one wheel of a name", again.text),
+            )
+            .related(context.id, first.span, "first listed here")
+            .help("declare another wheel for this place"),
+        );
+    }
+}
+
+/// The names that stand in a list again, each with its first mention.
+pub(super) fn repeats(names: &[Name]) -> Vec<(&Name, &Name)> {
+    let first = |index: usize| names[..index].iter().find(|other| other.text == names[index].text);
+    (0..names.len()).filter_map(|index| Some((first(index)?, &names[index]))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    const WHEELS: &str = "wheel a with radius 4\nwheel b with radius 4\n";
+
+    #[test]
+    fn a_wheel_is_listed_once() {
+        check(
+            &format!("{WHEELS}robot r with port 1 has {{ a a }} wheels"),
+            &expect![[r#"
+            error[repeated-wheel] 3:29 "a" `a` is listed twice, but a robot has one wheel of a name
+              see 3:27 "a" first listed here
+              help: declare another wheel for this place
+        "#]],
+        );
+        check_clean(&format!("{WHEELS}robot r with port 1 has {{ a b }} wheels"));
+    }
+}

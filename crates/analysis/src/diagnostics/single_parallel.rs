@@ -1,0 +1,96 @@
+//! `single-parallel`: a parallel movement that never runs beside another.
+
+use pydslrep_syntax::EntityKind;
+use pydslrep_syntax::ast::{Entity, Environment, Name};
+
+use crate::FileId;
+
+use super::Rule;
+use super::context::{Context, Problem};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "single-parallel",
+    severity: Severity::Hint,
+    summary: "a `parallel` movement that never runs beside another",
+    seeks_names: false,
+    check,
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Movement(movement)) = context.tree else { return };
+    let (Some(parallel), Some(name)) = (movement.parallel, &movement.name) else { return };
+    let users = context.database.users(context.file, EntityKind::Movement, &name.text);
+    if users.is_empty() || context.database.is_imported(context.file) {
+        return;
+    }
+    let beside = users.iter().any(|user| match context.database.tree(*user) {
+        Some(Entity::Environment(environment)) => runs_beside_another(context, environment, name),
+        _ => true,
+    });
+    if !beside {
+        problems.push(
+            RULE.problem(parallel, format!("`{}` never runs beside another movement", name.text))
+                .note(
+                    "only parallel movements that stand side by side in an environment's list start together",
+                )
+                .suggestion(
+                    "remove `parallel`",
+                    [context.replace(parallel.to(after(context, parallel)), "")],
+                ),
+        );
+    }
+}
+
+fn runs_beside_another(context: &Context<'_>, environment: &Environment, name: &Name) -> bool {
+    let names = environment.movements.as_ref().map_or(&[][..], |list| &list.names);
+    let parallel = |index: Option<usize>| {
+        let neighbour = index.and_then(|index| names.get(index));
+        // One that is not known may be parallel.
+        neighbour.is_some_and(|name| is_parallel(context, context.file, name) != Some(false))
+    };
+    let mut places =
+        names.iter().enumerate().filter(|(_, other)| other.text == name.text).map(|(index, _)| index);
+    places.any(|index| parallel(index.checked_sub(1)) || parallel(Some(index + 1)))
+}
+
+fn is_parallel(context: &Context<'_>, file: FileId, name: &Name) -> Option<bool> {
+    let id = context.database.resolve(file, EntityKind::Movement, &name.text).entity()?;
+    match context.database.tree(id)? {
+        Entity::Movement(movement) => Some(movement.parallel.is_some()),
+        _ => None,
+    }
+}
+
+/// The start of the token behind a place.
+fn after(context: &Context<'_>, place: pydslrep_syntax::Span) -> pydslrep_syntax::Span {
+    let next = context.lexemes.iter().find(|(_, span)| span.start >= place.end);
+    pydslrep_syntax::Span::at(next.map_or(place.end, |(_, span)| span.start))
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has { a b } wheels\n\
+                         robot q with port 1 has { a b } wheels\nparallel movement m of r { turn left }\n";
+
+    #[test]
+    fn parallel_takes_two() {
+        check(
+            &format!(
+                "{PARTS}movement n of q {{ turn left }}\nenvironment e has {{ r q }} robots with {{ m n m }} moves"
+            ),
+            &expect![[r#"
+                hint[single-parallel] 5:1 "parallel" `m` never runs beside another movement
+                  note: only parallel movements that stand side by side in an environment's list start together
+                  suggestion: remove `parallel` -> movement m of r { turn left }
+            "#]],
+        );
+        check_clean(&format!(
+            "{PARTS}parallel movement n of q {{ turn left }}\nenvironment e has {{ r q }} robots with {{ m n }} moves"
+        ));
+    }
+}

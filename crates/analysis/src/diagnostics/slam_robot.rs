@@ -1,0 +1,65 @@
+//! `slam-robot`: only two-wheeled robots can slam.
+
+use pydslrep_kinematics::Drive;
+use pydslrep_syntax::ast::{ActionKind, Entity};
+
+use super::Rule;
+use super::context::{Context, Problem};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "slam-robot",
+    severity: Severity::Error,
+    summary: "`slam` on a robot that is not two-wheeled",
+    seeks_names: false,
+    check,
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Movement(movement)) = context.tree else { return };
+    let Some((id, robot)) = movement.robot.as_ref().and_then(|name| context.robot(name)) else { return };
+    let Some(drive) = context.database.drive(id).filter(|drive| *drive != Drive::TwoWheel) else { return };
+    let Some(name) = &robot.name else { return };
+    for action in movement.actions.iter().filter(|action| action.kind == ActionKind::Slam) {
+        problems.push(
+            RULE.problem(
+                action.span,
+                format!(
+                    "only a two-wheeled robot can `slam`, and `{}` has {} wheels",
+                    name.text,
+                    drive.wheel_count()
+                ),
+            )
+            .related(id, name.span, format!("`{}` is declared here", name.text))
+            .help("let a robot of type `tw` explore"),
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nwheel c with radius 4\nwheel d with radius 4\n\
+                         sensor s sensor t sensor u sensor v sensor w\n";
+
+    #[test]
+    fn explorers_have_two_wheels() {
+        let program = |wheels: &str| {
+            format!(
+                "{PARTS}robot r with port 1 has {{ {wheels} }} wheels with sensors {{ s, t, u, v, w }}\nmovement m of r {{ slam }}"
+            )
+        };
+        check(
+            &program("a b c d"),
+            &expect![[r#"
+                error[slam-robot] 7:19 "slam" only a two-wheeled robot can `slam`, and `r` has 4 wheels
+                  see 6:7 "r" `r` is declared here
+                  help: let a robot of type `tw` explore
+            "#]],
+        );
+        check_clean(&program("a b"));
+    }
+}

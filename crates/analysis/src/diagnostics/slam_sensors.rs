@@ -1,0 +1,96 @@
+//! `slam-sensors`: exploring takes five distance sensors.
+
+use pydslrep_syntax::EntityKind;
+use pydslrep_syntax::ast::{ActionKind, Entity, Name, Robot, SensorKind};
+
+use super::Rule;
+use super::context::{Context, Problem};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "slam-sensors",
+    severity: Severity::Error,
+    summary: "`slam` with fewer than five distance sensors",
+    seeks_names: false,
+    check,
+};
+
+const NEEDED: usize = 5;
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Movement(movement)) = context.tree else { return };
+    let Some((id, robot)) = movement.robot.as_ref().and_then(|name| context.robot(name)) else { return };
+    let (Some(name), Some(count)) = (&robot.name, distance_sensors(context, robot)) else { return };
+    if count >= NEEDED {
+        return;
+    }
+    let has = match count {
+        0 => "none".to_owned(),
+        count => format!("only {count}"),
+    };
+    for action in movement.actions.iter().filter(|action| action.kind == ActionKind::Slam) {
+        problems.push(
+            RULE.problem(
+                action.span,
+                format!("`slam` needs {NEEDED} distance sensors, and `{}` has {has}", name.text),
+            )
+            .related(id, name.span, format!("`{}` is declared here", name.text))
+            .help("add sensors to the robot: `with sensors { … }`"),
+        );
+    }
+}
+
+/// How many distance sensors the robot has; `None` where one of its sensors is not known.
+fn distance_sensors(context: &Context<'_>, robot: &Robot) -> Option<usize> {
+    let names = robot.sensors.as_ref().map_or(&[][..], |list| &list.names);
+    if robot.sensors.as_ref().is_some_and(|list| list.broken) {
+        return None;
+    }
+    let mut counted: Vec<&str> = Vec::new();
+    for name in names {
+        if sees_distance(context, name)? && !counted.contains(&name.text.as_str()) {
+            counted.push(&name.text);
+        }
+    }
+    Some(counted.len())
+}
+
+fn sees_distance(context: &Context<'_>, name: &Name) -> Option<bool> {
+    match context.database.tree(context.resolve(EntityKind::Sensor, name).entity()?)? {
+        Entity::Sensor(sensor) => Some(!matches!(sensor.kind, Some((SensorKind::Bumper, _)))),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nsensor s sensor t sensor u sensor v sensor w\nsensor x : bumper\n";
+
+    #[test]
+    fn explorers_see_in_five_directions() {
+        let program = |clause: &str| {
+            format!("{PARTS}robot r with port 1 has {{ a b }} wheels{clause}\nmovement m of r {{ slam }}")
+        };
+        check(
+            &program(""),
+            &expect![[r#"
+                error[slam-sensors] 6:19 "slam" `slam` needs 5 distance sensors, and `r` has none
+                  see 5:7 "r" `r` is declared here
+                  help: add sensors to the robot: `with sensors { … }`
+            "#]],
+        );
+        check(
+            &program(" with sensors { s, t, u, v, x }"),
+            &expect![[r#"
+            error[slam-sensors] 6:19 "slam" `slam` needs 5 distance sensors, and `r` has only 4
+              see 5:7 "r" `r` is declared here
+              help: add sensors to the robot: `with sensors { … }`
+        "#]],
+        );
+        check_clean(&program(" with sensors { s, t, u, v, w }"));
+    }
+}

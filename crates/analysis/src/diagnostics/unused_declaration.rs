@@ -1,0 +1,75 @@
+//! `unused-declaration`: a part that nothing uses.
+
+use pydslrep_syntax::EntityKind;
+use pydslrep_syntax::ast::Entity;
+
+use super::Rule;
+use super::context::{Context, Problem};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "unused-declaration",
+    severity: Severity::Hint,
+    summary: "a wheel, sensor, ip, robot or movement that nothing uses",
+    seeks_names: false,
+    check,
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(tree) = context.tree else { return };
+    let (Some(kind), Some(name)) = (tree.kind(), tree.name()) else { return };
+    let database = context.database;
+    let asked = kind != EntityKind::Environment
+        && database.count(context.file, EntityKind::Environment) > 0
+        && !database.is_imported(context.file);
+    if !asked || !database.users(context.file, kind, &name.text).is_empty() {
+        return;
+    }
+    let problem = RULE.problem(name.span, format!("nothing uses the {} `{}`", kind.noun(), name.text));
+    problems.push(match context.whole() {
+        Some(whole) if context.errors.is_empty() && leaves_nothing_unused(context, tree) => {
+            problem.suggestion("remove it", [whole])
+        }
+        _ => problem,
+    });
+}
+
+/// Whether all that it uses is used elsewhere, too; otherwise removing it would only move the problem.
+fn leaves_nothing_unused(context: &Context<'_>, tree: &Entity) -> bool {
+    tree.references().into_iter().all(|(kind, name)| {
+        let users = context.database.users(context.file, kind, &name.text);
+        users.iter().any(|user| *user != context.id)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check_whole, check_whole_clean};
+
+    const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has { a b } wheels\nmovement m of r { turn left }\n";
+
+    #[test]
+    fn what_nothing_uses_is_said() {
+        check_whole(
+            &format!(
+                "{PARTS}sensor s\n// a note\nip i 127.0.0.1\nenvironment e has {{ r }} robots with {{ m }} moves\nwheel c with radius 5"
+            ),
+            &expect![[r#"
+                hint[unused-declaration] 5:8 "s" nothing uses the sensor `s`
+                  suggestion: remove it -> 
+                hint[unused-declaration] 7:4 "i" nothing uses the ip `i`
+                  suggestion: remove it -> 
+                hint[unused-declaration] 9:7 "c" nothing uses the wheel `c`
+                  suggestion: remove it -> 
+            "#]],
+        );
+        check_whole_clean(&format!("{PARTS}environment e has {{ r }} robots with {{ m }} moves"));
+    }
+
+    #[test]
+    fn parts_for_others_are_not_unused() {
+        check_whole_clean("wheel a with radius 4");
+    }
+}

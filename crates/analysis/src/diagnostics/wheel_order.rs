@@ -1,0 +1,84 @@
+//! `wheel-order`: two wheels look as if they stood right before left.
+
+use pydslrep_syntax::ast::{Entity, Name};
+
+use super::Rule;
+use super::context::{Context, Problem};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "wheel-order",
+    severity: Severity::Hint,
+    summary: "two wheels whose names differ in L and R stand right before left",
+    seeks_names: false,
+    check,
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Robot(robot)) = context.tree else { return };
+    let names = robot.wheels.as_ref().map_or(&[][..], |list| &list.names);
+    // Two wheels stand left, right; of four, the left two stand before the right two.
+    let step = names.len() / 2;
+    for (first, second) in names.iter().zip(names.iter().skip(step.max(1))) {
+        if is_right_of(&first.text, &second.text) {
+            problems.push(problem(context, first, second));
+        }
+    }
+}
+
+fn problem(context: &Context<'_>, first: &Name, second: &Name) -> Problem {
+    let swap = [
+        context.replace(first.span, context.text(second.span)),
+        context.replace(second.span, context.text(first.span)),
+    ];
+    RULE.problem(first.span, format!("`{}` stands where the left wheel belongs", first.text))
+        .related(context.id, second.span, format!("and `{}` where the right one does", second.text))
+        .help("two wheels are listed left, right; four left front, left rear, right front, right rear")
+        .suggestion(format!("swap `{}` and `{}`", first.text, second.text), swap)
+}
+
+/// Whether the names differ in exactly one letter, R in the first and L in the second.
+fn is_right_of(first: &str, second: &str) -> bool {
+    let mut differences = first.chars().zip(second.chars()).filter(|(a, b)| a != b);
+    let one = differences.next();
+    first.len() == second.len()
+        && differences.next().is_none()
+        && matches!(one, Some(('R', 'L') | ('r', 'l')))
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    const WHEELS: &str = "wheel wheelL with radius 4\nwheel wheelR with radius 4\nwheel wlf with radius 4\nwheel wlr with radius 4\nwheel wrf with radius 4\nwheel wrr with radius 4\n";
+
+    #[test]
+    fn left_comes_before_right() {
+        check(
+            &format!("{WHEELS}robot r with port 1 has {{ wheelR wheelL }} wheels"),
+            &expect![[r#"
+            hint[wheel-order] 7:27 "wheelR" `wheelR` stands where the left wheel belongs
+              see 7:34 "wheelL" and `wheelL` where the right one does
+              help: two wheels are listed left, right; four left front, left rear, right front, right rear
+              suggestion: swap `wheelR` and `wheelL` -> robot r with port 1 has { wheelL wheelR } wheels
+        "#]],
+        );
+        check(
+            &format!("{WHEELS}robot r with port 1 has {{ wrf wrr wlf wlr }} wheels"),
+            &expect![[r#"
+            hint[wheel-order] 7:27 "wrf" `wrf` stands where the left wheel belongs
+              see 7:35 "wlf" and `wlf` where the right one does
+              help: two wheels are listed left, right; four left front, left rear, right front, right rear
+              suggestion: swap `wrf` and `wlf` -> robot r with port 1 has { wlf wrr wrf wlr } wheels
+            hint[wheel-order] 7:31 "wrr" `wrr` stands where the left wheel belongs
+              see 7:39 "wlr" and `wlr` where the right one does
+              help: two wheels are listed left, right; four left front, left rear, right front, right rear
+              suggestion: swap `wrr` and `wlr` -> robot r with port 1 has { wrf wlr wlf wrr } wheels
+        "#]],
+        );
+        check_clean(&format!("{WHEELS}robot r with port 1 has {{ wheelL wheelR }} wheels"));
+        check_clean(&format!("{WHEELS}robot r with port 1 has {{ wlf wlr wrf wrr }} wheels"));
+    }
+}
