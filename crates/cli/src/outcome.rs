@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use comfy_table::Table;
 use pydslrep_kinematics::Pose;
 use pydslrep_simulator::picture::Route;
 
@@ -15,11 +16,18 @@ pub(crate) struct Outcome<'a> {
     pub(crate) driven: &'a Driven,
     /// From the start of the script to its end.
     pub(crate) wall: Duration,
+    /// Whether the robots did all they should.
+    pub(crate) is_complete: bool,
 }
 
 impl Outcome<'_> {
-    /// A row per robot, and how long it took.
+    /// Where each robot should be and is, and how long it took.
     pub(crate) fn table(&self) -> String {
+        let table = if self.is_complete { self.comparison() } else { self.ends() };
+        format!("{}\n\n{}\n", table.trim_fmt(), self.times())
+    }
+
+    fn comparison(&self) -> Table {
         let mut table = output::table(["robot", "", "x m", "y m", "heading °", "off mm", "off °"]);
         let paths = self.planned.plan.robots.iter().zip(self.driven.paths());
         for (robot, (plan, driven)) in self.planned.scene.robots.iter().zip(paths) {
@@ -39,7 +47,18 @@ impl Outcome<'_> {
             table.add_row([String::new(), "driven".into(), x, y, heading, off, turned]);
         }
         output::align_right(&mut table, &[2, 3, 4, 5, 6]);
-        format!("{}\n\n{}\n", table.trim_fmt(), self.times())
+        table
+    }
+
+    /// A run that was broken off can only be compared with a plan that was broken off too.
+    fn ends(&self) -> Table {
+        let mut table = output::table(["robot", "", "x m", "y m", "heading °"]);
+        for (robot, driven) in self.planned.scene.robots.iter().zip(self.driven.paths()) {
+            let [x, y, heading] = words(driven.end());
+            table.add_row([robot.name.clone(), "stopped".into(), x, y, heading]);
+        }
+        output::align_right(&mut table, &[2, 3, 4]);
+        table
     }
 
     /// What to draw.

@@ -74,7 +74,7 @@ pub(crate) fn prepare(sources: &Sources, file: FileId, ids: &[EntityId]) -> Prep
     }
     show(sources, &problems);
     for name in &stuck {
-        say(&format!("environment `{name}` has errors, so there is nothing to make of it\n"));
+        say(&format!("environment `{name}` is left out because of these errors\n"));
     }
     let is_error = |problem: &Diagnostic| problem.severity == pydslrep_analysis::Severity::Error;
     Prepared { environments: prepared, has_errors: !stuck.is_empty() || problems.iter().any(is_error) }

@@ -210,7 +210,8 @@ async fn succeed(command: &mut Command, limit: Duration, what_if_not: &str) -> R
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
     // Tools say at the end what it was all about, and pip marks it.
     let reason = lines.clone().find(|line| line.starts_with("ERROR:")).or_else(|| lines.next_back());
-    Err(Failure::new(format!("{what_if_not}: {}", reason.unwrap_or("it failed without a word"))))
+    let reason = reason.unwrap_or("it failed without a word");
+    Err(Failure::new(format!("{what_if_not}: {}", reason.trim_start_matches("ERROR: "))))
 }
 
 /// What a command printed; it is ended where nobody waits for it any more.

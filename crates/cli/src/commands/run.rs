@@ -174,7 +174,8 @@ impl Run<'_> {
     }
 
     fn report(&self, ending: Ending, driven: &Driven, wall: std::time::Duration) -> Result<u8, Failure> {
-        let outcome = Outcome { planned: &self.planned, driven, wall };
+        let is_complete = matches!(ending, Ending::Done);
+        let outcome = Outcome { planned: &self.planned, driven, wall, is_complete };
         let code = match ending {
             Ending::Done => 0,
             Ending::Failed(words) => {
@@ -190,12 +191,12 @@ impl Run<'_> {
                 interrupt::EXIT_CODE
             }
         };
+        output::print(&outcome.table())?;
         if let Some(path) = &self.arguments.picture {
             let title = format!("{}: planned and driven path", self.planned.environment.name);
             let drawing = picture::draw(&title, &outcome.routes());
             fs::write(path, drawing).map_err(|error| Failure::unwritten(path, &error))?;
         }
-        output::print(&outcome.table())?;
         for (what, path) in [("picture", &self.arguments.picture), ("trace", &self.arguments.trace)] {
             if let Some(path) = path {
                 output::say(&format!("{what}: {}\n", path.display()));

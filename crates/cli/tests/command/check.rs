@@ -1,0 +1,215 @@
+//! `pydslrep check`.
+
+use expect_test::{Expect, expect};
+use serde_json::{Value, json};
+
+use crate::process::{Place, paper, repository};
+
+const TWO_WHEELS: &str = "wheel a with radius 4\nwheel b with radius 4\n";
+
+fn json(arguments: &[&str]) -> (Vec<Value>, Option<i32>) {
+    let done = Place::new().run(&[&["check", "--format", "json"], arguments].concat());
+    (serde_json::from_str(&done.out).unwrap(), done.code)
+}
+
+#[track_caller]
+fn check(program: &str, expected: &Expect) {
+    let done = Place::with("x.pyr", program).run(&["check"]);
+    expected.assert_eq(&done.out);
+    assert_eq!((done.code, done.err.as_str()), (Some(1), ""));
+}
+
+#[test]
+fn programs_of_the_article_and_examples_are_clean() {
+    for name in ["table2_two_wheels", "table3_four_wheels", "table6_sensors", "table7_slam"] {
+        assert_eq!(json(&[&paper(name)]), (vec![], Some(0)), "{name}");
+    }
+    let done = Place::new().run(&["check", "--deny", "warnings", &repository("examples")]);
+    assert_eq!((done.code, done.out.as_str()), (Some(0), "No problems in 5 files.\n"));
+}
+
+#[test]
+fn table_4_is_a_mecanum_robot() {
+    let (problems, code) = json(&[&paper("table4_holonomic")]);
+    assert_eq!(code, Some(0));
+    let [problem] = problems.as_slice() else { panic!("{problems:?}") };
+    assert_eq!((&problem["code"], &problem["severity"]), (&json!("wheel-kind-mismatch"), &json!("warning")));
+    assert!(problem["fix"]["edits"][0]["text"].as_str().unwrap().contains("fwh"), "{problem}");
+    let done = Place::new().run(&["check", "--deny", "warnings", &paper("table4_holonomic")]);
+    assert_eq!(done.code, Some(1));
+}
+
+#[test]
+fn table_5_lacks_four_wheels() {
+    let (problems, code) = json(&[&paper("table5_angles_as_printed")]);
+    let errors: Vec<&Value> = problems.iter().filter(|problem| problem["severity"] == "error").collect();
+    assert_eq!((errors.len(), code), (4, Some(1)));
+    assert!(errors.iter().all(|error| error["code"] == "unresolved-reference"), "{errors:?}");
+    let shown = Place::new().run(&["check", &paper("table5_angles_as_printed")]).out;
+    for wheel in ["wheelL0", "wheelL1", "wheelR0", "wheelR1"] {
+        assert!(shown.contains(&format!("fix: declare the wheel `{wheel}`")), "{shown}");
+        assert!(shown.contains(&format!("4 + wheel {wheel} with radius 4.5\n")), "{shown}");
+    }
+}
+
+#[test]
+fn json_has_everything() {
+    let program = "sensor 机\nwheel a with radius 5\nwheel a with radius 6\n";
+    let place = Place::with("x.pyr", program);
+    let done = place.run(&["check", "--format", "json", "x.pyr"]);
+    let problems: Vec<Value> = serde_json::from_str(&done.out).unwrap();
+    let at = |line, from, to| json!({"start": {"line": line, "column": from}, "end": {"line": line, "column": to}});
+    let duplicate = json!({
+        "file": "x.pyr",
+        "code": "duplicate-name",
+        "severity": "error",
+        "message": "there is already a wheel called `a`",
+        "range": at(3, 7, 8),
+        "related": [{"message": "first declared here", "file": "x.pyr", "range": at(2, 7, 8)}],
+        "fix": {"title": "rename this one to `a_2`", "edits": [{"range": at(3, 7, 8), "text": "a_2"}]},
+    });
+    assert_eq!(problems.last(), Some(&duplicate));
+    assert_eq!(problems[0]["range"], at(1, 8, 9), "columns count characters");
+}
+
+#[test]
+fn what_is_missing_is_marked_behind_what_is_there() {
+    check(
+        "wheel a with\tradius\r\nwheel b with radius 4",
+        &expect![[r#"
+            error[syntax-error]: missing a radius in centimetres at the end of this wheel
+             --> x.pyr:1:20
+              |
+            1 | wheel a with    radius 
+              |                       ^
+              |
+              = help: a wheel is written `wheel NAME with radius CENTIMETRES`
+
+            1 error in 1 file.
+        "#]],
+    );
+}
+
+#[test]
+fn second_places_and_wide_letters() {
+    check(
+        &format!("{TWO_WHEELS}/* 机器人 🤖 */ wheel a with radius 5"),
+        &expect![[r#"
+            error[duplicate-name]: there is already a wheel called `a`
+             --> x.pyr:3:19
+              |
+            1 | wheel a with radius 4
+              |       - first declared here
+            2 | wheel b with radius 4
+            3 | /* 机器人 🤖 */ wheel a with radius 5
+              |                       ^
+              |
+              = help: give one of them another name
+            fix: rename this one to `a_2`
+              |
+            3 | /* 机器人 🤖 */ wheel a_2 with radius 5
+              |                        ++
+
+            1 error in 1 file.
+        "#]],
+    );
+}
+
+#[test]
+fn errors_and_warnings_are_counted() {
+    let program = format!(
+        "{TWO_WHEELS}robot r with port 70000 has {{ a b }} wheels\nmovement m of r {{ move 0 meters turn left 400 }}"
+    );
+    let done = Place::with("x.pyr", program).run(&["check"]);
+    let places = ["error[invalid-port]", "x.pyr:3:19", "warning[invalid-angle]", "x.pyr:4:43"];
+    let found: Vec<Option<usize>> = places.iter().map(|place| done.out.find(place)).collect();
+    assert!(found.is_sorted() && !found.contains(&None), "{found:?} {}", done.out);
+    assert!(done.out.contains("\n1 error, 2 warnings"), "{}", done.out);
+    assert!(done.out.ends_with(" in 1 file.\n"), "{}", done.out);
+}
+
+#[test]
+fn colours_only_where_they_are_wanted() {
+    let place = Place::with("x.pyr", "wheel");
+    assert!(!place.run(&["check"]).out.contains('\u{1b}'));
+    assert!(place.run(&["check", "--color", "always"]).out.contains("\u{1b}[1m"));
+    let done = place.command(&["check"]).env("CLICOLOR_FORCE", "1").env("NO_COLOR", "1").output().unwrap();
+    assert!(!String::from_utf8_lossy(&done.stdout).contains('\u{1b}'));
+}
+
+#[test]
+fn folders_are_walked_in_order_of_names() {
+    let place = Place::with("b.pyr", "wheel");
+    for name in ["a/z.pyr", "a/b/c.pyr", ".hidden/x.pyr"] {
+        place.write(name, "wheel");
+    }
+    place.write("a/notes.txt", "wheel");
+    let done = place.run(&["check", "--format", "json", "b.pyr", ".", "./a/z.pyr"]);
+    let problems: Vec<Value> = serde_json::from_str(&done.out).unwrap();
+    let files: Vec<&str> = problems.iter().map(|problem| problem["file"].as_str().unwrap()).collect();
+    assert_eq!(files, ["a/b/c.pyr", "a/z.pyr", "b.pyr"]);
+}
+
+#[test]
+fn standard_input_is_a_program_too() {
+    let done = Place::new().run_with(&["check", "-"], b"sensor s sensor s");
+    assert_eq!(done.code, Some(1));
+    assert!(done.out.contains("--> <stdin>:1:17"), "{}", done.out);
+}
+
+#[test]
+fn files_that_are_no_programs_do_not_hide_the_others() {
+    let place = Place::with("bad.pyr", b"wheel a\nwith \xff\xfe");
+    place.write("good.pyr", "wheel");
+    let large = std::fs::File::create(place.path("large.pyr")).unwrap();
+    large.set_len((64 << 20) + 1).unwrap();
+    let done = place.run(&["check", ".", "missing.pyr"]);
+    assert_eq!(done.code, Some(2));
+    assert!(done.out.contains("good.pyr:1:6") && done.out.ends_with("1 error in 1 file.\n"), "{}", done.out);
+    expect![[r#"
+        error: bad.pyr is no text in UTF-8: line 2 holds other bytes
+         |
+         = help: save it in the encoding UTF-8
+        error: large.pyr is larger than 64 MiB
+         |
+         = help: is this a program?
+        error: missing.pyr does not exist
+    "#]]
+    .assert_eq(&done.err);
+}
+
+#[test]
+fn byte_order_marks_are_no_part_of_the_text() {
+    let place = Place::with("x.pyr", "\u{feff}wheel");
+    assert!(place.run(&["check"]).out.contains("x.pyr:1:6"));
+}
+
+#[test]
+fn imports_are_read_and_bounded() {
+    let place =
+        Place::with("a/main.pyr", "import \"lib/wheels.pyr\"\nrobot r with port 1 has { x y } wheels");
+    place.write("a/lib/wheels.pyr", "wheel x with radius 4 wheel y with radius 4");
+    assert_eq!(place.run(&["check", "a/main.pyr"]).code, Some(0));
+    place.write("a/main.pyr", "import \"../b.pyr\"\nrobot r with port 1 has { x y } wheels");
+    place.write("b.pyr", "wheel x with radius 4 wheel y with radius 4");
+    let done = place.run(&["check", "a/main.pyr"]);
+    assert_eq!(done.code, Some(2));
+    assert!(done.err.contains("outside of"), "{}", done.err);
+    place.write("pydslrep.toml", "");
+    let done = place.run(&["check", "a/main.pyr"]);
+    assert_eq!((done.code, done.err.as_str()), (Some(0), ""));
+}
+
+#[test]
+fn a_folder_without_programs_is_a_mistake() {
+    let done = Place::new().run(&["check"]);
+    assert_eq!((done.code, done.out.as_str()), (Some(2), ""));
+    assert!(done.err.contains("there is no program in ."), "{}", done.err);
+}
+
+#[test]
+fn wrong_use_ends_with_2() {
+    for arguments in [&["chek"][..], &["check", "--format", "xml"], &["run"]] {
+        assert_eq!(Place::new().run(arguments).code, Some(2), "{arguments:?}");
+    }
+}

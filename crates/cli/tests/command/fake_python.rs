@@ -1,0 +1,114 @@
+//! `pydslrep run` with a Python that misbehaves on command.
+
+use std::fs;
+use std::io::Read;
+use std::os::unix::fs::PermissionsExt;
+use std::process::{Child, Command};
+
+use crate::process::{Done, Place, paper};
+
+/// Answers like a Python, makes environments of copies of itself, and runs `behave` in place of scripts.
+const PYTHON: &str = r#"#!/bin/sh
+case "$*" in
+  "-c "*) echo 3.12.0; echo "$0" ;;
+  "-I -m venv "*) mkdir -p "$4/bin"; cp "$0" "$4/bin/python" ;;
+  "-I -m pip "*) exit ${PIP_CODE:-0} ;;
+  *) . "$BEHAVIOUR" ;;
+esac
+"#;
+
+fn place(behaviour: &str) -> Place {
+    let place = Place::with("python", PYTHON);
+    fs::set_permissions(place.path("python"), fs::Permissions::from_mode(0o755)).unwrap();
+    place.write("behaviour", behaviour);
+    place
+}
+
+fn command(place: &Place) -> Command {
+    let program = paper("table2_two_wheels");
+    let mut command = place.command(&["run", &program, "--python", place.path("python").to_str().unwrap()]);
+    command.env("XDG_CACHE_HOME", place.path("cache")).env("BEHAVIOUR", place.path("behaviour"));
+    command
+}
+
+fn run(behaviour: &str) -> Done {
+    command(&place(behaviour)).output().unwrap().into()
+}
+
+#[test]
+fn a_movement_that_failed_is_told() {
+    let done = run("echo 'error: robot robot_1, movement mov_1, action 1: move 4 m: stuck' >&2; exit 1");
+    assert_eq!(done.code, Some(1));
+    assert_eq!(done.err, "error: robot robot_1, movement mov_1, action 1: move 4 m: stuck\n");
+}
+
+#[test]
+fn a_script_that_breaks_is_an_outside_failure() {
+    let done = run("echo 'Traceback (most recent call last)' >&2; echo 'OSError: disk' >&2; exit 1");
+    assert_eq!(done.code, Some(2));
+    assert!(done.err.ends_with("OSError: disk\n"), "{}", done.err);
+    let done = run("kill -9 $$");
+    assert_eq!(done.code, Some(2));
+    assert!(done.err.contains("signal: 9"), "{}", done.err);
+}
+
+#[test]
+fn what_a_script_says_cannot_confuse() {
+    let done = run("printf 'garbage \\377\\n\\n  s  x  \\n'; head -c 3000000 /dev/zero >&2; exit 0");
+    assert_eq!(done.code, Some(0), "{}", done.err);
+}
+
+#[test]
+fn what_cannot_be_installed_is_explained() {
+    let place = place("");
+    let done: Done = command(&place).env("PIP_CODE", "1").output().unwrap().into();
+    assert_eq!(done.code, Some(2));
+    assert!(done.err.contains("cannot install what scripts need"), "{}", done.err);
+    assert!(done.err.contains("check the network"), "{}", done.err);
+    assert_eq!(fs::read_dir(place.path("cache/pydslrep")).unwrap().count(), 0, "nothing half made is left");
+}
+
+#[test]
+fn an_interrupt_stops_the_script() {
+    // The script tells that it runs, and then what has become of it.
+    let mut running =
+        interruptible("trap 'echo stopped > end; exit 130' INT; echo > started; read x < never");
+    running.interrupt();
+    assert_eq!(running.end(), Some(130));
+    assert_eq!(running.place.read("end"), "stopped\n");
+}
+
+#[test]
+fn a_script_that_does_not_listen_is_ended_by_a_second_interrupt() {
+    let mut running = interruptible("trap '' INT; echo > started; read x < never");
+    running.interrupt();
+    running.interrupt();
+    assert_eq!(running.end(), Some(130));
+}
+
+struct Running {
+    place: Place,
+    child: Child,
+}
+
+fn interruptible(behaviour: &str) -> Running {
+    let place = place(&format!("cd \"$(dirname \"$BEHAVIOUR\")\"; {behaviour}"));
+    for pipe in ["started", "never"] {
+        assert!(Command::new("mkfifo").arg(place.path(pipe)).status().unwrap().success());
+    }
+    let child = command(&place).spawn().unwrap();
+    // Waits until the script writes to it.
+    fs::File::open(place.path("started")).unwrap().read_to_end(&mut Vec::new()).unwrap();
+    Running { place, child }
+}
+
+impl Running {
+    fn interrupt(&self) {
+        let pid = rustix::process::Pid::from_child(&self.child);
+        rustix::process::kill_process(pid, rustix::process::Signal::INT).unwrap();
+    }
+
+    fn end(&mut self) -> Option<i32> {
+        self.child.wait().unwrap().code()
+    }
+}

@@ -1,0 +1,78 @@
+//! `pydslrep plan`.
+
+use expect_test::expect;
+use serde_json::{Value, json};
+
+use crate::process::{Place, paper};
+
+fn plan(program: &str) -> Value {
+    let done = Place::new().run(&["plan", "--json", program]);
+    assert_eq!((done.code, done.err.as_str()), (Some(0), ""));
+    serde_json::from_str(&done.out).unwrap()
+}
+
+#[test]
+fn the_articles_path_as_json() {
+    let plans = plan(&paper("table2_two_wheels"));
+    assert_eq!(plans.as_array().unwrap().len(), 1);
+    let (plan, robot) = (&plans[0], &plans[0]["robots"][0]);
+    assert_eq!((&plan["environment"], &robot["name"]), (&json!("area_1"), &json!("robot_1")));
+    assert_eq!(robot["unknown_after"], json!(null));
+    let poses = robot["poses"].as_array().unwrap();
+    assert_eq!(poses.len(), 5);
+    assert_eq!(poses[4]["t"], plan["duration"]);
+    // 12 m at 9 cm/s, two quarter turns of 0.15 m at 9 cm/s, five ramps of 0.09 / 0.5 s.
+    let seconds = 12.0 / 0.09 + 2.0 * 0.15 * std::f64::consts::FRAC_PI_2 / 0.09 + 5.0 * 0.18;
+    assert!((plan["duration"].as_f64().unwrap() - seconds).abs() < 1e-6);
+    let last = &poses[4];
+    assert_eq!((&last["movement"], &last["run"], &last["action"]), (&json!("mov_1"), &json!(1), &json!(5)));
+    for (key, value) in [("x", 0.0), ("y", -4.0), ("theta", std::f64::consts::PI)] {
+        assert!((last[key].as_f64().unwrap() - value).abs() < 1e-9, "{last}");
+    }
+}
+
+#[test]
+fn what_the_world_decides_is_not_guessed() {
+    let plans = plan(&paper("table6_sensors"));
+    let robot = &plans[0]["robots"][0];
+    assert_eq!(plans[0]["duration"], json!(null));
+    assert_eq!(robot["poses"].as_array().unwrap().len(), 1);
+    assert_eq!(robot["unknown_after"], json!({"movement": "mov_1", "run": 1, "action": 2}));
+}
+
+#[test]
+fn a_table_for_people() {
+    let program = "\
+wheel a with radius 4.5 wheel b with radius 9
+robot r with port 1 has { a b } wheels sensor s
+movement m of r { move 90 centimeters turn left 45 }
+environment e has { r } robots with { m } moves";
+    let done = Place::with("x.pyr", program).run(&["plan", "x.pyr"]);
+    expect![[r#"
+        e: 11.67 s
+
+         robot   movement   action                from s    to s     x m     y m   heading °   wheels rad/s
+        ────────────────────────────────────────────────────────────────────────────────────────────────────
+         r                  start                                  0.000   0.000         0.0
+                 m          move 90 centimeters     0.00   10.18   0.900   0.000         0.0    2.00  1.00
+                 m          turn left 45           10.18   11.67   0.900   0.000        45.0   -2.00  1.00
+
+    "#]]
+    .assert_eq(&done.out);
+}
+
+#[test]
+fn a_picture_of_it() {
+    let place = Place::new();
+    let done = place.run(&["plan", &paper("table2_two_wheels"), "--picture", "plan.svg"]);
+    assert_eq!(done.code, Some(0));
+    let picture = place.read("plan.svg");
+    assert!(picture.starts_with("<svg") && picture.contains("robot_1"), "{picture}");
+}
+
+#[test]
+fn errors_are_shown_instead() {
+    let done = Place::new().run(&["plan", &paper("table5_angles_as_printed")]);
+    assert_eq!(done.code, Some(1));
+    assert!(done.err.contains("there is no wheel called `wheelL0`"), "{}", done.err);
+}

@@ -1,0 +1,118 @@
+//! `pydslrep run`, with the real Python, the real client from PyPI, and the embedded simulator.
+
+use std::collections::BTreeMap;
+use std::net::TcpListener;
+use std::sync::Mutex;
+
+use serde_json::Value;
+
+use crate::process::{Done, Place, paper, repository};
+
+/// How near robots have to come to their plan: metres and degrees.
+const NEAR: f64 = 0.005;
+const TURNED: f64 = 0.5;
+
+/// x, y and heading in degrees.
+type End = (f64, f64, f64);
+
+/// Runs one after the other: the first one makes the Python environment, and all would want both processors.
+fn run(place: &Place, arguments: &[&str]) -> Done {
+    static TURN: Mutex<()> = Mutex::new(());
+    let _turn = TURN.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    place.run(&[&["run"], arguments].concat())
+}
+
+/// Where each robot ended, by the trace.
+fn ends(program: &str) -> BTreeMap<String, End> {
+    let place = Place::new();
+    let done = run(&place, &[program, "--trace", "trace.jsonl"]);
+    assert_eq!(done.code, Some(0), "{}\n{}", done.out, done.err);
+    let mut ends = BTreeMap::new();
+    for line in place.read("trace.jsonl").lines() {
+        let row: Value = serde_json::from_str(line).unwrap();
+        let number = |key: &str| row[key].as_f64().unwrap();
+        let end = (number("x"), number("y"), number("theta").to_degrees());
+        ends.insert(row["robot"].as_str().unwrap().to_owned(), end);
+    }
+    ends
+}
+
+#[track_caller]
+fn assert_near(end: End, goal: End) {
+    let off = (end.0 - goal.0).hypot(end.1 - goal.1);
+    let turned = (end.2 - goal.2 + 180.0).rem_euclid(360.0) - 180.0;
+    assert!(off <= NEAR && turned.abs() <= TURNED, "{end:?} instead of {goal:?}");
+}
+
+#[test]
+fn the_articles_programs_end_where_they_should() {
+    for name in ["table2_two_wheels", "table3_four_wheels", "table4_holonomic"] {
+        assert_near(ends(&paper(name))["robot_1"], (0.0, -4.0, 180.0));
+    }
+    let with_wheels = repository("tests/programs/table5_with_wheels.pyr");
+    assert_near(ends(&with_wheels)["robot_1"], (3.182, 1.525, 90.0));
+}
+
+#[test]
+fn every_example_ends_where_it_is_planned() {
+    for (name, robots) in [("square", 1), ("mecanum", 1), ("convoy", 4), ("patrol", 1)] {
+        let program = repository(&format!("examples/{name}.pyr"));
+        let plan: Value = serde_json::from_str(&Place::new().run(&["plan", "--json", &program]).out).unwrap();
+        let ends = ends(&program);
+        assert_eq!(ends.len(), robots, "{name}");
+        for robot in plan[0]["robots"].as_array().unwrap() {
+            let last = robot["poses"].as_array().unwrap().last().unwrap();
+            let number = |key: &str| last[key].as_f64().unwrap();
+            let goal = (number("x"), number("y"), number("theta").to_degrees());
+            assert_near(ends[robot["name"].as_str().unwrap()], goal);
+        }
+    }
+}
+
+#[test]
+fn a_new_program_runs_and_is_drawn() {
+    let place = Place::new();
+    place.run(&["new", "patrol"]);
+    let done = run(&place, &["patrol/patrol.pyr", "--picture", "patrol.svg"]);
+    assert_eq!(done.code, Some(0), "{}", done.err);
+    assert!(done.out.contains("times real time"), "{}", done.out);
+    let picture = place.read("patrol.svg");
+    assert!(picture.starts_with("<svg") && picture.contains("off the plan"), "{picture}");
+}
+
+#[test]
+fn taken_ports_do_not_matter() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = listener.local_addr().unwrap().port();
+    let program = format!(
+        "wheel a with radius 4 wheel b with radius 4 robot r with port {port} has {{ a b }} wheels
+         movement m of r {{ move 10 centimeters }} environment e has {{ r }} robots with {{ m }} moves"
+    );
+    let done = run(&Place::with("x.pyr", program), &["x.pyr"]);
+    assert_eq!(done.code, Some(0), "{}", done.err);
+}
+
+#[test]
+fn programs_with_errors_are_not_run() {
+    let done = run(&Place::new(), &[&paper("table5_angles_as_printed")]);
+    assert_eq!((done.code, done.out.as_str()), (Some(1), ""));
+    assert!(done.err.contains("there is no wheel called `wheelL0`"), "{}", done.err);
+}
+
+#[test]
+fn which_environment_must_be_clear() {
+    let program = "\
+wheel a with radius 4 wheel b with radius 4 robot r with port 1 has { a b } wheels
+environment one has { r } robots environment two has { r } robots";
+    let done = run(&Place::with("x.pyr", program), &["x.pyr"]);
+    assert_eq!(done.code, Some(2));
+    assert!(done.err.contains("there are `one`, `two`"), "{}", done.err);
+}
+
+#[test]
+fn a_missing_python_is_explained() {
+    let done = run(&Place::new(), &[&paper("table2_two_wheels"), "--python", "./no/python"]);
+    assert_eq!(done.code, Some(2));
+    assert!(done.err.contains("no Python at ./no/python"), "{}", done.err);
+    assert!(done.err.contains("install Python 3.10 or later"), "{}", done.err);
+}
