@@ -246,7 +246,7 @@ mod tests {
     #[test]
     fn an_environment_tells_its_timeline() {
         check(
-            &format!("{PARTS}{}", REST.replace("environment e", "environment $0e")),
+            &format!("{PARTS}{}", REST.replace(" slam ", " ").replace("environment e", "environment $0e")),
             &expect![[r#"
             e
             ---

@@ -1,127 +1,14 @@
-//! What the client can do, and what we tell it that we can.
+//! What we tell the client that we can do.
 
 use tower_lsp::ls_types::{
-    ClientCapabilities, CodeActionKind, CodeActionOptions, CompletionOptions, DiagnosticOptions,
-    DiagnosticServerCapabilities, DiagnosticTag, ExecuteCommandOptions, HoverProviderCapability,
-    InitializeResult, MarkupKind, OneOf, ResourceOperationKind, SemanticTokensFullOptions,
-    SemanticTokensOptions, ServerCapabilities, ServerInfo, TextDocumentClientCapabilities,
-    TextDocumentSyncCapability, TextDocumentSyncKind, TextDocumentSyncOptions, WorkspaceClientCapabilities,
+    CodeActionKind, CodeActionOptions, CompletionOptions, DiagnosticOptions, DiagnosticServerCapabilities,
+    ExecuteCommandOptions, HoverProviderCapability, InitializeResult, OneOf, SemanticTokensFullOptions,
+    SemanticTokensOptions, ServerCapabilities, ServerInfo, TextDocumentSyncCapability, TextDocumentSyncKind,
+    TextDocumentSyncOptions,
 };
 
+use crate::client::ClientFeatures;
 use crate::handlers::{code_actions, semantic_tokens};
-
-use crate::positions::Encoding;
-
-/// The client's abilities that change our answers, each off unless the client says otherwise.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an independent yes or no of the protocol")]
-pub(crate) struct ClientFeatures {
-    /// The unit of its columns.
-    pub(crate) encoding: Encoding,
-    /// It asks for diagnostics; then they are not pushed.
-    pub(crate) pull_diagnostics: bool,
-    /// It shows second places of a diagnostic; else they are told in its message.
-    pub(crate) related_information: bool,
-    /// What else it can show about a diagnostic's text: that it is unnecessary, or deprecated.
-    pub(crate) diagnostic_tags: Vec<DiagnosticTag>,
-    /// It links a diagnostic's code to its page.
-    pub(crate) code_description: bool,
-    /// How a hover is to be written, if it says.
-    pub(crate) hover_format: Option<MarkupKind>,
-    /// How the documentation of a completion is to be written, if it says.
-    pub(crate) completion_format: Option<MarkupKind>,
-    /// Completions may have places to fill in.
-    pub(crate) snippets: bool,
-    /// Definitions may say which text leads to them.
-    pub(crate) definition_links: bool,
-    /// Document symbols may be a tree.
-    pub(crate) symbol_tree: bool,
-    /// Code actions may be more than commands.
-    pub(crate) action_literals: bool,
-    /// Actions that cannot be used may be shown, with the reason.
-    pub(crate) disabled_actions: bool,
-    /// An action's edit may be made when the action is chosen.
-    pub(crate) resolve_edits: bool,
-    /// Edits may say for which version of a document they are.
-    pub(crate) versioned_edits: bool,
-    /// Edits may create files.
-    pub(crate) create_files: bool,
-    /// It can be asked to show a file.
-    pub(crate) show_document: bool,
-}
-
-impl ClientFeatures {
-    /// Reads them from what `initialize` brings.
-    pub(crate) fn new(client: &ClientCapabilities) -> Self {
-        let mut features = Self::default();
-        let offered = client.general.as_ref().and_then(|general| general.position_encodings.as_deref());
-        features.encoding = Encoding::negotiate(offered);
-        let show_document = client.window.as_ref().and_then(|window| window.show_document.as_ref());
-        features.show_document = show_document.is_some_and(|show| show.support);
-        if let Some(workspace) = &client.workspace {
-            features.read_workspace(workspace);
-        }
-        if let Some(document) = &client.text_document {
-            features.read_diagnostics(document);
-            features.read_documents(document);
-        }
-        features
-    }
-
-    fn read_workspace(&mut self, workspace: &WorkspaceClientCapabilities) {
-        let Some(edit) = &workspace.workspace_edit else { return };
-        let operations = edit.resource_operations.as_deref().unwrap_or_default();
-        self.create_files = operations.contains(&ResourceOperationKind::Create);
-        // Neovim names operations, which only versioned edits can hold, and nothing else.
-        self.versioned_edits = edit.document_changes == Some(true) || !operations.is_empty();
-    }
-
-    fn read_diagnostics(&mut self, document: &TextDocumentClientCapabilities) {
-        self.pull_diagnostics = document.diagnostic.is_some();
-        if let Some(pushed) = &document.publish_diagnostics {
-            self.related_information = pushed.related_information == Some(true);
-            self.diagnostic_tags = pushed.tag_support.clone().map(|tags| tags.value_set).unwrap_or_default();
-            self.code_description = pushed.code_description_support == Some(true);
-        }
-        if let Some(pulled) = &document.diagnostic {
-            // Clients of the protocol before 3.18 say these things for pushed diagnostics only.
-            self.related_information |= pulled.related_information == Some(true);
-            if pulled.tag_support.is_some() {
-                self.diagnostic_tags = vec![DiagnosticTag::UNNECESSARY, DiagnosticTag::DEPRECATED];
-            }
-            self.code_description |= pulled.code_description_support == Some(true);
-        }
-    }
-
-    fn read_documents(&mut self, document: &TextDocumentClientCapabilities) {
-        let best = |formats: Option<&Vec<MarkupKind>>| {
-            let offers = |kind: &MarkupKind| formats.is_some_and(|formats| formats.contains(kind));
-            [MarkupKind::Markdown, MarkupKind::PlainText].into_iter().find(offers)
-        };
-        self.hover_format = best(document.hover.as_ref().and_then(|hover| hover.content_format.as_ref()));
-        if let Some(item) =
-            document.completion.as_ref().and_then(|completion| completion.completion_item.as_ref())
-        {
-            self.completion_format = best(item.documentation_format.as_ref());
-            self.snippets = item.snippet_support == Some(true);
-        }
-        self.definition_links =
-            document.definition.as_ref().is_some_and(|goto| goto.link_support == Some(true));
-        self.symbol_tree = document
-            .document_symbol
-            .as_ref()
-            .is_some_and(|symbols| symbols.hierarchical_document_symbol_support == Some(true));
-        if let Some(action) = &document.code_action {
-            self.action_literals = action.code_action_literal_support.is_some();
-            self.disabled_actions = action.disabled_support == Some(true);
-            self.resolve_edits = action.data_support == Some(true)
-                && action
-                    .resolve_support
-                    .as_ref()
-                    .is_some_and(|support| support.properties.iter().any(|property| property == "edit"));
-        }
-    }
-}
 
 /// The answer to `initialize`.
 pub(crate) fn initialize_result(client: &ClientFeatures) -> InitializeResult {

@@ -14,10 +14,12 @@
 //! With the feature `process` off there is no runtime, no stdio and no socket: a browser feeds a session itself.
 
 mod capabilities;
+mod client;
 mod documents;
 #[cfg(feature = "process")]
 mod frame;
 mod handlers;
+mod log;
 mod message;
 #[cfg(feature = "process")]
 mod message_loop;

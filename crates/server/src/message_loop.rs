@@ -12,8 +12,8 @@ use std::time::Duration;
 use tokio::runtime;
 
 use crate::frame::{Frame, FrameReader};
+use crate::log::log;
 use crate::message::Outbox;
-use crate::server::log;
 use crate::session::{Ending, Session};
 
 /// How long the last messages may take to leave once the session is over.

@@ -7,7 +7,7 @@ use std::thread;
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::process::{Pid, PidfdFlags, pidfd_open};
 
-use crate::server::log;
+use crate::log::log;
 
 /// Ends this process, with the exit code of an abrupt end, as soon as the client's has ended.
 ///

@@ -1,7 +1,5 @@
 //! The whole surface of the server, one entry per message of the protocol.
 
-use std::fmt;
-use std::io::{self, Write};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use serde::{Deserialize, Serialize};
@@ -10,7 +8,8 @@ use tower_lsp::jsonrpc::{Error, Request, Result};
 use tower_lsp::ls_types::*;
 use tower_lsp::{Client, LanguageServer};
 
-use crate::capabilities::{self, ClientFeatures};
+use crate::capabilities;
+use crate::client::ClientFeatures;
 use crate::handlers::{
     code_actions, completion, diagnostics, document_symbols, hover, navigation, scripts, semantic_tokens,
     synchronization,
@@ -170,9 +169,4 @@ impl Server {
     pub(crate) fn recover(&self) {
         self.state().rebuild();
     }
-}
-
-/// Writes a line to standard error, the only place where a language server may say something of its own.
-pub(crate) fn log(message: fmt::Arguments<'_>) {
-    let _ = writeln!(io::stderr(), "pydslrep-lsp: {message}");
 }

@@ -15,8 +15,9 @@ use tower_lsp::jsonrpc::{ErrorCode, Id, Request, Response};
 use tower_lsp::{ClientSocket, ExitedError, LspService};
 use tower_service::Service;
 
+use crate::log::log;
 use crate::message::{Incoming, Outbox, parse, refuse};
-use crate::server::{Server, log};
+use crate::server::Server;
 
 /// How a session ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -11,7 +11,7 @@ use tower_lsp::ls_types::{
     DidChangeTextDocumentParams, Location, Position, Range, TextDocumentItem, TextDocumentPositionParams, Uri,
 };
 
-use crate::capabilities::ClientFeatures;
+use crate::client::ClientFeatures;
 use crate::documents::{Document, Documents, key};
 use crate::positions::{to_offset, to_range, to_span};
 

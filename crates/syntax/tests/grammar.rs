@@ -8,7 +8,7 @@ const GRAMMAR: &str = include_str!("../../../grammar/pydslrep.ebnf");
 
 /// The quoted words of the rules, those of the tokens' own rules left out.
 fn quoted_words() -> BTreeSet<&'static str> {
-    let rules = GRAMMAR.split("(* Tokens.").next().unwrap();
+    let (rules, _) = GRAMMAR.split_once("(* Tokens.").unwrap_or((GRAMMAR, ""));
     let is_word = |text: &&str| text.chars().all(|c| c.is_ascii_alphabetic()) && !text.is_empty();
     rules.split('"').skip(1).step_by(2).filter(is_word).collect()
 }

@@ -13,6 +13,7 @@ pub(super) static RULE: Rule = Rule {
     code: "ambiguous-import",
     severity: Severity::Error,
     summary: "two imported files both declare a name that is used here",
+    tag: None,
     seeks_names: false,
     check,
 };

@@ -3,14 +3,15 @@
 use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::Entity;
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Rule, Tag};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "deprecated-ip-clause",
     severity: Severity::Warning,
     summary: "an environment's ip is written behind a comma",
+    tag: Some(Tag::Deprecated),
     seeks_names: false,
     check,
 };

@@ -8,6 +8,7 @@ pub(super) static RULE: Rule = Rule {
     code: "duplicate-name",
     severity: Severity::Error,
     summary: "a second declaration of a name within a kind",
+    tag: None,
     seeks_names: true,
     check,
 };

@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "empty-environment",
     severity: Severity::Warning,
     summary: "an environment without robots",
+    tag: None,
     seeks_names: false,
     check,
 };

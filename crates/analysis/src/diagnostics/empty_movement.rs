@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "empty-movement",
     severity: Severity::Warning,
     summary: "a movement without actions",
+    tag: None,
     seeks_names: false,
     check,
 };

@@ -13,6 +13,7 @@ pub(super) static RULE: Rule = Rule {
     code: "idle-robot",
     severity: Severity::Hint,
     summary: "an environment lists a robot that none of its movements drives",
+    tag: None,
     seeks_names: false,
     check,
 };

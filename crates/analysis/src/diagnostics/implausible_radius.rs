@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "implausible-radius",
     severity: Severity::Warning,
     summary: "a wheel of more than a metre in radius was probably measured in millimetres",
+    tag: None,
     seeks_names: false,
     check,
 };

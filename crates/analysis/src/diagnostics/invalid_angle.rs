@@ -11,6 +11,7 @@ pub(super) static RULE: Rule = Rule {
     code: "invalid-angle",
     severity: Severity::Warning,
     summary: "an angle lies above 0 and up to 360 degrees; `left` and `right` say which way",
+    tag: None,
     seeks_names: false,
     check,
 };

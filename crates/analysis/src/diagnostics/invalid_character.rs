@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "invalid-character",
     severity: Severity::Error,
     summary: "characters that have no meaning in the language",
+    tag: None,
     seeks_names: false,
     check,
 };

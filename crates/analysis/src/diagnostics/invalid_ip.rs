@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "invalid-ip",
     severity: Severity::Error,
     summary: "the numbers of an address lie between 0 and 255",
+    tag: None,
     seeks_names: false,
     check,
 };

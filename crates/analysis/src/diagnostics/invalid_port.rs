@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "invalid-port",
     severity: Severity::Error,
     summary: "a port lies between 1 and 65535",
+    tag: None,
     seeks_names: false,
     check,
 };

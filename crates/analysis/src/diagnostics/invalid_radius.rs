@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "invalid-radius",
     severity: Severity::Error,
     summary: "a wheel's radius must be above zero",
+    tag: None,
     seeks_names: false,
     check,
 };

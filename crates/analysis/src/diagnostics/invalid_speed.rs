@@ -11,6 +11,7 @@ pub(super) static RULE: Rule = Rule {
     code: "invalid-speed",
     severity: Severity::Error,
     summary: "a speed must be above zero",
+    tag: None,
     seeks_names: false,
     check,
 };

@@ -3,14 +3,15 @@
 use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::Entity;
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Rule, Tag};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "misplaced-type",
     severity: Severity::Warning,
     summary: "a robot's type stands before its name",
+    tag: Some(Tag::Deprecated),
     seeks_names: false,
     check,
 };

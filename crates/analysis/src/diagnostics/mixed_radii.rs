@@ -12,6 +12,7 @@ pub(super) static RULE: Rule = Rule {
     code: "mixed-radii",
     severity: Severity::Warning,
     summary: "the wheels of a robot differ in radius",
+    tag: None,
     seeks_names: false,
     check,
 };

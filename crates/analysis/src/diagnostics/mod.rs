@@ -47,6 +47,15 @@ use self::context::Context;
 pub(crate) use self::context::{Problem, ProblemFix};
 use crate::{Database, Diagnostic, Edit, EntityId, FileId, Fix, Related, Severity};
 
+/// A way to show text besides underlining it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tag {
+    /// It does nothing; shown faded.
+    Unnecessary,
+    /// An older spelling; shown struck through.
+    Deprecated,
+}
+
 /// A row of the catalogue.
 #[derive(Debug)]
 pub struct Rule {
@@ -56,6 +65,8 @@ pub struct Rule {
     pub severity: Severity,
     /// What it finds, in one sentence.
     pub summary: &'static str,
+    /// How an editor may show the text it is about.
+    pub tag: Option<Tag>,
     /// Whether its words depend on which other names there are.
     pub(crate) seeks_names: bool,
     check: fn(&Context<'_>, &mut Vec<Problem>),

@@ -11,6 +11,7 @@ pub(super) static RULE: Rule = Rule {
     code: "movement-robot-missing",
     severity: Severity::Error,
     summary: "an environment lists a movement whose robot it does not list",
+    tag: None,
     seeks_names: false,
     check,
 };

@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "no-environment",
     severity: Severity::Information,
     summary: "robots and movements, but no environment to run them",
+    tag: None,
     seeks_names: false,
     check,
 };

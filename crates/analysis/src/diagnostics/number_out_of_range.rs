@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "number-out-of-range",
     severity: Severity::Error,
     summary: "a distance beyond 1000 km, or a number too large to compute with",
+    tag: None,
     seeks_names: false,
     check,
 };

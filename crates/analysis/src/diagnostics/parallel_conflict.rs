@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "parallel-conflict",
     severity: Severity::Error,
     summary: "two movements of one robot run at the same time",
+    tag: None,
     seeks_names: false,
     check,
 };

@@ -11,6 +11,7 @@ pub(super) static RULE: Rule = Rule {
     code: "repeated-robot",
     severity: Severity::Warning,
     summary: "an environment lists a robot twice",
+    tag: None,
     seeks_names: false,
     check,
 };

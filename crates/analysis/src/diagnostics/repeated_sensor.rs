@@ -11,6 +11,7 @@ pub(super) static RULE: Rule = Rule {
     code: "repeated-sensor",
     severity: Severity::Warning,
     summary: "a list names a sensor twice",
+    tag: None,
     seeks_names: false,
     check,
 };

@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "repeated-wheel",
     severity: Severity::Error,
     summary: "a robot lists a wheel twice",
+    tag: None,
     seeks_names: false,
     check,
 };

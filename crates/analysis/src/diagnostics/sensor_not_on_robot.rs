@@ -11,6 +11,7 @@ pub(super) static RULE: Rule = Rule {
     code: "sensor-not-on-robot",
     severity: Severity::Error,
     summary: "`turn … until` names a sensor that the movement's robot does not carry",
+    tag: None,
     seeks_names: false,
     check,
 };

@@ -5,14 +5,15 @@ use pydslrep_syntax::ast::{Entity, Environment, Name};
 
 use crate::FileId;
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Rule, Tag};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "single-parallel",
     severity: Severity::Hint,
     summary: "a `parallel` movement that never runs beside another",
+    tag: Some(Tag::Unnecessary),
     seeks_names: false,
     check,
 };

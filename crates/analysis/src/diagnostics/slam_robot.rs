@@ -11,6 +11,7 @@ pub(super) static RULE: Rule = Rule {
     code: "slam-robot",
     severity: Severity::Error,
     summary: "`slam` on a robot that is not two-wheeled",
+    tag: None,
     seeks_names: false,
     check,
 };

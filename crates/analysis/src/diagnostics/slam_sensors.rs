@@ -11,6 +11,7 @@ pub(super) static RULE: Rule = Rule {
     code: "slam-sensors",
     severity: Severity::Error,
     summary: "`slam` with fewer than five distance sensors",
+    tag: None,
     seeks_names: false,
     check,
 };

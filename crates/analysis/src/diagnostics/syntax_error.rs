@@ -11,6 +11,7 @@ pub(super) static RULE: Rule = Rule {
     code: "syntax-error",
     severity: Severity::Error,
     summary: "the text does not follow the grammar",
+    tag: None,
     seeks_names: false,
     check,
 };

@@ -11,6 +11,7 @@ pub(super) static RULE: Rule = Rule {
     code: "unresolved-reference",
     severity: Severity::Error,
     summary: "a name that is not declared",
+    tag: None,
     seeks_names: true,
     check,
 };

@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "unterminated-comment",
     severity: Severity::Error,
     summary: "a comment that is never closed hides the rest of the file",
+    tag: None,
     seeks_names: false,
     check,
 };

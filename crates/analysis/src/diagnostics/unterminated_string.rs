@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "unterminated-string",
     severity: Severity::Error,
     summary: "a path in quotes that has no end on its line",
+    tag: None,
     seeks_names: false,
     check,
 };

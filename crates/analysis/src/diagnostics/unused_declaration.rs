@@ -3,14 +3,15 @@
 use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::Entity;
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Rule, Tag};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "unused-declaration",
     severity: Severity::Hint,
     summary: "a wheel, sensor, ip, robot or movement that nothing uses",
+    tag: Some(Tag::Unnecessary),
     seeks_names: false,
     check,
 };

@@ -11,6 +11,7 @@ pub(super) static RULE: Rule = Rule {
     code: "wheel-count",
     severity: Severity::Error,
     summary: "`tw` needs 2 wheels, `fw` and `fwh` need 4",
+    tag: None,
     seeks_names: false,
     check,
 };

@@ -12,6 +12,7 @@ pub(super) static RULE: Rule = Rule {
     code: "wheel-kind-mismatch",
     severity: Severity::Error,
     summary: "`tw` and `fw` drive on `wheel`, `fwh` on `wheelH`",
+    tag: None,
     seeks_names: false,
     check,
 };

@@ -10,6 +10,7 @@ pub(super) static RULE: Rule = Rule {
     code: "wheel-order",
     severity: Severity::Hint,
     summary: "two wheels whose names differ in L and R stand right before left",
+    tag: None,
     seeks_names: false,
     check,
 };

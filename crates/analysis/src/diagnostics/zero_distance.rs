@@ -2,14 +2,15 @@
 
 use pydslrep_syntax::ast::{ActionKind, Entity};
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Rule, Tag};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "zero-distance",
     severity: Severity::Warning,
     summary: "a move over no distance does nothing",
+    tag: Some(Tag::Unnecessary),
     seeks_names: false,
     check,
 };

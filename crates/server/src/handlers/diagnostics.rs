@@ -5,6 +5,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::str::FromStr;
 
 use pydslrep_analysis as analysis;
+use pydslrep_analysis::diagnostics::Tag;
 use tower_lsp::ls_types::{
     CodeDescription, Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag,
     DocumentDiagnosticParams, DocumentDiagnosticReport, DocumentDiagnosticReportResult,
@@ -95,7 +96,12 @@ pub(crate) fn convert(state: &State, document: &Document, diagnostic: &analysis:
         source: Some("pydslrep".to_owned()),
         message: message(state, diagnostic),
         related_information: related_information(state, diagnostic),
-        tags: tag(diagnostic.code()).filter(|tag| client.diagnostic_tags.contains(tag)).map(|tag| vec![tag]),
+        tags: diagnostic
+            .rule
+            .tag
+            .map(tag)
+            .filter(|tag| client.diagnostic_tags.contains(tag))
+            .map(|tag| vec![tag]),
         data: None,
     }
 }
@@ -109,12 +115,10 @@ fn severity(severity: analysis::Severity) -> DiagnosticSeverity {
     }
 }
 
-/// What an editor shows in its own way: faded, or struck through.
-fn tag(code: &str) -> Option<DiagnosticTag> {
-    match code {
-        "unused-declaration" | "single-parallel" | "zero-distance" => Some(DiagnosticTag::UNNECESSARY),
-        "misplaced-type" | "deprecated-ip-clause" => Some(DiagnosticTag::DEPRECATED),
-        _ => None,
+fn tag(tag: Tag) -> DiagnosticTag {
+    match tag {
+        Tag::Unnecessary => DiagnosticTag::UNNECESSARY,
+        Tag::Deprecated => DiagnosticTag::DEPRECATED,
     }
 }
 

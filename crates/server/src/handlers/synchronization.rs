@@ -6,8 +6,8 @@ use tower_lsp::ls_types::{
 };
 
 use crate::handlers::diagnostics;
+use crate::log::log;
 use crate::message::Outbox;
-use crate::server::log;
 use crate::state::State;
 
 /// `textDocument/didOpen`.
