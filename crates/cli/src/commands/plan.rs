@@ -289,6 +289,8 @@ fn json_action(planned: &Planned, index: ActionIndex) -> JsonAction<'_> {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::{fixed, heading};
 
     #[test]
@@ -296,6 +298,6 @@ mod tests {
         assert_eq!(fixed(-0.0001, 3), "0.000");
         assert_eq!(fixed(-0.0006, 3), "-0.001");
         assert_eq!(fixed(4.0, 2), "4.00");
-        assert_eq!([-3.14159, 3.14159, -3.1].map(heading), ["180.0", "180.0", "-177.6"]);
+        assert_eq!([0.00001 - PI, PI, -3.1].map(heading), ["180.0", "180.0", "-177.6"]);
     }
 }

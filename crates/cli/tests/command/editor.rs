@@ -10,10 +10,8 @@ fn an_editor_is_served_on_standard_input() {
         r#"{"jsonrpc":"2.0","id":2,"method":"shutdown"}"#,
         r#"{"jsonrpc":"2.0","method":"exit"}"#,
     ];
-    let input: String = messages
-        .iter()
-        .map(|message| format!("Content-Length: {}\r\n\r\n{message}", message.len()))
-        .collect();
+    let framed = messages.map(|message| format!("Content-Length: {}\r\n\r\n{message}", message.len()));
+    let input = framed.concat();
     for arguments in [&["lsp"][..], &["lsp", "--stdio"]] {
         let done = Place::new().run_with(arguments, input.as_bytes());
         assert_eq!(done.code, Some(0));
