@@ -1,4 +1,4 @@
-//! The open documents: what the client shows, exactly as it sent it.
+//! The documents: what the client shows, exactly as it sent it, and what those import.
 
 use pydslrep_analysis::FileId;
 use pydslrep_syntax::Span;
@@ -8,13 +8,13 @@ use tower_lsp::ls_types::{Diagnostic, TextDocumentContentChangeEvent, Uri};
 
 use crate::positions::{self, Encoding};
 
-/// A document that is open in the client.
+/// A document that is open in the client, or a file that one of those imports.
 #[derive(Debug)]
 pub(crate) struct Document {
     /// As the client writes it, for it is the client that has to recognise it.
     pub(crate) uri: Uri,
-    /// The client's number for this text.
-    pub(crate) version: i32,
+    /// The client's number for this text; `None` if it is not open there and was read from a disk.
+    pub(crate) version: Option<i32>,
     /// The text. It shares its memory with the database's copy and outlives a database that failed.
     pub(crate) text: Rope,
     /// Its number in the database; `None` if it cannot be analysed.
@@ -43,7 +43,7 @@ impl Document {
     }
 }
 
-/// All open documents by [`key`].
+/// All documents by [`key`].
 pub(crate) type Documents = FxHashMap<String, Document>;
 
 /// The name under which a document is known, one for all spellings of its address: a file's path, decoded, with the
@@ -122,7 +122,7 @@ mod tests {
             let mut expected = text.clone();
             let mut document = Document {
                 uri: Uri::from_str("file:///a.pyr").unwrap(),
-                version: 0,
+                version: Some(0),
                 text: Rope::from_str(&text),
                 file: None,
                 published: None,

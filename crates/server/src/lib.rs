@@ -19,6 +19,7 @@ mod documents;
 #[cfg(feature = "process")]
 mod frame;
 mod handlers;
+mod imports;
 mod log;
 mod message;
 #[cfg(feature = "process")]

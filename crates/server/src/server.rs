@@ -14,6 +14,7 @@ use crate::handlers::{
     code_actions, completion, diagnostics, document_symbols, hover, navigation, scripts, semantic_tokens,
     synchronization,
 };
+use crate::imports;
 use crate::message::Outbox;
 use crate::state::State;
 
@@ -47,7 +48,11 @@ impl LanguageServer for Server {
     async fn initialize(&self, params: InitializeParams) -> Result<InitializeResult> {
         let features = ClientFeatures::new(&params.capabilities);
         let result = capabilities::initialize_result(&features);
-        self.state().client = features;
+        let roots = params.workspace_folders.iter().flatten().map(|folder| &folder.uri);
+        let mut state = self.state();
+        state.client = features;
+        state.folders = imports::folders(roots);
+        drop(state);
         #[cfg(all(target_os = "linux", feature = "process"))]
         if let Some(client) = params.process_id {
             crate::parent::leave_with(client);
@@ -62,11 +67,11 @@ impl LanguageServer for Server {
     //// Documents ////
 
     async fn did_open(&self, params: DidOpenTextDocumentParams) {
-        synchronization::open(&mut self.state(), params);
+        synchronization::open(&mut self.state(), params, &self.outbox);
     }
 
     async fn did_change(&self, params: DidChangeTextDocumentParams) {
-        synchronization::change(&mut self.state(), &params);
+        synchronization::change(&mut self.state(), &params, &self.outbox);
     }
 
     async fn did_close(&self, params: DidCloseTextDocumentParams) {

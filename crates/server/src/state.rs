@@ -22,8 +22,10 @@ pub(crate) struct State {
     pub(crate) client: ClientFeatures,
     /// The analysis of the open documents.
     pub(crate) database: Database,
-    /// The open documents.
+    /// The open documents and the files they import.
     pub(crate) documents: Documents,
+    /// The keys of the folders open in the client, each with `/` at its end.
+    pub(crate) folders: Vec<String>,
     /// Whether anything was opened, changed or closed since diagnostics were last told.
     pub(crate) changed: bool,
 }
@@ -35,7 +37,7 @@ impl State {
         let published = self.documents.remove(&key).and_then(|before| before.published);
         let document = Document {
             text: Rope::from_str(&opened.text),
-            version: opened.version,
+            version: Some(opened.version),
             uri: opened.uri,
             file: None,
             published,
@@ -49,8 +51,9 @@ impl State {
     pub(crate) fn change(&mut self, params: &DidChangeTextDocumentParams) -> bool {
         let encoding = self.client.encoding;
         let key = key(&params.text_document.uri);
-        let Some(document) = self.documents.get_mut(&key) else { return false };
-        document.version = params.text_document.version;
+        let open = self.documents.get_mut(&key).filter(|document| document.version.is_some());
+        let Some(document) = open else { return false };
+        document.version = Some(params.text_document.version);
         self.changed = true;
         // All of the document before any of the analysis: should that fail, the document is still right.
         let spans: Vec<Option<Span>> =
@@ -67,12 +70,22 @@ impl State {
 
     /// Lets go of a document; false if it is not open.
     pub(crate) fn close(&mut self, uri: &Uri) -> bool {
-        let Some(document) = self.documents.remove(&key(uri)) else { return false };
-        self.changed = true;
-        if let Some(file) = document.file {
-            self.database.close(file);
+        let key = key(uri);
+        if self.documents.get(&key).is_none_or(|document| document.version.is_none()) {
+            return false;
         }
+        self.remove(&key);
         true
+    }
+
+    /// Forgets a document, open or not.
+    pub(crate) fn remove(&mut self, key: &str) {
+        if let Some(document) = self.documents.remove(key) {
+            self.changed = true;
+            if let Some(file) = document.file {
+                self.database.close(file);
+            }
+        }
     }
 
     /// Analyses all documents afresh, after a defect that may have left the database half changed. A document that
@@ -103,12 +116,12 @@ impl State {
         None
     }
 
-    /// The open document at an address.
+    /// The document at an address.
     pub(crate) fn document(&self, uri: &Uri) -> Option<&Document> {
         self.documents.get(&key(uri))
     }
 
-    /// The open document at an address, if it could be analysed.
+    /// The document at an address, if it could be analysed.
     pub(crate) fn analysed(&self, uri: &Uri) -> Option<(&Document, FileId)> {
         let document = self.document(uri)?;
         Some((document, document.file?))
@@ -120,7 +133,7 @@ impl State {
         Some(Place { document, file, offset: self.offset(document, at.position) })
     }
 
-    /// The open document that the database knows as `file`.
+    /// The document that the database knows as `file`.
     pub(crate) fn document_of(&self, file: FileId) -> Option<&Document> {
         self.documents.values().find(|document| document.file == Some(file))
     }
@@ -140,7 +153,7 @@ impl State {
         to_range(&document.text, span, self.client.encoding)
     }
 
-    /// A place in any open document.
+    /// A place in any document.
     pub(crate) fn location(&self, file: FileId, span: Span) -> Option<Location> {
         let document = self.document_of(file)?;
         Some(Location::new(document.uri.clone(), self.range(document, span)))

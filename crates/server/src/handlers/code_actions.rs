@@ -88,7 +88,7 @@ fn workspace_edit(state: &State, edits: &[analysis::Edit]) -> WorkspaceEdit {
         let changes = of_documents.map(|(document, edits)| TextDocumentEdit {
             text_document: OptionalVersionedTextDocumentIdentifier {
                 uri: document.uri.clone(),
-                version: Some(document.version),
+                version: document.version,
             },
             edits: edits.into_iter().map(OneOf::Left).collect(),
         });

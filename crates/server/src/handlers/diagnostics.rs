@@ -31,7 +31,7 @@ pub(crate) fn publish(state: &mut State, outbox: &Outbox) {
             continue;
         }
         let (uri, version) = (document.uri.clone(), document.version);
-        let params = PublishDiagnosticsParams::new(uri, diagnostics, Some(version));
+        let params = PublishDiagnosticsParams::new(uri, diagnostics, version);
         outbox.notify("textDocument/publishDiagnostics", &params);
         if let Some(document) = state.documents.get_mut(&key) {
             document.published = Some(params.diagnostics);

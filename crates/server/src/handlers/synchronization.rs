@@ -11,13 +11,16 @@ use crate::message::Outbox;
 use crate::state::State;
 
 /// `textDocument/didOpen`.
-pub(crate) fn open(state: &mut State, params: DidOpenTextDocumentParams) {
+pub(crate) fn open(state: &mut State, params: DidOpenTextDocumentParams, outbox: &Outbox) {
     state.open(params.text_document);
+    follow_imports(state, outbox);
 }
 
 /// `textDocument/didChange`.
-pub(crate) fn change(state: &mut State, params: &DidChangeTextDocumentParams) {
-    if !state.change(params) {
+pub(crate) fn change(state: &mut State, params: &DidChangeTextDocumentParams, outbox: &Outbox) {
+    if state.change(params) {
+        follow_imports(state, outbox);
+    } else {
         let uri = params.text_document.uri.as_str();
         log(format_args!("a change to a document that is not open: {uri}"));
     }
@@ -30,6 +33,16 @@ pub(crate) fn close(state: &mut State, params: DidCloseTextDocumentParams, outbo
         log(format_args!("a document was closed that is not open: {}", uri.as_str()));
     } else if !state.client.pull_diagnostics {
         diagnostics::clear(uri, outbox);
+    }
+    follow_imports(state, outbox);
+}
+
+/// What is imported no longer has no diagnostics either.
+fn follow_imports(state: &mut State, outbox: &Outbox) {
+    for forgotten in state.follow_imports() {
+        if !state.client.pull_diagnostics {
+            diagnostics::clear(forgotten, outbox);
+        }
     }
 }
 
@@ -52,7 +65,7 @@ mod tests {
 
     fn open_text(state: &mut State, version: i32, text: &str) {
         let text_document = TextDocumentItem::new(uri(), "pydslrep".to_owned(), version, text.to_owned());
-        open(state, DidOpenTextDocumentParams { text_document });
+        state.open(text_document);
     }
 
     /// One change after the other: `None` replaces the whole text, else line and column of start and end.
@@ -90,7 +103,7 @@ mod tests {
         assert_eq!(text(&state), "one two🤖!\r\né");
         assert!(change_text(&mut state, 3, &[(None, "new"), (Some([0, 3, 0, 0]), "er")]));
         assert_eq!(text(&state), "er", "a reversed range is understood");
-        assert_eq!(state.document(&uri()).unwrap().version, 3);
+        assert_eq!(state.document(&uri()).unwrap().version, Some(3));
     }
 
     #[test]
