@@ -1,9 +1,11 @@
 //! A script that runs: started, listened to, and never outliving this command.
 
+use std::io;
 use std::path::PathBuf;
 use std::process::{ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
+use pydslrep_simulator::Simulator;
 use tokio::io::{AsyncBufReadExt, AsyncReadExt, BufReader, Lines};
 use tokio::process::{Child, ChildStdout, Command};
 use tokio::task::JoinHandle;
@@ -13,7 +15,6 @@ use crate::driven::Driven;
 use crate::failure::Failure;
 use crate::interrupt::Interrupts;
 use crate::progress::Progress;
-use pydslrep_simulator::Simulator;
 
 /// How often the simulator is looked at.
 const LOOK_PERIOD: Duration = Duration::from_millis(50);
@@ -63,17 +64,16 @@ pub(crate) async fn drive(
     let mut watch = Watch::default();
     let ending = loop {
         tokio::select! {
-            line = running.lines.next_line(), if running.speaks => match line {
-                Ok(Some(line)) => {
-                    if let (Some(seconds), None) = (progress.read(&line), simulator) {
-                        progress.pass(seconds);
-                        driven.time = seconds;
-                    }
-                }
-                _ => running.speaks = false,
+            line = next_line(&mut running.lines), if running.speaks => match line {
+                Some(line) => read(&line, simulator, driven, progress),
+                None => running.speaks = false,
             },
-            status = running.child.wait(), if !running.speaks => {
+            status = running.child.wait() => {
                 let status = status.map_err(|error| Failure::new(format!("lost the script: {error}")))?;
+                // What it said last may not be read yet; a process that it left behind could keep the pipe open.
+                while let Ok(Some(line)) = timeout(STOP_LIMIT, next_line(&mut running.lines)).await {
+                    read(&line, simulator, driven, progress);
+                }
                 break running.ending(status).await;
             }
             () = interrupts.next() => {
@@ -95,6 +95,25 @@ pub(crate) async fn drive(
         driven.extend(&simulator.take_trace());
     }
     Ok(ending)
+}
+
+/// Reads what the script says. Only where there is no simulator to ask, it also tells the time.
+fn read(line: &str, simulator: Option<&Simulator>, driven: &mut Driven, progress: &mut Progress) {
+    if let (Some(seconds), None) = (progress.read(line), simulator) {
+        progress.pass(seconds);
+        driven.time = seconds;
+    }
+}
+
+/// The next line that a script says; `None` at the end. Whatever is no text is passed over.
+async fn next_line(lines: &mut Lines<BufReader<ChildStdout>>) -> Option<String> {
+    loop {
+        match lines.next_line().await {
+            Ok(line) => return line,
+            Err(error) if error.kind() == io::ErrorKind::InvalidData => {}
+            Err(_) => return None,
+        }
+    }
 }
 
 /// Tells when time stands still.
