@@ -1,10 +1,10 @@
 """The arrows between the crates are those of docs/architecture.md."""
 
 import re
-import tomllib
 from pathlib import Path
 
 import pytest
+import tomllib
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -18,7 +18,16 @@ MAY_KNOW: dict[str, set[str]] = {
     "script": {"analysis", "kinematics"},
     "simulator": {"kinematics", "scene"},
     "server": {"ide", "script", "analysis", "syntax"},
-    "cli": {"syntax", "kinematics", "scene", "analysis", "ide", "script", "simulator", "server"},
+    "cli": {
+        "syntax",
+        "kinematics",
+        "scene",
+        "analysis",
+        "ide",
+        "script",
+        "simulator",
+        "server",
+    },
 }
 
 # Who may know what of the world outside.
@@ -34,11 +43,15 @@ ONLY_IN: dict[str, set[str]] = {
 
 # Files, clocks, threads and sockets stay out of what is to run in a browser.
 PURE = ["syntax", "kinematics", "scene", "analysis", "ide", "script"]
-IMPURE = re.compile(r"\bstd::(fs|net::(Tcp|Udp)|thread|process|time::(Instant|SystemTime)|env)\b")
+IMPURE = re.compile(
+    r"\bstd::(fs|net::(Tcp|Udp)|thread|process|time::(Instant|SystemTime)|env)\b"
+)
 
 
 def manifest(crate: str) -> dict[str, dict[str, object]]:
-    return tomllib.loads((ROOT / "crates" / crate / "Cargo.toml").read_text(encoding="utf-8"))
+    return tomllib.loads(
+        (ROOT / "crates" / crate / "Cargo.toml").read_text(encoding="utf-8")
+    )
 
 
 def test_every_crate_is_on_the_map() -> None:
@@ -49,14 +62,20 @@ def test_every_crate_is_on_the_map() -> None:
 
 @pytest.mark.parametrize("crate", MAY_KNOW)
 def test_a_crate_knows_only_what_lies_below_it(crate: str) -> None:
-    ours = {name.removeprefix("pydslrep-") for name in manifest(crate)["dependencies"] if name.startswith("pydslrep-")}
+    ours = {
+        name.removeprefix("pydslrep-")
+        for name in manifest(crate)["dependencies"]
+        if name.startswith("pydslrep-")
+    }
     assert ours <= MAY_KNOW[crate]
 
 
 @pytest.mark.parametrize("crate", MAY_KNOW)
 def test_libraries_stay_in_their_layer(crate: str) -> None:
     for library in manifest(crate)["dependencies"]:
-        assert crate in ONLY_IN.get(library, {crate}), f"{library} does not belong into {crate}"
+        assert crate in ONLY_IN.get(library, {crate}), (
+            f"{library} does not belong into {crate}"
+        )
 
 
 def without_tests(text: str) -> str:
@@ -69,13 +88,23 @@ def test_lower_crates_do_no_io(crate: str) -> None:
         if file.name in {"tests.rs", "differential.rs", "testing.rs", "fixture.rs"}:
             continue
         found = IMPURE.search(without_tests(file.read_text(encoding="utf-8")))
-        assert not found, f"{file.relative_to(ROOT)} uses {found.group()}" if found else ""
+        assert not found, (
+            f"{file.relative_to(ROOT)} uses {found.group()}" if found else ""
+        )
 
 
 @pytest.mark.parametrize("crate", MAY_KNOW)
 def test_every_crate_says_what_it_must_never_know(crate: str) -> None:
     top = ROOT / "crates" / crate / "src" / ("main.rs" if crate == "cli" else "lib.rs")
-    head = [line for line in top.read_text(encoding="utf-8").splitlines() if line.startswith("//!")]
+    head = [
+        line
+        for line in top.read_text(encoding="utf-8").splitlines()
+        if line.startswith("//!")
+    ]
     text = " ".join(head)
-    assert re.search(r"\b[Kk]nows\b", text), f"{top.relative_to(ROOT)} does not say what it knows"
-    assert re.search(r"[Mm]ust never", text), f"{top.relative_to(ROOT)} does not say what it must never know"
+    assert re.search(r"\b[Kk]nows\b", text), (
+        f"{top.relative_to(ROOT)} does not say what it knows"
+    )
+    assert re.search(r"[Mm]ust never", text), (
+        f"{top.relative_to(ROOT)} does not say what it must never know"
+    )

@@ -257,6 +257,11 @@ impl Database {
         self.imports.values().any(|imports| imports.paths.iter().any(|other| other == path))
     }
 
+    /// Whether a name stands in text of the file that had to be skipped.
+    pub(crate) fn is_skipped(&self, file: FileId, name: &SmolStr) -> bool {
+        self.names.is_skipped(file, name)
+    }
+
     /// Whether text of the file had to be skipped with names in it that may be declarations.
     pub(crate) fn has_skipped_names(&self, file: FileId) -> bool {
         self.names.any_skipped(file)

@@ -2,6 +2,7 @@
 
 use pydslrep_syntax::ast::{Entity, Movement, Name, References, Robot, Wheel};
 use pydslrep_syntax::{EntityKind, Lexeme, Span, SyntaxError, closest};
+use smol_str::SmolStr;
 
 use super::Rule;
 use crate::{Database, EntityId, FileId, Resolution, Severity};
@@ -17,6 +18,8 @@ pub(crate) struct Problem {
     pub(crate) help: Option<String>,
     pub(crate) note: Option<String>,
     pub(crate) related: Vec<ProblemPlace>,
+    /// The declared name that the problem is about, where another problem could be about it too.
+    pub(crate) about: Option<SmolStr>,
     pub(crate) fixes: Vec<ProblemFix>,
 }
 
@@ -56,6 +59,7 @@ impl Rule {
             help: None,
             note: None,
             related: Vec::new(),
+            about: None,
             fixes: Vec::new(),
         }
     }
@@ -79,6 +83,11 @@ impl Problem {
 
     pub(super) fn related(mut self, entity: EntityId, span: Span, message: impl Into<String>) -> Self {
         self.related.push(ProblemPlace { entity, span, message: message.into() });
+        self
+    }
+
+    pub(super) fn about(mut self, name: impl Into<SmolStr>) -> Self {
+        self.about = Some(name.into());
         self
     }
 
@@ -197,10 +206,11 @@ impl<'a> Context<'a> {
         Some(self.replace(Span::new(0, end), ""))
     }
 
-    /// The visible name of a kind that `name` is most likely a slip for.
-    pub(super) fn nearest(&self, kind: EntityKind, name: &Name) -> Option<String> {
+    /// The visible name of a kind that `name` is most likely a slip for: a near one, else the only one there is.
+    pub(super) fn nearest(&self, kind: EntityKind, name: &Name) -> Option<SmolStr> {
         let names = self.database.visible_names(self.file, kind);
-        closest(&name.text, names.iter().map(smol_str::SmolStr::as_str)).map(str::to_owned)
+        let near = closest(&name.text, names.iter().map(SmolStr::as_str)).map(SmolStr::new);
+        near.or_else(|| names.first().filter(|_| names.len() == 1).cloned())
     }
 }
 

@@ -20,6 +20,9 @@ pub(super) static RULE: Rule = Rule {
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Environment(environment)) = context.tree else { return };
+    if !context.errors.is_empty() {
+        return;
+    }
     let movements = environment.movements.as_ref().map_or(&[][..], |list| &list.names);
     let known: Vec<_> = movements.iter().map(|name| context.movement(name)).collect();
     // A movement that is not known may drive any robot.

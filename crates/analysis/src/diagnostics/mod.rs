@@ -136,18 +136,42 @@ pub(crate) fn in_entity(database: &Database, id: EntityId) -> Vec<Problem> {
 
 /// The problems of a file with absolute places.
 pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
-    let hidden = has_hidden_text(database, file);
+    let entities = database.entities(file);
+    let problems = entities.flat_map(|entity| {
+        database.problems(entity.id).iter().map(move |problem| (entity.span.start, problem))
+    });
+    let problems: Vec<(u32, &Problem)> = problems.collect();
+    let consequences = Consequences::new(has_hidden_text(database, file), &problems);
     let mut places = Places { database, starts: FxHashMap::default() };
-    let mut diagnostics = Vec::new();
-    for entity in database.entities(file) {
-        for problem in database.problems(entity.id) {
-            if !(hidden && problem.rule == &unresolved_reference::RULE) {
-                diagnostics.push(places.diagnostic(file, entity.span.start, problem));
-            }
-        }
-    }
+    let mut diagnostics: Vec<Diagnostic> = problems
+        .into_iter()
+        .filter(|(_, problem)| !consequences.include(problem))
+        .map(|(start, problem)| places.diagnostic(file, start, problem))
+        .collect();
     diagnostics.extend(no_environment::in_file(database, file));
     diagnostics
+}
+
+/// Problems that only follow from others of the file, which are reported.
+struct Consequences<'a> {
+    /// Text that may declare or use anything is hidden in a comment.
+    hidden: bool,
+    /// Names that references are slips for: it is no wonder that nothing uses them.
+    meant: Vec<&'a str>,
+}
+
+impl<'a> Consequences<'a> {
+    fn new(hidden: bool, problems: &[(u32, &'a Problem)]) -> Self {
+        let slips = problems.iter().filter(|(_, problem)| problem.rule == &unresolved_reference::RULE);
+        Self { hidden, meant: slips.filter_map(|(_, problem)| problem.about.as_deref()).collect() }
+    }
+
+    fn include(&self, problem: &Problem) -> bool {
+        if problem.rule == &unused_declaration::RULE {
+            return self.hidden || problem.about.as_deref().is_some_and(|name| self.meant.contains(&name));
+        }
+        self.hidden && problem.rule == &unresolved_reference::RULE
+    }
 }
 
 /// The problems of some entities, wherever they are, with absolute places.

@@ -1,7 +1,7 @@
 //! `single-parallel`: a parallel movement that never runs beside another.
 
-use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::{Entity, Environment, Name};
+use pydslrep_syntax::{EntityKind, Parse};
 
 use crate::FileId;
 
@@ -25,8 +25,11 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     if users.is_empty() || context.database.is_imported(context.file) {
         return;
     }
-    let beside = users.iter().any(|user| match context.database.tree(*user) {
-        Some(Entity::Environment(environment)) => runs_beside_another(context, environment, name),
+    let beside = users.iter().any(|user| match context.database.parse(*user) {
+        Some(Parse { entity: Some(Entity::Environment(environment)), errors, .. }) if errors.is_empty() => {
+            runs_beside_another(context, environment, name)
+        }
+        // It cannot be told.
         _ => true,
     });
     if !beside {

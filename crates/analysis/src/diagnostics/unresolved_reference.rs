@@ -35,7 +35,8 @@ fn problem(context: &Context<'_>, tree: &Entity, kind: EntityKind, name: &Name, 
         let edit = context.replace(name.span, as_written(&nearest));
         problem = problem
             .help(format!("did you mean `{nearest}`?"))
-            .suggestion(format!("change to `{nearest}`"), [edit]);
+            .suggestion(format!("change to `{nearest}`"), [edit])
+            .about(nearest);
     } else if let Some(known) = known(context, kind) {
         problem = problem.help(known);
     }
@@ -143,7 +144,8 @@ mod tests {
                 error[unresolved-reference] 2:31 "q" there is no robot called `q`
                   help: declare it: `robot NAME type tw with port 19999 has { WHEELS } wheels`
                 error[unresolved-reference] 2:49 "n" there is no movement called `n`
-                  help: the only movement is `m`
+                  help: did you mean `m`?
+                  suggestion: change to `m` -> environment e with ip i has { q } robots with { m } moves
             "#]],
         );
     }

@@ -23,10 +23,16 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let asked = kind != EntityKind::Environment
         && database.count(context.file, EntityKind::Environment) > 0
         && !database.is_imported(context.file);
-    if !asked || !database.users(context.file, kind, &name.text).is_empty() {
+    // A name in text that was not understood may well be a use of it.
+    if !asked
+        || database.is_skipped(context.file, &name.text)
+        || !database.users(context.file, kind, &name.text).is_empty()
+    {
         return;
     }
-    let problem = RULE.problem(name.span, format!("nothing uses the {} `{}`", kind.noun(), name.text));
+    let problem = RULE
+        .problem(name.span, format!("nothing uses the {} `{}`", kind.noun(), name.text))
+        .about(name.text.clone());
     problems.push(match context.whole() {
         Some(whole) if context.errors.is_empty() && leaves_nothing_unused(context, tree) => {
             problem.suggestion("remove it", [whole])
@@ -67,6 +73,18 @@ mod tests {
             "#]],
         );
         check_whole_clean(&format!("{PARTS}environment e has {{ r }} robots with {{ m }} moves"));
+    }
+
+    #[test]
+    fn a_slip_of_the_only_use_is_one_problem() {
+        let codes = |users: &str| {
+            let mut database = crate::Database::new();
+            let file = database.open("a.pyr", &format!("{PARTS}{users}"));
+            database.diagnostics(file).iter().map(crate::Diagnostic::code).collect::<Vec<_>>()
+        };
+        assert_eq!(codes("environment e has { r } robots with { mm } moves"), ["unresolved-reference"]);
+        assert_eq!(codes("environment e has { r } robots wiht { m } moves"), ["syntax-error"]);
+        assert_eq!(codes("environment e has { r } robots /* with { m } moves"), ["unterminated-comment"]);
     }
 
     #[test]
