@@ -42,4 +42,5 @@ step "Python: format, lints, types and tests"
 .venv/bin/ruff check .
 .venv/bin/ruff format --check .
 .venv/bin/mypy
+.venv/bin/python crates/script/python/check_scripts.py
 .venv/bin/pytest

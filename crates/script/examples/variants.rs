@@ -1,4 +1,4 @@
-//! Writes scripts for many kinds of environment into a folder, for `python/check.py` to run ruff and mypy on them.
+//! Writes scripts for many kinds of environment into a folder, for `python/check_scripts.py` to run ruff and mypy on them.
 
 #[path = "../tests/common/mod.rs"]
 mod common;

@@ -1,6 +1,6 @@
 //! Whole scripts: what is in them, what is not, and that names stay names.
 //!
-//! The files in `snapshots/` are scripts as users get them; `python/check.py` runs ruff, mypy and pytest on them.
+//! The files in `snapshots/` are scripts as users get them; ruff, mypy and the tests in `python/tests` run on them.
 //! `UPDATE_EXPECT=1 cargo test -p pydslrep-script` rewrites them.
 
 #![allow(clippy::expect_used, reason = "helpers of tests are tests, too")]
