@@ -5,17 +5,39 @@ use pydslrep_syntax::ast::Name;
 
 use crate::EntityId;
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "ambiguous-import",
     severity: Severity::Error,
-    summary: "two imported files both declare a name that is used here",
+    summary: "a name that two imported files both declare",
     tag: None,
+    remedy: Remedy::Never,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A name is used here, and two of the imported files both declare it.",
+    why: "The two may be quite different, and it would be mere chance which one your robot gets. Import only \
+        the file that you mean, give one of the two another name, or declare the name in this file: your own \
+        declaration always counts first.",
+    imports: &[
+        ("rover.pyr", "wheel wheelL with radius 4.5\nwheel wheelR with radius 4.5"),
+        ("truck.pyr", "wheel wheelL with radius 12"),
+    ],
+    example: "\
+import \"rover.pyr\"
+import \"truck.pyr\"
+
+robot scout with port 23000 has { wheelL wheelR } wheels",
+    fixed: "\
+import \"rover.pyr\"
+
+robot scout with port 23000 has { wheelL wheelR } wheels",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -4,16 +4,43 @@ use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::Entity;
 
 use super::context::{Context, Problem};
-use super::{Rule, Tag};
+use super::{Page, Remedy, Rule, Tag};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "deprecated-ip-clause",
     severity: Severity::Warning,
-    summary: "an environment's ip is written behind a comma",
+    summary: "an environment's ip is written after a comma",
     tag: Some(Tag::Deprecated),
+    remedy: Remedy::Safe,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "An environment's ip is written after a comma: `environment yard, lab has …`.",
+    why: "This is an older spelling. It still works, but somebody who reads it has to guess what the second \
+        name is for. `with ip` says so.",
+    imports: &[],
+    example: "\
+ip lab 192.168.0.12
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { move 1 meters }
+
+environment yard, lab has { rover } robots with { trip } moves",
+    fixed: "\
+ip lab 192.168.0.12
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { move 1 meters }
+
+environment yard with ip lab has { rover } robots with { trip } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

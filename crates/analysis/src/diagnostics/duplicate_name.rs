@@ -1,16 +1,32 @@
 //! `duplicate-name`: one name, two entities of a kind.
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "duplicate-name",
     severity: Severity::Error,
-    summary: "a second declaration of a name within a kind",
+    summary: "two things of one kind have the same name",
     tag: None,
+    remedy: Remedy::Suggested,
     seeks_names: true,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "Two things of the same kind have the same name in one file. (`wheel` and `wheelH` are one kind. A \
+        wheel and a sensor may share a name.)",
+    why: "Whoever uses the name could mean either, and only the first one would ever be used. Often the second \
+        is a copy of the first line whose name was not changed.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelL with radius 4.5",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

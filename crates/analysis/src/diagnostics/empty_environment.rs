@@ -2,8 +2,8 @@
 
 use pydslrep_syntax::ast::Entity;
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -11,8 +11,26 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Warning,
     summary: "an environment without robots",
     tag: None,
+    remedy: Remedy::Never,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "An environment lists no robots.",
+    why: "An environment becomes the script that drives its robots. Without any, the script would start and be \
+        done.",
+    imports: &[],
+    example: "environment yard has { } robots",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { move 1 meters turn left }
+
+environment yard has { rover } robots with { trip } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

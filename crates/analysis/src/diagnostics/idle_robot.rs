@@ -5,8 +5,8 @@ use pydslrep_syntax::ast::Entity;
 
 use crate::EntityId;
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -14,8 +14,36 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Hint,
     summary: "an environment lists a robot that none of its movements drives",
     tag: None,
+    remedy: Remedy::Never,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "An environment lists a robot, but none of the movements that it lists belongs to that robot.",
+    why: "The script connects to the robot and then never moves it. That may be what you want, if the robot is \
+        only to stand in the way of others. If not, a movement is missing from the list.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+robot scout with port 23001 has { wheelL wheelR } wheels
+
+movement go of rover { move 1 meters }
+
+environment yard has { rover scout } robots with { go } moves",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+robot scout with port 23001 has { wheelL wheelR } wheels
+
+movement go of rover { move 1 meters }
+movement follow of scout { move 1 meters }
+
+environment yard has { rover scout } robots with { go follow } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

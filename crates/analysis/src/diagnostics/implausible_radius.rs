@@ -2,17 +2,29 @@
 
 use pydslrep_syntax::ast::Entity;
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "implausible-radius",
     severity: Severity::Warning,
-    summary: "a wheel of more than a metre in radius was probably measured in millimetres",
+    summary: "a wheel's radius is above 100 cm, so it was probably measured in millimetres",
     tag: None,
+    remedy: Remedy::Suggested,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A wheel's radius is more than 100 centimetres, so that the wheel would be taller than a person.",
+    why: "A radius is written in centimetres, but many data sheets give millimetres. A number copied from \
+        there makes the wheel ten times too large. The script would then turn it ten times too slowly, and \
+        the robot would stop long before it is there.",
+    imports: &[],
+    example: "wheel wheelL with radius 225",
+    fixed: "wheel wheelL with radius 22.5",
 };
 
 /// Centimetres.

@@ -3,17 +3,43 @@
 use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{Action, ActionKind, Direction, Entity, Number, Turn, TurnExtent};
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "invalid-angle",
     severity: Severity::Warning,
-    summary: "an angle lies above 0 and up to 360 degrees; `left` and `right` say which way",
+    summary: "an angle is negative, zero or more than a full turn",
     tag: None,
+    remedy: Remedy::Safe,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "The angle of a turn is negative, zero, or more than 360 degrees.",
+    why: "`left` and `right` already say which way to turn; with a minus sign as well, a left turn becomes a \
+        right one, and whoever reads it stumbles. A turn by 0 degrees does nothing. And more than 360 is \
+        more than once around: the robot ends up as it would after a smaller angle, only later.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { turn left -90 }
+
+environment yard has { rover } robots with { trip } moves",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { turn right 90 }
+
+environment yard has { rover } robots with { trip } moves",
 };
 
 /// Degrees.

@@ -2,17 +2,30 @@
 
 use pydslrep_syntax::SyntaxErrorKind;
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "invalid-character",
     severity: Severity::Error,
-    summary: "characters that have no meaning in the language",
+    summary: "a character that has no meaning in the language",
     tag: None,
+    remedy: Remedy::Suggested,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A character that means nothing in the language, such as `;`, `=` or `ä`. Several in a row are \
+        reported together. Inside a comment every character is fine.",
+    why: "Names consist of the letters a to z and A to Z, digits and `_`, and nothing has to mark the end of a \
+        line. A character from elsewhere often shows that a sentence was meant differently, so have a look \
+        before you remove it.",
+    imports: &[],
+    example: "wheel wheelL with radius 4.5;",
+    fixed: "wheel wheelL with radius 4.5",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

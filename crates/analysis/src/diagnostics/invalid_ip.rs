@@ -2,17 +2,29 @@
 
 use pydslrep_syntax::ast::Entity;
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "invalid-ip",
     severity: Severity::Error,
-    summary: "the numbers of an address lie between 0 and 255",
+    summary: "a number in an ip address is above 255",
     tag: None,
+    remedy: Remedy::Never,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "One of the four numbers of an ip address is larger than 255.",
+    why: "The address says on which computer the simulator runs. Each of its four numbers goes from 0 to 255, \
+        so no computer has this one, and the script would look for it in vain. The address of your own \
+        computer is always `127.0.0.1`.",
+    imports: &[],
+    example: "ip lab 192.168.0.300",
+    fixed: "ip lab 192.168.0.30",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -2,17 +2,35 @@
 
 use pydslrep_syntax::ast::Entity;
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "invalid-port",
     severity: Severity::Error,
-    summary: "a port lies between 1 and 65535",
+    summary: "a port is not between 1 and 65535",
     tag: None,
+    remedy: Remedy::Never,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A robot's port is not between 1 and 65535.",
+    why: "The port is the number under which the script finds the simulator on its computer. There are no \
+        ports but 1 to 65535, so the two would never meet. CoppeliaSim normally waits on port 23000, the \
+        older V-REP on 19999.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 70000 has { wheelL wheelR } wheels",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -2,17 +2,28 @@
 
 use pydslrep_syntax::ast::Entity;
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "invalid-radius",
     severity: Severity::Error,
-    summary: "a wheel's radius must be above zero",
+    summary: "a wheel's radius is zero or negative",
     tag: None,
+    remedy: Remedy::Never,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A wheel's radius is zero or negative.",
+    why: "The radius is how far it is from the middle of the wheel to its edge, in centimetres. The script \
+        divides by it to find out how fast the wheel has to turn, and a wheel without any size cannot roll.",
+    imports: &[],
+    example: "wheel wheelL with radius 0",
+    fixed: "wheel wheelL with radius 4.5",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

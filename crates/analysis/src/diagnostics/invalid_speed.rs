@@ -3,17 +3,43 @@
 use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{ActionKind, Entity, Move, Number};
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "invalid-speed",
     severity: Severity::Error,
-    summary: "a speed must be above zero",
+    summary: "a speed is zero or negative",
     tag: None,
+    remedy: Remedy::Suggested,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "The speed after `at` is zero or negative.",
+    why: "A robot with speed zero never arrives. And a speed only says how fast, not which way: to drive \
+        backwards, make the distance negative. If you leave `at` out, the robot drives at 9 centimetres per \
+        second.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { move 1 meters at -12 }
+
+environment yard has { rover } robots with { trip } moves",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { move -1 meters at 12 }
+
+environment yard has { rover } robots with { trip } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

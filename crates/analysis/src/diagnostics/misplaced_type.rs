@@ -4,16 +4,33 @@ use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::Entity;
 
 use super::context::{Context, Problem};
-use super::{Rule, Tag};
+use super::{Page, Remedy, Rule, Tag};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "misplaced-type",
     severity: Severity::Warning,
-    summary: "a robot's type stands before its name",
+    summary: "a robot's type is written before its name",
     tag: Some(Tag::Deprecated),
+    remedy: Remedy::Safe,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A robot's type is written before its name: `robot type tw rover`.",
+    why: "This is an older spelling. It still works, but everything else in the language has its name right \
+        after its first word, and so should a robot: then names are easy to find.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot type tw rover with port 23000 has { wheelL wheelR } wheels",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover type tw with port 23000 has { wheelL wheelR } wheels",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -4,8 +4,8 @@ use pydslrep_syntax::ast::{Entity, Name, Wheel};
 
 use crate::EntityId;
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -13,8 +13,28 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Warning,
     summary: "the wheels of a robot differ in radius",
     tag: None,
+    remedy: Remedy::Never,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "The wheels of one robot do not all have the same radius.",
+    why: "Most robots have wheels of one size, so it is probably a typing mistake. If the robot really is \
+        built like this, all is well: the script turns smaller wheels faster, so that every wheel covers the \
+        same ground. But with a wrong radius, straight lines become curves.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 5.4
+
+robot rover with port 23000 has { wheelL wheelR } wheels",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+
+robot rover with port 23000 has { wheelL wheelR } wheels",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -14,6 +14,7 @@ mod invalid_ip;
 mod invalid_port;
 mod invalid_radius;
 mod invalid_speed;
+mod manual;
 mod misplaced_type;
 mod mixed_radii;
 mod movement_robot_missing;
@@ -45,6 +46,7 @@ use rustc_hash::FxHashMap;
 
 use self::context::Context;
 pub(crate) use self::context::{Problem, ProblemFix};
+pub use self::manual::{Page, Remedy, index};
 use crate::{Database, Diagnostic, Edit, EntityId, FileId, Fix, Related, Severity};
 
 /// A way to show text besides underlining it.
@@ -67,8 +69,12 @@ pub struct Rule {
     pub summary: &'static str,
     /// How an editor may show the text it is about.
     pub tag: Option<Tag>,
+    /// The best fix it may offer.
+    pub remedy: Remedy,
     /// Whether its words depend on which other names there are.
     pub(crate) seeks_names: bool,
+    /// What there is to say about it beside its messages.
+    pub page: Page,
     check: fn(&Context<'_>, &mut Vec<Problem>),
 }
 

@@ -3,8 +3,8 @@
 use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::{Entity, Movement, Name, References};
 
-use super::Rule;
 use super::context::{Context, Problem, append};
+use super::{Page, Remedy, Rule};
 use crate::{EntityId, Severity};
 
 pub(super) static RULE: Rule = Rule {
@@ -12,8 +12,36 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Error,
     summary: "an environment lists a movement whose robot it does not list",
     tag: None,
+    remedy: Remedy::Safe,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "An environment lists a movement of a robot that is not among its robots.",
+    why: "The script only connects to the robots that the environment lists. It could not drive this one.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+robot scout with port 23001 has { wheelL wheelR } wheels
+
+movement go of rover { move 1 meters }
+movement follow of scout { move 1 meters }
+
+environment yard has { rover } robots with { go follow } moves",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+robot scout with port 23001 has { wheelL wheelR } wheels
+
+movement go of rover { move 1 meters }
+movement follow of scout { move 1 meters }
+
+environment yard has { rover scout } robots with { go follow } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

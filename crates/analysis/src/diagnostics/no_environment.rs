@@ -2,8 +2,8 @@
 
 use pydslrep_syntax::{EntityKind, Span};
 
-use super::Rule;
 use super::context::{Context, Problem, as_written};
+use super::{Page, Remedy, Rule};
 use crate::{Database, Diagnostic, Edit, EntityRef, FileId, Fix, Severity};
 
 pub(super) static RULE: Rule = Rule {
@@ -11,8 +11,31 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Information,
     summary: "robots and movements, but no environment to run them",
     tag: None,
+    remedy: Remedy::Suggested,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A file has robots and movements, but no environment, and no other file imports it.",
+    why: "Robots and movements only describe what could happen. An environment says which robots take part and \
+        which movements run, and a script is made for each environment. Without one there is nothing to run.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { move 1 meters }",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { move 1 meters }
+
+environment yard has { rover } robots with { trip } moves",
 };
 
 /// It is a problem of the whole file, see [`in_file`].

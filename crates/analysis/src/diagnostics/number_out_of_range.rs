@@ -2,17 +2,44 @@
 
 use pydslrep_syntax::ast::{ActionKind, Entity, Number, TurnExtent};
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "number-out-of-range",
     severity: Severity::Error,
-    summary: "a distance beyond 1000 km, or a number too large to compute with",
+    summary: "a distance beyond 1000 km, or a number too large to calculate with",
     tag: None,
+    remedy: Remedy::Never,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A robot is to drive more than 1000 kilometres in one move, or a radius, a speed or an angle has \
+        hundreds of digits.",
+    why: "At the usual 9 centimetres per second, 1000 kilometres take more than four months. So it is nearly \
+        always a slip: some zeros too many, or `meters` where `centimeters` was meant. And with numbers of \
+        hundreds of digits a computer can no longer calculate.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { move 2000000 meters }
+
+environment yard has { rover } robots with { trip } moves",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { move 2000 meters }
+
+environment yard has { rover } robots with { trip } moves",
 };
 
 /// Metres.

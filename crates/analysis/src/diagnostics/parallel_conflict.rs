@@ -2,8 +2,8 @@
 
 use pydslrep_syntax::ast::{Entity, Name};
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::{EntityId, Severity};
 
 pub(super) static RULE: Rule = Rule {
@@ -11,8 +11,36 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Error,
     summary: "two movements of one robot run at the same time",
     tag: None,
+    remedy: Remedy::Never,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "Two `parallel` movements of the same robot are next to each other in an environment's list, so they \
+        would start at the same time.",
+    why: "A robot has one set of wheels and cannot drive ahead and turn around at once: the two movements \
+        would pull at the same wheels. Let it do one after the other.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+parallel movement ahead of rover { move 1 meters }
+parallel movement around of rover { turn left 180 }
+
+environment yard has { rover } robots with { ahead around } moves",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement ahead of rover { move 1 meters }
+movement around of rover { turn left 180 }
+
+environment yard has { rover } robots with { ahead around } moves",
 };
 
 /// A movement that runs beside others.

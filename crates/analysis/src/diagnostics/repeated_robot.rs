@@ -2,9 +2,9 @@
 
 use pydslrep_syntax::ast::Entity;
 
-use super::Rule;
 use super::context::{Context, Problem};
 use super::repeated_wheel::repeats;
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -12,8 +12,33 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Warning,
     summary: "an environment lists a robot twice",
     tag: None,
+    remedy: Remedy::Safe,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "An environment lists the same robot twice.",
+    why: "A robot is in an environment once, so the second mention adds nothing. Maybe you meant a different \
+        robot. (Movements may be repeated, and then run each time.)",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { move 1 meters }
+
+environment yard has { rover rover } robots with { trip } moves",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { move 1 meters }
+
+environment yard has { rover } robots with { trip } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -2,9 +2,9 @@
 
 use pydslrep_syntax::ast::{Action, Entity, References};
 
-use super::Rule;
 use super::context::{Context, Problem};
 use super::repeated_wheel::repeats;
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -12,8 +12,30 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Warning,
     summary: "a list names a sensor twice",
     tag: None,
+    remedy: Remedy::Safe,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A list of sensors names the same sensor twice.",
+    why: "The second mention adds nothing. Maybe you meant a different sensor there.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+sensor front
+sensor back
+
+robot rover with port 23000 has { wheelL wheelR } wheels with sensors { front, back, front }",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+sensor front
+sensor back
+
+robot rover with port 23000 has { wheelL wheelR } wheels with sensors { front, back }",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -2,8 +2,8 @@
 
 use pydslrep_syntax::ast::{Entity, Name};
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -11,8 +11,25 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Error,
     summary: "a robot lists a wheel twice",
     tag: None,
+    remedy: Remedy::Never,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A robot's list of wheels has the same wheel twice.",
+    why: "In the simulator each wheel of a robot hangs on a motor of its own, and the name says which. One \
+        name cannot stand for two motors. Declare a wheel for each place, even if they are of equal size.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelL } wheels",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -3,17 +3,48 @@
 use pydslrep_syntax::ast::{Entity, Name, Robot};
 use pydslrep_syntax::{EntityKind, Span};
 
-use super::Rule;
 use super::context::{Context, Problem, ProblemEdit, append, as_written};
+use super::{Page, Remedy, Rule};
 use crate::{EntityId, Severity};
 
 pub(super) static RULE: Rule = Rule {
     code: "sensor-not-on-robot",
     severity: Severity::Error,
-    summary: "`turn … until` names a sensor that the movement's robot does not carry",
+    summary: "`turn … until` names a sensor that the robot does not carry",
     tag: None,
+    remedy: Remedy::Suggested,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A movement says `turn … until` with a sensor that its robot does not have.",
+    why: "The robot turns until that sensor no longer sees anything in the way. A sensor that is not on the \
+        robot can tell it nothing.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+sensor front
+sensor back
+
+robot rover with port 23000 has { wheelL wheelR } wheels with sensors { front }
+
+movement trip of rover { turn left until { back } }
+
+environment yard has { rover } robots with { trip } moves",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+sensor front
+sensor back
+
+robot rover with port 23000 has { wheelL wheelR } wheels with sensors { front, back }
+
+movement trip of rover { turn left until { back } }
+
+environment yard has { rover } robots with { trip } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

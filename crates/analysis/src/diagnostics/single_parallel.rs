@@ -6,7 +6,7 @@ use pydslrep_syntax::{EntityKind, Parse};
 use crate::FileId;
 
 use super::context::{Context, Problem};
-use super::{Rule, Tag};
+use super::{Page, Remedy, Rule, Tag};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -14,8 +14,39 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Hint,
     summary: "a `parallel` movement that never runs beside another",
     tag: Some(Tag::Unnecessary),
+    remedy: Remedy::Suggested,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A movement is called `parallel`, but in no environment is another `parallel` movement next to it. \
+",
+    why: "Only `parallel` movements that are next to each other in the list run at the same time. Alone, such \
+        a movement runs like any other. Perhaps the other movement should be `parallel`, too, or the order \
+        in the list is not what you had in mind.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+robot scout with port 23001 has { wheelL wheelR } wheels
+
+movement go of rover { move 1 meters }
+parallel movement follow of scout { move 1 meters }
+
+environment yard has { rover scout } robots with { go follow } moves",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+robot scout with port 23001 has { wheelL wheelR } wheels
+
+parallel movement go of rover { move 1 meters }
+parallel movement follow of scout { move 1 meters }
+
+environment yard has { rover scout } robots with { go follow } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -3,17 +3,62 @@
 use pydslrep_kinematics::Drive;
 use pydslrep_syntax::ast::{ActionKind, Entity};
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "slam-robot",
     severity: Severity::Error,
-    summary: "`slam` on a robot that is not two-wheeled",
+    summary: "`slam` on a robot with four wheels",
     tag: None,
+    remedy: Remedy::Never,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A movement says `slam`, but its robot has four wheels.",
+    why: "With `slam` a robot explores a place on its own and draws a map of it. It has to turn exactly on the \
+        spot again and again, or the map would not fit together. Two wheels can do that; four drag sideways.",
+    imports: &[],
+    example: "\
+wheel frontL with radius 5
+wheel rearL with radius 5
+wheel frontR with radius 5
+wheel rearR with radius 5
+
+sensor eye1
+sensor eye2
+sensor eye3
+sensor eye4
+sensor eye5
+
+robot rover with port 23000
+  has { frontL rearL frontR rearR } wheels
+  with sensors { eye1, eye2, eye3, eye4, eye5 }
+
+movement explore of rover { slam }
+
+environment maze has { rover } robots with { explore } moves",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+
+sensor eye1
+sensor eye2
+sensor eye3
+sensor eye4
+sensor eye5
+
+robot rover with port 23000
+  has { wheelL wheelR } wheels
+  with sensors { eye1, eye2, eye3, eye4, eye5 }
+
+movement explore of rover { slam }
+
+environment maze has { rover } robots with { explore } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -3,8 +3,8 @@
 use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::{ActionKind, Entity, Name, Robot, SensorKind};
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -12,8 +12,49 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Error,
     summary: "`slam` with fewer than five distance sensors",
     tag: None,
+    remedy: Remedy::Never,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A movement says `slam`, but its robot has fewer than five distance sensors. A sensor declared with \
+        `: bumper` does not count, since it sees nothing before it touches it.",
+    why: "With `slam` a robot explores a place on its own and draws a map of it. To find openings and corners \
+        it has to look in several directions at once, and that takes five sensors.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+
+sensor eye1
+sensor eye2
+
+robot rover with port 23000
+  has { wheelL wheelR } wheels
+  with sensors { eye1, eye2 }
+
+movement explore of rover { slam }
+
+environment maze has { rover } robots with { explore } moves",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+
+sensor eye1
+sensor eye2
+sensor eye3
+sensor eye4
+sensor eye5
+
+robot rover with port 23000
+  has { wheelL wheelR } wheels
+  with sensors { eye1, eye2, eye3, eye4, eye5 }
+
+movement explore of rover { slam }
+
+environment maze has { rover } robots with { explore } moves",
 };
 
 const NEEDED: usize = 5;

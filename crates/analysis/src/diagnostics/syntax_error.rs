@@ -3,17 +3,29 @@
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Expected, Found, Span, SyntaxError, SyntaxErrorKind, Token};
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "syntax-error",
     severity: Severity::Error,
-    summary: "the text does not follow the grammar",
+    summary: "a word is missing, misspelt, doubled or in the wrong place",
     tag: None,
+    remedy: Remedy::Safe,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "The text does not follow the patterns of the language: a word is missing, misspelt, written twice or \
+        in the wrong place. Each slip is reported once, and the rest of the file is checked all the same.",
+    why: "Where a pattern is broken, nobody can be sure what you want the robot to do, so no script is made \
+        from it. The message says what was expected there and shows the whole pattern.",
+    imports: &[],
+    example: "wheel wheelL radius 4.5",
+    fixed: "wheel wheelL with radius 4.5",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

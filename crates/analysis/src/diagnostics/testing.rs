@@ -3,7 +3,8 @@
 use expect_test::Expect;
 use pydslrep_syntax::Span;
 
-use crate::{Database, Diagnostic, Edit, FileId};
+use super::Remedy;
+use crate::{Database, Diagnostic, Edit, FileId, Fix};
 
 /// Rules about what is still to be written; fixtures are fragments and would all break them.
 const OF_WHOLE_PROGRAMS: [&str; 3] = ["unused-declaration", "idle-robot", "no-environment"];
@@ -47,6 +48,11 @@ fn check_those(program: &str, expected: &Expect, asked: fn(&Diagnostic) -> bool)
     expected.assert_eq(&rendered);
     for diagnostic in &diagnostics {
         for fix in &diagnostic.fixes {
+            assert!(
+                remedy(fix) <= diagnostic.rule.remedy,
+                "{} promises less than {fix:?}",
+                diagnostic.code()
+            );
             let after = apply(program, file, &fix.edits);
             check_fix(program, &diagnostics, diagnostic, &after, &problems(&after).1);
         }
@@ -67,6 +73,11 @@ fn check_fix(program: &str, before: &[Diagnostic], mended: &Diagnostic, after: &
             "the fix brings {code}\n{program}\n->\n{after}\n{left:#?}"
         );
     }
+}
+
+/// What sort of fix it is.
+pub(super) fn remedy(fix: &Fix) -> Remedy {
+    if fix.safe { Remedy::Safe } else { Remedy::Suggested }
 }
 
 /// The program after edits.

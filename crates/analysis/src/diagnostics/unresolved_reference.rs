@@ -3,17 +3,36 @@
 use pydslrep_syntax::ast::{DriveWord, Entity, Name, Robot};
 use pydslrep_syntax::{EntityKind, Span};
 
-use super::Rule;
 use super::context::{Context, Problem, ProblemEdit, as_written};
+use super::{Page, Remedy, Rule};
 use crate::{Resolution, Severity};
 
 pub(super) static RULE: Rule = Rule {
     code: "unresolved-reference",
     severity: Severity::Error,
-    summary: "a name that is not declared",
+    summary: "a name that nothing of that kind is declared under",
     tag: None,
+    remedy: Remedy::Suggested,
     seeks_names: true,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A name is used, but nothing of that kind is declared under it: not in this file, and not in the \
+        files that it imports. Small and capital letters count as different.",
+    why: "The script would not know which wheel, sensor or robot is meant. Mostly it is a slip of the finger, \
+        and the message tells you the nearest name there is. Where to declare something is up to you: it may \
+        also come later in the file.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL whelR } wheels",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

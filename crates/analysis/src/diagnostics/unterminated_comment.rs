@@ -2,17 +2,35 @@
 
 use pydslrep_syntax::{Span, SyntaxErrorKind};
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "unterminated-comment",
     severity: Severity::Error,
-    summary: "a comment that is never closed hides the rest of the file",
+    summary: "a comment that is never closed and hides the rest of the file",
     tag: None,
+    remedy: Remedy::Suggested,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A comment begins with `/*`, and no `*/` ends it. (The first `*/` ends a comment, even if there were \
+        two `/*` before it. A comment that begins with `//` ends by itself where the line ends.)",
+    why: "Everything from `/*` to the end of the file is taken for a comment. You still see your robots and \
+        movements there, but the program does not have them.",
+    imports: &[],
+    example: "\
+/* The wheels of my first robot
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5",
+    fixed: "\
+/* The wheels of my first robot */
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -2,17 +2,34 @@
 
 use pydslrep_syntax::{Span, SyntaxErrorKind};
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "unterminated-string",
     severity: Severity::Error,
-    summary: "a path in quotes that has no end on its line",
+    summary: "a path in quotes that has no closing quote on its line",
     tag: None,
+    remedy: Remedy::Safe,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "The path after `import` begins with a `\"`, but the line ends before a second `\"` closes it.",
+    why: "Only the second quote says where the path ends. Without it the other file is not read, and whatever \
+        it declares is missing here.",
+    imports: &[("wheels.pyr", "wheel wheelL with radius 4.5\nwheel wheelR with radius 4.5")],
+    example: "\
+import \"wheels.pyr
+
+robot rover with port 23000 has { wheelL wheelR } wheels",
+    fixed: "\
+import \"wheels.pyr\"
+
+robot rover with port 23000 has { wheelL wheelR } wheels",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -4,7 +4,7 @@ use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::Entity;
 
 use super::context::{Context, Problem};
-use super::{Rule, Tag};
+use super::{Page, Remedy, Rule, Tag};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -12,8 +12,38 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Hint,
     summary: "a wheel, sensor, ip, robot or movement that nothing uses",
     tag: Some(Tag::Unnecessary),
+    remedy: Remedy::Suggested,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A wheel, sensor, ip, robot or movement is declared, but nothing uses it. Files without an \
+        environment are not asked, and neither are files that others import: their parts are there for \
+        somebody else.",
+    why: "It does no harm, but it changes nothing either. Maybe you forgot to add it somewhere, such as a \
+        sensor to its robot or a movement to the environment. Otherwise the program is easier to read \
+        without it.",
+    imports: &[],
+    example: "\
+sensor front
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { move 1 meters }
+
+environment yard has { rover } robots with { trip } moves",
+    fixed: "\
+sensor front
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels with sensors { front }
+
+movement trip of rover { move 1 meters }
+
+environment yard has { rover } robots with { trip } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -3,17 +3,36 @@
 use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{DriveWord, Entity, References, Robot};
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "wheel-count",
     severity: Severity::Error,
-    summary: "`tw` needs 2 wheels, `fw` and `fwh` need 4",
+    summary: "a robot does not have the 2 wheels of a `tw`, or the 4 of an `fw` or `fwh`",
     tag: None,
+    remedy: Remedy::Suggested,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A robot does not have as many wheels as its type needs: two for `tw`, four for `fw` and for `fwh`. A \
+        robot without a type has two or four.",
+    why: "The script steers the left wheels and the right wheels separately and finds out from the list which \
+        is which. With one too few or too many that cannot be told. Two wheels are listed left, right; four \
+        are listed left front, left rear, right front, right rear.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover type fw with port 23000 has { wheelL wheelR } wheels",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover type tw with port 23000 has { wheelL wheelR } wheels",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

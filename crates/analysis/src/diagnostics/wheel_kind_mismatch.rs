@@ -3,18 +3,42 @@
 use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{DriveWord, Entity, Name, Robot};
 
-use super::Rule;
 use super::context::{Context, Problem};
 use super::wheel_count::{fitting, type_place};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "wheel-kind-mismatch",
     severity: Severity::Error,
-    summary: "`tw` and `fw` drive on `wheel`, `fwh` on `wheelH`",
+    summary: "a robot's wheels do not suit its type: `tw` and `fw` drive on `wheel`, `fwh` on `wheelH`",
     tag: None,
+    remedy: Remedy::Safe,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A robot's wheels do not suit its type: `tw` and `fw` drive on `wheel`, and `fwh` drives on four \
+        `wheelH`. If a robot of type `fw` has four `wheelH`, this is only a warning, and it is driven as \
+        `fwh`.",
+    why: "A `wheelH` has small rollers all around, so that a robot with four of them can also slide sideways; \
+        a `wheel` only rolls straight on. The two are driven differently. With the wrong kind, or with some \
+        of each, the robot would not go where you send it.",
+    imports: &[],
+    example: "\
+wheel frontL with radius 5
+wheel rearL with radius 5
+wheel frontR with radius 5
+wheel rearR with radius 5
+robot rover type fwh with port 23000 has { frontL rearL frontR rearR } wheels",
+    fixed: "\
+wheel frontL with radius 5
+wheel rearL with radius 5
+wheel frontR with radius 5
+wheel rearR with radius 5
+robot rover type fw with port 23000 has { frontL rearL frontR rearR } wheels",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

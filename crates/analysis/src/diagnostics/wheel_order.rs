@@ -2,17 +2,35 @@
 
 use pydslrep_syntax::ast::{Entity, Name};
 
-use super::Rule;
 use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "wheel-order",
     severity: Severity::Hint,
-    summary: "two wheels whose names differ in L and R stand right before left",
+    summary: "a wheel named as a right one stands where the left one belongs",
     tag: None,
+    remedy: Remedy::Suggested,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "Two wheels look swapped: their names differ in one letter only, and the one with R is where the left \
+        wheel should be, the one with L where the right should be.",
+    why: "The order in the list decides which wheel is left and which is right, whatever they are called. If \
+        two are swapped, a turn to the left becomes a turn to the right.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelR wheelL } wheels",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -3,16 +3,41 @@
 use pydslrep_syntax::ast::{ActionKind, Entity};
 
 use super::context::{Context, Problem};
-use super::{Rule, Tag};
+use super::{Page, Remedy, Rule, Tag};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
     code: "zero-distance",
     severity: Severity::Warning,
-    summary: "a move over no distance does nothing",
+    summary: "a move over no distance, which does nothing",
     tag: Some(Tag::Unnecessary),
+    remedy: Remedy::Safe,
     seeks_names: false,
+    page: PAGE,
     check,
+};
+
+const PAGE: Page = Page {
+    what: "A robot is to move 0 meters or 0 centimeters.",
+    why: "It stays where it is, so the line could just as well not be there. Maybe a number was to be filled \
+        in later and then forgotten.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { turn left move 0 meters }
+
+environment yard has { rover } robots with { trip } moves",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { turn left }
+
+environment yard has { rover } robots with { trip } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -1,0 +1,174 @@
+//! The page of each rule: what it finds, why that matters, a program that has the problem and one that has not.
+//!
+//! The files in `docs/diagnostics` are written from here, and tests hold every page to what the checks do.
+
+use super::{CATALOGUE, Rule};
+use crate::{Database, Diagnostic};
+
+/// What a rule tells a person who wants to know more than its message says.
+#[derive(Debug)]
+pub struct Page {
+    /// What the rule finds.
+    pub what: &'static str,
+    /// Why that matters.
+    pub why: &'static str,
+    /// The files that the two programs import: their names and texts.
+    pub imports: &'static [(&'static str, &'static str)],
+    /// A program with this problem, once, and with no other.
+    pub example: &'static str,
+    /// What it should have been: a program without any problem.
+    pub fixed: &'static str,
+}
+
+/// The best fix that a rule may offer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Remedy {
+    /// None: only a person knows what was meant.
+    Never,
+    /// One that a person should look at first.
+    Suggested,
+    /// One that can be applied without asking.
+    Safe,
+}
+
+impl Remedy {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Never => "no",
+            Self::Suggested => "suggested",
+            Self::Safe => "safe",
+        }
+    }
+}
+
+impl Rule {
+    /// The page in Markdown, with what the example gives rise to.
+    pub fn manual(&self) -> String {
+        let Page { what, why, imports, example, fixed } = &self.page;
+        let says: String = example_diagnostics(&self.page, example)
+            .iter()
+            .map(|diagnostic| said(example, diagnostic))
+            .collect();
+        let mut files = String::new();
+        for (name, text) in *imports {
+            files += &format!("`{name}`:\n\n{}\n", code(text));
+        }
+        if !files.is_empty() {
+            files += "The program:\n\n";
+        }
+        format!(
+            "# {}\n\n{} · quick fix: {}\n\n{what}\n\n## Why it matters\n\n{why}\n\n## Example\n\n{files}{}\n\
+             This says:\n\n```text\n{says}```\n\n## Write instead\n\n{}",
+            self.code,
+            capitalised(self.severity.word()),
+            self.remedy.word(),
+            code(example),
+            code(fixed),
+        )
+    }
+}
+
+/// The list of all pages in Markdown.
+pub fn index() -> String {
+    let mut out = "# Every message, explained\n\n\
+        Each message of PyDSLRep has a code, such as `invalid-radius`. Its page says what is wrong, why that matters, and\n\
+        how to write it instead.\n\n\
+        An **error** keeps scripts from being made. A **warning** is probably a slip. An **information** or a **hint** is\n\
+        worth a look. Many editors offer quick fixes: a *safe* one leaves nothing to decide, and a *suggested* one is\n\
+        worth reading before you take it. Not every case has one.\n\n\
+        | code | severity | what it finds | quick fix |\n|---|---|---|---|\n"
+        .to_owned();
+    for rule in CATALOGUE {
+        let (code, summary) = (rule.code, rule.summary);
+        let (severity, remedy) = (rule.severity.word(), rule.remedy.word());
+        out += &format!("| [{code}]({code}.md) | {severity} | {summary} | {remedy} |\n");
+    }
+    out
+}
+
+/// The problems that one of the page's programs has.
+fn example_diagnostics(page: &Page, program: &str) -> Vec<Diagnostic> {
+    let mut database = Database::new();
+    for (name, text) in page.imports {
+        database.open(name, text);
+    }
+    let file = database.open("program.pyr", program);
+    database.diagnostics(file)
+}
+
+fn said(program: &str, diagnostic: &Diagnostic) -> String {
+    let before = program.get(..diagnostic.span.start as usize).unwrap_or(program);
+    let line = before.matches('\n').count() + 1;
+    let mut out = format!("line {line}: {}: {}\n", diagnostic.severity.word(), diagnostic.message);
+    for (word, text) in [("help", &diagnostic.help), ("note", &diagnostic.note)] {
+        if let Some(text) = text {
+            out += &format!("  {word}: {text}\n");
+        }
+    }
+    for fix in &diagnostic.fixes {
+        out += &format!("  quick fix: {}\n", fix.title);
+    }
+    out
+}
+
+fn code(program: &str) -> String {
+    format!("```pydslrep\n{program}\n```\n")
+}
+
+fn capitalised(word: &str) -> String {
+    let (first, rest) = word.split_at(word.len().min(1));
+    first.to_uppercase() + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::path::{Path, PathBuf};
+
+    use expect_test::expect_file;
+
+    use super::*;
+    use crate::diagnostics::testing::{apply, remedy};
+
+    #[test]
+    fn every_example_has_its_problem_and_no_other() {
+        for rule in CATALOGUE {
+            let found = example_diagnostics(&rule.page, rule.page.example);
+            let codes: Vec<&str> = found.iter().map(Diagnostic::code).collect();
+            assert_eq!(codes, [rule.code], "{}", rule.page.example);
+            assert_eq!(found[0].severity, rule.severity, "{}", rule.code);
+            let fixed = example_diagnostics(&rule.page, rule.page.fixed);
+            assert!(fixed.is_empty(), "{}: {fixed:#?}", rule.code);
+        }
+    }
+
+    #[test]
+    fn every_fix_of_an_example_mends_it() {
+        for rule in CATALOGUE {
+            for diagnostic in example_diagnostics(&rule.page, rule.page.example) {
+                let best = diagnostic.fixes.iter().map(remedy).max();
+                assert_eq!(best.unwrap_or(Remedy::Never), rule.remedy, "{}", rule.code);
+                for fix in &diagnostic.fixes {
+                    let mended = apply(rule.page.example, diagnostic.file, &fix.edits);
+                    let left = example_diagnostics(&rule.page, &mended);
+                    assert!(left.is_empty(), "{}: {}\n{mended}\n{left:#?}", rule.code, fix.title);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_pages_are_those_of_the_catalogue() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/diagnostics");
+        let mut written = BTreeSet::from([folder.join("README.md")]);
+        expect_file![folder.join("README.md")].assert_eq(&index());
+        for rule in CATALOGUE {
+            let path = folder.join(format!("{}.md", rule.code));
+            expect_file![&path].assert_eq(&rule.manual());
+            written.insert(path);
+        }
+        let there: BTreeSet<PathBuf> =
+            folder.read_dir().expect("the folder").map(|entry| entry.expect("a file").path()).collect();
+        assert_eq!(there, written);
+    }
+}
