@@ -1,0 +1,300 @@
+-- What a person does in Neovim with a program, key by key; run.sh starts it in an empty folder and says what it needs.
+-- Prints one line for each thing that must hold; the exit code says whether all did.
+
+-- Everything runs in a coroutine: Neovim's own loop goes on between the steps, so that typed keys are really typed.
+local routine
+local failed = false
+
+local function sleep(milliseconds)
+  vim.defer_fn(function() assert(coroutine.resume(routine)) end, milliseconds)
+  coroutine.yield()
+end
+
+--- Waits until `condition` gives something, and gives it on.
+local function wait(condition)
+  local deadline = vim.uv.hrtime() + 10e9
+  while vim.uv.hrtime() < deadline do
+    local value = condition()
+    if value then return value end
+    sleep(10)
+  end
+  return condition()
+end
+
+local function check(what, holds, seen)
+  failed = failed or not holds
+  local detail = not holds and seen ~= nil and ': ' .. vim.inspect(seen) or ''
+  io.stdout:write(holds and 'ok   ' or 'FAIL ', what, detail, '\n')
+end
+
+--- Checks that `actual()` becomes what is expected.
+local function becomes(what, expected, actual)
+  wait(function() return vim.deep_equal(actual(), expected) end)
+  local seen = actual()
+  check(what, vim.deep_equal(seen, expected), seen)
+end
+
+local function read(name)
+  local file = io.open(name, 'rb')
+  if not file then return nil end
+  local bytes = file:read('*a')
+  file:close()
+  return bytes
+end
+
+local function write(name, bytes)
+  local file = assert(io.open(name, 'wb'))
+  file:write(bytes)
+  file:close()
+end
+
+local function client()
+  return vim.lsp.get_clients({ bufnr = 0 })[1]
+end
+
+--- The id of the server's process, Neovim's only child.
+local function process()
+  return vim.api.nvim_get_proc_children(vim.fn.getpid())[1]
+end
+
+local function open(name)
+  vim.cmd.edit({ args = { name }, bang = true })
+  wait(function() return client() and client().initialized end)
+end
+
+local function text(buffer)
+  return table.concat(vim.api.nvim_buf_get_lines(buffer or 0, 0, -1, false), '\n') .. '\n'
+end
+
+--- Puts the cursor on the first place of `pattern` in the buffer.
+local function go_to(pattern)
+  vim.api.nvim_win_set_cursor(0, { 1, 0 })
+  assert(vim.fn.search(pattern, 'c') > 0, pattern)
+end
+
+--- The errors in the program: where, and the code.
+local function errors()
+  return vim.tbl_map(function(found)
+    return { found.lnum, found.col, found.end_lnum, found.end_col, found.code }
+  end, vim.diagnostic.get(0, { severity = vim.diagnostic.severity.ERROR }))
+end
+
+--- Presses the key for code actions, takes the one whose title has `wanted` in it, and gives all titles.
+local function act(wanted)
+  local titles
+  local select = vim.ui.select
+  vim.ui.select = function(items, options, choose)
+    titles = vim.tbl_map(options.format_item, items)
+    for index, title in ipairs(titles) do
+      if title:find(wanted, 1, true) then return choose(items[index], index) end
+    end
+    choose(nil, nil)
+  end
+  vim.api.nvim_input('gra')
+  wait(function() return titles end)
+  vim.ui.select = select
+  return titles
+end
+
+local MENDED = read(vim.env.PROGRAM)
+local TYPO = MENDED:gsub('{ wheelL wheelR }', '{ wheelL whelR }')
+local BUILT = vim.system({ 'pydslrep', 'build', '--stdout', vim.env.PROGRAM }):wait().stdout
+
+--- The one error of `TYPO`, `shift` bytes further right.
+local function unknown(shift)
+  return { { 3, 51 + (shift or 0), 3, 56 + (shift or 0), 'unresolved-reference' } }
+end
+
+local function diagnostics()
+  write('typo.pyr', TYPO)
+  open('typo.pyr')
+  check('the file type is pydslrep', vim.bo.filetype == 'pydslrep', vim.bo.filetype)
+  check('the server is attached', client() ~= nil)
+  assert(client(), 'without a server, there is nothing to see')
+  check('columns are counted in UTF-8', client().offset_encoding == 'utf-8', client().offset_encoding)
+  becomes('the typo is underlined, with its code', unknown(), errors)
+end
+
+local function no_script_of_a_broken_program()
+  local told
+  local notify = vim.notify
+  vim.notify = function(message) told = message end
+  act('Generate script')
+  wait(function() return told end)
+  vim.notify = notify
+  check('there is no script of a broken program, and why', told and told:find('no wheel called `whelR`'), told)
+end
+
+local function completion()
+  vim.o.completeopt = 'menuone,noselect'
+  local function offered(keys)
+    vim.api.nvim_input(keys .. '<C-x><C-o>')
+    wait(function() return vim.fn.pumvisible() == 1 end)
+    return vim.tbl_map(function(item) return item.abbr end, vim.fn.complete_info({ 'items' }).items)
+  end
+  go_to('whelR')
+  local wheels = offered('ciwwh')
+  check('completion offers the wheel not listed yet', vim.deep_equal(wheels, { 'wheelR' }), wheels)
+  vim.api.nvim_input('<C-n><C-y><Esc>')
+  becomes('and inserts it', MENDED, text)
+  becomes('which mends the program', {}, errors)
+  go_to('turn right')
+  local actions = offered('Omo')
+  check('completion offers actions', vim.tbl_contains(actions, 'move … meters'), actions)
+  local place = 0
+  for index, label in ipairs(actions) do if label == 'move … meters' then place = index end end
+  vim.api.nvim_input(('<C-n>'):rep(place) .. '<C-y>')
+  becomes('a whole action is expanded', '  move 1.0 meters', vim.api.nvim_get_current_line)
+  becomes('with its first place selected', 's', function() return vim.api.nvim_get_mode().mode end)
+  vim.api.nvim_input('2.5<Esc>')
+  becomes('and overtyped', '  move 2.5 meters', vim.api.nvim_get_current_line)
+  vim.snippet.stop()
+  open('typo.pyr')
+  becomes('reloaded, the typo is back', unknown(), errors)
+end
+
+local function reading()
+  go_to('wheelR with')
+  vim.api.nvim_input('K')
+  local function float()
+    for _, window in ipairs(vim.api.nvim_list_wins()) do
+      if vim.api.nvim_win_get_config(window).relative ~= '' then
+        local lines = text(vim.api.nvim_win_get_buf(window))
+        return lines:find('28.3 cm a turn', 1, true) and window
+      end
+    end
+  end
+  local window = wait(float)
+  check('hovering over a wheel tells its circumference', window)
+  if window then vim.api.nvim_win_close(window, true) end
+
+  go_to('robot_1 {')
+  vim.api.nvim_input('<C-]>')
+  becomes('a reference leads to its definition', { 4, 6 }, function() return vim.api.nvim_win_get_cursor(0) end)
+
+  vim.api.nvim_input('gO')
+  local function outline()
+    return vim.tbl_map(function(item) return item.text:gsub(' %(.*', '') end, vim.fn.getloclist(0))
+  end
+  local names = wait(function() return #outline() > 0 and outline() end)
+  local all = names and table.concat(names, ' ') or ''
+  check('the outline names every entity', all:find('wheelR.*wheelL.*robot_1.*mov_1.*area_1'), names)
+  vim.cmd('lclose')
+
+  local function colour(pattern)
+    go_to(pattern)
+    local place = vim.api.nvim_win_get_cursor(0)
+    local groups = vim.tbl_map(function(token) return token.opts.hl_group end,
+      vim.inspect_pos(0, place[1] - 1, place[2]).semantic_tokens)
+    table.sort(groups)
+    return groups
+  end
+  becomes('a keyword has its colour', { '@lsp.type.keyword.pydslrep' }, function() return colour('robot') end)
+  becomes('a name has its colour', {
+    '@lsp.mod.declaration.pydslrep', '@lsp.type.class.pydslrep', '@lsp.typemod.class.declaration.pydslrep',
+  }, function() return colour('robot_1') end)
+end
+
+local function quick_fix()
+  open('typo.pyr')
+  becomes('reloaded as it was, the typo is still underlined', unknown(), errors)
+  go_to('whelR')
+  local titles = act('wheelR')
+  check('a quick fix is offered first', titles and titles[1]:find('wheelR'), titles)
+  becomes('and mends the text', MENDED, text)
+  becomes('and the underlining goes', {}, errors)
+  vim.cmd.write()
+end
+
+local function script()
+  local function shown()
+    local buffer = vim.fn.bufnr('area_1.py')
+    return buffer > 0 and text(buffer) or nil
+  end
+  local titles = act('Generate script')
+  check('Generate script is offered', vim.deep_equal(titles, { 'Generate script area_1.py' }), titles)
+  becomes('the script is there', BUILT, shown)
+  vim.cmd.wall()
+  check('saved, it is what the command builds, byte by byte', read('area_1.py') == BUILT)
+
+  vim.cmd.bwipeout('area_1.py')
+  write('area_1.py', 'print("mine")\n')
+  act('Generate script')
+  becomes('a script on the disk is replaced', BUILT, shown)
+  check('in its buffer only, until it is saved', read('area_1.py') == 'print("mine")\n')
+  vim.cmd.sbuffer('area_1.py')
+  vim.api.nvim_input('u')
+  becomes('what it was can be had back', 'print("mine")\n', shown)
+
+  vim.api.nvim_input('ccunsaved<Esc>')
+  becomes('and changed by hand', 'unsaved\n', shown)
+  vim.cmd.wincmd('p')
+  act('Generate script')
+  becomes('a script open with unsaved text is replaced', BUILT, shown)
+  vim.cmd.wincmd('p')
+  vim.api.nvim_input('u')
+  becomes('which can be had back, too', 'unsaved\n', shown)
+  vim.cmd.bwipeout({ bang = true })
+end
+
+local function other_texts()
+  local crlf = TYPO:gsub('\n', '\r\n')
+  write('windows.pyr', crlf)
+  open('windows.pyr')
+  becomes('with Windows line ends, the typo is at its place', unknown(), errors)
+  go_to('whelR')
+  act('wheelR')
+  becomes('and is mended', {}, errors)
+  vim.cmd.write()
+  check('and the line ends stay', read('windows.pyr') == MENDED:gsub('\n', '\r\n'), read('windows.pyr'))
+
+  -- A car of four UTF-8 bytes, two UTF-16 units and one character.
+  local comment = '/* 🚗 */ '
+  write('emoji.pyr', (TYPO:gsub('robot robot_1', comment .. '%0')))
+  open('emoji.pyr')
+  becomes('behind an emoji, the typo is at its place', unknown(#comment), errors)
+  vim.lsp.enable('pydslrep', false)
+  wait(function() return not client() end)
+  local capabilities = vim.lsp.protocol.make_client_capabilities()
+  capabilities.general.positionEncodings = { 'utf-16' }
+  vim.lsp.config('pydslrep', { capabilities = capabilities })
+  vim.lsp.enable('pydslrep')
+  open('emoji.pyr')
+  check('columns can be counted in UTF-16', client().offset_encoding == 'utf-16', client().offset_encoding)
+  becomes('with the same place', unknown(#comment), errors)
+  go_to('whelR')
+  act('wheelR')
+  becomes('and the same fix', (MENDED:gsub('robot robot_1', comment .. '%0')), text)
+end
+
+local function life()
+  open('typo.pyr')
+  local first = process()
+  vim.uv.kill(first, 'sigkill')
+  check('a killed server is noticed', wait(function() return not client() end))
+  open('typo.pyr')
+  check('and started again with the next file', client() and process() ~= first)
+  if vim.fn.exists(':lsp') == 2 then
+    local second = client().id
+    vim.cmd('lsp restart')
+    local function restarted() return client() and client().initialized and client().id ~= second end
+    check('the server can be restarted', wait(restarted))
+  end
+  vim.api.nvim_buf_set_lines(0, 0, 1, false, {})
+  becomes('and answers', 'unresolved-reference', function() return (errors()[1] or {})[5] end)
+  write('../server.pid', tostring(process()))
+end
+
+routine = coroutine.create(function()
+  for _, part in ipairs({
+    diagnostics, no_script_of_a_broken_program, completion, reading, quick_fix, script, other_texts, life,
+  }) do
+    local fine, why = xpcall(part, debug.traceback)
+    if not fine then
+      check(why, false)
+      break -- Each part goes on where the one before it ended.
+    end
+  end
+  vim.cmd(failed and 'cquit!' or 'quitall!')
+end)
+vim.schedule(function() assert(coroutine.resume(routine)) end)
