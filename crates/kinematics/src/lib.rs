@@ -25,5 +25,5 @@ mod profile;
 pub use drive::Drive;
 pub use model::{Geometry, Model, ModelError};
 pub use plan::{Action, ActionIndex, Leg, Plan, PlanError, RobotPath, RobotPlan, Run, plan, plan_movement};
-pub use pose::{Pose, Twist, angle_between, wrap_angle};
+pub use pose::{Pose, Twist, angle_between, heading_degrees, wrap_angle};
 pub use profile::SpeedProfile;

@@ -102,6 +102,14 @@ pub fn wrap_angle(angle: f64) -> f64 {
     if wrapped > PI { wrapped - TAU } else { wrapped }
 }
 
+/// A heading in degrees as people read it, rounded to so many decimals: in (−180, 180] also after rounding, and never
+/// −0.
+pub fn heading_degrees(theta: f64, decimals: u8) -> f64 {
+    let scale = 10_f64.powi(i32::from(decimals));
+    let rounded = (wrap_angle(theta).to_degrees() * scale).round() / scale;
+    if rounded <= -180.0 { 180.0 } else { rounded + 0.0 }
+}
+
 /// The shortest turn from one heading to another, in (−π, π], positive to the left.
 pub fn angle_between(from: f64, to: f64) -> f64 {
     wrap_angle(to - from)
@@ -125,6 +133,14 @@ mod tests {
             got.distance(&want) <= tolerance && angle_between(got.theta, want.theta).abs() <= tolerance,
             "got {got:?}, want {want:?}"
         );
+    }
+
+    #[test]
+    fn half_a_turn_is_read_one_way() {
+        let just_beyond = -std::f64::consts::PI + 1e-6;
+        assert_eq!(heading_degrees(just_beyond, 1).to_string(), "180");
+        assert_eq!(heading_degrees(-1e-9, 1).to_string(), "0");
+        assert_eq!(heading_degrees(-std::f64::consts::FRAC_PI_2, 0).to_string(), "-90");
     }
 
     #[test]

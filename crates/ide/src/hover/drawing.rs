@@ -1,6 +1,6 @@
 //! Figures as people write them.
 
-use pydslrep_kinematics::Pose;
+use pydslrep_kinematics::{Pose, heading_degrees};
 
 /// A number with at most `places` digits behind the point, and no more than it needs.
 pub(super) fn number(value: f64, places: usize) -> String {
@@ -12,9 +12,7 @@ pub(super) fn number(value: f64, places: usize) -> String {
 
 /// `(1.000 m, 0.500 m, 90°)`
 pub(super) fn pose(pose: &Pose) -> String {
-    let degrees = number(pose.theta.to_degrees(), 1);
-    // Half a turn is the same either way; say it one way.
-    let degrees = if degrees == "-180" { "180" } else { &degrees };
+    let degrees = number(heading_degrees(pose.theta, 1), 1);
     format!("({} m, {} m, {degrees}°)", number(pose.x, 3), number(pose.y, 3))
 }
 

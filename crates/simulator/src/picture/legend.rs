@@ -1,6 +1,6 @@
 //! What the lines mean, and where each robot ended.
 
-use pydslrep_kinematics::{Pose, angle_between};
+use pydslrep_kinematics::{Pose, angle_between, heading_degrees};
 use svg::node::element::{Group, Rectangle};
 
 use super::view::is_finite;
@@ -83,7 +83,7 @@ fn last(poses: &[Pose]) -> Option<&Pose> {
 fn end_text(route: &Route) -> String {
     let Some(end) = last(&route.driven).or(last(&route.planned)) else { return "not planned".to_owned() };
     let (x, y) = (fixed(end.x, 3), fixed(end.y, 3));
-    format!("ends at ({x}, {y}) m, {}°", fixed(end.theta.to_degrees(), 1))
+    format!("ends at ({x}, {y}) m, {}°", fixed(heading_degrees(end.theta, 1), 1))
 }
 
 fn error_text(route: &Route) -> String {
