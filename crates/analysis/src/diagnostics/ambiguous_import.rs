@@ -68,7 +68,9 @@ fn imported(context: &Context<'_>, kind: EntityKind, name: &Name) -> Vec<EntityI
 fn problem(context: &Context<'_>, kind: EntityKind, name: &Name, declared: [EntityId; 2]) -> Problem {
     let problem = RULE
         .problem(name.span, format!("two imported files declare {} called `{}`", kind.a_noun(), name.text))
-        .help("rename one of them, or declare the one that is meant in this file");
+        .help(
+            "import only one of the files, rename one of the two, or declare the one you mean in this file",
+        );
     declared.into_iter().fold(problem, |problem, id| {
         match context.database.tree(id).and_then(|tree| tree.name()) {
             Some(name) => problem.related(id, name.span, "declared here"),

@@ -49,8 +49,11 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(name) = &clause.name else { return };
     let comma = Span::new(clause.span.start, name.span.start);
     problems.push(
-        RULE.problem(clause.span, format!("an ip is given by `with ip {}`", name.text))
-            .fix(format!("write `with ip {}`", name.text), [context.replace(comma, " with ip ")]),
+        RULE.problem(
+            clause.span,
+            format!("an environment's ip is written `with ip {}`, without a comma", name.text),
+        )
+        .fix(format!("write `with ip {}`", name.text), [context.replace(comma, " with ip ")]),
     );
 }
 
@@ -67,7 +70,7 @@ mod tests {
         check(
             &format!("{PARTS}environment e, here has {{ r }} robots"),
             &expect![[r#"
-                warning[deprecated-ip-clause] 5:14 ", here" an ip is given by `with ip here`
+                warning[deprecated-ip-clause] 5:14 ", here" an environment's ip is written `with ip here`, without a comma
                   fix: write `with ip here` -> environment e with ip here has { r } robots
             "#]],
         );

@@ -46,7 +46,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         return;
     };
     problems.push(
-        RULE.problem(body, "this movement does nothing")
+        RULE.problem(body, "this movement has no actions, so the robot stays where it is")
             .help("write actions between the braces, such as `move 1.0 meters` or `turn left`"),
     );
 }
@@ -65,7 +65,7 @@ mod tests {
         check(
             &format!("{PARTS}movement m of r {{ }}"),
             &expect![[r#"
-                warning[empty-movement] 4:17 "{ }" this movement does nothing
+                warning[empty-movement] 4:17 "{ }" this movement has no actions, so the robot stays where it is
                   help: write actions between the braces, such as `move 1.0 meters` or `turn left`
             "#]],
         );

@@ -35,8 +35,8 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(radius) = &wheel.radius else { return };
     let Some(value) = radius.value.filter(|value| value.is_finite() && *value > LARGEST) else { return };
     let problem = RULE
-        .problem(radius.span, format!("a radius of {value} cm is taller than a robot"))
-        .note("radii are in centimetres; was it measured in millimetres?");
+        .problem(radius.span, format!("with a radius of {value} cm this wheel is taller than a person"))
+        .note("a radius is in centimetres; was this one measured in millimetres?");
     let tenth = value / 10.0;
     problems.push(if tenth <= LARGEST {
         problem.suggestion(format!("change to {tenth}"), [context.replace(radius.span, tenth.to_string())])
@@ -56,12 +56,12 @@ mod tests {
         check(
             "wheel a with radius 450\nwheel b with radius 4500.5",
             &expect![[r#"
-            warning[implausible-radius] 1:21 "450" a radius of 450 cm is taller than a robot
-              note: radii are in centimetres; was it measured in millimetres?
-              suggestion: change to 45 -> wheel a with radius 45
-            warning[implausible-radius] 2:21 "4500.5" a radius of 4500.5 cm is taller than a robot
-              note: radii are in centimetres; was it measured in millimetres?
-        "#]],
+                warning[implausible-radius] 1:21 "450" with a radius of 450 cm this wheel is taller than a person
+                  note: a radius is in centimetres; was this one measured in millimetres?
+                  suggestion: change to 45 -> wheel a with radius 45
+                warning[implausible-radius] 2:21 "4500.5" with a radius of 4500.5 cm this wheel is taller than a person
+                  note: a radius is in centimetres; was this one measured in millimetres?
+            "#]],
         );
         check_clean("wheel a with radius 100");
     }

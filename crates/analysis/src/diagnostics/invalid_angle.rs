@@ -65,12 +65,15 @@ fn nothing(context: &Context<'_>, action: &Action, angle: &Number) -> Problem {
 }
 
 fn backwards(context: &Context<'_>, turn: &Turn, angle: &Number) -> Problem {
-    let problem = RULE.problem(angle.span, "a negative angle turns the other way");
-    let Some((direction, span)) = turn.direction else { return problem };
-    let other = match direction {
-        Direction::Left => "right",
-        Direction::Right => "left",
+    let Some((direction, span)) = turn.direction else {
+        return RULE.problem(angle.span, "a negative angle turns the other way");
     };
+    let (this, other) = match direction {
+        Direction::Left => ("left", "right"),
+        Direction::Right => ("right", "left"),
+    };
+    let written = context.text(angle.span);
+    let problem = RULE.problem(angle.span, format!("turning {this} by {written} degrees is turning {other}"));
     let sign = Span::new(angle.span.start, angle.span.start + 1);
     problem.fix(format!("turn {other} instead"), [context.replace(span, other), context.replace(sign, "")])
 }
@@ -79,10 +82,12 @@ fn too_far(context: &Context<'_>, action: &Action, angle: &Number, value: f64) -
     let rest = value % FULL_TURN;
     let problem = RULE.problem(angle.span, format!("{value} degrees are more than a full turn of 360"));
     if rest > 0.0 {
-        problem.suggestion(format!("reduce to {rest}"), [context.replace(angle.span, rest.to_string())])
+        problem
+            .note(format!("the robot ends up facing as after {rest} degrees"))
+            .suggestion(format!("reduce to {rest}"), [context.replace(angle.span, rest.to_string())])
     } else {
         problem
-            .note("it ends at the heading it began with")
+            .note("the robot ends up facing as it did before")
             .suggestion("remove the turn", [context.remove(action.span)])
     }
 }
@@ -112,6 +117,7 @@ mod tests {
             &program("turn left 450"),
             &expect![[r#"
                 warning[invalid-angle] 4:43 "450" 450 degrees are more than a full turn of 360
+                  note: the robot ends up facing as after 90 degrees
                   suggestion: reduce to 90 -> movement m of r { move 1 meters turn left 90 }
             "#]],
         );
@@ -119,14 +125,14 @@ mod tests {
             &program("turn left 720"),
             &expect![[r#"
                 warning[invalid-angle] 4:43 "720" 720 degrees are more than a full turn of 360
-                  note: it ends at the heading it began with
+                  note: the robot ends up facing as it did before
                   suggestion: remove the turn -> movement m of r { move 1 meters }
             "#]],
         );
         check(
             &program("turn right -45.5"),
             &expect![[r#"
-                warning[invalid-angle] 4:44 "-45.5" a negative angle turns the other way
+                warning[invalid-angle] 4:44 "-45.5" turning right by -45.5 degrees is turning left
                   fix: turn left instead -> movement m of r { move 1 meters turn left 45.5 }
             "#]],
         );

@@ -34,9 +34,26 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         let plural = if written.chars().count() > 1 { "have" } else { "has" };
         problems.push(
             RULE.problem(error.span, format!("`{written}` {plural} no meaning here"))
-                .help("names are made of the letters a to z and A to Z, digits and `_`")
+                .help(help(written))
                 .suggestion(format!("remove `{written}`"), [context.replace(error.span, "")]),
         );
+    }
+}
+
+/// What somebody who is used to these characters may not know of the language.
+fn help(written: &str) -> &'static str {
+    if written.chars().any(char::is_alphabetic) {
+        "names are made of the letters a to z and A to Z, digits and `_`"
+    } else if written.contains(';') {
+        "nothing has to mark the end of a line; leave it out"
+    } else if written.contains('=') {
+        "a value comes right after its word, such as `radius 4.5`; leave it out"
+    } else if written.contains(['(', ')', '[', ']', '<', '>']) {
+        "lists and actions stand between `{` and `}`"
+    } else if written.contains('#') {
+        "a comment starts with `//`"
+    } else {
+        "leave it out; in a comment, after `//`, every character is fine"
     }
 }
 
@@ -51,14 +68,50 @@ mod tests {
         check(
             "wheel a with §§ radius 4.5;",
             &expect![[r#"
-            error[invalid-character] 1:14 "§§" `§§` have no meaning here
-              help: names are made of the letters a to z and A to Z, digits and `_`
-              suggestion: remove `§§` -> wheel a with  radius 4.5;
-            error[invalid-character] 1:29 ";" `;` has no meaning here
-              help: names are made of the letters a to z and A to Z, digits and `_`
-              suggestion: remove `;` -> wheel a with §§ radius 4.5
-        "#]],
+                error[invalid-character] 1:14 "§§" `§§` have no meaning here
+                  help: leave it out; in a comment, after `//`, every character is fine
+                  suggestion: remove `§§` -> wheel a with  radius 4.5;
+                error[invalid-character] 1:29 ";" `;` has no meaning here
+                  help: nothing has to mark the end of a line; leave it out
+                  suggestion: remove `;` -> wheel a with §§ radius 4.5
+            "#]],
         );
         check_clean("wheel a with radius 4.5 // §");
+    }
+
+    #[test]
+    fn habits_from_elsewhere_are_known() {
+        check(
+            "wheel aä with radius 4.5",
+            &expect![[r#"
+            error[invalid-character] 1:8 "ä" `ä` has no meaning here
+              help: names are made of the letters a to z and A to Z, digits and `_`
+              suggestion: remove `ä` -> wheel a with radius 4.5
+        "#]],
+        );
+        check(
+            "wheel a with radius = 4.5",
+            &expect![[r#"
+            error[invalid-character] 1:21 "=" `=` has no meaning here
+              help: a value comes right after its word, such as `radius 4.5`; leave it out
+              suggestion: remove `=` -> wheel a with radius  4.5
+        "#]],
+        );
+        check(
+            "wheel a with radius 4.5 #",
+            &expect![[r##"
+            error[invalid-character] 1:25 "#" `#` has no meaning here
+              help: a comment starts with `//`
+              suggestion: remove `#` -> wheel a with radius 4.5 
+        "##]],
+        );
+        check(
+            "wheel a with radius (4.5",
+            &expect![[r#"
+            error[invalid-character] 1:21 "(" `(` has no meaning here
+              help: lists and actions stand between `{` and `}`
+              suggestion: remove `(` -> wheel a with radius 4.5
+        "#]],
+        );
     }
 }

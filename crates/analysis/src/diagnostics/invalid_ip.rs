@@ -33,7 +33,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     if let Some(octet) = address.split('.').find(|octet| octet.parse::<u8>().is_err()) {
         problems.push(
             RULE.problem(*span, format!("`{octet}` in this address is above 255"))
-                .help("an address is four numbers from 0 to 255, such as `127.0.0.1`"),
+                .help("an address has four numbers from 0 to 255; `127.0.0.1` is this computer"),
         );
     }
 }
@@ -49,9 +49,9 @@ mod tests {
         check(
             "ip a 127.0.0.256",
             &expect![[r#"
-            error[invalid-ip] 1:6 "127.0.0.256" `256` in this address is above 255
-              help: an address is four numbers from 0 to 255, such as `127.0.0.1`
-        "#]],
+                error[invalid-ip] 1:6 "127.0.0.256" `256` in this address is above 255
+                  help: an address has four numbers from 0 to 255; `127.0.0.1` is this computer
+            "#]],
         );
         check_clean("ip a 255.0.10.007");
     }

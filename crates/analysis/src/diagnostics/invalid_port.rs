@@ -38,8 +38,8 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     if let Some(port) = robot.port.as_ref().filter(|port| port.whole && port.value.is_none()) {
         let written = context.text(port.span);
         problems.push(
-            RULE.problem(port.span, format!("port {written} is outside 1 to 65535"))
-                .help("CoppeliaSim listens on 23000, V-REP on 19999, unless told otherwise"),
+            RULE.problem(port.span, format!("there is no port {written}: ports go from 1 to 65535"))
+                .help("write the port of your simulator: normally CoppeliaSim has 23000 and V-REP 19999"),
         );
     }
 }
@@ -60,30 +60,30 @@ mod tests {
         check(
             &program("0"),
             &expect![[r#"
-            error[invalid-port] 3:19 "0" port 0 is outside 1 to 65535
-              help: CoppeliaSim listens on 23000, V-REP on 19999, unless told otherwise
-        "#]],
+                error[invalid-port] 3:19 "0" there is no port 0: ports go from 1 to 65535
+                  help: write the port of your simulator: normally CoppeliaSim has 23000 and V-REP 19999
+            "#]],
         );
         check(
             &program("-1"),
             &expect![[r#"
-            error[invalid-port] 3:19 "-1" port -1 is outside 1 to 65535
-              help: CoppeliaSim listens on 23000, V-REP on 19999, unless told otherwise
-        "#]],
+                error[invalid-port] 3:19 "-1" there is no port -1: ports go from 1 to 65535
+                  help: write the port of your simulator: normally CoppeliaSim has 23000 and V-REP 19999
+            "#]],
         );
         check(
             &program("65536"),
             &expect![[r#"
-            error[invalid-port] 3:19 "65536" port 65536 is outside 1 to 65535
-              help: CoppeliaSim listens on 23000, V-REP on 19999, unless told otherwise
-        "#]],
+                error[invalid-port] 3:19 "65536" there is no port 65536: ports go from 1 to 65535
+                  help: write the port of your simulator: normally CoppeliaSim has 23000 and V-REP 19999
+            "#]],
         );
         check(
             &program("99999999999999999999999999"),
             &expect![[r#"
-            error[invalid-port] 3:19 "99999999999999999999999999" port 99999999999999999999999999 is outside 1 to 65535
-              help: CoppeliaSim listens on 23000, V-REP on 19999, unless told otherwise
-        "#]],
+                error[invalid-port] 3:19 "99999999999999999999999999" there is no port 99999999999999999999999999: ports go from 1 to 65535
+                  help: write the port of your simulator: normally CoppeliaSim has 23000 and V-REP 19999
+            "#]],
         );
         check_clean(&program("65535"));
     }

@@ -55,11 +55,15 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 
 fn problem(context: &Context<'_>, step: &Move, speed: &Number) -> Problem {
     let written = context.text(speed.span);
-    let problem = RULE
-        .problem(speed.span, format!("a speed must be above zero, not {written} cm/s"))
-        .help("a negative distance drives backwards; without `at` the speed is 9.0 cm/s");
+    let problem = RULE.problem(speed.span, format!("a speed must be above zero, not {written} cm/s"));
+    let negative = speed.value.is_some_and(|value| value < 0.0);
+    let problem = problem.help(if negative {
+        "to drive backwards, make the distance negative and the speed positive"
+    } else {
+        "write how fast to drive, or leave out `at` and drive at 9.0 cm/s"
+    });
     match &step.distance {
-        Some(distance) if speed.value.is_some_and(|value| value < 0.0) => problem.suggestion(
+        Some(distance) if negative => problem.suggestion(
             "negate the distance instead",
             [
                 context.replace(Span::new(speed.span.start, speed.span.start + 1), ""),
@@ -96,14 +100,14 @@ mod tests {
             &program("move 4 meters at 0"),
             &expect![[r#"
                 error[invalid-speed] 4:36 "0" a speed must be above zero, not 0 cm/s
-                  help: a negative distance drives backwards; without `at` the speed is 9.0 cm/s
+                  help: write how fast to drive, or leave out `at` and drive at 9.0 cm/s
             "#]],
         );
         check(
             &program("move 4 meters at -9.5"),
             &expect![[r#"
                 error[invalid-speed] 4:36 "-9.5" a speed must be above zero, not -9.5 cm/s
-                  help: a negative distance drives backwards; without `at` the speed is 9.0 cm/s
+                  help: to drive backwards, make the distance negative and the speed positive
                   suggestion: negate the distance instead -> movement m of r { move -4 meters at 9.5 }
             "#]],
         );
@@ -111,7 +115,7 @@ mod tests {
             &program("move -4 meters at -9.5"),
             &expect![[r#"
                 error[invalid-speed] 4:37 "-9.5" a speed must be above zero, not -9.5 cm/s
-                  help: a negative distance drives backwards; without `at` the speed is 9.0 cm/s
+                  help: to drive backwards, make the distance negative and the speed positive
                   suggestion: negate the distance instead -> movement m of r { move 4 meters at 9.5 }
             "#]],
         );

@@ -44,8 +44,11 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         context.replace(Span::at(name.span.end), format!(" {moved}")),
     ];
     problems.push(
-        RULE.problem(clause.span, format!("the type stands behind the name: `robot {} {moved}`", name.text))
-            .fix("move it behind the name", edits),
+        RULE.problem(
+            clause.span,
+            format!("a robot's type comes after its name: `robot {} {moved}`", name.text),
+        )
+        .fix("move it after the name", edits),
     );
 }
 
@@ -62,9 +65,9 @@ mod tests {
         check(
             &format!("{WHEELS}robot type tw r with port 1 has {{ a b }} wheels"),
             &expect![[r#"
-            warning[misplaced-type] 3:7 "type tw" the type stands behind the name: `robot r type tw`
-              fix: move it behind the name -> robot r type tw with port 1 has { a b } wheels
-        "#]],
+                warning[misplaced-type] 3:7 "type tw" a robot's type comes after its name: `robot r type tw`
+                  fix: move it after the name -> robot r type tw with port 1 has { a b } wheels
+            "#]],
         );
         check_clean(&format!("{WHEELS}robot r type tw with port 1 has {{ a b }} wheels"));
     }

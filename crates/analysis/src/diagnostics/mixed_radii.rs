@@ -49,10 +49,13 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     problems.push(
         RULE.problem(
             name.span,
-            format!("`{}` has a radius of {radius} cm, `{}` one of {} cm", name.text, first.0.text, first.3),
+            format!(
+                "the wheels of this robot differ: `{}` has a radius of {} cm, and `{}` one of {radius} cm",
+                first.0.text, first.3, name.text
+            ),
         )
-        .related(id, place.span, "the other radius")
-        .note("it is driven at the same rim speed, so its wheels turn at different rates"),
+        .related(id, place.span, format!("the radius of `{}`", name.text))
+        .note("a smaller wheel will be turned faster, so that all of them cover the same ground"),
     );
 }
 
@@ -77,10 +80,10 @@ mod tests {
         check(
             &program("4.5"),
             &expect![[r#"
-            warning[mixed-radii] 3:29 "b" `b` has a radius of 4.5 cm, `a` one of 4 cm
-              see 2:21 "4.5" the other radius
-              note: it is driven at the same rim speed, so its wheels turn at different rates
-        "#]],
+                warning[mixed-radii] 3:29 "b" the wheels of this robot differ: `a` has a radius of 4 cm, and `b` one of 4.5 cm
+                  see 2:21 "4.5" the radius of `b`
+                  note: a smaller wheel will be turned faster, so that all of them cover the same ground
+            "#]],
         );
         check_clean(&program("4.0"));
     }

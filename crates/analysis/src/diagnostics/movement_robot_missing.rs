@@ -73,6 +73,7 @@ fn problem(
         name.span,
         format!("`{}` moves `{driven}`, which is not among the robots of this environment", name.text),
     );
+    problem = problem.help(format!("list `{driven}` among the robots, or leave `{}` out", name.text));
     if let Some(reference) = &movement.robot {
         problem = problem.related(id, reference.span, format!("`{}` is a movement of `{driven}`", name.text));
     }
@@ -101,6 +102,7 @@ mod tests {
             &expect![[r#"
                 error[movement-robot-missing] 7:41 "n" `n` moves `q`, which is not among the robots of this environment
                   see 6:15 "q" `n` is a movement of `q`
+                  help: list `q` among the robots, or leave `n` out
                   fix: add `q` to the robots -> environment e has { r q } robots with { m n } moves
             "#]],
         );
@@ -111,6 +113,7 @@ mod tests {
                   help: name its robots between the braces
                 error[movement-robot-missing] 7:36 "m" `m` moves `r`, which is not among the robots of this environment
                   see 5:15 "r" `m` is a movement of `r`
+                  help: list `r` among the robots, or leave `m` out
                   fix: add `r` to the robots -> environment e has { r } robots with { m } moves
             "#]],
         );

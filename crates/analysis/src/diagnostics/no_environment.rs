@@ -61,7 +61,7 @@ pub(super) fn in_file(database: &Database, file: FileId) -> Option<Diagnostic> {
         severity: RULE.severity,
         file,
         span,
-        message: "no environment runs these robots, so there is nothing to generate".to_owned(),
+        message: "no environment uses these robots and movements, so there is nothing to run".to_owned(),
         help: Some(format!("add one: `{}`", EntityKind::Environment.shape())),
         note: None,
         related: Vec::new(),
@@ -107,10 +107,10 @@ mod tests {
         check_whole(
             &format!("{PARTS}movement m of r {{ turn left }} // end\n"),
             &expect![[r#"
-            information[no-environment] 4:10 "m" no environment runs these robots, so there is nothing to generate
-              help: add one: `environment NAME has { ROBOTS } robots with { MOVEMENTS } moves`
-              suggestion: add an environment with all robots and movements ->  ⏎ environment area has { r } robots with { m } moves
-        "#]],
+                information[no-environment] 4:10 "m" no environment uses these robots and movements, so there is nothing to run
+                  help: add one: `environment NAME has { ROBOTS } robots with { MOVEMENTS } moves`
+                  suggestion: add an environment with all robots and movements ->  ⏎ environment area has { r } robots with { m } moves
+            "#]],
         );
         check_whole_clean(PARTS);
     }

@@ -75,8 +75,8 @@ fn problem(context: &Context<'_>, robot: &str, other: &Running<'_>, name: &Name)
     };
     RULE.problem(name.span, message)
         .related(context.id, other.name.span, format!("`{}` starts here and runs beside it", other.name.text))
-        .help("put a movement that is not parallel between them, or take `parallel` off one of them")
-        .note("parallel movements that stand side by side in the list start together")
+        .help("remove `parallel` from one of them, or list a movement that is not parallel between them")
+        .note("parallel movements that are next to each other in the list start together")
 }
 
 #[cfg(test)]
@@ -96,8 +96,8 @@ mod tests {
             &expect![[r#"
                 error[parallel-conflict] 9:45 "n" `r` cannot run `m` and `n` at the same time
                   see 9:41 "m" `m` starts here and runs beside it
-                  help: put a movement that is not parallel between them, or take `parallel` off one of them
-                  note: parallel movements that stand side by side in the list start together
+                  help: remove `parallel` from one of them, or list a movement that is not parallel between them
+                  note: parallel movements that are next to each other in the list start together
             "#]],
         );
         check(
@@ -105,8 +105,8 @@ mod tests {
             &expect![[r#"
                 error[parallel-conflict] 9:45 "o" `q` cannot run `o` twice at the same time
                   see 9:43 "o" `o` starts here and runs beside it
-                  help: put a movement that is not parallel between them, or take `parallel` off one of them
-                  note: parallel movements that stand side by side in the list start together
+                  help: remove `parallel` from one of them, or list a movement that is not parallel between them
+                  note: parallel movements that are next to each other in the list start together
             "#]],
         );
     }

@@ -38,10 +38,13 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         problems.push(
             RULE.problem(
                 again.span,
-                format!("`{}` is listed twice, but a robot has one wheel of a name", again.text),
+                format!(
+                    "`{}` is listed twice, but each wheel of a robot needs a name of its own",
+                    again.text
+                ),
             )
             .related(context.id, first.span, "first listed here")
-            .help("declare another wheel for this place"),
+            .help("declare one more wheel, and list that one here"),
         );
     }
 }
@@ -65,10 +68,10 @@ mod tests {
         check(
             &format!("{WHEELS}robot r with port 1 has {{ a a }} wheels"),
             &expect![[r#"
-            error[repeated-wheel] 3:29 "a" `a` is listed twice, but a robot has one wheel of a name
-              see 3:27 "a" first listed here
-              help: declare another wheel for this place
-        "#]],
+                error[repeated-wheel] 3:29 "a" `a` is listed twice, but each wheel of a robot needs a name of its own
+                  see 3:27 "a" first listed here
+                  help: declare one more wheel, and list that one here
+            "#]],
         );
         check_clean(&format!("{WHEELS}robot r with port 1 has {{ a b }} wheels"));
     }

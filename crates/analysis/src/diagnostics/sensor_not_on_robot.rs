@@ -79,6 +79,7 @@ fn problem(context: &Context<'_>, id: EntityId, robot: &Robot, sensor: &Name) ->
     );
     let problem = RULE
         .problem(sensor.span, format!("`{}` does not carry the sensor `{}`", name.text, sensor.text))
+        .help(format!("add it to the sensors of `{}`, or name one that it carries", name.text))
         .related(id, name.span, carries);
     match added(context, id, robot, &sensor.text) {
         Some(edit) => problem.suggestion(format!("add `{}` to `{}`", sensor.text, name.text), [edit]),
@@ -116,6 +117,7 @@ mod tests {
             &expect![[r#"
                 error[sensor-not-on-robot] 6:40 "t" `r` does not carry the sensor `t`
                   see 5:7 "r" `r` carries `s`
+                  help: add it to the sensors of `r`, or name one that it carries
                   suggestion: add `t` to `r` -> robot r with port 1 has { a b } wheels with sensors { s, t }
             "#]],
         );
@@ -126,6 +128,7 @@ mod tests {
             &expect![[r#"
                 error[sensor-not-on-robot] 7:37 "s" `r` does not carry the sensor `s`
                   see 5:7 "r" `r` has no sensors
+                  help: add it to the sensors of `r`, or name one that it carries
                   suggestion: add `s` to `r` ->   wheels with sensors { s }
             "#]],
         );

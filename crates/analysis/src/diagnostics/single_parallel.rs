@@ -67,7 +67,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         problems.push(
             RULE.problem(parallel, format!("`{}` never runs beside another movement", name.text))
                 .note(
-                    "only parallel movements that stand side by side in an environment's list start together",
+                    "only parallel movements that are next to each other in an environment's list start together",
                 )
                 .suggestion(
                     "remove `parallel`",
@@ -120,7 +120,7 @@ mod tests {
             ),
             &expect![[r#"
                 hint[single-parallel] 5:1 "parallel" `m` never runs beside another movement
-                  note: only parallel movements that stand side by side in an environment's list start together
+                  note: only parallel movements that are next to each other in an environment's list start together
                   suggestion: remove `parallel` -> movement m of r { turn left }
             "#]],
         );

@@ -70,15 +70,20 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         0 => "none".to_owned(),
         count => format!("only {count}"),
     };
+    let carried = robot.sensors.as_ref().map_or(0, |list| list.names.len());
     for action in movement.actions.iter().filter(|action| action.kind == ActionKind::Slam) {
-        problems.push(
-            RULE.problem(
+        let problem = RULE
+            .problem(
                 action.span,
                 format!("`slam` needs {NEEDED} distance sensors, and `{}` has {has}", name.text),
             )
             .related(id, name.span, format!("`{}` is declared here", name.text))
-            .help("add sensors to the robot: `with sensors { … }`"),
-        );
+            .help("declare more sensors, and add them to the robot: `with sensors { … }`");
+        problems.push(if carried > count {
+            problem.note("each sensor counts once, and a `bumper` does not count")
+        } else {
+            problem
+        });
     }
 }
 
@@ -122,16 +127,17 @@ mod tests {
             &expect![[r#"
                 error[slam-sensors] 6:19 "slam" `slam` needs 5 distance sensors, and `r` has none
                   see 5:7 "r" `r` is declared here
-                  help: add sensors to the robot: `with sensors { … }`
+                  help: declare more sensors, and add them to the robot: `with sensors { … }`
             "#]],
         );
         check(
             &program(" with sensors { s, t, u, v, x }"),
             &expect![[r#"
-            error[slam-sensors] 6:19 "slam" `slam` needs 5 distance sensors, and `r` has only 4
-              see 5:7 "r" `r` is declared here
-              help: add sensors to the robot: `with sensors { … }`
-        "#]],
+                error[slam-sensors] 6:19 "slam" `slam` needs 5 distance sensors, and `r` has only 4
+                  see 5:7 "r" `r` is declared here
+                  help: declare more sensors, and add them to the robot: `with sensors { … }`
+                  note: each sensor counts once, and a `bumper` does not count
+            "#]],
         );
         check_clean(&program(" with sensors { s, t, u, v, w }"));
     }

@@ -45,7 +45,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
                 },
             );
         problems.push(
-            RULE.problem(error.span, "this comment is never closed, so everything behind it is ignored")
+            RULE.problem(error.span, "this comment is never closed, so everything after it is ignored")
                 .help("end it with `*/`")
                 .suggestion("close it at the end of the line", [context.replace(Span::at(line_end), " */")]),
         );
@@ -63,10 +63,10 @@ mod tests {
         check(
             "robot r with port 1 has { a b } wheels\n/* wheels\nwheel a with radius 4\nwheel b with radius 4",
             &expect![[r#"
-            error[unterminated-comment] 2:1 "/*" this comment is never closed, so everything behind it is ignored
-              help: end it with `*/`
-              suggestion: close it at the end of the line -> /* wheels */
-        "#]],
+                error[unterminated-comment] 2:1 "/*" this comment is never closed, so everything after it is ignored
+                  help: end it with `*/`
+                  suggestion: close it at the end of the line -> /* wheels */
+            "#]],
         );
         check_clean("wheel a with radius 4 /* wheel */");
     }

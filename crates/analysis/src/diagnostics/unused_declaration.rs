@@ -50,9 +50,9 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(tree) = context.tree else { return };
     let (Some(kind), Some(name)) = (tree.kind(), tree.name()) else { return };
     let database = context.database;
-    let asked = kind != EntityKind::Environment
-        && database.count(context.file, EntityKind::Environment) > 0
-        && !database.is_imported(context.file);
+    let Some(place) = place_of(kind) else { return };
+    let asked =
+        database.count(context.file, EntityKind::Environment) > 0 && !database.is_imported(context.file);
     // A name in text that was not understood may well be a use of it.
     if !asked
         || database.is_skipped(context.file, &name.text)
@@ -62,6 +62,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     }
     let problem = RULE
         .problem(name.span, format!("nothing uses the {} `{}`", kind.noun(), name.text))
+        .help(format!("{place}, or leave it out"))
         .about(name.text.clone());
     problems.push(match context.whole() {
         Some(whole) if context.errors.is_empty() && leaves_nothing_unused(context, tree) => {
@@ -69,6 +70,18 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         }
         _ => problem,
     });
+}
+
+/// How something of a kind takes part in a program; environments need nobody.
+fn place_of(kind: EntityKind) -> Option<&'static str> {
+    match kind {
+        EntityKind::Wheel => Some("list it among the wheels of a robot"),
+        EntityKind::Sensor => Some("add it to a robot: `with sensors { … }`"),
+        EntityKind::Ip => Some("add it to an environment: `with ip …`"),
+        EntityKind::Robot => Some("list it among the robots of an environment"),
+        EntityKind::Movement => Some("list it among the moves of an environment"),
+        EntityKind::Environment => None,
+    }
 }
 
 /// Whether all that it uses is used elsewhere, too; otherwise removing it would only move the problem.
@@ -95,10 +108,13 @@ mod tests {
             ),
             &expect![[r#"
                 hint[unused-declaration] 5:8 "s" nothing uses the sensor `s`
+                  help: add it to a robot: `with sensors { … }`, or leave it out
                   suggestion: remove it -> 
                 hint[unused-declaration] 7:4 "i" nothing uses the ip `i`
+                  help: add it to an environment: `with ip …`, or leave it out
                   suggestion: remove it -> 
                 hint[unused-declaration] 9:7 "c" nothing uses the wheel `c`
+                  help: list it among the wheels of a robot, or leave it out
                   suggestion: remove it -> 
             "#]],
         );

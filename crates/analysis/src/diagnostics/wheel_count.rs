@@ -68,7 +68,7 @@ fn problem(context: &Context<'_>, robot: &Robot, list: &References, drive: Optio
     let lists = if count == 0 { "none".to_owned() } else { count.to_string() };
     let problem = RULE
         .problem(list.span, format!("{wanted}, but this list names {lists}"))
-        .help("two wheels stand in the order left, right; four in the order left front, left rear, right front, right rear");
+        .help("list two wheels as left, right; or four as left front, left rear, right front, right rear");
     match (robot.drive, fitting(context, list)) {
         (Some(clause), Some(word)) => {
             let edit = context.replace(clause.span, format!("type {}", word.spelling()));
@@ -109,32 +109,32 @@ mod tests {
         check(
             &format!("{WHEELS}robot r type tw with port 1 has {{ a b c d }} wheels"),
             &expect![[r#"
-            error[wheel-count] 5:33 "{ a b c d }" a two-wheel robot (`tw`) has 2 wheels, but this list names 4
-              help: two wheels stand in the order left, right; four in the order left front, left rear, right front, right rear
-              suggestion: change the type to `fw` -> robot r type fw with port 1 has { a b c d } wheels
-        "#]],
+                error[wheel-count] 5:33 "{ a b c d }" a two-wheel robot (`tw`) has 2 wheels, but this list names 4
+                  help: list two wheels as left, right; or four as left front, left rear, right front, right rear
+                  suggestion: change the type to `fw` -> robot r type fw with port 1 has { a b c d } wheels
+            "#]],
         );
         check(
             &format!("{WHEELS}robot r type fwh with port 1 has {{ a b }} wheels"),
             &expect![[r#"
-            error[wheel-count] 5:34 "{ a b }" a mecanum robot (`fwh`) has 4 wheels, but this list names 2
-              help: two wheels stand in the order left, right; four in the order left front, left rear, right front, right rear
-              suggestion: change the type to `tw` -> robot r type tw with port 1 has { a b } wheels
-        "#]],
+                error[wheel-count] 5:34 "{ a b }" a mecanum robot (`fwh`) has 4 wheels, but this list names 2
+                  help: list two wheels as left, right; or four as left front, left rear, right front, right rear
+                  suggestion: change the type to `tw` -> robot r type tw with port 1 has { a b } wheels
+            "#]],
         );
         check(
             &format!("{WHEELS}robot r type fw with port 1 has {{ }} wheels"),
             &expect![[r#"
-            error[wheel-count] 5:33 "{ }" a four-wheel robot (`fw`) has 4 wheels, but this list names none
-              help: two wheels stand in the order left, right; four in the order left front, left rear, right front, right rear
-        "#]],
+                error[wheel-count] 5:33 "{ }" a four-wheel robot (`fw`) has 4 wheels, but this list names none
+                  help: list two wheels as left, right; or four as left front, left rear, right front, right rear
+            "#]],
         );
         check(
             &format!("{WHEELS}robot r with port 1 has {{ a b c }} wheels"),
             &expect![[r#"
-            error[wheel-count] 5:25 "{ a b c }" a robot has 2 or 4 wheels, but this list names 3
-              help: two wheels stand in the order left, right; four in the order left front, left rear, right front, right rear
-        "#]],
+                error[wheel-count] 5:25 "{ a b c }" a robot has 2 or 4 wheels, but this list names 3
+                  help: list two wheels as left, right; or four as left front, left rear, right front, right rear
+            "#]],
         );
     }
 

@@ -63,7 +63,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(place) = type_place(robot).or(odd.map(|name| name.span)) else { return };
     let problem = match (drive, mecanum) {
         (Some(DriveWord::Fw), 4) => all_mecanum(place),
-        _ => mixed(context, place, drive, odd),
+        _ => mixed(context, place, drive, kinds.len(), odd),
     };
     let problem =
         problem.note("a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways");
@@ -73,22 +73,36 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 fn all_mecanum(place: Span) -> Problem {
     RULE.problem(place, "four `wheelH` make a mecanum robot, which is type `fwh`")
         .severity(Severity::Warning)
-        .help("it is driven as `fwh`; write the type that it is")
+        .help("write `type fwh`; that is how it will be driven")
 }
 
-fn mixed(context: &Context<'_>, place: Span, drive: Option<DriveWord>, odd: Option<&Name>) -> Problem {
+fn mixed(
+    context: &Context<'_>,
+    place: Span,
+    drive: Option<DriveWord>,
+    count: usize,
+    odd: Option<&Name>,
+) -> Problem {
     let (wanted, other) =
         if drive == Some(DriveWord::Fwh) { ("wheelH", "wheel") } else { ("wheel", "wheelH") };
     let drives = match drive {
         Some(word) => format!("a robot of type `{}` drives on `{wanted}`", word.spelling()),
-        None => "a robot's wheels are of one kind, and a mecanum robot has four".to_owned(),
+        None if count == 2 => format!("a robot with two wheels drives on `{wanted}`"),
+        None => "a robot's four wheels must be of one kind".to_owned(),
     };
     let message = match odd {
+        Some(name) if drive.is_none() && count == 4 => {
+            format!("{drives}, but `{}` is a `{other}` and others are not", name.text)
+        }
         Some(name) => format!("{drives}, but `{}` is a `{other}`", name.text),
         None => drives,
     };
-    let problem =
-        RULE.problem(place, message).help(format!("list only `{wanted}`, or change the robot's type"));
+    let help = match drive {
+        Some(_) => format!("list only `{wanted}`, or change the robot's type"),
+        None if count == 2 => "list two `wheel`, or four `wheelH`".to_owned(),
+        None => "list four `wheel`, or four `wheelH`".to_owned(),
+    };
+    let problem = RULE.problem(place, message).help(help);
     match odd.and_then(|name| context.wheel(name)) {
         Some((id, wheel)) => problem.related(id, wheel.keyword, "declared here"),
         None => problem,
@@ -118,11 +132,11 @@ mod tests {
         check(
             &format!("{WHEELS}robot r type fw with port 1 has {{ e f g h }} wheels"),
             &expect![[r#"
-            warning[wheel-kind-mismatch] 9:9 "type fw" four `wheelH` make a mecanum robot, which is type `fwh`
-              help: it is driven as `fwh`; write the type that it is
-              note: a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways
-              fix: change the type to `fwh` -> robot r type fwh with port 1 has { e f g h } wheels
-        "#]],
+                warning[wheel-kind-mismatch] 9:9 "type fw" four `wheelH` make a mecanum robot, which is type `fwh`
+                  help: write `type fwh`; that is how it will be driven
+                  note: a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways
+                  fix: change the type to `fwh` -> robot r type fwh with port 1 has { e f g h } wheels
+            "#]],
         );
     }
 
@@ -159,9 +173,22 @@ mod tests {
         check(
             &format!("{WHEELS}robot r with port 1 has {{ a f }} wheels"),
             &expect![[r#"
-            error[wheel-kind-mismatch] 9:7 "r" a robot's wheels are of one kind, and a mecanum robot has four, but `f` is a `wheelH`
-              see 6:1 "wheelH" declared here
-              help: list only `wheel`, or change the robot's type
+                error[wheel-kind-mismatch] 9:7 "r" a robot with two wheels drives on `wheel`, but `f` is a `wheelH`
+                  see 6:1 "wheelH" declared here
+                  help: list two `wheel`, or four `wheelH`
+                  note: a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways
+            "#]],
+        );
+    }
+
+    #[test]
+    fn four_wheels_without_a_type_are_of_one_kind() {
+        check(
+            &format!("{WHEELS}robot r with port 1 has {{ a b c h }} wheels"),
+            &expect![[r#"
+            error[wheel-kind-mismatch] 9:7 "r" a robot's four wheels must be of one kind, but `h` is a `wheelH` and others are not
+              see 8:1 "wheelH" declared here
+              help: list four `wheel`, or four `wheelH`
               note: a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways
         "#]],
         );

@@ -52,7 +52,7 @@ fn problem(context: &Context<'_>, first: &Name, second: &Name) -> Problem {
     ];
     RULE.problem(first.span, format!("`{}` stands where the left wheel belongs", first.text))
         .related(context.id, second.span, format!("and `{}` where the right one does", second.text))
-        .help("two wheels are listed left, right; four left front, left rear, right front, right rear")
+        .help("list two wheels as left, right; or four as left front, left rear, right front, right rear")
         .suggestion(format!("swap `{}` and `{}`", first.text, second.text), swap)
 }
 
@@ -78,24 +78,24 @@ mod tests {
         check(
             &format!("{WHEELS}robot r with port 1 has {{ wheelR wheelL }} wheels"),
             &expect![[r#"
-            hint[wheel-order] 7:27 "wheelR" `wheelR` stands where the left wheel belongs
-              see 7:34 "wheelL" and `wheelL` where the right one does
-              help: two wheels are listed left, right; four left front, left rear, right front, right rear
-              suggestion: swap `wheelR` and `wheelL` -> robot r with port 1 has { wheelL wheelR } wheels
-        "#]],
+                hint[wheel-order] 7:27 "wheelR" `wheelR` stands where the left wheel belongs
+                  see 7:34 "wheelL" and `wheelL` where the right one does
+                  help: list two wheels as left, right; or four as left front, left rear, right front, right rear
+                  suggestion: swap `wheelR` and `wheelL` -> robot r with port 1 has { wheelL wheelR } wheels
+            "#]],
         );
         check(
             &format!("{WHEELS}robot r with port 1 has {{ wrf wrr wlf wlr }} wheels"),
             &expect![[r#"
-            hint[wheel-order] 7:27 "wrf" `wrf` stands where the left wheel belongs
-              see 7:35 "wlf" and `wlf` where the right one does
-              help: two wheels are listed left, right; four left front, left rear, right front, right rear
-              suggestion: swap `wrf` and `wlf` -> robot r with port 1 has { wlf wrr wrf wlr } wheels
-            hint[wheel-order] 7:31 "wrr" `wrr` stands where the left wheel belongs
-              see 7:39 "wlr" and `wlr` where the right one does
-              help: two wheels are listed left, right; four left front, left rear, right front, right rear
-              suggestion: swap `wrr` and `wlr` -> robot r with port 1 has { wrf wlr wlf wrr } wheels
-        "#]],
+                hint[wheel-order] 7:27 "wrf" `wrf` stands where the left wheel belongs
+                  see 7:35 "wlf" and `wlf` where the right one does
+                  help: list two wheels as left, right; or four as left front, left rear, right front, right rear
+                  suggestion: swap `wrf` and `wlf` -> robot r with port 1 has { wlf wrr wrf wlr } wheels
+                hint[wheel-order] 7:31 "wrr" `wrr` stands where the left wheel belongs
+                  see 7:39 "wlr" and `wlr` where the right one does
+                  help: list two wheels as left, right; or four as left front, left rear, right front, right rear
+                  suggestion: swap `wrr` and `wlr` -> robot r with port 1 has { wrf wlr wlf wrr } wheels
+            "#]],
         );
         check_clean(&format!("{WHEELS}robot r with port 1 has {{ wheelL wheelR }} wheels"));
         check_clean(&format!("{WHEELS}robot r with port 1 has {{ wlf wlr wrf wrr }} wheels"));

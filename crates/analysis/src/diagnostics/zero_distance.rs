@@ -46,7 +46,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         let ActionKind::Move(step) = &action.kind else { continue };
         if let Some(distance) = step.distance.as_ref().filter(|distance| distance.value == Some(0.0)) {
             problems.push(
-                RULE.problem(distance.span, "this move goes nowhere")
+                RULE.problem(distance.span, "this move goes nowhere, since its distance is zero")
                     .fix("remove the move", [context.remove(action.span)]),
             );
         }
@@ -70,9 +70,9 @@ mod tests {
         check(
             &program("\n  turn left // first\n  move 0.0 meters\n  move -0 meters at 4\n  turn right\n"),
             &expect![[r#"
-                warning[zero-distance] 6:8 "0.0" this move goes nowhere
+                warning[zero-distance] 6:8 "0.0" this move goes nowhere, since its distance is zero
                   fix: remove the move -> 
-                warning[zero-distance] 7:8 "-0" this move goes nowhere
+                warning[zero-distance] 7:8 "-0" this move goes nowhere, since its distance is zero
                   fix: remove the move -> 
             "#]],
         );
