@@ -1,9 +1,9 @@
 //! `pydslrep run` with a Python that misbehaves on command.
 
 use std::fs;
-use std::io::Read;
 use std::os::unix::fs::PermissionsExt;
-use std::process::{Child, Command};
+use std::process::Command;
+use std::sync::mpsc::{Receiver, channel};
 
 use crate::process::{Done, Place, paper};
 
@@ -73,44 +73,57 @@ fn what_cannot_be_installed_is_explained() {
 #[test]
 fn an_interrupt_stops_the_script() {
     // The script tells that it runs, and then what has become of it.
-    let mut running =
-        interruptible("trap 'echo stopped > end; exit 130' INT; echo > started; read x < never");
+    let running = Running::start("trap 'echo stopped > end; exit 130' INT; echo > started; read x < never");
     running.interrupt();
-    assert_eq!(running.end(), Some(130));
+    assert_eq!(running.event(), Event::Ended(Some(130)));
     assert_eq!(running.place.read("end"), "stopped\n");
 }
 
 #[test]
-fn a_script_that_does_not_listen_is_ended_by_a_second_interrupt() {
-    let mut running = interruptible("trap '' INT; echo > started; read x < never");
+fn a_script_that_does_not_listen_is_ended() {
+    let running = Running::start("trap '' INT; echo > started; read x < never");
     running.interrupt();
-    running.interrupt();
-    assert_eq!(running.end(), Some(130));
+    assert_eq!(running.event(), Event::Ended(Some(130)));
 }
 
+/// A run whose script has begun, watched by threads: whatever happens, one of them tells.
 struct Running {
     place: Place,
-    child: Child,
+    pid: rustix::process::Pid,
+    events: Receiver<Event>,
 }
 
-fn interruptible(behaviour: &str) -> Running {
-    let place = place(&format!("cd \"$(dirname \"$BEHAVIOUR\")\"; {behaviour}"));
-    for pipe in ["started", "never"] {
-        assert!(Command::new("mkfifo").arg(place.path(pipe)).status().unwrap().success());
-    }
-    let child = command(&place).spawn().unwrap();
-    // Waits until the script writes to it.
-    fs::File::open(place.path("started")).unwrap().read_to_end(&mut Vec::new()).unwrap();
-    Running { place, child }
+#[derive(Debug, PartialEq)]
+enum Event {
+    Started,
+    Ended(Option<i32>),
 }
 
 impl Running {
-    fn interrupt(&self) {
-        let pid = rustix::process::Pid::from_child(&self.child);
-        rustix::process::kill_process(pid, rustix::process::Signal::INT).unwrap();
+    fn start(behaviour: &str) -> Self {
+        let place = place(&format!("cd \"$(dirname \"$BEHAVIOUR\")\"; {behaviour}"));
+        for pipe in ["started", "never"] {
+            assert!(Command::new("mkfifo").arg(place.path(pipe)).status().unwrap().success());
+        }
+        let child = command(&place).spawn().unwrap();
+        let pid = rustix::process::Pid::from_child(&child);
+        let (tell, events) = channel();
+        let (tell_of_start, started) = (tell.clone(), place.path("started"));
+        // Opening the pipe waits until the script does so too.
+        std::thread::spawn(move || fs::File::open(started).map(|_| tell_of_start.send(Event::Started)));
+        std::thread::spawn(move || {
+            tell.send(Event::Ended(child.wait_with_output().unwrap().status.code())).unwrap();
+        });
+        let running = Self { place, pid, events };
+        assert_eq!(running.event(), Event::Started);
+        running
     }
 
-    fn end(&mut self) -> Option<i32> {
-        self.child.wait().unwrap().code()
+    fn interrupt(&self) {
+        rustix::process::kill_process(self.pid, rustix::process::Signal::INT).unwrap();
+    }
+
+    fn event(&self) -> Event {
+        self.events.recv().unwrap()
     }
 }
