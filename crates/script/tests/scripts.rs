@@ -13,7 +13,7 @@ use common::{area_1, environment, four_robots, line, move_by, movement, robot, s
 use expect_test::{expect, expect_file};
 use pydslrep_analysis::environment::{Action, ActionKind, Environment, Source};
 use pydslrep_kinematics::Drive;
-use pydslrep_script::{REQUIREMENTS, ScriptError, Target, file_name, generate};
+use pydslrep_script::{REQUIREMENTS, ScriptError, Target, file_name, generate, may_replace};
 
 fn script(environment: &Environment) -> String {
     generate(environment, Target::CoppeliaSim).expect("a script")
@@ -41,6 +41,14 @@ fn turning_until_sensors_are_free() {
 #[test]
 fn four_robots_in_parallel() {
     expect_file!["../snapshots/factory.py"].assert_eq(&script(&four_robots()));
+}
+
+#[test]
+fn a_script_may_be_replaced_by_a_newer_one() {
+    assert!(may_replace(script(&sensors()).as_bytes()));
+    assert!(may_replace(b""));
+    assert!(!may_replace(b"print('mine')"));
+    assert!(!may_replace(b"\xff\xfe"));
 }
 
 #[test]
@@ -260,26 +268,11 @@ fn a_wheel_listed_twice_is_an_error() {
 }
 
 #[test]
-fn file_names_hide_no_module_and_exist_on_windows() {
-    let named = |name: &str| file_name(&Environment { name: name.to_owned(), ..area_1(Drive::TwoWheel) });
-    for name in ["area_1", "Math", "comet", "com10", "zmq_"] {
-        assert_eq!(named(name), format!("{name}.py"));
-    }
-    for name in [
-        "math",
-        "json",
-        "tomllib",
-        "distutils",
-        "annotationlib",
-        "zmq",
-        "cbor2",
-        "con",
-        "NUL",
-        "Com7",
-        "lpt1",
-    ] {
-        assert_eq!(named(name), format!("{name}_env.py"));
-    }
+fn the_program_says_what_its_scripts_are_called() {
+    assert_eq!(file_name(&area_1(Drive::TwoWheel)), "area_1.py");
+    let math =
+        Environment { name: "math".into(), script: "math_env".into(), ..area_1(Drive::TwoWheel) };
+    assert_eq!(file_name(&math), "math_env.py");
 }
 
 #[test]

@@ -19,6 +19,8 @@ pub(crate) struct Document {
     pub(crate) text: Rope,
     /// Its number in the database; `None` if it cannot be analysed.
     pub(crate) file: Option<FileId>,
+    /// Which opening this is, counted over the session: an editor that opens a document again remembers nothing of it.
+    pub(crate) opening: u64,
     /// What the client was last told about it, if anything.
     pub(crate) published: Option<Vec<Diagnostic>>,
 }
@@ -125,6 +127,7 @@ mod tests {
                 version: Some(0),
                 text: Rope::from_str(&text),
                 file: None,
+                opening: 0,
                 published: None,
             };
             for (a, b, new_text) in changes {

@@ -26,6 +26,8 @@ pub(crate) struct State {
     pub(crate) documents: Documents,
     /// The keys of the folders open in the client, each with `/` at its end.
     pub(crate) folders: Vec<String>,
+    /// How many documents have been opened so far, each time counted.
+    openings: u64,
     /// Whether anything was opened, changed or closed since diagnostics were last told.
     pub(crate) changed: bool,
 }
@@ -35,11 +37,13 @@ impl State {
     pub(crate) fn open(&mut self, opened: TextDocumentItem) {
         let key = key(&opened.uri);
         let published = self.documents.remove(&key).and_then(|before| before.published);
+        self.openings += 1;
         let document = Document {
             text: Rope::from_str(&opened.text),
             version: Some(opened.version),
             uri: opened.uri,
             file: None,
+            opening: self.openings,
             published,
         };
         self.changed = true;

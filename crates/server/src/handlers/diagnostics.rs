@@ -45,13 +45,12 @@ pub(crate) fn clear(uri: Uri, outbox: &Outbox) {
     outbox.notify("textDocument/publishDiagnostics", &params);
 }
 
-/// `textDocument/diagnostic`. The result's id depends on the diagnostics alone: versions may start over.
+/// `textDocument/diagnostic`. The result's id depends on the diagnostics and on when the document was opened, not on its
+/// version, which may start over.
 pub(crate) fn pull(state: &State, params: &DocumentDiagnosticParams) -> DocumentDiagnosticReportResult {
-    let items = state
-        .document(&params.text_document.uri)
-        .map(|document| of_document(state, document))
-        .unwrap_or_default();
-    let result_id = result_id(&items);
+    let document = state.document(&params.text_document.uri);
+    let items = document.map(|document| of_document(state, document)).unwrap_or_default();
+    let result_id = result_id(&items, document.map_or(0, |document| document.opening));
     let report = if params.previous_result_id.as_ref() == Some(&result_id) {
         DocumentDiagnosticReport::Unchanged(RelatedUnchangedDocumentDiagnosticReport {
             related_documents: None,
@@ -69,8 +68,9 @@ pub(crate) fn pull(state: &State, params: &DocumentDiagnosticParams) -> Document
     report.into()
 }
 
-fn result_id(items: &[Diagnostic]) -> String {
+fn result_id(items: &[Diagnostic], opening: u64) -> String {
     let mut hasher = DefaultHasher::new();
+    opening.hash(&mut hasher);
     for item in items {
         item.message.hash(&mut hasher);
         serde_json::to_string(item).unwrap_or_default().hash(&mut hasher);

@@ -77,7 +77,9 @@ const NO_PLACE: &str = "save the program first: its script goes into the same fo
 fn address(program: &Uri, file_name: &str) -> Option<Uri> {
     let whole = program.as_str();
     let address = whole.split(['?', '#']).next()?;
-    let (folder, _) = address.rsplit_once('/')?;
+    // An unnamed buffer's `file://` has no path: what follows its slashes would be taken for a host.
+    let has_path = program.path().as_str().contains('/');
+    let (folder, _) = address.rsplit_once('/').filter(|_| has_path)?;
     Uri::from_str(&format!("{folder}/{file_name}")).ok()
 }
 
@@ -112,6 +114,11 @@ pub(crate) fn execute(state: &State, params: &ExecuteCommandParams, outbox: &Out
     let expected = "one argument is expected: {\"uri\": of the program, \"environment\": its name}";
     let script = generate(state, &which.ok_or_else(|| Error::invalid_params(expected))?)?;
     let path = path(&script.uri).ok_or_else(|| failure(NO_PLACE.to_owned()))?;
+    // Nothing could bring back what is overwritten here.
+    if fs::read(&path).is_ok_and(|content| !pydslrep_script::may_replace(&content)) {
+        let reason = "exists and is no generated script: move it away, or rename the environment";
+        return Err(failure(format!("{} {reason}", path.display())));
+    }
     fs::write(&path, &script.text)
         .map_err(|error| failure(format!("cannot write {}: {error}", path.display())))?;
     let message = format!("wrote {}", path.display());
@@ -151,5 +158,6 @@ mod tests {
             Some("vscode-vfs://github/o/r/area_1.py")
         );
         assert_eq!(address("untitled:Untitled-1"), None);
+        assert_eq!(address("file://"), None, "what an unnamed buffer of Neovim is called");
     }
 }
