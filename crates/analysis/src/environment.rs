@@ -10,6 +10,9 @@ pub use pydslrep_scene::SensorKind;
 pub struct Environment {
     /// The environment's name as declared (without `^`).
     pub name: String,
+    /// What its script's file is called, without `.py`: its name, with `_env` behind it where that would hide a Python
+    /// module or would not do as a file's name.
+    pub script: String,
     /// Where the program says the simulator runs; `None` means this machine.
     pub host: Option<Ipv4Addr>,
     /// The robots in listed order, each once.

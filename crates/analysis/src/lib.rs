@@ -16,6 +16,7 @@ mod names;
 mod path;
 mod plan;
 mod resolve;
+mod script_name;
 
 pub use database::{Database, EditCounts, EntityId, EntityRef, FileId, Resolution};
 pub use diagnostic::{Diagnostic, Edit, Fix, Related, Severity};

@@ -6,6 +6,7 @@ use pydslrep_syntax::ast::{self, ActionKind as Statement, DriveWord, Entity, Nam
 use pydslrep_syntax::{EntityKind, Span, Token};
 
 use crate::environment::{Action, ActionKind, Environment, Movement, Robot, Sensor, Source, Wheel};
+use crate::script_name::script_names;
 use crate::{Database, Diagnostic, EntityId, FileId, Severity, diagnostics};
 
 /// Why an environment cannot run.
@@ -129,6 +130,7 @@ impl<'a> Parts<'a> {
 
     fn environment(&self, id: EntityId) -> Option<Environment> {
         let Entity::Environment(tree) = self.database.tree(id)? else { return None };
+        let name = tree.name.as_ref()?;
         let host = match &tree.ip {
             Some(clause) => Some(self.host(id, clause.name.as_ref()?)?),
             None => None,
@@ -139,13 +141,21 @@ impl<'a> Parts<'a> {
         let runs = self.resolve_all(id, EntityKind::Movement, listed)?;
         let movement_ids = without_repeats(&runs);
         Some(Environment {
-            name: tree.name.as_ref()?.text.to_string(),
+            name: name.text.to_string(),
+            script: self.script(name)?,
             host,
             robots: robot_ids.iter().map(|id| self.robot(*id)).collect::<Option<_>>()?,
             movements: movement_ids.iter().map(|id| self.movement(*id, &robot_ids)).collect::<Option<_>>()?,
             schedule: self.schedule(&runs, &movement_ids),
             source: self.source(id, 0)?,
         })
+    }
+
+    fn script(&self, environment: &Name) -> Option<String> {
+        let environments = self.database.environments(self.file?);
+        let names: Vec<&str> = environments.iter().map(|(_, name)| name.text.as_str()).collect();
+        let index = names.iter().position(|name| *name == environment.text)?;
+        script_names(&names).into_iter().nth(index).map(|script| script.stem)
     }
 
     fn host(&self, environment: EntityId, name: &Name) -> Option<std::net::Ipv4Addr> {

@@ -23,7 +23,11 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn variants() -> Vec<Environment> {
-    let named = |name: &str, environment: Environment| Environment { name: name.to_owned(), ..environment };
+    let named = |name: &str, environment: Environment| Environment {
+        name: name.to_owned(),
+        script: format!("{name}_env"),
+        ..environment
+    };
     let mut variants = vec![
         named("two_wheel", area_1(Drive::TwoWheel)),
         named("four_wheel", area_1(Drive::FourWheel)),

@@ -270,8 +270,7 @@ fn a_wheel_listed_twice_is_an_error() {
 #[test]
 fn the_program_says_what_its_scripts_are_called() {
     assert_eq!(file_name(&area_1(Drive::TwoWheel)), "area_1.py");
-    let math =
-        Environment { name: "math".into(), script: "math_env".into(), ..area_1(Drive::TwoWheel) };
+    let math = Environment { name: "math".into(), script: "math_env".into(), ..area_1(Drive::TwoWheel) };
     assert_eq!(file_name(&math), "math_env.py");
 }
 

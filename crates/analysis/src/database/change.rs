@@ -317,8 +317,11 @@ impl Database {
     }
 
     fn validate_file(&mut self, file: FileId) {
-        for id in self.pieces(file).iter().map(|piece| piece.entity).collect::<Vec<_>>() {
-            self.validate(id);
+        // Walked once with their places: to look up the place of each would make a long file's opening quadratic.
+        let entities: Vec<(EntityId, Span)> =
+            self.entities(file).map(|entity| (entity.id, entity.span)).collect();
+        for (id, span) in entities {
+            self.validate(id, Some(span));
         }
     }
 
@@ -353,7 +356,7 @@ impl Database {
             doubtful.entities.extend(self.names.used(key));
         }
         for id in doubtful.entities {
-            self.validate(id);
+            self.validate(id, None);
         }
     }
 
@@ -368,11 +371,11 @@ impl Database {
         ids
     }
 
-    fn validate(&mut self, id: EntityId) {
+    fn validate(&mut self, id: EntityId, span: Option<Span>) {
         if self.data(id).is_none() {
             return;
         }
-        let problems = diagnostics::in_entity(self, id);
+        let problems = diagnostics::in_entity(self, id, span);
         self.last_edit.revalidated += 1;
         if problems.iter().any(|problem| problem.rule.seeks_names) {
             self.seekers.insert(id);

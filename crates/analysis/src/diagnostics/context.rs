@@ -112,6 +112,7 @@ pub(super) struct Context<'a> {
     pub(super) database: &'a Database,
     pub(super) file: FileId,
     pub(super) id: EntityId,
+    span: Option<Span>,
     /// `None` for what stands before the first entity.
     pub(super) tree: Option<&'a Entity>,
     pub(super) errors: &'a [SyntaxError],
@@ -119,13 +120,15 @@ pub(super) struct Context<'a> {
 }
 
 impl<'a> Context<'a> {
-    pub(super) fn new(database: &'a Database, id: EntityId) -> Option<Self> {
+    /// `span` is where the entity stands, if that is known; else it is looked up when it is needed.
+    pub(super) fn new(database: &'a Database, id: EntityId, span: Option<Span>) -> Option<Self> {
         let parse = database.parse(id)?;
         let file = database.file_of(id)?;
         Some(Self {
             database,
             file,
             id,
+            span,
             tree: parse.entity.as_ref(),
             errors: &parse.errors,
             lexemes: &parse.lexemes,
@@ -172,9 +175,13 @@ impl<'a> Context<'a> {
 
     /// The text of a range of this entity.
     pub(super) fn text(&self, span: Span) -> String {
-        self.database.entity(self.id).map_or_else(String::new, |entity| {
-            self.database.slice(self.file, span.shifted(entity.span.start))
-        })
+        self.place()
+            .map_or_else(String::new, |place| self.database.slice(self.file, span.shifted(place.start)))
+    }
+
+    /// Where the entity stands in its file.
+    fn place(&self) -> Option<Span> {
+        self.span.or_else(|| self.database.entity(self.id).map(|entity| entity.span))
     }
 
     /// A replacement of text in this entity.
@@ -200,7 +207,7 @@ impl<'a> Context<'a> {
 
     /// Removes the whole entity; `None` where a comment behind it would go with it.
     pub(super) fn whole(&self) -> Option<ProblemEdit> {
-        let end = self.database.entity(self.id)?.span.len();
+        let end = self.place()?.len();
         let comment = self.lexemes.iter().find(|(token, _)| token.is_comment());
         let end = comment.map_or(end, |(_, span)| span.start);
         Some(self.replace(Span::new(0, end), ""))

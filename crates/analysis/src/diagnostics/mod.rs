@@ -24,6 +24,7 @@ mod parallel_conflict;
 mod repeated_robot;
 mod repeated_sensor;
 mod repeated_wheel;
+mod script_name;
 mod sensor_not_on_robot;
 mod single_parallel;
 mod slam_robot;
@@ -85,7 +86,7 @@ impl PartialEq for Rule {
 }
 
 /// All rules, in the order of the language's contract.
-pub const CATALOGUE: [&Rule; 35] = [
+pub const CATALOGUE: [&Rule; 36] = [
     &syntax_error::RULE,
     &invalid_character::RULE,
     &unterminated_comment::RULE,
@@ -120,6 +121,7 @@ pub const CATALOGUE: [&Rule; 35] = [
     &idle_robot::RULE,
     &parallel_conflict::RULE,
     &single_parallel::RULE,
+    &script_name::RULE,
     &no_environment::RULE,
 ];
 
@@ -129,9 +131,9 @@ pub fn rule(code: &str) -> Option<&'static Rule> {
 }
 
 /// The problems of one entity, in the order of the text.
-pub(crate) fn in_entity(database: &Database, id: EntityId) -> Vec<Problem> {
+pub(crate) fn in_entity(database: &Database, id: EntityId, span: Option<Span>) -> Vec<Problem> {
     let mut problems = Vec::new();
-    if let Some(context) = Context::new(database, id) {
+    if let Some(context) = Context::new(database, id, span) {
         for rule in CATALOGUE {
             (rule.check)(&context, &mut problems);
         }
@@ -154,7 +156,9 @@ pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
         .filter(|(_, problem)| !consequences.include(problem))
         .map(|(start, problem)| places.diagnostic(file, start, problem))
         .collect();
+    diagnostics.extend(script_name::in_file(database, file));
     diagnostics.extend(no_environment::in_file(database, file));
+    diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);
     diagnostics
 }
 

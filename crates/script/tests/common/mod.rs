@@ -79,7 +79,8 @@ pub(crate) fn environment(
     movements: Vec<Movement>,
     schedule: Vec<Vec<usize>>,
 ) -> Environment {
-    Environment { name: name.to_owned(), host: None, robots, movements, schedule, source: line(14) }
+    let (name, script) = (name.to_owned(), name.to_owned());
+    Environment { name, script, host: None, robots, movements, schedule, source: line(14) }
 }
 
 /// The article's table 2: three sides of a square.

@@ -1,0 +1,196 @@
+//! `script-name`: an environment's script cannot be called like the environment.
+
+use pydslrep_syntax::EntityKind;
+use pydslrep_syntax::ast::Name;
+
+use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
+use crate::script_name::{Obstacle, ScriptName, script_names};
+use crate::{Database, Diagnostic, Edit, FileId, Fix, Related, Severity};
+
+pub(super) static RULE: Rule = Rule {
+    code: "script-name",
+    severity: Severity::Warning,
+    summary: "an environment whose script cannot have the same name",
+    tag: None,
+    remedy: Remedy::Suggested,
+    seeks_names: false,
+    page: PAGE,
+    check,
+};
+
+const PAGE: Page = Page {
+    what: "The script of an environment is called like the environment: `yard` becomes `yard.py`. Here that would \
+        not do. The name belongs to a module of Python or to one that scripts need, Windows has no files of that \
+        name, or another environment has the same name but for small and capital letters. The script's name then \
+        gets `_env` added to it.",
+    why: "When a script says `import math`, Python looks for `math.py` next to the script first. A script of that \
+        name would find itself there, and stop. And where a computer takes `yard.py` and `Yard.py` for the same \
+        file, one script would overwrite the other. With `_env` everything works, but you might look for the \
+        script under the wrong name.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { move 1 meters }
+
+environment math has { rover } robots with { trip } moves",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { move 1 meters }
+
+environment math_room has { rover } robots with { trip } moves",
+};
+
+/// It is a problem between the environments of a file, see [`in_file`].
+fn check(_: &Context<'_>, _: &mut Vec<Problem>) {}
+
+/// The problems of all environments of a file.
+pub(super) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
+    if database.count(file, EntityKind::Environment) == 0 {
+        return Vec::new();
+    }
+    let environments: Vec<Name> = database.environments(file).into_iter().map(|(_, name)| name).collect();
+    let names: Vec<&str> = environments.iter().map(|name| name.text.as_str()).collect();
+    let scripts = script_names(&names);
+    let problems = environments
+        .iter()
+        .zip(&scripts)
+        .filter_map(|(name, script)| Some(diagnostic(file, &environments, name, script, script.obstacle?)));
+    problems.collect()
+}
+
+fn diagnostic(
+    file: FileId,
+    environments: &[Name],
+    name: &Name,
+    script: &ScriptName,
+    obstacle: Obstacle,
+) -> Diagnostic {
+    let (text, stem) = (&name.text, &script.stem);
+    let other = match obstacle {
+        Obstacle::SameButForCase(other) => environments.get(other),
+        _ => None,
+    };
+    let why = match obstacle {
+        Obstacle::StandardModule => format!("a script `{text}.py` would hide Python's own module `{text}`"),
+        Obstacle::ClientModule => {
+            format!("a script `{text}.py` would hide the module `{text}`, which it needs")
+        }
+        Obstacle::ReservedOnWindows => format!("Windows has no files called `{text}.py`"),
+        Obstacle::SameButForCase(_) => {
+            let other = other.map_or("", |other| other.text.as_str());
+            format!("some computers take `{text}.py` and `{other}.py` for the same file")
+        }
+    };
+    let related = other.map(|other| Related {
+        file,
+        span: other.span,
+        message: format!("this script is called `{}.py`", other.text),
+    });
+    Diagnostic {
+        rule: &RULE,
+        severity: RULE.severity,
+        file,
+        span: name.span,
+        message: format!("{why}, so the script is called `{stem}.py`"),
+        help: Some("give the environment another name".to_owned()),
+        note: None,
+        related: related.into_iter().collect(),
+        fixes: vec![Fix {
+            title: format!("rename the environment to `{stem}`"),
+            safe: false,
+            edits: vec![Edit { file, span: name.span, text: stem.clone() }],
+        }],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::Database;
+    use crate::diagnostics::testing::{check, check_clean};
+
+    const PARTS: &str =
+        "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has { a b } wheels\n";
+
+    fn program(environments: &[&str]) -> String {
+        let environment = |name: &&str| format!("environment {name} has {{ r }} robots\n");
+        format!("{PARTS}{}", environments.iter().map(environment).collect::<String>())
+    }
+
+    #[test]
+    fn a_script_hides_nothing_and_overwrites_nothing() {
+        check(
+            &program(&["math"]),
+            &expect![[r#"
+            warning[script-name] 4:13 "math" a script `math.py` would hide Python's own module `math`, so the script is called `math_env.py`
+              help: give the environment another name
+              suggestion: rename the environment to `math_env` -> environment math_env has { r } robots
+        "#]],
+        );
+        check(
+            &program(&["zmq"]),
+            &expect![[r#"
+            warning[script-name] 4:13 "zmq" a script `zmq.py` would hide the module `zmq`, which it needs, so the script is called `zmq_env.py`
+              help: give the environment another name
+              suggestion: rename the environment to `zmq_env` -> environment zmq_env has { r } robots
+        "#]],
+        );
+        check(
+            &program(&["Con"]),
+            &expect![[r#"
+            warning[script-name] 4:13 "Con" Windows has no files called `Con.py`, so the script is called `Con_env.py`
+              help: give the environment another name
+              suggestion: rename the environment to `Con_env` -> environment Con_env has { r } robots
+        "#]],
+        );
+        check(
+            &program(&["yard", "field", "Yard"]),
+            &expect![[r#"
+            warning[script-name] 6:13 "Yard" some computers take `Yard.py` and `yard.py` for the same file, so the script is called `Yard_env.py`
+              see 4:13 "yard" this script is called `yard.py`
+              help: give the environment another name
+              suggestion: rename the environment to `Yard_env` -> environment Yard_env has { r } robots
+        "#]],
+        );
+        check_clean(&program(&["yard", "field", "yard_2"]));
+    }
+
+    #[test]
+    fn a_name_can_be_wrong_in_two_ways() {
+        check(
+            &program(&["math", "math"]),
+            &expect![[r#"
+                warning[script-name] 4:13 "math" a script `math.py` would hide Python's own module `math`, so the script is called `math_env.py`
+                  help: give the environment another name
+                  suggestion: rename the environment to `math_env` -> environment math_env has { r } robots
+                error[duplicate-name] 5:13 "math" there is already an environment called `math`
+                  see 4:13 "math" first declared here
+                  help: give one of them another name
+                  suggestion: rename this one to `math_2` -> environment math_2 has { r } robots
+                warning[script-name] 5:13 "math" a script `math.py` would hide Python's own module `math`, so the script is called `math_env.py`
+                  help: give the environment another name
+                  suggestion: rename the environment to `math_env` -> environment math_env has { r } robots
+            "#]],
+        );
+    }
+
+    #[test]
+    fn the_script_has_the_name_that_is_told() {
+        let mut database = Database::new();
+        let file = database.open("test.pyr", program(&["yard", "Yard", "math"]).as_str());
+        let scripts: Vec<String> = database
+            .environments(file)
+            .iter()
+            .map(|(id, _)| database.environment(*id).expect("no errors").script)
+            .collect();
+        assert_eq!(scripts, ["yard", "Yard_env", "math_env"]);
+    }
+}
