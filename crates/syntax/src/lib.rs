@@ -1,5 +1,5 @@
 //! The PyDSLRep language as text: tokens, cutting a file into entities, parsing one entity, the syntax tree,
-//! syntax errors.
+//! syntax errors, the canonical layout.
 //!
 //! Knows one piece of text at a time. Must never know files, names across entities, editors or I/O.
 //!
@@ -10,6 +10,7 @@
 pub mod ast;
 mod cut;
 mod error;
+mod format;
 mod lexer;
 mod parser;
 mod span;
@@ -18,6 +19,7 @@ mod token;
 
 pub use cut::cut;
 pub use error::{Expected, Found, SyntaxError, SyntaxErrorKind};
+pub use format::{TextEdit, format, format_edits};
 pub use lexer::{Lexeme, lex};
 pub use parser::{Parse, expected_after, parse};
 pub use span::Span;

@@ -1,0 +1,103 @@
+//! The canonical layout of a program.
+//!
+//! Only what stands between tokens is ever changed: white space, the commas of lists, blank ends of comment lines.
+//! The layout is therefore a list of small edits, and meaning cannot change. Entities with errors are left byte for
+//! byte as they are, because what a person meant there is not known.
+
+mod entity;
+mod gap;
+mod piece;
+mod writer;
+
+use self::entity::lay_out;
+use self::gap::{Blank, Gap, Place};
+use self::piece::{Item, items};
+use self::writer::Writer;
+use crate::{Lexeme, Parse, Span, Token, parse};
+
+/// A change of text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TextEdit {
+    /// What goes.
+    pub span: Span,
+    /// What comes.
+    pub text: String,
+}
+
+/// `text` in canonical layout. Its line ending (that of its first line), its byte order mark and whatever could not
+/// be parsed stay as they are.
+pub fn format(text: &str) -> String {
+    let pieces = parse(text);
+    let edits = format_edits(text, pieces.iter().map(|(span, parse)| (*span, parse)));
+    let mut formatted = String::with_capacity(text.len());
+    let mut at = 0;
+    for edit in &edits {
+        formatted.push_str(Span::new(at, edit.span.start).text(text));
+        formatted.push_str(&edit.text);
+        at = edit.span.end;
+    }
+    formatted.push_str(text.get(at as usize..).unwrap_or_default());
+    formatted
+}
+
+/// The edits that bring `text` into canonical layout, in order and apart from each other. `pieces` is what [`parse`]
+/// makes of `text`. Each edit keeps the meaning by itself, so that any choice of them may be applied.
+pub fn format_edits<'a>(text: &str, pieces: impl IntoIterator<Item = (Span, &'a Parse)>) -> Vec<TextEdit> {
+    if u32::try_from(text.len()).is_err() {
+        // Spans cannot reach the end.
+        return Vec::new();
+    }
+    let (lexemes, items) = items(text, pieces);
+    let mut writer = Writer::new(text);
+    let mut previous: Option<&Item> = None;
+    for item in &items {
+        separate(&mut writer, text, &lexemes, previous, Some(item));
+        if item.broken {
+            writer.put(Span::new(lexemes[item.first].1.start, lexemes[item.last].1.end));
+        } else {
+            lay_out(&mut writer, text, &lexemes, item);
+        }
+        previous = Some(item);
+    }
+    if previous.is_none_or(|item| lexemes[item.last].0 != Token::UnterminatedComment) {
+        separate(&mut writer, text, &lexemes, previous, None);
+    }
+    writer.finish()
+}
+
+/// Writes what stands between two items: comments, and the right number of line ends.
+fn separate(
+    writer: &mut Writer<'_>,
+    text: &str,
+    lexemes: &[Lexeme],
+    previous: Option<&Item>,
+    next: Option<&Item>,
+) {
+    let from = previous.map(|item| item.last);
+    let to = next.map_or(lexemes.len(), |item| item.first);
+    let gap = Gap::new(text, lexemes, from, to);
+    let kept_indent = next.filter(|item| item.broken).map(|item| gap::indent_of(text, lexemes[item.first].1));
+    let place = Place {
+        indent: "",
+        next_indent: kept_indent.unwrap_or_default(),
+        opens: previous.is_none(),
+        closes: next.is_none(),
+        blank: blank_between(previous, next, &gap),
+    };
+    gap.write_broken(writer, &place);
+}
+
+/// Declarations of one line stand together, kind by kind; everything else stands apart.
+fn blank_between(previous: Option<&Item>, next: Option<&Item>, gap: &Gap<'_>) -> Blank {
+    let (Some(previous), Some(next)) = (previous, next) else { return Blank::Kept };
+    let (Some(above), Some(below)) = (previous.last_kind, next.first_kind) else { return Blank::Kept };
+    let one_run = above == below && below.stands_in_runs();
+    match (one_run, previous.broken || next.broken || gap.has_comments()) {
+        (false, _) => Blank::One,
+        (true, true) => Blank::Kept,
+        (true, false) => Blank::Never,
+    }
+}
+
+#[cfg(test)]
+mod tests;

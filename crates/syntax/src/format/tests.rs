@@ -1,0 +1,521 @@
+//! Readable cases, and what holds for any text at all.
+
+use expect_test::{Expect, expect};
+use proptest::prelude::*;
+
+use super::*;
+use crate::lex;
+
+fn check(text: &str, expected: &Expect) {
+    let formatted = format(text);
+    expected.assert_eq(&formatted);
+    assert_eq!(format(&formatted), formatted, "formatting again changes something");
+    assert_eq!(meaning(&formatted), meaning(text));
+}
+
+/// The trees and errors of a text without their places.
+fn meaning(text: &str) -> Vec<String> {
+    let pieces = parse(text);
+    let entities = pieces.iter().filter_map(|(_, parse)| {
+        let mut errors: Vec<_> = parse.errors.iter().map(|error| format!("{:?}", error.kind)).collect();
+        errors.sort_unstable();
+        let something = parse.entity.is_some() || !errors.is_empty();
+        something.then(|| without_spans(&format!("{:?} {errors:?}", parse.entity)))
+    });
+    entities.collect()
+}
+
+fn without_spans(tree: &str) -> String {
+    let mut parts = tree.split("Span { start: ");
+    let mut kept = parts.next().unwrap().to_owned();
+    for part in parts {
+        kept.push_str(part.split_once(" }").unwrap().1);
+    }
+    kept
+}
+
+/// Comments, and the tokens around them, with what the layout may change left out.
+fn tokens_and_comments(text: &str) -> Vec<String> {
+    let kept = lex(text).into_iter().filter(|(token, _)| *token != Token::Comma);
+    let lines = |span: Span| {
+        let lines = span.text(text).split(['\r', '\n']).map(|line| line.trim_matches([' ', '\t', '\x0c']));
+        lines.filter(|line| !line.is_empty()).collect::<Vec<_>>().join("\n")
+    };
+    kept.map(|(token, span)| format!("{token:?} {}", lines(span))).collect()
+}
+
+/// The text of what has to stay as it is, from the first to the last token of each broken entity.
+fn broken_texts(text: &str) -> Vec<&str> {
+    let pieces = parse(text);
+    let broken = pieces.iter().filter(|(_, parse)| !parse.errors.is_empty());
+    broken
+        .map(|(span, parse)| {
+            let stays = |token: Token| !token.is_comment() || token == Token::UnterminatedComment;
+            let mut kept = parse.lexemes.iter().filter(|(token, _)| stays(*token)).map(|(_, span)| *span);
+            let first = kept.next().unwrap();
+            first.to(kept.next_back().unwrap_or(first)).shifted(span.start).text(text)
+        })
+        .collect()
+}
+
+#[test]
+fn the_canonical_example_stays_as_it_is() {
+    const CANONICAL: &str = "\
+wheel wheelR with radius 4.5
+wheel wheelL with radius 4.5
+
+robot robot_1 type tw with port 19999 has { wheelL wheelR } wheels with sensors { fSensor, lSensor }
+
+movement mov_1 of robot_1 {
+  move 4.0 meters at 9.0
+  turn right until { fSensor }
+}
+
+environment area_1 has { robot_1 } robots with { mov_1 } moves
+";
+    assert_eq!(format(CANONICAL), CANONICAL);
+    let one_line = CANONICAL.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert_eq!(format(&one_line), CANONICAL);
+    let one_word_per_line = CANONICAL.split_whitespace().collect::<Vec<_>>().join("\n\n");
+    // Blank lines inside a movement stay, where there can be any.
+    assert_eq!(format(&one_word_per_line), CANONICAL.replace("9.0\n", "9.0\n\n"));
+}
+
+#[test]
+fn runs_and_blank_lines() {
+    check(
+        "\n\nimport \"a.pyr\"\n\nimport \"b.pyr\"\nwheel a with radius 3\n\n\nwheelH b with radius 3 sensor s:bumper sensor  t\nip i 1.2.3.4
+ip j 1.2.3.4
+movement m of r{}\n\n\nmovement n of r {\n\n  slam\n\n\n\n  slam\n\n}\n\n",
+        &expect![[r#"
+            import "a.pyr"
+            import "b.pyr"
+
+            wheel a with radius 3
+            wheelH b with radius 3
+
+            sensor s : bumper
+            sensor t
+
+            ip i 1.2.3.4
+            ip j 1.2.3.4
+
+            movement m of r { }
+
+            movement n of r {
+              slam
+
+              slam
+            }
+        "#]],
+    );
+}
+
+#[test]
+fn commas() {
+    check(
+        "robot r with port 1 has {a,b,} wheels with sensors {s t,}
+movement m of ^r { turn left until {s t u} }
+environment e,i has {r,q} robots with {m,} moves environment e , i has {} robots",
+        &expect![[r#"
+            robot r with port 1 has { a b } wheels with sensors { s, t }
+
+            movement m of ^r {
+              turn left until { s, t, u }
+            }
+
+            environment e, i has { r q } robots with { m } moves
+
+            environment e, i has { } robots
+        "#]],
+    );
+}
+
+#[test]
+fn long_lists() {
+    check(
+        "robot quite_a_long_name type fw with port 19999 has { wheelFL wheelRL wheelFR wheelRR } wheels with sensors { front, leftOne }
+robot short type fw with port 19999 has { wheelFL wheelRL wheelFR wheelRR } wheels with sensors { front, leftOne }
+robot a_name_that_is_long_enough type fw with port 19999 has { wheelFrontLeft wheelRearLeft wheelFR } wheels
+movement m of r { turn left until { a_sensor_in_front, a_sensor_on_the_left_side, a_sensor_on_the_right_side_of_it } turn left until { a_sensor_in_front, a_sensor_on_the_left_side, a_sensor_on_the_right_side_of_i } }",
+        &expect![[r#"
+            robot quite_a_long_name type fw with port 19999 has {
+              wheelFL
+              wheelRL
+              wheelFR
+              wheelRR
+            } wheels with sensors { front, leftOne }
+
+            robot short type fw with port 19999 has { wheelFL wheelRL wheelFR wheelRR } wheels with sensors {
+              front,
+              leftOne
+            }
+
+            robot a_name_that_is_long_enough type fw with port 19999 has {
+              wheelFrontLeft
+              wheelRearLeft
+              wheelFR
+            } wheels
+
+            movement m of r {
+              turn left until { a_sensor_in_front, a_sensor_on_the_left_side, a_sensor_on_the_right_side_of_it }
+              turn left until { a_sensor_in_front, a_sensor_on_the_left_side, a_sensor_on_the_right_side_of_i }
+            }
+        "#]],
+    );
+}
+
+#[test]
+fn comments_keep_their_place() {
+    check(
+        "// top  \n\n\n/** doc\n      * of a */\nwheel a with radius 3 // three\n   // about b\nwheel b with radius 3 /* x */ /* y */ wheel c with radius 3
+/* d */ wheel d with radius 3
+
+
+      // the last
+wheel e with radius 3
+// of the robot
+robot r /* type */ type tw // two
+with port 1
+// wheels
+has { a /* left */ , b // right
+} wheels
+// remark
+
+movement m of r { // start
+  // first
+
+move 4 meters /* far */ turn left // left
+  turn
+     // way
+  right 3
+
+
+  // last
+}
+// end",
+        &expect![[r#"
+            // top
+
+            /** doc
+             * of a */
+            wheel a with radius 3 // three
+            // about b
+            wheel b with radius 3 /* x */ /* y */
+            wheel c with radius 3
+            /* d */ wheel d with radius 3
+
+            // the last
+            wheel e with radius 3
+
+            // of the robot
+            robot r /* type */ type tw // two
+              with port 1
+              // wheels
+              has {
+                a /* left */
+                b // right
+              } wheels
+            // remark
+
+            movement m of r { // start
+              // first
+
+              move 4 meters /* far */
+              turn left // left
+              turn
+                // way
+                right 3
+
+              // last
+            }
+            // end
+        "#]],
+    );
+}
+
+#[test]
+fn comments_in_empty_places() {
+    check(
+        "movement m of r { /* nothing */ } movement m of r { // later
+} movement n of r {
+/* a
+   b */ } robot r with port 1 has { /* none */ } wheels",
+        &expect![[r#"
+            movement m of r {
+              /* nothing */
+            }
+
+            movement m of r { // later
+            }
+
+            movement n of r {
+              /* a
+               b */
+            }
+
+            robot r with port 1 has { /* none */ } wheels
+        "#]],
+    );
+    check("", &expect![""]);
+    check(" \n\n\t", &expect![""]);
+    check("\u{feff}", &expect!["\u{feff}"]);
+    check("// only", &expect![["// only\n"]]);
+}
+
+#[test]
+fn broken_entities_stay() {
+    check(
+        "wheel   a with radius   3
+   wheel   b with   4 // four
+     // maybe of b
+
+// of c
+wheel   c with radius 3
+movement m of r{ slam }
+movement  m of r {
+  move 4  metrs
+  wheel   d with radius 3",
+        &expect![[r#"
+            wheel a with radius 3
+               wheel   b with   4 // four
+                 // maybe of b
+
+            // of c
+            wheel c with radius 3
+
+            movement m of r {
+              slam
+            }
+
+            movement  m of r {
+              move 4  metrs
+
+            wheel d with radius 3
+        "#]],
+    );
+    check(
+        "garbage   §\nwheel  a with radius 3 /* open  ",
+        &expect!["garbage   §\nwheel  a with radius 3 /* open  "],
+    );
+}
+
+#[test]
+fn line_endings_and_the_byte_order_mark_stay() {
+    assert_eq!(
+        format("\u{feff}\nwheel a\r\n with radius 3\n/*\n * a */"),
+        "\u{feff}wheel a with radius 3\r\n/*\r\n * a */\r\n"
+    );
+    assert_eq!(format("// é\rwheel a with radius 3"), "// é\rwheel a with radius 3\r");
+    assert_eq!(
+        format("movement m of r {\r\n\r\n\r\nslam\r\n\r\n\r\nslam }"),
+        "movement m of r {\r\n  slam\r\n\r\n  slam\r\n}\r\n"
+    );
+}
+
+#[test]
+fn edits_are_small() {
+    let text = "wheel a  with radius 3\nwheel b with radius 3\nsensor s\n";
+    let pieces = parse(text);
+    let edits = format_edits(text, pieces.iter().map(|(span, parse)| (*span, parse)));
+    let listed: Vec<_> =
+        edits.iter().map(|edit| (edit.span.start, edit.span.end, edit.text.as_str())).collect();
+    assert_eq!(listed, [(7, 9, " "), (44, 45, "\n\n")]);
+}
+
+#[test]
+fn the_articles_programs() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/paper");
+    let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    assert_eq!(paths.len(), 6);
+    for path in paths {
+        let text = std::fs::read_to_string(path).unwrap();
+        let formatted = format(&text);
+        assert_eq!(meaning(&formatted), meaning(&text));
+        assert_eq!(format(&formatted), formatted);
+        assert!(formatted.lines().all(|line| line.len() <= 100 && line == line.trim_end()));
+    }
+}
+
+/// What must hold for any text.
+fn check_properties(text: &str) -> Result<(), TestCaseError> {
+    let formatted = format(text);
+    prop_assert_eq!(format(&formatted), formatted.clone(), "not idempotent");
+    prop_assert_eq!(meaning(&formatted), meaning(text));
+    prop_assert_eq!(tokens_and_comments(&formatted), tokens_and_comments(text));
+    prop_assert_eq!(broken_texts(&formatted), broken_texts(text));
+    let ends_well = formatted.ends_with(['\n', '\r']) && !formatted.ends_with("\n\n");
+    let is_empty = formatted.trim_start_matches('\u{feff}').is_empty();
+    let is_open = lex(text).last().is_some_and(|(token, _)| *token == Token::UnterminatedComment);
+    prop_assert!(ends_well || is_empty || is_open);
+    Ok(())
+}
+
+proptest! {
+    #[test]
+    fn any_text_keeps_what_it_says(text in token_soup()) {
+        check_properties(&text)?;
+    }
+
+    #[test]
+    fn programs_keep_what_they_say(text in program()) {
+        check_properties(&text)?;
+    }
+
+    /// Whatever edits a person picks, the meaning is the same.
+    #[test]
+    fn each_edit_keeps_the_meaning(text in program(), choice in any::<u64>()) {
+        let pieces = parse(&text);
+        let edits = format_edits(&text, pieces.iter().map(|(span, parse)| (*span, parse)));
+        let mut changed = text.clone();
+        for (index, edit) in edits.iter().enumerate().rev() {
+            if choice >> (index % 64) & 1 == 1 {
+                changed.replace_range(std::ops::Range::from(edit.span), &edit.text);
+            }
+        }
+        prop_assert_eq!(meaning(&changed), meaning(&text));
+    }
+}
+
+fn token_soup() -> impl Strategy<Value = String> {
+    let word = prop_oneof![
+        6 => proptest::sample::select(crate::KEYWORDS.map(|(_, word)| word).to_vec()).prop_map(str::to_owned),
+        4 => proptest::sample::select(vec![
+            "{", "}", ",", ":", "/*", "*/", "//", "\"", "\n", "\r", "\r\n", "\n\n", "^", "-", ".", "a", "b1", "4.5",
+            "90", "1.2.3.4", "é", "🤖", "\u{feff}",
+        ])
+        .prop_map(str::to_owned),
+        2 => proptest::sample::select(vec![
+            "wheel a with radius 3", "sensor s", "ip i 1.2.3.4", "movement m of r { slam }", "import \"a\"",
+        ])
+        .prop_map(str::to_owned),
+        1 => ".{0,4}",
+    ];
+    proptest::collection::vec(word, 0..40).prop_map(|words| words.join(" "))
+}
+
+/// Entities, most of them without mistakes, with any white space and comments between any two tokens.
+fn program() -> impl Strategy<Value = String> {
+    let pieces = proptest::collection::vec((entity(), 0..12_usize, any::<prop::sample::Index>()), 0..6);
+    let tokens = pieces.prop_map(|entities| {
+        let mut tokens = Vec::new();
+        for (mut entity, spoil, at) in entities {
+            if spoil == 0 {
+                entity.remove(at.index(entity.len()));
+            }
+            tokens.extend(entity);
+        }
+        tokens
+    });
+    let spaced = tokens.prop_flat_map(|tokens| {
+        let count = tokens.len() + 1;
+        (Just(tokens), proptest::collection::vec(trivia(), count))
+    });
+    (spaced, proptest::sample::select(vec!["\n", "\r\n", "\r"])).prop_map(
+        |((tokens, trivia), line_ending)| {
+            let mut text = trivia[0].clone();
+            for (token, trivia) in tokens.iter().zip(&trivia[1..]) {
+                text += token;
+                text += trivia;
+            }
+            text.replace('\n', line_ending)
+        },
+    )
+}
+
+fn trivia() -> impl Strategy<Value = String> {
+    let comment = proptest::sample::select(vec![
+        " /* a */ ",
+        "/* b */\n",
+        "\n/* c */\n",
+        "\n/* d */ ",
+        " // e  \n",
+        "\n // f\n",
+        "\n\n// g\n\n",
+        "\n/** h\n   * i\n\t*/\n",
+        " /* j\n k */ ",
+        "\n/* l */ /* m */\n",
+        " /* n */ // o\n",
+    ]);
+    let space = proptest::sample::select(vec!["\n", "\n\n", "\n \n\n  ", "\t", "  "]);
+    prop_oneof![
+        12 => Just(" ".to_owned()),
+        3 => space.prop_map(str::to_owned),
+        1 => proptest::collection::vec(comment, 1..3).prop_map(|comments| comments.concat()),
+    ]
+}
+
+fn name() -> impl Strategy<Value = String> {
+    let names = vec!["a", "wheelL", "^robots", "import", "bumper", "a_name_of_thirty_characters_or_so"];
+    proptest::sample::select(names).prop_map(str::to_owned)
+}
+
+fn names(least: usize) -> impl Strategy<Value = Vec<String>> {
+    proptest::collection::vec((name(), any::<bool>()), least..5).prop_map(|names| {
+        let mut list = vec!["{".to_owned()];
+        for (name, comma) in names {
+            list.push(name);
+            if comma {
+                list.push(",".to_owned());
+            }
+        }
+        list.push("}".to_owned());
+        list
+    })
+}
+
+fn words(text: &str) -> Vec<String> {
+    text.split_whitespace().map(str::to_owned).collect()
+}
+
+fn entity() -> impl Strategy<Value = Vec<String>> {
+    let simple = proptest::sample::select(vec![
+        "wheel a with radius 4.50",
+        "wheelH b with radius 4",
+        "sensor s",
+        "sensor t : bumper",
+        "ip i 1.2.3.4",
+        "import \"parts/a.pyr\"",
+    ]);
+    let heads = vec![
+        "robot type tw r with port 1 has",
+        "robot ^r with port 19999 has",
+        "robot r type fwh with port 7 has",
+    ];
+    let robot = (proptest::sample::select(heads), names(0), prop::option::of(names(1)));
+    let robot = robot.prop_map(|(head, wheels, sensors)| {
+        let sensors = sensors.map(|sensors| [words("with sensors"), sensors].concat());
+        [words(head), wheels, words("wheels"), sensors.unwrap_or_default()].concat()
+    });
+    let heads = vec!["environment e has", "environment e , i has", "environment e with ip i has"];
+    let environment = (proptest::sample::select(heads), names(0), prop::option::of(names(0)));
+    let environment = environment.prop_map(|(head, robots, moves)| {
+        let moves = moves.map(|moves| [words("with"), moves, words("moves")].concat());
+        [words(head), robots, words("robots"), moves.unwrap_or_default()].concat()
+    });
+    prop_oneof![
+        3 => simple.prop_map(words),
+        1 => robot,
+        1 => movement(),
+        1 => environment,
+    ]
+}
+
+fn movement() -> impl Strategy<Value = Vec<String>> {
+    let simple = proptest::sample::select(vec![
+        "move -4.0 meters",
+        "move 4 centimeters at 9",
+        "turn left",
+        "turn right 30",
+        "slam",
+    ]);
+    let action = prop_oneof![
+        3 => simple.prop_map(words),
+        1 => names(1).prop_map(|sensors| [words("turn left until"), sensors].concat()),
+    ];
+    (any::<bool>(), proptest::collection::vec(action, 0..4)).prop_map(|(parallel, actions)| {
+        let head = if parallel { "parallel movement m of r {" } else { "movement m of r {" };
+        [words(head), actions.concat(), words("}")].concat()
+    })
+}

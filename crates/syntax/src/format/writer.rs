@@ -1,0 +1,196 @@
+//! Walks over the text and notes where what stands between tokens has to change.
+
+use std::borrow::Cow;
+
+use super::TextEdit;
+use crate::{Span, Token};
+
+const BYTE_ORDER_MARK: &str = "\u{feff}";
+
+/// Where the layout has got to.
+pub(super) struct Writer<'a> {
+    text: &'a str,
+    line_ending: &'static str,
+    /// Everything before this byte is done.
+    at: u32,
+    /// What is to stand between `at` and the next token.
+    gap: String,
+    /// Whether anything is written yet.
+    started: bool,
+    /// Characters on the current line so far, the gap not counted.
+    column: usize,
+    /// Characters of white space the current line begins with.
+    line_indent: usize,
+    edits: Vec<TextEdit>,
+}
+
+impl<'a> Writer<'a> {
+    pub(super) fn new(text: &'a str) -> Self {
+        let body = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
+        Self {
+            text,
+            line_ending: line_ending(body),
+            at: Span::of(text).len() - Span::of(body).len(),
+            gap: String::new(),
+            started: false,
+            column: 0,
+            line_indent: 0,
+            edits: Vec::new(),
+        }
+    }
+
+    /// Characters on the current line up to the last token.
+    pub(super) fn column(&self) -> usize {
+        self.column
+    }
+
+    /// Characters of white space the current line begins with.
+    pub(super) fn line_indent(&self) -> usize {
+        self.line_indent
+    }
+
+    /// Adds to what is to stand before the next token.
+    pub(super) fn glue(&mut self, glue: &str) {
+        self.gap.push_str(glue);
+    }
+
+    pub(super) fn space(&mut self) {
+        self.glue(" ");
+    }
+
+    /// Ends the line; the next begins with `indent`.
+    pub(super) fn line(&mut self, indent: &str) {
+        self.lines(1, indent);
+    }
+
+    /// Ends the line `count` times over. At the start of a file there is no line to end.
+    pub(super) fn lines(&mut self, count: usize, indent: &str) {
+        for _ in 0..if self.started { count } else { 0 } {
+            self.gap.push_str(self.line_ending);
+        }
+        self.gap.push_str(indent);
+        self.line_indent = indent.len();
+    }
+
+    /// Writes a stretch of the text as it is.
+    pub(super) fn put(&mut self, span: Span) {
+        self.flush(span.start);
+        self.advance(span, span.text(self.text));
+    }
+
+    /// Writes a comment. `indent` is given where it begins a line; a comment of several lines that all begin with
+    /// `*` is then moved as a whole.
+    pub(super) fn comment(&mut self, token: Token, span: Span, indent: Option<&str>) {
+        let written = span.text(self.text);
+        let wanted = match token {
+            Token::LineComment => Cow::Borrowed(written.trim_end_matches(BLANKS)),
+            _ => block_comment(written, self.line_ending, indent),
+        };
+        self.flush(span.start);
+        self.advance(span, &wanted);
+        if wanted != written {
+            self.edits.push(TextEdit { span, text: wanted.into_owned() });
+        }
+    }
+
+    /// Makes one edit of those from number `first` on, because one alone would be wrong.
+    pub(super) fn join_edits(&mut self, first: usize) {
+        if self.edits.len() < first + 2 {
+            return;
+        }
+        let parts = self.edits.split_off(first);
+        let mut joined = TextEdit { span: parts[0].span, text: String::new() };
+        for part in parts {
+            // Between two edits stands what is kept; nothing does before the first.
+            joined.text += Span::new(joined.span.end.min(part.span.start), part.span.start).text(self.text);
+            joined.text += &part.text;
+            joined.span.end = part.span.end;
+        }
+        self.edits.push(joined);
+    }
+
+    /// How many edits there are.
+    pub(super) fn edits(&self) -> usize {
+        self.edits.len()
+    }
+
+    /// The edits, the last of them up to the end of the text.
+    pub(super) fn finish(mut self) -> Vec<TextEdit> {
+        self.flush(Span::of(self.text).end);
+        self.edits
+    }
+
+    fn flush(&mut self, until: u32) {
+        self.column += self.gap.len();
+        if let Some(end) = self.gap.rfind(LINE_ENDS) {
+            self.column = self.gap.len() - end - 1;
+        }
+        let span = Span::new(self.at, until);
+        if span.text(self.text) != self.gap {
+            self.edits.push(TextEdit { span, text: self.gap.clone() });
+        }
+        self.gap.clear();
+    }
+
+    fn advance(&mut self, span: Span, written: &str) {
+        let last_line = written.rsplit(LINE_ENDS).next().unwrap_or_default();
+        if last_line.len() < written.len() {
+            self.column = 0;
+        }
+        self.column += last_line.chars().count();
+        self.at = span.end;
+        self.started = true;
+    }
+}
+
+const BLANKS: [char; 3] = [' ', '\t', '\x0c'];
+const LINE_ENDS: [char; 2] = ['\n', '\r'];
+
+/// How the first line that has something on it ends.
+fn line_ending(text: &str) -> &'static str {
+    let first = |text: &str| {
+        let end = &text[text.find(LINE_ENDS)?..];
+        let spellings = ["\r\n", "\r", "\n"];
+        spellings.into_iter().find(|spelling| end.starts_with(spelling))
+    };
+    let written = text.trim_start_matches(|c| BLANKS.contains(&c) || LINE_ENDS.contains(&c));
+    first(written).or_else(|| first(text)).unwrap_or("\n")
+}
+
+/// A block comment with the file's line ending; where it begins a line and its further lines all begin with `*`,
+/// those stand below the `*` of the first.
+fn block_comment<'t>(written: &'t str, line_ending: &str, indent: Option<&str>) -> Cow<'t, str> {
+    if !written.contains(LINE_ENDS) {
+        return Cow::Borrowed(written);
+    }
+    let lines = lines(written);
+    let starred = lines.iter().skip(1).all(|line| line.trim_start_matches(BLANKS).starts_with('*'));
+    let mut wanted = String::with_capacity(written.len());
+    for (index, line) in lines.iter().enumerate() {
+        if index > 0 {
+            wanted.push_str(line_ending);
+        }
+        match indent {
+            Some(indent) if starred && index > 0 => {
+                wanted.push_str(indent);
+                wanted.push(' ');
+                wanted.push_str(line.trim_start_matches(BLANKS));
+            }
+            _ => wanted.push_str(line),
+        }
+    }
+    Cow::Owned(wanted)
+}
+
+/// The lines of a text, whatever ends them.
+fn lines(text: &str) -> Vec<&str> {
+    let mut lines = Vec::new();
+    let mut rest = text;
+    while let Some(at) = rest.find(LINE_ENDS) {
+        lines.push(&rest[..at]);
+        let end = if rest[at..].starts_with("\r\n") { 2 } else { 1 };
+        rest = &rest[at + end..];
+    }
+    lines.push(rest);
+    lines
+}
