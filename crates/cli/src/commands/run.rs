@@ -46,6 +46,9 @@ pub(crate) struct Arguments {
     /// Write every step into a file, as JSON lines
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
+    /// Simulated seconds per second, so that the run can be watched [default: as fast as it goes]
+    #[arg(long, value_name = "X", value_parser = above_zero, conflicts_with = "host")]
+    speed: Option<f64>,
     /// Show no progress
     #[arg(long)]
     no_progress: bool,
@@ -58,6 +61,12 @@ pub(crate) struct Arguments {
     /// The Python to run the script with [default: python3]
     #[arg(long, value_name = "PATH")]
     python: Option<PathBuf>,
+}
+
+/// A factor from the command line.
+fn above_zero(text: &str) -> Result<f64, String> {
+    let speed = text.parse().ok().filter(|speed: &f64| speed.is_finite() && *speed > 0.0);
+    speed.ok_or_else(|| "a number above zero is expected, such as 1 or 2.5".to_owned())
 }
 
 /// Runs the command.
@@ -127,6 +136,8 @@ impl Run<'_> {
         let options = Options {
             ports: self.planned.environment.robots.iter().map(|robot| robot.port).collect(),
             any_port_if_taken: true,
+            speed: self.arguments.speed.unwrap_or(1.0),
+            paced: self.arguments.speed.is_some(),
             ..Options::default()
         };
         Simulator::start(self.planned.scene.clone(), &options)

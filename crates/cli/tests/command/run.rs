@@ -110,6 +110,15 @@ environment one has { r } robots environment two has { r } robots";
 }
 
 #[test]
+fn a_speed_is_above_zero_and_the_simulators() {
+    let run = |speed: &[&str]| run(&Place::new(), &[&[paper("table2_two_wheels").as_str()], speed].concat());
+    let done = run(&["--speed", "0"]);
+    assert_eq!(done.code, Some(2));
+    assert!(done.err.contains("a number above zero is expected"), "{}", done.err);
+    assert_eq!(run(&["--speed", "2", "--host", "127.0.0.1"]).code, Some(2));
+}
+
+#[test]
 fn a_missing_python_is_explained() {
     let done = run(&Place::new(), &[&paper("table2_two_wheels"), "--python", "./no/python"]);
     assert_eq!(done.code, Some(2));

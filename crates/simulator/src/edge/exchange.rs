@@ -75,14 +75,17 @@ impl Exchange {
         inner.deliver(answers);
     }
 
-    /// Lets `steps` steps pass if nobody steps the clock; whether time passes by itself.
+    /// Lets `steps` steps pass if nobody steps the clock, or allows as many where steps are paced; whether the time of
+    /// the machine matters at all.
     pub(super) fn pass_time(&self, steps: u32) -> bool {
         let mut inner = self.lock();
+        let answers = inner.session.allow(steps);
+        inner.deliver(answers);
         for _ in 0..steps {
             let answers = inner.session.tick();
             inner.deliver(answers);
         }
-        inner.session.is_free_running()
+        inner.session.is_timed()
     }
 
     pub(super) fn keep_house(&self) {

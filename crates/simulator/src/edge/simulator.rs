@@ -39,6 +39,8 @@ pub struct Options {
     pub step: f64,
     /// Simulated seconds per second while no client steps the clock.
     pub speed: f64,
+    /// Keep to that speed also when clients step the clock, instead of stepping as fast as they ask.
+    pub paced: bool,
     /// Record a trace. It stays in memory until taken.
     pub trace: bool,
 }
@@ -52,6 +54,7 @@ impl Default for Options {
             any_port_if_taken: false,
             step: motion::STEP,
             speed: 1.0,
+            paced: false,
             trace: true,
         }
     }
@@ -121,6 +124,9 @@ impl Simulator {
         let mut session = Session::new(world);
         if options.trace {
             session.record();
+        }
+        if options.paced {
+            session.pace();
         }
         let (listeners, ports) = bind(options)?;
         let exchange = Arc::new(Exchange::new(session));

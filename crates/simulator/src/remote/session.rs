@@ -46,6 +46,8 @@ pub struct Session {
     state: State,
     clients: BTreeMap<String, Client>,
     trace: Option<Vec<TraceRecord>>,
+    /// Steps that clients may still have taken; `None` is any number.
+    allowance: Option<u32>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,12 +89,30 @@ impl Session {
     /// A session on a world at rest; the simulation is stopped.
     pub fn new(world: World) -> Self {
         let objects = Objects::of(world.scene());
-        Self { world, objects, state: State::Stopped, clients: BTreeMap::new(), trace: None }
+        Self { world, objects, state: State::Stopped, clients: BTreeMap::new(), trace: None, allowance: None }
     }
 
     /// Begins to record all robots at the start of the simulation and after every step.
     pub fn record(&mut self) {
         self.trace.get_or_insert_default();
+    }
+
+    /// From now on clients have steps taken only as [`Session::allow`] lets them.
+    pub fn pace(&mut self) {
+        self.allowance.get_or_insert(0);
+    }
+
+    /// Lets so many more steps be taken in a session that is paced. What nobody asks for is lost but for one step, so
+    /// that a client that was slow does not make up for it in a rush.
+    pub fn allow(&mut self, steps: u32) -> Vec<Answer> {
+        let Some(left) = &mut self.allowance else { return Vec::new() };
+        *left = (*left).min(1).saturating_add(steps);
+        self.settle()
+    }
+
+    /// Whether the clock of the machine decides when steps are taken: nobody steps, or steps are paced.
+    pub fn is_timed(&self) -> bool {
+        self.state == State::Running && (self.allowance.is_some() || self.is_free_running())
     }
 
     /// What was recorded since the last time this was asked.
@@ -308,7 +328,9 @@ impl Session {
         let steps = self.world.steps();
         let asks = |client: &Client| client.wanted.as_ref().is_some_and(|wanted| wanted.steps > steps);
         let mut joined = self.clients.values().filter(|client| client.level > 0).peekable();
-        if self.state == State::Running && joined.peek().is_some() && joined.all(asks) {
+        let may = self.state == State::Running && self.allowance != Some(0);
+        if may && joined.peek().is_some() && joined.all(asks) {
+            self.allowance = self.allowance.map(|left| left.saturating_sub(1));
             self.take_step();
         }
         let (steps, running) = (self.world.steps(), self.state == State::Running);

@@ -274,6 +274,30 @@ fn one_client_steps_and_reads_what_happened() {
 }
 
 #[test]
+fn a_paced_session_steps_no_faster_than_it_is_allowed() {
+    let mut lab = Lab::new(1);
+    lab.session.pace();
+    lab.join("a");
+    lab.start();
+    assert!(lab.session.is_timed());
+    let first = lab.ask("a", "sim.step", none());
+    assert_eq!(lab.answered(first), None, "nothing is allowed yet");
+    let answers = lab.session.allow(2);
+    lab.take(answers);
+    assert!(lab.answered(first).is_some());
+    let second = lab.ask("a", "sim.step", none());
+    let third = lab.ask("a", "sim.step", none());
+    assert!(lab.answered(second).is_some() && lab.answered(third).is_none());
+    // What nobody asks for is lost, but for one step.
+    let answers = [lab.session.allow(5), lab.session.allow(0)].concat();
+    lab.take(answers);
+    assert!(lab.answered(third).is_some());
+    let fourth = lab.ask("a", "sim.step", none());
+    let fifth = lab.ask("a", "sim.step", none());
+    assert!(lab.answered(fourth).is_some() && lab.answered(fifth).is_none());
+}
+
+#[test]
 fn a_mirrored_joint_turns_the_other_way_for_the_same_motion() {
     let mut scene = Lab::new(1).session.world().scene().clone();
     scene.robots[0].wheels[0].mirrored = true;
