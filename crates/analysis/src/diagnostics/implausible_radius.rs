@@ -21,7 +21,7 @@ const PAGE: Page = Page {
     what: "A wheel's radius is more than 100 centimetres, so that the wheel would be taller than a person.",
     why: "A radius is written in centimetres, but many data sheets give millimetres. A number copied from \
         there makes the wheel ten times too large. The script would then turn it ten times too slowly, and \
-        the robot would stop long before it is there.",
+        the robot would only creep.",
     imports: &[],
     example: "wheel wheelL with radius 225",
     fixed: "wheel wheelL with radius 22.5",

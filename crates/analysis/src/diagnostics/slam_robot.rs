@@ -20,8 +20,9 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "A movement says `slam`, but its robot has four wheels.",
-    why: "With `slam` a robot explores a place on its own and draws a map of it. It has to turn exactly on the \
-        spot again and again, or the map would not fit together. Two wheels can do that; four drag sideways.",
+    why: "With `slam` a robot explores a place on its own and draws a map of it. For the parts of the map to \
+        fit together, it has to turn exactly on the spot. A robot with two wheels can do that; with four, \
+        some of the wheels always slip.",
     imports: &[],
     example: "\
 wheel frontL with radius 5

@@ -21,7 +21,7 @@ const PAGE: Page = Page {
     what: "Two wheels look swapped: their names differ in one letter only, and the one with R is where the left \
         wheel should be, the one with L where the right should be.",
     why: "The order in the list decides which wheel is left and which is right, whatever they are called. If \
-        two are swapped, a turn to the left becomes a turn to the right.",
+        two are swapped, the robot turns right where it should turn left.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5
