@@ -6,6 +6,7 @@
 mod completion;
 mod cursor;
 mod definition;
+mod formatting;
 mod hover;
 mod quick_fixes;
 mod reference;
@@ -17,6 +18,7 @@ mod fixture;
 
 pub use completion::{Completion, CompletionKind, completions};
 pub use definition::{Definition, Target, goto_definition};
+pub use formatting::{format, format_range};
 pub use hover::{Hover, hover};
 pub use quick_fixes::{QuickFix, quick_fixes};
 pub use reference::{KeywordPage, keyword_page};

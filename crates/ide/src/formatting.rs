@@ -1,0 +1,81 @@
+//! Formatting: the edits that bring a document, or a part of it, into the canonical layout.
+
+use pydslrep_analysis::{Database, FileId};
+use pydslrep_syntax::{Span, TextEdit, format_edits};
+
+/// The edits that bring a file into the canonical layout, in order and apart from each other. Entities with errors
+/// stay as they are; none for a closed file.
+pub fn format(database: &Database, file: FileId) -> Vec<TextEdit> {
+    let Some(text) = database.text(file) else { return Vec::new() };
+    edits(database, file, &text.to_string())
+}
+
+/// The same for what stands in a range. An edit says where the text behind it stands, so it counts as being where it
+/// ends: selecting whole lines indents the first of them, and not the one after the last.
+pub fn format_range(database: &Database, file: FileId, range: Span) -> Vec<TextEdit> {
+    let Some(text) = database.text(file).map(ToString::to_string) else { return Vec::new() };
+    let mut edits = edits(database, file, &text);
+    let mut end = range.end;
+    if end < Span::of(&text).end {
+        // The line after the last is not meant.
+        let lines = range.text(&text);
+        end -= Span::of(lines).len() - Span::of(lines.trim_end_matches(['\n', '\r'])).len();
+    }
+    edits.retain(|edit| range.start <= edit.span.end && edit.span.end <= end);
+    edits
+}
+
+fn edits(database: &Database, file: FileId, text: &str) -> Vec<TextEdit> {
+    let pieces = database.entities(file).map(|entity| (entity.span, entity.parse));
+    format_edits(text, pieces)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn apply(text: &str, edits: &[TextEdit]) -> String {
+        let mut text = text.to_owned();
+        for edit in edits.iter().rev() {
+            text.replace_range(std::ops::Range::from(edit.span), &edit.text);
+        }
+        text
+    }
+
+    #[test]
+    fn a_document_is_formatted_around_what_is_broken() {
+        let text = "wheel  a with radius 3\r\nmovement  m of r{slam}\r\nwheel  b with 3\r\n";
+        let mut database = Database::new();
+        let file = database.open("a.pyr", text);
+        assert_eq!(
+            apply(text, &format(&database, file)),
+            "wheel a with radius 3\r\n\r\nmovement m of r {\r\n  slam\r\n}\r\n\r\nwheel  b with 3\r\n"
+        );
+        database.close(file);
+        assert_eq!(format(&database, file), []);
+    }
+
+    #[test]
+    fn edited_documents_are_formatted_as_they_are_now() {
+        let mut database = Database::new();
+        let file = database.open("a.pyr", "wheel a with radius 3\nsensor  s\n");
+        database.edit(file, Span::new(5, 6), "   ");
+        let text = database.text(file).map(ToString::to_string).unwrap();
+        assert_eq!(apply(&text, &format(&database, file)), "wheel a with radius 3\n\nsensor s\n");
+    }
+
+    #[test]
+    fn a_range_is_formatted_alone() {
+        let text = "movement m of r {\nmove 1  meters\nturn   left\nslam\n}\n";
+        let mut database = Database::new();
+        let file = database.open("a.pyr", text);
+        let lines = Span::new(33, 45);
+        assert_eq!(lines.text(text), "turn   left\n");
+        assert_eq!(
+            apply(text, &format_range(&database, file, lines)),
+            "movement m of r {\nmove 1  meters\n  turn left\nslam\n}\n"
+        );
+        assert_eq!(format_range(&database, file, Span::of(text)), format(&database, file));
+        assert_eq!(format_range(&database, file, Span::at(3)), []);
+    }
+}
