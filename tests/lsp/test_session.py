@@ -227,3 +227,22 @@ async def test_what_an_editor_shows_of_a_program(
     assert part.data == tokens.data
     assert len(tokens.data) % 5 == 0
     assert len(tokens.data) > 5 * 20
+
+
+async def test_a_document_is_brought_into_the_canonical_layout(
+    client: LanguageClient, tmp_path: pathlib.Path, table_2: str
+) -> None:
+    editor = Editor(client, tmp_path)
+    untidy = table_2.replace("  move", "\tmove").replace(
+        " with radius", "   with  radius"
+    )
+    uri = editor.open("table2.pyr", untidy)
+    options = types.FormattingOptions(tab_size=8, insert_spaces=False)
+    document = types.TextDocumentIdentifier(uri)
+    whole = types.DocumentFormattingParams(document, options)
+    edits = await client.text_document_formatting_async(whole)
+    assert edits
+    for edit in reversed(edits):  # they come in order and apart from each other
+        editor.edit(uri, edit)
+    assert editor.text(uri) == table_2
+    assert not await client.text_document_formatting_async(whole)

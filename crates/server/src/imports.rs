@@ -56,7 +56,8 @@ impl State {
         let Ok(text) = fs::read_to_string(Path::new(path)) else { return };
         let Some(uri) = Uri::from_file_path(path) else { return };
         let file = Some(self.database.open(path, &text));
-        let document = Document { text: Rope::from_str(&text), version: None, uri, file, opening: 0, published: None };
+        let document =
+            Document { text: Rope::from_str(&text), version: None, uri, file, opening: 0, published: None };
         self.documents.insert(path.to_owned(), document);
         self.changed = true;
     }

@@ -11,8 +11,8 @@ use tower_lsp::{Client, LanguageServer};
 use crate::capabilities;
 use crate::client::ClientFeatures;
 use crate::handlers::{
-    code_actions, completion, diagnostics, document_symbols, hover, navigation, scripts, semantic_tokens,
-    synchronization,
+    code_actions, completion, diagnostics, document_symbols, formatting, hover, navigation, scripts,
+    semantic_tokens, synchronization,
 };
 use crate::imports;
 use crate::message::Outbox;
@@ -122,6 +122,14 @@ impl LanguageServer for Server {
 
     async fn document_symbol(&self, params: DocumentSymbolParams) -> Result<Option<DocumentSymbolResponse>> {
         Ok(document_symbols::document_symbols(&self.state(), &params))
+    }
+
+    async fn formatting(&self, params: DocumentFormattingParams) -> Result<Option<Vec<TextEdit>>> {
+        Ok(formatting::document(&self.state(), &params))
+    }
+
+    async fn range_formatting(&self, params: DocumentRangeFormattingParams) -> Result<Option<Vec<TextEdit>>> {
+        Ok(formatting::range(&self.state(), &params))
     }
 
     async fn semantic_tokens_full(

@@ -4,6 +4,7 @@ pub(crate) mod code_actions;
 pub(crate) mod completion;
 pub(crate) mod diagnostics;
 pub(crate) mod document_symbols;
+pub(crate) mod formatting;
 pub(crate) mod hover;
 pub(crate) mod navigation;
 pub(crate) mod scripts;
