@@ -82,7 +82,7 @@ pub fn keyword_page(token: Token) -> Option<KeywordPage> {
         Token::Sensors => page(SENSORS, "The sensors a robot carries.", ROBOT),
         Token::Parallel => page(
             "parallel movement NAME of ROBOT { ACTIONS }",
-            "Parallel movements that stand side by side in an environment's list start together.",
+            "Parallel movements that are next to each other in an environment's list start together.",
             "parallel movement patrol of rover {\n  move 4.0 meters\n}",
         ),
         Token::Movement => page(
