@@ -17,6 +17,15 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|error| unprinted(&error))
 }
 
+/// Prints a person's own text: nothing in it is taken for colours.
+///
+/// # Errors
+/// When it cannot be written.
+pub(crate) fn pass_on(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|error| unprinted(&error))
+}
+
 fn unprinted(error: &io::Error) -> Failure {
     match error.kind() {
         io::ErrorKind::BrokenPipe => Failure::Unheard,

@@ -91,24 +91,16 @@ impl Sources {
 
     fn open_path(&mut self, path: &Path, failures: &mut Vec<Failure>) -> Result<Vec<FileId>, Failure> {
         if path == Path::new(STDIN) {
-            let text =
-                decode(STDIN_SHOWN, read(io::stdin().lock()).map_err(|why| unread(STDIN_SHOWN, &why))?)?;
-            let file = self.database.open(&key(&absolute(Path::new(STDIN_SHOWN))?), &text);
+            let text = read_stdin()?;
+            let file = self.database.open(&key(&absolute(Path::new(STDIN_SHOWN))?), without_mark(&text));
             self.shown.insert(file, STDIN_SHOWN.to_owned());
             return Ok(vec![file]);
         }
         if !path.is_dir() {
             return Ok(vec![self.open_file(path)?]);
         }
-        let mut found = Vec::new();
-        collect(path, &mut found, failures);
-        if found.is_empty() {
-            return Err(Failure::new(format!("there is no program in {}", path.display())).help(format!(
-                "programs are files that end in .{EXTENSION}; `pydslrep new NAME` starts one"
-            )));
-        }
         let mut files = Vec::new();
-        for path in found {
+        for path in programs_in(path, failures)? {
             match self.open_file(&path) {
                 Ok(file) => files.push(file),
                 Err(failure) => failures.push(failure),
@@ -122,10 +114,9 @@ impl Sources {
         if let Some(open) = self.database.file(&key(&absolute)) {
             return Ok(open);
         }
-        let shown = shown(path);
-        let bytes = File::open(path).and_then(read).map_err(|error| unread(&shown, &error))?;
-        let file = self.database.open(&key(&absolute), &decode(&shown, bytes)?);
-        self.shown.insert(file, shown);
+        let text = read_file(path)?;
+        let file = self.database.open(&key(&absolute), without_mark(&text));
+        self.shown.insert(file, shown(path));
         self.places.insert(file, absolute);
         Ok(file)
     }
@@ -164,6 +155,56 @@ impl Sources {
     }
 }
 
+/// A program as it is on the disk, byte order mark and all.
+#[derive(Debug)]
+pub(crate) struct Source {
+    /// What it is called in what is printed.
+    pub(crate) shown: String,
+    /// Where it is; `None` for standard input.
+    pub(crate) place: Option<PathBuf>,
+    pub(crate) text: String,
+}
+
+/// Reads programs, named as for [`Sources::open`], without what they import.
+pub(crate) fn read_programs(paths: &[PathBuf]) -> (Vec<Source>, Vec<Failure>) {
+    let (mut programs, mut failures): (Vec<Source>, Vec<Failure>) = (Vec::new(), Vec::new());
+    for path in paths {
+        if path == Path::new(STDIN) {
+            match read_stdin() {
+                Ok(text) => programs.push(Source { shown: STDIN_SHOWN.to_owned(), place: None, text }),
+                Err(failure) => failures.push(failure),
+            }
+            continue;
+        }
+        let found = if path.is_dir() { programs_in(path, &mut failures) } else { Ok(vec![path.clone()]) };
+        match found {
+            Ok(found) => programs.extend(found.iter().filter_map(|path| read_program(path, &mut failures))),
+            Err(failure) => failures.push(failure),
+        }
+    }
+    programs.sort_by(|a, b| (&a.place, &a.shown).cmp(&(&b.place, &b.shown)));
+    programs.dedup_by(|a, b| a.place.is_some() && a.place == b.place);
+    programs.sort_by(|a, b| a.shown.cmp(&b.shown));
+    (programs, failures)
+}
+
+fn read_program(path: &Path, failures: &mut Vec<Failure>) -> Option<Source> {
+    let program = absolute(path)
+        .and_then(|place| Ok(Source { shown: shown(path), place: Some(place), text: read_file(path)? }));
+    program.map_err(|failure| failures.push(failure)).ok()
+}
+
+/// All programs in a folder.
+fn programs_in(folder: &Path, failures: &mut Vec<Failure>) -> Result<Vec<PathBuf>, Failure> {
+    let mut found = Vec::new();
+    collect(folder, &mut found, failures);
+    if found.is_empty() {
+        return Err(Failure::new(format!("there is no program in {}", folder.display()))
+            .help(format!("programs are files that end in .{EXTENSION}; `pydslrep new NAME` starts one")));
+    }
+    Ok(found)
+}
+
 /// All programs in a folder and the folders in it, except hidden ones, by name.
 fn collect(folder: &Path, found: &mut Vec<PathBuf>, failures: &mut Vec<Failure>) {
     let listed = fs::read_dir(folder).and_then(Iterator::collect::<io::Result<Vec<_>>>);
@@ -185,6 +226,16 @@ fn collect(folder: &Path, found: &mut Vec<PathBuf>, failures: &mut Vec<Failure>)
     }
 }
 
+fn read_stdin() -> Result<String, Failure> {
+    decode(STDIN_SHOWN, read(io::stdin().lock()).map_err(|error| unread(STDIN_SHOWN, &error))?)
+}
+
+fn read_file(path: &Path) -> Result<String, Failure> {
+    let shown = shown(path);
+    let bytes = File::open(path).and_then(read).map_err(|error| unread(&shown, &error))?;
+    decode(&shown, bytes)
+}
+
 fn read(file: impl Read) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     file.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
@@ -196,14 +247,17 @@ fn decode(shown: &str, bytes: Vec<u8>) -> Result<String, Failure> {
         let message = format!("{shown} is larger than {} MiB", MOST_BYTES >> 20);
         return Err(Failure::new(message).help("is this a program?"));
     }
-    let text = String::from_utf8(bytes).map_err(|error| {
+    String::from_utf8(bytes).map_err(|error| {
         let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = before.split(|byte| *byte == b'\n').count();
         Failure::new(format!("{shown} is no text in UTF-8: line {line} holds other bytes"))
             .help("save it in the encoding UTF-8")
-    })?;
-    // It is not part of the text: editors hide it, and columns would be off by one.
-    Ok(text.strip_prefix(BYTE_ORDER_MARK).map(str::to_owned).unwrap_or(text))
+    })
+}
+
+/// A byte order mark is not part of the text: editors hide it, and columns would be off by one.
+fn without_mark(text: &str) -> &str {
+    text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text)
 }
 
 fn unread(shown: &str, error: &io::Error) -> Failure {

@@ -32,15 +32,9 @@ fn edits(database: &Database, file: FileId, text: &str) -> Vec<TextEdit> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use pydslrep_syntax::apply_edits;
 
-    fn apply(text: &str, edits: &[TextEdit]) -> String {
-        let mut text = text.to_owned();
-        for edit in edits.iter().rev() {
-            text.replace_range(std::ops::Range::from(edit.span), &edit.text);
-        }
-        text
-    }
+    use super::*;
 
     #[test]
     fn a_document_is_formatted_around_what_is_broken() {
@@ -48,7 +42,7 @@ mod tests {
         let mut database = Database::new();
         let file = database.open("a.pyr", text);
         assert_eq!(
-            apply(text, &format(&database, file)),
+            apply_edits(text, &format(&database, file)),
             "wheel a with radius 3\r\n\r\nmovement m of r {\r\n  slam\r\n}\r\n\r\nwheel  b with 3\r\n"
         );
         database.close(file);
@@ -61,7 +55,7 @@ mod tests {
         let file = database.open("a.pyr", "wheel a with radius 3\nsensor  s\n");
         database.edit(file, Span::new(5, 6), "   ");
         let text = database.text(file).map(ToString::to_string).unwrap();
-        assert_eq!(apply(&text, &format(&database, file)), "wheel a with radius 3\n\nsensor s\n");
+        assert_eq!(apply_edits(&text, &format(&database, file)), "wheel a with radius 3\n\nsensor s\n");
     }
 
     #[test]
@@ -72,7 +66,7 @@ mod tests {
         let lines = Span::new(33, 45);
         assert_eq!(lines.text(text), "turn   left\n");
         assert_eq!(
-            apply(text, &format_range(&database, file, lines)),
+            apply_edits(text, &format_range(&database, file, lines)),
             "movement m of r {\nmove 1  meters\n  turn left\nslam\n}\n"
         );
         assert_eq!(format_range(&database, file, Span::of(text)), format(&database, file));

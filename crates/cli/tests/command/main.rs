@@ -5,8 +5,10 @@
 mod build;
 mod check;
 mod editor;
+mod explain;
 #[cfg(unix)]
 mod fake_python;
+mod fmt;
 mod new;
 mod plan;
 mod process;

@@ -29,15 +29,20 @@ pub struct TextEdit {
 pub fn format(text: &str) -> String {
     let pieces = parse(text);
     let edits = format_edits(text, pieces.iter().map(|(span, parse)| (*span, parse)));
-    let mut formatted = String::with_capacity(text.len());
+    apply_edits(text, &edits)
+}
+
+/// `text` after edits that are in order and apart from each other.
+pub fn apply_edits(text: &str, edits: &[TextEdit]) -> String {
+    let mut changed = String::with_capacity(text.len());
     let mut at = 0;
-    for edit in &edits {
-        formatted.push_str(Span::new(at, edit.span.start).text(text));
-        formatted.push_str(&edit.text);
+    for edit in edits {
+        changed.push_str(Span::new(at, edit.span.start).text(text));
+        changed.push_str(&edit.text);
         at = edit.span.end;
     }
-    formatted.push_str(text.get(at as usize..).unwrap_or_default());
-    formatted
+    changed.push_str(text.get(at as usize..).unwrap_or_default());
+    changed
 }
 
 /// The edits that bring `text` into canonical layout, in order and apart from each other. `pieces` is what [`parse`]
