@@ -313,6 +313,11 @@ impl TokenSet {
         Self(bits)
     }
 
+    /// The set of all tokens but one.
+    pub const fn all_but(token: Token) -> Self {
+        Self(!(1 << token as u8))
+    }
+
     /// What is in either.
     pub const fn or(self, other: Self) -> Self {
         Self(self.0 | other.0)

@@ -5,7 +5,7 @@ use chumsky::prelude::{Parser, choice, just, via_parser};
 
 use super::slot::{
     NAME, NUMBER, declared_name, keyword, nothing_more, number, reference, references, skip_before,
-    skip_some, slot,
+    skip_statement, slot,
 };
 use super::{Extra, Input, Rule};
 use crate::ast::{
@@ -46,7 +46,7 @@ pub(super) fn movement<'s>() -> Rule<'s, Option<Entity>> {
 
 fn block<'s>() -> impl Parser<'s, Input<'s>, (Vec<Action>, crate::Span), Extra<'s>> + Clone {
     let open = slot(just(Token::OpenBrace).ignored(), OPEN, ACTIONS.or(CLOSE));
-    let item = action().map(Some).recover_with(via_parser(skip_some(NEXT).to(None))).boxed();
+    let item = action().map(Some).recover_with(via_parser(skip_statement(NEXT).to(None))).boxed();
     let close = slot(just(Token::CloseBrace).ignored(), CLOSE, TokenSet::default());
     open.ignore_then(item.repeated().collect::<Vec<_>>())
         .then_ignore(close)

@@ -88,8 +88,10 @@ pub(super) fn slot<'s, O: 's>(
     first: TokenSet,
     later: TokenSet,
 ) -> Rule<'s, Option<O>> {
+    let stray = skip_before(ANY, first).ignore_then(part.clone());
     part.clone()
         .map(Some)
+        .recover_with(via_parser(stray.map(Some)))
         .recover_with(via_parser(skip_to(first.or(later)).ignore_then(part.or_not())))
         .boxed()
 }
@@ -106,6 +108,7 @@ pub(super) fn keyword<'s>(word: Token, next: TokenSet, later: TokenSet) -> Rule<
         .validate(|_, extra, emitter| emitter.emit(Fault::Skipped(extra.span())));
     exact
         .map(Some)
+        .recover_with(via_parser(skip_before(ANY, first).ignore_then(exact).map(Some)))
         .recover_with(via_parser(misspelt.map(Some)))
         .recover_with(via_parser(replaced.to(None)))
         .recover_with(via_parser(skip_to(first.or(next).or(later)).ignore_then(exact.or_not())))
@@ -142,6 +145,19 @@ pub(super) fn skip_some<'s>(until: TokenSet) -> impl Parser<'s, Input<'s>, (), E
     skipped.validate(|span, _, emitter| emitter.emit(Fault::Skipped(span)))
 }
 
+/// Like [`skip_some`], but a list in braces is passed over whole: its closing brace closes nothing else.
+pub(super) fn skip_statement<'s>(until: TokenSet) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
+    const BRACES: TokenSet = TokenSet::of(&[Token::OpenBrace, Token::CloseBrace]);
+    let inside = any().filter(move |token: &Token| !until.or(CURSOR).or(BRACES).has(*token)).repeated();
+    let list = just(Token::OpenBrace).ignore_then(inside).then_ignore(just(Token::CloseBrace)).ignored();
+    let other = any().filter(move |token: &Token| !until.or(CURSOR).has(*token)).ignored();
+    let skipped = choice((list, other))
+        .repeated()
+        .at_least(1)
+        .map_with(|(), extra: &mut MapExtra<'s, '_, Input<'s>, Extra<'s>>| extra.span());
+    skipped.validate(|span, _, emitter| emitter.emit(Fault::Skipped(span)))
+}
+
 /// Passes over one token of `set` that stands right before one of `next`.
 pub(super) fn skip_before<'s>(
     set: TokenSet,
@@ -161,6 +177,13 @@ fn one_in<'s>(set: TokenSet) -> impl Parser<'s, Input<'s>, Token, Extra<'s>> + C
 pub(super) fn nothing_more<'s>() -> Rule<'s, ()> {
     end().labelled(Expected::Declaration).recover_with(via_parser(skip_to(TokenSet::default()))).boxed()
 }
+
+/// Every token that may be passed over.
+const ANY: TokenSet = TokenSet::all_but(Token::Cursor);
+
+/// What never stands for a name.
+const SIGNS: TokenSet =
+    TokenSet::of(&[Token::CloseBrace, Token::Comma, Token::Colon, Token::String]).or(NUMBER);
 
 /// Nothing passes over the cursor: what could stand there is what was asked.
 const CURSOR: TokenSet = TokenSet::of(&[Token::Cursor]);
@@ -186,9 +209,11 @@ fn name<'s>(kind: EntityKind, label: Expected, next: TokenSet, later: TokenSet) 
     let exact = plain_name().labelled(label);
     let taken = keyword_for_name(kind, TokenSet::default())
         .then_ignore(choice((one_in(next).ignored(), end())).rewind());
+    let stray = skip_before(SIGNS, NAME).ignore_then(exact.clone());
     exact
         .clone()
         .map(Some)
+        .recover_with(via_parser(stray.map(Some)))
         .recover_with(via_parser(taken.map(Some)))
         .recover_with(via_parser(skip_to(NAME.or(next).or(later)).ignore_then(exact.or_not())))
         .boxed()
