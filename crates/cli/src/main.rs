@@ -6,12 +6,10 @@
 //! * [`arguments`]: the command line; each command's own arguments stand with it in [`commands`].
 //! * [`sources`]: programs and what they import, from files into the database.
 //! * [`render`], [`json`]: problems for people and for programs.
-//! * [`catalogue`]: diagnostics by the names that are given on the command line.
 //! * [`commands`]: one file per command.
 //! * [`python`], [`driver`], [`progress`], [`driven`], [`outcome`]: a run, from an interpreter to its result.
 
 mod arguments;
-mod catalogue;
 mod commands;
 mod driven;
 mod driver;
@@ -43,7 +41,6 @@ fn main() -> ExitCode {
         Command::Run(arguments) => commands::run::run(&arguments),
         Command::Plan(arguments) => commands::plan::run(&arguments),
         Command::Fmt(arguments) => commands::fmt::run(&arguments),
-        Command::Explain(arguments) => commands::explain::run(&arguments),
         Command::New(arguments) => commands::new::run(&arguments),
         Command::Lsp(arguments) => commands::lsp::run(&arguments),
         Command::Completions(arguments) => commands::completions::run(&arguments),

@@ -5,7 +5,6 @@
 mod build;
 mod check;
 mod editor;
-mod explain;
 #[cfg(unix)]
 mod fake_python;
 mod fmt;
