@@ -3,7 +3,7 @@
 use clap::builder::styling::{AnsiColor, Effects, Styles};
 use clap::{Parser, Subcommand, ValueEnum};
 
-use crate::commands::{build, check, completions, fmt, lsp, new, plan, run};
+use crate::commands::{build, check, completions, explain, fmt, lsp, new, plan, run};
 
 /// Cargo's own colours.
 const STYLES: Styles = Styles::styled()
@@ -49,6 +49,7 @@ pub(crate) enum Command {
     Run(run::Arguments),
     Plan(plan::Arguments),
     Fmt(fmt::Arguments),
+    Explain(explain::Arguments),
     New(new::Arguments),
     Lsp(lsp::Arguments),
     Completions(completions::Arguments),

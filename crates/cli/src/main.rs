@@ -5,15 +5,18 @@
 //!
 //! * [`arguments`]: the command line; each command's own arguments stand with it in [`commands`].
 //! * [`sources`]: programs and what they import, from files into the database.
-//! * [`render`], [`json`]: problems for people and for programs.
+//! * [`render`], [`json`], [`github`]: problems for people and for programs.
+//! * [`catalogue`], [`severities`]: diagnostics by their names, and how bad they are to whoever asks.
 //! * [`commands`]: one file per command.
 //! * [`python`], [`driver`], [`progress`], [`driven`], [`outcome`]: a run, from an interpreter to its result.
 
 mod arguments;
+mod catalogue;
 mod commands;
 mod driven;
 mod driver;
 mod failure;
+mod github;
 mod interrupt;
 mod json;
 mod outcome;
@@ -23,6 +26,7 @@ mod program;
 mod progress;
 mod python;
 mod render;
+mod severities;
 mod sources;
 
 use std::process::ExitCode;
@@ -41,6 +45,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => commands::run::run(&arguments),
         Command::Plan(arguments) => commands::plan::run(&arguments),
         Command::Fmt(arguments) => commands::fmt::run(&arguments),
+        Command::Explain(arguments) => commands::explain::run(&arguments),
         Command::New(arguments) => commands::new::run(&arguments),
         Command::Lsp(arguments) => commands::lsp::run(&arguments),
         Command::Completions(arguments) => commands::completions::run(&arguments),

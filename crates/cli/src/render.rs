@@ -91,9 +91,10 @@ fn snippets<'a>(sources: &'a Sources, diagnostic: &'a Diagnostic) -> Vec<Element
     files.into_iter().map(snippet).collect()
 }
 
-/// A fix with what it would write.
+/// A fix with what it would write. What `--fix` would do goes by another name than what a person should look at first.
 fn fix<'a>(sources: &'a Sources, fix: &'a Fix) -> Group<'a> {
-    let title = Level::HELP.with_name("fix").secondary_title(&fix.title);
+    let name = if fix.safe { "fix" } else { "suggestion" };
+    let title = Level::HELP.with_name(name).secondary_title(&fix.title);
     let Some(file) = fix.edits.first().map(|edit| edit.file) else {
         return Group::with_title(title);
     };

@@ -47,7 +47,7 @@ fn table_5_lacks_four_wheels() {
     assert!(errors.iter().all(|error| error["code"] == "unresolved-reference"), "{errors:?}");
     let shown = Place::new().run(&["check", &paper("table5_angles_as_printed")]).out;
     for wheel in ["wheelL0", "wheelL1", "wheelR0", "wheelR1"] {
-        assert!(shown.contains(&format!("fix: declare the wheel `{wheel}`")), "{shown}");
+        assert!(shown.contains(&format!("suggestion: declare the wheel `{wheel}`")), "{shown}");
         assert!(shown.contains(&format!("4 + wheel {wheel} with radius 4.5\n")), "{shown}");
     }
 }
@@ -105,7 +105,7 @@ fn second_places_and_wide_letters() {
               |                       ^
               |
               = help: give one of them another name
-            fix: rename this one to `a_2`
+            suggestion: rename this one to `a_2`
               |
             3 | /* 机器人 🤖 */ wheel a_2 with radius 5
               |                        ++
@@ -126,6 +126,99 @@ fn errors_and_warnings_are_counted() {
     assert!(found.is_sorted() && !found.contains(&None), "{found:?} {}", done.out);
     assert!(done.out.contains("\n1 error, 2 warnings"), "{}", done.out);
     assert!(done.out.ends_with(" in 1 file.\n"), "{}", done.out);
+}
+
+#[test]
+fn what_is_safe_to_do_is_told_from_what_is_not() {
+    let program =
+        format!("{TWO_WHEELS}robot r with port 1 has {{ a bb }} wheels\nmovement m of r {{ turn left -9 }}");
+    let shown = Place::with("x.pyr", program).run(&["check"]).out;
+    assert!(shown.contains("\nsuggestion: declare the wheel `bb`\n"), "{shown}");
+    assert!(shown.contains("\nfix: turn right instead\n"), "{shown}");
+}
+
+/// Three problems: a repeated name, an odd radius, a sensor that nothing uses.
+const ODD: &str = "\
+wheel a with radius 4 wheel a with radius 400
+sensor s
+robot r with port 1 has { a a } wheels
+movement m of r { move 1 meters }
+environment e has { r } robots with { m } moves";
+
+#[track_caller]
+fn severities(arguments: &[&str]) -> (Vec<String>, Option<i32>) {
+    let place = Place::with("x.pyr", ODD);
+    let done = place.run(&[&["check", "--format", "json"], arguments].concat());
+    let problems: Vec<Value> = serde_json::from_str(&done.out).unwrap();
+    let word = |problem: &Value, key: &str| problem[key].as_str().unwrap().to_owned();
+    let words = problems.iter().map(|problem| word(problem, "code") + "=" + &word(problem, "severity"));
+    (words.collect(), done.code)
+}
+
+#[test]
+fn severities_are_a_matter_of_taste() {
+    let (usual, code) = severities(&[]);
+    let expected = [
+        "duplicate-name=error",
+        "implausible-radius=warning",
+        "unused-declaration=hint",
+        "repeated-wheel=error",
+    ];
+    assert_eq!((usual, code), (expected.map(str::to_owned).to_vec(), Some(1)));
+    let choices = [
+        "duplicate-name=off",
+        "implausible-radius=hint",
+        "unused-declaration=warning",
+        "repeated-wheel=information",
+    ];
+    let mut arguments: Vec<&str> = choices.iter().flat_map(|choice| ["--severity", choice]).collect();
+    let expected = choices[1..].iter().map(|&choice| choice.to_owned()).collect();
+    assert_eq!(severities(&arguments), (expected, Some(0)));
+    assert_eq!(severities(&[&arguments[..], &["--deny", "warnings"]].concat()).1, Some(1));
+    // The last one counts.
+    arguments.extend(["--severity", "repeated-wheel=error"]);
+    assert_eq!(severities(&arguments).1, Some(1));
+}
+
+#[test]
+fn unknown_severities_get_a_suggestion() {
+    for (choice, expected) in [
+        (
+            "invalid-radus=off",
+            "there is no diagnostic `invalid-radus`\n |\n = help: did you mean `invalid-radius`?",
+        ),
+        (
+            "invalid-radius=warn",
+            "there is no level `warn`\n |\n = help: the levels are off, hint, information, warning, error",
+        ),
+        ("invalid-radius=wraning", "there is no level `wraning`\n |\n = help: did you mean `warning`?"),
+        (
+            "invalid-radius",
+            "`--severity invalid-radius` has no level\n |\n = help: write the code, `=` and a level: `--severity invalid-radius=off`",
+        ),
+    ] {
+        let done = Place::with("x.pyr", ODD).run(&["check", "--severity", choice]);
+        assert_eq!((done.code, done.out.as_str()), (Some(2), ""), "{choice}");
+        assert_eq!(done.err, format!("error: {expected}\n"));
+    }
+}
+
+#[test]
+fn marks_in_pull_requests() {
+    let place = Place::with("50%, a.pyr", format!("{ODD}\nrobot q with port 1 has {{ a whel }} wheels"));
+    let done = place.run(&["check", "--format", "github"]);
+    expect![[r#"
+        ::error file=50%25%2C a.pyr,line=1,col=29,endLine=1,endColumn=30,title=duplicate-name::there is already a wheel called `a`%0Ahelp: give one of them another name
+        ::warning file=50%25%2C a.pyr,line=1,col=43,endLine=1,endColumn=46,title=implausible-radius::with a radius of 400 cm this wheel is taller than a person%0Anote: a radius is in centimetres; was this one measured in millimetres?
+        ::notice file=50%25%2C a.pyr,line=2,col=8,endLine=2,endColumn=9,title=unused-declaration::nothing uses the sensor `s`%0Ahelp: add it to a robot: `with sensors { … }`, or leave it out
+        ::error file=50%25%2C a.pyr,line=3,col=29,endLine=3,endColumn=30,title=repeated-wheel::`a` is listed twice, but each wheel of a robot needs a name of its own%0Ahelp: declare one more wheel, and list that one here
+        ::notice file=50%25%2C a.pyr,line=6,col=7,endLine=6,endColumn=8,title=unused-declaration::nothing uses the robot `q`%0Ahelp: list it among the robots of an environment, or leave it out
+        ::error file=50%25%2C a.pyr,line=6,col=29,endLine=6,endColumn=33,title=unresolved-reference::there is no wheel called `whel`%0Ahelp: the only wheel is `a`
+    "#]].assert_eq(&done.out);
+    assert_eq!((done.code, done.err.as_str()), (Some(1), ""));
+    place.write("50%, a.pyr", "");
+    let done = place.run(&["check", "--format", "github"]);
+    assert_eq!((done.code, done.out.as_str()), (Some(0), ""));
 }
 
 #[test]

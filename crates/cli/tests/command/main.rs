@@ -5,6 +5,7 @@
 mod build;
 mod check;
 mod editor;
+mod explain;
 #[cfg(unix)]
 mod fake_python;
 mod fmt;

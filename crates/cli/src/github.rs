@@ -1,0 +1,61 @@
+//! Problems for GitHub Actions, which shows them beside the lines they are about: `check --format github`.
+
+use pydslrep_analysis::{Diagnostic, Severity};
+
+use crate::place;
+use crate::sources::Sources;
+
+/// The problems as workflow commands, a line each.
+pub(crate) fn commands(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
+    diagnostics.iter().map(|diagnostic| command(sources, diagnostic)).collect()
+}
+
+fn command(sources: &Sources, diagnostic: &Diagnostic) -> String {
+    let range = place::range(&sources.database, diagnostic.file, diagnostic.span);
+    let mut message = diagnostic.message.clone();
+    for (word, text) in [("help", &diagnostic.help), ("note", &diagnostic.note)] {
+        if let Some(text) = text {
+            message += &format!("\n{word}: {text}");
+        }
+    }
+    format!(
+        "::{} file={},line={},col={},endLine={},endColumn={},title={}::{}\n",
+        command_name(diagnostic.severity),
+        property(sources.shown(diagnostic.file)),
+        range.start.line,
+        range.start.column,
+        range.end.line,
+        range.end.column,
+        property(diagnostic.code()),
+        escaped(&message),
+    )
+}
+
+fn command_name(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+        Severity::Information | Severity::Hint => "notice",
+    }
+}
+
+/// A text with nothing in it that would end a command.
+fn escaped(text: &str) -> String {
+    text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A")
+}
+
+/// The same for the value of a property, which `:` and `,` would end as well.
+fn property(value: &str) -> String {
+    escaped(value).replace(':', "%3A").replace(',', "%2C")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_ends_a_command_early() {
+        assert_eq!(escaped("50 %: a,b\r\nc"), "50 %25: a,b%0D%0Ac");
+        assert_eq!(property("c:\\50%,x\n.pyr"), "c%3A\\50%25%2Cx%0A.pyr");
+    }
+}
