@@ -241,6 +241,11 @@ impl Database {
         names
     }
 
+    /// The declared names of a kind in a file, in no order.
+    pub(crate) fn names(&self, file: FileId, kind: EntityKind) -> impl Iterator<Item = &SmolStr> {
+        self.names.all(file, kind)
+    }
+
     /// What is wrong with a file, in the order of the text.
     pub fn diagnostics(&self, file: FileId) -> Vec<Diagnostic> {
         diagnostics::in_file(self, file)

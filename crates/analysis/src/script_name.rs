@@ -69,7 +69,8 @@ fn free(name: &str, taken: &[(String, usize)]) -> String {
     stem
 }
 
-fn obstacle(name: &str) -> Option<Obstacle> {
+/// Why a script cannot be called like an environment of this name, whatever other environments there are.
+pub(crate) fn obstacle(name: &str) -> Option<Obstacle> {
     if STANDARD_MODULES.lines().any(|module| module == name) {
         Some(Obstacle::StandardModule)
     } else if CLIENT_MODULES.contains(&name) {

@@ -97,7 +97,7 @@ fn check(slip: &Slip, program: &str, complaints: &mut Vec<String>) -> u32 {
     let is_near = |diagnostic: &&Diagnostic| near.touches(diagnostic.span.start);
     let mut complain =
         |what: &str| complaints.push(format!("{program}, {}: {what}\n{diagnostics:#?}", slip.what));
-    if !syntax.iter().all(|diagnostic| is_near(diagnostic)) {
+    if !syntax.iter().all(is_near) {
         complain("a syntax error far from the slip");
     }
     if !syntax.is_empty() && !syntax.iter().any(is_near) {

@@ -329,6 +329,14 @@ impl Database {
         if !doubtful.keys.is_empty() {
             doubtful.entities.extend(&self.seekers);
         }
+        for (file, kind, name) in &doubtful.keys {
+            // Two environments whose names differ by case only cannot both have a script of their name.
+            if *kind == EntityKind::Environment {
+                let twins = self.names.all(*file, *kind).filter(|other| other.eq_ignore_ascii_case(name));
+                let twins = twins.flat_map(|other| self.names.defined(&(*file, *kind, other.clone())));
+                doubtful.entities.extend(twins);
+            }
+        }
         let mut asked: FxHashSet<Key> = FxHashSet::default();
         while let Some(key) = doubtful.keys.pop() {
             if !asked.insert(key.clone()) {

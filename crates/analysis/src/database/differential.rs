@@ -56,6 +56,8 @@ fn changes() -> impl Strategy<Value = Vec<Change>> {
         "robot r ",
         "sensor s ",
         "environment f has { r } robots ",
+        "environment E has { q } robots ",
+        "environment math has { q } robots ",
         "} wheel ",
         "",
     ];

@@ -156,7 +156,6 @@ pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
         .filter(|(_, problem)| !consequences.include(problem))
         .map(|(start, problem)| places.diagnostic(file, start, problem))
         .collect();
-    diagnostics.extend(script_name::in_file(database, file));
     diagnostics.extend(no_environment::in_file(database, file));
     diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);
     diagnostics

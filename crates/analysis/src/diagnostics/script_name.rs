@@ -1,12 +1,12 @@
 //! `script-name`: an environment's script cannot be called like the environment.
 
 use pydslrep_syntax::EntityKind;
-use pydslrep_syntax::ast::Name;
+use pydslrep_syntax::ast::{Entity, Name};
 
 use super::context::{Context, Problem};
 use super::{Page, Remedy, Rule};
-use crate::script_name::{Obstacle, ScriptName, script_names};
-use crate::{Database, Diagnostic, Edit, FileId, Fix, Related, Severity};
+use crate::script_name::{Obstacle, obstacle, script_names};
+use crate::{EntityId, Severity};
 
 pub(super) static RULE: Rule = Rule {
     code: "script-name",
@@ -14,7 +14,7 @@ pub(super) static RULE: Rule = Rule {
     summary: "an environment whose script cannot have the same name",
     tag: None,
     remedy: Remedy::Suggested,
-    seeks_names: false,
+    seeks_names: true,
     page: PAGE,
     check,
 };
@@ -47,36 +47,39 @@ movement trip of rover { move 1 meters }
 environment math_room has { rover } robots with { trip } moves",
 };
 
-/// It is a problem between the environments of a file, see [`in_file`].
-fn check(_: &Context<'_>, _: &mut Vec<Problem>) {}
-
-/// The problems of all environments of a file.
-pub(super) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
-    if database.count(file, EntityKind::Environment) == 0 {
-        return Vec::new();
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Environment(environment)) = context.tree else { return };
+    let Some(name) = &environment.name else { return };
+    if obstacle(&name.text).is_none() && !has_twin(context, name) {
+        return;
     }
-    let environments: Vec<Name> = database.environments(file).into_iter().map(|(_, name)| name).collect();
-    let names: Vec<&str> = environments.iter().map(|name| name.text.as_str()).collect();
-    let scripts = script_names(&names);
-    let problems = environments
-        .iter()
-        .zip(&scripts)
-        .filter_map(|(name, script)| Some(diagnostic(file, &environments, name, script, script.obstacle?)));
-    problems.collect()
-}
-
-fn diagnostic(
-    file: FileId,
-    environments: &[Name],
-    name: &Name,
-    script: &ScriptName,
-    obstacle: Obstacle,
-) -> Diagnostic {
-    let (text, stem) = (&name.text, &script.stem);
+    let environments = context.database.environments(context.file);
+    let names: Vec<&str> = environments.iter().map(|(_, name)| name.text.as_str()).collect();
+    let Some(index) = environments.iter().position(|(id, _)| *id == context.id) else { return };
+    let Some(script) = script_names(&names).into_iter().nth(index) else { return };
+    let Some(obstacle) = script.obstacle else { return };
     let other = match obstacle {
-        Obstacle::SameButForCase(other) => environments.get(other),
+        Obstacle::SameButForCase(other) => environments.get(other).map(|(id, _)| *id),
         _ => None,
     };
+    problems.push(problem(context, name, &script.stem, obstacle, other));
+}
+
+/// Whether another environment of the file has the same name but for case.
+fn has_twin(context: &Context<'_>, name: &Name) -> bool {
+    let mut names = context.database.names(context.file, EntityKind::Environment);
+    names.any(|other| *other != name.text && other.eq_ignore_ascii_case(&name.text))
+}
+
+fn problem(
+    context: &Context<'_>,
+    name: &Name,
+    stem: &str,
+    obstacle: Obstacle,
+    other: Option<EntityId>,
+) -> Problem {
+    let text = &name.text;
+    let other = other.and_then(|id| Some((id, context.database.tree(id)?.name()?)));
     let why = match obstacle {
         Obstacle::StandardModule => format!("a script `{text}.py` would hide Python's own module `{text}`"),
         Obstacle::ClientModule => {
@@ -84,29 +87,19 @@ fn diagnostic(
         }
         Obstacle::ReservedOnWindows => format!("Windows has no files called `{text}.py`"),
         Obstacle::SameButForCase(_) => {
-            let other = other.map_or("", |other| other.text.as_str());
+            let other = other.map_or("", |(_, other)| other.text.as_str());
             format!("some computers take `{text}.py` and `{other}.py` for the same file")
         }
     };
-    let related = other.map(|other| Related {
-        file,
-        span: other.span,
-        message: format!("this script is called `{}.py`", other.text),
-    });
-    Diagnostic {
-        rule: &RULE,
-        severity: RULE.severity,
-        file,
-        span: name.span,
-        message: format!("{why}, so the script is called `{stem}.py`"),
-        help: Some("give the environment another name".to_owned()),
-        note: None,
-        related: related.into_iter().collect(),
-        fixes: vec![Fix {
-            title: format!("rename the environment to `{stem}`"),
-            safe: false,
-            edits: vec![Edit { file, span: name.span, text: stem.clone() }],
-        }],
+    let problem = RULE
+        .problem(name.span, format!("{why}, so the script is called `{stem}.py`"))
+        .help("give the environment another name")
+        .suggestion(format!("rename the environment to `{stem}`"), [context.replace(name.span, stem)]);
+    match other {
+        Some((id, other)) => {
+            problem.related(id, other.span, format!("this script is called `{}.py`", other.text))
+        }
+        None => problem,
     }
 }
 
