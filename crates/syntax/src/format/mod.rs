@@ -12,7 +12,7 @@ mod writer;
 use self::entity::lay_out;
 use self::gap::{Blank, Gap, Place};
 use self::piece::{Item, items};
-use self::writer::Writer;
+use self::writer::{BYTE_ORDER_MARK, Writer};
 use crate::{Lexeme, Parse, Span, Token, parse};
 
 /// A change of text.
@@ -78,6 +78,10 @@ fn separate(
     previous: Option<&Item>,
     next: Option<&Item>,
 ) {
+    if previous.is_none() && next.is_some_and(|item| begins_with_mark(text, lexemes, item)) {
+        // At the very start it would be taken for the file's byte order mark.
+        return writer.keep(lexemes[0].1.start);
+    }
     let from = previous.map(|item| item.last);
     let to = next.map_or(lexemes.len(), |item| item.first);
     let gap = Gap::new(text, lexemes, from, to);
@@ -90,6 +94,10 @@ fn separate(
         blank: blank_between(previous, next, &gap),
     };
     gap.write_broken(writer, &place);
+}
+
+fn begins_with_mark(text: &str, lexemes: &[Lexeme], item: &Item) -> bool {
+    item.first == 0 && lexemes[0].1.text(text).starts_with(BYTE_ORDER_MARK)
 }
 
 /// Declarations of one line stand together, kind by kind; everything else stands apart.

@@ -137,7 +137,7 @@ fn long_lists() {
         "robot quite_a_long_name type fw with port 19999 has { wheelFL wheelRL wheelFR wheelRR } wheels with sensors { front, leftOne }
 robot short type fw with port 19999 has { wheelFL wheelRL wheelFR wheelRR } wheels with sensors { front, leftOne }
 robot a_name_that_is_long_enough type fw with port 19999 has { wheelFrontLeft wheelRearLeft wheelFR } wheels
-movement m of r { turn left until { a_sensor_in_front, a_sensor_on_the_left_side, a_sensor_on_the_right_side_of_it } turn left until { a_sensor_in_front, a_sensor_on_the_left_side, a_sensor_on_the_right_side_of_i } }",
+movement m of r { turn left until { a_sensor_in_front, a_sensor_on_the_left_side, a_sensor_on_the_right_side_of_it_ } turn left until { a_sensor_in_front, a_sensor_on_the_left_side, a_sensor_on_the_right_side_of_it } }",
         &expect![[r#"
             robot quite_a_long_name type fw with port 19999 has {
               wheelFL
@@ -158,8 +158,12 @@ movement m of r { turn left until { a_sensor_in_front, a_sensor_on_the_left_side
             } wheels
 
             movement m of r {
+              turn left until {
+                a_sensor_in_front,
+                a_sensor_on_the_left_side,
+                a_sensor_on_the_right_side_of_it_
+              }
               turn left until { a_sensor_in_front, a_sensor_on_the_left_side, a_sensor_on_the_right_side_of_it }
-              turn left until { a_sensor_in_front, a_sensor_on_the_left_side, a_sensor_on_the_right_side_of_i }
             }
         "#]],
     );
@@ -257,6 +261,25 @@ fn comments_in_empty_places() {
             robot r with port 1 has { /* none */ } wheels
         "#]],
     );
+    check(
+        "robot r with port 1 has { a
+// one line of its own
+b } wheels with sensors { s /* of s */, /* of t */ t
+/* alone */
+u }",
+        &expect![[r#"
+            robot r with port 1 has {
+              a
+              // one line of its own
+              b
+            } wheels with sensors {
+              s, /* of s */ /* of t */
+              t,
+              /* alone */
+              u
+            }
+        "#]],
+    );
     check("", &expect![""]);
     check(" \n\n\t", &expect![""]);
     check("\u{feff}", &expect!["\u{feff}"]);
@@ -294,6 +317,16 @@ movement  m of r {
             wheel d with radius 3
         "#]],
     );
+    // A comment that may be part of a broken entity does not come to stand above the next one.
+    check(
+        "wheel b with 3\n// of b\n\n\nwheel  c with radius 3",
+        &expect![[r#"
+        wheel b with 3
+        // of b
+
+        wheel c with radius 3
+    "#]],
+    );
     check(
         "garbage   §\nwheel  a with radius 3 /* open  ",
         &expect!["garbage   §\nwheel  a with radius 3 /* open  "],
@@ -306,6 +339,7 @@ fn line_endings_and_the_byte_order_mark_stay() {
         format("\u{feff}\nwheel a\r\n with radius 3\n/*\n * a */"),
         "\u{feff}wheel a with radius 3\r\n/*\r\n * a */\r\n"
     );
+    assert_eq!(format("\n\u{feff}\n"), "\n\u{feff}\n", "only a first one is a byte order mark");
     assert_eq!(format("// é\rwheel a with radius 3"), "// é\rwheel a with radius 3\r");
     assert_eq!(
         format("movement m of r {\r\n\r\n\r\nslam\r\n\r\n\r\nslam }"),
@@ -338,6 +372,38 @@ fn the_articles_programs() {
     }
 }
 
+/// For each comment, whether it is alone on its lines, and whether more than a comma is before it on its line.
+fn stands(text: &str) -> Vec<(bool, bool)> {
+    let is_blank = |part: &str| part.trim_matches([' ', '\t', '\x0c', '\u{feff}']).is_empty();
+    let comments = lex(text).into_iter().filter(|(token, _)| token.is_comment());
+    comments
+        .map(|(_, span)| {
+            let before = text[..span.start as usize].rsplit(['\n', '\r']).next().unwrap();
+            let after = text[span.end as usize..].split(['\n', '\r']).next().unwrap();
+            (is_blank(before) && is_blank(after), !is_blank(&before.replace(',', "")))
+        })
+        .collect()
+}
+
+/// What a layout must look like where nothing is broken.
+fn check_looks(text: &str, formatted: &str) -> Result<(), TestCaseError> {
+    let places = lex(text).into_iter().filter(|(token, _)| token.is_comment());
+    for ((token, _), (before, after)) in places.zip(stands(text).into_iter().zip(stands(formatted))) {
+        prop_assert!(!before.0 || after.0, "a comment is no longer alone on its line");
+        prop_assert!(
+            token != Token::LineComment || !before.1 || after.1,
+            "a comment left the end of its line"
+        );
+    }
+    if broken_texts(text).is_empty() {
+        let lines = formatted.replace("\r\n", "\n").replace('\r', "\n");
+        prop_assert!(!lines.contains(" \n") && !lines.contains("\n\n\n") && !lines.starts_with('\n'));
+        let blank_at_brace = lines.contains("{\n\n") || lines.contains("\n\n}");
+        prop_assert!(!blank_at_brace);
+    }
+    Ok(())
+}
+
 /// What must hold for any text.
 fn check_properties(text: &str) -> Result<(), TestCaseError> {
     let formatted = format(text);
@@ -361,6 +427,7 @@ proptest! {
     #[test]
     fn programs_keep_what_they_say(text in program()) {
         check_properties(&text)?;
+        check_looks(&text, &format(&text))?;
     }
 
     /// Whatever edits a person picks, the meaning is the same.

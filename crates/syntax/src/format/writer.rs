@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::TextEdit;
 use crate::{Span, Token};
 
-const BYTE_ORDER_MARK: &str = "\u{feff}";
+pub(super) const BYTE_ORDER_MARK: &str = "\u{feff}";
 
 /// Where the layout has got to.
 pub(super) struct Writer<'a> {
@@ -70,6 +70,11 @@ impl<'a> Writer<'a> {
         }
         self.gap.push_str(indent);
         self.line_indent = indent.len();
+    }
+
+    /// Lets what stands before the next token, which begins at `until`, stay as it is.
+    pub(super) fn keep(&mut self, until: u32) {
+        self.glue(Span::new(self.at, until).text(self.text));
     }
 
     /// Writes a stretch of the text as it is.
