@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use super::writer::Writer;
+use super::writer::{BLANKS, BYTE_ORDER_MARK, LINE_ENDS, Writer};
 use crate::{Lexeme, Span, Token};
 
 /// What stands between two neighbouring tokens that are not comments.
@@ -204,7 +204,8 @@ fn line_ends(text: &str, from: u32, to: u32) -> usize {
 /// The white space before a token that begins its line.
 pub(super) fn indent_of(text: &str, span: Span) -> &str {
     let before = Span::new(0, span.start).text(text);
-    let line = &before[before.rfind(['\n', '\r']).map_or(0, |end| end + 1)..];
-    let line = line.strip_prefix('\u{feff}').unwrap_or(line);
-    if line.bytes().all(|byte| matches!(byte, b' ' | b'\t' | b'\x0c')) { line } else { "" }
+    let before = before.strip_prefix(BYTE_ORDER_MARK).unwrap_or(before);
+    // Never the whole line: it may be long.
+    let rest = before.trim_end_matches(BLANKS);
+    if rest.is_empty() || rest.ends_with(LINE_ENDS) { &before[rest.len()..] } else { "" }
 }

@@ -148,8 +148,10 @@ impl<'a> Writer<'a> {
     }
 }
 
-const BLANKS: [char; 3] = [' ', '\t', '\x0c'];
-const LINE_ENDS: [char; 2] = ['\n', '\r'];
+/// White space within a line.
+pub(super) const BLANKS: [char; 3] = [' ', '\t', '\x0c'];
+/// `\r\n` is one line end of two.
+pub(super) const LINE_ENDS: [char; 2] = ['\n', '\r'];
 
 /// How the first line that has something on it ends.
 fn line_ending(text: &str) -> &'static str {
