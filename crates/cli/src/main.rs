@@ -7,6 +7,7 @@
 //! * [`sources`]: programs and what they import, from files into the database.
 //! * [`render`], [`json`], [`github`]: problems for people and for programs.
 //! * [`catalogue`], [`severities`]: diagnostics by their names, and how bad they are to whoever asks.
+//! * [`fixing`], [`rewrite`]: what is done about them.
 //! * [`commands`]: one file per command.
 //! * [`python`], [`driver`], [`progress`], [`driven`], [`outcome`]: a run, from an interpreter to its result.
 
@@ -16,6 +17,7 @@ mod commands;
 mod driven;
 mod driver;
 mod failure;
+mod fixing;
 mod github;
 mod interrupt;
 mod json;
@@ -26,6 +28,7 @@ mod program;
 mod progress;
 mod python;
 mod render;
+mod rewrite;
 mod severities;
 mod sources;
 

@@ -1,6 +1,6 @@
 //! Programs and what they import: from files into the database.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
@@ -33,6 +33,8 @@ pub(crate) struct Sources {
     shown: HashMap<FileId, String>,
     /// Where each program is on the disk; standard input is nowhere.
     places: HashMap<FileId, PathBuf>,
+    /// Imports that could not be opened, with who imports them: each is told once.
+    missing: HashSet<(FileId, String)>,
 }
 
 impl Sources {
@@ -49,9 +51,7 @@ impl Sources {
         }
         files.sort_by(|a, b| sources.shown[a].cmp(&sources.shown[b]));
         files.dedup();
-        for file in files.clone() {
-            sources.open_imports(file, &mut failures);
-        }
+        sources.follow_imports(&files, &mut failures);
         (sources, files, failures)
     }
 
@@ -121,17 +121,29 @@ impl Sources {
         Ok(file)
     }
 
-    /// Opens what a program imports, and what that imports.
+    /// Opens what programs import, and what that imports; also what they import only since they were changed.
+    pub(crate) fn follow_imports(&mut self, files: &[FileId], failures: &mut Vec<Failure>) {
+        for file in files {
+            self.open_imports(*file, failures);
+        }
+    }
+
     fn open_imports(&mut self, program: FileId, failures: &mut Vec<Failure>) {
         let bound = bound(Path::new(self.database.path(program)));
         let mut waiting = vec![program];
         while let Some(importer) = waiting.pop() {
             for path in self.database.imports(importer).to_vec() {
-                if self.database.file(&path).is_some() {
+                let import = (importer, path);
+                if self.database.file(&import.1).is_some() || self.missing.contains(&import) {
                     continue;
                 }
-                let imported = self.open_import(importer, Path::new(&path), &bound);
-                imported.map_or_else(|failure| failures.push(failure), |file| waiting.push(file));
+                match self.open_import(importer, Path::new(&import.1), &bound) {
+                    Ok(file) => waiting.push(file),
+                    Err(failure) => {
+                        failures.push(failure);
+                        self.missing.insert(import);
+                    }
+                }
             }
         }
     }
@@ -256,7 +268,7 @@ fn decode(shown: &str, bytes: Vec<u8>) -> Result<String, Failure> {
 }
 
 /// A byte order mark is not part of the text: editors hide it, and columns would be off by one.
-fn without_mark(text: &str) -> &str {
+pub(crate) fn without_mark(text: &str) -> &str {
     text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text)
 }
 

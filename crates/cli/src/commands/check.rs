@@ -7,7 +7,8 @@ use clap::{Args, ValueEnum};
 use pydslrep_analysis::{Diagnostic, FileId, Severity};
 
 use crate::failure::Failure;
-use crate::output;
+use crate::fixing::{self, Fixed};
+use crate::output::{self, count};
 use crate::severities::Severities;
 use crate::sources::{Sources, count_files};
 use crate::{github, json, render};
@@ -17,6 +18,7 @@ Examples:
   pydslrep check                         all programs in this folder and below
   pydslrep check patrol.pyr rooms/       one program, and all in a folder
   pydslrep check --format json - < x.pyr
+  pydslrep check --fix                   the same, and mend what leaves nothing to decide
   pydslrep check --deny warnings         for use in CI
   pydslrep check --format github         the same, with marks beside the lines of a pull request
   pydslrep check --severity unused-declaration=off --severity wheel-count=warning";
@@ -31,6 +33,10 @@ pub(crate) struct Arguments {
     /// How to show problems
     #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
     format: Format,
+    /// Apply fixes that leave nothing to decide, and show what is left; a program from standard input goes to
+    /// standard output
+    #[arg(long)]
+    fix: bool,
     /// How bad problems of a code are: off, hint, information, warning or error; for each code once
     #[arg(long, value_name = "CODE=LEVEL")]
     severity: Vec<String>,
@@ -64,23 +70,50 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let severities = Severities::read(&arguments.severity)?;
     let here = [PathBuf::from(".")];
     let paths = if arguments.paths.is_empty() { &here } else { arguments.paths.as_slice() };
-    let (sources, files, failures) = Sources::open(paths);
-    let diagnostics = files.iter().flat_map(|file| sources.diagnostics(*file)).collect();
-    let diagnostics = severities.applied(diagnostics);
-    output::print(&match arguments.format {
-        Format::Human => human(&sources, &files, &diagnostics),
-        Format::Json => {
-            let array = json::array(&sources, &diagnostics);
-            array.map_err(|error| Failure::new(format!("cannot write JSON: {error}")))? + "\n"
-        }
-        Format::Github => github::commands(&sources, &diagnostics),
-    })?;
+    let (mut sources, files, mut failures) = Sources::open(paths);
+    let find = |sources: &Sources| {
+        severities.applied(files.iter().flat_map(|file| sources.diagnostics(*file)).collect())
+    };
+    let fixed = if arguments.fix {
+        let mut fixed = fixing::fix(&mut sources, &files, find, &mut failures);
+        fixed.write(&mut sources, &files, &mut failures)?;
+        Some(fixed)
+    } else {
+        None
+    };
+    let diagnostics = find(&sources);
+    let report = report(arguments.format, &sources, &files, &diagnostics)?;
+    if fixed.is_some() && files.iter().any(|file| sources.place(*file).is_none()) {
+        // The fixed program is on standard output.
+        output::say(&report);
+    } else {
+        output::print(&report)?;
+    }
+    if let Some(fixed) = &fixed {
+        output::say(&told(fixed, &diagnostics));
+    }
     failures.iter().for_each(output::fail);
     Ok(ExitCode::from(if failures.is_empty() {
         exit_code(&diagnostics, arguments.deny)
     } else {
         Failure::EXIT_CODE
     }))
+}
+
+fn report(
+    format: Format,
+    sources: &Sources,
+    files: &[FileId],
+    diagnostics: &[Diagnostic],
+) -> Result<String, Failure> {
+    match format {
+        Format::Human => Ok(human(sources, files, diagnostics)),
+        Format::Json => match json::array(sources, diagnostics) {
+            Ok(array) => Ok(array + "\n"),
+            Err(error) => Err(Failure::new(format!("cannot write JSON: {error}"))),
+        },
+        Format::Github => Ok(github::commands(sources, diagnostics)),
+    }
 }
 
 fn human(sources: &Sources, files: &[FileId], diagnostics: &[Diagnostic]) -> String {
@@ -93,6 +126,17 @@ fn human(sources: &Sources, files: &[FileId], diagnostics: &[Diagnostic]) -> Str
         };
     }
     format!("{}{}.\n", render::diagnostics(sources, diagnostics), render::summary(diagnostics))
+}
+
+/// What was fixed, in words.
+fn told(fixed: &Fixed, left: &[Diagnostic]) -> String {
+    match (fixed.count(), left) {
+        (0, []) => String::new(),
+        (0, _) => "Nothing was fixed: what to do about these problems is for you to decide.\n".to_owned(),
+        (some, _) => {
+            format!("Fixed {} in {}.\n", count(some, "problem"), count(fixed.problems.len(), "file"))
+        }
+    }
 }
 
 /// 1 where problems are bad enough.

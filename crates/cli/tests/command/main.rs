@@ -8,6 +8,7 @@ mod editor;
 mod explain;
 #[cfg(unix)]
 mod fake_python;
+mod fix;
 mod fmt;
 mod new;
 mod plan;
