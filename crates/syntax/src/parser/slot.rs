@@ -271,14 +271,17 @@ pub(super) fn references<'s>(
         .then_ignore(just(Token::Comma).or_not())
         .boxed();
     let close = slot(just(Token::CloseBrace).ignored(), TokenSet::of(&[Token::CloseBrace]), later);
-    open.ignore_then(item.repeated().collect::<Vec<_>>())
-        .then_ignore(close)
-        .map_with(|items, extra| {
+    open.then(item.repeated().collect::<Vec<_>>())
+        .then(close)
+        .map_with(|((open, items), close), extra| {
             let broken = items.iter().any(Option::is_none);
-            References { names: items.into_iter().flatten().collect(), span: extra.span(), broken }
+            let list =
+                References { names: items.into_iter().flatten().collect(), span: extra.span(), broken };
+            (list, open.is_some() && close.is_some())
         })
-        .validate(move |list, _, emitter| {
-            if list.names.is_empty() && !list.broken && !may_be_empty {
+        // A list without its braces is another mistake than one with nothing in it.
+        .validate(move |(list, braced), _, emitter| {
+            if braced && list.names.is_empty() && !list.broken && !may_be_empty {
                 emitter.emit(Fault::EmptyList(list.span, kind));
             }
             list
