@@ -3,7 +3,7 @@
 use clap::builder::styling::{AnsiColor, Effects, Styles};
 use clap::{Parser, Subcommand, ValueEnum};
 
-use crate::commands::{build, check, completions, explain, fmt, lsp, new, plan, run};
+use crate::commands::{build, check, completions, explain, fmt, lsp, new, plan, run, stats};
 
 /// Cargo's own colours.
 const STYLES: Styles = Styles::styled()
@@ -50,6 +50,7 @@ pub(crate) enum Command {
     Plan(plan::Arguments),
     Fmt(fmt::Arguments),
     Explain(explain::Arguments),
+    Stats(stats::Arguments),
     New(new::Arguments),
     Lsp(lsp::Arguments),
     Completions(completions::Arguments),

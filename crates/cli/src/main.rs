@@ -8,6 +8,7 @@
 //! * [`render`], [`json`], [`github`]: problems for people and for programs.
 //! * [`catalogue`], [`severities`]: diagnostics by their names, and how bad they are to whoever asks.
 //! * [`fixing`], [`rewrite`]: what is done about them.
+//! * [`lines`]: how much people and the generator write.
 //! * [`commands`]: one file per command.
 //! * [`python`], [`driver`], [`progress`], [`driven`], [`outcome`]: a run, from an interpreter to its result.
 
@@ -21,6 +22,7 @@ mod fixing;
 mod github;
 mod interrupt;
 mod json;
+mod lines;
 mod outcome;
 mod output;
 mod place;
@@ -49,6 +51,7 @@ fn main() -> ExitCode {
         Command::Plan(arguments) => commands::plan::run(&arguments),
         Command::Fmt(arguments) => commands::fmt::run(&arguments),
         Command::Explain(arguments) => commands::explain::run(&arguments),
+        Command::Stats(arguments) => commands::stats::run(&arguments),
         Command::New(arguments) => commands::new::run(&arguments),
         Command::Lsp(arguments) => commands::lsp::run(&arguments),
         Command::Completions(arguments) => commands::completions::run(&arguments),

@@ -7,11 +7,10 @@ use std::process::ExitCode;
 use clap::{Args, ValueEnum};
 use pydslrep_analysis::FileId;
 use pydslrep_script::{Target, file_name, generate, may_replace};
-use pydslrep_syntax::lex;
 
 use crate::failure::Failure;
 use crate::sources::Sources;
-use crate::{output, program};
+use crate::{lines, output, program};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -105,7 +104,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
                 }
             };
             let path = folder(&sources, file, arguments)?.join(file_name(environment));
-            let lines_in = lines_of_program(&sources, file);
+            let lines_in = lines::of_program(&sources, file);
             scripts.push(Script { path, environment: environment.name.clone(), lines_in, text });
         }
     }
@@ -183,33 +182,9 @@ fn report(scripts: &[Script]) -> String {
             script.environment.clone(),
             script.path.display().to_string(),
             script.lines_in.to_string(),
-            lines_of_python(&script.text).to_string(),
+            lines::of_python(&script.text).to_string(),
         ]);
     }
     output::align_right(&mut table, &[2, 3]);
     format!("{}\n", table.trim_fmt())
-}
-
-/// Lines with anything but comments on them.
-fn lines_of_program(sources: &Sources, file: FileId) -> usize {
-    let Some(text) = sources.database.text(file) else { return 0 };
-    let whole = text.to_string();
-    let tokens = lex(&whole).into_iter().filter(|(token, _)| !token.is_comment());
-    let mut lines: Vec<usize> = tokens.map(|(_, span)| text.byte_to_line(span.start as usize)).collect();
-    lines.dedup();
-    lines.len()
-}
-
-fn lines_of_python(text: &str) -> usize {
-    text.lines().map(str::trim_start).filter(|line| !line.is_empty() && !line.starts_with('#')).count()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn blank_lines_and_comments_do_not_count() {
-        assert_eq!(lines_of_python("# a\n\nx = 1\n  # b\nif x:\n    y = 2  # c\n"), 3);
-    }
 }

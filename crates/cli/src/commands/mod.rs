@@ -9,3 +9,4 @@ pub(crate) mod lsp;
 pub(crate) mod new;
 pub(crate) mod plan;
 pub(crate) mod run;
+pub(crate) mod stats;

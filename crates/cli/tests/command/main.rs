@@ -14,3 +14,4 @@ mod new;
 mod plan;
 mod process;
 mod run;
+mod stats;

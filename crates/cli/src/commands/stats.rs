@@ -1,0 +1,119 @@
+//! `pydslrep stats`: how much shorter a program is than its scripts.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+use pydslrep_script::{Target, generate};
+use serde::Serialize;
+
+use crate::failure::Failure;
+use crate::sources::Sources;
+use crate::{lines, output, program};
+
+const EXAMPLES: &str = "\
+Examples:
+  pydslrep stats patrol.pyr
+  pydslrep stats patrol.pyr --json";
+
+/// Count the lines of a program and those of its scripts
+///
+/// Lines that are blank or hold nothing but comments do not count; what the program imports does.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Arguments {
+    /// A program, or `-` for standard input
+    program: PathBuf,
+    /// Print JSON instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+/// Lines of a program against lines of Python.
+#[derive(Debug, Serialize)]
+struct Lines {
+    program: usize,
+    python: usize,
+    /// Percent of the lines of Python that nobody had to write.
+    saved: f64,
+}
+
+impl Lines {
+    #[expect(clippy::cast_precision_loss, reason = "numbers of lines are far below 2^52")]
+    fn new(program: usize, python: usize) -> Self {
+        let saved = if python == 0 { 0.0 } else { 100.0 * (1.0 - program as f64 / python as f64) };
+        Self { program, python, saved }
+    }
+
+    fn cells(&self) -> [String; 3] {
+        [self.program.to_string(), self.python.to_string(), format!("{:.1} %", self.saved)]
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct Script {
+    environment: String,
+    #[serde(flatten)]
+    lines: Lines,
+}
+
+#[derive(Debug, Serialize)]
+struct Stats {
+    environments: Vec<Script>,
+    /// The program once against all of its scripts.
+    total: Lines,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// When the program cannot be read or has no environment, or nothing can be printed.
+pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let (sources, file) = Sources::open_one(&arguments.program)?;
+    let ids = program::environments(&sources, file, None);
+    if ids.is_empty() {
+        // This says what to do about it.
+        program::environment(&sources, file, None)?;
+    }
+    let prepared = program::prepare(&sources, file, &ids);
+    let mut has_errors = prepared.has_errors;
+    let in_program = lines::of_program(&sources, file);
+    let mut environments = Vec::new();
+    for environment in &prepared.environments {
+        match generate(environment, Target::CoppeliaSim) {
+            Ok(script) => environments.push(Script {
+                environment: environment.name.clone(),
+                lines: Lines::new(in_program, lines::of_python(&script)),
+            }),
+            Err(error) => {
+                output::error(&error.to_string(), None);
+                has_errors = true;
+            }
+        }
+    }
+    let in_python = environments.iter().map(|script| script.lines.python).sum();
+    let stats = Stats { environments, total: Lines::new(in_program, in_python) };
+    if arguments.json {
+        let text = serde_json::to_string_pretty(&stats);
+        output::print(&(text.map_err(|error| Failure::new(format!("cannot write JSON: {error}")))? + "\n"))?;
+    } else if !stats.environments.is_empty() {
+        output::print(&table(&stats))?;
+    }
+    Ok(ExitCode::from(u8::from(has_errors)))
+}
+
+fn table(stats: &Stats) -> String {
+    let mut table = output::table(["environment", "lines of program", "lines of Python", "saved"]);
+    let mut add = |name: &str, lines: &Lines| {
+        let [program, python, saved] = lines.cells();
+        table.add_row([name.to_owned(), program, python, saved]);
+    };
+    for script in &stats.environments {
+        add(&script.environment, &script.lines);
+    }
+    if stats.environments.len() > 1 {
+        add("total", &stats.total);
+    }
+    output::align_right(&mut table, &[1, 2, 3]);
+    format!("{}\n", table.trim_fmt())
+}

@@ -1,0 +1,83 @@
+//! Lines of programs and scripts, as the article counts them: those with more on them than spaces and comments.
+
+use pydslrep_analysis::FileId;
+use pydslrep_syntax::lex;
+
+use crate::sources::Sources;
+
+/// What quotes docstrings. A script has no other text in such quotes.
+const DOCSTRING: &str = "\"\"\"";
+
+/// Lines of a program and of all that it imports, which is as much to write.
+pub(crate) fn of_program(sources: &Sources, program: FileId) -> usize {
+    let database = &sources.database;
+    let mut files = vec![program];
+    let mut next = 0;
+    while let Some(file) = files.get(next).copied() {
+        for imported in database.imports(file).iter().filter_map(|path| database.file(path)) {
+            if !files.contains(&imported) {
+                files.push(imported);
+            }
+        }
+        next += 1;
+    }
+    files.into_iter().map(|file| of_file(sources, file)).sum()
+}
+
+fn of_file(sources: &Sources, file: FileId) -> usize {
+    let Some(text) = sources.database.text(file) else { return 0 };
+    let whole = text.to_string();
+    let tokens = lex(&whole).into_iter().filter(|(token, _)| !token.is_comment());
+    let mut lines: Vec<usize> = tokens.map(|(_, span)| text.byte_to_line(span.start as usize)).collect();
+    lines.dedup();
+    lines.len()
+}
+
+/// Lines of a generated script; a docstring is a comment.
+pub(crate) fn of_python(script: &str) -> usize {
+    let (mut count, mut in_docstring) = (0, false);
+    for line in script.lines().map(str::trim) {
+        if in_docstring {
+            in_docstring = !line.ends_with(DOCSTRING);
+        } else if let Some(begun) = line.strip_prefix(DOCSTRING) {
+            in_docstring = !begun.ends_with(DOCSTRING);
+        } else if !line.is_empty() && !line.starts_with('#') {
+            count += 1;
+        }
+    }
+    count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blank_lines_and_comments_do_not_count() {
+        assert_eq!(of_python("# a\n\nx = 1\n  # b\nif x:\n    y = 2  # c\n"), 3);
+        let script = "\"\"\"One.\n\nMore\n\"\"\"\nimport math\ndef f():\n    \"\"\"Two.\"\"\"\n    return '#'\n\"\"\"\na\n\"\"\"\n";
+        assert_eq!(of_python(script), 3);
+    }
+
+    #[test]
+    fn programs_have_two_kinds_of_comments() {
+        let mut sources = Sources::default();
+        let count = |sources: &mut Sources, text: &str| {
+            let file = sources.database.open("/x.pyr", text);
+            of_program(sources, file)
+        };
+        assert_eq!(count(&mut sources, ""), 0);
+        assert_eq!(count(&mut sources, "// a\n/* b\nc */\n\n \t\n"), 0);
+        assert_eq!(count(&mut sources, "/* b\nc */ wheel // d\n\na\r\nwith radius 4 wheel"), 3);
+        assert_eq!(count(&mut sources, "sensor a ; ?"), 1, "mistakes are lines, too");
+    }
+
+    #[test]
+    fn imported_lines_count_once() {
+        let mut sources = Sources::default();
+        sources.database.open("/a.pyr", "import \"b.pyr\"\nsensor a");
+        sources.database.open("/b.pyr", "import \"a.pyr\" // again\nsensor b\nsensor c");
+        let file = sources.database.open("/x.pyr", "import \"a.pyr\"\nimport \"b.pyr\"");
+        assert_eq!(of_program(&sources, file), 2 + 2 + 3);
+    }
+}
