@@ -4,7 +4,9 @@
 
 mod snippets;
 
-use pydslrep_analysis::{Database, EntityId, FileId};
+use std::collections::HashMap;
+
+use pydslrep_analysis::{Database, EntityId, EntityRef, FileId};
 use pydslrep_syntax::ast::{Action, DriveWord, Entity, Movement, Name, References, Robot};
 use pydslrep_syntax::{EntityKind, Expected, KEYWORDS, Lexeme, Span, Token, expected_after};
 
@@ -224,14 +226,29 @@ impl<'a> Place<'a> {
         let wanted = names.iter().filter(|name| !taken.iter().any(|taken| taken == name.as_str()));
         let fitting =
             wanted.filter(|name| self.fits(kind, &Name { text: (*name).clone(), span: Span::default() }));
-        fitting.map(|name| self.reference(kind, name)).collect()
+        let bodies = self.bodies(kind);
+        fitting.map(|name| self.reference(kind, name, &bodies)).collect()
     }
 
-    fn reference(&self, kind: EntityKind, name: &str) -> Completion {
+    /// Where the entities of a kind stand, found in one walk over each file that is seen from here.
+    fn bodies(&self, kind: EntityKind) -> HashMap<EntityId, (FileId, Span)> {
+        let imported = self.database.imports(self.file).iter().filter_map(|path| self.database.file(path));
+        let files = std::iter::once(self.file).chain(imported);
+        let of_kind = |entity: &EntityRef<'_>| {
+            entity.parse.entity.as_ref().is_some_and(|tree| tree.kind() == Some(kind))
+        };
+        let entities = files.flat_map(|file| self.database.entities(file).filter(of_kind));
+        entities.map(|entity| (entity.id, (entity.file, body(&entity)))).collect()
+    }
+
+    fn reference(
+        &self,
+        kind: EntityKind,
+        name: &str,
+        bodies: &HashMap<EntityId, (FileId, Span)>,
+    ) -> Completion {
         let id = self.database.resolve(self.file, kind, &name.into()).entity();
-        let preview = id
-            .and_then(|id| self.database.entity(id))
-            .map(|entity| self.database.slice(entity.file, body(&entity)));
+        let preview = id.and_then(|id| bodies.get(&id)).map(|(file, body)| self.database.slice(*file, *body));
         let escaped = KEYWORDS.iter().any(|(token, word)| token.is_keyword() && *word == name);
         Completion {
             label: name.to_owned(),
