@@ -1,7 +1,7 @@
 //! Safe fixes: `check --fix`.
 
 use std::collections::hash_map::DefaultHasher;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::hash::{Hash, Hasher};
 use std::path::Path;
 
@@ -37,7 +37,7 @@ pub(crate) fn fix(
         let problems = find(sources);
         let chosen = choose(&sources.database, files, &problems);
         let texts = texts(&sources.database, &chosen);
-        apply(&mut sources.database, &chosen);
+        apply(&mut sources.database, &texts, &chosen);
         // Also where nothing was chosen.
         if !seen.insert(fingerprint(&sources.database, files)) {
             restore(&mut sources.database, &texts);
@@ -81,19 +81,33 @@ fn touch(a: &Fix, b: &Fix) -> bool {
     a.edits.iter().any(|a| b.edits.iter().any(|b| touch(a, b)))
 }
 
-fn apply(database: &mut Database, chosen: &[(&Diagnostic, &Fix)]) {
+fn apply(database: &mut Database, texts: &BTreeMap<FileId, String>, chosen: &[(&Diagnostic, &Fix)]) {
     let mut edits: Vec<&Edit> = chosen.iter().flat_map(|(_, fix)| &fix.edits).collect();
-    // From the back, so that no place moves before its turn.
-    edits.sort_by_key(|edit| std::cmp::Reverse((edit.file, edit.span.start, edit.span.end)));
-    for edit in edits {
-        database.edit(edit.file, edit.span, &edit.text);
+    edits.sort_by_key(|edit| (edit.span.start, edit.span.end));
+    for (file, text) in texts {
+        let edits = edits.iter().filter(|edit| edit.file == *file);
+        let path = database.path(*file).to_owned();
+        // At once: thousands of edits would each be followed by a look at what they change.
+        database.open(&path, &edited(text, edits.copied()));
     }
+}
+
+/// A text with edits, which are in its order.
+fn edited<'a>(text: &str, edits: impl Iterator<Item = &'a Edit>) -> String {
+    let (mut out, mut done) = (String::with_capacity(text.len()), 0);
+    for edit in edits {
+        out += text.get(done..edit.span.start as usize).unwrap_or_default();
+        out += &edit.text;
+        done = edit.span.end as usize;
+    }
+    out + text.get(done..).unwrap_or_default()
 }
 
 /// The texts that fixes will change.
 fn texts(database: &Database, chosen: &[(&Diagnostic, &Fix)]) -> BTreeMap<FileId, String> {
-    let files = chosen.iter().flat_map(|(_, fix)| &fix.edits).map(|edit| edit.file);
-    files.map(|file| (file, text(database, file))).collect()
+    let files: BTreeSet<FileId> =
+        chosen.iter().flat_map(|(_, fix)| &fix.edits).map(|edit| edit.file).collect();
+    files.into_iter().map(|file| (file, text(database, file))).collect()
 }
 
 fn text(database: &Database, file: FileId) -> String {

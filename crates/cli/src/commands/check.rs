@@ -125,7 +125,12 @@ fn human(sources: &Sources, files: &[FileId], diagnostics: &[Diagnostic]) -> Str
             format!("No problems in {}.\n", count_files(files))
         };
     }
-    format!("{}{}.\n", render::diagnostics(sources, diagnostics), render::summary(diagnostics))
+    let (problems, summary) = (render::diagnostics(sources, diagnostics), render::summary(diagnostics));
+    let is_mendable = |diagnostic: &&Diagnostic| diagnostic.fixes.iter().any(|fix| fix.safe);
+    match diagnostics.iter().filter(is_mendable).count() {
+        0 => format!("{problems}{summary}.\n"),
+        some => format!("{problems}{summary}; `--fix` mends {some}.\n"),
+    }
 }
 
 /// What was fixed, in words.

@@ -125,7 +125,7 @@ fn errors_and_warnings_are_counted() {
     let found: Vec<Option<usize>> = places.iter().map(|place| done.out.find(place)).collect();
     assert!(found.is_sorted() && !found.contains(&None), "{found:?} {}", done.out);
     assert!(done.out.contains("\n1 error, 2 warnings"), "{}", done.out);
-    assert!(done.out.ends_with(" in 1 file.\n"), "{}", done.out);
+    assert!(done.out.ends_with(" in 1 file; `--fix` mends 1.\n"), "{}", done.out);
 }
 
 #[test]
