@@ -124,10 +124,18 @@ fn only_named_files_are_changed() {
 
 #[test]
 fn an_import_that_was_fixed_is_followed() {
-    let place = Place::with("x.pyr", "import \"lib.pyr\nenvironment e has { r } robots with { m } moves");
+    let place = Place::with("x.pyr", "improt \"lib.pyr\"\nenvironment e has { r } robots with { n } moves");
+    let fixed = "Fixed 1 problem in 1 file.\n";
+    let done = place.run(&["check", "--fix", "x.pyr"]);
+    assert_eq!(done.code, Some(2));
+    let missing = "error: cannot import into x.pyr: lib.pyr does not exist\n";
+    assert!(done.err.contains(missing) && done.err.contains(fixed), "{}", done.err);
+
+    place.write("x.pyr", "improt \"lib.pyr\"\nenvironment e has { r } robots with { n } moves");
     place.write("lib.pyr", GOOD.replace("environment e has { r } robots with { m } moves\n", ""));
     let done = place.run(&["check", "--fix", "x.pyr"]);
-    assert_eq!((done.code, done.err.as_str()), (Some(0), "Fixed 1 problem in 1 file.\n"), "{}", done.out);
+    assert_eq!((done.code, done.err.as_str()), (Some(1), fixed), "{}", done.out);
+    assert!(done.out.contains("there is no movement called `n`"), "{}", done.out);
 }
 
 #[test]
