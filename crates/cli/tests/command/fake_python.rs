@@ -72,8 +72,11 @@ fn what_cannot_be_installed_is_explained() {
 
 #[test]
 fn an_interrupt_stops_the_script() {
-    // The script tells that it runs, and then what has become of it.
-    let running = Running::start("trap 'echo stopped > end; exit 130' INT; echo > started; read x < never");
+    // The script tells that it runs, and then what has become of it. Shells run traps while they `wait`; in any other
+    // call the signal and the call race.
+    let running = Running::start(
+        "tail -f /dev/null > /dev/null 2>&1 & trap 'kill $!; echo stopped > end; exit 130' INT; echo > started; wait",
+    );
     running.interrupt();
     assert_eq!(running.event(), Event::Ended(Some(130)));
     assert_eq!(running.place.read("end"), "stopped\n");
@@ -81,7 +84,7 @@ fn an_interrupt_stops_the_script() {
 
 #[test]
 fn a_script_that_does_not_listen_is_ended() {
-    let running = Running::start("trap '' INT; echo > started; read x < never");
+    let running = Running::start("trap '' INT; echo > started; exec tail -f /dev/null");
     running.interrupt();
     assert_eq!(running.event(), Event::Ended(Some(130)));
 }
@@ -102,15 +105,13 @@ enum Event {
 impl Running {
     fn start(behaviour: &str) -> Self {
         let place = place(&format!("cd \"$(dirname \"$BEHAVIOUR\")\"; {behaviour}"));
-        for pipe in ["started", "never"] {
-            assert!(Command::new("mkfifo").arg(place.path(pipe)).status().unwrap().success());
-        }
+        assert!(Command::new("mkfifo").arg(place.path("started")).status().unwrap().success());
         let child = command(&place).spawn().unwrap();
         let pid = rustix::process::Pid::from_child(&child);
         let (tell, events) = channel();
         let (tell_of_start, started) = (tell.clone(), place.path("started"));
-        // Opening the pipe waits until the script does so too.
-        std::thread::spawn(move || fs::File::open(started).map(|_| tell_of_start.send(Event::Started)));
+        // To its end: while the script still opens the pipe, a signal would make that fail.
+        std::thread::spawn(move || fs::read(started).map(|_| tell_of_start.send(Event::Started)));
         std::thread::spawn(move || {
             tell.send(Event::Ended(child.wait_with_output().unwrap().status.code())).unwrap();
         });
