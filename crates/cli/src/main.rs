@@ -36,7 +36,7 @@ mod sources;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 
 use crate::arguments::{Arguments, Command};
 use crate::failure::Failure;
@@ -54,7 +54,7 @@ fn main() -> ExitCode {
         Command::Stats(arguments) => commands::stats::run(&arguments),
         Command::New(arguments) => commands::new::run(&arguments),
         Command::Lsp(arguments) => commands::lsp::run(&arguments),
-        Command::Completions(arguments) => commands::completions::run(&arguments),
+        Command::Completions(arguments) => commands::completions::run(&arguments, Arguments::command()),
     };
     outcome.unwrap_or_else(|failure| {
         output::fail(&failure);

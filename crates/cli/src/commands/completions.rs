@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use clap::{Args, CommandFactory};
+use clap::{Args, Command};
 use clap_complete::Shell;
 
 use crate::failure::Failure;
@@ -23,18 +23,13 @@ pub(crate) struct Arguments {
     shell: Shell,
 }
 
-/// Runs the command.
+/// Runs the command; `command` is the whole of the command line.
 ///
 /// # Errors
 /// When it cannot be printed.
-pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+pub(crate) fn run(arguments: &Arguments, mut command: Command) -> Result<ExitCode, Failure> {
     let mut script = Vec::new();
-    clap_complete::generate(
-        arguments.shell,
-        &mut crate::arguments::Arguments::command(),
-        "pydslrep",
-        &mut script,
-    );
+    clap_complete::generate(arguments.shell, &mut command, "pydslrep", &mut script);
     output::print(&String::from_utf8_lossy(&script))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,6 +1,5 @@
 //! `pydslrep fmt`: programs in their canonical layout.
 
-use std::fs;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -11,6 +10,7 @@ use similar::TextDiff;
 
 use crate::failure::Failure;
 use crate::output::{self, count};
+use crate::rewrite::replace;
 use crate::sources::{Source, read_programs};
 
 const EXAMPLES: &str = "\
@@ -93,9 +93,9 @@ fn write(programs: &[Formatted], failures: &mut Vec<Failure>) -> Result<(), Fail
         match &program.source.place {
             None => output::pass_on(&program.text)?,
             Some(_) if !program.changes() => unchanged += 1,
-            Some(place) => match fs::write(place, &program.text) {
+            Some(place) => match replace(place, &program.source.text, &program.text) {
                 Ok(()) => changed += 1,
-                Err(error) => failures.push(Failure::unwritten(place, &error)),
+                Err(failure) => failures.push(failure),
             },
         }
     }

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use pydslrep_analysis::environment::{Environment, Movement};
-use pydslrep_kinematics::{ActionIndex, Leg, Plan};
+use pydslrep_kinematics::{ActionIndex, Leg, Plan, heading_degrees};
 use pydslrep_scene::Scene;
 use pydslrep_simulator::picture::{self, Route};
 use serde::Serialize;
@@ -204,8 +204,7 @@ fn time(seconds: Option<f64>) -> String {
 
 /// A heading in degrees, in (−180, 180] also when rounded.
 pub(crate) fn heading(radians: f64) -> String {
-    let text = fixed(radians.to_degrees(), 1);
-    if text == "-180.0" { "180.0".to_owned() } else { text }
+    fixed(heading_degrees(radians, 1), 1)
 }
 
 /// A number with so many digits after the point, and no −0.
