@@ -14,15 +14,17 @@ MAY_KNOW: dict[str, set[str]] = {
     "kinematics": set(),
     "scene": {"kinematics"},
     "analysis": {"syntax", "kinematics", "scene"},
-    "ide": {"analysis", "syntax", "kinematics", "scene"},
+    "config": {"syntax", "kinematics", "analysis"},
+    "ide": {"config", "analysis", "syntax", "kinematics", "scene"},
     "script": {"analysis", "kinematics"},
     "simulator": {"kinematics", "scene"},
-    "server": {"ide", "script", "analysis", "syntax"},
+    "server": {"ide", "script", "config", "analysis", "syntax"},
     "cli": {
         "syntax",
         "kinematics",
         "scene",
         "analysis",
+        "config",
         "ide",
         "script",
         "simulator",
@@ -39,10 +41,11 @@ ONLY_IN: dict[str, set[str]] = {
     "logos": {"syntax"},
     "ropey": {"analysis", "server"},
     "minijinja": {"script"},
+    "toml": {"config", "scene"},
 }
 
 # Files, clocks, threads and sockets stay out of what is to run in a browser.
-PURE = ["syntax", "kinematics", "scene", "analysis", "ide", "script"]
+PURE = ["syntax", "kinematics", "scene", "analysis", "config", "ide", "script"]
 IMPURE = re.compile(
     r"\bstd::(fs|net::(Tcp|Udp)|thread|process|time::(Instant|SystemTime)|env)\b"
 )

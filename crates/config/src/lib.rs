@@ -1,0 +1,28 @@
+//! Settings of a project: the file `pydslrep.toml`, and the same from an editor, as plain values.
+//!
+//! Knows the catalogue of diagnostics, whose severities can be chosen. Must never know files, folders of this machine,
+//! editors and their protocol: a text or a JSON value comes in, a [`Config`] and [`Problem`]s go out.
+//!
+//! * [`KEYS`] is the one list of settings. What is read, the page of documentation, the JSON schema and what an editor
+//!   completes are all made from it.
+//! * [`Config`] is what one place says; several are merged, and [`Config::settings`] fills in the defaults.
+
+mod config;
+mod keys;
+mod manual;
+mod problem;
+mod read;
+mod severities;
+mod value;
+
+pub use config::{Config, InlayHints, InlayHintsConfig, Settings, Target};
+pub use keys::{KEYS, Key, Values, Word};
+pub use manual::{json_schema, manual};
+pub use problem::{Problem, ProblemKind};
+pub use severities::{Level, Severities, UnknownWord, find_rule};
+
+/// What the file is called. It stands in the folder that it is about, and holds for all programs in it and below.
+pub const FILE_NAME: &str = "pydslrep.toml";
+
+/// Under which word an editor keeps the settings.
+pub const SECTION: &str = "pydslrep";
