@@ -17,8 +17,9 @@ MAY_KNOW: dict[str, set[str]] = {
     "config": {"syntax", "kinematics", "analysis"},
     "ide": {"config", "analysis", "syntax", "kinematics", "scene"},
     "script": {"analysis", "kinematics"},
+    "files": set(),
     "simulator": {"kinematics", "scene"},
-    "server": {"ide", "script", "config", "analysis", "syntax"},
+    "server": {"ide", "script", "config", "analysis", "syntax", "files"},
     "cli": {
         "syntax",
         "kinematics",
@@ -27,6 +28,7 @@ MAY_KNOW: dict[str, set[str]] = {
         "config",
         "ide",
         "script",
+        "files",
         "simulator",
         "server",
     },

@@ -3,6 +3,9 @@
 mod change;
 #[cfg(test)]
 mod differential;
+mod imports;
+
+pub use self::imports::Absence;
 
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Parse, Span, Token};
@@ -10,10 +13,11 @@ use ropey::Rope;
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
-use crate::Diagnostic;
+use self::imports::Imports;
 use crate::diagnostics::{self, Problem};
 use crate::file::File;
 use crate::names::Names;
+use crate::{Diagnostic, Target};
 
 /// A file of the database; the same for the same path, also after closing and opening it again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -79,17 +83,13 @@ pub struct Database {
     counts: FxHashMap<(FileId, EntityKind), u32>,
     /// Only of files that import anything.
     imports: FxHashMap<FileId, Imports>,
+    /// Why what a file imports is not there, as far as this is known.
+    absences: FxHashMap<FileId, FxHashMap<String, Absence>>,
+    /// What scripts are made for.
+    target: Target,
     /// Entities whose problems speak of all names there are ("did you mean …"), not only of those they use.
     seekers: FxHashSet<EntityId>,
     last_edit: EditCounts,
-}
-
-/// The imports of a file, in order.
-#[derive(Debug, Default)]
-struct Imports {
-    entities: Vec<EntityId>,
-    /// Of those that name one.
-    paths: Vec<String>,
 }
 
 /// How much the latest edit cost.
@@ -137,9 +137,9 @@ impl Database {
         self.get(file).map_or("\n", File::line_ending)
     }
 
-    /// The paths a file imports, whether or not there is such a file.
-    pub fn imports(&self, file: FileId) -> &[String] {
-        self.imports.get(&file).map_or(&[], |imports| &imports.paths)
+    /// What scripts are made for.
+    pub fn target(&self) -> Target {
+        self.target
     }
 
     /// How much the latest edit (or opening) cost.
@@ -205,12 +205,8 @@ impl Database {
         if let Some(first) = self.names.defined(&(file, kind, name.clone())).first() {
             return Resolution::To(*first);
         }
-        let mut unknown = self.names.is_skipped(file, name);
-        for path in self.imports(file) {
-            let Some(imported) = self.file(path) else {
-                unknown = true;
-                continue;
-            };
+        let mut unknown = self.names.is_skipped(file, name) || self.lacks_imports(file);
+        for imported in self.imported_files(file) {
             if let Some(first) = self.names.defined(&(imported, kind, name.clone())).first() {
                 return Resolution::To(*first);
             }
@@ -231,9 +227,8 @@ impl Database {
 
     /// Every name of a kind that a file sees, sorted, each once.
     pub fn visible_names(&self, file: FileId, kind: EntityKind) -> Vec<SmolStr> {
-        let imported = self.imports(file).iter().filter_map(|path| self.file(path));
         let mut names: Vec<SmolStr> = std::iter::once(file)
-            .chain(imported)
+            .chain(self.imported_files(file))
             .flat_map(|file| self.names.all(file, kind).cloned())
             .collect();
         names.sort_unstable();
@@ -256,12 +251,6 @@ impl Database {
         self.counts.get(&(file, kind)).copied().unwrap_or(0)
     }
 
-    /// Whether another open file imports this one, and may use what nothing in it does.
-    pub(crate) fn is_imported(&self, file: FileId) -> bool {
-        let path = self.path(file);
-        self.imports.values().any(|imports| imports.paths.iter().any(|other| other == path))
-    }
-
     /// Whether a name stands in text of the file that had to be skipped.
     pub(crate) fn is_skipped(&self, file: FileId, name: &SmolStr) -> bool {
         self.names.is_skipped(file, name)
@@ -270,18 +259,6 @@ impl Database {
     /// Whether text of the file had to be skipped with names in it that may be declarations.
     pub(crate) fn has_skipped_names(&self, file: FileId) -> bool {
         self.names.any_skipped(file)
-    }
-
-    /// Whether an import stands behind an entity of another kind.
-    pub(crate) fn is_late_import(&self, id: EntityId) -> bool {
-        let Some(data) = self.data(id) else { return false };
-        let Some(open) = self.get(data.file) else { return false };
-        let first_entity = open
-            .pieces
-            .iter()
-            .filter_map(|piece| self.data(piece.entity))
-            .find(|data| !matches!(data.parse.entity, None | Some(Entity::Import(_))));
-        first_entity.is_some_and(|first| first.order < data.order)
     }
 
     /// Whether the file ends inside a comment: whatever stands in it is hidden.

@@ -17,8 +17,10 @@ mod path;
 mod plan;
 mod resolve;
 mod script_name;
+mod target;
 
-pub use database::{Database, EditCounts, EntityId, EntityRef, FileId, Resolution};
+pub use database::{Absence, Database, EditCounts, EntityId, EntityRef, FileId, Resolution};
 pub use diagnostic::{Diagnostic, Edit, Fix, Related, Severity};
 pub use plan::{plan, plan_movement, scene};
 pub use resolve::Blocked;
+pub use target::Target;

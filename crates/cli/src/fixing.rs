@@ -29,7 +29,6 @@ pub(crate) fn fix(
     sources: &mut Sources,
     files: &[FileId],
     find: impl Fn(&Sources) -> Vec<Diagnostic>,
-    failures: &mut Vec<Failure>,
 ) -> Fixed {
     let mut fixed = Fixed::default();
     let mut seen = HashSet::from([fingerprint(&sources.database, files)]);
@@ -49,7 +48,7 @@ pub(crate) fn fix(
         for (file, text) in texts {
             fixed.before.entry(file).or_insert(text);
         }
-        sources.follow_imports(files, failures);
+        sources.follow_imports(files);
     }
     fixed
 }
@@ -196,7 +195,7 @@ mod tests {
         let mut sources = Sources::default();
         let file = sources.database.open("x.pyr", text);
         let find = |sources: &Sources| find(&super::text(&sources.database, file), file);
-        let count = fix(&mut sources, &[file], find, &mut Vec::new()).count();
+        let count = fix(&mut sources, &[file], find).count();
         (super::text(&sources.database, file), count)
     }
 
@@ -236,7 +235,7 @@ mod tests {
         let mut sources = Sources::default();
         let [named, other] = ["x.pyr", "y.pyr"].map(|path| sources.database.open(path, "a"));
         let find = |_: &Sources| vec![problem(other, &[(true, Span::new(0, 1), "b")])];
-        assert_eq!(fix(&mut sources, &[named], find, &mut Vec::new()).count(), 0);
+        assert_eq!(fix(&mut sources, &[named], find).count(), 0);
         assert_eq!(text(&sources.database, other), "a");
     }
 }

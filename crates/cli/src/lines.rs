@@ -14,7 +14,7 @@ pub(crate) fn of_program(sources: &Sources, program: FileId) -> usize {
     let mut files = vec![program];
     let mut next = 0;
     while let Some(file) = files.get(next).copied() {
-        for imported in database.imports(file).iter().filter_map(|path| database.file(path)) {
+        for imported in database.imported_files(file) {
             if !files.contains(&imported) {
                 files.push(imported);
             }

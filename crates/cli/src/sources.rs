@@ -1,23 +1,14 @@
 //! Programs and what they import: from files into the database.
 
 use std::collections::{HashMap, HashSet};
-use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io;
 use std::path::{Component, Path, PathBuf};
 
-use pydslrep_analysis::{Database, Diagnostic, FileId};
+use pydslrep_analysis::{Absence, Database, Diagnostic, FileId};
+use pydslrep_files::{EXTENSION, Found, Unread, decode, find, import_bound, read};
 
 use crate::failure::Failure;
 use crate::output::count;
-
-/// The ending of programs.
-pub(crate) const EXTENSION: &str = "pyr";
-
-/// The file whose folder bounds where imports may lead.
-const PROJECT_FILE: &str = "pydslrep.toml";
-
-/// Larger files are no programs.
-const MOST_BYTES: u64 = 64 << 20;
 
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
@@ -33,8 +24,6 @@ pub(crate) struct Sources {
     shown: HashMap<FileId, String>,
     /// Where each program is on the disk; standard input is nowhere.
     places: HashMap<FileId, PathBuf>,
-    /// Imports that could not be opened, with who imports them: each is told once.
-    missing: HashSet<(FileId, String)>,
 }
 
 impl Sources {
@@ -51,7 +40,7 @@ impl Sources {
         }
         files.sort_by(|a, b| sources.shown[a].cmp(&sources.shown[b]));
         files.dedup();
-        sources.follow_imports(&files, &mut failures);
+        sources.follow_imports(&files);
         (sources, files, failures)
     }
 
@@ -114,56 +103,51 @@ impl Sources {
         if let Some(open) = self.database.file(&key(&absolute)) {
             return Ok(open);
         }
-        let text = read_file(path)?;
-        let file = self.database.open(&key(&absolute), without_mark(&text));
+        Ok(self.take(path, absolute, &read_file(path)?))
+    }
+
+    fn take(&mut self, path: &Path, absolute: PathBuf, text: &str) -> FileId {
+        let file = self.database.open(&key(&absolute), without_mark(text));
         self.shown.insert(file, shown(path));
         self.places.insert(file, absolute);
-        Ok(file)
+        file
     }
 
-    /// Opens what programs import, and what that imports; also what they import only since they were changed.
-    pub(crate) fn follow_imports(&mut self, files: &[FileId], failures: &mut Vec<Failure>) {
+    /// Opens what programs import, and what that imports; also what they import only since they were changed. What
+    /// cannot be opened is a problem of the program that imports it.
+    pub(crate) fn follow_imports(&mut self, files: &[FileId]) {
         for file in files {
-            self.open_imports(*file, failures);
+            self.open_imports(*file);
         }
     }
 
-    fn open_imports(&mut self, program: FileId, failures: &mut Vec<Failure>) {
-        let bound = bound(Path::new(self.database.path(program)));
-        let mut waiting = vec![program];
+    fn open_imports(&mut self, program: FileId) {
+        let bound = import_bound(Path::new(self.database.path(program))).to_owned();
+        let (mut waiting, mut seen) = (vec![program], HashSet::from([program]));
         while let Some(importer) = waiting.pop() {
             for path in self.database.imports(importer).to_vec() {
-                let import = (importer, path);
-                if self.database.file(&import.1).is_some() || self.missing.contains(&import) {
-                    continue;
-                }
-                match self.open_import(importer, Path::new(&import.1), &bound) {
-                    Ok(file) => waiting.push(file),
-                    Err(failure) => {
-                        failures.push(failure);
-                        self.missing.insert(import);
-                    }
+                let imported = self.open_import(Path::new(&path), &bound);
+                match imported {
+                    Ok(file) if seen.insert(file) => waiting.push(file),
+                    Ok(_) => {}
+                    Err(absence) => self.database.set_absence(importer, &path, Some(absence)),
                 }
             }
         }
     }
 
-    fn open_import(&mut self, importer: FileId, path: &Path, bound: &Path) -> Result<FileId, Failure> {
-        let importer = self.shown(importer).to_owned();
-        let (near, folder) = (near(path), shown(bound));
+    fn open_import(&mut self, path: &Path, bound: &Path) -> Result<FileId, Absence> {
         if !path.starts_with(bound) {
-            return Err(Failure::new(format!(
-                "{importer} imports {}, which is outside of {folder}",
-                near.display()
-            ))
-            .help(format!("move the file, or put a {PROJECT_FILE} into the folder that holds both")));
+            return Err(Absence::Outside);
         }
-        self.open_file(&near).map_err(|failure| match failure {
-            Failure::Told { message, help } => {
-                Failure::Told { message: format!("cannot import into {importer}: {message}"), help }
-            }
-            Failure::Unheard => Failure::Unheard,
-        })
+        if let Some(open) = self.database.file(&key(path)) {
+            return Ok(open);
+        }
+        match read(path) {
+            Ok(text) => Ok(self.take(&near(path), path.to_owned(), &text)),
+            Err(Unread::Missing) => Err(Absence::Missing),
+            Err(unread) => Err(Absence::Unreadable(unread.to_string())),
+        }
     }
 }
 
@@ -208,8 +192,8 @@ fn read_program(path: &Path, failures: &mut Vec<Failure>) -> Option<Source> {
 
 /// All programs in a folder.
 fn programs_in(folder: &Path, failures: &mut Vec<Failure>) -> Result<Vec<PathBuf>, Failure> {
-    let mut found = Vec::new();
-    collect(folder, &mut found, failures);
+    let Found { programs: found, failures: unread, .. } = find(folder, usize::MAX);
+    failures.extend(unread.into_iter().map(|unread| Failure::new(format!("cannot look into {unread}"))));
     if found.is_empty() {
         return Err(Failure::new(format!("there is no program in {}", folder.display()))
             .help(format!("programs are files that end in .{EXTENSION}; `pydslrep new NAME` starts one")));
@@ -217,73 +201,28 @@ fn programs_in(folder: &Path, failures: &mut Vec<Failure>) -> Result<Vec<PathBuf
     Ok(found)
 }
 
-/// All programs in a folder and the folders in it, except hidden ones, by name.
-fn collect(folder: &Path, found: &mut Vec<PathBuf>, failures: &mut Vec<Failure>) {
-    let listed = fs::read_dir(folder).and_then(Iterator::collect::<io::Result<Vec<_>>>);
-    let mut entries = match listed {
-        Ok(entries) => entries,
-        Err(error) => return failures.push(unread(&shown(folder), &error)),
-    };
-    entries.sort_by_key(fs::DirEntry::file_name);
-    for entry in entries {
-        let path = entry.path();
-        // The entry's own type: links to folders may lead in circles.
-        let is_folder = entry.file_type().is_ok_and(|sort| sort.is_dir());
-        let is_hidden = entry.file_name().as_encoded_bytes().starts_with(b".");
-        if is_folder && !is_hidden {
-            collect(&path, found, failures);
-        } else if !is_folder && path.extension().is_some_and(|extension| extension == EXTENSION) {
-            found.push(path);
-        }
-    }
-}
-
 fn read_stdin() -> Result<String, Failure> {
-    decode(STDIN_SHOWN, read(io::stdin().lock()).map_err(|error| unread(STDIN_SHOWN, &error))?)
+    decode(io::stdin().lock()).map_err(|unread| failure(STDIN_SHOWN, &unread))
 }
 
 fn read_file(path: &Path) -> Result<String, Failure> {
-    let shown = shown(path);
-    let bytes = File::open(path).and_then(read).map_err(|error| unread(&shown, &error))?;
-    decode(&shown, bytes)
+    read(path).map_err(|unread| failure(&shown(path), &unread))
 }
 
-fn read(file: impl Read) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    file.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
-    Ok(bytes)
-}
-
-fn decode(shown: &str, bytes: Vec<u8>) -> Result<String, Failure> {
-    if bytes.len() as u64 > MOST_BYTES {
-        let message = format!("{shown} is larger than {} MiB", MOST_BYTES >> 20);
-        return Err(Failure::new(message).help("is this a program?"));
+fn failure(shown: &str, unread: &Unread) -> Failure {
+    match unread {
+        Unread::Missing => Failure::new(format!("{shown} does not exist")),
+        Unread::TooLarge => Failure::new(format!("cannot read {shown}: {unread}")).help("is this a program?"),
+        Unread::NotText { .. } => {
+            Failure::new(format!("cannot read {shown}: {unread}")).help("save it in the encoding UTF-8")
+        }
+        Unread::Failed(_) => Failure::new(format!("cannot read {shown}: {unread}")),
     }
-    String::from_utf8(bytes).map_err(|error| {
-        let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        let line = before.split(|byte| *byte == b'\n').count();
-        Failure::new(format!("{shown} is no text in UTF-8: line {line} holds other bytes"))
-            .help("save it in the encoding UTF-8")
-    })
 }
 
 /// A byte order mark is not part of the text: editors hide it, and columns would be off by one.
 pub(crate) fn without_mark(text: &str) -> &str {
     text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text)
-}
-
-fn unread(shown: &str, error: &io::Error) -> Failure {
-    match error.kind() {
-        io::ErrorKind::NotFound => Failure::new(format!("{shown} does not exist")),
-        _ => Failure::new(format!("cannot read {shown}: {error}")),
-    }
-}
-
-/// The folder that imports of a program may not leave: that of the nearest project file, else the program's own.
-fn bound(program: &Path) -> PathBuf {
-    let own = program.parent().unwrap_or(program);
-    let project = own.ancestors().find(|folder| folder.join(PROJECT_FILE).is_file());
-    project.unwrap_or(own).to_owned()
 }
 
 /// The whole path, without `.` and `..`: the same file has the same one however it was named.

@@ -2,6 +2,8 @@
 
 use pydslrep_kinematics::motion::RIM_SPEED;
 
+use pydslrep_analysis::Target;
+
 use crate::Severities;
 
 /// What one place says; `None` where it says nothing.
@@ -100,42 +102,6 @@ impl Config {
 impl Default for Settings {
     fn default() -> Self {
         Config::default().settings()
-    }
-}
-
-/// A simulator that scripts are for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Target {
-    /// `CoppeliaSim` 4.6 or later.
-    #[default]
-    CoppeliaSim,
-    /// V-REP 3.
-    VRep,
-}
-
-impl Target {
-    /// All of them.
-    pub const ALL: [Self; 2] = [Self::CoppeliaSim, Self::VRep];
-
-    /// The word it is chosen by.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::CoppeliaSim => "coppeliasim",
-            Self::VRep => "vrep",
-        }
-    }
-
-    /// What it is, in a few words.
-    pub const fn summary(self) -> &'static str {
-        match self {
-            Self::CoppeliaSim => "CoppeliaSim 4.6 or later, by its ZeroMQ remote API",
-            Self::VRep => "V-REP 3, by its legacy remote API; its scripts cannot be generated yet",
-        }
-    }
-
-    /// The target of a word.
-    pub fn from_word(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|target| target.word() == word)
     }
 }
 

@@ -15,10 +15,11 @@ mod read;
 mod severities;
 mod value;
 
-pub use config::{Config, InlayHints, InlayHintsConfig, Settings, Target};
+pub use config::{Config, InlayHints, InlayHintsConfig, Settings};
 pub use keys::{KEYS, Key, Values, Word};
 pub use manual::{json_schema, manual};
 pub use problem::{Problem, ProblemKind};
+pub use pydslrep_analysis::Target;
 pub use severities::{Level, Severities, UnknownWord, find_rule};
 
 /// What the file is called. It stands in the folder that it is about, and holds for all programs in it and below.

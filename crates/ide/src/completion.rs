@@ -232,7 +232,7 @@ impl<'a> Place<'a> {
 
     /// Where the entities of a kind stand, found in one walk over each file that is seen from here.
     fn bodies(&self, kind: EntityKind) -> HashMap<EntityId, (FileId, Span)> {
-        let imported = self.database.imports(self.file).iter().filter_map(|path| self.database.file(path));
+        let imported = self.database.imported_files(self.file);
         let files = std::iter::once(self.file).chain(imported);
         let of_kind = |entity: &EntityRef<'_>| {
             entity.parse.entity.as_ref().is_some_and(|tree| tree.kind() == Some(kind))

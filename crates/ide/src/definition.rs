@@ -52,11 +52,8 @@ fn import_at(database: &Database, position: FilePosition) -> Option<Definition> 
     })?;
     let Some(Entity::Import(import)) = &entity.parse.entity else { return None };
     let origin = import.path_span?.shifted(entity.span.start);
-    let imports = database
-        .entities(position.file)
-        .filter(|other| matches!(&other.parse.entity, Some(Entity::Import(import)) if import.path.is_some()));
-    let index = imports.take_while(|other| other.id != entity.id).count();
-    let file = database.file(database.imports(position.file).get(index)?)?;
+    let path = database.import_path(entity.id)?;
+    let file = database.imported_files(position.file).find(|file| database.path(*file) == path)?;
     let start = Span::at(0);
     Some(Definition { origin, targets: vec![Target { file, full: start, focus: start }] })
 }

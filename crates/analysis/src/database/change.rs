@@ -7,11 +7,11 @@ use pydslrep_syntax::{EntityKind, Lexeme, Parse, Span, parse};
 use ropey::Rope;
 use rustc_hash::FxHashSet;
 
-use super::{Database, EditCounts, EntityData, EntityId, FileId, Imports};
+use super::{Database, EditCounts, EntityData, EntityId, FileId};
+use crate::Target;
 use crate::diagnostics;
 use crate::file::{File, OfRope, Piece, Window};
 use crate::names::Key;
-use crate::path;
 
 /// The space between the orders of two neighbours in a fresh file.
 const ORDER_STEP: u64 = 1 << 32;
@@ -34,8 +34,8 @@ impl Database {
             .collect();
         self.set_pieces(file, pieces);
         self.update_imports(file);
-        self.validate_file(file);
-        self.validate_importers(path);
+        self.forget_absence(path);
+        self.validate_with_importers(path);
         self.validate_imported(file, &before);
         file
     }
@@ -47,8 +47,9 @@ impl Database {
         }
         self.forget(file);
         let before = self.imports.remove(&file).unwrap_or_default().paths;
+        self.absences.remove(&file);
         if let Some(closed) = self.files[file.0 as usize].take() {
-            self.validate_importers(&closed.path);
+            self.validate_with_importers(&closed.path);
         }
         self.validate_imported(file, &before);
     }
@@ -111,7 +112,8 @@ impl Database {
         if had_imports || self.any_import(&ids) {
             let before = self.imports(file).to_vec();
             self.update_imports(file);
-            self.validate_file(file);
+            let path = self.path(file).to_owned();
+            self.validate_with_importers(&path);
             self.validate_imported(file, &before);
         } else if had_environments != has_environments {
             // Whether anything is unused is only asked where something could be used.
@@ -269,54 +271,18 @@ impl Database {
         }
     }
 
-    fn update_imports(&mut self, file: FileId) {
-        let base = self.path(file).to_owned();
-        let is_import = |id: &EntityId| matches!(self.tree(*id), Some(Entity::Import(_)));
-        let entities: Vec<EntityId> =
-            self.pieces(file).iter().map(|piece| piece.entity).filter(is_import).collect();
-        let path = |id: &EntityId| match self.tree(*id) {
-            Some(Entity::Import(import)) => import.path.as_ref().map(|relative| path::join(&base, relative)),
-            _ => None,
-        };
-        let paths = entities.iter().filter_map(path).collect();
-        if entities.is_empty() {
-            self.imports.remove(&file);
-        } else {
-            self.imports.insert(file, Imports { entities, paths });
+    /// Makes scripts for another target from now on; some rules depend on it.
+    pub fn set_target(&mut self, target: Target) {
+        if self.target == target {
+            return;
         }
-    }
-
-    fn any_import(&self, ids: &[EntityId]) -> bool {
-        ids.iter().any(|id| matches!(self.tree(*id), Some(Entity::Import(_))))
-    }
-
-    fn importers(&self, path: &str) -> Vec<FileId> {
-        let imports = self.imports.iter();
-        imports
-            .filter(|(_, imports)| imports.paths.iter().any(|other| other == path))
-            .map(|(file, _)| *file)
-            .collect()
-    }
-
-    fn validate_importers(&mut self, path: &str) {
-        for file in self.importers(path) {
+        self.target = target;
+        for file in self.files().collect::<Vec<_>>() {
             self.validate_file(file);
         }
     }
 
-    /// Files that a file imports, or did before, may use what nothing in them does.
-    fn validate_imported(&mut self, file: FileId, before: &[String]) {
-        let now = self.imports(file);
-        let changed = before
-            .iter()
-            .filter(|path| !now.contains(path))
-            .chain(now.iter().filter(|path| !before.contains(path)));
-        for imported in changed.filter_map(|path| self.file(path)).collect::<Vec<_>>() {
-            self.validate_file(imported);
-        }
-    }
-
-    fn validate_file(&mut self, file: FileId) {
+    pub(super) fn validate_file(&mut self, file: FileId) {
         // Walked once with their places: to look up the place of each would make a long file's opening quadratic.
         let entities: Vec<(EntityId, Span)> =
             self.entities(file).map(|entity| (entity.id, entity.span)).collect();
@@ -395,7 +361,7 @@ impl Database {
         }
     }
 
-    fn pieces(&self, file: FileId) -> &[Piece] {
+    pub(super) fn pieces(&self, file: FileId) -> &[Piece] {
         self.get(file).map_or(&[], |file| &file.pieces)
     }
 }

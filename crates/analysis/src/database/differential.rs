@@ -3,18 +3,20 @@
 use proptest::prelude::*;
 use pydslrep_syntax::{KEYWORDS, Span};
 
-use crate::{Database, FileId};
+use crate::{Database, FileId, Target};
 
-const PATHS: [&str; 2] = ["main.pyr", "parts.pyr"];
+const PATHS: [&str; 3] = ["main.pyr", "parts.pyr", "base.pyr"];
 
-const START: [&str; 2] = [
+const START: [&str; 3] = [
     "import \"parts.pyr\"\n// a robot\nwheel wheelL with radius 4.5\nwheel wheelR with radius 4.5\n\n\
      robot r type tw with port 19999 has { wheelL wheelR } wheels with sensors { s }\n\n\
      parallel movement m of r {\n  move 4.0 meters at 9\n  turn left until { s, t }\n  turn right\n}\n\
      movement n of q { move 1 meters turn left }\n\n\
-     environment e has { r q } robots with { m m n } moves\n",
-    "sensor s\nsensor t : bumper\nwheelH a with radius 3 /* mecanum */\nwheelH b with radius 3\n\
-     robot q with port 2 has { a b a b } wheels\nmovement m of q { slam }\n",
+     environment e has { r q p } robots with { m m n o } moves\n",
+    "import \"base.pyr\"\nsensor s\nsensor t : bumper\nwheelH a with radius 3 /* mecanum */\nwheelH b with radius 3\n\
+     robot q with port 2 has { a b a b } wheels\nmovement m of q { slam }\n\
+     parallel movement o of p { turn right 30 }\n",
+    "wheel b with radius 3\nwheel c with radius 3\nrobot p with port 2 has { b c } wheels\n",
 ];
 
 /// One edit: where, as parts of 65536 of the text, how much goes, and what comes.
@@ -50,6 +52,9 @@ fn changes() -> impl Strategy<Value = Vec<Change>> {
         "4.5",
         "wheelL ",
         "import \"parts.pyr\" ",
+        "import \"base.pyr\" ",
+        "import \"main.pyr\" ",
+        "o p ",
         "import ",
         "wheel a with radius 3\n",
         "movement m of r { turn left }\n",
@@ -66,7 +71,7 @@ fn changes() -> impl Strategy<Value = Vec<Change>> {
         5 => proptest::sample::select(signs).prop_map(str::to_owned),
     ];
     let len = prop_oneof![3 => Just(0_u8), 2 => 1..4_u8, 1 => 4..60_u8];
-    let change = (0..2_usize, any::<u16>(), len, text).prop_map(|(file, at, len, text)| Change {
+    let change = (0..PATHS.len(), any::<u16>(), len, text).prop_map(|(file, at, len, text)| Change {
         file,
         at,
         len,
@@ -75,17 +80,18 @@ fn changes() -> impl Strategy<Value = Vec<Change>> {
     proptest::collection::vec(change, 1..60)
 }
 
-fn apply(database: &mut Database, files: [FileId; 2], change: &Change) {
+fn apply(database: &mut Database, files: [FileId; 3], change: &Change) {
     let file = files[change.file];
     let end = database.text(file).map_or(0, ropey::Rope::len_bytes);
     let at = u32::try_from(end * usize::from(change.at) / usize::from(u16::MAX)).unwrap();
     database.edit(file, Span::new(at, at + u32::from(change.len)), &change.text);
 }
 
-fn check_same(edited: &Database, files: [FileId; 2]) -> Result<(), TestCaseError> {
+fn check_same(edited: &Database, files: [FileId; 3]) -> Result<(), TestCaseError> {
     let mut fresh = Database::new();
+    fresh.set_target(edited.target());
     let text = |file| edited.text(file).map(ToString::to_string).unwrap_or_default();
-    let fresh_files = [0, 1].map(|index| fresh.open(PATHS[index], &text(files[index])));
+    let fresh_files = [0, 1, 2].map(|index| fresh.open(PATHS[index], &text(files[index])));
     for (file, fresh_file) in files.into_iter().zip(fresh_files) {
         let pieces = |database: &Database, file| -> Vec<_> {
             database.entities(file).map(|entity| (entity.span, entity.parse.clone())).collect()
@@ -107,7 +113,8 @@ proptest! {
     #[test]
     fn an_edited_database_answers_as_a_fresh_one(changes in changes()) {
         let mut database = Database::new();
-        let files = [0, 1].map(|index| database.open(PATHS[index], START[index]));
+        database.set_target(Target::VRep);
+        let files = [0, 1, 2].map(|index| database.open(PATHS[index], START[index]));
         for change in &changes {
             apply(&mut database, files, change);
             check_same(&database, files)?;
@@ -117,7 +124,7 @@ proptest! {
     #[test]
     fn opening_and_closing_leaves_no_trace(changes in changes()) {
         let mut database = Database::new();
-        let mut files = [0, 1].map(|index| database.open(PATHS[index], START[index]));
+        let mut files = [0, 1, 2].map(|index| database.open(PATHS[index], START[index]));
         for change in &changes {
             apply(&mut database, files, change);
             if change.len > 3 {

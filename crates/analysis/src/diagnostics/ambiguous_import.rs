@@ -2,6 +2,7 @@
 
 use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::Name;
+use rustc_hash::FxHashSet;
 
 use crate::EntityId;
 
@@ -55,14 +56,10 @@ fn imported(context: &Context<'_>, kind: EntityKind, name: &Name) -> Vec<EntityI
     if !database.definitions(context.file, kind, &name.text).is_empty() {
         return Vec::new();
     }
-    let mut files: Vec<_> =
-        database.imports(context.file).iter().filter_map(|path| database.file(path)).collect();
-    files.sort_unstable();
-    files.dedup();
-    files
-        .into_iter()
-        .filter_map(|file| database.definitions(file, kind, &name.text).first().copied())
-        .collect()
+    // A file may be imported twice.
+    let mut seen = FxHashSet::default();
+    let files = database.imported_files(context.file).filter(|file| seen.insert(*file));
+    files.filter_map(|file| database.definitions(file, kind, &name.text).first().copied()).collect()
 }
 
 fn problem(context: &Context<'_>, kind: EntityKind, name: &Name, declared: [EntityId; 2]) -> Problem {

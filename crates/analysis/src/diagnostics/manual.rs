@@ -3,7 +3,7 @@
 //! The files in `docs/diagnostics` are written from here, and tests hold every page to what the checks do.
 
 use super::{CATALOGUE, Rule};
-use crate::{Database, Diagnostic};
+use crate::{Absence, Database, Diagnostic, Target};
 
 /// What a rule tells a person who wants to know more than its message says.
 #[derive(Debug)]
@@ -86,13 +86,20 @@ pub fn index() -> String {
     out
 }
 
-/// The problems that one of the page's programs has.
+/// The problems that one of the page's programs has. There are no other files than those of the page, and the target is
+/// the one with more rules.
 fn example_diagnostics(page: &Page, program: &str) -> Vec<Diagnostic> {
     let mut database = Database::new();
+    database.set_target(Target::VRep);
     for (name, text) in page.imports {
         database.open(name, text);
     }
     let file = database.open("program.pyr", program);
+    for path in database.imports(file).to_vec() {
+        if database.file(&path).is_none() {
+            database.set_absence(file, &path, Some(Absence::Missing));
+        }
+    }
     database.diagnostics(file)
 }
 

@@ -4,6 +4,7 @@ mod ambiguous_import;
 mod context;
 mod deprecated_ip_clause;
 mod duplicate_name;
+mod duplicate_port;
 mod empty_environment;
 mod empty_movement;
 mod idle_robot;
@@ -30,6 +31,7 @@ mod single_parallel;
 mod slam_robot;
 mod slam_sensors;
 mod syntax_error;
+mod unresolved_import;
 mod unresolved_reference;
 mod unterminated_comment;
 mod unterminated_string;
@@ -86,7 +88,7 @@ impl PartialEq for Rule {
 }
 
 /// All rules, in the order of the language's contract.
-pub const CATALOGUE: [&Rule; 36] = [
+pub const CATALOGUE: [&Rule; 38] = [
     &syntax_error::RULE,
     &invalid_character::RULE,
     &unterminated_comment::RULE,
@@ -103,6 +105,7 @@ pub const CATALOGUE: [&Rule; 36] = [
     &invalid_angle::RULE,
     &unresolved_reference::RULE,
     &ambiguous_import::RULE,
+    &unresolved_import::RULE,
     &duplicate_name::RULE,
     &unused_declaration::RULE,
     &wheel_count::RULE,
@@ -121,6 +124,7 @@ pub const CATALOGUE: [&Rule; 36] = [
     &idle_robot::RULE,
     &parallel_conflict::RULE,
     &single_parallel::RULE,
+    &duplicate_port::RULE,
     &script_name::RULE,
     &no_environment::RULE,
 ];
@@ -197,8 +201,7 @@ pub(crate) fn of_entities(database: &Database, ids: &[EntityId]) -> Vec<Diagnost
 
 /// Whether declarations may be hidden in a comment that never ends.
 fn has_hidden_text(database: &Database, file: FileId) -> bool {
-    let imported = database.imports(file).iter().filter_map(|path| database.file(path));
-    std::iter::once(file).chain(imported).any(|file| database.has_open_comment(file))
+    std::iter::once(file).chain(database.imported_files(file)).any(|file| database.has_open_comment(file))
 }
 
 /// Finds where other entities start; files are walked only where a problem points at another entity.

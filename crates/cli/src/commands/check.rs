@@ -75,7 +75,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         severities.applied(files.iter().flat_map(|file| sources.diagnostics(*file)).collect())
     };
     let fixed = if arguments.fix {
-        let mut fixed = fixing::fix(&mut sources, &files, find, &mut failures);
+        let mut fixed = fixing::fix(&mut sources, &files, find);
         fixed.write(&mut sources, &files, &mut failures)?;
         Some(fixed)
     } else {

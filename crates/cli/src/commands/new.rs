@@ -8,7 +8,7 @@ use clap::Args;
 
 use crate::failure::Failure;
 use crate::output;
-use crate::sources::EXTENSION;
+use pydslrep_files::EXTENSION;
 
 const EXAMPLES: &str = "\
 Examples:

@@ -260,10 +260,10 @@ fn files_that_are_no_programs_do_not_hide_the_others() {
     assert_eq!(done.code, Some(2));
     assert!(done.out.contains("good.pyr:1:6") && done.out.ends_with("1 error in 1 file.\n"), "{}", done.out);
     expect![[r#"
-        error: bad.pyr is no text in UTF-8: line 2 holds other bytes
+        error: cannot read bad.pyr: it is no text in UTF-8: line 2 holds other bytes
          |
          = help: save it in the encoding UTF-8
-        error: large.pyr is larger than 64 MiB
+        error: cannot read large.pyr: it is larger than 64 MiB
          |
          = help: is this a program?
         error: missing.pyr does not exist
@@ -286,8 +286,45 @@ fn imports_are_read_and_bounded() {
     place.write("a/main.pyr", "import \"../b.pyr\"\nrobot r with port 1 has { x y } wheels");
     place.write("b.pyr", "wheel x with radius 4 wheel y with radius 4");
     let done = place.run(&["check", "a/main.pyr"]);
-    assert_eq!(done.code, Some(2));
-    assert!(done.err.contains("outside of"), "{}", done.err);
+    assert_eq!((done.code, done.err.as_str()), (Some(1), ""));
+    expect![[r#"
+        error[unresolved-import]: `../b.pyr` is outside of the workspace
+         --> a/main.pyr:1:8
+          |
+        1 | import "../b.pyr"
+          |        ^^^^^^^^^^
+          |
+          = help: move the file to where this one is, or put a `pydslrep.toml` into the folder that holds both; in an editor, open that folder
+
+        1 error in 1 file.
+    "#]].assert_eq(&done.out);
+    place.write("a/main.pyr", "import \"lib.pyr\"\nrobot r with port 1 has { x y } wheels");
+    expect![[r#"
+        error[unresolved-import]: there is no file `lib.pyr`
+         --> a/main.pyr:1:8
+          |
+        1 | import "lib.pyr"
+          |        ^^^^^^^^^
+          |
+          = help: check the spelling; the path counts from the folder of this file, with `/` between its parts
+
+        1 error in 1 file.
+    "#]]
+    .assert_eq(&place.run(&["check", "a/main.pyr"]).out);
+    place.write("a/lib.pyr", b"wheel x \xff");
+    expect![[r#"
+        error[unresolved-import]: `lib.pyr` cannot be read: it is no text in UTF-8: line 1 holds other bytes
+         --> a/main.pyr:1:8
+          |
+        1 | import "lib.pyr"
+          |        ^^^^^^^^^
+          |
+          = help: programs are text files in UTF-8 that you have the right to read
+
+        1 error in 1 file.
+    "#]]
+    .assert_eq(&place.run(&["check", "a/main.pyr"]).out);
+    place.write("a/main.pyr", "import \"../b.pyr\"\nrobot r with port 1 has { x y } wheels");
     place.write("pydslrep.toml", "");
     let done = place.run(&["check", "a/main.pyr"]);
     assert_eq!((done.code, done.err.as_str()), (Some(0), ""));

@@ -3,7 +3,7 @@
 use std::fs;
 
 use expect_test::expect;
-use pydslrep_analysis::diagnostics::{CATALOGUE, Remedy};
+use pydslrep_analysis::diagnostics::{CATALOGUE, Remedy, Rule};
 
 use crate::process::Place;
 
@@ -69,7 +69,9 @@ fn everything_safe_is_fixed() {
 #[test]
 fn every_safe_fix_of_the_catalogue_is_applied() {
     let mut count = 0;
-    for rule in CATALOGUE.into_iter().filter(|rule| rule.remedy == Remedy::Safe) {
+    // This one only exists for another target.
+    let is_usual = |rule: &&Rule| rule.remedy == Remedy::Safe && rule.code != "duplicate-port";
+    for rule in CATALOGUE.into_iter().filter(is_usual) {
         let place = Place::with("x.pyr", rule.page.example);
         for (name, text) in rule.page.imports {
             place.write(name, text);
@@ -127,9 +129,8 @@ fn an_import_that_was_fixed_is_followed() {
     let place = Place::with("x.pyr", "improt \"lib.pyr\"\nenvironment e has { r } robots with { n } moves");
     let fixed = "Fixed 1 problem in 1 file.\n";
     let done = place.run(&["check", "--fix", "x.pyr"]);
-    assert_eq!(done.code, Some(2));
-    let missing = "error: cannot import into x.pyr: lib.pyr does not exist\n";
-    assert!(done.err.contains(missing) && done.err.contains(fixed), "{}", done.err);
+    assert_eq!((done.code, done.err.as_str()), (Some(1), fixed));
+    assert!(done.out.contains("there is no file `lib.pyr`"), "{}", done.out);
 
     place.write("x.pyr", "improt \"lib.pyr\"\nenvironment e has { r } robots with { n } moves");
     place.write("lib.pyr", GOOD.replace("environment e has { r } robots with { m } moves\n", ""));

@@ -1,0 +1,37 @@
+//! What scripts are made for.
+
+/// The simulator that moves the robots. Its remote API is what a script speaks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Target {
+    /// `CoppeliaSim` 4.6 or later with its `ZeroMQ` remote API: one connection serves all robots.
+    #[default]
+    CoppeliaSim,
+    /// V-REP 3 with its legacy remote API: each robot has a connection of its own, on its port.
+    VRep,
+}
+
+impl Target {
+    /// All of them, the usual one first.
+    pub const ALL: [Self; 2] = [Self::CoppeliaSim, Self::VRep];
+
+    /// The word it is chosen by.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::CoppeliaSim => "coppeliasim",
+            Self::VRep => "vrep",
+        }
+    }
+
+    /// What it is, in a few words.
+    pub const fn summary(self) -> &'static str {
+        match self {
+            Self::CoppeliaSim => "CoppeliaSim 4.6 or later, by its ZeroMQ remote API",
+            Self::VRep => "V-REP 3, by its legacy remote API; its scripts cannot be generated yet",
+        }
+    }
+
+    /// The target of a word.
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|target| target.word() == word)
+    }
+}

@@ -1,0 +1,99 @@
+//! All programs of a folder.
+
+use std::path::{Path, PathBuf};
+
+use ignore::WalkBuilder;
+
+use crate::is_program;
+
+/// What was found in a folder.
+#[derive(Debug, Default)]
+pub struct Found {
+    /// The programs, by name.
+    pub programs: Vec<PathBuf>,
+    /// Why some of the folders below could not be looked at; in words.
+    pub failures: Vec<String>,
+    /// Whether all of it was looked at.
+    pub complete: bool,
+}
+
+/// All programs in a folder and the folders in it, except for what is hidden or what a `.gitignore` leaves out; looks
+/// at no more than `most` files and folders. Links to folders are not followed: they may lead in circles.
+pub fn find(folder: &Path, most: usize) -> Found {
+    let walk =
+        WalkBuilder::new(folder).require_git(false).git_global(false).sort_by_file_name(Ord::cmp).build();
+    let mut found = Found { complete: true, ..Found::default() };
+    for (count, entry) in walk.enumerate() {
+        if count >= most {
+            found.complete = false;
+            break;
+        }
+        match entry {
+            Ok(entry) if !entry.file_type().is_some_and(|sort| sort.is_dir()) => {
+                let path = entry.into_path();
+                found.programs.extend(is_program(&path).then_some(path));
+            }
+            Ok(_) => {}
+            Err(error) => found.failures.push(error.to_string()),
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    fn folder(files: &[&str]) -> tempfile::TempDir {
+        let folder = tempfile::Builder::new().prefix("files").tempdir().unwrap();
+        for name in files {
+            let path = folder.path().join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, "").unwrap();
+        }
+        folder
+    }
+
+    fn names(folder: &tempfile::TempDir, most: usize) -> (Vec<String>, bool) {
+        let found = find(folder.path(), most);
+        assert_eq!(found.failures, [""; 0]);
+        let name = |path: &PathBuf| path.strip_prefix(folder.path()).unwrap().display().to_string();
+        (found.programs.iter().map(name).collect(), found.complete)
+    }
+
+    #[test]
+    fn programs_are_found_by_name() {
+        let folder = folder(&["b/y.pyr", "a.pyr", "b/x.txt", ".git/z.pyr", "pyr", "c.PYR"]);
+        assert_eq!(names(&folder, 100), (vec!["a.pyr".to_owned(), "b/y.pyr".to_owned()], true));
+    }
+
+    #[test]
+    fn what_is_ignored_is_no_part_of_the_workspace() {
+        let folder = folder(&["target/x.pyr", "a.pyr", "old.pyr"]);
+        fs::write(folder.path().join(".gitignore"), "/target/\nold*\n").unwrap();
+        assert_eq!(names(&folder, 100), (vec!["a.pyr".to_owned()], true));
+    }
+
+    #[test]
+    fn a_search_has_an_end() {
+        let folder = folder(&["a.pyr", "b.pyr", "c.pyr"]);
+        assert_eq!(names(&folder, 2), (vec!["a.pyr".to_owned()], false), "the folder itself counts");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_do_not_lead_in_circles() {
+        let folder = folder(&["a.pyr"]);
+        std::os::unix::fs::symlink(folder.path(), folder.path().join("again")).unwrap();
+        std::os::unix::fs::symlink(folder.path().join("a.pyr"), folder.path().join("b.pyr")).unwrap();
+        assert_eq!(names(&folder, 100).0, ["a.pyr", "b.pyr"]);
+    }
+
+    #[test]
+    fn a_folder_that_is_not_there_is_told() {
+        let folder = folder(&[]);
+        assert_eq!(find(&folder.path().join("x"), 9).failures.len(), 1);
+    }
+}
