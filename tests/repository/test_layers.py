@@ -17,7 +17,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "config": {"syntax", "kinematics", "analysis"},
     "ide": {"config", "analysis", "syntax", "kinematics", "scene"},
     "script": {"analysis", "kinematics"},
-    "files": set(),
+    "files": {"config"},
     "simulator": {"kinematics", "scene"},
     "server": {"ide", "script", "config", "analysis", "syntax", "files"},
     "cli": {

@@ -8,27 +8,26 @@ mod search;
 
 use std::path::Path;
 
+use pydslrep_config::FILE_NAME;
+
 pub use read::{MOST_BYTES, Unread, decode, read};
 pub use search::{Found, find};
 
 /// The ending of programs.
 pub const EXTENSION: &str = "pyr";
 
-/// The file with the settings of all programs in its folder and below; its folder bounds where imports may lead.
-pub const PROJECT_FILE: &str = "pydslrep.toml";
-
 /// Whether a path is named like a program.
 pub fn is_program(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == EXTENSION)
 }
 
-/// The nearest folder upwards from a file that holds a [`PROJECT_FILE`].
+/// The nearest folder upwards from a file that holds a `pydslrep.toml`.
 pub fn project_folder(file: &Path) -> Option<&Path> {
     let own = file.parent()?;
-    own.ancestors().find(|folder| folder.join(PROJECT_FILE).is_file())
+    own.ancestors().find(|folder| folder.join(FILE_NAME).is_file())
 }
 
-/// The folder that imports of a program may not leave: that of the nearest [`PROJECT_FILE`], else the program's own.
+/// The folder that imports of a program may not leave: that of the nearest `pydslrep.toml`, else the program's own.
 pub fn import_bound(program: &Path) -> &Path {
     project_folder(program).or_else(|| program.parent()).unwrap_or(program)
 }
@@ -44,9 +43,9 @@ mod tests {
         std::fs::create_dir_all(&below).unwrap();
         let program = below.join("x.pyr");
         assert_eq!(import_bound(&program), below);
-        std::fs::write(folder.path().join(PROJECT_FILE), "").unwrap();
+        std::fs::write(folder.path().join(FILE_NAME), "").unwrap();
         assert_eq!(import_bound(&program), folder.path());
-        std::fs::write(folder.path().join("a").join(PROJECT_FILE), "").unwrap();
+        std::fs::write(folder.path().join("a").join(FILE_NAME), "").unwrap();
         assert_eq!(import_bound(&program), folder.path().join("a"));
     }
 }
