@@ -85,8 +85,8 @@ pub struct Database {
     imports: FxHashMap<FileId, Imports>,
     /// Why what a file imports is not there, as far as this is known.
     absences: FxHashMap<FileId, FxHashMap<String, Absence>>,
-    /// What scripts are made for.
-    target: Target,
+    /// What scripts are made for, where it is not the usual target. Kept while a file is closed.
+    targets: FxHashMap<FileId, Target>,
     /// Entities whose problems speak of all names there are ("did you mean …"), not only of those they use.
     seekers: FxHashSet<EntityId>,
     last_edit: EditCounts,
@@ -137,9 +137,9 @@ impl Database {
         self.get(file).map_or("\n", File::line_ending)
     }
 
-    /// What scripts are made for.
-    pub fn target(&self) -> Target {
-        self.target
+    /// What the scripts of a file are made for.
+    pub fn target(&self, file: FileId) -> Target {
+        self.targets.get(&file).copied().unwrap_or_default()
     }
 
     /// How much the latest edit (or opening) cost.

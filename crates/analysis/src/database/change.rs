@@ -271,13 +271,10 @@ impl Database {
         }
     }
 
-    /// Makes scripts for another target from now on; some rules depend on it.
-    pub fn set_target(&mut self, target: Target) {
-        if self.target == target {
-            return;
-        }
-        self.target = target;
-        for file in self.files().collect::<Vec<_>>() {
+    /// Makes the scripts of a file for another target from now on; some rules depend on it.
+    pub fn set_target(&mut self, file: FileId, target: Target) {
+        if self.target(file) != target {
+            self.targets.insert(file, target);
             self.validate_file(file);
         }
     }

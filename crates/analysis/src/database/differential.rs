@@ -89,9 +89,11 @@ fn apply(database: &mut Database, files: [FileId; 3], change: &Change) {
 
 fn check_same(edited: &Database, files: [FileId; 3]) -> Result<(), TestCaseError> {
     let mut fresh = Database::new();
-    fresh.set_target(edited.target());
     let text = |file| edited.text(file).map(ToString::to_string).unwrap_or_default();
     let fresh_files = [0, 1, 2].map(|index| fresh.open(PATHS[index], &text(files[index])));
+    for (file, fresh_file) in files.into_iter().zip(fresh_files) {
+        fresh.set_target(fresh_file, edited.target(file));
+    }
     for (file, fresh_file) in files.into_iter().zip(fresh_files) {
         let pieces = |database: &Database, file| -> Vec<_> {
             database.entities(file).map(|entity| (entity.span, entity.parse.clone())).collect()
@@ -113,8 +115,8 @@ proptest! {
     #[test]
     fn an_edited_database_answers_as_a_fresh_one(changes in changes()) {
         let mut database = Database::new();
-        database.set_target(Target::VRep);
         let files = [0, 1, 2].map(|index| database.open(PATHS[index], START[index]));
+        files.map(|file| database.set_target(file, Target::VRep));
         for change in &changes {
             apply(&mut database, files, change);
             check_same(&database, files)?;

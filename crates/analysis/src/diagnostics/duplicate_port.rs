@@ -54,7 +54,7 @@ struct Listed<'a> {
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Environment(environment)) = context.tree else { return };
-    if context.database.target() != Target::VRep {
+    if context.database.target(context.file) != Target::VRep {
         return;
     }
     let names = environment.robots.iter().flat_map(|list| &list.names);
@@ -135,7 +135,7 @@ mod tests {
     fn check(target: Target, program: &str, expected: &Expect) {
         let mut database = Database::new();
         let file = database.open("test.pyr", program);
-        database.set_target(target);
+        database.set_target(file, target);
         let mut out = String::new();
         for found in database.diagnostics(file).iter().filter(|found| found.code() == "duplicate-port") {
             out += &format!("{} @ {}: {}\n", found.span.text(program), found.span.start, found.message);

@@ -90,11 +90,11 @@ pub fn index() -> String {
 /// the one with more rules.
 fn example_diagnostics(page: &Page, program: &str) -> Vec<Diagnostic> {
     let mut database = Database::new();
-    database.set_target(Target::VRep);
     for (name, text) in page.imports {
         database.open(name, text);
     }
     let file = database.open("program.pyr", program);
+    database.set_target(file, Target::VRep);
     for path in database.imports(file).to_vec() {
         if database.file(&path).is_none() {
             database.set_absence(file, &path, Some(Absence::Missing));
