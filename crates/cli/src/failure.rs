@@ -2,6 +2,8 @@
 
 use std::fmt::Display;
 
+use pydslrep_config::UnknownWord;
+
 /// Wrong use or an outside failure: a file, a port, a missing Python.
 #[derive(Debug)]
 pub(crate) enum Failure {
@@ -12,6 +14,8 @@ pub(crate) enum Failure {
         /// What to do about it.
         help: Option<String>,
     },
+    /// Something to show as it is: what is wrong in a file that is no program, with its lines.
+    Shown(String),
     /// Nobody reads the output any more, so there is nobody to tell.
     Unheard,
 }
@@ -29,12 +33,18 @@ impl Failure {
     pub(crate) fn help(self, help: impl Into<String>) -> Self {
         match self {
             Self::Told { message, .. } => Self::Told { message, help: Some(help.into()) },
-            Self::Unheard => Self::Unheard,
+            other => other,
         }
     }
 
     /// A file that could not be written.
     pub(crate) fn unwritten(path: &std::path::Path, error: &dyn Display) -> Self {
         Self::new(format!("cannot write {}: {error}", path.display()))
+    }
+}
+
+impl From<UnknownWord> for Failure {
+    fn from(unknown: UnknownWord) -> Self {
+        Self::new(unknown.message).help(unknown.help)
     }
 }

@@ -6,14 +6,13 @@
 //! * [`arguments`]: the command line; each command's own arguments stand with it in [`commands`].
 //! * [`sources`]: programs and what they import, from files into the database.
 //! * [`render`], [`json`], [`github`]: problems for people and for programs.
-//! * [`catalogue`], [`severities`]: diagnostics by their names, and how bad they are to whoever asks.
+//! * [`project`], [`severities`]: what is set for programs, and how bad problems are to whoever asks.
 //! * [`fixing`], [`rewrite`]: what is done about them.
 //! * [`lines`]: how much people and the generator write.
 //! * [`commands`]: one file per command.
 //! * [`python`], [`driver`], [`progress`], [`driven`], [`outcome`]: a run, from an interpreter to its result.
 
 mod arguments;
-mod catalogue;
 mod commands;
 mod driven;
 mod driver;
@@ -28,6 +27,7 @@ mod output;
 mod place;
 mod program;
 mod progress;
+mod project;
 mod python;
 mod render;
 mod rewrite;

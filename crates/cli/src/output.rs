@@ -40,8 +40,10 @@ pub(crate) fn say(text: &str) {
 
 /// Says what failed.
 pub(crate) fn fail(failure: &Failure) {
-    if let Failure::Told { message, help } = failure {
-        error(message, help.as_deref());
+    match failure {
+        Failure::Told { message, help } => error(message, help.as_deref()),
+        Failure::Shown(text) => say(text),
+        Failure::Unheard => {}
     }
 }
 

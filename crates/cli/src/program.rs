@@ -5,6 +5,7 @@ use pydslrep_analysis::{Diagnostic, EntityId, FileId};
 
 use crate::failure::Failure;
 use crate::output::{count, say};
+use crate::project::Project;
 use crate::render;
 use crate::sources::Sources;
 
@@ -59,25 +60,40 @@ pub(crate) struct Prepared {
 
 /// Makes environments of a program ready to run. The problems of the program are shown on the way, and those of other
 /// files where they stand in the way.
-pub(crate) fn prepare(sources: &Sources, file: FileId, ids: &[EntityId]) -> Prepared {
-    let mut problems = sources.diagnostics(file);
-    let mut prepared = Vec::new();
-    let mut stuck = Vec::new();
+pub(crate) fn prepare(sources: &Sources, project: &Project, file: FileId, ids: &[EntityId]) -> Prepared {
+    let (mut prepared, mut stuck) = (Vec::new(), Vec::new());
+    let mut errors = Vec::new();
     for id in ids {
         match sources.database.environment(*id) {
             Ok(environment) => prepared.push(environment),
             Err(blocked) => {
-                add(&mut problems, &blocked.errors);
+                add(&mut errors, &blocked.errors);
                 stuck.push(blocked.environment);
             }
         }
     }
+    let problems = problems(sources, project, file, &errors);
     show(sources, &problems);
     for name in &stuck {
         say(&format!("environment `{name}` is left out because of these errors\n"));
     }
     let is_error = |problem: &Diagnostic| problem.severity == pydslrep_analysis::Severity::Error;
     Prepared { environments: prepared, has_errors: !stuck.is_empty() || problems.iter().any(is_error) }
+}
+
+/// The problems of a program as they are to be shown, and errors in other files. An error that keeps an environment
+/// from being ready is shown as that, however bad it was said to be.
+fn problems(sources: &Sources, project: &Project, file: FileId, errors: &[Diagnostic]) -> Vec<Diagnostic> {
+    let as_shown = |problem: Diagnostic| {
+        if errors.contains(&problem) {
+            return Some(problem);
+        }
+        let severity = project.settings.severities.severity(problem.code(), problem.severity)?;
+        Some(Diagnostic { severity, ..problem })
+    };
+    let mut problems: Vec<Diagnostic> = sources.diagnostics(file).into_iter().filter_map(as_shown).collect();
+    add(&mut problems, errors);
+    problems
 }
 
 fn add(problems: &mut Vec<Diagnostic>, more: &[Diagnostic]) {

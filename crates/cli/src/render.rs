@@ -139,6 +139,6 @@ impl Window {
 }
 
 /// The renderer knows neither a lone CR nor, in patches, CRLF. Every byte stays in its place.
-fn with_one_line_ending(text: String) -> String {
+pub(crate) fn with_one_line_ending(text: String) -> String {
     if text.contains('\r') { text.replace("\r\n", " \n").replace('\r', "\n") } else { text }
 }

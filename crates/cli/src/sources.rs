@@ -205,7 +205,7 @@ fn read_stdin() -> Result<String, Failure> {
     decode(io::stdin().lock()).map_err(|unread| failure(STDIN_SHOWN, &unread))
 }
 
-fn read_file(path: &Path) -> Result<String, Failure> {
+pub(crate) fn read_file(path: &Path) -> Result<String, Failure> {
     read(path).map_err(|unread| failure(&shown(path), &unread))
 }
 
@@ -249,7 +249,7 @@ fn key(absolute: &Path) -> String {
 }
 
 /// The path from the current folder, where it is in it.
-fn near(path: &Path) -> PathBuf {
+pub(crate) fn near(path: &Path) -> PathBuf {
     let here = std::env::current_dir().unwrap_or_default();
     match path.strip_prefix(&here) {
         Ok(near) if !near.as_os_str().is_empty() => near.to_owned(),
@@ -258,7 +258,7 @@ fn near(path: &Path) -> PathBuf {
 }
 
 /// The path as it is printed.
-fn shown(path: &Path) -> String {
+pub(crate) fn shown(path: &Path) -> String {
     path.strip_prefix(".").unwrap_or(path).display().to_string()
 }
 

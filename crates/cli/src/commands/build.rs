@@ -4,11 +4,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use pydslrep_analysis::FileId;
-use pydslrep_script::{Target, file_name, generate, may_replace};
+use pydslrep_config::{Config, Target};
+use pydslrep_script::{file_name, generate, may_replace};
 
 use crate::failure::Failure;
+use crate::project::{Project, Projects};
 use crate::sources::Sources;
 use crate::{lines, output, program};
 
@@ -16,7 +19,11 @@ const EXAMPLES: &str = "\
 Examples:
   pydslrep build patrol.pyr                     writes a script per environment beside it
   pydslrep build rooms/ -o scripts              all programs of a folder
-  pydslrep build patrol.pyr --environment hall --stdout | less";
+  pydslrep build patrol.pyr --environment hall --stdout | less
+
+The nearest pydslrep.toml above a program sets the folder and the target for good:
+  output = \"scripts\"
+  target = \"coppeliasim\"";
 
 /// Write a Python script for each environment of programs
 #[derive(Debug, Args)]
@@ -25,12 +32,12 @@ pub(crate) struct Arguments {
     /// Programs, folders with programs, or `-` for standard input [default: this folder]
     #[arg(value_name = "PATH")]
     paths: Vec<PathBuf>,
-    /// The folder to write to; made if it is not there [default: beside each program]
+    /// The folder to write to; made if it is not there [default: that of pydslrep.toml, else beside each program]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// The simulator that the scripts are for
-    #[arg(long, value_enum, default_value_t, value_name = "TARGET")]
-    target: TargetName,
+    #[arg(long, value_name = "TARGET", value_parser = target_parser())]
+    target: Option<Target>,
     /// Only the environment of this name
     #[arg(long, value_name = "NAME")]
     environment: Option<String>,
@@ -39,29 +46,11 @@ pub(crate) struct Arguments {
     stdout: bool,
 }
 
-/// Simulators as they are called on the command line.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum TargetName {
-    /// CoppeliaSim 4.6 or later, by its ZeroMQ remote API
-    #[default]
-    Coppeliasim,
-    /// V-REP 3, by its legacy remote API
-    #[value(hide = true)]
-    Vrep,
-}
-
-impl TargetName {
-    /// The simulator itself.
-    ///
-    /// # Errors
-    /// When there are no scripts for it yet.
-    pub(crate) fn target(self) -> Result<Target, Failure> {
-        match self {
-            Self::Coppeliasim => Ok(Target::CoppeliaSim),
-            Self::Vrep => Err(Failure::new("scripts for `vrep` cannot be generated yet")
-                .help("leave out --target: scripts are for `coppeliasim`, V-REP's successor")),
-        }
-    }
+/// Simulators as they are called in settings.
+fn target_parser() -> impl TypedValueParser<Value = Target> {
+    let word = |target: Target| PossibleValue::new(target.word()).help(target.summary());
+    PossibleValuesParser::new(Target::ALL.map(word))
+        .try_map(|word| Target::from_word(&word).ok_or("no target"))
 }
 
 /// A script and where it goes.
@@ -77,10 +66,11 @@ struct Script {
 /// # Errors
 /// When a script cannot be written, or the arguments do not fit the programs.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let target = arguments.target.target()?;
     let here = [PathBuf::from(".")];
     let paths = if arguments.paths.is_empty() { &here } else { arguments.paths.as_slice() };
-    let (sources, files, failures) = Sources::open(paths);
+    let (mut sources, files, failures) = Sources::open(paths);
+    let options = Config { target: arguments.target, ..Config::default() };
+    let projects = Projects::open(&mut sources, &files, &options)?;
     let mut scripts = Vec::new();
     let (mut has_errors, mut found) = (false, false);
     for &file in &files {
@@ -89,7 +79,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             continue;
         }
         found |= !ids.is_empty();
-        let prepared = program::prepare(&sources, file, &ids);
+        let project = projects.of(file);
+        let target = project.target()?;
+        let prepared = program::prepare(&sources, project, file, &ids);
         has_errors |= prepared.has_errors;
         if ids.is_empty() {
             output::say(&format!("{} has no environment: nothing to generate\n", sources.shown(file)));
@@ -103,7 +95,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
                     continue;
                 }
             };
-            let path = folder(&sources, file, arguments)?.join(file_name(environment));
+            let path = folder(&sources, file, project, arguments)?.join(file_name(environment));
             let lines_in = lines::of_program(&sources, file);
             scripts.push(Script { path, environment: environment.name.clone(), lines_in, text });
         }
@@ -120,9 +112,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     Ok(ExitCode::from(if failures.is_empty() { u8::from(has_errors) } else { Failure::EXIT_CODE }))
 }
 
-fn folder(sources: &Sources, file: FileId, arguments: &Arguments) -> Result<PathBuf, Failure> {
-    if let Some(folder) = &arguments.output {
-        return Ok(folder.clone());
+fn folder(
+    sources: &Sources,
+    file: FileId,
+    project: &Project,
+    arguments: &Arguments,
+) -> Result<PathBuf, Failure> {
+    if let Some(folder) = arguments.output.clone().or_else(|| project.output()) {
+        return Ok(folder);
     }
     match sources.place(file) {
         Some(_) => Ok(Path::new(sources.shown(file)).parent().unwrap_or(Path::new("")).to_owned()),

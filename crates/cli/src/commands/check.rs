@@ -5,13 +5,14 @@ use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
 use pydslrep_analysis::{Diagnostic, FileId, Severity};
+use pydslrep_config::Config;
 
 use crate::failure::Failure;
 use crate::fixing::{self, Fixed};
 use crate::output::{self, count};
-use crate::severities::Severities;
+use crate::project::Projects;
 use crate::sources::{Sources, count_files};
-use crate::{github, json, render};
+use crate::{github, json, render, severities};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -21,7 +22,11 @@ Examples:
   pydslrep check --fix                   the same, and mend what leaves nothing to decide
   pydslrep check --deny warnings         for use in CI
   pydslrep check --format github         the same, with marks beside the lines of a pull request
-  pydslrep check --severity unused-declaration=off --severity wheel-count=warning";
+  pydslrep check --severity unused-declaration=off --severity wheel-count=warning
+
+The nearest pydslrep.toml above a program sets severities for good:
+  [severity]
+  unused-declaration = \"off\"";
 
 /// Show what is wrong with programs, and how to mend it
 #[derive(Debug, Args)]
@@ -67,13 +72,12 @@ pub(crate) enum Deny {
 /// # Errors
 /// When the arguments do not fit, or nothing can be printed.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let severities = Severities::read(&arguments.severity)?;
+    let options = Config { severities: severities::read(&arguments.severity)?, ..Config::default() };
     let here = [PathBuf::from(".")];
     let paths = if arguments.paths.is_empty() { &here } else { arguments.paths.as_slice() };
     let (mut sources, files, mut failures) = Sources::open(paths);
-    let find = |sources: &Sources| {
-        severities.applied(files.iter().flat_map(|file| sources.diagnostics(*file)).collect())
-    };
+    let projects = Projects::open(&mut sources, &files, &options)?;
+    let find = |sources: &Sources| diagnostics(sources, &files, &projects);
     let fixed = if arguments.fix {
         let mut fixed = fixing::fix(&mut sources, &files, find);
         fixed.write(&mut sources, &files, &mut failures)?;
@@ -98,6 +102,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     } else {
         Failure::EXIT_CODE
     }))
+}
+
+/// What is wrong with programs, as bad as it is said to be for each.
+fn diagnostics(sources: &Sources, files: &[FileId], projects: &Projects) -> Vec<Diagnostic> {
+    let of_file = |file: &FileId| projects.of(*file).settings.severities.applied(sources.diagnostics(*file));
+    files.iter().flat_map(of_file).collect()
 }
 
 fn report(

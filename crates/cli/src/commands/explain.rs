@@ -6,9 +6,10 @@ use clap::Args;
 use clap::builder::styling::{AnsiColor, Effects, Style};
 use pydslrep_analysis::Severity;
 use pydslrep_analysis::diagnostics::{CATALOGUE, Rule};
+use pydslrep_config::find_rule;
 
 use crate::failure::Failure;
-use crate::{catalogue, output};
+use crate::output;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -33,7 +34,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let columns = textwrap::termwidth().min(MOST_COLUMNS);
     output::print(&match &arguments.code {
-        Some(code) => page(&catalogue::find(code)?.manual(), columns),
+        Some(code) => page(&find_rule(code)?.manual(), columns),
         None => list(columns),
     })?;
     Ok(ExitCode::SUCCESS)

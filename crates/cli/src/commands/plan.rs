@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use pydslrep_analysis::environment::{Environment, Movement};
+use pydslrep_config::Config;
 use pydslrep_kinematics::{ActionIndex, Leg, Plan, heading_degrees};
 use pydslrep_scene::Scene;
 use pydslrep_simulator::picture::{self, Route};
@@ -13,6 +14,7 @@ use serde::Serialize;
 
 use crate::driven::Driven;
 use crate::failure::Failure;
+use crate::project::Projects;
 use crate::sources::Sources;
 use crate::{output, program};
 
@@ -110,13 +112,14 @@ fn plan(environment: &Environment, scene: &Scene) -> Result<Plan, Failure> {
 /// # Errors
 /// When the program cannot be read, or nothing can be written.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let (sources, file) = Sources::open_one(&arguments.program)?;
+    let (mut sources, file) = Sources::open_one(&arguments.program)?;
+    let projects = Projects::open(&mut sources, &[file], &Config::default())?;
     let ids = program::environments(&sources, file, arguments.environment.as_deref());
     if ids.is_empty() || arguments.picture.is_some() {
         // A picture shows one environment; and where there is none, this says which there are.
         program::environment(&sources, file, arguments.environment.as_deref())?;
     }
-    let prepared = program::prepare(&sources, file, &ids);
+    let prepared = program::prepare(&sources, projects.of(file), file, &ids);
     let plans: Vec<Planned> =
         prepared.environments.into_iter().map(Planned::new).collect::<Result<_, _>>()?;
     output::print(&if arguments.json { json(&plans)? } else { plans.iter().map(table).collect() })?;

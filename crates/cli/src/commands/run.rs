@@ -7,7 +7,8 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Args;
-use pydslrep_script::{Target, file_name, generate};
+use pydslrep_config::Config;
+use pydslrep_script::{file_name, generate};
 use pydslrep_simulator::{Options, Simulator, picture};
 use tempfile::TempDir;
 
@@ -18,6 +19,7 @@ use crate::failure::Failure;
 use crate::interrupt::{self, Interrupts};
 use crate::outcome::Outcome;
 use crate::progress::Progress;
+use crate::project::Projects;
 use crate::sources::Sources;
 use crate::{output, program, python};
 
@@ -74,13 +76,16 @@ fn above_zero(text: &str) -> Result<f64, String> {
 /// # Errors
 /// When anything outside of the program fails.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let (sources, file) = Sources::open_one(&arguments.program)?;
+    let (mut sources, file) = Sources::open_one(&arguments.program)?;
+    let projects = Projects::open(&mut sources, &[file], &Config::default())?;
+    let target = projects.of(file).target()?;
     let id = program::environment(&sources, file, arguments.environment.as_deref())?;
-    let Some(environment) = program::prepare(&sources, file, &[id]).environments.pop() else {
+    let Some(environment) = program::prepare(&sources, projects.of(file), file, &[id]).environments.pop()
+    else {
         return Ok(ExitCode::FAILURE);
     };
     let name = file_name(&environment);
-    let text = match generate(&environment, Target::CoppeliaSim) {
+    let text = match generate(&environment, target) {
         Ok(text) => text,
         Err(error) => {
             output::error(&error.to_string(), None);

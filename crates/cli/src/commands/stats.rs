@@ -4,10 +4,12 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
+use pydslrep_config::Config;
 use pydslrep_script::{Target, generate};
 use serde::Serialize;
 
 use crate::failure::Failure;
+use crate::project::Projects;
 use crate::sources::Sources;
 use crate::{lines, output, program};
 
@@ -69,13 +71,14 @@ struct Stats {
 /// # Errors
 /// When the program cannot be read or has no environment, or nothing can be printed.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let (sources, file) = Sources::open_one(&arguments.program)?;
+    let (mut sources, file) = Sources::open_one(&arguments.program)?;
+    let projects = Projects::open(&mut sources, &[file], &Config::default())?;
     let ids = program::environments(&sources, file, None);
     if ids.is_empty() {
         // This says what to do about it.
         program::environment(&sources, file, None)?;
     }
-    let prepared = program::prepare(&sources, file, &ids);
+    let prepared = program::prepare(&sources, projects.of(file), file, &ids);
     let mut has_errors = prepared.has_errors;
     let in_program = lines::of_program(&sources, file);
     let mut environments = Vec::new();

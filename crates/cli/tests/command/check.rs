@@ -188,9 +188,10 @@ fn unknown_severities_get_a_suggestion() {
             "there is no diagnostic `invalid-radus`\n |\n = help: did you mean `invalid-radius`?",
         ),
         (
-            "invalid-radius=warn",
-            "there is no level `warn`\n |\n = help: the levels are off, hint, information, warning, error",
+            "invalid-radius=fatal",
+            "there is no level `fatal`\n |\n = help: the levels are off, hint, information, warning, error",
         ),
+        ("invalid-radius=warn", "there is no level `warn`\n |\n = help: did you mean `warning`?"),
         ("invalid-radius=wraning", "there is no level `wraning`\n |\n = help: did you mean `warning`?"),
         (
             "invalid-radius",

@@ -13,5 +13,6 @@ mod fmt;
 mod new;
 mod plan;
 mod process;
+mod project;
 mod run;
 mod stats;

@@ -1,0 +1,118 @@
+//! Settings that hold for each program: those of the nearest `pydslrep.toml`, and options of the command over them.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use annotate_snippets::{AnnotationKind, Group, Level, Snippet};
+use pydslrep_analysis::FileId;
+use pydslrep_config::{Config, FILE_NAME, Problem, Settings, Target};
+use pydslrep_files::project_folder;
+
+use crate::failure::Failure;
+use crate::output::renderer;
+use crate::render::with_one_line_ending;
+use crate::sources::{Sources, near, read_file, shown, without_mark};
+
+/// The projects of the programs that were named.
+#[derive(Debug)]
+pub(crate) struct Projects {
+    of_file: HashMap<FileId, usize>,
+    /// The first one is that of programs without a file.
+    projects: Vec<Project>,
+}
+
+/// What holds for some programs.
+#[derive(Debug, Default)]
+pub(crate) struct Project {
+    /// The file that says so, if there is one.
+    pub(crate) file: Option<PathBuf>,
+    /// The file's, and over them the options of the command.
+    pub(crate) settings: Settings,
+}
+
+impl Projects {
+    /// Reads the files that say something about programs, and tells the database what it has to know of it.
+    ///
+    /// # Errors
+    /// With everything that is wrong in these files: a misspelt setting could change what the command does, so it does
+    /// nothing.
+    pub(crate) fn open(sources: &mut Sources, files: &[FileId], options: &Config) -> Result<Self, Failure> {
+        let mut opened =
+            Self { of_file: HashMap::new(), projects: vec![Project::new(None, options, Config::default())] };
+        let mut problems = String::new();
+        for file in files {
+            let program = Path::new(sources.database.path(*file));
+            let Some(path) = project_folder(program).map(|folder| folder.join(FILE_NAME)) else { continue };
+            let known = opened.projects.iter().position(|project| project.file.as_ref() == Some(&path));
+            let index = if let Some(index) = known {
+                index
+            } else {
+                let (config, told) = read(&path)?;
+                problems += &told;
+                opened.projects.push(Project::new(Some(path), options, config));
+                opened.projects.len() - 1
+            };
+            opened.of_file.insert(*file, index);
+        }
+        if !problems.is_empty() {
+            return Err(Failure::Shown(problems));
+        }
+        for file in files {
+            sources.database.set_target(*file, opened.of(*file).settings.target);
+        }
+        Ok(opened)
+    }
+
+    /// What holds for a program.
+    pub(crate) fn of(&self, file: FileId) -> &Project {
+        &self.projects[self.of_file.get(&file).copied().unwrap_or(0)]
+    }
+}
+
+impl Project {
+    fn new(file: Option<PathBuf>, options: &Config, config: Config) -> Self {
+        Self { file, settings: options.clone().merged_over(config).settings() }
+    }
+
+    /// The folder that scripts are written to; `None` for beside each program.
+    pub(crate) fn output(&self) -> Option<PathBuf> {
+        let folder = self.file.as_ref()?.parent()?;
+        Some(near(&folder.join(self.settings.output.as_ref()?)))
+    }
+
+    /// The simulator that scripts are for.
+    ///
+    /// # Errors
+    /// When there are no scripts for it yet.
+    pub(crate) fn target(&self) -> Result<pydslrep_script::Target, Failure> {
+        match self.settings.target {
+            Target::CoppeliaSim => Ok(pydslrep_script::Target::CoppeliaSim),
+            Target::VRep => Err(Failure::new("scripts for `vrep` cannot be generated yet").help(format!(
+                "choose `coppeliasim`, V-REP's successor, by --target or in {FILE_NAME}: it is the default"
+            ))),
+        }
+    }
+}
+
+fn read(path: &Path) -> Result<(Config, String), Failure> {
+    let path = near(path);
+    let whole = read_file(&path)?;
+    let text = without_mark(&whole);
+    let (config, problems) = Config::from_toml(text);
+    let told = problems.iter().map(|problem| render(&shown(&path), text, problem)).collect();
+    Ok((config, told))
+}
+
+/// A problem with its line, with an empty line behind it.
+fn render(path: &str, text: &str, problem: &Problem) -> String {
+    let span = problem.span.unwrap_or_default();
+    let text = with_one_line_ending(text.to_owned());
+    let place = |offset: u32| (offset as usize).min(text.len());
+    let annotation = AnnotationKind::Primary.span(place(span.start)..place(span.end));
+    let mut group = Group::with_title(Level::ERROR.primary_title(&problem.message))
+        .element(Snippet::source(&text).path(path).annotation(annotation));
+    if let Some(help) = &problem.help {
+        group = group.element(Level::HELP.message(help));
+    }
+    format!("{}\n\n", renderer().render(&[group]))
+}
