@@ -83,13 +83,19 @@ pub struct Database {
     counts: FxHashMap<(FileId, EntityKind), u32>,
     /// Only of files that import anything.
     imports: FxHashMap<FileId, Imports>,
+    /// Who imports a path: the other way round.
+    importers: FxHashMap<String, FxHashSet<FileId>>,
     /// Why what a file imports is not there, as far as this is known.
     absences: FxHashMap<FileId, FxHashMap<String, Absence>>,
     /// What scripts are made for, where it is not the usual target. Kept while a file is closed.
     targets: FxHashMap<FileId, Target>,
+    /// Entities with problems.
+    troubled: FxHashMap<FileId, FxHashSet<EntityId>>,
     /// Entities whose problems speak of all names there are ("did you mean …"), not only of those they use.
     seekers: FxHashSet<EntityId>,
     last_edit: EditCounts,
+    /// The files whose diagnostics may have changed since they were last asked for.
+    touched: FxHashSet<FileId>,
 }
 
 /// How much the latest edit cost.
@@ -246,6 +252,14 @@ impl Database {
         diagnostics::in_file(self, file)
     }
 
+    /// The files whose diagnostics, or places named in them, may have changed since this was last asked; in the order
+    /// of opening. Also files that were closed.
+    pub fn take_touched(&mut self) -> Vec<FileId> {
+        let mut touched: Vec<FileId> = std::mem::take(&mut self.touched).into_iter().collect();
+        touched.sort_unstable();
+        touched
+    }
+
     /// How many entities of a kind a file has.
     pub(crate) fn count(&self, file: FileId, kind: EntityKind) -> u32 {
         self.counts.get(&(file, kind)).copied().unwrap_or(0)
@@ -267,6 +281,28 @@ impl Database {
             self.get(file).and_then(|file| file.pieces.last()).and_then(|piece| self.data(piece.entity));
         last.and_then(|data| data.parse.lexemes.last())
             .is_some_and(|(token, _)| *token == Token::UnterminatedComment)
+    }
+
+    /// The entities of a file that have problems, with where they start, in the order of the text. The pieces are only
+    /// walked where there are any.
+    pub(crate) fn troubled(&self, file: FileId) -> Vec<(EntityId, u32)> {
+        let mut troubled: Vec<EntityId> = self.troubled.get(&file).into_iter().flatten().copied().collect();
+        troubled.sort_unstable_by_key(|id| self.order(*id));
+        let mut wanted = troubled.into_iter().peekable();
+        let mut start = 0;
+        let mut found = Vec::with_capacity(wanted.len());
+        for piece in self.get(file).map_or(&[][..], |file| &file.pieces) {
+            match wanted.peek() {
+                None => break,
+                Some(id) if *id == piece.entity => {
+                    found.push((piece.entity, start));
+                    wanted.next();
+                }
+                Some(_) => {}
+            }
+            start += piece.len;
+        }
+        found
     }
 
     pub(crate) fn problems(&self, id: EntityId) -> &[Problem] {

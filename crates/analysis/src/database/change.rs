@@ -33,6 +33,7 @@ impl Database {
             .map(|((span, parse), order)| self.add(file, span, parse, order))
             .collect();
         self.set_pieces(file, pieces);
+        self.touch(file);
         self.update_imports(file);
         self.forget_absence(path);
         self.validate_with_importers(path);
@@ -46,7 +47,8 @@ impl Database {
             return;
         }
         self.forget(file);
-        let before = self.imports.remove(&file).unwrap_or_default().paths;
+        let before = self.forget_imports(file);
+        self.touch(file);
         self.absences.remove(&file);
         if let Some(closed) = self.files[file.0 as usize].take() {
             self.validate_with_importers(&closed.path);
@@ -64,6 +66,7 @@ impl Database {
         let Some(open) = self.files.get_mut(file.0 as usize).and_then(Option::as_mut) else { return };
         let span = fit(&open.text, span);
         let window = open.edit(span, text, lexemes);
+        self.touch(file);
         self.apply(file, window);
     }
 
@@ -230,6 +233,7 @@ impl Database {
         if let Some(file) = self.file_of(id) {
             self.unregister(id, file);
             self.seekers.remove(&id);
+            self.set_troubled(id, file, false);
             self.entities[id.0 as usize] = None;
             self.free.push(id.0);
         }
@@ -343,10 +347,10 @@ impl Database {
     }
 
     fn validate(&mut self, id: EntityId, span: Option<Span>) {
-        if self.data(id).is_none() {
-            return;
-        }
+        let Some(file) = self.file_of(id) else { return };
         let problems = diagnostics::in_entity(self, id, span);
+        self.set_troubled(id, file, !problems.is_empty());
+        self.touched.insert(file);
         self.last_edit.revalidated += 1;
         if problems.iter().any(|problem| problem.rule.seeks_names) {
             self.seekers.insert(id);
@@ -355,6 +359,14 @@ impl Database {
         }
         if let Some(data) = self.entities[id.0 as usize].as_mut() {
             data.problems = problems;
+        }
+    }
+
+    fn set_troubled(&mut self, id: EntityId, file: FileId, has_problems: bool) {
+        if has_problems {
+            self.troubled.entry(file).or_default().insert(id);
+        } else if let Some(troubled) = self.troubled.get_mut(&file) {
+            troubled.remove(&id);
         }
     }
 

@@ -80,11 +80,8 @@ impl Database {
     /// Whether another open file imports this one, and may use what nothing in it does.
     pub(crate) fn is_imported(&self, file: FileId) -> bool {
         let path = self.path(file);
-        let imports = |(importer, imports): (&FileId, &Imports)| {
-            imports.paths.iter().any(|other| other == path)
-                && self.absence(*importer, path) != Some(&Absence::Outside)
-        };
-        self.imports.iter().any(imports)
+        let may = |importer: FileId| self.absence(importer, path) != Some(&Absence::Outside);
+        self.importers(path).any(may)
     }
 
     /// Whether an import stands behind an entity of another kind.
@@ -100,28 +97,49 @@ impl Database {
     }
 
     pub(super) fn update_imports(&mut self, file: FileId) {
+        self.forget_imports(file);
         let is_import = |id: &EntityId| matches!(self.tree(*id), Some(Entity::Import(_)));
         let entities: Vec<EntityId> =
             self.pieces(file).iter().map(|piece| piece.entity).filter(is_import).collect();
-        let paths = entities.iter().filter_map(|id| self.import_path(*id)).collect();
-        if entities.is_empty() {
-            self.imports.remove(&file);
-        } else {
+        let paths: Vec<String> = entities.iter().filter_map(|id| self.import_path(*id)).collect();
+        for path in &paths {
+            self.importers.entry(path.clone()).or_default().insert(file);
+        }
+        if !entities.is_empty() {
             self.imports.insert(file, Imports { entities, paths });
         }
+    }
+
+    /// Forgets what a file imports; returns it.
+    pub(super) fn forget_imports(&mut self, file: FileId) -> Vec<String> {
+        let paths = self.imports.remove(&file).unwrap_or_default().paths;
+        for path in &paths {
+            if let Some(importers) = self.importers.get_mut(path) {
+                importers.remove(&file);
+                if importers.is_empty() {
+                    self.importers.remove(path);
+                }
+            }
+        }
+        paths
     }
 
     pub(super) fn any_import(&self, ids: &[EntityId]) -> bool {
         ids.iter().any(|id| matches!(self.tree(*id), Some(Entity::Import(_))))
     }
 
-    /// The files that import a path.
-    pub(super) fn importers(&self, path: &str) -> Vec<FileId> {
-        let imports = self.imports.iter();
-        imports
-            .filter(|(_, imports)| imports.paths.iter().any(|other| other == path))
-            .map(|(file, _)| *file)
-            .collect()
+    /// The files that import a path, in no order.
+    pub(super) fn importers(&self, path: &str) -> impl Iterator<Item = FileId> + '_ {
+        self.importers.get(path).into_iter().flatten().copied()
+    }
+
+    /// The text of a file changed: so may the places in it that its own diagnostics name, and those of the files that
+    /// import it.
+    pub(super) fn touch(&mut self, file: FileId) {
+        self.touched.insert(file);
+        let importers = self.importers.get(self.path(file));
+        let importers: Vec<FileId> = importers.into_iter().flatten().copied().collect();
+        self.touched.extend(importers);
     }
 
     /// A file of this path is there: nothing but the bounds of imports can be said against it.

@@ -148,13 +148,12 @@ pub(crate) fn in_entity(database: &Database, id: EntityId, span: Option<Span>) -
 
 /// The problems of a file with absolute places.
 pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
-    let entities = database.entities(file);
-    let problems = entities.flat_map(|entity| {
-        database.problems(entity.id).iter().map(move |problem| (entity.span.start, problem))
-    });
-    let problems: Vec<(u32, &Problem)> = problems.collect();
+    let troubled = database.troubled(file).into_iter();
+    let problems: Vec<(u32, &Problem)> = troubled
+        .flat_map(|(id, start)| database.problems(id).iter().map(move |problem| (start, problem)))
+        .collect();
     let consequences = Consequences::new(has_hidden_text(database, file), &problems);
-    let mut places = Places { database, starts: FxHashMap::default() };
+    let mut places = Places { database, starts: FxHashMap::default(), searches: 0 };
     let mut diagnostics: Vec<Diagnostic> = problems
         .into_iter()
         .filter(|(_, problem)| !consequences.include(problem))
@@ -189,7 +188,7 @@ impl<'a> Consequences<'a> {
 
 /// The problems of some entities, wherever they are, with absolute places.
 pub(crate) fn of_entities(database: &Database, ids: &[EntityId]) -> Vec<Diagnostic> {
-    let mut places = Places { database, starts: FxHashMap::default() };
+    let mut places = Places { database, starts: FxHashMap::default(), searches: 0 };
     let mut diagnostics = Vec::new();
     for entity in ids.iter().filter_map(|id| database.entity(*id)) {
         for problem in database.problems(entity.id) {
@@ -204,10 +203,14 @@ fn has_hidden_text(database: &Database, file: FileId) -> bool {
     std::iter::once(file).chain(database.imported_files(file)).any(|file| database.has_open_comment(file))
 }
 
+/// So many entities are looked for one by one; from then on it is quicker to walk their whole file.
+const MOST_SEARCHES: usize = 16;
+
 /// Finds where other entities start; files are walked only where a problem points at another entity.
 struct Places<'a> {
     database: &'a Database,
     starts: FxHashMap<EntityId, u32>,
+    searches: usize,
 }
 
 impl Places<'_> {
@@ -242,8 +245,17 @@ impl Places<'_> {
     fn absolute(&mut self, id: EntityId, span: Span) -> Option<(FileId, Span)> {
         let file = self.database.file_of(id)?;
         if !self.starts.contains_key(&id) {
-            self.starts.extend(self.database.entities(file).map(|entity| (entity.id, entity.span.start)));
+            self.search(id, file);
         }
         Some((file, span.shifted(*self.starts.get(&id)?)))
+    }
+
+    fn search(&mut self, id: EntityId, file: FileId) {
+        self.searches += 1;
+        if self.searches > MOST_SEARCHES {
+            self.starts.extend(self.database.entities(file).map(|entity| (entity.id, entity.span.start)));
+        } else if let Some(entity) = self.database.entity(id) {
+            self.starts.insert(id, entity.span.start);
+        }
     }
 }
