@@ -233,13 +233,22 @@ impl Database {
 
     /// Every name of a kind that a file sees, sorted, each once.
     pub fn visible_names(&self, file: FileId, kind: EntityKind) -> Vec<SmolStr> {
-        let mut names: Vec<SmolStr> = std::iter::once(file)
-            .chain(self.imported_files(file))
-            .flat_map(|file| self.names.all(file, kind).cloned())
-            .collect();
+        let mut names: Vec<SmolStr> = self.names_in_sight(file, kind).cloned().collect();
         names.sort_unstable();
         names.dedup();
         names
+    }
+
+    /// Every name of a kind that a file sees, in no order, some perhaps more than once.
+    pub(crate) fn names_in_sight(&self, file: FileId, kind: EntityKind) -> impl Iterator<Item = &SmolStr> {
+        let files = std::iter::once(file).chain(self.imported_files(file));
+        files.flat_map(move |file| self.names.all(file, kind))
+    }
+
+    /// Whether a file sees a name of a kind.
+    pub(crate) fn is_in_sight(&self, file: FileId, kind: EntityKind, name: &SmolStr) -> bool {
+        let mut files = std::iter::once(file).chain(self.imported_files(file));
+        files.any(|file| !self.definitions(file, kind, name).is_empty())
     }
 
     /// The declared names of a kind in a file, in no order.

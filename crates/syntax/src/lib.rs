@@ -23,5 +23,5 @@ pub use format::{TextEdit, apply_edits, format, format_edits};
 pub use lexer::{Lexeme, lex};
 pub use parser::{Parse, expected_after, parse};
 pub use span::Span;
-pub use spelling::{closest, is_similar};
+pub use spelling::{closest, closest_of_any_order, is_similar};
 pub use token::{EntityKind, KEYWORDS, Token, TokenSet};

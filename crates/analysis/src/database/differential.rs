@@ -116,7 +116,9 @@ proptest! {
     fn an_edited_database_answers_as_a_fresh_one(changes in changes()) {
         let mut database = Database::new();
         let files = [0, 1, 2].map(|index| database.open(PATHS[index], START[index]));
-        files.map(|file| database.set_target(file, Target::VRep));
+        for file in files {
+            database.set_target(file, Target::VRep);
+        }
         for change in &changes {
             apply(&mut database, files, change);
             check_same(&database, files)?;

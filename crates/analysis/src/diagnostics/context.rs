@@ -1,7 +1,7 @@
 //! What a check sees, and what it reports.
 
 use pydslrep_syntax::ast::{Entity, Movement, Name, References, Robot, Wheel};
-use pydslrep_syntax::{EntityKind, Lexeme, Span, SyntaxError, closest};
+use pydslrep_syntax::{EntityKind, Lexeme, Span, SyntaxError, closest_of_any_order};
 use smol_str::SmolStr;
 
 use super::Rule;
@@ -215,9 +215,12 @@ impl<'a> Context<'a> {
 
     /// The visible name of a kind that `name` is most likely a slip for: a near one, else the only one there is.
     pub(super) fn nearest(&self, kind: EntityKind, name: &Name) -> Option<SmolStr> {
-        let names = self.database.visible_names(self.file, kind);
-        let near = closest(&name.text, names.iter().map(SmolStr::as_str)).map(SmolStr::new);
-        near.or_else(|| names.first().filter(|_| names.len() == 1).cloned())
+        let names = || self.database.names_in_sight(self.file, kind);
+        let near = closest_of_any_order(&name.text, names().map(SmolStr::as_str)).map(SmolStr::new);
+        near.or_else(|| {
+            let first = names().next()?;
+            names().all(|other| other == first).then(|| first.clone())
+        })
     }
 }
 

@@ -1,5 +1,7 @@
 //! `duplicate-name`: one name, two entities of a kind.
 
+use smol_str::SmolStr;
+
 use super::context::{Context, Problem};
 use super::{Page, Remedy, Rule};
 use crate::Severity;
@@ -48,9 +50,10 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 fn free_name(context: &Context<'_>, kind: pydslrep_syntax::EntityKind, name: &str) -> String {
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
     let stem = if stem.is_empty() { name } else { stem };
-    let taken = context.database.visible_names(context.file, kind);
     let mut candidates = (2_u32..).map(|number| format!("{stem}_{number}"));
-    candidates.find(|candidate| !taken.iter().any(|name| name == candidate)).unwrap_or_default()
+    let is_free =
+        |candidate: &String| !context.database.is_in_sight(context.file, kind, &SmolStr::new(candidate));
+    candidates.find(is_free).unwrap_or_default()
 }
 
 #[cfg(test)]

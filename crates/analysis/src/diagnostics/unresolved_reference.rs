@@ -1,5 +1,7 @@
 //! `unresolved-reference`: a name nothing of that kind bears.
 
+use std::collections::BTreeSet;
+
 use pydslrep_syntax::ast::{DriveWord, Entity, Name, Robot};
 use pydslrep_syntax::{EntityKind, Span};
 
@@ -78,16 +80,19 @@ fn message(context: &Context<'_>, kind: EntityKind, name: &Name) -> String {
 /// The few names there are, where there are few.
 fn known(context: &Context<'_>, kind: EntityKind) -> Option<String> {
     const FEW: usize = 4;
-    let names = context.database.visible_names(context.file, kind);
-    match names.len() {
-        0 => Some(format!("declare it: `{}`", kind.shape())),
-        1 => Some(format!("the only {} is `{}`", kind.noun(), names[0])),
-        2..=FEW => {
-            let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
-            Some(format!("the {}s are {}", kind.noun(), quoted.join(", ")))
+    let mut names: BTreeSet<&str> = BTreeSet::new();
+    for name in context.database.names_in_sight(context.file, kind) {
+        names.insert(name);
+        if names.len() > FEW {
+            return None;
         }
-        _ => None,
     }
+    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    Some(match &quoted[..] {
+        [] => format!("declare it: `{}`", kind.shape()),
+        [only] => format!("the only {} is {only}", kind.noun()),
+        few => format!("the {}s are {}", kind.noun(), few.join(", ")),
+    })
 }
 
 /// The declaration of a part, right before the entity that wants it. Robots and movements are more than a line and
