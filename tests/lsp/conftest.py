@@ -15,19 +15,12 @@ from pytest_lsp import ClientServerConfig, LanguageClient
 ROOT = pathlib.Path(__file__).parents[2]
 DEBUG = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "debug"
 SERVER = os.environ.get("PYDSLREP_LSP", str(DEBUG / "pydslrep-lsp"))
-COMMAND = os.environ.get("PYDSLREP", str(DEBUG / "pydslrep"))
 
 
 @pytest.fixture
 def server() -> str:
     """The language server's program."""
     return SERVER
-
-
-@pytest.fixture
-def command() -> str:
-    """The program `pydslrep`."""
-    return COMMAND
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@
 //!
 //! * [`arguments`]: the command line; each command's own arguments stand with it in [`commands`].
 //! * [`sources`]: programs and what they import, from files into the database.
-//! * [`render`], [`json`], [`github`]: problems for people and for programs.
+//! * [`render`], [`json`], [`github`], [`sarif`]: problems for people and for programs.
 //! * [`project`], [`severities`]: what is set for programs, and how bad problems are to whoever asks.
 //! * [`fixing`], [`rewrite`]: what is done about them.
 //! * [`lines`]: how much people and the generator write.
@@ -31,6 +31,7 @@ mod project;
 mod python;
 mod render;
 mod rewrite;
+mod sarif;
 mod severities;
 mod sources;
 

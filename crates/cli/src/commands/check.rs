@@ -12,7 +12,7 @@ use crate::fixing::{self, Fixed};
 use crate::output::{self, count};
 use crate::project::Projects;
 use crate::sources::{Sources, count_files};
-use crate::{github, json, render, severities};
+use crate::{github, json, render, sarif, severities};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -22,6 +22,7 @@ Examples:
   pydslrep check --fix                   the same, and mend what leaves nothing to decide
   pydslrep check --deny warnings         for use in CI
   pydslrep check --format github         the same, with marks beside the lines of a pull request
+  pydslrep check --format sarif > x.sarif
   pydslrep check --severity unused-declaration=off --severity wheel-count=warning
 
 The nearest pydslrep.toml above a program sets severities for good:
@@ -59,6 +60,8 @@ enum Format {
     Json,
     /// Workflow commands, for GitHub Actions
     Github,
+    /// SARIF 2.1.0, for tools that collect what checkers find
+    Sarif,
 }
 
 /// What is denied beside errors.
@@ -118,12 +121,14 @@ fn report(
 ) -> Result<String, Failure> {
     match format {
         Format::Human => Ok(human(sources, files, diagnostics)),
-        Format::Json => match json::array(sources, diagnostics) {
-            Ok(array) => Ok(array + "\n"),
-            Err(error) => Err(Failure::new(format!("cannot write JSON: {error}"))),
-        },
+        Format::Json => written(json::array(sources, diagnostics)),
+        Format::Sarif => written(sarif::log(sources, diagnostics)),
         Format::Github => Ok(github::commands(sources, diagnostics)),
     }
+}
+
+fn written(json: serde_json::Result<String>) -> Result<String, Failure> {
+    json.map(|json| json + "\n").map_err(|error| Failure::new(format!("cannot write JSON: {error}")))
 }
 
 fn human(sources: &Sources, files: &[FileId], diagnostics: &[Diagnostic]) -> String {

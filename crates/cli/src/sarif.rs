@@ -1,0 +1,165 @@
+//! Problems in the format that tools for static analysis share: `check --format sarif`, SARIF 2.1.0.
+
+use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
+use pydslrep_analysis::diagnostics::{CATALOGUE, Rule};
+use pydslrep_analysis::{Database, Diagnostic, Edit, FileId, Fix, Severity};
+use pydslrep_syntax::Span;
+use serde_json::{Value, json};
+
+use crate::place;
+use crate::sources::Sources;
+
+const SCHEMA: &str = "https://json.schemastore.org/sarif-2.1.0.json";
+
+/// What cannot stand in a URI as it is. A colon could be taken for the end of a scheme.
+const RESERVED: &AsciiSet = &CONTROLS
+    .add(b' ')
+    .add(b'"')
+    .add(b'#')
+    .add(b'%')
+    .add(b':')
+    .add(b'<')
+    .add(b'>')
+    .add(b'?')
+    .add(b'[')
+    .add(b'\\')
+    .add(b']')
+    .add(b'^')
+    .add(b'`')
+    .add(b'{')
+    .add(b'|')
+    .add(b'}');
+
+/// The problems as one log with one run.
+///
+/// # Errors
+/// Never, with what is handed in here.
+pub(crate) fn log(sources: &Sources, diagnostics: &[Diagnostic]) -> serde_json::Result<String> {
+    let results: Vec<Value> = diagnostics.iter().map(|diagnostic| result(sources, diagnostic)).collect();
+    serde_json::to_string_pretty(&json!({
+        "$schema": SCHEMA,
+        "version": "2.1.0",
+        "runs": [{
+            "tool": { "driver": {
+                "name": "PyDSLRep",
+                "version": env!("CARGO_PKG_VERSION"),
+                "rules": CATALOGUE.into_iter().map(rule).collect::<Vec<_>>(),
+            }},
+            "columnKind": "unicodeCodePoints",
+            "results": results,
+        }],
+    }))
+}
+
+fn rule(rule: &Rule) -> Value {
+    let manual = rule.manual();
+    json!({
+        "id": rule.code,
+        "shortDescription": { "text": rule.summary },
+        "fullDescription": { "text": rule.page.what },
+        "help": { "text": rule.page.why, "markdown": manual },
+        "defaultConfiguration": { "level": level(rule.severity) },
+    })
+}
+
+fn level(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+        Severity::Information | Severity::Hint => "note",
+    }
+}
+
+fn result(sources: &Sources, diagnostic: &Diagnostic) -> Value {
+    let mut text = diagnostic.message.clone();
+    for (word, more) in [("help", &diagnostic.help), ("note", &diagnostic.note)] {
+        if let Some(more) = more {
+            text += &format!("\n{word}: {more}");
+        }
+    }
+    let related = diagnostic.related.iter().enumerate().map(|(index, related)| {
+        json!({
+            "id": index + 1,
+            "physicalLocation": location(sources, related.file, related.span),
+            "message": { "text": related.message },
+        })
+    });
+    json!({
+        "ruleId": diagnostic.code(),
+        "ruleIndex": CATALOGUE.iter().position(|rule| *rule == diagnostic.rule),
+        "level": level(diagnostic.severity),
+        "message": { "text": text },
+        "locations": [{ "physicalLocation": location(sources, diagnostic.file, diagnostic.span) }],
+        "relatedLocations": related.collect::<Vec<_>>(),
+        "fixes": diagnostic.fixes.iter().map(|fix| self::fix(sources, fix)).collect::<Vec<_>>(),
+    })
+}
+
+fn location(sources: &Sources, file: FileId, span: Span) -> Value {
+    json!({ "artifactLocation": artifact(sources, file), "region": region(&sources.database, file, span) })
+}
+
+/// From the first character to right behind the last one, as everywhere here.
+fn region(database: &Database, file: FileId, span: Span) -> Value {
+    let range = place::range(database, file, span);
+    json!({
+        "startLine": range.start.line,
+        "startColumn": range.start.column,
+        "endLine": range.end.line,
+        "endColumn": range.end.column,
+    })
+}
+
+fn artifact(sources: &Sources, file: FileId) -> Value {
+    json!({ "uri": uri(sources.shown(file)) })
+}
+
+/// A path as it is printed, as a URI: relative to the current folder where the path is.
+fn uri(shown: &str) -> String {
+    let slashes = if cfg!(windows) { shown.replace('\\', "/") } else { shown.to_owned() };
+    let encoded = utf8_percent_encode(&slashes, RESERVED).to_string();
+    match (slashes.starts_with('/'), slashes.as_bytes()) {
+        (true, _) => format!("file://{encoded}"),
+        (false, [drive, b':', b'/', ..]) if cfg!(windows) && drive.is_ascii_alphabetic() => {
+            format!("file:///{encoded}")
+        }
+        _ => encoded,
+    }
+}
+
+fn fix(sources: &Sources, fix: &Fix) -> Value {
+    let mut files: Vec<FileId> = fix.edits.iter().map(|edit| edit.file).collect();
+    files.sort_unstable();
+    files.dedup();
+    let change = |file: FileId| {
+        let edits = fix.edits.iter().filter(|edit| edit.file == file);
+        json!({
+            "artifactLocation": artifact(sources, file),
+            "replacements": edits.map(|edit| replacement(sources, edit)).collect::<Vec<_>>(),
+        })
+    };
+    json!({
+        "description": { "text": fix.title },
+        "artifactChanges": files.into_iter().map(change).collect::<Vec<_>>(),
+    })
+}
+
+fn replacement(sources: &Sources, edit: &Edit) -> Value {
+    json!({
+        "deletedRegion": region(&sources.database, edit.file, edit.span),
+        "insertedContent": { "text": edit.text },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_uris() {
+        assert_eq!(uri("rooms/a b#1.pyr"), "rooms/a%20b%231.pyr");
+        assert_eq!(uri("c:d.pyr"), "c%3Ad.pyr");
+        assert_eq!(uri("/tmp/机.pyr"), "file:///tmp/%E6%9C%BA.pyr");
+        assert_eq!(uri("<stdin>"), "%3Cstdin%3E");
+    }
+}
