@@ -4,8 +4,10 @@ mod change;
 #[cfg(test)]
 mod differential;
 mod imports;
+mod references;
 
 pub use self::imports::Absence;
+pub use self::references::Place;
 
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Parse, Span, Token};
@@ -270,7 +272,7 @@ impl Database {
     }
 
     /// How many entities of a kind a file has.
-    pub(crate) fn count(&self, file: FileId, kind: EntityKind) -> u32 {
+    pub fn count(&self, file: FileId, kind: EntityKind) -> u32 {
         self.counts.get(&(file, kind)).copied().unwrap_or(0)
     }
 

@@ -19,7 +19,7 @@ mod resolve;
 mod script_name;
 mod target;
 
-pub use database::{Absence, Database, EditCounts, EntityId, EntityRef, FileId, Resolution};
+pub use database::{Absence, Database, EditCounts, EntityId, EntityRef, FileId, Place, Resolution};
 pub use diagnostic::{Diagnostic, Edit, Fix, Related, Severity};
 pub use plan::{plan, plan_movement, scene};
 pub use resolve::Blocked;

@@ -3,6 +3,7 @@
 use pydslrep_analysis::{Database, EntityId, EntityRef, FileId};
 use pydslrep_syntax::ast::{Entity, Name};
 use pydslrep_syntax::{EntityKind, Lexeme, Span};
+use smol_str::SmolStr;
 
 use crate::FilePosition;
 
@@ -30,6 +31,24 @@ fn name_in(entity: &EntityRef<'_>, offset: u32) -> Option<NameAt> {
     }
     let mut references = tree.references().into_iter();
     references.find(|(_, name)| touches(name)).map(|(kind, name)| found(kind, name))
+}
+
+/// What the name at the cursor stands for: all declarations of that name in one file. (Two of one kind are a mistake,
+/// and there is no telling which of them a use means.)
+#[derive(Debug, Clone)]
+pub(crate) struct Referent {
+    pub(crate) kind: EntityKind,
+    pub(crate) name: SmolStr,
+    /// The file with the declarations; if there are none, the one with the cursor.
+    pub(crate) home: FileId,
+}
+
+/// What the name that touches the cursor stands for.
+pub(crate) fn referent_at(database: &Database, position: FilePosition) -> Option<Referent> {
+    let at = name_at(database, position)?;
+    let declared = database.resolve(position.file, at.kind, &at.name.text).entity();
+    let home = declared.and_then(|id| database.file_of(id)).unwrap_or(position.file);
+    Some(Referent { kind: at.kind, name: at.name.text, home })
 }
 
 /// The entity that holds the cursor, and the one that ends right before it.

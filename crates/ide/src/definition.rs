@@ -12,7 +12,7 @@ use crate::cursor::{body, entities_at, name_at};
 pub struct Definition {
     /// The name (or path) at the cursor.
     pub origin: Span,
-    /// The declarations; several where a name is declared twice.
+    /// The declarations; several where a name is declared twice, here or in two imported files.
     pub targets: Vec<Target>,
 }
 
@@ -34,13 +34,13 @@ pub fn goto_definition(database: &Database, position: FilePosition) -> Option<De
 
 fn declarations(database: &Database, position: FilePosition) -> Option<Definition> {
     let at = name_at(database, position)?;
-    let first = database.resolve(position.file, at.kind, &at.name.text).entity()?;
-    let all = database.definitions(database.file_of(first)?, at.kind, &at.name.text);
-    let targets = all.iter().filter_map(|id| target(&database.entity(*id)?)).collect();
-    Some(Definition { origin: at.span, targets })
+    let all = database.candidates(position.file, at.kind, &at.name.text);
+    let targets: Vec<Target> = all.iter().filter_map(|id| target(&database.entity(*id)?)).collect();
+    (!targets.is_empty()).then_some(Definition { origin: at.span, targets })
 }
 
-fn target(entity: &EntityRef<'_>) -> Option<Target> {
+/// A named entity as a place to go to.
+pub(crate) fn target(entity: &EntityRef<'_>) -> Option<Target> {
     let name = entity.parse.entity.as_ref()?.name()?;
     Some(Target { file: entity.file, full: body(entity), focus: name.span.shifted(entity.span.start) })
 }
@@ -125,5 +125,18 @@ mod tests {
         let to = |offset| goto_definition(&database, FilePosition { file, offset }).unwrap().targets[0];
         assert_eq!(to(10), Target { file: parts, full: Span::at(0), focus: Span::at(0) });
         assert_eq!(to(45).file, parts);
+    }
+
+    #[test]
+    fn a_name_of_two_imported_files_leads_to_both() {
+        let mut database = Database::new();
+        let a = database.open("a.pyr", "wheel w with radius 4");
+        let b = database.open("b.pyr", "wheel v with radius 4 wheel w with radius 4");
+        let text = "import \"b.pyr\" import \"a.pyr\" robot r with port 1 has { w } wheels";
+        let file = database.open("main.pyr", text);
+        let offset = u32::try_from(text.find("w }").unwrap()).unwrap();
+        let found = goto_definition(&database, FilePosition { file, offset }).unwrap();
+        let focus: Vec<_> = found.targets.iter().map(|target| (target.file, target.focus.start)).collect();
+        assert_eq!(focus, [(b, 28), (a, 6)]);
     }
 }

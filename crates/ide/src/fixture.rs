@@ -1,6 +1,7 @@
 //! Programs with a cursor for tests: `$0` marks it.
 
-use pydslrep_analysis::Database;
+use pydslrep_analysis::{Database, FileId};
+use pydslrep_syntax::Span;
 
 use crate::FilePosition;
 
@@ -10,6 +11,31 @@ pub(crate) fn at_cursor(fixture: &str) -> (Database, FilePosition) {
     let mut database = Database::new();
     let file = database.open("test.pyr", &fixture.replacen("$0", "", 1));
     (database, FilePosition { file, offset: u32::try_from(offset).unwrap() })
+}
+
+/// A database with several files, each `(path, text)`, and the place of `$0` in the one that has it.
+pub(crate) fn at_cursor_in(files: &[(&str, &str)]) -> (Database, FilePosition) {
+    let mut database = Database::new();
+    let mut position = None;
+    for (path, text) in files {
+        let file = database.open(path, &text.replacen("$0", "", 1));
+        if let Some(offset) = text.find("$0") {
+            position = Some(FilePosition { file, offset: u32::try_from(offset).unwrap() });
+        }
+    }
+    (database, position.expect("no file of the fixture has a `$0`"))
+}
+
+/// The text of a file with marks around spans, for snapshots: each in brackets, behind its own mark.
+pub(crate) fn marked(database: &Database, file: FileId, spans: &[(Span, &str)]) -> String {
+    let mut text = database.text(file).unwrap().to_string();
+    let mut spans = spans.to_vec();
+    spans.sort_unstable();
+    for (span, mark) in spans.into_iter().rev() {
+        text.insert(span.end as usize, ']');
+        text.insert_str(span.start as usize, &format!("{mark}["));
+    }
+    text
 }
 
 /// The parts of a program that most fixtures need.

@@ -7,11 +7,14 @@ mod completion;
 mod cursor;
 mod definition;
 mod formatting;
+mod highlights;
 mod hover;
 mod quick_fixes;
 mod reference;
+mod references;
 mod semantic_tokens;
 mod symbols;
+mod type_definition;
 
 #[cfg(test)]
 mod fixture;
@@ -19,11 +22,14 @@ mod fixture;
 pub use completion::{Completion, CompletionKind, completions};
 pub use definition::{Definition, Target, goto_definition};
 pub use formatting::{format, format_range};
+pub use highlights::{Highlight, highlights};
 pub use hover::{Hover, hover};
 pub use quick_fixes::{QuickFix, quick_fixes};
 pub use reference::{KeywordPage, keyword_page};
+pub use references::references;
 pub use semantic_tokens::{Modifier, SemanticToken, TokenKind, semantic_tokens};
 pub use symbols::{Symbol, SymbolKind, document_symbols};
+pub use type_definition::goto_type_definition;
 
 use pydslrep_analysis::FileId;
 

@@ -1,8 +1,8 @@
 //! What the client can do.
 
 use tower_lsp::ls_types::{
-    ClientCapabilities, DiagnosticTag, MarkupKind, ResourceOperationKind, TextDocumentClientCapabilities,
-    WorkspaceClientCapabilities,
+    ClientCapabilities, DiagnosticTag, GotoCapability, MarkupKind, ResourceOperationKind,
+    TextDocumentClientCapabilities, WorkspaceClientCapabilities,
 };
 
 use crate::positions::Encoding;
@@ -29,6 +29,10 @@ pub(crate) struct ClientFeatures {
     pub(crate) snippets: bool,
     /// Definitions may say which text leads to them.
     pub(crate) definition_links: bool,
+    /// The same of declarations.
+    pub(crate) declaration_links: bool,
+    /// The same of type definitions.
+    pub(crate) type_definition_links: bool,
     /// Document symbols may be a tree.
     pub(crate) symbol_tree: bool,
     /// Code actions may be more than commands.
@@ -100,8 +104,10 @@ impl ClientFeatures {
             self.completion_format = best(item.documentation_format.as_ref());
             self.snippets = item.snippet_support == Some(true);
         }
-        self.definition_links =
-            document.definition.as_ref().is_some_and(|goto| goto.link_support == Some(true));
+        let links = |goto: Option<&GotoCapability>| goto.is_some_and(|goto| goto.link_support == Some(true));
+        self.definition_links = links(document.definition.as_ref());
+        self.declaration_links = links(document.declaration.as_ref());
+        self.type_definition_links = links(document.type_definition.as_ref());
         self.symbol_tree = document
             .document_symbol
             .as_ref()

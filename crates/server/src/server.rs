@@ -11,8 +11,8 @@ use tower_lsp::{Client, LanguageServer};
 use crate::capabilities;
 use crate::client::ClientFeatures;
 use crate::handlers::{
-    code_actions, completion, diagnostics, document_symbols, formatting, hover, navigation, scripts,
-    semantic_tokens, synchronization,
+    code_actions, completion, diagnostics, document_symbols, formatting, hover, navigation, references,
+    scripts, semantic_tokens, synchronization,
 };
 use crate::imports;
 use crate::message::Outbox;
@@ -120,6 +120,28 @@ impl LanguageServer for Server {
         Ok(navigation::definition(&self.state(), &params))
     }
 
+    async fn goto_declaration(&self, params: GotoDefinitionParams) -> Result<Option<GotoDefinitionResponse>> {
+        Ok(navigation::declaration(&self.state(), &params))
+    }
+
+    async fn goto_type_definition(
+        &self,
+        params: GotoDefinitionParams,
+    ) -> Result<Option<GotoDefinitionResponse>> {
+        Ok(navigation::type_definition(&self.state(), &params))
+    }
+
+    async fn references(&self, params: ReferenceParams) -> Result<Option<Vec<Location>>> {
+        Ok(references::references(&self.state(), &params))
+    }
+
+    async fn document_highlight(
+        &self,
+        params: DocumentHighlightParams,
+    ) -> Result<Option<Vec<DocumentHighlight>>> {
+        Ok(references::highlights(&self.state(), &params))
+    }
+
     async fn document_symbol(&self, params: DocumentSymbolParams) -> Result<Option<DocumentSymbolResponse>> {
         Ok(document_symbols::document_symbols(&self.state(), &params))
     }
@@ -156,6 +178,7 @@ impl Server {
             "textDocument/documentSymbol" => {
                 self.answer_directly(request, document_symbols::document_symbols)
             }
+            "textDocument/references" => self.answer_directly(request, references::references),
             "textDocument/semanticTokens/full" => self.answer_directly(request, semantic_tokens::full),
             _ => false,
         }

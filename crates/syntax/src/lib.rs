@@ -24,4 +24,4 @@ pub use lexer::{Lexeme, lex};
 pub use parser::{Parse, expected_after, parse};
 pub use span::Span;
 pub use spelling::{closest, closest_of_any_order, is_similar};
-pub use token::{EntityKind, KEYWORDS, Token, TokenSet};
+pub use token::{EntityKind, KEYWORDS, Token, TokenSet, as_written};

@@ -192,6 +192,12 @@ pub const KEYWORDS: [(Token, &str); 33] = [
     (Token::Import, "import"),
 ];
 
+/// A name as a program has to write it: keywords need their `^`.
+pub fn as_written(name: &str) -> String {
+    let keyword = KEYWORDS.iter().any(|(token, word)| token.is_keyword() && *word == name);
+    if keyword { format!("^{name}") } else { name.to_owned() }
+}
+
 impl Token {
     /// How a keyword or sign is written; `None` for tokens whose text varies.
     pub fn spelling(self) -> Option<&'static str> {

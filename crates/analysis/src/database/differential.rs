@@ -1,9 +1,11 @@
 //! The acceptance test of the database: after any edits it answers as a fresh one would.
 
 use proptest::prelude::*;
-use pydslrep_syntax::{KEYWORDS, Span};
+use pydslrep_syntax::ast::Entity;
+use pydslrep_syntax::{EntityKind, KEYWORDS, Span};
+use smol_str::SmolStr;
 
-use crate::{Database, FileId, Target};
+use crate::{Database, FileId, Place, Target};
 
 const PATHS: [&str; 3] = ["main.pyr", "parts.pyr", "base.pyr"];
 
@@ -100,6 +102,7 @@ fn check_same(edited: &Database, files: [FileId; 3]) -> Result<(), TestCaseError
         };
         prop_assert_eq!(pieces(edited, file), pieces(&fresh, fresh_file));
         prop_assert_eq!(edited.imports(file), fresh.imports(fresh_file));
+        prop_assert_eq!(references(edited, files, file), references(&fresh, fresh_files, fresh_file));
         let (ours, theirs) = (edited.diagnostics(file), fresh.diagnostics(fresh_file));
         prop_assert_eq!(ours.len(), theirs.len(), "{}", text(file));
         for (ours, theirs) in ours.iter().zip(&theirs) {
@@ -107,6 +110,28 @@ fn check_same(edited: &Database, files: [FileId; 3]) -> Result<(), TestCaseError
         }
     }
     Ok(())
+}
+
+type UsedName = (EntityKind, SmolStr, Vec<(Option<usize>, Span)>);
+
+/// Where all names that a file declares or uses are used: each kind and name with indices of files and spans.
+fn references(database: &Database, files: [FileId; 3], file: FileId) -> Vec<UsedName> {
+    let mut names: Vec<(EntityKind, SmolStr)> = EntityKind::ALL
+        .iter()
+        .flat_map(|kind| database.names(file, *kind).map(|name| (*kind, name.clone())))
+        .collect();
+    let trees = database.entities(file).filter_map(|entity| entity.parse.entity.as_ref());
+    names.extend(trees.flat_map(Entity::references).map(|(kind, name)| (kind, name.text.clone())));
+    names.sort_unstable();
+    names.dedup();
+    let index = |place: Place| (files.iter().position(|file| *file == place.file), place.span);
+    names
+        .into_iter()
+        .map(|(kind, name)| {
+            let places = database.references(file, kind, &name).into_iter().map(index).collect();
+            (kind, name, places)
+        })
+        .collect()
 }
 
 proptest! {

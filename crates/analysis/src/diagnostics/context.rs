@@ -4,6 +4,8 @@ use pydslrep_syntax::ast::{Entity, Movement, Name, References, Robot, Wheel};
 use pydslrep_syntax::{EntityKind, Lexeme, Span, SyntaxError, closest_of_any_order};
 use smol_str::SmolStr;
 
+pub(crate) use pydslrep_syntax::as_written;
+
 use super::Rule;
 use crate::{Database, EntityId, FileId, Resolution, Severity};
 
@@ -231,10 +233,4 @@ pub(super) fn append(entity: EntityId, list: &References, name: &str, separator:
         None => (list.span.start + 1, format!(" {} ", as_written(name))),
     };
     ProblemEdit { entity, span: Span::at(offset), text }
-}
-
-/// A name as a program has to write it: keywords need their `^`.
-pub(crate) fn as_written(name: &str) -> String {
-    let keyword = pydslrep_syntax::KEYWORDS.iter().any(|(token, word)| token.is_keyword() && *word == name);
-    if keyword { format!("^{name}") } else { name.to_owned() }
 }

@@ -7,6 +7,7 @@ pub(crate) mod document_symbols;
 pub(crate) mod formatting;
 pub(crate) mod hover;
 pub(crate) mod navigation;
+pub(crate) mod references;
 pub(crate) mod scripts;
 pub(crate) mod semantic_tokens;
 pub(crate) mod synchronization;

@@ -1,5 +1,6 @@
-//! From a use to its declaration.
+//! From a use to its declaration, and from a movement to its robot.
 
+use pydslrep_analysis::Database;
 use pydslrep_ide as ide;
 use tower_lsp::ls_types::{GotoDefinitionParams, GotoDefinitionResponse, LocationLink};
 
@@ -7,9 +8,31 @@ use crate::state::State;
 
 /// `textDocument/definition`.
 pub(crate) fn definition(state: &State, params: &GotoDefinitionParams) -> Option<GotoDefinitionResponse> {
+    go_to(state, params, ide::goto_definition, state.client.definition_links)
+}
+
+/// `textDocument/declaration`: here a thing is declared where it is defined.
+pub(crate) fn declaration(state: &State, params: &GotoDefinitionParams) -> Option<GotoDefinitionResponse> {
+    go_to(state, params, ide::goto_definition, state.client.declaration_links)
+}
+
+/// `textDocument/typeDefinition`.
+pub(crate) fn type_definition(
+    state: &State,
+    params: &GotoDefinitionParams,
+) -> Option<GotoDefinitionResponse> {
+    go_to(state, params, ide::goto_type_definition, state.client.type_definition_links)
+}
+
+fn go_to(
+    state: &State,
+    params: &GotoDefinitionParams,
+    feature: fn(&Database, ide::FilePosition) -> Option<ide::Definition>,
+    links: bool,
+) -> Option<GotoDefinitionResponse> {
     let place = state.place(&params.text_document_position_params)?;
-    let found = ide::goto_definition(&state.database, place.position())?;
-    if !state.client.definition_links {
+    let found = feature(&state.database, place.position())?;
+    if !links {
         let locations = found.targets.iter().filter_map(|target| state.location(target.file, target.focus));
         return Some(GotoDefinitionResponse::Array(locations.collect()));
     }

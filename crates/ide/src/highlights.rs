@@ -1,0 +1,90 @@
+//! Document highlight: the name at the cursor stands out wherever it is used in the file (read) and declared (write).
+
+use pydslrep_analysis::Database;
+use pydslrep_syntax::Span;
+
+use crate::FilePosition;
+use crate::cursor::referent_at;
+
+/// A place that stands out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Highlight {
+    /// From the start of the file.
+    pub span: Span,
+    /// Whether the name is declared here, not used.
+    pub is_declaration: bool,
+}
+
+/// The places of the name at a place in the same file, in the order of the text.
+pub fn highlights(database: &Database, position: FilePosition) -> Vec<Highlight> {
+    let Some(referent) = referent_at(database, position) else { return Vec::new() };
+    // All uses in one file mean the same, whatever that is.
+    let uses = database.uses(position.file, referent.kind, &referent.name);
+    let declared = database.declarations(position.file, referent.kind, &referent.name);
+    let uses = uses.into_iter().map(|span| Highlight { span, is_declaration: false });
+    let declared = declared.into_iter().map(|span| Highlight { span, is_declaration: true });
+    let mut found: Vec<Highlight> = uses.chain(declared).collect();
+    found.sort_unstable();
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::{Expect, expect};
+
+    use super::*;
+    use crate::fixture::{at_cursor_in, marked};
+
+    fn check(files: &[(&str, &str)], expected: &Expect) {
+        let (database, position) = at_cursor_in(files);
+        let spans: Vec<(Span, &str)> = highlights(&database, position)
+            .into_iter()
+            .map(|found| (found.span, if found.is_declaration { "write" } else { "read" }))
+            .collect();
+        expected.assert_eq(&marked(&database, position.file, &spans));
+    }
+
+    #[test]
+    fn uses_are_reads_and_declarations_writes() {
+        check(
+            &[(
+                "a.pyr",
+                "robot rover with port 1 has { ^left } wheels\nwheel ^lef$0t with radius 4\nsensor ^left\nrobot s has { a ^left",
+            )],
+            &expect![[r"
+                robot rover with port 1 has { read[^left] } wheels
+                wheel write[^left] with radius 4
+                sensor ^left
+                robot s has { a read[^left]"]],
+        );
+        check(
+            &[(
+                "a.pyr",
+                "movement m of r { }\nmovement m of r { }\nenvironment e has { r } robots with { m m$0 } moves",
+            )],
+            &expect![[r"
+                movement write[m] of r { }
+                movement write[m] of r { }
+                environment e has { r } robots with { read[m] read[m] } moves"]],
+        );
+    }
+
+    #[test]
+    fn other_files_do_not_show() {
+        check(
+            &[
+                ("parts.pyr", "wheel a with radius 4"),
+                ("main.pyr", "import \"parts.pyr\" robot r with port 1 has { $0a b a } wheels"),
+            ],
+            &expect![[r#"import "parts.pyr" robot r with port 1 has { read[a] b read[a] } wheels"#]],
+        );
+        check(
+            &[
+                ("main.pyr", "import \"parts.pyr\" robot r with port 1 has { a } wheels"),
+                ("parts.pyr", "wheel a$0 with radius 4"),
+            ],
+            &expect!["wheel write[a] with radius 4"],
+        );
+        check(&[("a.pyr", "whe$0el a with radius 4")], &expect!["wheel a with radius 4"]);
+    }
+}

@@ -1,0 +1,100 @@
+"""Finding one's way: from names to their declarations and uses, across files."""
+
+from __future__ import annotations
+
+import pathlib
+
+import pytest
+from editor import Editor, position
+from lsprotocol import types
+from pytest_lsp import LanguageClient
+
+pytestmark = pytest.mark.asyncio
+
+# Columns behind the comments differ in bytes, UTF-16 and characters.
+PARTS = "/* 🤖é */ wheel a with radius 4\n/* 🤖é */ wheel b with radius 4\n"
+MAIN = (
+    'import "parts.pyr"\n'
+    "/* 🤖é */ robot rover with port 1 has { a b } wheels\n"
+    "/* 🤖é */ movement lap of rover { move 1 meters }\n"
+    "/* 🤖é */ environment yard has { rover } robots with { lap lap } moves\n"
+)
+
+
+class Program:
+    """`main.pyr` and `parts.pyr`, open in an editor."""
+
+    def __init__(self, client: LanguageClient, folder: pathlib.Path) -> None:
+        self.editor = Editor(client, folder)
+        self.parts = self.editor.open("parts.pyr", PARTS)
+        self.main = self.editor.open("main.pyr", MAIN)
+
+    def at(self, uri: str, before: str, behind: str = "") -> types.Position:
+        """The place between two texts that follow each other once."""
+        text = self.editor.text(uri)
+        assert text.count(before + behind) == 1
+        return position(text, text.index(before + behind) + len(before))
+
+    def where(
+        self, uri: str, before: str, behind: str = ""
+    ) -> tuple[types.TextDocumentIdentifier, types.Position]:
+        """The same, as most requests begin."""
+        return types.TextDocumentIdentifier(uri), self.at(uri, before, behind)
+
+    def shown(self, uri: str, span: types.Range) -> str:
+        """The name and line of a document at which a range points."""
+        line = self.editor.text(uri).splitlines()[span.start.line]
+        units = line.encode("utf-16-le")
+        start, end = 2 * span.start.character, 2 * span.end.character
+        name = uri.rsplit("/", 1)[1]
+        return f"{name}:{span.start.line} {units[start:end].decode('utf-16-le')}"
+
+
+@pytest.fixture
+def program(client: LanguageClient, tmp_path: pathlib.Path) -> Program:
+    return Program(client, tmp_path)
+
+
+async def test_declarations_and_types(client: LanguageClient, program: Program) -> None:
+    uri = program.main
+    declared = await client.text_document_declaration_async(
+        types.DeclarationParams(*program.where(uri, "{ a"))
+    )
+    assert isinstance(declared, list)
+    [link] = declared
+    assert isinstance(link, types.LocationLink)
+    assert program.shown(link.target_uri, link.target_selection_range) == (
+        "parts.pyr:0 a"
+    )
+
+    robots = await client.text_document_type_definition_async(
+        types.TypeDefinitionParams(*program.where(uri, "{ lap"))
+    )
+    assert isinstance(robots, list)
+    [robot] = robots
+    assert isinstance(robot, types.Location), "no links were asked for"
+    assert program.shown(robot.uri, robot.range) == "main.pyr:1 rover"
+
+
+async def test_references_and_highlights(
+    client: LanguageClient, program: Program
+) -> None:
+    async def references(*, declaration: bool) -> list[str]:
+        found = await client.text_document_references_async(
+            types.ReferenceParams(
+                types.ReferenceContext(include_declaration=declaration),
+                *program.where(program.parts, "wheel a"),
+            )
+        )
+        return [program.shown(place.uri, place.range) for place in found or []]
+
+    assert await references(declaration=True) == ["parts.pyr:0 a", "main.pyr:1 a"]
+    assert await references(declaration=False) == ["main.pyr:1 a"]
+
+    found = await client.text_document_document_highlight_async(
+        types.DocumentHighlightParams(*program.where(program.main, "movement lap"))
+    )
+    write, read = types.DocumentHighlightKind.Write, types.DocumentHighlightKind.Read
+    assert [
+        (program.shown(program.main, place.range), place.kind) for place in found or []
+    ] == [("main.pyr:2 lap", write), ("main.pyr:3 lap", read), ("main.pyr:3 lap", read)]
