@@ -35,10 +35,10 @@ impl Database {
 
     /// The open files that import a file, apart from itself, in the order of opening.
     pub fn importing(&self, file: FileId) -> Vec<FileId> {
-        let mut importers = self.importers(self.path(file));
-        importers.retain(|importer| {
+        let imports_it = |importer: &FileId| {
             *importer != file && self.imported_files(*importer).any(|imported| imported == file)
-        });
+        };
+        let mut importers: Vec<FileId> = self.importers(self.path(file)).filter(imports_it).collect();
         importers.sort_unstable();
         importers
     }
