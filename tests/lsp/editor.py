@@ -24,7 +24,7 @@ LINE_ENDING = re.compile(r"\r\n|\n|\r")
 
 def capabilities(editor: str) -> types.ClientCapabilities:
     """Capabilities of a client: `complete` (all we know, diagnostics pushed), `pulling` (it asks for diagnostics),
-    or `eager` (it cannot resolve edits later)."""
+    `eager` (it cannot resolve edits later), or `lines` (it folds whole lines only)."""
     resolve = types.ClientCodeActionResolveOptions(properties=["edit"])
     document = types.TextDocumentClientCapabilities(
         publish_diagnostics=types.PublishDiagnosticsClientCapabilities(
@@ -45,6 +45,17 @@ def capabilities(editor: str) -> types.ClientCapabilities:
         declaration=types.DeclarationClientCapabilities(link_support=True),
         document_symbol=types.DocumentSymbolClientCapabilities(
             hierarchical_document_symbol_support=True
+        ),
+        signature_help=types.SignatureHelpClientCapabilities(
+            signature_information=types.ClientSignatureInformationOptions(
+                documentation_format=[types.MarkupKind.Markdown],
+                parameter_information=types.ClientSignatureParameterInformationOptions(
+                    label_offset_support=True
+                ),
+            )
+        ),
+        folding_range=types.FoldingRangeClientCapabilities(
+            line_folding_only=editor == "lines"
         ),
         code_action=types.CodeActionClientCapabilities(
             code_action_literal_support=types.ClientCodeActionLiteralOptions(

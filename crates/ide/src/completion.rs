@@ -390,24 +390,24 @@ mod tests {
         check(
             "$0",
             &expect![[r#"
-            environment [environment NAME has { ROBOTS } robots with { MOVEMENTS } moves] "" -> "environment"
-            import [import "FILE.pyr"] "" -> "import"
-            ip [ip NAME 127.0.0.1] "" -> "ip"
-            movement [movement NAME of ROBOT { ACTIONS }] "" -> "movement"
-            parallel [parallel movement NAME of ROBOT { ACTIONS }] "" -> "parallel"
-            robot [robot NAME type tw with port 19999 has { WHEELS } wheels] "" -> "robot"
-            sensor [sensor NAME : distance | bumper] "" -> "sensor"
-            wheel [wheel NAME with radius CENTIMETRES] "" -> "wheel"
-            wheelH [wheelH NAME with radius CENTIMETRES] "" -> "wheelH"
-            environment … [a whole environment] "" -> "environment ${1:area} has { ${2:rover} } robots with { ${3:patrol} } moves"
-            ip … [a whole address] "" -> "ip ${1:lab} ${2:127.0.0.1}"
-            movement … [a whole movement] "" -> "movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}"
-            parallel movement … [a movement that runs beside others] "" -> "parallel movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}"
-            robot … [a whole robot] "" -> "robot ${1:rover} type ${2:tw} with port ${3:19999} has { ${4:wheelL wheelR} } wheels"
-            sensor … [a whole sensor] "" -> "sensor ${1:front}"
-            wheel … [a whole wheel] "" -> "wheel ${1:wheelL} with radius ${2:4.5}"
-            wheelH … [a whole mecanum wheel] "" -> "wheelH ${1:wheelLF} with radius ${2:4.5}"
-        "#]],
+                environment [environment NAME [with ip IP] has { ROBOTS } robots [with { MOVEMENTS } moves]] "" -> "environment"
+                import [import "FILE.pyr"] "" -> "import"
+                ip [ip NAME 127.0.0.1] "" -> "ip"
+                movement [[parallel] movement NAME of ROBOT { ACTIONS }] "" -> "movement"
+                parallel [[parallel] movement NAME of ROBOT { ACTIONS }] "" -> "parallel"
+                robot [robot NAME [type tw | fw | fwh] with port PORT has { WHEELS } wheels [with sensors { SENSORS }]] "" -> "robot"
+                sensor [sensor NAME [: distance | bumper]] "" -> "sensor"
+                wheel [wheel NAME with radius CENTIMETRES] "" -> "wheel"
+                wheelH [wheelH NAME with radius CENTIMETRES] "" -> "wheelH"
+                environment … [a whole environment] "" -> "environment ${1:area} has { ${2:rover} } robots with { ${3:patrol} } moves"
+                ip … [a whole address] "" -> "ip ${1:lab} ${2:127.0.0.1}"
+                movement … [a whole movement] "" -> "movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}"
+                parallel movement … [a movement that runs beside others] "" -> "parallel movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}"
+                robot … [a whole robot] "" -> "robot ${1:rover} type ${2:tw} with port ${3:19999} has { ${4:wheelL wheelR} } wheels"
+                sensor … [a whole sensor] "" -> "sensor ${1:front}"
+                wheel … [a whole wheel] "" -> "wheel ${1:wheelL} with radius ${2:4.5}"
+                wheelH … [a whole mecanum wheel] "" -> "wheelH ${1:wheelLF} with radius ${2:4.5}"
+            "#]],
         );
     }
 
@@ -526,31 +526,31 @@ mod tests {
         check(
             &format!("{PARTS}movement m of rover {{ move 4.0 $0 }}"),
             &expect![[r#"
-            centimeters [move DISTANCE centimeters] "" -> "centimeters"
-            meters [move DISTANCE meters at SPEED] "" -> "meters"
-        "#]],
+                centimeters [move DISTANCE centimeters] "" -> "centimeters"
+                meters [move DISTANCE meters | centimeters [at SPEED]] "" -> "meters"
+            "#]],
         );
         check(
             &format!("{PARTS}movement m of rover {{ move 4.0 me$0 turn left }}"),
             &expect![[r#"
-            centimeters [move DISTANCE centimeters] "me" -> "centimeters"
-            meters [move DISTANCE meters at SPEED] "me" -> "meters"
-        "#]],
+                centimeters [move DISTANCE centimeters] "me" -> "centimeters"
+                meters [move DISTANCE meters | centimeters [at SPEED]] "me" -> "meters"
+            "#]],
         );
         check(
             &format!("{PARTS}movement m of rover {{ move 4.0 meters $0 }}"),
             &expect![[r#"
-            at [move DISTANCE meters at SPEED] "" -> "at"
-            move [move DISTANCE meters at SPEED] "" -> "move"
-            slam [slam] "" -> "slam"
-            turn [turn left | right DEGREES] "" -> "turn"
-            } [] "" -> "}"
-            move … centimeters at … [straight ahead, with a speed] "" -> "move ${1:50} centimeters at ${2:9.0}"
-            move … meters [straight ahead] "" -> "move ${1:1.0} meters"
-            turn left [in place] "" -> "turn left ${1:90}"
-            turn right [in place] "" -> "turn right ${1:90}"
-            turn … until [until the way is free] "" -> "turn ${1:right} until { $0 }"
-        "#]],
+                at [move DISTANCE meters | centimeters [at SPEED]] "" -> "at"
+                move [move DISTANCE meters | centimeters [at SPEED]] "" -> "move"
+                slam [slam] "" -> "slam"
+                turn [turn left | right [DEGREES]] "" -> "turn"
+                } [] "" -> "}"
+                move … centimeters at … [straight ahead, with a speed] "" -> "move ${1:50} centimeters at ${2:9.0}"
+                move … meters [straight ahead] "" -> "move ${1:1.0} meters"
+                turn left [in place] "" -> "turn left ${1:90}"
+                turn right [in place] "" -> "turn right ${1:90}"
+                turn … until [until the way is free] "" -> "turn ${1:right} until { $0 }"
+            "#]],
         );
     }
 
@@ -559,24 +559,24 @@ mod tests {
         check(
             "wheel w with radius 4\nrobot$0",
             &expect![[r#"
-            environment [environment NAME has { ROBOTS } robots with { MOVEMENTS } moves] "robot" -> "environment"
-            import [import "FILE.pyr"] "robot" -> "import"
-            ip [ip NAME 127.0.0.1] "robot" -> "ip"
-            movement [movement NAME of ROBOT { ACTIONS }] "robot" -> "movement"
-            parallel [parallel movement NAME of ROBOT { ACTIONS }] "robot" -> "parallel"
-            robot [robot NAME type tw with port 19999 has { WHEELS } wheels] "robot" -> "robot"
-            sensor [sensor NAME : distance | bumper] "robot" -> "sensor"
-            wheel [wheel NAME with radius CENTIMETRES] "robot" -> "wheel"
-            wheelH [wheelH NAME with radius CENTIMETRES] "robot" -> "wheelH"
-            environment … [a whole environment] "robot" -> "environment ${1:area} has { ${2:rover} } robots with { ${3:patrol} } moves"
-            ip … [a whole address] "robot" -> "ip ${1:lab} ${2:127.0.0.1}"
-            movement … [a whole movement] "robot" -> "movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}"
-            parallel movement … [a movement that runs beside others] "robot" -> "parallel movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}"
-            robot … [a whole robot] "robot" -> "robot ${1:rover} type ${2:tw} with port ${3:19999} has { ${4:wheelL wheelR} } wheels"
-            sensor … [a whole sensor] "robot" -> "sensor ${1:front}"
-            wheel … [a whole wheel] "robot" -> "wheel ${1:wheelL} with radius ${2:4.5}"
-            wheelH … [a whole mecanum wheel] "robot" -> "wheelH ${1:wheelLF} with radius ${2:4.5}"
-        "#]],
+                environment [environment NAME [with ip IP] has { ROBOTS } robots [with { MOVEMENTS } moves]] "robot" -> "environment"
+                import [import "FILE.pyr"] "robot" -> "import"
+                ip [ip NAME 127.0.0.1] "robot" -> "ip"
+                movement [[parallel] movement NAME of ROBOT { ACTIONS }] "robot" -> "movement"
+                parallel [[parallel] movement NAME of ROBOT { ACTIONS }] "robot" -> "parallel"
+                robot [robot NAME [type tw | fw | fwh] with port PORT has { WHEELS } wheels [with sensors { SENSORS }]] "robot" -> "robot"
+                sensor [sensor NAME [: distance | bumper]] "robot" -> "sensor"
+                wheel [wheel NAME with radius CENTIMETRES] "robot" -> "wheel"
+                wheelH [wheelH NAME with radius CENTIMETRES] "robot" -> "wheelH"
+                environment … [a whole environment] "robot" -> "environment ${1:area} has { ${2:rover} } robots with { ${3:patrol} } moves"
+                ip … [a whole address] "robot" -> "ip ${1:lab} ${2:127.0.0.1}"
+                movement … [a whole movement] "robot" -> "movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}"
+                parallel movement … [a movement that runs beside others] "robot" -> "parallel movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}"
+                robot … [a whole robot] "robot" -> "robot ${1:rover} type ${2:tw} with port ${3:19999} has { ${4:wheelL wheelR} } wheels"
+                sensor … [a whole sensor] "robot" -> "sensor ${1:front}"
+                wheel … [a whole wheel] "robot" -> "wheel ${1:wheelL} with radius ${2:4.5}"
+                wheelH … [a whole mecanum wheel] "robot" -> "wheelH ${1:wheelLF} with radius ${2:4.5}"
+            "#]],
         );
     }
 

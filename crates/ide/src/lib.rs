@@ -6,13 +6,16 @@
 mod completion;
 mod cursor;
 mod definition;
+mod folding;
 mod formatting;
 mod highlights;
 mod hover;
 mod quick_fixes;
 mod reference;
 mod references;
+mod selection;
 mod semantic_tokens;
+mod signature;
 mod symbols;
 mod type_definition;
 
@@ -21,13 +24,16 @@ mod fixture;
 
 pub use completion::{Completion, CompletionKind, completions};
 pub use definition::{Definition, Target, goto_definition};
+pub use folding::{Fold, FoldKind, folding_ranges};
 pub use formatting::{format, format_range};
 pub use highlights::{Highlight, highlights};
 pub use hover::{Hover, hover};
 pub use quick_fixes::{QuickFix, quick_fixes};
 pub use reference::{KeywordPage, keyword_page};
 pub use references::references;
+pub use selection::selection_ranges;
 pub use semantic_tokens::{Modifier, SemanticToken, TokenKind, semantic_tokens};
+pub use signature::{Signature, SignatureHelp, signature_help};
 pub use symbols::{Symbol, SymbolKind, document_symbols};
 pub use type_definition::goto_type_definition;
 

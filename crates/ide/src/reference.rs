@@ -5,7 +5,8 @@ use pydslrep_syntax::{EntityKind, Token};
 /// What there is to say of a word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct KeywordPage {
-    /// How it is used.
+    /// How it is used, a line for each way: words as they are, what a person fills in in capitals, `[…]` around what may
+    /// be left out, `|` between words to choose from.
     pub syntax: &'static str,
     /// What it means.
     pub meaning: &'static str,
@@ -23,7 +24,12 @@ impl KeywordPage {
 const ROBOT: &str = "robot rover type tw with port 19999 has { wheelL wheelR } wheels with sensors { front }";
 const SENSORS: &str = "with sensors { SENSORS }";
 const ENVIRONMENT: &str = "environment area has { rover } robots with { patrol } moves";
-const MOVE: &str = "move DISTANCE meters at SPEED";
+const ROBOT_SHAPE: &str =
+    "robot NAME [type tw | fw | fwh] with port PORT has { WHEELS } wheels [with sensors { SENSORS }]";
+const MOVEMENT_SHAPE: &str = "[parallel] movement NAME of ROBOT { ACTIONS }";
+const ENVIRONMENT_SHAPE: &str =
+    "environment NAME [with ip IP] has { ROBOTS } robots [with { MOVEMENTS } moves]";
+const MOVE: &str = "move DISTANCE meters | centimeters [at SPEED]";
 const TYPE: &str = "type tw | fw | fwh";
 
 /// The page of a word; `None` for what is no word of the language.
@@ -48,7 +54,7 @@ pub fn keyword_page(token: Token) -> Option<KeywordPage> {
             "wheel wheelL with radius 4.5",
         ),
         Token::Sensor => page(
-            "sensor NAME : distance | bumper",
+            "sensor NAME [: distance | bumper]",
             "A proximity sensor. `distance` (also where nothing is written) sees an obstacle ahead of it, `bumper` feels one.",
             "sensor front : distance",
         ),
@@ -58,7 +64,7 @@ pub fn keyword_page(token: Token) -> Option<KeywordPage> {
             "ip lab 192.168.0.7\nenvironment area with ip lab has { rover } robots",
         ),
         Token::Robot => page(
-            EntityKind::Robot.shape(),
+            ROBOT_SHAPE,
             "A robot: its wheels in the order left, right, or left front, left rear, right front, right rear.",
             ROBOT,
         ),
@@ -81,12 +87,12 @@ pub fn keyword_page(token: Token) -> Option<KeywordPage> {
         Token::Wheels => page("has { WHEELS } wheels", "Ends the list of a robot's wheels.", ROBOT),
         Token::Sensors => page(SENSORS, "The sensors a robot carries.", ROBOT),
         Token::Parallel => page(
-            "parallel movement NAME of ROBOT { ACTIONS }",
+            MOVEMENT_SHAPE,
             "Parallel movements that are next to each other in an environment's list start together.",
             "parallel movement patrol of rover {\n  move 4.0 meters\n}",
         ),
         Token::Movement => page(
-            EntityKind::Movement.shape(),
+            MOVEMENT_SHAPE,
             "What one robot does, action by action.",
             "movement patrol of rover {\n  move 4.0 meters\n  turn left\n}",
         ),
@@ -106,7 +112,7 @@ pub fn keyword_page(token: Token) -> Option<KeywordPage> {
             page(MOVE, "The speed at the wheels' rim in centimetres per second.", "move 4.0 meters at 12.5")
         }
         Token::Turn => page(
-            "turn left | right DEGREES\nturn left | right until { SENSORS }",
+            "turn left | right [DEGREES]\nturn left | right until { SENSORS }",
             "In place, by 90° where nothing is written; `left` is counter-clockwise seen from above.",
             "turn left 45",
         ),
@@ -123,7 +129,7 @@ pub fn keyword_page(token: Token) -> Option<KeywordPage> {
             "movement explore of rover { slam }",
         ),
         Token::Environment => page(
-            EntityKind::Environment.shape(),
+            ENVIRONMENT_SHAPE,
             "The robots of a run and their movements in order. Each environment becomes one script.",
             ENVIRONMENT,
         ),

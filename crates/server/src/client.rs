@@ -35,6 +35,12 @@ pub(crate) struct ClientFeatures {
     pub(crate) type_definition_links: bool,
     /// Document symbols may be a tree.
     pub(crate) symbol_tree: bool,
+    /// Parts of a signature may be told by where they stand in it.
+    pub(crate) label_offsets: bool,
+    /// It shows Markdown beside a signature.
+    pub(crate) signature_markdown: bool,
+    /// It folds whole lines only.
+    pub(crate) line_folding_only: bool,
     /// Code actions may be more than commands.
     pub(crate) action_literals: bool,
     /// Actions that cannot be used may be shown, with the reason.
@@ -112,6 +118,17 @@ impl ClientFeatures {
             .document_symbol
             .as_ref()
             .is_some_and(|symbols| symbols.hierarchical_document_symbol_support == Some(true));
+        if let Some(signature) =
+            document.signature_help.as_ref().and_then(|help| help.signature_information.as_ref())
+        {
+            self.signature_markdown =
+                best(signature.documentation_format.as_ref()) == Some(MarkupKind::Markdown);
+            let parameter = signature.parameter_information.as_ref();
+            self.label_offsets =
+                parameter.is_some_and(|parameter| parameter.label_offset_support == Some(true));
+        }
+        self.line_folding_only =
+            document.folding_range.as_ref().is_some_and(|folding| folding.line_folding_only == Some(true));
         if let Some(action) = &document.code_action {
             self.action_literals = action.code_action_literal_support.is_some();
             self.disabled_actions = action.disabled_support == Some(true);

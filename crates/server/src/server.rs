@@ -11,8 +11,8 @@ use tower_lsp::{Client, LanguageServer};
 use crate::capabilities;
 use crate::client::ClientFeatures;
 use crate::handlers::{
-    code_actions, completion, diagnostics, document_symbols, formatting, hover, navigation, references,
-    scripts, semantic_tokens, synchronization,
+    code_actions, completion, diagnostics, document_symbols, folding, formatting, hover, navigation,
+    references, scripts, selection, semantic_tokens, signature, synchronization,
 };
 use crate::imports;
 use crate::message::Outbox;
@@ -116,6 +116,10 @@ impl LanguageServer for Server {
         Ok(hover::hover(&self.state(), &params))
     }
 
+    async fn signature_help(&self, params: SignatureHelpParams) -> Result<Option<SignatureHelp>> {
+        Ok(signature::signature_help(&self.state(), &params))
+    }
+
     async fn goto_definition(&self, params: GotoDefinitionParams) -> Result<Option<GotoDefinitionResponse>> {
         Ok(navigation::definition(&self.state(), &params))
     }
@@ -144,6 +148,14 @@ impl LanguageServer for Server {
 
     async fn document_symbol(&self, params: DocumentSymbolParams) -> Result<Option<DocumentSymbolResponse>> {
         Ok(document_symbols::document_symbols(&self.state(), &params))
+    }
+
+    async fn folding_range(&self, params: FoldingRangeParams) -> Result<Option<Vec<FoldingRange>>> {
+        Ok(folding::folding_ranges(&self.state(), &params))
+    }
+
+    async fn selection_range(&self, params: SelectionRangeParams) -> Result<Option<Vec<SelectionRange>>> {
+        Ok(selection::selection_ranges(&self.state(), &params))
     }
 
     async fn formatting(&self, params: DocumentFormattingParams) -> Result<Option<Vec<TextEdit>>> {
@@ -179,6 +191,7 @@ impl Server {
                 self.answer_directly(request, document_symbols::document_symbols)
             }
             "textDocument/references" => self.answer_directly(request, references::references),
+            "textDocument/foldingRange" => self.answer_directly(request, folding::folding_ranges),
             "textDocument/semanticTokens/full" => self.answer_directly(request, semantic_tokens::full),
             _ => false,
         }

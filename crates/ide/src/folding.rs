@@ -1,0 +1,265 @@
+//! Folding: entities, comments, regions and the list of imports can be folded away.
+//!
+//! A region is everything from `// #region` (or `// region`) to its `// endregion`, with or without `#`; regions nest.
+
+use pydslrep_analysis::{Database, FileId};
+use pydslrep_syntax::ast::{Entity, Movement};
+use pydslrep_syntax::{Span, Token};
+
+use crate::cursor::body;
+
+/// Lines that fold into one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Fold {
+    /// What goes: more than one line.
+    pub span: Span,
+    /// What it is.
+    pub kind: FoldKind,
+    /// Whether something stands behind it on its last line, which therefore has to stay where whole lines fold.
+    pub keeps_last_line: bool,
+}
+
+/// What folds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FoldKind {
+    /// A declaration, or what is between a movement's braces.
+    Entity,
+    /// A comment, or a run of comments one per line.
+    Comment,
+    /// From one mark to the other.
+    Region,
+    /// The imports at the top.
+    Imports,
+}
+
+/// Everything in a file that can fold, in the order of the text: one walk over what is known of the file already.
+pub fn folding_ranges(database: &Database, file: FileId) -> Vec<Fold> {
+    let Some(text) = database.text(file).map(ToString::to_string) else { return Vec::new() };
+    let mut folds = Folds::new(&text);
+    for entity in database.entities(file) {
+        let start = entity.span.start;
+        for (token, span) in &entity.parse.lexemes {
+            folds.pass(*token, span.shifted(start));
+        }
+        match &entity.parse.entity {
+            Some(Entity::Import(_)) => folds.import(body(&entity)),
+            Some(Entity::Movement(Movement { body: Some(braces), .. })) => {
+                folds.entity(folds.inside(braces.shifted(start)));
+            }
+            Some(_) => folds.entity(folds.behind_first_line(body(&entity))),
+            None => {}
+        }
+    }
+    folds.finish()
+}
+
+struct Folds<'a> {
+    text: &'a str,
+    found: Vec<Fold>,
+    /// Where the last token ended.
+    last_end: u32,
+    /// Line comments below each other, each alone on its line.
+    run: Option<Span>,
+    /// Marks of regions that have not ended.
+    regions: Vec<u32>,
+    imports: Option<Span>,
+}
+
+impl<'a> Folds<'a> {
+    fn new(text: &'a str) -> Self {
+        Self { text, found: Vec::new(), last_end: 0, run: None, regions: Vec::new(), imports: None }
+    }
+
+    fn pass(&mut self, token: Token, span: Span) {
+        if token == Token::LineComment {
+            self.line_comment(span);
+        } else {
+            self.end_run();
+            if token.is_comment() {
+                self.push(span, FoldKind::Comment);
+            }
+        }
+        self.last_end = span.end;
+    }
+
+    fn line_comment(&mut self, span: Span) {
+        let lines = line_ends(Span::new(self.last_end, span.start).text(self.text));
+        let mark = mark(span.text(self.text));
+        if mark.is_some() || lines != 1 {
+            self.end_run();
+        }
+        match mark {
+            Some(Mark::Begin) => self.regions.push(span.start),
+            Some(Mark::End) => {
+                if let Some(start) = self.regions.pop() {
+                    self.push(Span::new(start, span.end), FoldKind::Region);
+                }
+            }
+            // Behind something on its line it says something of that line.
+            None if lines > 0 || self.last_end == 0 => {
+                self.run = Some(self.run.map_or(span, |run| run.to(span)));
+            }
+            None => {}
+        }
+    }
+
+    fn end_run(&mut self) {
+        if let Some(run) = self.run.take() {
+            self.push(run, FoldKind::Comment);
+        }
+    }
+
+    fn import(&mut self, span: Span) {
+        self.imports = Some(self.imports.map_or(span, |imports| imports.to(span)));
+    }
+
+    fn entity(&mut self, span: Span) {
+        self.end_imports();
+        self.push(span, FoldKind::Entity);
+    }
+
+    fn end_imports(&mut self) {
+        if let Some(imports) = self.imports.take() {
+            self.push(imports, FoldKind::Imports);
+        }
+    }
+
+    /// What stands on one line only does not fold.
+    fn push(&mut self, span: Span, kind: FoldKind) {
+        if !span.text(self.text).contains(['\n', '\r']) {
+            return;
+        }
+        let behind = self.text.get(span.end as usize..).unwrap_or_default();
+        let rest = behind.split(['\n', '\r']).next().unwrap_or_default();
+        self.found.push(Fold { span, kind, keeps_last_line: !rest.trim().is_empty() });
+    }
+
+    /// A span without its first line, which stays to be seen.
+    fn behind_first_line(&self, span: Span) -> Span {
+        let first = span.text(self.text).find(['\n', '\r']).and_then(|at| u32::try_from(at).ok());
+        Span::new(span.start + first.unwrap_or_else(|| span.len()), span.end)
+    }
+
+    /// What is between braces, of which the second may be missing.
+    fn inside(&self, braces: Span) -> Span {
+        let closed = braces.len() > 1 && braces.text(self.text).ends_with('}');
+        Span::new(braces.start + 1, braces.end - u32::from(closed))
+    }
+
+    fn finish(mut self) -> Vec<Fold> {
+        self.end_run();
+        self.end_imports();
+        self.found.sort_by_key(|fold| (fold.span.start, std::cmp::Reverse(fold.span.end)));
+        self.found
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Mark {
+    Begin,
+    End,
+}
+
+/// The mark that a line comment is, if it is one.
+fn mark(comment: &str) -> Option<Mark> {
+    let words = comment.trim_start_matches('/').trim_start();
+    let word = words.strip_prefix('#').unwrap_or(words).split_whitespace().next()?;
+    match word {
+        "region" => Some(Mark::Begin),
+        "endregion" => Some(Mark::End),
+        _ => None,
+    }
+}
+
+/// How many lines end in `blank`.
+fn line_ends(blank: &str) -> usize {
+    let bytes = blank.as_bytes();
+    let ends = |at: usize| match bytes[at] {
+        b'\n' => true,
+        b'\r' => bytes.get(at + 1) != Some(&b'\n'),
+        _ => false,
+    };
+    (0..bytes.len()).filter(|at| ends(*at)).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::{Expect, expect};
+
+    use super::*;
+
+    fn check(text: &str, expected: &Expect) {
+        let mut database = Database::new();
+        let file = database.open("a.pyr", text);
+        let render = |fold: &Fold| {
+            let keeps = if fold.keeps_last_line { ", last line stays" } else { "" };
+            format!("{:?}{keeps}: {:?}\n", fold.kind, fold.span.text(text))
+        };
+        expected.assert_eq(&folding_ranges(&database, file).iter().map(render).collect::<String>());
+    }
+
+    #[test]
+    fn entities_fold_where_they_have_more_than_a_line() {
+        check(
+            "wheel a with radius 3\nmovement m of r {\n  slam\n}\n// c\nrobot r with port 1 has {\n  a\n  b\n} wheels\nmovement n of r { slam }",
+            &expect![[r#"
+                Entity, last line stays: "\n  slam\n"
+                Entity: "\n  a\n  b\n} wheels"
+            "#]],
+        );
+    }
+
+    #[test]
+    fn what_is_broken_folds_too() {
+        check(
+            "movement m of r {\n  slam\n\nwheel a with\nradius",
+            &expect![[r#"
+                Entity: "\n  slam"
+                Entity: "\nradius"
+            "#]],
+        );
+    }
+
+    #[test]
+    fn comments_fold_with_their_neighbours() {
+        check(
+            "// a\r\n// b\r\n\r\n// c\r\n// d\r\nwheel a // e\r\n// f\r\n/* g\r\nh */ sensor s\r\n// i\r// j",
+            &expect![[r#"
+                Comment: "// a\r\n// b"
+                Comment: "// c\r\n// d"
+                Comment, last line stays: "/* g\r\nh */"
+                Comment: "// i\r// j"
+            "#]],
+        );
+    }
+
+    #[test]
+    fn regions_nest_and_unmatched_marks_are_ignored() {
+        check(
+            "// endregion\n// #region parts\nwheel a with radius 3\n//region\nsensor s\n// endregion\n// #endregion x\n// #region open\n// c\n// d\n",
+            &expect![[r##"
+                Region: "// #region parts\nwheel a with radius 3\n//region\nsensor s\n// endregion\n// #endregion x"
+                Region: "//region\nsensor s\n// endregion"
+                Comment: "// c\n// d"
+            "##]],
+        );
+    }
+
+    #[test]
+    fn imports_fold_together() {
+        check(
+            "import \"a.pyr\"\n// why\nimport \"b.pyr\"\n\nwheel a with radius 3",
+            &expect![[r#"
+                Imports: "import \"a.pyr\"\n// why\nimport \"b.pyr\""
+            "#]],
+        );
+    }
+
+    #[test]
+    fn a_closed_file_has_none() {
+        let mut database = Database::new();
+        let file = database.open("a.pyr", "/*\n*/");
+        database.close(file);
+        assert_eq!(folding_ranges(&database, file), []);
+    }
+}

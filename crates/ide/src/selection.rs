@@ -1,0 +1,242 @@
+//! Growing selections: from a word to its list, clause, action, movement, entity, run of entities, and file.
+
+use pydslrep_analysis::{Database, EntityRef, FileId};
+use pydslrep_syntax::ast::{Action, ActionKind, Entity, Move, References};
+use pydslrep_syntax::{Lexeme, Span, Token};
+
+use crate::cursor::body;
+
+/// For each offset the ranges around it, the smallest first and each larger than the one before; the last is the whole
+/// file. The file is walked once, however many offsets there are.
+pub fn selection_ranges(database: &Database, file: FileId, offsets: &[u32]) -> Vec<Vec<Span>> {
+    let entities: Vec<EntityRef<'_>> = database.entities(file).collect();
+    let whole = Span::new(0, entities.last().map_or(0, |entity| entity.span.end));
+    let runs = runs(&entities);
+    let around = |offset: &u32| {
+        let mut ranges = Ranges { offset: (*offset).min(whole.end), chain: Vec::new() };
+        let index = entities.partition_point(|entity| entity.span.end <= ranges.offset);
+        let index = index.min(entities.len().saturating_sub(1));
+        if let (Some(entity), Some(run)) = (entities.get(index), runs.get(index)) {
+            ranges.add_inside(entity);
+            ranges.add(body(entity));
+            ranges.add(*run);
+        }
+        ranges.chain.retain(|range| *range != whole);
+        ranges.chain.push(whole);
+        ranges.chain
+    };
+    offsets.iter().map(around).collect()
+}
+
+/// For each entity the neighbours of its kind from the first to the last, itself among them.
+fn runs(entities: &[EntityRef<'_>]) -> Vec<Span> {
+    let kind = |entity: &EntityRef<'_>| entity.parse.entity.as_ref().map(Entity::kind);
+    let mut runs = Vec::with_capacity(entities.len());
+    for run in entities.chunk_by(|a, b| kind(a) == kind(b)) {
+        let span = run.first().zip(run.last()).map(|(first, last)| body(first).to(body(last)));
+        runs.extend(span.map(|span| std::iter::repeat_n(span, run.len())).into_iter().flatten());
+    }
+    runs
+}
+
+/// The ranges around an offset, growing.
+struct Ranges {
+    offset: u32,
+    chain: Vec<Span>,
+}
+
+impl Ranges {
+    /// Takes in a range, if it is around the offset and more than what is there.
+    fn add(&mut self, span: Span) {
+        let grows = self.chain.last().is_none_or(|last| last.to(span) == span && *last != span);
+        if span.touches(self.offset) && !span.is_empty() && grows {
+            self.chain.push(span);
+        }
+    }
+
+    /// What is inside one entity, from the smallest on.
+    fn add_inside(&mut self, entity: &EntityRef<'_>) {
+        let start = entity.span.start;
+        let lexemes: Vec<Lexeme> =
+            entity.parse.lexemes.iter().map(|(token, span)| (*token, span.shifted(start))).collect();
+        if let Some((_, span)) = token_at(&lexemes, self.offset) {
+            self.add(*span);
+        }
+        match &entity.parse.entity {
+            Some(Entity::Robot(robot)) => {
+                self.add_lists([robot.wheels.as_ref(), robot.sensors.as_ref()], start);
+            }
+            Some(Entity::Environment(environment)) => {
+                self.add_lists([environment.robots.as_ref(), environment.movements.as_ref()], start);
+            }
+            Some(Entity::Movement(movement)) => {
+                for action in &movement.actions {
+                    self.add_action(action, start, &lexemes);
+                }
+                if let Some(body) = movement.body.map(|body| body.shifted(start)) {
+                    if let (Some(first), Some(last)) = (movement.actions.first(), movement.actions.last()) {
+                        self.add(first.span.to(last.span).shifted(start));
+                    }
+                    self.add(body);
+                    let head = lexemes.partition_point(|(_, span)| span.start < body.start);
+                    return self.add_clauses(&lexemes[..head]);
+                }
+            }
+            _ => {}
+        }
+        self.add_clauses(&lexemes);
+    }
+
+    fn add_action(&mut self, action: &Action, start: u32, lexemes: &[Lexeme]) {
+        let span = action.span.shifted(start);
+        if !span.touches(self.offset) {
+            return;
+        }
+        self.add_lists([action.until()], start);
+        if let ActionKind::Move(Move { distance: Some(distance), unit: Some((_, unit)), .. }) = &action.kind {
+            self.add(distance.span.to(*unit).shifted(start));
+        }
+        let clause = |(token, place): &&Lexeme| {
+            matches!(token, Token::At | Token::Until) && span.start <= place.start && place.end <= span.end
+        };
+        if let Some((_, word)) = lexemes.iter().find(clause) {
+            self.add(Span::new(word.start, span.end));
+        }
+        self.add(span);
+    }
+
+    fn add_lists<const N: usize>(&mut self, lists: [Option<&References>; N], start: u32) {
+        for list in lists.into_iter().flatten() {
+            if let (Some(first), Some(last)) = (list.names.first(), list.names.last()) {
+                self.add(first.span.to(last.span).shifted(start));
+            }
+            self.add(list.span.shifted(start));
+        }
+    }
+
+    /// Clauses of an entity's head: each reaches from its first word to the next clause.
+    fn add_clauses(&mut self, lexemes: &[Lexeme]) {
+        let significant: Vec<&Lexeme> = lexemes.iter().filter(|(token, _)| !token.is_comment()).collect();
+        let begins =
+            |token| matches!(token, Token::With | Token::Has | Token::Type | Token::Of | Token::Colon);
+        for clause in significant.chunk_by(|_, next| !begins(next.0)) {
+            if let (Some(first), Some(last)) = (clause.first(), clause.last())
+                && begins(first.0)
+            {
+                self.add(first.1.to(last.1));
+            }
+        }
+    }
+}
+
+/// The token that touches an offset; of two, a word or number rather than a sign.
+fn token_at(lexemes: &[Lexeme], offset: u32) -> Option<&Lexeme> {
+    let touching = || lexemes.iter().filter(|(_, span)| span.touches(offset));
+    let is_word = |token: Token| token.is_name() || token.is_keyword() || token.is_number();
+    touching().find(|(token, _)| is_word(*token)).or_else(|| touching().next())
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::{Expect, expect};
+
+    use super::*;
+    use crate::fixture::at_cursor;
+
+    fn check(fixture: &str, expected: &Expect) {
+        let (database, position) = at_cursor(fixture);
+        let ranges = selection_ranges(&database, position.file, &[position.offset]).remove(0);
+        for pair in ranges.windows(2) {
+            assert!(pair[0].to(pair[1]) == pair[1] && pair[0] != pair[1], "{ranges:?}");
+        }
+        let lines = ranges.iter().map(|span| format!("{:?}\n", database.slice(position.file, *span)));
+        expected.assert_eq(&lines.collect::<String>());
+    }
+
+    #[test]
+    fn a_name_in_an_action_grows_step_by_step() {
+        check(
+            "wheel a with radius 3\nmovement m of r {\n  slam\n  turn left until { s$0, t }\n}\nmovement n of r { }\n",
+            &expect![[r#"
+                "s"
+                "s, t"
+                "{ s, t }"
+                "until { s, t }"
+                "turn left until { s, t }"
+                "slam\n  turn left until { s, t }"
+                "{\n  slam\n  turn left until { s, t }\n}"
+                "movement m of r {\n  slam\n  turn left until { s, t }\n}"
+                "movement m of r {\n  slam\n  turn left until { s, t }\n}\nmovement n of r { }"
+                "wheel a with radius 3\nmovement m of r {\n  slam\n  turn left until { s, t }\n}\nmovement n of r { }\n"
+            "#]],
+        );
+    }
+
+    #[test]
+    fn a_number_grows_to_its_clause() {
+        check(
+            "movement m of r { move $04.0 meters at 9 }",
+            &expect![[r#"
+                "4.0"
+                "4.0 meters"
+                "move 4.0 meters at 9"
+                "{ move 4.0 meters at 9 }"
+                "movement m of r { move 4.0 meters at 9 }"
+            "#]],
+        );
+        check(
+            "wheel a with radius 3$0\nwheel b with radius 3\nsensor s",
+            &expect![[r#"
+                "3"
+                "with radius 3"
+                "wheel a with radius 3"
+                "wheel a with radius 3\nwheel b with radius 3"
+                "wheel a with radius 3\nwheel b with radius 3\nsensor s"
+            "#]],
+        );
+    }
+
+    #[test]
+    fn a_list_grows_to_its_clause() {
+        check(
+            "robot r type tw with port 1 has { a, $0b } wheels with sensors { s }",
+            &expect![[r#"
+                "b"
+                "a, b"
+                "{ a, b }"
+                "has { a, b } wheels"
+                "robot r type tw with port 1 has { a, b } wheels with sensors { s }"
+            "#]],
+        );
+    }
+
+    #[test]
+    fn what_is_broken_grows_too() {
+        check(
+            "movement m of { move mo$0re",
+            &expect![[r#"
+                "more"
+                "move more"
+                "{ move more"
+                "movement m of { move more"
+            "#]],
+        );
+        check(
+            "  $0 // c",
+            &expect![[r#"
+            "   // c"
+        "#]],
+        );
+    }
+
+    #[test]
+    fn many_places_are_answered_in_order() {
+        let mut database = Database::new();
+        let file = database.open("a.pyr", "wheel a with radius 3\n");
+        let ranges = selection_ranges(&database, file, &[6, 0, 999]);
+        let starts: Vec<Span> = ranges.iter().map(|ranges| ranges[0]).collect();
+        assert_eq!(starts, [Span::new(6, 7), Span::new(0, 5), Span::new(0, 22)]);
+        let empty = database.open("b.pyr", "");
+        assert_eq!(selection_ranges(&database, empty, &[0, 5]), [[Span::at(0)], [Span::at(0)]]);
+    }
+}

@@ -1,0 +1,407 @@
+//! Signature help: the shape of the statement being typed, with the part that comes next marked.
+//!
+//! The shapes are those of the keywords' pages; which part is next is asked of the parser itself, so neither can drift
+//! from the language.
+
+use pydslrep_analysis::Database;
+use pydslrep_syntax::{EntityKind, Expected, Lexeme, Span, Token, expected_after};
+
+use crate::FilePosition;
+use crate::reference::keyword_page;
+
+/// The shapes a statement can have.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SignatureHelp {
+    /// At least one.
+    pub signatures: Vec<Signature>,
+    /// Index of the one that fits what is typed.
+    pub active: usize,
+}
+
+/// A shape of a statement.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Signature {
+    /// How it is written; ASCII.
+    pub label: &'static str,
+    /// What it means.
+    pub meaning: &'static str,
+    /// The pieces of `label` that can be current.
+    pub parts: Vec<Span>,
+    /// Index of the part to be typed; `None` where the text so far fits no part.
+    pub current: Option<usize>,
+}
+
+/// The shape of the statement at a place.
+pub fn signature_help(database: &Database, position: FilePosition) -> Option<SignatureHelp> {
+    let typed = Typed::before(database, position)?;
+    let expected = expected_after(&typed.text, &typed.lexemes);
+    let ends = expected.contains(&Expected::Declaration);
+    if ends && typed.on_new_line {
+        return None;
+    }
+    let statement = typed.action().and_then(|action| signatures(action, &expected));
+    let action = statement.filter(|help| help.signatures.iter().any(|signature| signature.current.is_some()));
+    action.or_else(|| {
+        let help = signatures(&typed.lexemes, &expected)?;
+        let marked = help.signatures.iter().any(|signature| signature.current.is_some());
+        (marked || !ends).then_some(help)
+    })
+}
+
+/// What is typed of an entity before the word at the cursor.
+struct Typed {
+    /// The entity's text.
+    text: String,
+    /// Its tokens, without comments.
+    lexemes: Vec<Lexeme>,
+    /// Whether the cursor is on another line than the last of them.
+    on_new_line: bool,
+}
+
+impl Typed {
+    fn before(database: &Database, position: FilePosition) -> Option<Self> {
+        let at_cursor = position.offset.checked_sub(1)?;
+        let mut entity = database.entity_at(position.file, at_cursor)?;
+        let touched = entity.parse.lexemes.iter().find(|(token, span)| {
+            let end = span.end + entity.span.start;
+            let goes_on = is_word(*token) || matches!(token, Token::LineComment | Token::UnterminatedComment);
+            span.start + entity.span.start < position.offset
+                && (end > position.offset || goes_on && end == position.offset)
+        });
+        if touched.is_some_and(|(token, _)| token.is_comment()) {
+            return None;
+        }
+        let cursor = touched.map_or(position.offset, |(_, span)| span.start + entity.span.start);
+        if cursor == entity.span.start {
+            // A word that looks like a keyword begins an entity of its own; it is still only a word being typed.
+            entity = database.entity_at(position.file, cursor.checked_sub(1)?)?;
+        }
+        let start = entity.span.start;
+        let before = entity.parse.lexemes.iter().filter(|(token, _)| !token.is_comment());
+        let lexemes: Vec<Lexeme> =
+            before.take_while(|(_, span)| span.end + start <= cursor).copied().collect();
+        let end = lexemes.last()?.1.end;
+        let text = database.slice(position.file, entity.span);
+        let on_new_line = Span::new(end, cursor - start).text(&text).contains(['\n', '\r']);
+        Some(Self { text, lexemes, on_new_line })
+    }
+
+    /// The tokens of the last action, in a movement's body.
+    fn action(&self) -> Option<&[Lexeme]> {
+        let kind = self.lexemes.first()?.0.entity_kind();
+        let body = self.lexemes.iter().position(|(token, _)| *token == Token::OpenBrace)?;
+        let begins = |(token, _): &Lexeme| matches!(token, Token::Move | Token::Turn | Token::Slam);
+        let last = self.lexemes.iter().rposition(begins)?;
+        (kind == Some(EntityKind::Movement) && last > body).then(|| &self.lexemes[last..])
+    }
+}
+
+fn is_word(token: Token) -> bool {
+    let is_string = matches!(token, Token::String | Token::UnterminatedString);
+    token.is_name() || token.is_keyword() || token.is_number() || is_string || token == Token::Invalid
+}
+
+/// The shapes of the statement that begins with these tokens.
+fn signatures(typed: &[Lexeme], expected: &[Expected]) -> Option<SignatureHelp> {
+    // `parallel` has a page of its own, with the same shape.
+    let page = keyword_page(typed.first()?.0).filter(|_| is_statement(typed[0].0))?;
+    let signatures: Vec<Signature> = page
+        .syntax
+        .lines()
+        .map(|label| {
+            let parts = parts(label);
+            let current = current(&parts, typed, expected);
+            let parts = parts.iter().map(|part| part.span).collect();
+            Signature { label, meaning: page.meaning, parts, current }
+        })
+        .collect();
+    let active = signatures.iter().position(|signature| signature.current.is_some()).unwrap_or(0);
+    Some(SignatureHelp { signatures, active })
+}
+
+fn is_statement(token: Token) -> bool {
+    token.entity_kind().is_some() || matches!(token, Token::Import | Token::Move | Token::Turn | Token::Slam)
+}
+
+/// A piece of a shape: a word, a word to choose from several, or what a person fills in.
+struct Part {
+    text: &'static str,
+    span: Span,
+    /// Whether a brace opens before it.
+    opens: bool,
+}
+
+fn parts(label: &'static str) -> Vec<Part> {
+    let mut parts: Vec<Part> = Vec::new();
+    let (mut opens, mut joins) = (false, false);
+    for word in label.split_whitespace() {
+        match word.trim_matches(['[', ']']) {
+            "{" => opens = true,
+            "|" => joins = true,
+            "}" => {}
+            text => {
+                // Both are slices of the label.
+                let start = text.as_ptr() as usize - label.as_ptr() as usize;
+                let span = Span::of(text).shifted(u32::try_from(start).unwrap_or(0));
+                match parts.last_mut() {
+                    Some(last) if joins => {
+                        last.span = last.span.to(span);
+                        last.text = last.span.text(label);
+                    }
+                    _ => parts.push(Part { text, span, opens }),
+                }
+                (opens, joins) = (false, false);
+            }
+        }
+    }
+    parts
+}
+
+/// The part that comes next: the first behind the words that are there which the parser would take.
+fn current(parts: &[Part], typed: &[Lexeme], expected: &[Expected]) -> Option<usize> {
+    let mut next = 0;
+    for (token, _) in typed {
+        let Some(word) = token.spelling().filter(|_| token.is_keyword() || *token == Token::Colon) else {
+            continue;
+        };
+        let place = parts[next..].iter().position(|part| part.is_word(word));
+        match place {
+            Some(place) => next += place + 1,
+            // A word of another shape, unless it stands in for a name.
+            None if *token == Token::Until => return None,
+            None => {}
+        }
+    }
+    let behind = parts[next..].iter().position(|part| expected.iter().any(|expected| part.takes(*expected)));
+    behind.map(|place| next + place)
+}
+
+impl Part {
+    fn is_word(&self, word: &str) -> bool {
+        self.text.split(" | ").any(|choice| choice == word)
+    }
+
+    fn takes(&self, expected: Expected) -> bool {
+        match expected {
+            Expected::Word(Token::OpenBrace) => self.opens,
+            Expected::Word(word) => word.spelling().is_some_and(|word| self.is_word(word)),
+            Expected::ReferenceTo(EntityKind::Robot) => matches!(self.text, "ROBOT" | "ROBOTS"),
+            _ => placeholder(expected).is_some_and(|placeholder| self.text == placeholder),
+        }
+    }
+}
+
+/// What shapes call what a person fills in.
+fn placeholder(expected: Expected) -> Option<&'static str> {
+    Some(match expected {
+        Expected::NameOf(_) => "NAME",
+        Expected::ReferenceTo(EntityKind::Wheel) => "WHEELS",
+        Expected::ReferenceTo(EntityKind::Sensor) => "SENSORS",
+        Expected::ReferenceTo(EntityKind::Ip) => "IP",
+        Expected::ReferenceTo(EntityKind::Movement) => "MOVEMENTS",
+        Expected::Radius => "CENTIMETRES",
+        Expected::Port => "PORT",
+        Expected::Address => "127.0.0.1",
+        Expected::Distance => "DISTANCE",
+        Expected::Speed => "SPEED",
+        Expected::Angle => "DEGREES",
+        Expected::Path => "\"FILE.pyr\"",
+        Expected::Action => "ACTIONS",
+        Expected::ReferenceTo(_) | Expected::Word(_) | Expected::Declaration => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::{Expect, expect};
+
+    use super::*;
+    use crate::fixture::at_cursor;
+
+    fn render(help: &SignatureHelp) -> String {
+        let marked = |signature: &Signature| match signature.current {
+            None => signature.label.to_owned(),
+            Some(current) => {
+                let span = signature.parts[current];
+                let (start, end) = (span.start as usize, span.end as usize);
+                let label = signature.label;
+                format!("{}«{}»{}", &label[..start], &label[start..end], &label[end..])
+            }
+        };
+        let active = &help.signatures[help.active];
+        format!("{} ({} of {})", marked(active), help.active + 1, help.signatures.len())
+    }
+
+    fn at(fixture: &str) -> String {
+        let (database, position) = at_cursor(fixture);
+        signature_help(&database, position).map_or_else(|| "nothing".to_owned(), |help| render(&help))
+    }
+
+    fn check(fixtures: &[&str], expected: &Expect) {
+        expected.assert_eq(&fixtures.iter().map(|fixture| at(fixture) + "\n").collect::<String>());
+    }
+
+    #[test]
+    fn the_next_part_is_marked() {
+        check(
+            &[
+                "wheel $0",
+                "wheel a $0",
+                "wheel a with radius 4$0",
+                "sensor s $0",
+                "import \"$0",
+                "ip i 12$0",
+                "robot r $0",
+                "robot r type $0",
+                "robot r with port 1 has $0",
+                "robot r with port 1 has { a $0 } wheels",
+                "robot r with port 1 has { a } wheels with $0",
+                "environment e with ip $0",
+                "environment e has { r } robots with { m $0",
+                "parallel movement m of $0",
+                "movement m of r { $0 }",
+            ],
+            &expect![[r#"
+                wheel «NAME» with radius CENTIMETRES (1 of 1)
+                wheel NAME «with» radius CENTIMETRES (1 of 1)
+                wheel NAME with radius «CENTIMETRES» (1 of 1)
+                sensor NAME [«:» distance | bumper] (1 of 1)
+                import «"FILE.pyr"» (1 of 1)
+                ip NAME «127.0.0.1» (1 of 1)
+                robot NAME [«type» tw | fw | fwh] with port PORT has { WHEELS } wheels [with sensors { SENSORS }] (1 of 1)
+                robot NAME [type «tw | fw | fwh»] with port PORT has { WHEELS } wheels [with sensors { SENSORS }] (1 of 1)
+                robot NAME [type tw | fw | fwh] with port PORT has { «WHEELS» } wheels [with sensors { SENSORS }] (1 of 1)
+                robot NAME [type tw | fw | fwh] with port PORT has { «WHEELS» } wheels [with sensors { SENSORS }] (1 of 1)
+                robot NAME [type tw | fw | fwh] with port PORT has { WHEELS } wheels [with «sensors» { SENSORS }] (1 of 1)
+                environment NAME [with ip «IP»] has { ROBOTS } robots [with { MOVEMENTS } moves] (1 of 1)
+                environment NAME [with ip IP] has { ROBOTS } robots [with { «MOVEMENTS» } moves] (1 of 1)
+                [parallel] movement NAME of «ROBOT» { ACTIONS } (1 of 1)
+                [parallel] movement NAME of ROBOT { «ACTIONS» } (1 of 1)
+            "#]],
+        );
+    }
+
+    #[test]
+    fn actions_have_shapes_of_their_own() {
+        check(
+            &[
+                "movement m of r { slam move $0 }",
+                "movement m of r { move 4 $0 turn left }",
+                "movement m of r { move 4 meters $0",
+                "movement m of r { move 4 meters at $0",
+                "movement m of r { turn $0",
+                "movement m of r { turn left $0",
+                "movement m of r { turn left until { s $0",
+                "movement m of r { turn left 90 $0",
+            ],
+            &expect![[r#"
+                move «DISTANCE» meters | centimeters [at SPEED] (1 of 1)
+                move DISTANCE «meters | centimeters» [at SPEED] (1 of 1)
+                move DISTANCE meters | centimeters [«at» SPEED] (1 of 1)
+                move DISTANCE meters | centimeters [at «SPEED»] (1 of 1)
+                turn «left | right» [DEGREES] (1 of 2)
+                turn left | right [«DEGREES»] (1 of 2)
+                turn left | right until { «SENSORS» } (2 of 2)
+                [parallel] movement NAME of ROBOT { «ACTIONS» } (1 of 1)
+            "#]],
+        );
+    }
+
+    #[test]
+    fn broken_text_has_its_shape() {
+        check(
+            &[
+                "robot r with prt $0",
+                "wheel a with with $0",
+                "movement m of r { move meters $0",
+                "environment e has { robot$0",
+            ],
+            &expect![[r#"
+                robot NAME [type tw | fw | fwh] with port «PORT» has { WHEELS } wheels [with sensors { SENSORS }] (1 of 1)
+                wheel NAME with «radius» CENTIMETRES (1 of 1)
+                move DISTANCE meters | centimeters [«at» SPEED] (1 of 1)
+                environment NAME [with ip IP] has { «ROBOTS» } robots [with { MOVEMENTS } moves] (1 of 1)
+            "#]],
+        );
+    }
+
+    #[test]
+    fn elsewhere_there_is_none() {
+        for fixture in
+            ["$0", "wheel a with radius 4 $0", "sensor s\n$0", "wheel // $0", "foo $0", "wheel$0", "// $0"]
+        {
+            assert_eq!(at(fixture), "nothing", "{fixture}");
+        }
+    }
+
+    /// Everything that a shape allows, filled in.
+    fn written(label: &str) -> Vec<String> {
+        let optional = |keep: bool| {
+            let mut out = String::new();
+            let mut depth = 0;
+            for c in label.chars() {
+                match c {
+                    '[' => depth += 1,
+                    ']' => depth -= 1,
+                    c if keep || depth == 0 => out.push(c),
+                    _ => {}
+                }
+            }
+            out
+        };
+        let choose = |label: String, last: bool| {
+            let mut words: Vec<&str> = Vec::new();
+            let all: Vec<&str> = label.split_whitespace().collect();
+            let mut joins = false;
+            for word in all {
+                if word == "|" {
+                    joins = true;
+                } else if !joins {
+                    words.push(word);
+                } else {
+                    joins = false;
+                    if last {
+                        words.pop();
+                        words.push(word);
+                    }
+                }
+            }
+            words.join(" ")
+        };
+        let filled = |label: String| {
+            let number = ["CENTIMETRES", "PORT", "DISTANCE", "SPEED", "DEGREES"];
+            let fill = |word: &str| match word {
+                _ if number.contains(&word) => "7".to_owned(),
+                "ACTIONS" => "slam".to_owned(),
+                _ if word.chars().all(|c| c.is_ascii_uppercase()) => "x".to_owned(),
+                _ => word.to_owned(),
+            };
+            label.split(' ').map(fill).collect::<Vec<_>>().join(" ")
+        };
+        let mut all = Vec::new();
+        for keep in [false, true] {
+            for last in [false, true] {
+                all.push(filled(choose(optional(keep), last)));
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn shapes_are_what_the_parser_reads() {
+        for (token, _) in pydslrep_syntax::KEYWORDS {
+            if !is_statement(token) {
+                continue;
+            }
+            let in_movement = matches!(token, Token::Move | Token::Turn | Token::Slam);
+            for label in keyword_page(token).unwrap().syntax.lines() {
+                for text in written(label) {
+                    let text = if in_movement { format!("movement m of r {{ {text} }}") } else { text };
+                    let pieces = pydslrep_syntax::parse(&text);
+                    assert_eq!(pieces.len(), 1, "{text}");
+                    assert_eq!(pieces[0].1.errors, [], "{text}");
+                }
+            }
+        }
+    }
+}
