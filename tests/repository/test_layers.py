@@ -34,6 +34,9 @@ MAY_KNOW: dict[str, set[str]] = {
     },
 }
 
+# For tests of the others, and a second opinion only as long as it knows none of them.
+BESIDE: dict[str, Path] = {"naive": ROOT / "tests" / "naive"}
+
 # Who may know what of the world outside.
 ONLY_IN: dict[str, set[str]] = {
     "tower-lsp": {"server"},
@@ -73,6 +76,16 @@ def test_a_crate_knows_only_what_lies_below_it(crate: str) -> None:
         if name.startswith("pydslrep-")
     }
     assert ours <= MAY_KNOW[crate]
+
+
+@pytest.mark.parametrize("crate", BESIDE)
+def test_what_checks_the_crates_knows_none_of_them(crate: str) -> None:
+    text = (BESIDE[crate] / "Cargo.toml").read_text(encoding="utf-8")
+    own = tomllib.loads(text)
+    assert own["package"]["name"] == f"pydslrep-{crate}"
+    assert text.count("pydslrep-") == 1
+    for user in MAY_KNOW:
+        assert f"pydslrep-{crate}" not in manifest(user)["dependencies"]
 
 
 @pytest.mark.parametrize("crate", MAY_KNOW)

@@ -58,8 +58,7 @@ fn is_string(token: Token) -> bool {
 }
 
 fn closes_list(previous: Option<Token>, next: Option<Token>) -> bool {
-    previous == Some(Token::CloseBrace)
-        && !next.is_some_and(|token| token.is_name() && token != Token::Import)
+    previous == Some(Token::CloseBrace) && !next.is_some_and(Token::is_name)
 }
 
 #[cfg(test)]
@@ -99,6 +98,16 @@ mod tests {
             "environment e with /* */ ip i has { r } robots wheel import with radius 3",
             &expect![[r"
                 environment e with /* */ ip i has { r } robots
+                wheel import with radius 3"]],
+        );
+    }
+
+    #[test]
+    fn an_entity_called_import_is_one() {
+        check(
+            "robot r with port 1 has { a b } wheels with sensors { s } wheel import with radius 3",
+            &expect![[r"
+                robot r with port 1 has { a b } wheels with sensors { s }
                 wheel import with radius 3"]],
         );
     }

@@ -20,8 +20,8 @@ pub(crate) struct Problem {
     pub(crate) help: Option<String>,
     pub(crate) note: Option<String>,
     pub(crate) related: Vec<ProblemPlace>,
-    /// The declared name that the problem is about, where another problem could be about it too.
-    pub(crate) about: Option<SmolStr>,
+    /// The declaration that the problem is about, where another problem could be about it too.
+    pub(crate) about: Option<(EntityKind, SmolStr)>,
     pub(crate) fixes: Vec<ProblemFix>,
 }
 
@@ -88,8 +88,8 @@ impl Problem {
         self
     }
 
-    pub(super) fn about(mut self, name: impl Into<SmolStr>) -> Self {
-        self.about = Some(name.into());
+    pub(super) fn about(mut self, kind: EntityKind, name: impl Into<SmolStr>) -> Self {
+        self.about = Some((kind, name.into()));
         self
     }
 

@@ -62,7 +62,9 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 
 fn radius<'a>(context: &Context<'a>, name: &'a Name) -> Option<(&'a Name, EntityId, &'a Wheel, f64)> {
     let (id, wheel) = context.wheel(name)?;
-    Some((name, id, wheel, wheel.radius.as_ref()?.value?))
+    // One that is beyond all numbers has been reported as that.
+    let radius = wheel.radius.as_ref()?.value.filter(|radius| radius.is_finite())?;
+    Some((name, id, wheel, radius))
 }
 
 #[cfg(test)]
@@ -87,5 +89,19 @@ mod tests {
             "#]],
         );
         check_clean(&program("4.0"));
+    }
+
+    #[test]
+    fn what_is_no_number_differs_from_nothing() {
+        check(
+            &format!(
+                "wheel a with radius 4\nwheel b with radius {}\nrobot r with port 1 has {{ a b }} wheels",
+                "9".repeat(309)
+            ),
+            &expect![[r#"
+                error[number-out-of-range] 2:21 "999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999999" this number is too large to compute with
+                  help: write fewer digits
+            "#]],
+        );
     }
 }

@@ -44,8 +44,9 @@ mod zero_distance;
 #[cfg(test)]
 mod testing;
 
-use pydslrep_syntax::Span;
+use pydslrep_syntax::{EntityKind, Span};
 use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
 
 use self::context::Context;
 pub(crate) use self::context::{Problem, ProblemFix};
@@ -168,19 +169,19 @@ pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
 struct Consequences<'a> {
     /// Text that may declare or use anything is hidden in a comment.
     hidden: bool,
-    /// Names that references are slips for: it is no wonder that nothing uses them.
-    meant: Vec<&'a str>,
+    /// What references are slips for: it is no wonder that nothing uses it.
+    meant: Vec<&'a (EntityKind, SmolStr)>,
 }
 
 impl<'a> Consequences<'a> {
     fn new(hidden: bool, problems: &[(u32, &'a Problem)]) -> Self {
         let slips = problems.iter().filter(|(_, problem)| problem.rule == &unresolved_reference::RULE);
-        Self { hidden, meant: slips.filter_map(|(_, problem)| problem.about.as_deref()).collect() }
+        Self { hidden, meant: slips.filter_map(|(_, problem)| problem.about.as_ref()).collect() }
     }
 
     fn include(&self, problem: &Problem) -> bool {
         if problem.rule == &unused_declaration::RULE {
-            return self.hidden || problem.about.as_deref().is_some_and(|name| self.meant.contains(&name));
+            return self.hidden || problem.about.as_ref().is_some_and(|meant| self.meant.contains(&meant));
         }
         self.hidden && problem.rule == &unresolved_reference::RULE
     }

@@ -53,11 +53,12 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Environment(environment)) = context.tree else { return };
     let mut group: Vec<Running<'_>> = Vec::new();
     for name in environment.movements.iter().flat_map(|list| &list.names) {
-        let Some((id, movement)) = context.movement(name) else { continue };
-        if movement.parallel.is_none() {
+        // One that is not known may part the group.
+        let Some((id, movement)) = context.movement(name).filter(|(_, movement)| movement.parallel.is_some())
+        else {
             group.clear();
             continue;
-        }
+        };
         let Some(robot) = context.robot_of(id, movement) else { continue };
         if let Some(other) = group.iter().find(|other| other.robot == robot) {
             let driven = movement.robot.as_ref().map_or("", |name| name.text.as_str());
@@ -107,6 +108,17 @@ mod tests {
                   see 9:43 "o" `o` starts here and runs beside it
                   help: remove `parallel` from one of them, or list a movement that is not parallel between them
                   note: parallel movements that are next to each other in the list start together
+            "#]],
+        );
+    }
+
+    #[test]
+    fn a_movement_that_is_not_known_may_part_groups() {
+        check(
+            &format!("{PARTS}environment e has {{ r q }} robots with {{ m unknown n o }} moves"),
+            &expect![[r#"
+                error[unresolved-reference] 9:43 "unknown" there is no movement called `unknown`
+                  help: the movements are `m`, `n`, `o`, `p`
             "#]],
         );
     }

@@ -57,7 +57,7 @@ fn problem(context: &Context<'_>, tree: &Entity, kind: EntityKind, name: &Name, 
         problem = problem
             .help(format!("did you mean `{nearest}`?"))
             .suggestion(format!("change to `{nearest}`"), [edit])
-            .about(nearest);
+            .about(kind, nearest);
     } else if let Some(known) = known(context, kind) {
         problem = problem.help(known);
     }

@@ -63,7 +63,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let problem = RULE
         .problem(name.span, format!("nothing uses the {} `{}`", kind.noun(), name.text))
         .help(format!("{place}, or leave it out"))
-        .about(name.text.clone());
+        .about(kind, name.text.clone());
     problems.push(match context.whole() {
         Some(whole) if context.errors.is_empty() && leaves_nothing_unused(context, tree) => {
             problem.suggestion("remove it", [whole])
@@ -131,6 +131,23 @@ mod tests {
         assert_eq!(codes("environment e has { r } robots with { mm } moves"), ["unresolved-reference"]);
         assert_eq!(codes("environment e has { r } robots wiht { m } moves"), ["syntax-error"]);
         assert_eq!(codes("environment e has { r } robots /* with { m } moves"), ["unterminated-comment"]);
+    }
+
+    #[test]
+    fn a_slip_for_a_robot_excuses_no_movement() {
+        check_whole(
+            "wheel a with radius 4\nwheel b with radius 4\nrobot rover with port 1 has { a b } wheels\n\
+             movement rover of rovr { turn left }\nenvironment e has { rover } robots",
+            &expect![[r#"
+                hint[unused-declaration] 4:10 "rover" nothing uses the movement `rover`
+                  help: list it among the moves of an environment, or leave it out
+                error[unresolved-reference] 4:19 "rovr" there is no robot called `rovr`
+                  help: did you mean `rover`?
+                  suggestion: change to `rover` -> movement rover of rover { turn left }
+                hint[idle-robot] 5:21 "rover" no movement of this environment drives `rover`
+                  help: list one of its movements, or leave the robot out
+            "#]],
+        );
     }
 
     #[test]

@@ -50,20 +50,22 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         Some(_) => list.names.len() == 4,
         None => robot.drive.is_none() && matches!(list.names.len(), 2 | 4),
     };
-    let kinds: Option<Vec<bool>> =
-        list.names.iter().map(|name| context.wheel(name).map(|(_, wheel)| wheel.mecanum)).collect();
-    let Some(kinds) = kinds.filter(|_| counts) else { return };
-    let mecanum = kinds.iter().filter(|mecanum| **mecanum).count();
-    let wants_mecanum = drive == Some(DriveWord::Fwh) || (drive.is_none() && mecanum == 4);
-    if mecanum == if wants_mecanum { kinds.len() } else { 0 } {
+    if !counts {
         return;
     }
-    let odd =
-        list.names.iter().zip(&kinds).find(|(_, mecanum)| **mecanum != wants_mecanum).map(|(name, _)| name);
-    let Some(place) = type_place(robot).or(odd.map(|name| name.span)) else { return };
+    // A wheel that is not known may be of any kind.
+    let known = list.names.iter().filter_map(|name| Some((name, context.wheel(name)?.1.mecanum)));
+    let known: Vec<(&Name, bool)> = known.collect();
+    let count = list.names.len();
+    let mecanum = known.iter().filter(|(_, mecanum)| *mecanum).count();
+    let one_kind = mecanum == 0 || mecanum == known.len();
+    let wants_mecanum =
+        drive == Some(DriveWord::Fwh) || (drive.is_none() && count == 4 && one_kind && mecanum > 0);
+    let Some((odd, _)) = known.iter().find(|(_, mecanum)| *mecanum != wants_mecanum) else { return };
+    let place = type_place(robot).unwrap_or(odd.span);
     let problem = match (drive, mecanum) {
         (Some(DriveWord::Fw), 4) => all_mecanum(place),
-        _ => mixed(context, place, drive, kinds.len(), odd),
+        _ => mixed(context, place, drive, count, odd),
     };
     let problem =
         problem.note("a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways");
@@ -76,13 +78,7 @@ fn all_mecanum(place: Span) -> Problem {
         .help("write `type fwh`; that is how it will be driven")
 }
 
-fn mixed(
-    context: &Context<'_>,
-    place: Span,
-    drive: Option<DriveWord>,
-    count: usize,
-    odd: Option<&Name>,
-) -> Problem {
+fn mixed(context: &Context<'_>, place: Span, drive: Option<DriveWord>, count: usize, odd: &Name) -> Problem {
     let (wanted, other) =
         if drive == Some(DriveWord::Fwh) { ("wheelH", "wheel") } else { ("wheel", "wheelH") };
     let drives = match drive {
@@ -90,12 +86,10 @@ fn mixed(
         None if count == 2 => format!("a robot with two wheels drives on `{wanted}`"),
         None => "a robot's four wheels must be of one kind".to_owned(),
     };
-    let message = match odd {
-        Some(name) if drive.is_none() && count == 4 => {
-            format!("{drives}, but `{}` is a `{other}` and others are not", name.text)
-        }
-        Some(name) => format!("{drives}, but `{}` is a `{other}`", name.text),
-        None => drives,
+    let message = if drive.is_none() && count == 4 {
+        format!("{drives}, but `{}` is a `{other}` and others are not", odd.text)
+    } else {
+        format!("{drives}, but `{}` is a `{other}`", odd.text)
     };
     let help = match drive {
         Some(_) => format!("list only `{wanted}`, or change the robot's type"),
@@ -103,7 +97,7 @@ fn mixed(
         None => "list four `wheel`, or four `wheelH`".to_owned(),
     };
     let problem = RULE.problem(place, message).help(help);
-    match odd.and_then(|name| context.wheel(name)) {
+    match context.wheel(odd) {
         Some((id, wheel)) => problem.related(id, wheel.keyword, "declared here"),
         None => problem,
     }
@@ -190,6 +184,39 @@ mod tests {
               see 8:1 "wheelH" declared here
               help: list four `wheel`, or four `wheelH`
               note: a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways
+        "#]],
+        );
+    }
+
+    #[test]
+    fn what_is_known_must_suit() {
+        check(
+            &format!("{WHEELS}robot r type fwh with port 1 has {{ a nobody f g }} wheels"),
+            &expect![[r#"
+                error[wheel-kind-mismatch] 9:9 "type fwh" a robot of type `fwh` drives on `wheelH`, but `a` is a `wheel`
+                  see 1:1 "wheel" declared here
+                  help: list only `wheelH`, or change the robot's type
+                  note: a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways
+                error[unresolved-reference] 9:38 "nobody" there is no wheel called `nobody`
+                  suggestion: declare the wheel `nobody` -> wheel nobody with radius 4
+            "#]],
+        );
+        check(
+            &format!("{WHEELS}robot r type fw with port 1 has {{ nobody e f g }} wheels"),
+            &expect![[r#"
+                error[wheel-kind-mismatch] 9:9 "type fw" a robot of type `fw` drives on `wheel`, but `e` is a `wheelH`
+                  see 5:1 "wheelH" declared here
+                  help: list only `wheel`, or change the robot's type
+                  note: a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways
+                error[unresolved-reference] 9:35 "nobody" there is no wheel called `nobody`
+                  suggestion: declare the wheel `nobody` -> wheelH nobody with radius 4
+            "#]],
+        );
+        check(
+            &format!("{WHEELS}robot r with port 1 has {{ nobody e f g }} wheels"),
+            &expect![[r#"
+            error[unresolved-reference] 9:27 "nobody" there is no wheel called `nobody`
+              suggestion: declare the wheel `nobody` -> wheelH nobody with radius 4
         "#]],
         );
     }

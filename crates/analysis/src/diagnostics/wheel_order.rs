@@ -18,8 +18,8 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "Two wheels look swapped: their names differ in one letter only, and the one with R is where the left \
-        wheel should be, the one with L where the right should be.",
+    what: "Two wheels look swapped: their names differ in one letter only, and the one with R is listed before \
+        the one with L, although left wheels come first.",
     why: "The order in the list decides which wheel is left and which is right, whatever they are called. If \
         two are swapped, the robot turns right where it should turn left.",
     imports: &[],
@@ -33,27 +33,57 @@ wheel wheelR with radius 4.5
 robot rover with port 23000 has { wheelL wheelR } wheels",
 };
 
+const HELP: &str =
+    "list two wheels as left, right; or four as left front, left rear, right front, right rear";
+
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Robot(robot)) = context.tree else { return };
     let names = robot.wheels.as_ref().map_or(&[][..], |list| &list.names);
-    // Two wheels stand left, right; of four, the left two stand before the right two.
-    let step = names.len() / 2;
-    for (first, second) in names.iter().zip(names.iter().skip(step.max(1))) {
-        if is_right_of(&first.text, &second.text) {
-            problems.push(problem(context, first, second));
+    for (index, first) in names.iter().enumerate() {
+        let is_its_left = |second: &Name| is_right_of(&first.text, &second.text);
+        if let Some(other) = names.iter().rposition(is_its_left).filter(|other| *other > index) {
+            let second = &names[other];
+            // Two wheels stand left, right; of four, the left two stand before the right two.
+            let half = names.len() / 2;
+            problems.push(if index < half && other >= half {
+                swapped(context, first, second)
+            } else {
+                alternating(context, first, second, names)
+            });
         }
     }
 }
 
-fn problem(context: &Context<'_>, first: &Name, second: &Name) -> Problem {
+fn swapped(context: &Context<'_>, first: &Name, second: &Name) -> Problem {
     let swap = [
         context.replace(first.span, context.text(second.span)),
         context.replace(second.span, context.text(first.span)),
     ];
     RULE.problem(first.span, format!("`{}` stands where the left wheel belongs", first.text))
         .related(context.id, second.span, format!("and `{}` where the right one does", second.text))
-        .help("list two wheels as left, right; or four as left front, left rear, right front, right rear")
+        .help(HELP)
         .suggestion(format!("swap `{}` and `{}`", first.text, second.text), swap)
+}
+
+/// Right and left on the same side of the list, as in `{ wheelR0 wheelL0 wheelR1 wheelL1 }`.
+fn alternating(context: &Context<'_>, first: &Name, second: &Name, names: &[Name]) -> Problem {
+    let message = format!("`{}` stands before `{}`, but left wheels come first", first.text, second.text);
+    let problem = RULE
+        .problem(first.span, message)
+        .related(context.id, second.span, format!("`{}` stands here", second.text))
+        .help(HELP);
+    let has_right = |name: &Name| names.iter().any(|other| is_right_of(&other.text, &name.text));
+    let has_left = |name: &Name| names.iter().any(|other| is_right_of(&name.text, &other.text));
+    let lefts = names.iter().filter(|name| has_right(name) && !has_left(name));
+    let rights = names.iter().filter(|name| has_left(name) && !has_right(name));
+    let sorted: Vec<&Name> = lefts.chain(rights).collect();
+    // Of a wheel without a counterpart, or with two, nobody can tell the side.
+    if sorted.len() != names.len() {
+        return problem;
+    }
+    let moved = names.iter().zip(sorted).filter(|(old, new)| old.text != new.text);
+    let edits: Vec<_> = moved.map(|(old, new)| context.replace(old.span, context.text(new.span))).collect();
+    problem.suggestion("list the left wheels first", edits)
 }
 
 /// Whether the names differ in exactly one letter, R in the first and L in the second.
@@ -96,6 +126,19 @@ mod tests {
                   help: list two wheels as left, right; or four as left front, left rear, right front, right rear
                   suggestion: swap `wrr` and `wlr` -> robot r with port 1 has { wrf wlr wlf wrr } wheels
             "#]],
+        );
+        check(
+            &format!("{WHEELS}robot r with port 1 has {{ wrf wlf wrr wlr }} wheels"),
+            &expect![[r#"
+            hint[wheel-order] 7:27 "wrf" `wrf` stands before `wlf`, but left wheels come first
+              see 7:31 "wlf" `wlf` stands here
+              help: list two wheels as left, right; or four as left front, left rear, right front, right rear
+              suggestion: list the left wheels first -> robot r with port 1 has { wlf wlr wrf wrr } wheels
+            hint[wheel-order] 7:35 "wrr" `wrr` stands before `wlr`, but left wheels come first
+              see 7:39 "wlr" `wlr` stands here
+              help: list two wheels as left, right; or four as left front, left rear, right front, right rear
+              suggestion: list the left wheels first -> robot r with port 1 has { wlf wlr wrf wrr } wheels
+        "#]],
         );
         check_clean(&format!("{WHEELS}robot r with port 1 has {{ wheelL wheelR }} wheels"));
         check_clean(&format!("{WHEELS}robot r with port 1 has {{ wlf wlr wrf wrr }} wheels"));

@@ -1,0 +1,73 @@
+//! Programs at random: the parser takes them, the formatter keeps what they mean, and the database says of them what a
+//! naive checker reads in the language's contract. `PYDSLREP_PROGRAMS` says how many to try.
+
+use std::collections::BTreeSet;
+
+use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
+use pydslrep_analysis::Database;
+use pydslrep_naive::Finding;
+use pydslrep_syntax::{format, parse};
+
+/// What is said of a program, and where.
+fn diagnostics(text: &str) -> Vec<Finding> {
+    let mut database = Database::new();
+    let file = database.open("random.pyr", text);
+    let finding = |diagnostic: &pydslrep_analysis::Diagnostic| Finding {
+        start: diagnostic.span.start as usize,
+        end: diagnostic.span.end as usize,
+        code: diagnostic.code(),
+    };
+    let mut findings: Vec<Finding> = database.diagnostics(file).iter().map(finding).collect();
+    findings.sort();
+    findings
+}
+
+/// The trees of a text without their places.
+fn meaning(text: &str) -> Vec<String> {
+    let trees = parse(text).into_iter().filter_map(|(_, parse)| parse.entity);
+    trees.map(|tree| without_spans(&format!("{tree:?}"))).collect()
+}
+
+fn without_spans(tree: &str) -> String {
+    let mut parts = tree.split("Span { start: ");
+    let first = parts.next().unwrap_or_default().to_owned();
+    let rest = parts.filter_map(|part| part.split_once(" }")).map(|(_, behind)| behind);
+    first + &rest.collect::<String>()
+}
+
+fn has_syntax_errors(text: &str) -> bool {
+    parse(text).iter().any(|(_, parse)| !parse.errors.is_empty())
+}
+
+fn check(text: &str) -> Result<(), TestCaseError> {
+    let verdict = pydslrep_naive::check(text);
+    prop_assert!(verdict.grammatical, "the naive checker does not understand this");
+    // The older spellings are errors in name only.
+    let is_older = |finding: &Finding| ["misplaced-type", "deprecated-ip-clause"].contains(&finding.code);
+    let older = verdict.findings.iter().any(is_older);
+    prop_assert!(older || !has_syntax_errors(text), "the parser does not understand this");
+
+    let formatted = format(text);
+    prop_assert_eq!(meaning(&formatted), meaning(text), "formatting changes the meaning:\n{}", &formatted);
+    prop_assert_eq!(format(&formatted), formatted.clone(), "formatting again changes something");
+
+    let said: BTreeSet<Finding> = diagnostics(text).into_iter().collect();
+    let expected: BTreeSet<Finding> = verdict.findings.into_iter().collect();
+    let excused: BTreeSet<Finding> = verdict.excused.into_iter().collect();
+    let missing: Vec<_> = expected.difference(&said).collect();
+    let invented: Vec<_> = said.difference(&expected).filter(|finding| !excused.contains(finding)).collect();
+    prop_assert!(missing.is_empty(), "not said: {:?}", missing);
+    prop_assert!(invented.is_empty(), "said, but nothing in the contract: {:?}", invented);
+    Ok(())
+}
+
+#[test]
+fn random_programs_mean_what_the_contract_says() {
+    let wanted = std::env::var("PYDSLREP_PROGRAMS").ok().and_then(|count| count.parse().ok());
+    let config = ProptestConfig { cases: wanted.unwrap_or(2_000), ..ProptestConfig::default() };
+    let outcome = TestRunner::new(config).run(&pydslrep_naive::programs(), |text| check(&text));
+    if let Err(error) = outcome {
+        panic!("{error}");
+    }
+}

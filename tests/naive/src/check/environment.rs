@@ -1,0 +1,126 @@
+//! Group "environment": who drives where, and when.
+
+use super::{is_among, repeated};
+use crate::Finding;
+use crate::program::{Body, Entity, Environment, Movement, Name, Program};
+
+pub(super) fn check(program: &Program, findings: &mut Vec<Finding>) {
+    for (entity, environment) in program.environments() {
+        if environment.robots.is_empty() {
+            findings.push(Finding::new("empty-environment", &environment.robot_list));
+        }
+        for robot in repeated(&environment.robots) {
+            findings.push(Finding::new("repeated-robot", &robot.range));
+        }
+        movement_robot_missing(program, environment, findings);
+        idle_robot(program, environment, findings);
+        parallel_conflict(program, environment, findings);
+        script_name(program, entity, findings);
+    }
+    single_parallel(program, findings);
+}
+
+/// Lists a movement whose robot it does not list. A robot that does not exist is the movement's own mistake.
+fn movement_robot_missing(program: &Program, environment: &Environment, findings: &mut Vec<Finding>) {
+    for name in &environment.movements {
+        let Some(movement) = program.movement(&name.text) else { continue };
+        let exists = program.robot(&movement.robot.text).is_some();
+        if exists && !is_among(&movement.robot, &environment.robots) {
+            findings.push(Finding::new("movement-robot-missing", &name.range));
+        }
+    }
+}
+
+/// Lists a robot that no listed movement drives. One that is not known may drive any robot.
+fn idle_robot(program: &Program, environment: &Environment, findings: &mut Vec<Finding>) {
+    let driven: Option<Vec<&str>> =
+        environment.movements.iter().map(|name| driven_robot(program, name)).collect();
+    let Some(driven) = driven else { return };
+    for robot in &environment.robots {
+        if program.robot(&robot.text).is_some() && !driven.contains(&robot.text.as_str()) {
+            findings.push(Finding::new("idle-robot", &robot.range));
+        }
+    }
+}
+
+fn driven_robot<'a>(program: &'a Program, movement: &Name) -> Option<&'a str> {
+    let robot = &program.movement(&movement.text)?.robot.text;
+    program.robot(robot).map(|_| robot.as_str())
+}
+
+/// Maximal runs of consecutive `parallel` movements. One that is not known may part them.
+fn parallel_groups<'a>(program: &Program, environment: &'a Environment) -> Vec<Vec<&'a Name>> {
+    let mut groups = vec![Vec::new()];
+    for name in &environment.movements {
+        let is_parallel = program.movement(&name.text).is_some_and(|movement| movement.parallel.is_some());
+        match groups.last_mut() {
+            Some(group) if is_parallel => group.push(name),
+            _ => groups.push(Vec::new()),
+        }
+    }
+    groups
+}
+
+/// Two movements of one robot in the same parallel group.
+fn parallel_conflict(program: &Program, environment: &Environment, findings: &mut Vec<Finding>) {
+    for group in parallel_groups(program, environment) {
+        for (index, name) in group.iter().enumerate() {
+            let robot = driven_robot(program, name);
+            let is_busy = group[..index].iter().any(|earlier| driven_robot(program, earlier) == robot);
+            if robot.is_some() && is_busy {
+                findings.push(Finding::new("parallel-conflict", &name.range));
+            }
+        }
+    }
+}
+
+/// A `parallel` movement that never runs beside another. One that never runs at all is unused, and one that is not known
+/// may be parallel, too.
+fn single_parallel(program: &Program, findings: &mut Vec<Finding>) {
+    for entity in &program.entities {
+        let Body::Movement(Movement { parallel: Some(parallel), .. }) = &entity.body else { continue };
+        let may_be_parallel = |name: Option<&Name>| {
+            let movement = name.map(|name| program.movement(&name.text));
+            movement.is_some_and(|movement| movement.is_none_or(|movement| movement.parallel.is_some()))
+        };
+        let (mut listed, mut accompanied) = (false, false);
+        for (_, environment) in program.environments() {
+            let names = &environment.movements;
+            for place in (0..names.len()).filter(|place| names[*place].text == entity.name.text) {
+                listed = true;
+                let before = place.checked_sub(1).and_then(|before| names.get(before));
+                accompanied |= may_be_parallel(before) || may_be_parallel(names.get(place + 1));
+            }
+        }
+        if listed && !accompanied {
+            findings.push(Finding::new("single-parallel", parallel));
+        }
+    }
+}
+
+/// The script's file would shadow a Python standard or client module, is reserved on Windows, or equals another's but
+/// for case: that of the first environment with such a name that can keep it.
+fn script_name(program: &Program, entity: &Entity, findings: &mut Vec<Finding>) {
+    let name = entity.name.text.as_str();
+    let is_taken = |name: &str| is_module(name) || is_reserved(name);
+    let mut names = program.environments().map(|(other, _)| other.name.text.as_str());
+    let keeper = names.find(|other| other.eq_ignore_ascii_case(name) && !is_taken(other));
+    if is_taken(name) || keeper.is_some_and(|keeper| keeper != name) {
+        findings.push(Finding::new("script-name", &entity.name.range));
+    }
+}
+
+/// Modules of Python 3.11 and those that the client of the remote API needs.
+fn is_module(name: &str) -> bool {
+    const CLIENT: [&str; 4] = ["coppeliasim_zmqremoteapi_client", "zmq", "cbor", "cbor2"];
+    include_str!("../../standard_modules.txt").split_whitespace().chain(CLIENT).any(|module| module == name)
+}
+
+/// Names of devices on Windows, in any case.
+fn is_reserved(name: &str) -> bool {
+    let name = name.to_ascii_lowercase();
+    let numbered = |device: &str| {
+        name.strip_prefix(device).is_some_and(|number| matches!(number.as_bytes(), [b'1'..=b'9']))
+    };
+    ["con", "prn", "aux", "nul"].contains(&name.as_str()) || numbered("com") || numbered("lpt")
+}

@@ -1,0 +1,127 @@
+//! Group "robot": what a robot lists.
+
+use super::{is_among, repeated};
+use crate::Finding;
+use crate::program::{ActionKind, Body, Entity, Name, Program, Robot};
+
+pub(super) fn check(program: &Program, findings: &mut Vec<Finding>) {
+    for entity in &program.entities {
+        match &entity.body {
+            Body::Robot(robot) => check_robot(program, entity, robot, findings),
+            Body::Movement(movement) => {
+                for action in &movement.actions {
+                    if let ActionKind::TurnUntil { sensors } = &action.kind {
+                        repeated_sensor(sensors, findings);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+fn check_robot(program: &Program, entity: &Entity, robot: &Robot, findings: &mut Vec<Finding>) {
+    wheel_count(robot, findings);
+    wheel_kind_mismatch(program, entity, robot, findings);
+    mixed_radii(program, robot, findings);
+    for wheel in repeated(&robot.wheels) {
+        findings.push(Finding::new("repeated-wheel", &wheel.range));
+    }
+    repeated_sensor(&robot.sensors, findings);
+    wheel_order(robot, findings);
+}
+
+fn repeated_sensor(sensors: &[Name], findings: &mut Vec<Finding>) {
+    findings.extend(repeated(sensors).map(|sensor| Finding::new("repeated-sensor", &sensor.range)));
+}
+
+/// `tw` needs 2, `fw` and `fwh` need 4; without `type` either will do.
+fn wheel_count(robot: &Robot, findings: &mut Vec<Finding>) {
+    if !has_right_count(robot) {
+        findings.push(Finding::new("wheel-count", &robot.wheel_list));
+    }
+}
+
+fn has_right_count(robot: &Robot) -> bool {
+    let needed: &[usize] = match robot.drive.as_ref().map(|drive| drive.text.as_str()) {
+        Some("tw") => &[2],
+        Some(_) => &[4],
+        None => &[2, 4],
+    };
+    needed.contains(&robot.wheels.len())
+}
+
+/// Warning: `fw` with four `wheelH`. Error: `fwh` with any `wheel`, `tw` with `wheelH`, mixed kinds.
+///
+/// A wrong number of wheels is one mistake, and not also one of their kinds.
+fn wheel_kind_mismatch(program: &Program, entity: &Entity, robot: &Robot, findings: &mut Vec<Finding>) {
+    if !has_right_count(robot) {
+        return;
+    }
+    let kinds = mecanum(program, robot);
+    let any_mecanum = kinds.contains(&true);
+    let any_standard = kinds.contains(&false);
+    let mismatch = match robot.drive.as_ref().map(|drive| drive.text.as_str()) {
+        Some("fwh") => any_standard,
+        Some(_) => any_mecanum,
+        None if robot.wheels.len() == 2 => any_mecanum,
+        None => any_mecanum && any_standard,
+    };
+    if mismatch {
+        let place = robot.drive.as_ref().map_or(&entity.name.range, |drive| &drive.range);
+        findings.push(Finding::new("wheel-kind-mismatch", place));
+    }
+}
+
+/// For each wheel that is known, whether it is a `wheelH`.
+fn mecanum(program: &Program, robot: &Robot) -> Vec<bool> {
+    robot.wheels.iter().filter_map(|name| program.wheel(&name.text)).map(|wheel| wheel.mecanum).collect()
+}
+
+/// The wheels of one robot differ in radius: said at the first that differs from those before it.
+#[allow(clippy::float_cmp, reason = "the contract says differ")]
+fn mixed_radii(program: &Program, robot: &Robot, findings: &mut Vec<Finding>) {
+    let radius = |name: &Name| {
+        let radius = program.wheel(&name.text)?.radius.value();
+        radius.is_finite().then_some(radius)
+    };
+    let radii: Vec<(&Name, f64)> =
+        robot.wheels.iter().filter_map(|name| Some((name, radius(name)?))).collect();
+    if let Some((name, _)) = radii.iter().find(|(_, radius)| *radius != radii[0].1) {
+        findings.push(Finding::new("mixed-radii", &name.range));
+    }
+}
+
+/// Two names that differ in exactly one letter, L or R (either case), stand right before left: said at the right one.
+fn wheel_order(robot: &Robot, findings: &mut Vec<Finding>) {
+    for (index, name) in robot.wheels.iter().enumerate() {
+        if robot.wheels[index..].iter().any(|later| is_right_of(&name.text, &later.text)) {
+            findings.push(Finding::new("wheel-order", &name.range));
+        }
+    }
+}
+
+fn is_right_of(one: &str, other: &str) -> bool {
+    let differences: Vec<(char, char)> = one.chars().zip(other.chars()).filter(|(a, b)| a != b).collect();
+    one.len() == other.len()
+        && differences.len() == 1
+        && "Rr".contains(differences[0].0)
+        && "Ll".contains(differences[0].1)
+}
+
+/// By its type, else by its wheels; one with three wheels and no type is nothing yet.
+pub(super) fn is_four_wheeled(robot: &Robot) -> bool {
+    robot.drive.as_ref().map_or(robot.wheels.len() == 4, |drive| drive.text != "tw")
+}
+
+/// How many different distance sensors it carries; `None` where a sensor is not known, which may be one.
+pub(super) fn distance_sensors(program: &Program, robot: &Robot) -> Option<usize> {
+    let mut count = 0;
+    for (index, name) in robot.sensors.iter().enumerate() {
+        let is_distance = !program.sensor(&name.text)?.bumper;
+        if is_distance && !is_among(name, &robot.sensors[..index]) {
+            count += 1;
+        }
+    }
+    Some(count)
+}

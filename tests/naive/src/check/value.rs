@@ -1,0 +1,80 @@
+//! Group "value": what single numbers say.
+
+use crate::Finding;
+use crate::program::{ActionKind, Body, Number, Program};
+
+pub(super) fn check(program: &Program, findings: &mut Vec<Finding>) {
+    for entity in &program.entities {
+        match &entity.body {
+            Body::Wheel(wheel) => findings.extend(radius(&wheel.radius)),
+            Body::Robot(robot) => findings.extend(port(&robot.port)),
+            Body::Ip(ip) if ip.address.text.split('.').any(|octet| !is_octet(octet)) => {
+                findings.push(Finding::new("invalid-ip", &ip.address.range));
+            }
+            Body::Movement(movement) => {
+                for action in &movement.actions {
+                    match &action.kind {
+                        ActionKind::Move { distance, meters, speed } => {
+                            findings.extend(self::distance(distance, *meters));
+                            findings.extend(speed.as_ref().and_then(self::speed));
+                        }
+                        ActionKind::Turn { angle } => findings.extend(angle.as_ref().and_then(self::angle)),
+                        ActionKind::TurnUntil { .. } | ActionKind::Slam => {}
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Anything that is no finite number is out of range, and nothing more is said of it.
+fn judge(number: &Number, code: impl Fn(f64) -> Option<&'static str>) -> Option<Finding> {
+    let value = number.value();
+    let code = if value.is_finite() { code(value)? } else { "number-out-of-range" };
+    Some(Finding::new(code, &number.range))
+}
+
+/// Centimetres.
+fn radius(number: &Number) -> Option<Finding> {
+    judge(number, |centimetres| match centimetres {
+        ..=0.0 => Some("invalid-radius"),
+        100.0 => None,
+        100.0.. => Some("implausible-radius"),
+        _ => None,
+    })
+}
+
+/// A port may be longer than any number.
+fn port(number: &Number) -> Option<Finding> {
+    let digits = number.text.trim_start_matches('0');
+    let fits = digits.len() <= 5 && digits.parse().is_ok_and(|port: u32| (1..=65535).contains(&port));
+    (!fits).then(|| Finding::new("invalid-port", &number.range))
+}
+
+fn is_octet(digits: &str) -> bool {
+    let digits = digits.trim_start_matches('0');
+    digits.is_empty() || digits.parse::<u8>().is_ok()
+}
+
+/// Beyond 1 000 km, or nothing at all.
+fn distance(number: &Number, meters: bool) -> Option<Finding> {
+    judge(number, |value| {
+        let metres = if meters { value } else { value / 100.0 };
+        if metres.abs() > 1_000_000.0 {
+            Some("number-out-of-range")
+        } else {
+            (value == 0.0).then_some("zero-distance")
+        }
+    })
+}
+
+/// Centimetres per second.
+fn speed(number: &Number) -> Option<Finding> {
+    judge(number, |speed| (speed <= 0.0).then_some("invalid-speed"))
+}
+
+/// Degrees: none, more than a turn, or the other way.
+fn angle(number: &Number) -> Option<Finding> {
+    judge(number, |degrees| (degrees <= 0.0 || degrees > 360.0).then_some("invalid-angle"))
+}

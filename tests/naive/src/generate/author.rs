@@ -1,0 +1,436 @@
+//! Writes a program from the bottom up, keeping in mind what it has declared.
+
+use super::Recipe;
+use super::choices::Choices;
+use super::layout;
+use super::words::{self, ADDRESSES, ANGLES, DISTANCES, ENDLESS, Numbers, PORTS, RADII, SPEEDS};
+
+/// All that a robot is to those who use it.
+struct Robot {
+    name: String,
+    wheels: Vec<String>,
+    mecanum: bool,
+    sensors: Vec<String>,
+    /// Whether it may run `slam`.
+    explores: bool,
+}
+
+struct Movement {
+    name: String,
+    robot: String,
+    parallel: bool,
+}
+
+pub(super) struct Author {
+    recipe: Recipe,
+    choices: Choices,
+    /// How often a mistake is made: once in so many chances.
+    careless: Option<usize>,
+    lines: usize,
+    /// The radius of most wheels, by its place among the usual ones.
+    radius: usize,
+    /// Each as its tokens.
+    entities: Vec<Vec<String>>,
+    wheels: Vec<String>,
+    sensors: Vec<String>,
+    /// Those of them that tell a distance.
+    distance_sensors: Vec<String>,
+    ips: Vec<String>,
+    robots: Vec<Robot>,
+    movements: Vec<Movement>,
+    environments: Vec<String>,
+}
+
+impl Author {
+    pub(super) fn new(recipe: Recipe, mut choices: Choices) -> Self {
+        let careless = choices.pick(&[None, Some(40), Some(12)]).filter(|_| recipe.mistakes);
+        let radius = choices.below(RADII.usual.len());
+        Self {
+            recipe,
+            choices,
+            careless,
+            lines: 0,
+            radius,
+            entities: Vec::new(),
+            wheels: Vec::new(),
+            sensors: Vec::new(),
+            distance_sensors: Vec::new(),
+            ips: Vec::new(),
+            robots: Vec::new(),
+            movements: Vec::new(),
+            environments: Vec::new(),
+        }
+    }
+
+    pub(super) fn write(&mut self) {
+        while self.lines < self.recipe.lines && self.choices.has_more() {
+            match self.choices.below(13) {
+                1..=10 if !self.robots.is_empty() => self.movement(),
+                11 if !self.robots.is_empty() => self.environment(),
+                12 if self.slips() => self.lone_part(),
+                _ => self.robot(),
+            }
+        }
+        if !self.robots.is_empty() && !self.choices.once_in(8) {
+            self.environment();
+        }
+        self.choices.shuffle(&mut self.entities);
+    }
+
+    pub(super) fn text(mut self) -> String {
+        if self.recipe.imports {
+            let count = self.choices.below(3);
+            let paths = ["\"lib.pyr\"", "\"parts/more.pyr\""];
+            let imports = paths[..count].iter().map(|path| vec!["import".to_owned(), (*path).to_owned()]);
+            self.entities.splice(..0, imports);
+        }
+        if self.recipe.odd_layout && self.choices.once_in(2) {
+            layout::odd(&mut self.choices, &self.entities)
+        } else {
+            layout::tidy(&self.entities)
+        }
+    }
+
+    fn slips(&mut self) -> bool {
+        self.careless.is_some_and(|times| self.choices.once_in(times))
+    }
+
+    fn push(&mut self, tokens: Vec<String>) {
+        self.lines += 1;
+        self.entities.push(tokens);
+    }
+
+    /// A name for a declaration: one that its kind does not have yet, unless by mistake.
+    fn new_name(&mut self, taken: &[String], words: &[&'static str]) -> String {
+        if !taken.is_empty() && self.slips() {
+            let index = self.choices.below(taken.len());
+            return taken[index].clone();
+        }
+        let name = words::name(&mut self.choices, words);
+        let is_free = |name: &String| !taken.iter().any(|other| plain(other) == plain(name));
+        let numbered = (2..).map(|number| format!("{name}_{number}"));
+        std::iter::once(name.clone()).chain(numbered).find(is_free).unwrap_or(name)
+    }
+
+    /// A name as it may be written where it is used; by mistake another one.
+    fn reference(&mut self, name: &str) -> String {
+        if self.slips() {
+            return words::name(&mut self.choices, &words::NAMES);
+        }
+        let may_hide = self.recipe.odd_layout && !name.starts_with('^');
+        if may_hide && self.choices.once_in(30) { format!("^{name}") } else { name.to_owned() }
+    }
+
+    fn number(&mut self, numbers: &Numbers) -> String {
+        let is_doubtful = self.slips();
+        let number = self.choices.pick(if is_doubtful { numbers.doubtful } else { numbers.usual });
+        if number == ENDLESS {
+            return "9".repeat(400);
+        }
+        let may_rewrite = self.recipe.odd_layout && self.choices.once_in(8);
+        if may_rewrite { words::rewritten(&mut self.choices, number) } else { number.to_owned() }
+    }
+
+    /// `{ a, b c, }`
+    fn list(&mut self, names: &[String]) -> Vec<String> {
+        let mut tokens = vec!["{".to_owned()];
+        let commas = self.choices.pick(&[0, 1, 2]);
+        for name in names {
+            tokens.push(self.reference(name));
+            if commas == 1 || commas == 2 && self.choices.once_in(2) {
+                tokens.push(",".to_owned());
+            }
+        }
+        tokens.push("}".to_owned());
+        tokens
+    }
+
+    /// Leaves one out, puts one in twice, turns the order round.
+    fn mangle(&mut self, names: &mut Vec<String>) {
+        if names.is_empty() || !self.slips() {
+            return;
+        }
+        let index = self.choices.below(names.len());
+        match self.choices.below(3) {
+            0 => drop(names.remove(index)),
+            1 => names.push(names[index].clone()),
+            _ => names.reverse(),
+        }
+    }
+
+    fn lone_part(&mut self) {
+        match self.choices.below(3) {
+            0 => drop(self.sensor()),
+            1 => drop(self.wheel(false)),
+            _ => drop(self.ip()),
+        }
+    }
+
+    fn wheel(&mut self, mecanum: bool) -> String {
+        let taken = self.wheels.clone();
+        let name = self.new_name(&taken, &words::NAMES);
+        let mecanum = mecanum != self.slips();
+        let radius = if self.careless.is_some() && self.choices.once_in(6) {
+            self.number(&RADII)
+        } else {
+            self.number(&self.wheel_size())
+        };
+        let keyword = if mecanum { "wheelH" } else { "wheel" };
+        self.push(words(&[keyword, &name, "with", "radius", &radius]));
+        self.wheels.push(name.clone());
+        name
+    }
+
+    fn wheel_size(&self) -> Numbers {
+        Numbers { usual: &RADII.usual[self.radius..=self.radius], doubtful: RADII.doubtful }
+    }
+
+    fn sensor(&mut self) -> String {
+        let taken = self.sensors.clone();
+        let name = self.new_name(&taken, &words::NAMES);
+        let tokens: &[&str] = match self.choices.below(6) {
+            0..=2 => &["sensor", &name],
+            3..=4 => &["sensor", &name, ":", "distance"],
+            _ => &["sensor", &name, ":", "bumper"],
+        };
+        self.push(words(tokens));
+        if tokens.last() != Some(&"bumper") {
+            self.distance_sensors.push(name.clone());
+        }
+        self.sensors.push(name.clone());
+        name
+    }
+
+    fn ip(&mut self) -> String {
+        let taken = self.ips.clone();
+        let name = self.new_name(&taken, &words::NAMES);
+        let is_doubtful = self.slips();
+        let address = self.choices.pick(if is_doubtful { ADDRESSES.doubtful } else { ADDRESSES.usual });
+        self.push(words(&["ip", &name, address]));
+        self.ips.push(name.clone());
+        name
+    }
+
+    /// Its wheels and sensors with it, unless it uses those of another.
+    fn robot(&mut self) {
+        let (drive, count, mecanum) = self.choices.pick(&[
+            (Some("tw"), 2, false),
+            (None, 2, false),
+            (Some("fw"), 4, false),
+            (Some("fwh"), 4, true),
+            (None, 4, true),
+            (None, 4, false),
+        ]);
+        let wheels = self.some_wheels(count, mecanum);
+        let sensors = self.some_sensors();
+        let taken: Vec<String> = self.robots.iter().map(|robot| robot.name.clone()).collect();
+        let name = self.new_name(&taken, &words::NAMES);
+        let eyes = sensors.iter().filter(|sensor| self.distance_sensors.contains(sensor)).count();
+        let robot = Robot { name, wheels, mecanum, explores: count == 2 && eyes >= 5, sensors };
+        self.declare_robot(&robot, drive);
+        self.robots.push(robot);
+        self.movement_of(self.robots.len() - 1, false);
+    }
+
+    fn declare_robot(&mut self, robot: &Robot, drive: Option<&'static str>) {
+        let drive = if self.slips() {
+            self.choices.pick(&[None, Some("tw"), Some("fw"), Some("fwh")])
+        } else {
+            drive
+        };
+        let type_clause = drive.map(|drive| words(&["type", drive])).unwrap_or_default();
+        let mut tokens = if self.recipe.older_spellings && self.choices.once_in(24) {
+            [words(&["robot"]), type_clause, words(&[&robot.name])].concat()
+        } else {
+            [words(&["robot", &robot.name]), type_clause].concat()
+        };
+        let port = self.port();
+        tokens.extend(words(&["with", "port", &port, "has"]));
+        let mut wheels = robot.wheels.clone();
+        self.mangle(&mut wheels);
+        tokens.extend(self.list(&wheels));
+        tokens.push("wheels".to_owned());
+        if !robot.sensors.is_empty() {
+            let mut sensors = robot.sensors.clone();
+            self.mangle(&mut sensors);
+            if !sensors.is_empty() {
+                tokens.extend(words(&["with", "sensors"]));
+                tokens.extend(self.list(&sensors));
+            }
+        }
+        self.push(tokens);
+    }
+
+    /// A port is a whole number, but may begin with zeros.
+    fn port(&mut self) -> String {
+        let is_doubtful = self.slips();
+        let port = self.choices.pick(if is_doubtful { PORTS.doubtful } else { PORTS.usual });
+        let zeros = if self.recipe.odd_layout && self.choices.once_in(20) { "00" } else { "" };
+        format!("{zeros}{port}")
+    }
+
+    fn some_wheels(&mut self, count: usize, mecanum: bool) -> Vec<String> {
+        let fits = |robot: &&Robot| robot.mecanum == mecanum && robot.wheels.len() == count;
+        if let Some(wheels) = self.robots.iter().find(fits).map(|robot| robot.wheels.clone())
+            && self.choices.once_in(2)
+        {
+            return wheels;
+        }
+        (0..count).map(|_| self.wheel(mecanum)).collect()
+    }
+
+    fn some_sensors(&mut self) -> Vec<String> {
+        let count = self.choices.pick(&[0, 0, 1, 2, 6, 7]);
+        let mut sensors = Vec::new();
+        for index in 0..count {
+            let existing = self.sensors.get(index).cloned().filter(|_| self.choices.once_in(2));
+            let sensor = match existing.filter(|sensor| !sensors.contains(sensor)) {
+                Some(sensor) => sensor,
+                None => self.sensor(),
+            };
+            sensors.push(sensor);
+        }
+        sensors
+    }
+
+    /// Of any robot, or of two at once.
+    fn movement(&mut self) {
+        let robot = self.choices.below(self.robots.len());
+        let may_pair = self.robots.len() > 1;
+        if may_pair && self.choices.once_in(4) {
+            let other = (robot + 1) % self.robots.len();
+            self.movement_of(robot, true);
+            self.movement_of(other, true);
+        } else {
+            self.movement_of(robot, false);
+        }
+    }
+
+    fn movement_of(&mut self, robot: usize, parallel: bool) {
+        let parallel = parallel != self.slips();
+        let (name_of_robot, sensors, explores) = {
+            let robot = &self.robots[robot];
+            (robot.name.clone(), robot.sensors.clone(), robot.explores)
+        };
+        let taken: Vec<String> = self.movements.iter().map(|movement| movement.name.clone()).collect();
+        let name = self.new_name(&taken, &words::NAMES);
+        let of = self.reference(&name_of_robot);
+        let mut tokens = words(if parallel { &["parallel", "movement"] } else { &["movement"] });
+        tokens.extend(words(&[&name, "of", &of, "{"]));
+        let count = if self.slips() { 0 } else { 1 + self.choices.below(5) };
+        for _ in 0..count {
+            let action = self.action(&sensors, explores);
+            tokens.extend(action);
+            self.lines += 1;
+        }
+        tokens.push("}".to_owned());
+        self.push(tokens);
+        self.movements.push(Movement { name, robot: name_of_robot, parallel });
+    }
+
+    fn action(&mut self, sensors: &[String], explores: bool) -> Vec<String> {
+        match self.choices.below(8) {
+            6 if !sensors.is_empty() => self.turn_until(sensors),
+            7 if explores || self.slips() => words(&["slam"]),
+            4..=6 => self.turn(),
+            _ => self.move_(),
+        }
+    }
+
+    fn move_(&mut self) -> Vec<String> {
+        let distance = self.number(&DISTANCES);
+        let unit = self.choices.pick(&["meters", "centimeters"]);
+        let mut tokens = words(&["move", &distance, unit]);
+        if self.choices.once_in(3) {
+            let speed = self.number(&SPEEDS);
+            tokens.extend(words(&["at", &speed]));
+        }
+        tokens
+    }
+
+    fn turn(&mut self) -> Vec<String> {
+        let mut tokens = words(&["turn", self.choices.pick(&["left", "right"])]);
+        if self.choices.once_in(2) {
+            tokens.push(self.number(&ANGLES));
+        }
+        tokens
+    }
+
+    fn turn_until(&mut self, sensors: &[String]) -> Vec<String> {
+        let count = 1 + self.choices.below(sensors.len());
+        let mut named = sensors[..count].to_vec();
+        if self.slips() {
+            named.push(self.sensors[self.choices.below(self.sensors.len())].clone());
+        }
+        let mut tokens = words(&["turn", self.choices.pick(&["left", "right"]), "until"]);
+        tokens.extend(self.list(&named));
+        tokens
+    }
+
+    fn environment(&mut self) {
+        let taken = self.environments.clone();
+        let may_clash = self.slips();
+        let name = self.new_name(&taken, if may_clash { &words::SCRIPTS } else { &words::NAMES });
+        let ip_clause = self.ip_clause();
+        let robots = self.cast();
+        let movements = self.schedule(&robots);
+        let mut tokens = [words(&["environment", &name]), ip_clause, words(&["has"])].concat();
+        tokens.extend(self.list(&robots));
+        tokens.push("robots".to_owned());
+        if !movements.is_empty() || self.choices.once_in(2) {
+            tokens.push("with".to_owned());
+            tokens.extend(self.list(&movements));
+            tokens.push("moves".to_owned());
+        }
+        self.push(tokens);
+        self.environments.push(name);
+    }
+
+    fn ip_clause(&mut self) -> Vec<String> {
+        if !self.choices.once_in(3) {
+            return Vec::new();
+        }
+        let name = if self.ips.is_empty() { self.ip() } else { self.ips[0].clone() };
+        let name = self.reference(&name);
+        let is_older = self.recipe.older_spellings && self.choices.once_in(8);
+        if is_older { words(&[",", &name]) } else { words(&["with", "ip", &name]) }
+    }
+
+    /// The robots of an environment.
+    fn cast(&mut self) -> Vec<String> {
+        let all: Vec<String> = self.robots.iter().map(|robot| robot.name.clone()).collect();
+        let mut robots: Vec<String> = all.into_iter().filter(|_| !self.slips()).collect();
+        self.mangle(&mut robots);
+        robots
+    }
+
+    /// Movements of these robots, no robot twice at the same time, unless by mistake.
+    fn schedule(&mut self, robots: &[String]) -> Vec<String> {
+        let mut listed = Vec::new();
+        let mut busy: Vec<&str> = Vec::new();
+        for movement in &self.movements {
+            let times = self.careless.unwrap_or(usize::MAX);
+            let mut slips = || self.careless.is_some() && self.choices.once_in(times);
+            if !movement.parallel {
+                busy.clear();
+            }
+            let fits = robots.contains(&movement.robot) && !busy.contains(&movement.robot.as_str());
+            if fits != slips() {
+                listed.push(movement.name.clone());
+                if movement.parallel {
+                    busy.push(&movement.robot);
+                }
+            }
+        }
+        self.mangle(&mut listed);
+        listed
+    }
+}
+
+fn plain(name: &str) -> &str {
+    name.trim_start_matches('^')
+}
+
+fn words(words: &[&str]) -> Vec<String> {
+    words.iter().map(|word| (*word).to_owned()).collect()
+}

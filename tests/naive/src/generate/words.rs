@@ -1,0 +1,107 @@
+//! Names and numbers, usual ones and such as people trip over.
+
+use super::choices::Choices;
+
+/// Plain names, keywords behind `^`, contextual keywords, and names that mean something in Python.
+pub(super) const NAMES: [&str; 40] = [
+    "a",
+    "wheelL",
+    "wheelR",
+    "wheelL0",
+    "wheelR0",
+    "left_1",
+    "robot_1",
+    "sensor_1",
+    "mov_1",
+    "area_1",
+    "b",
+    "_",
+    "x9",
+    "Wheel",
+    "distance",
+    "bumper",
+    "import",
+    "^robots",
+    "^moves",
+    "^wheel",
+    "^parallel",
+    "^ip",
+    "class",
+    "None",
+    "print",
+    "self",
+    "sim",
+    "math",
+    "time",
+    "len",
+    "lambda",
+    "robot",
+    "__init__",
+    "async",
+    "fRight",
+    "fLeft",
+    "rRight",
+    "lRight",
+    "A",
+    "AREA_1",
+];
+
+/// Names that make a script's file shadow something, or nearly so.
+pub(super) const SCRIPTS: [&str; 12] =
+    ["json", "Json", "zmq", "con", "COM1", "nul", "cbor", "threading", "json_env", "com10", "aux_1", "vrep"];
+
+/// `robot` is a keyword; the list above is easier to read without the exceptions.
+const MUST_HIDE: [&str; 1] = ["robot"];
+
+pub(super) fn name(choices: &mut Choices, from: &[&'static str]) -> String {
+    let name = choices.pick(from);
+    if MUST_HIDE.contains(&name) { format!("^{name}") } else { name.to_owned() }
+}
+
+pub(super) struct Numbers {
+    pub(super) usual: &'static [&'static str],
+    /// Wrong, or just about right.
+    pub(super) doubtful: &'static [&'static str],
+}
+
+/// Stands for a number with more digits than any floating-point number has.
+pub(super) const ENDLESS: &str = "endless";
+
+pub(super) const RADII: Numbers = Numbers {
+    usual: &["4.5", "4.5", "4.5", "5", "12.25", "99.9"],
+    doubtful: &["0", "-4.5", "-0.0", "100", "100.01", "450", "0.0000000001", ENDLESS],
+};
+
+pub(super) const DISTANCES: Numbers = Numbers {
+    usual: &["4", "1.5", "-2", "400", "-0.25", "33.3"],
+    doubtful: &["0", "-0", "0.000", "1000000", "1000000.01", "-1000001", "100000000", "100000001", ENDLESS],
+};
+
+pub(super) const SPEEDS: Numbers =
+    Numbers { usual: &["9.0", "12", "4.75", "0.5"], doubtful: &["0", "-9", "-0.0", "0.001", ENDLESS] };
+
+pub(super) const ANGLES: Numbers = Numbers {
+    usual: &["90", "45", "30.5", "180", "360"],
+    doubtful: &["0", "-90", "360.01", "720", "-400", "-0.0", ENDLESS],
+};
+
+pub(super) const PORTS: Numbers = Numbers {
+    usual: &["19999", "20000", "19997", "23000", "1", "65535"],
+    doubtful: &["0", "65536", "70000", "99999999999999999999999", "00000"],
+};
+
+pub(super) const ADDRESSES: Numbers = Numbers {
+    usual: &["127.0.0.1", "10.0.0.12", "192.168.1.255", "0.0.0.0"],
+    doubtful: &["256.0.0.1", "127.0.0.999", "1.2.3.99999999999999999999", "127.000.000.001"],
+};
+
+/// The same number, written in another way.
+pub(super) fn rewritten(choices: &mut Choices, number: &str) -> String {
+    let sign = if number.starts_with('-') { "-" } else { "" };
+    let digits = number.trim_start_matches('-');
+    let zeros = choices.pick(&["", "", "0", "00"]);
+    let point = if digits.contains('.') { "" } else { "." };
+    let fraction = choices.pick(&["", "0", "00000"]);
+    let tail = if fraction.is_empty() { String::new() } else { format!("{point}{fraction}") };
+    format!("{sign}{zeros}{digits}{tail}")
+}

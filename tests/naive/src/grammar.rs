@@ -1,0 +1,262 @@
+//! "Grammar" of the contract, one function per rule, in its order. `None` means: not in the language.
+
+use std::ops::Range;
+
+use crate::Finding;
+use crate::program::{
+    Action, ActionKind, Body, Entity, Environment, Ip, Movement, Name, Number, Program, Robot, Sensor, Wheel,
+};
+use crate::tokens::{Kind, Token};
+
+pub(crate) fn read(tokens: &[Token], end: usize) -> Option<Program> {
+    Reader { tokens, at: 0, end, older_spellings: Vec::new() }.program()
+}
+
+struct Reader<'a> {
+    tokens: &'a [Token],
+    at: usize,
+    /// Where the text ends.
+    end: usize,
+    older_spellings: Vec<Finding>,
+}
+
+impl Reader<'_> {
+    fn peek(&self) -> Option<&Token> {
+        self.tokens.get(self.at)
+    }
+
+    /// The next token, if it is of this kind.
+    fn next(&mut self, kind: Kind) -> Option<Token> {
+        let token = self.peek().filter(|token| token.kind == kind)?.clone();
+        self.at += 1;
+        Some(token)
+    }
+
+    fn sees(&self, word: &str) -> bool {
+        let is_word = |token: &Token| matches!(token.kind, Kind::Keyword | Kind::Sign) && token.text == word;
+        self.peek().is_some_and(is_word)
+    }
+
+    fn word(&mut self, word: &str) -> Option<Range<usize>> {
+        let range = self.peek().filter(|_| self.sees(word))?.range.clone();
+        self.at += 1;
+        Some(range)
+    }
+
+    fn one_of(&mut self, words: &[&'static str]) -> Option<&'static str> {
+        words.iter().copied().find(|word| self.word(word).is_some())
+    }
+
+    /// A word that stays usable as a name: `distance`, `bumper`, `import`, all without `^`.
+    fn contextual(&mut self, word: &str) -> Option<()> {
+        let plain = |token: &&Token| {
+            token.kind == Kind::Name && token.text == word && token.range.len() == word.len()
+        };
+        self.peek().filter(plain)?;
+        self.at += 1;
+        Some(())
+    }
+
+    fn last_end(&self) -> usize {
+        self.tokens[..self.at].last().map_or(self.end, |token| token.range.end)
+    }
+
+    /// Where the next token starts.
+    fn start(&self) -> usize {
+        self.peek().map_or(self.end, |token| token.range.start)
+    }
+
+    fn name(&mut self) -> Option<Name> {
+        self.next(Kind::Name).map(|token| Name { text: token.text, range: token.range })
+    }
+
+    fn number(&mut self) -> Option<Number> {
+        self.next(Kind::Number).map(|token| Number { text: token.text, range: token.range })
+    }
+
+    /// `[0-9]+`
+    fn integer(&mut self) -> Option<Number> {
+        self.number().filter(|number| number.text.bytes().all(|byte| byte.is_ascii_digit()))
+    }
+
+    // Program = { Import } { Entity } ;
+    fn program(mut self) -> Option<Program> {
+        while self.contextual("import").is_some() {
+            self.next(Kind::Text)?;
+        }
+        let mut entities = Vec::new();
+        while self.at < self.tokens.len() {
+            entities.push(self.entity()?);
+        }
+        Some(Program { entities, older_spellings: self.older_spellings })
+    }
+
+    // Entity = Wheel | Sensor | Ip | Robot | Movement | Environment ;
+    fn entity(&mut self) -> Option<Entity> {
+        let start = self.start();
+        let parallel = self.word("parallel");
+        let (name, body) =
+            match self.one_of(&["wheel", "wheelH", "sensor", "ip", "robot", "movement", "environment"])? {
+                "movement" => self.movement(parallel)?,
+                _ if parallel.is_some() => return None,
+                "wheel" => self.wheel(false)?,
+                "wheelH" => self.wheel(true)?,
+                "sensor" => self.sensor()?,
+                "ip" => self.ip()?,
+                "robot" => self.robot()?,
+                _ => self.environment()?,
+            };
+        Some(Entity { range: start..self.last_end(), name, body })
+    }
+
+    // Wheel = ( "wheel" | "wheelH" ) Name "with" "radius" Number ;
+    fn wheel(&mut self, mecanum: bool) -> Option<(Name, Body)> {
+        let name = self.name()?;
+        self.word("with")?;
+        self.word("radius")?;
+        let radius = self.number()?;
+        Some((name, Body::Wheel(Wheel { mecanum, radius })))
+    }
+
+    // Sensor = "sensor" Name [ ":" ( "distance" | "bumper" ) ] ;
+    fn sensor(&mut self) -> Option<(Name, Body)> {
+        let name = self.name()?;
+        let mut bumper = false;
+        if self.word(":").is_some() {
+            bumper = self.contextual("bumper").is_some();
+            if !bumper {
+                self.contextual("distance")?;
+            }
+        }
+        Some((name, Body::Sensor(Sensor { bumper })))
+    }
+
+    // Ip = "ip" Name Ipv4 ;
+    fn ip(&mut self) -> Option<(Name, Body)> {
+        let name = self.name()?;
+        let token = self.next(Kind::Ipv4)?;
+        Some((name, Body::Ip(Ip { address: Name { text: token.text, range: token.range } })))
+    }
+
+    // Robot = "robot" Name [ "type" ( "tw" | "fw" | "fwh" ) ] "with" "port" Integer
+    //         "has" "{" [ Refs(Wheel) ] "}" "wheels" [ "with" "sensors" "{" Refs(Sensor) "}" ] ;
+    fn robot(&mut self) -> Option<(Name, Body)> {
+        let start = self.start();
+        let mut drive = self.drive()?;
+        if drive.is_some() {
+            let misplaced = start..self.last_end();
+            self.older_spellings.push(Finding::new("misplaced-type", &misplaced));
+        }
+        let name = self.name()?;
+        if drive.is_none() {
+            drive = self.drive()?;
+        }
+        self.word("with")?;
+        self.word("port")?;
+        let port = self.integer()?;
+        self.word("has")?;
+        let (wheels, wheel_list) = self.braced_refs()?;
+        self.word("wheels")?;
+        let mut sensors = Vec::new();
+        if self.word("with").is_some() {
+            self.word("sensors")?;
+            sensors = self.braced_refs()?.0;
+            (!sensors.is_empty()).then_some(())?;
+        }
+        Some((name, Body::Robot(Robot { drive, port, wheels, wheel_list, sensors })))
+    }
+
+    // [ "type" ( "tw" | "fw" | "fwh" ) ]
+    #[allow(
+        clippy::option_option,
+        reason = "outside: whether it is in the language; inside: whether it is there"
+    )]
+    fn drive(&mut self) -> Option<Option<Name>> {
+        let start = self.start();
+        if self.word("type").is_none() {
+            return Some(None);
+        }
+        let text = self.one_of(&["tw", "fw", "fwh"])?.to_owned();
+        Some(Some(Name { text, range: start..self.last_end() }))
+    }
+
+    // Movement = [ "parallel" ] "movement" Name "of" Ref(Robot) "{" { Action } "}" ;
+    fn movement(&mut self, parallel: Option<Range<usize>>) -> Option<(Name, Body)> {
+        let name = self.name()?;
+        self.word("of")?;
+        let robot = self.name()?;
+        let start = self.word("{")?.start;
+        let mut actions = Vec::new();
+        while !self.sees("}") {
+            actions.push(self.action()?);
+        }
+        let body = start..self.word("}")?.end;
+        Some((name, Body::Movement(Movement { parallel, robot, actions, body })))
+    }
+
+    // Action = Move | Turn | "slam" ;
+    fn action(&mut self) -> Option<Action> {
+        let start = self.start();
+        let kind = match self.one_of(&["move", "turn", "slam"])? {
+            "move" => self.move_()?,
+            "turn" => self.turn()?,
+            _ => ActionKind::Slam,
+        };
+        Some(Action { range: start..self.last_end(), kind })
+    }
+
+    // Move = "move" Number ( "meters" | "centimeters" ) [ "at" Number ] ;
+    fn move_(&mut self) -> Option<ActionKind> {
+        let distance = self.number()?;
+        let meters = self.one_of(&["meters", "centimeters"])? == "meters";
+        let speed = if self.word("at").is_some() { Some(self.number()?) } else { None };
+        Some(ActionKind::Move { distance, meters, speed })
+    }
+
+    // Turn = "turn" ( "left" | "right" ) [ Number | "until" "{" Refs(Sensor) "}" ] ;
+    fn turn(&mut self) -> Option<ActionKind> {
+        self.one_of(&["left", "right"])?;
+        if self.word("until").is_some() {
+            let (sensors, _) = self.braced_refs()?;
+            return (!sensors.is_empty()).then_some(ActionKind::TurnUntil { sensors });
+        }
+        Some(ActionKind::Turn { angle: self.number() })
+    }
+
+    // Environment = "environment" Name [ "with" "ip" Ref(Ip) ] "has" "{" [ Refs(Robot) ] "}" "robots"
+    //               [ "with" "{" [ Refs(Movement) ] "}" "moves" ] ;
+    fn environment(&mut self) -> Option<(Name, Body)> {
+        let name = self.name()?;
+        let start = self.start();
+        let mut ip = None;
+        if self.word("with").is_some() {
+            self.word("ip")?;
+            ip = Some(self.name()?);
+        } else if self.word(",").is_some() {
+            ip = Some(self.name()?);
+            let older = start..self.last_end();
+            self.older_spellings.push(Finding::new("deprecated-ip-clause", &older));
+        }
+        self.word("has")?;
+        let (robots, robot_list) = self.braced_refs()?;
+        self.word("robots")?;
+        let mut movements = Vec::new();
+        if self.word("with").is_some() {
+            movements = self.braced_refs()?.0;
+            self.word("moves")?;
+        }
+        Some((name, Body::Environment(Environment { ip, robots, robot_list, movements })))
+    }
+
+    // "{" [ Refs(T) ] "}" where Refs(T) = Ref(T) { [ "," ] Ref(T) } [ "," ] ;
+    fn braced_refs(&mut self) -> Option<(Vec<Name>, Range<usize>)> {
+        let start = self.word("{")?.start;
+        let mut names = Vec::new();
+        while let Some(name) = self.name() {
+            names.push(name);
+            self.word(",");
+        }
+        let end = self.word("}")?.end;
+        Some((names, start..end))
+    }
+}

@@ -1,0 +1,172 @@
+//! That the generator and the checker can be trusted: every code is reached, and every one of them can be read off a
+//! small program.
+
+use std::collections::BTreeSet;
+
+use expect_test::{Expect, expect};
+
+use super::*;
+
+fn findings(text: &str) -> String {
+    let verdict = check(text);
+    let said = verdict.findings.iter().chain(&verdict.excused);
+    let said = said.map(|finding| format!("{} {:?}\n", finding.code, &text[finding.start..finding.end]));
+    let all: String = said.collect();
+    if verdict.grammatical { all } else { format!("not grammatical\n{all}") }
+}
+
+fn expect_findings(text: &str, expected: &Expect) {
+    expected.assert_eq(&findings(text));
+}
+
+#[test]
+fn programs_are_grammatical_and_reach_every_code() {
+    let mut reached = BTreeSet::new();
+    let mut clean = 0;
+    for seed in 0..1_000 {
+        let text = program(seed, 40);
+        let verdict = check(&text);
+        assert!(verdict.grammatical, "seed {seed}:\n{text}");
+        clean += u32::from(verdict.is_clean());
+        reached.extend(verdict.findings.iter().map(|finding| finding.code));
+    }
+    assert_eq!(reached.into_iter().collect::<Vec<_>>(), MEANING);
+    assert!(clean > 100, "only {clean} programs are clean");
+}
+
+/// Every code that a grammatical program can earn, but for those that take more than a program.
+const MEANING: [&str; 31] = [
+    "deprecated-ip-clause",
+    "duplicate-name",
+    "empty-environment",
+    "empty-movement",
+    "idle-robot",
+    "implausible-radius",
+    "invalid-angle",
+    "invalid-ip",
+    "invalid-port",
+    "invalid-radius",
+    "invalid-speed",
+    "misplaced-type",
+    "mixed-radii",
+    "movement-robot-missing",
+    "no-environment",
+    "number-out-of-range",
+    "parallel-conflict",
+    "repeated-robot",
+    "repeated-sensor",
+    "repeated-wheel",
+    "script-name",
+    "sensor-not-on-robot",
+    "single-parallel",
+    "slam-robot",
+    "slam-sensors",
+    "unresolved-reference",
+    "unused-declaration",
+    "wheel-count",
+    "wheel-kind-mismatch",
+    "wheel-order",
+    "zero-distance",
+];
+
+#[test]
+fn programs_without_mistakes_have_no_errors() {
+    let careful = Recipe { mistakes: false, older_spellings: false, ..Recipe::default() };
+    let harmless = ["unused-declaration", "single-parallel", "wheel-order", "script-name", "no-environment"];
+    for seed in 0..300 {
+        let text = careful.seeded(seed);
+        let bad: Vec<_> =
+            check(&text).findings.into_iter().filter(|finding| !harmless.contains(&finding.code)).collect();
+        assert!(bad.is_empty(), "seed {seed}: {bad:?}\n{text}");
+    }
+}
+
+#[test]
+fn a_seed_is_a_program() {
+    assert_eq!(program(7, 30), program(7, 30));
+    assert_ne!(program(7, 30), program(8, 30));
+    let tidy = Recipe { lines: 4, mistakes: false, odd_layout: false, older_spellings: false, imports: true };
+    expect![[r#"
+        sensor area_1 : bumper
+        sensor wheelR
+        robot import with port 65535 has { print import class x9 , } wheels with sensors { ^parallel rRight area_1 distance wheelR wheelR0 }
+        sensor ^parallel : distance
+        wheel class with radius 4.5
+        sensor wheelR0 : distance
+        sensor distance
+        environment None has { import } robots with { print , } moves
+        wheel print with radius 4.5
+        movement print of import { turn left 45 }
+        sensor rRight : bumper
+        wheel x9 with radius 4.5
+        wheel import with radius 4.5
+    "#]].assert_eq(&tidy.seeded(3));
+}
+
+#[test]
+fn lexical_errors_are_told_apart() {
+    expect_findings(
+        "wheel a with radius 4 € $ wheel b",
+        &expect![[r#"
+        not grammatical
+        invalid-character "€"
+        invalid-character "$"
+    "#]],
+    );
+    expect_findings(
+        "sensor s /* and so on",
+        &expect![[r#"
+        not grammatical
+        unterminated-comment "/*"
+    "#]],
+    );
+    expect_findings(
+        "import \"a.pyr\nsensor s",
+        &expect![[r#"
+        not grammatical
+        unterminated-string "\"a.pyr"
+    "#]],
+    );
+    expect_findings(
+        "ip i 1.2.3",
+        &expect![[r#"
+        not grammatical
+    "#]],
+    );
+    expect_findings(
+        "\u{feff}wheel ^wheel with radius 4meters",
+        &expect![[r#"
+        not grammatical
+    "#]],
+    );
+}
+
+#[test]
+fn the_grammar_has_its_contextual_names() {
+    expect_findings(
+        "sensor distance:distance wheel import with radius.5",
+        &expect![[r#"
+        not grammatical
+    "#]],
+    );
+    expect_findings("sensor distance:distance wheel import with radius 5", &expect![[""]]);
+    expect_findings(
+        "sensor s : ^bumper",
+        &expect![[r#"
+        not grammatical
+    "#]],
+    );
+    expect_findings(
+        "robot type tw r with port 1 has { } wheels",
+        &expect![[r#"
+        misplaced-type "type tw"
+        wheel-count "{ }"
+    "#]],
+    );
+    expect_findings(
+        "robot type tw r type tw with port 1 has { } wheels",
+        &expect![[r#"
+        not grammatical
+    "#]],
+    );
+}

@@ -1,0 +1,207 @@
+//! "Lexical structure" of the contract.
+
+use std::ops::Range;
+
+use crate::Finding;
+
+/// Words that are no names unless `^` stands before them.
+const KEYWORDS: [&str; 30] = [
+    "wheel",
+    "wheelH",
+    "with",
+    "radius",
+    "sensor",
+    "ip",
+    "robot",
+    "type",
+    "tw",
+    "fw",
+    "fwh",
+    "port",
+    "has",
+    "wheels",
+    "sensors",
+    "parallel",
+    "movement",
+    "of",
+    "move",
+    "meters",
+    "centimeters",
+    "at",
+    "turn",
+    "left",
+    "right",
+    "until",
+    "slam",
+    "environment",
+    "robots",
+    "moves",
+];
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Keyword,
+    Name,
+    Number,
+    Malformed,
+    Ipv4,
+    Text,
+    Sign,
+}
+
+#[derive(Debug, Clone)]
+pub(crate) struct Token {
+    pub(crate) kind: Kind,
+    /// As written; a name without its `^`.
+    pub(crate) text: String,
+    /// As written; a name with its `^`.
+    pub(crate) range: Range<usize>,
+}
+
+/// All tokens, and what is wrong between them.
+pub(crate) fn read(text: &str) -> (Vec<Token>, Vec<Finding>) {
+    let mut reader = Reader { text, at: 0, tokens: Vec::new(), findings: Vec::new() };
+    reader.skip("\u{feff}");
+    while reader.at < text.len() {
+        reader.read_one();
+    }
+    (reader.tokens, reader.findings)
+}
+
+struct Reader<'a> {
+    text: &'a str,
+    at: usize,
+    tokens: Vec<Token>,
+    findings: Vec<Finding>,
+}
+
+impl Reader<'_> {
+    fn rest(&self) -> &str {
+        &self.text[self.at..]
+    }
+
+    fn skip(&mut self, what: &str) -> bool {
+        let found = self.rest().starts_with(what);
+        if found {
+            self.at += what.len();
+        }
+        found
+    }
+
+    /// How many bytes from here on belong together by this rule.
+    fn length_while(&self, belongs: impl Fn(char) -> bool) -> usize {
+        self.rest().find(|character| !belongs(character)).unwrap_or(self.rest().len())
+    }
+
+    fn read_one(&mut self) {
+        let start = self.at;
+        let blank = self.length_while(|character| " \t\r\n\u{c}".contains(character));
+        if blank > 0 {
+            self.at += blank;
+        } else if self.skip("//") {
+            self.at += self.length_while(|character| character != '\n' && character != '\r');
+        } else if self.skip("/*") {
+            self.skip_block_comment(start);
+        } else if self.skip("\"") {
+            self.read_string(start);
+        } else if let Some(length) = name_length(self.rest()) {
+            self.read_name(length);
+        } else if let Some(length) = number_length(self.rest()) {
+            let kind = kind_of_number(&self.rest()[..length]);
+            self.push(kind, length);
+        } else if self.rest().starts_with(['{', '}', ':', ',']) {
+            self.push(Kind::Sign, 1);
+        } else {
+            self.read_invalid();
+        }
+    }
+
+    fn push(&mut self, kind: Kind, length: usize) {
+        let range = self.at..self.at + length;
+        self.tokens.push(Token { kind, text: self.text[range.clone()].to_owned(), range });
+        self.at += length;
+    }
+
+    /// They do not nest; an unclosed one is one error, at its opening.
+    fn skip_block_comment(&mut self, start: usize) {
+        if let Some(length) = self.rest().find("*/") {
+            self.at += length + 2;
+        } else {
+            self.findings.push(Finding::new("unterminated-comment", &(start..start + 2)));
+            self.at = self.text.len();
+        }
+    }
+
+    /// `"…"` on one line, no escapes.
+    fn read_string(&mut self, start: usize) {
+        let length = self.length_while(|character| !"\"\r\n".contains(character));
+        self.at += length;
+        if !self.skip("\"") {
+            self.findings.push(Finding::new("unterminated-string", &(start..self.at)));
+        }
+        let range = start..self.at;
+        self.tokens.push(Token { kind: Kind::Text, text: self.text[range.clone()].to_owned(), range });
+    }
+
+    /// A leading `^` lets a keyword be a name and is not part of it.
+    fn read_name(&mut self, length: usize) {
+        let written = &self.rest()[..length];
+        let kind = if KEYWORDS.contains(&written) { Kind::Keyword } else { Kind::Name };
+        let text = written.trim_start_matches('^').to_owned();
+        self.tokens.push(Token { kind, text, range: self.at..self.at + length });
+        self.at += length;
+    }
+
+    /// Characters no token starts with; adjacent ones are one finding.
+    fn read_invalid(&mut self) {
+        let start = self.at;
+        while self.at < self.text.len() && !starts_something(self.rest()) {
+            self.at += self.rest().chars().next().map_or(0, char::len_utf8);
+        }
+        self.findings.push(Finding::new("invalid-character", &(start..self.at)));
+    }
+}
+
+fn starts_something(rest: &str) -> bool {
+    rest.starts_with([' ', '\t', '\r', '\n', '\u{c}', '{', '}', ':', ',', '"'])
+        || rest.starts_with("//")
+        || rest.starts_with("/*")
+        || name_length(rest).is_some()
+        || number_length(rest).is_some()
+}
+
+/// `[A-Za-z_][A-Za-z0-9_]*`, perhaps behind `^`.
+fn name_length(rest: &str) -> Option<usize> {
+    let letters = rest.strip_prefix('^').unwrap_or(rest);
+    if !letters.starts_with(|character: char| character.is_ascii_alphabetic() || character == '_') {
+        return None;
+    }
+    let belongs = |character: char| character.is_ascii_alphanumeric() || character == '_';
+    let length = letters.find(|character| !belongs(character)).unwrap_or(letters.len());
+    Some(rest.len() - letters.len() + length)
+}
+
+/// Digits and dots as far as they go, `-` directly before them. The first is a digit, or a dot right before one.
+fn number_length(rest: &str) -> Option<usize> {
+    let digits = rest.strip_prefix('-').unwrap_or(rest);
+    let after_dot = digits.strip_prefix('.').unwrap_or(digits);
+    if !after_dot.starts_with(|character: char| character.is_ascii_digit()) {
+        return None;
+    }
+    let belongs = |character: char| character.is_ascii_digit() || character == '.';
+    let length = digits.find(|character| !belongs(character)).unwrap_or(digits.len());
+    Some(rest.len() - digits.len() + length)
+}
+
+fn kind_of_number(written: &str) -> Kind {
+    let parts: Vec<&str> = written.trim_start_matches('-').split('.').collect();
+    let negative = written.starts_with('-');
+    if parts.iter().any(|part| part.is_empty()) {
+        return Kind::Malformed;
+    }
+    match parts.len() {
+        1 | 2 => Kind::Number,
+        4 if !negative => Kind::Ipv4,
+        _ => Kind::Malformed,
+    }
+}
