@@ -656,10 +656,10 @@ ROBOTS = (
             "wheelL": 0.045,
             "wheelR": 0.045,
         },
-        sensors=(
+        sensors=[
             "fSensor",
             "rSensor",
-        ),
+        ],
     ),
 )
 

@@ -41,6 +41,7 @@ struct RobotModel {
     drive: &'static str,
     wheels: Vec<WheelModel>,
     /// Only those that some action looks at.
+    // Written as a list: the formatter leaves its lines alone also where there is only one.
     sensors: Vec<String>,
 }
 

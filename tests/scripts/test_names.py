@@ -1,0 +1,165 @@
+"""Whatever things are called in a program, its script pleases Python's tools and drives the robots.
+
+The names tried are all that could disturb a script: Python's keywords and builtins, what the script itself calls its
+own things, and the words of the language.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import itertools
+import keyword
+import pathlib
+import re
+import subprocess
+import sys
+from collections.abc import Sequence
+
+ROOT = pathlib.Path(__file__).parents[2]
+
+# Robots of every type, sensors, an address, movements in sequence and in parallel. `W3` and the like are to be renamed;
+# `^` lets words of the language be names.
+PROGRAM = """
+wheel ^W0 with radius 4.5   wheel ^W1 with radius 4.5
+wheel ^W2 with radius 5     wheel ^W3 with radius 5     wheel ^W4 with radius 5     wheel ^W5 with radius 5
+wheelH ^W6 with radius 6    wheelH ^W7 with radius 6    wheelH ^W8 with radius 6    wheelH ^W9 with radius 6
+sensor ^S0 : distance
+sensor ^S1 : bumper
+ip ^I0 127.0.0.1
+
+robot ^R0 type tw with port 23000 has { ^W0 ^W1 } wheels with sensors { ^S0, ^S1 }
+robot ^R1 type fw with port 23000 has { ^W2 ^W3 ^W4 ^W5 } wheels
+robot ^R2 type fwh with port 23001 has { ^W6 ^W7 ^W8 ^W9 } wheels with sensors { ^S1 }
+
+movement ^M0 of ^R0 {
+  move 6 centimeters
+  turn left until { ^S0, ^S1 }
+  turn right 20
+}
+movement ^M1 of ^R1 { move -5 centimeters at 12 }
+parallel movement ^M2 of ^R2 { turn left 15 move 0.05 meters }
+parallel movement ^M3 of ^R0 { move 5 centimeters }
+
+environment ^E0 with ip ^I0 has { ^R0 ^R1 ^R2 } robots with { ^M0 ^M1 ^M2 ^M3 } moves
+"""
+PLACES = sorted(set(re.findall(r"\^([A-Z]\d)", PROGRAM)))
+
+# One name for as much as can have it: each kind of things has names of its own. Only a wheel and a sensor of one robot
+# cannot share theirs: they are objects side by side in the scene.
+ONE_NAME = """
+wheel ^X with radius 4.5
+wheel left_one with radius 4.5
+wheel right_one with radius 4.5
+sensor ^X
+ip ^X 127.0.0.1
+robot ^X type tw with port 23000 has { left_one right_one } wheels with sensors { ^X }
+robot with_wheel type tw with port 23000 has { ^X right_one } wheels
+movement ^X of ^X { move 5 centimeters turn left until { ^X } turn right 20 }
+parallel movement second of with_wheel { move 5 centimeters }
+parallel movement third of ^X { move 5 centimeters }
+environment ^X with ip ^X has { ^X with_wheel } robots with { ^X second third } moves
+"""
+
+
+def renamed(program: str, names: dict[str, str]) -> str:
+    return re.sub(r"\^([A-Z]\d?)\b", lambda place: "^" + names[place[1]], program)
+
+
+def built(command: str, folder: pathlib.Path, program: str) -> pathlib.Path:
+    """The script of a program."""
+    path = folder / "program.pyr"
+    folder.mkdir()
+    path.write_text(program, encoding="utf-8")
+    done = subprocess.run(
+        [command, "build", path], capture_output=True, encoding="utf-8", check=False
+    )
+    assert done.returncode == 0, done.stderr
+    [script] = folder.glob("*.py")
+    return script
+
+
+def identifiers(script: str) -> set[str]:
+    """What a script calls its own things and those of others."""
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(script)):
+        for field in ("id", "name", "attr", "arg", "asname", "module"):
+            value = getattr(node, field, None)
+            if isinstance(value, str):
+                found.update(value.split("."))
+    return found
+
+
+def language_words() -> set[str]:
+    grammar = (ROOT / "grammar" / "pydslrep.ebnf").read_text(encoding="utf-8")
+    return set(re.findall(r'"([A-Za-z]+)"', grammar))
+
+
+def all_names(script: str) -> list[str]:
+    """Names that could disturb a script, in an order in which each takes another place than its neighbours."""
+    own = {name for name in identifiers(script) if name not in PLACES}
+    names = (
+        set(keyword.kwlist) | set(keyword.softkwlist) | set(dir(builtins)) | own
+    ) | language_words()
+    names |= {"__main__", "__init__", "__name__", "__file__", "self", "_", "__"}
+    # Movements become `movement_NAME`; what is already called so must not be hit.
+    names |= {name.removeprefix("movement_") for name in own}
+    return sorted(
+        name for name in names if re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name)
+    )
+
+
+def drive(command: str, program: pathlib.Path) -> None:
+    done = subprocess.run(
+        [command, "run", "--no-progress", program],
+        capture_output=True,
+        encoding="utf-8",
+        check=False,
+    )
+    assert done.returncode == 0, f"{program.read_text()}\n{done.stderr}"
+    assert "driven" in done.stdout
+
+
+def please_tools(scripts: Sequence[pathlib.Path], folder: pathlib.Path) -> None:
+    """As a user has the tools, without this repository's settings."""
+    folder.mkdir()
+    for index, script in enumerate(scripts):
+        # One look at all of them: scripts may be called like each other, or like modules.
+        (folder / f"script_{index}.py").write_bytes(script.read_bytes())
+    for arguments in (
+        ["ruff", "check", "--isolated", "--no-cache", "."],
+        ["ruff", "format", "--isolated", "--no-cache", "--check", "."],
+        ["mypy", "--strict", "--python-version", "3.10", "--config-file=", "."],
+    ):
+        done = subprocess.run(
+            [sys.executable, "-m", *arguments],
+            cwd=folder,
+            capture_output=True,
+            encoding="utf-8",
+            check=False,
+        )
+        assert done.returncode == 0, done.stdout
+
+
+def test_any_name_is_only_a_name(command: str, tmp_path: pathlib.Path) -> None:
+    plain = built(command, tmp_path / "plain", renamed(PROGRAM, {p: p for p in PLACES}))
+    names = all_names(plain.read_text(encoding="utf-8"))
+    assert {"class", "None", "print", "robot", "math", "main", "self"} <= set(names)
+    scripts = []
+    for index, start in enumerate(range(0, len(names), len(PLACES))):
+        # The last few are filled up with the first ones.
+        some = itertools.chain(names[start:], names)
+        chosen = dict(zip(PLACES, some, strict=False))
+        folder = tmp_path / f"names_{index}"
+        scripts.append(built(command, folder, renamed(PROGRAM, chosen)))
+        drive(command, folder / "program.pyr")
+    please_tools(scripts, tmp_path / "scripts")
+
+
+def test_one_name_for_everything(command: str, tmp_path: pathlib.Path) -> None:
+    scripts = []
+    for name in ("x", "class", "robot", "movement_x", "main", "math"):
+        folder = tmp_path / name
+        scripts.append(built(command, folder, renamed(ONE_NAME, {"X": name})))
+        drive(command, folder / "program.pyr")
+    please_tools(scripts, tmp_path / "scripts")
