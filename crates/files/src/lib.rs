@@ -8,10 +8,9 @@ mod search;
 
 use std::path::Path;
 
-use pydslrep_config::FILE_NAME;
-
+pub use pydslrep_config::FILE_NAME;
 pub use read::{MOST_BYTES, Unread, decode, read};
-pub use search::{Found, find};
+pub use search::{Found, belongs, find};
 
 /// The ending of programs.
 pub const EXTENSION: &str = "pyr";

@@ -40,6 +40,22 @@ pub fn find(folder: &Path, most: usize) -> Found {
     found
 }
 
+/// Whether a search in a folder would find a program; looks only at what lies on the way.
+pub fn belongs(folder: &Path, program: &Path) -> bool {
+    if !is_program(program) || !program.starts_with(folder) {
+        return false;
+    }
+    let wanted = program.to_owned();
+    let mut way = walk(folder).filter_entry(move |entry| wanted.starts_with(entry.path())).build();
+    way.any(|entry| entry.is_ok_and(|entry| entry.path() == program))
+}
+
+fn walk(folder: &Path) -> WalkBuilder {
+    let mut walk = WalkBuilder::new(folder);
+    walk.require_git(false).git_global(false).sort_by_file_name(Ord::cmp);
+    walk
+}
+
 #[cfg(test)]
 mod tests {
     use std::fs;
@@ -74,6 +90,11 @@ mod tests {
         let folder = folder(&["target/x.pyr", "a.pyr", "old.pyr"]);
         fs::write(folder.path().join(".gitignore"), "/target/\nold*\n").unwrap();
         assert_eq!(names(&folder, 100), (vec!["a.pyr".to_owned()], true));
+        let belongs = |name: &str| super::belongs(folder.path(), &folder.path().join(name));
+        assert!(belongs("a.pyr"));
+        for name in ["target/x.pyr", "old.pyr", "gone.pyr", "a.txt", "../a.pyr"] {
+            assert!(!belongs(name), "{name}");
+        }
     }
 
     #[test]

@@ -51,6 +51,16 @@ pub(crate) struct ClientFeatures {
     pub(crate) versioned_edits: bool,
     /// Edits may create files.
     pub(crate) create_files: bool,
+    /// It can be asked to tell when files change.
+    pub(crate) watched_files: bool,
+    /// It can be asked for settings.
+    pub(crate) settings: bool,
+    /// It can be asked to tell when settings change.
+    pub(crate) registers_settings: bool,
+    /// It shows how far work is.
+    pub(crate) progress: bool,
+    /// It asks again for diagnostics when it is told to.
+    pub(crate) refreshes_diagnostics: bool,
     /// It can be asked to show a file.
     pub(crate) show_document: bool,
 }
@@ -61,8 +71,10 @@ impl ClientFeatures {
         let mut features = Self::default();
         let offered = client.general.as_ref().and_then(|general| general.position_encodings.as_deref());
         features.encoding = Encoding::negotiate(offered);
-        let show_document = client.window.as_ref().and_then(|window| window.show_document.as_ref());
-        features.show_document = show_document.is_some_and(|show| show.support);
+        if let Some(window) = &client.window {
+            features.show_document = window.show_document.as_ref().is_some_and(|show| show.support);
+            features.progress = window.work_done_progress == Some(true);
+        }
         if let Some(workspace) = &client.workspace {
             features.read_workspace(workspace);
         }
@@ -74,6 +86,15 @@ impl ClientFeatures {
     }
 
     fn read_workspace(&mut self, workspace: &WorkspaceClientCapabilities) {
+        self.watched_files = workspace
+            .did_change_watched_files
+            .is_some_and(|watched| watched.dynamic_registration == Some(true));
+        self.settings = workspace.configuration == Some(true);
+        self.registers_settings = workspace
+            .did_change_configuration
+            .is_some_and(|settings| settings.dynamic_registration == Some(true));
+        self.refreshes_diagnostics =
+            workspace.diagnostics.as_ref().is_some_and(|pulled| pulled.refresh_support == Some(true));
         let Some(edit) = &workspace.workspace_edit else { return };
         let operations = edit.resource_operations.as_deref().unwrap_or_default();
         self.create_files = operations.contains(&ResourceOperationKind::Create);

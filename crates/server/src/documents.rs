@@ -1,6 +1,9 @@
-//! The documents: what the client shows, exactly as it sent it, and what those import.
+//! The documents: what the client shows, exactly as it sent it, and the files of the workspace besides.
+
+use std::sync::Arc;
 
 use pydslrep_analysis::FileId;
+use pydslrep_config::{FILE_NAME, Settings};
 use pydslrep_syntax::Span;
 use ropey::Rope;
 use rustc_hash::FxHashMap;
@@ -8,7 +11,7 @@ use tower_lsp::ls_types::{Diagnostic, TextDocumentContentChangeEvent, Uri};
 
 use crate::positions::{self, Encoding};
 
-/// A document that is open in the client, or a file that one of those imports.
+/// A document that is open in the client, or a file that matters to one of those.
 #[derive(Debug)]
 pub(crate) struct Document {
     /// As the client writes it, for it is the client that has to recognise it.
@@ -23,9 +26,32 @@ pub(crate) struct Document {
     pub(crate) opening: u64,
     /// What the client was last told about it, if anything.
     pub(crate) published: Option<Vec<Diagnostic>>,
+    /// The paths it imported when they were last looked for.
+    pub(crate) imports: Vec<String>,
+    /// What is set for it.
+    pub(crate) settings: Arc<Settings>,
 }
 
 impl Document {
+    /// A document that was just opened or found, not yet analysed.
+    pub(crate) fn new(uri: Uri, text: Rope, version: Option<i32>) -> Self {
+        Self {
+            uri,
+            version,
+            text,
+            file: None,
+            opening: 0,
+            published: None,
+            imports: Vec::new(),
+            settings: Arc::default(),
+        }
+    }
+
+    /// Whether it is a program; else it holds settings.
+    pub(crate) fn is_program(&self) -> bool {
+        self.uri.as_str().rsplit('/').next() != Some(FILE_NAME)
+    }
+
     /// Applies one change; returns the bytes it replaces in the text before it, `None` if it replaces all of them.
     pub(crate) fn apply(
         &mut self,
@@ -122,14 +148,8 @@ mod tests {
             encoding in prop::sample::select(vec![Encoding::Utf8, Encoding::Utf16, Encoding::Utf32]),
         ) {
             let mut expected = text.clone();
-            let mut document = Document {
-                uri: Uri::from_str("file:///a.pyr").unwrap(),
-                version: Some(0),
-                text: Rope::from_str(&text),
-                file: None,
-                opening: 0,
-                published: None,
-            };
+            let uri = Uri::from_str("file:///a.pyr").unwrap();
+            let mut document = Document::new(uri, Rope::from_str(&text), Some(0));
             for (a, b, new_text) in changes {
                 let (start, end) = (naive_offset(&expected, a, encoding), naive_offset(&expected, b, encoding));
                 expected.replace_range(start.min(end)..start.max(end), &new_text);

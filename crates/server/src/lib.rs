@@ -19,7 +19,6 @@ mod documents;
 #[cfg(feature = "process")]
 mod frame;
 mod handlers;
-mod imports;
 mod log;
 mod message;
 #[cfg(feature = "process")]
@@ -32,7 +31,9 @@ mod positions;
 mod process;
 mod server;
 mod session;
+mod settings;
 mod state;
+mod workspace;
 
 pub use message::Outbox;
 #[cfg(feature = "process")]

@@ -1,22 +1,24 @@
 //! The whole surface of the server, one entry per message of the protocol.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread;
 
 use serde::{Deserialize, Serialize};
 use tower_lsp::jsonrpc::{Error, Request, Result};
 #[allow(clippy::wildcard_imports, reason = "this file names half of the protocol")]
 use tower_lsp::ls_types::*;
-use tower_lsp::{Client, LanguageServer};
+use tower_lsp::{Client, LanguageServer, NotCancellable, OngoingProgress, Unbounded};
 
 use crate::capabilities;
 use crate::client::ClientFeatures;
 use crate::handlers::{
-    code_actions, completion, diagnostics, document_symbols, folding, formatting, hover, navigation,
+    self, code_actions, completion, diagnostics, document_symbols, folding, formatting, hover, navigation,
     references, scripts, selection, semantic_tokens, signature, synchronization,
 };
-use crate::imports;
+use crate::log::log;
 use crate::message::Outbox;
 use crate::state::State;
+use crate::workspace;
 
 /// The server's end of one session; clones share it.
 ///
@@ -48,16 +50,32 @@ impl LanguageServer for Server {
     async fn initialize(&self, params: InitializeParams) -> Result<InitializeResult> {
         let features = ClientFeatures::new(&params.capabilities);
         let result = capabilities::initialize_result(&features);
-        let roots = params.workspace_folders.iter().flatten().map(|folder| &folder.uri);
         let mut state = self.state();
         state.client = features;
-        state.folders = imports::folders(roots);
+        state.folders = workspace::folders_of(&params);
+        if let Some(settings) = &params.initialization_options {
+            handlers::workspace::set(&mut state, settings, &self.outbox);
+        }
         drop(state);
         #[cfg(all(target_os = "linux", feature = "process"))]
         if let Some(client) = params.process_id {
             crate::parent::leave_with(client);
         }
         Ok(result)
+    }
+
+    async fn initialized(&self, _: InitializedParams) {
+        let (registrations, folders) = {
+            let state = self.state();
+            (handlers::workspace::registrations(&state), state.folders.clone())
+        };
+        if !registrations.is_empty()
+            && let Err(error) = self.client.register_capability(registrations).await
+        {
+            log(format_args!("the client does not tell when files or settings change: {error}"));
+        }
+        self.ask_for_settings().await;
+        self.index(folders).await;
     }
 
     async fn shutdown(&self) -> Result<()> {
@@ -67,15 +85,37 @@ impl LanguageServer for Server {
     //// Documents ////
 
     async fn did_open(&self, params: DidOpenTextDocumentParams) {
-        synchronization::open(&mut self.state(), params, &self.outbox);
+        synchronization::open(&mut self.state(), params);
     }
 
     async fn did_change(&self, params: DidChangeTextDocumentParams) {
-        synchronization::change(&mut self.state(), &params, &self.outbox);
+        synchronization::change(&mut self.state(), &params);
     }
 
     async fn did_close(&self, params: DidCloseTextDocumentParams) {
-        synchronization::close(&mut self.state(), params, &self.outbox);
+        synchronization::close(&mut self.state(), &params);
+    }
+
+    //// The workspace ////
+
+    async fn did_change_watched_files(&self, params: DidChangeWatchedFilesParams) {
+        handlers::workspace::files_changed(&mut self.state(), &params);
+        self.refresh().await;
+    }
+
+    async fn did_change_workspace_folders(&self, params: DidChangeWorkspaceFoldersParams) {
+        let added = handlers::workspace::folders_changed(&mut self.state(), &params);
+        self.index(added).await;
+    }
+
+    async fn did_change_configuration(&self, params: DidChangeConfigurationParams) {
+        // Clients that can be asked say nothing here, or not all.
+        if self.state().client.settings {
+            self.ask_for_settings().await;
+        } else {
+            handlers::workspace::set(&mut self.state(), &params.settings, &self.outbox);
+        }
+        self.refresh().await;
     }
 
     //// What is wrong ////
@@ -178,6 +218,64 @@ impl LanguageServer for Server {
         params: SemanticTokensRangeParams,
     ) -> Result<Option<SemanticTokensRangeResult>> {
         Ok(semantic_tokens::range(&self.state(), &params).map(Into::into))
+    }
+}
+
+/// What goes on beside the messages.
+impl Server {
+    async fn ask_for_settings(&self) {
+        if !self.state().client.settings {
+            return;
+        }
+        match self.client.configuration(handlers::workspace::wanted_settings()).await {
+            Ok(settings) => {
+                let settings = settings.first().cloned().unwrap_or_default();
+                handlers::workspace::set(&mut self.state(), &settings, &self.outbox);
+                self.settle();
+            }
+            Err(error) => log(format_args!("the client does not tell its settings: {error}")),
+        }
+    }
+
+    /// Looks for programs in folders, on a thread of its own.
+    async fn index(&self, folders: Vec<String>) {
+        if folders.is_empty() {
+            return;
+        }
+        let progress = self.begin("Looking for programs").await;
+        let (done, found) = futures::channel::oneshot::channel();
+        let server = self.clone();
+        let work = move || done.send(handlers::workspace::index(&server, &folders));
+        let started = thread::Builder::new().name("workspace".to_owned()).spawn(work);
+        let summary = match started {
+            Ok(_) => found.await.unwrap_or_default(),
+            Err(error) => format!("no programs: {error}"),
+        };
+        if let Some(progress) = progress {
+            progress.finish_with_message(summary).await;
+        }
+        self.refresh().await;
+    }
+
+    async fn begin(&self, title: &str) -> Option<OngoingProgress<Unbounded, NotCancellable>> {
+        if !self.state().client.progress {
+            return None;
+        }
+        let token = ProgressToken::String(format!("pydslrep: {title}"));
+        self.client
+            .send_request::<request::WorkDoneProgressCreate>(WorkDoneProgressCreateParams {
+                token: token.clone(),
+            })
+            .await
+            .ok()?;
+        Some(self.client.progress(token, title).begin().await)
+    }
+
+    /// Asks clients that ask for diagnostics to ask again: what changed is not what they changed.
+    async fn refresh(&self) {
+        if self.state().client.refreshes_diagnostics {
+            let _ = self.client.workspace_diagnostic_refresh().await;
+        }
     }
 }
 

@@ -14,6 +14,7 @@ use tower_lsp::ls_types::{
 use crate::client::ClientFeatures;
 use crate::documents::{Document, Documents, key};
 use crate::positions::{to_offset, to_range, to_span};
+use crate::settings::SettingsStore;
 
 /// Documents, their analysis, and what the client can do.
 #[derive(Debug, Default)]
@@ -22,33 +23,46 @@ pub(crate) struct State {
     pub(crate) client: ClientFeatures,
     /// The analysis of the open documents.
     pub(crate) database: Database,
-    /// The open documents and the files they import.
+    /// The open documents and the other files of the workspace.
     pub(crate) documents: Documents,
+    /// What is set.
+    pub(crate) settings: SettingsStore,
     /// The keys of the folders open in the client, each with `/` at its end.
     pub(crate) folders: Vec<String>,
     /// How many documents have been opened so far, each time counted.
     openings: u64,
-    /// Whether anything was opened, changed or closed since diagnostics were last told.
-    pub(crate) changed: bool,
+    /// Whose diagnostics may have changed since they were last told, beside what the database says.
+    pub(crate) stale: Stale,
+}
+
+/// Documents whose diagnostics have to be told again.
+#[derive(Debug, Default)]
+pub(crate) struct Stale {
+    /// All of them.
+    pub(crate) all: bool,
+    /// These, by their keys.
+    pub(crate) documents: FxHashSet<String>,
+    /// Those that are no longer there and had some.
+    pub(crate) gone: Vec<Uri>,
 }
 
 impl State {
     /// Takes in a document; one that is open already gets the new text.
     pub(crate) fn open(&mut self, opened: TextDocumentItem) {
         let key = key(&opened.uri);
-        let published = self.documents.remove(&key).and_then(|before| before.published);
+        self.documents.remove(&key);
         self.openings += 1;
-        let document = Document {
-            text: Rope::from_str(&opened.text),
-            version: Some(opened.version),
-            uri: opened.uri,
-            file: None,
-            opening: self.openings,
-            published,
-        };
-        self.changed = true;
+        let mut document = Document::new(opened.uri, Rope::from_str(&opened.text), Some(opened.version));
+        document.opening = self.openings;
+        self.stale.documents.insert(key.clone());
         let document = self.documents.entry(key.clone()).insert_entry(document).into_mut();
+        if !document.is_program() {
+            return self.reload_settings();
+        }
         document.file = Some(self.database.open(&key, &opened.text));
+        self.apply_settings(&key);
+        self.follow_changed_imports(&key);
+        self.follow_imports_of(&key);
     }
 
     /// Makes the changes of one message; false if the document is not open.
@@ -58,10 +72,13 @@ impl State {
         let open = self.documents.get_mut(&key).filter(|document| document.version.is_some());
         let Some(document) = open else { return false };
         document.version = Some(params.text_document.version);
-        self.changed = true;
         // All of the document before any of the analysis: should that fail, the document is still right.
         let spans: Vec<Option<Span>> =
             params.content_changes.iter().map(|change| document.apply(change, encoding)).collect();
+        if !document.is_program() {
+            self.reload_settings();
+            return true;
+        }
         let Some(file) = document.file else { return true };
         for (change, span) in params.content_changes.iter().zip(spans) {
             match span {
@@ -69,23 +86,33 @@ impl State {
                 None => document.file = Some(self.database.open(&key, &change.text)),
             }
         }
+        self.follow_changed_imports(&key);
         true
     }
 
-    /// Lets go of a document; false if it is not open.
+    /// Lets go of a document; false if it is not open. From now on its file counts, if there is one.
     pub(crate) fn close(&mut self, uri: &Uri) -> bool {
         let key = key(uri);
-        if self.documents.get(&key).is_none_or(|document| document.version.is_none()) {
+        let Some(document) = self.documents.get(&key).filter(|document| document.version.is_some()) else {
             return false;
-        }
+        };
+        let is_program = document.is_program();
+        self.stale.gone.push(uri.clone());
         self.remove(&key);
+        if is_program {
+            self.file_changed(uri);
+        } else {
+            self.reload_settings();
+        }
         true
     }
 
     /// Forgets a document, open or not.
     pub(crate) fn remove(&mut self, key: &str) {
         if let Some(document) = self.documents.remove(key) {
-            self.changed = true;
+            if document.published.is_some_and(|published| !published.is_empty()) {
+                self.stale.gone.push(document.uri);
+            }
             if let Some(file) = document.file {
                 self.database.close(file);
             }
@@ -99,15 +126,20 @@ impl State {
         while let Some(failed) = self.try_rebuild(&left_out) {
             left_out.insert(failed);
         }
+        let all: Vec<String> = self.documents.keys().cloned().collect();
+        for key in all {
+            self.apply_settings(&key);
+            self.follow_imports(&key);
+        }
     }
 
     /// The key of the document that cannot be analysed, if one cannot.
     fn try_rebuild(&mut self, left_out: &FxHashSet<String>) -> Option<String> {
         self.database = Database::new();
-        self.changed = true;
+        self.stale.all = true;
         for (key, document) in &mut self.documents {
             document.file = None;
-            if left_out.contains(key) {
+            if left_out.contains(key) || !document.is_program() {
                 continue;
             }
             let text = document.text.to_string();
@@ -139,7 +171,7 @@ impl State {
 
     /// The document that the database knows as `file`.
     pub(crate) fn document_of(&self, file: FileId) -> Option<&Document> {
-        self.documents.values().find(|document| document.file == Some(file))
+        self.documents.get(self.database.path(file))
     }
 
     /// A position as a byte offset.

@@ -77,6 +77,13 @@ impl Database {
         }
     }
 
+    /// The files that import a path, whether or not there is such a file, in the order of opening.
+    pub fn importing_files(&self, path: &str) -> Vec<FileId> {
+        let mut files: Vec<FileId> = self.importers(path).collect();
+        files.sort_unstable();
+        files
+    }
+
     /// Whether another open file imports this one, and may use what nothing in it does.
     pub(crate) fn is_imported(&self, file: FileId) -> bool {
         let path = self.path(file);

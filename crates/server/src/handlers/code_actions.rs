@@ -52,16 +52,16 @@ fn quick_fixes(
     params: &CodeActionParams,
 ) -> Vec<CodeActionOrCommand> {
     let range = state.span(document, params.range);
-    let fixes = ide::quick_fixes(&state.database, file, range).into_iter().map(|found| {
-        let shown = diagnostics::convert(state, document, &found.diagnostic);
-        CodeActionOrCommand::CodeAction(CodeAction {
+    let fixes = ide::quick_fixes(&state.database, file, range).into_iter().filter_map(|found| {
+        let shown = diagnostics::convert(state, document, &found.diagnostic)?;
+        Some(CodeActionOrCommand::CodeAction(CodeAction {
             title: found.fix.title,
             kind: Some(CodeActionKind::QUICKFIX),
             diagnostics: Some(vec![as_the_client_has_it(&params.context.diagnostics, shown)]),
             edit: Some(workspace_edit(state, &found.fix.edits)),
             is_preferred: found.is_preferred.then_some(true),
             ..CodeAction::default()
-        })
+        }))
     });
     fixes.collect()
 }

@@ -1,11 +1,14 @@
 //! Problems of the open documents: pushed to clients that wait for them, answered to those that ask.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::str::FromStr;
 
 use pydslrep_analysis as analysis;
 use pydslrep_analysis::diagnostics::Tag;
+use pydslrep_config::{Config, Problem};
+use pydslrep_syntax::Span;
 use tower_lsp::ls_types::{
     CodeDescription, Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag,
     DocumentDiagnosticParams, DocumentDiagnosticReport, DocumentDiagnosticReportResult,
@@ -18,30 +21,49 @@ use crate::documents::Document;
 use crate::message::Outbox;
 use crate::state::State;
 
+/// What diagnostics are marked with, so that a person knows who says so.
+const SOURCE: &str = "pydslrep";
+
 /// Tells the client what changed since it was last told; once per document, however many changes there were.
 pub(crate) fn publish(state: &mut State, outbox: &Outbox) {
-    if !std::mem::take(&mut state.changed) || state.client.pull_diagnostics {
+    let touched = state.database.take_touched();
+    let stale = std::mem::take(&mut state.stale);
+    if state.client.pull_diagnostics {
         return;
     }
-    let keys: Vec<String> = state.documents.keys().cloned().collect();
+    for gone in stale.gone {
+        publish_one(gone, Vec::new(), None, outbox);
+    }
+    let keys: BTreeSet<String> = if stale.all {
+        state.documents.keys().cloned().collect()
+    } else {
+        let touched = touched.into_iter().map(|file| state.database.path(file).to_owned());
+        touched.chain(stale.documents).collect()
+    };
     for key in keys {
-        let Some(document) = state.documents.get(&key) else { continue };
-        let diagnostics = of_document(state, document);
-        if document.published.as_ref() == Some(&diagnostics) {
-            continue;
-        }
-        let (uri, version) = (document.uri.clone(), document.version);
-        let params = PublishDiagnosticsParams::new(uri, diagnostics, version);
-        outbox.notify("textDocument/publishDiagnostics", &params);
-        if let Some(document) = state.documents.get_mut(&key) {
-            document.published = Some(params.diagnostics);
-        }
+        publish_changed(state, &key, outbox);
     }
 }
 
-/// A document that is no longer open has no diagnostics.
-pub(crate) fn clear(uri: Uri, outbox: &Outbox) {
-    let params = PublishDiagnosticsParams::new(uri, Vec::new(), None);
+fn publish_changed(state: &mut State, key: &str, outbox: &Outbox) {
+    let Some(document) = state.documents.get(key) else { return };
+    let diagnostics = of_document(state, document);
+    let is_told = match &document.published {
+        Some(published) => *published == diagnostics,
+        // Nobody waits to hear that there is nothing wrong with a file that is not open.
+        None => document.version.is_none() && diagnostics.is_empty(),
+    };
+    if is_told {
+        return;
+    }
+    publish_one(document.uri.clone(), diagnostics.clone(), document.version, outbox);
+    if let Some(document) = state.documents.get_mut(key) {
+        document.published = Some(diagnostics);
+    }
+}
+
+fn publish_one(uri: Uri, diagnostics: Vec<Diagnostic>, version: Option<i32>, outbox: &Outbox) {
+    let params = PublishDiagnosticsParams::new(uri, diagnostics, version);
     outbox.notify("textDocument/publishDiagnostics", &params);
 }
 
@@ -80,20 +102,28 @@ fn result_id(items: &[Diagnostic], opening: u64) -> String {
 
 /// All diagnostics of a document, as this client can show them.
 pub(crate) fn of_document(state: &State, document: &Document) -> Vec<Diagnostic> {
+    if !document.is_program() {
+        return of_settings(state, document);
+    }
     let Some(file) = document.file else { return Vec::new() };
     let found = state.database.diagnostics(file);
-    found.iter().map(|diagnostic| convert(state, document, diagnostic)).collect()
+    found.iter().filter_map(|diagnostic| convert(state, document, diagnostic)).collect()
 }
 
-/// One diagnostic, as this client can show it.
-pub(crate) fn convert(state: &State, document: &Document, diagnostic: &analysis::Diagnostic) -> Diagnostic {
+/// One diagnostic, as this client can show it; `None` where it is switched off.
+pub(crate) fn convert(
+    state: &State,
+    document: &Document,
+    diagnostic: &analysis::Diagnostic,
+) -> Option<Diagnostic> {
     let client = &state.client;
-    Diagnostic {
+    let chosen = document.settings.severities.severity(diagnostic.code(), diagnostic.severity)?;
+    Some(Diagnostic {
         range: state.range(document, diagnostic.span),
-        severity: Some(severity(diagnostic.severity)),
+        severity: Some(severity(chosen)),
         code: Some(NumberOrString::String(diagnostic.code().to_owned())),
         code_description: client.code_description.then(|| page(diagnostic.code())).flatten(),
-        source: Some("pydslrep".to_owned()),
+        source: Some(SOURCE.to_owned()),
         message: message(state, diagnostic),
         related_information: related_information(state, diagnostic),
         tags: diagnostic
@@ -103,7 +133,24 @@ pub(crate) fn convert(state: &State, document: &Document, diagnostic: &analysis:
             .filter(|tag| client.diagnostic_tags.contains(tag))
             .map(|tag| vec![tag]),
         data: None,
-    }
+    })
+}
+
+/// What is wrong with a `pydslrep.toml`.
+fn of_settings(state: &State, document: &Document) -> Vec<Diagnostic> {
+    let (_, problems) = Config::from_toml(&document.text.to_string());
+    let diagnostic = |problem: Problem| Diagnostic {
+        range: state.range(document, problem.span.unwrap_or(Span::at(0))),
+        severity: Some(DiagnosticSeverity::ERROR),
+        code: Some(NumberOrString::String(problem.kind.code().to_owned())),
+        source: Some(SOURCE.to_owned()),
+        message: match problem.help {
+            Some(help) => format!("{}\nhelp: {help}", problem.message),
+            None => problem.message,
+        },
+        ..Diagnostic::default()
+    };
+    problems.into_iter().map(diagnostic).collect()
 }
 
 fn severity(severity: analysis::Severity) -> DiagnosticSeverity {

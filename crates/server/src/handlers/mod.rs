@@ -14,3 +14,4 @@ pub(crate) mod selection;
 pub(crate) mod semantic_tokens;
 pub(crate) mod signature;
 pub(crate) mod synchronization;
+pub(crate) mod workspace;

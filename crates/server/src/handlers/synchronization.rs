@@ -5,44 +5,27 @@ use tower_lsp::ls_types::{
     DidChangeTextDocumentParams, DidCloseTextDocumentParams, DidOpenTextDocumentParams,
 };
 
-use crate::handlers::diagnostics;
 use crate::log::log;
-use crate::message::Outbox;
 use crate::state::State;
 
 /// `textDocument/didOpen`.
-pub(crate) fn open(state: &mut State, params: DidOpenTextDocumentParams, outbox: &Outbox) {
+pub(crate) fn open(state: &mut State, params: DidOpenTextDocumentParams) {
     state.open(params.text_document);
-    follow_imports(state, outbox);
 }
 
 /// `textDocument/didChange`.
-pub(crate) fn change(state: &mut State, params: &DidChangeTextDocumentParams, outbox: &Outbox) {
-    if state.change(params) {
-        follow_imports(state, outbox);
-    } else {
+pub(crate) fn change(state: &mut State, params: &DidChangeTextDocumentParams) {
+    if !state.change(params) {
         let uri = params.text_document.uri.as_str();
         log(format_args!("a change to a document that is not open: {uri}"));
     }
 }
 
-/// `textDocument/didClose`: its diagnostics go with it.
-pub(crate) fn close(state: &mut State, params: DidCloseTextDocumentParams, outbox: &Outbox) {
-    let uri = params.text_document.uri;
-    if !state.close(&uri) {
+/// `textDocument/didClose`.
+pub(crate) fn close(state: &mut State, params: &DidCloseTextDocumentParams) {
+    let uri = &params.text_document.uri;
+    if !state.close(uri) {
         log(format_args!("a document was closed that is not open: {}", uri.as_str()));
-    } else if !state.client.pull_diagnostics {
-        diagnostics::clear(uri, outbox);
-    }
-    follow_imports(state, outbox);
-}
-
-/// What is imported no longer has no diagnostics either.
-fn follow_imports(state: &mut State, outbox: &Outbox) {
-    for forgotten in state.follow_imports() {
-        if !state.client.pull_diagnostics {
-            diagnostics::clear(forgotten, outbox);
-        }
     }
 }
 
