@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
+use futures::channel::oneshot;
 use serde::{Deserialize, Serialize};
 use tower_lsp::jsonrpc::{Error, Request, Result};
 #[allow(clippy::wildcard_imports, reason = "this file names half of the protocol")]
@@ -124,6 +125,27 @@ impl LanguageServer for Server {
         Ok(diagnostics::pull(&self.state(), &params))
     }
 
+    async fn workspace_diagnostic(
+        &self,
+        params: WorkspaceDiagnosticParams,
+    ) -> Result<WorkspaceDiagnosticReportResult> {
+        loop {
+            let changed = {
+                let mut state = self.state();
+                if let Some(report) = diagnostics::pull_workspace(&state, &params) {
+                    return Ok(report.into());
+                }
+                // A client that asks again and again would keep both sides busy with nothing.
+                let (sender, changed) = oneshot::channel();
+                state.waiting.push(sender);
+                changed
+            };
+            if changed.await.is_err() {
+                return Err(Error::internal_error());
+            }
+        }
+    }
+
     async fn code_action(&self, params: CodeActionParams) -> Result<Option<CodeActionResponse>> {
         Ok(code_actions::code_actions(&self.state(), &params))
     }
@@ -243,7 +265,7 @@ impl Server {
             return;
         }
         let progress = self.begin("Looking for programs").await;
-        let (done, found) = futures::channel::oneshot::channel();
+        let (done, found) = oneshot::channel();
         let server = self.clone();
         let work = move || done.send(handlers::workspace::index(&server, &folders));
         let started = thread::Builder::new().name("workspace".to_owned()).spawn(work);

@@ -2,6 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use futures::channel::oneshot;
 use pydslrep_analysis::{Database, FileId};
 use pydslrep_ide::FilePosition;
 use pydslrep_syntax::Span;
@@ -33,6 +34,8 @@ pub(crate) struct State {
     openings: u64,
     /// Whose diagnostics may have changed since they were last told, beside what the database says.
     pub(crate) stale: Stale,
+    /// Requests that are answered when any diagnostics change.
+    pub(crate) waiting: Vec<oneshot::Sender<()>>,
 }
 
 /// Documents whose diagnostics have to be told again.

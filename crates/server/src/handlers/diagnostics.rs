@@ -9,15 +9,17 @@ use pydslrep_analysis as analysis;
 use pydslrep_analysis::diagnostics::Tag;
 use pydslrep_config::{Config, Problem};
 use pydslrep_syntax::Span;
+use rustc_hash::FxHashMap;
 use tower_lsp::ls_types::{
     CodeDescription, Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag,
     DocumentDiagnosticParams, DocumentDiagnosticReport, DocumentDiagnosticReportResult,
     FullDocumentDiagnosticReport, NumberOrString, PublishDiagnosticsParams,
     RelatedFullDocumentDiagnosticReport, RelatedUnchangedDocumentDiagnosticReport,
-    UnchangedDocumentDiagnosticReport, Uri,
+    UnchangedDocumentDiagnosticReport, Uri, WorkspaceDiagnosticParams, WorkspaceDiagnosticReport,
+    WorkspaceDocumentDiagnosticReport, WorkspaceFullDocumentDiagnosticReport,
 };
 
-use crate::documents::Document;
+use crate::documents::{Document, key};
 use crate::message::Outbox;
 use crate::state::State;
 
@@ -28,7 +30,15 @@ const SOURCE: &str = "pydslrep";
 pub(crate) fn publish(state: &mut State, outbox: &Outbox) {
     let touched = state.database.take_touched();
     let stale = std::mem::take(&mut state.stale);
+    let is_changed =
+        stale.all || !touched.is_empty() || !stale.documents.is_empty() || !stale.gone.is_empty();
     if state.client.pull_diagnostics {
+        if is_changed {
+            // Whoever waits for a change looks for himself; one that no longer waits is none the worse.
+            for waiting in state.waiting.drain(..) {
+                let _ = waiting.send(());
+            }
+        }
         return;
     }
     for gone in stale.gone {
@@ -88,6 +98,41 @@ pub(crate) fn pull(state: &State, params: &DocumentDiagnosticParams) -> Document
         })
     };
     report.into()
+}
+
+/// `workspace/diagnostic`: what changed since the client last asked; `None` if nothing did.
+pub(crate) fn pull_workspace(
+    state: &State,
+    params: &WorkspaceDiagnosticParams,
+) -> Option<WorkspaceDiagnosticReport> {
+    let known: FxHashMap<String, &str> =
+        params.previous_result_ids.iter().map(|known| (key(&known.uri), known.value.as_str())).collect();
+    let mut items: Vec<WorkspaceDocumentDiagnosticReport> = Vec::new();
+    let mut documents: Vec<(&String, &Document)> = state.documents.iter().collect();
+    documents.sort_unstable_by_key(|(key, _)| *key);
+    for (key, document) in documents {
+        let found = of_document(state, document);
+        let id = result_id(&found, document.opening);
+        if known.get(key) != Some(&id.as_str()) {
+            items.push(full_report(document.uri.clone(), document.version, Some(id), found));
+        }
+    }
+    let gone = params.previous_result_ids.iter().filter(|known| state.document(&known.uri).is_none());
+    items.extend(gone.map(|known| full_report(known.uri.clone(), None, None, Vec::new())));
+    (!items.is_empty() || known.is_empty()).then_some(WorkspaceDiagnosticReport { items })
+}
+
+fn full_report(
+    uri: Uri,
+    version: Option<i32>,
+    result_id: Option<String>,
+    items: Vec<Diagnostic>,
+) -> WorkspaceDocumentDiagnosticReport {
+    WorkspaceDocumentDiagnosticReport::Full(WorkspaceFullDocumentDiagnosticReport {
+        uri,
+        version: version.map(i64::from),
+        full_document_diagnostic_report: FullDocumentDiagnosticReport { result_id, items },
+    })
 }
 
 fn result_id(items: &[Diagnostic], opening: u64) -> String {

@@ -1,0 +1,207 @@
+"""A folder of programs, of which few or none are open."""
+
+from __future__ import annotations
+
+import pathlib
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from raw import RawServer, answer, notification, request
+
+WHEELS = "wheel a with radius 4\nwheel b with radius 4\n"
+ROBOT = 'import "wheels.pyr"\nrobot r with port 1 has { a b } wheels\n'
+
+CLIENT = {
+    "workspace": {
+        "configuration": True,
+        "workspaceFolders": True,
+        "didChangeWatchedFiles": {"dynamicRegistration": True},
+        "didChangeConfiguration": {"dynamicRegistration": True},
+    },
+    "window": {"workDoneProgress": True},
+}
+PULLING = {**CLIENT, "textDocument": {"diagnostic": {}}}
+
+
+class Workspace:
+    """A server that has a folder open, and a client that answers what every client has to."""
+
+    def __init__(self, server: RawServer, folder: pathlib.Path) -> None:
+        self.server = server
+        self.folder = folder
+        self.settings: dict[str, Any] = {}
+        self.ident = 0
+        self.asked: list[str] = []
+
+    def start(self, capabilities: dict[str, Any]) -> None:
+        folders = [{"uri": self.folder.as_uri(), "name": "it"}]
+        params = {"capabilities": capabilities, "workspaceFolders": folders}
+        self.server.send(
+            request(0, "initialize", params), notification("initialized", {})
+        )
+        self.server.answer(0)
+
+    def next(self) -> dict[str, Any]:
+        """The next message that is not a request to the client; those are answered."""
+        while (message := self.server.read()) is not None:
+            if "id" not in message or "method" not in message:
+                return message
+            self.asked.append(message["method"])
+            result = (
+                [self.settings]
+                if message["method"] == "workspace/configuration"
+                else None
+            )
+            self.server.send(answer(message["id"], result))
+        raise AssertionError("the server left")
+
+    def published(self, name: str) -> list[str]:
+        """The codes that are published next for a file."""
+        while True:
+            message = self.next()
+            if message.get("method") != "textDocument/publishDiagnostics":
+                continue
+            if message["params"]["uri"] == self.uri(name):
+                return [item["code"] for item in message["params"]["diagnostics"]]
+
+    def indexed(self) -> None:
+        """Until the server has looked for programs."""
+        while True:
+            message = self.next()
+            if message.get("method") == "$/progress":
+                value = message["params"]["value"]
+                if value["kind"] == "end":
+                    return
+
+    def uri(self, name: str) -> str:
+        return (self.folder / name).as_uri()
+
+    def write(self, name: str, text: str, change: int = 2) -> None:
+        """Writes a file and says so; 1 is created, 2 changed."""
+        (self.folder / name).write_text(text, encoding="utf-8")
+        self.tell(name, change)
+
+    def tell(self, name: str, change: int) -> None:
+        changes = [{"uri": self.uri(name), "type": change}]
+        self.server.send(
+            notification("workspace/didChangeWatchedFiles", {"changes": changes})
+        )
+
+    def ask(self, previous: list[dict[str, str]]) -> int:
+        self.ident += 1
+        params = {"previousResultIds": previous}
+        self.server.send(request(self.ident, "workspace/diagnostic", params))
+        return self.ident
+
+    def report(self, ident: int) -> dict[str, tuple[str | None, list[str]]]:
+        """For each file its result's id and codes."""
+        while (message := self.next()).get("id") != ident:
+            pass
+        return {
+            item["uri"].rsplit("/", 1)[-1]: (
+                item.get("resultId"),
+                [found["code"] for found in item["items"]],
+            )
+            for item in message["result"]["items"]
+        }
+
+
+@pytest.fixture
+def workspace(server: str, tmp_path: pathlib.Path) -> Iterator[Workspace]:
+    folder = tmp_path / "programs"
+    folder.mkdir()
+    (folder / "wheels.pyr").write_text(WHEELS, encoding="utf-8")
+    (folder / "robot.pyr").write_text(ROBOT, encoding="utf-8")
+    with RawServer(server, "--stdio") as running:
+        yield Workspace(running, folder)
+
+
+def test_unopened_files_have_diagnostics_and_follow_their_imports(
+    workspace: Workspace,
+) -> None:
+    (workspace.folder / "wheels.pyr").write_text("wheel a with radius 4\n")
+    workspace.start(CLIENT)
+    assert workspace.published("robot.pyr") == ["unresolved-reference"]
+    workspace.write("wheels.pyr", WHEELS)
+    assert workspace.published("robot.pyr") == []
+    (workspace.folder / "wheels.pyr").unlink()
+    workspace.tell("wheels.pyr", 3)
+    assert workspace.published("robot.pyr") == ["unresolved-import"]
+    workspace.write("wheels.pyr", WHEELS, 1)
+    assert workspace.published("robot.pyr") == []
+    assert set(workspace.asked) == {
+        "client/registerCapability",
+        "workspace/configuration",
+        "window/workDoneProgress/create",
+    }
+
+
+def test_typing_in_an_imported_file_shows_in_unopened_ones(
+    workspace: Workspace,
+) -> None:
+    workspace.start(CLIENT)
+    workspace.indexed()
+    document = {
+        "uri": workspace.uri("wheels.pyr"),
+        "languageId": "pydslrep",
+        "version": 1,
+        "text": "wheel a with radius 4\nwheel c with radius 4\n",
+    }
+    workspace.server.send(
+        notification("textDocument/didOpen", {"textDocument": document})
+    )
+    assert workspace.published("robot.pyr") == ["unresolved-reference"]
+    closed = {"textDocument": {"uri": workspace.uri("wheels.pyr")}}
+    workspace.server.send(notification("textDocument/didClose", closed))
+    assert workspace.published("robot.pyr") == [], "the file on the disk counts again"
+
+
+def test_settings_hold_and_change(workspace: Workspace) -> None:
+    (workspace.folder / "wheels.pyr").write_text("wheel a with radius 4\n")
+    workspace.settings = {"severity": {"unresolved-reference": "off"}}
+    workspace.start(CLIENT)
+    workspace.indexed()
+    workspace.write(
+        "pydslrep.toml", "[severity]\nunresolved-import = 'hint'\nwheels = 1\n", 1
+    )
+    assert workspace.published("pydslrep.toml") == ["unknown-key"]
+    workspace.settings = {}
+    workspace.server.send(
+        notification("workspace/didChangeConfiguration", {"settings": None})
+    )
+    assert workspace.published("robot.pyr") == ["unresolved-reference"]
+
+
+def test_wrong_settings_are_told(workspace: Workspace) -> None:
+    workspace.settings = {"severety": {}}
+    workspace.start(CLIENT)
+    while (message := workspace.next()).get("method") != "window/showMessage":
+        pass
+    assert "did you mean `severity`" in message["params"]["message"]
+
+
+def test_clients_ask_for_the_whole_workspace(workspace: Workspace) -> None:
+    workspace.start(PULLING)
+    workspace.indexed()
+    first = workspace.report(workspace.ask([]))
+    assert {name: codes for name, (_, codes) in first.items()} == {
+        "robot.pyr": [],
+        "wheels.pyr": [],
+    }
+    known = [
+        {"uri": workspace.uri(name), "value": ident or ""}
+        for name, (ident, _) in first.items()
+    ]
+    waiting = workspace.ask(known)
+    workspace.write("wheels.pyr", "wheel a with radius 4\n")
+    changed = workspace.report(waiting)
+    assert {name: codes for name, (_, codes) in changed.items()} == {
+        "robot.pyr": ["unresolved-reference"]
+    }
+    waiting = workspace.ask(known)
+    assert "robot.pyr" in workspace.report(waiting)
+    (workspace.folder / "robot.pyr").unlink()
+    workspace.tell("robot.pyr", 3)
+    gone = workspace.report(workspace.ask(known))
+    assert gone["robot.pyr"] == (None, [])
