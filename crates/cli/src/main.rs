@@ -9,6 +9,7 @@
 //! * [`project`], [`severities`]: what is set for programs, and how bad problems are to whoever asks.
 //! * [`fixing`], [`rewrite`]: what is done about them.
 //! * [`lines`]: how much people and the generator write.
+//! * [`watch`]: when to look again.
 //! * [`commands`]: one file per command.
 //! * [`python`], [`driver`], [`progress`], [`driven`], [`outcome`]: a run, from an interpreter to its result.
 
@@ -34,6 +35,7 @@ mod rewrite;
 mod sarif;
 mod severities;
 mod sources;
+mod watch;
 
 use std::process::ExitCode;
 

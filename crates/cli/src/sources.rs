@@ -71,6 +71,20 @@ impl Sources {
         self.places.get(&file).map(PathBuf::as_path)
     }
 
+    /// Everything that was read, and what imports could lead to: the paths of all of it.
+    pub(crate) fn paths(&self) -> Vec<PathBuf> {
+        let imports = self.places.keys().flat_map(|file| self.database.imports(*file)).map(PathBuf::from);
+        self.places.values().cloned().chain(imports).collect()
+    }
+
+    /// Everything that was read, in the order of the paths.
+    pub(crate) fn texts(&self) -> Vec<(&Path, String)> {
+        let text = |file: &FileId| self.database.text(*file).map(ToString::to_string).unwrap_or_default();
+        let mut texts: Vec<_> = self.places.iter().map(|(file, path)| (path.as_path(), text(file))).collect();
+        texts.sort_unstable();
+        texts
+    }
+
     /// What is wrong with a program, in the order of the text.
     pub(crate) fn diagnostics(&self, file: FileId) -> Vec<Diagnostic> {
         let mut diagnostics = self.database.diagnostics(file);
@@ -226,7 +240,7 @@ pub(crate) fn without_mark(text: &str) -> &str {
 }
 
 /// The whole path, without `.` and `..`: the same file has the same one however it was named.
-fn absolute(path: &Path) -> Result<PathBuf, Failure> {
+pub(crate) fn absolute(path: &Path) -> Result<PathBuf, Failure> {
     let whole = std::path::absolute(path)
         .map_err(|error| Failure::new(format!("cannot find {}: {error}", path.display())))?;
     let mut clean = PathBuf::new();

@@ -1,5 +1,7 @@
 //! `pydslrep check`: what is wrong with programs.
 
+mod watching;
+
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -20,6 +22,7 @@ Examples:
   pydslrep check patrol.pyr rooms/       one program, and all in a folder
   pydslrep check --format json - < x.pyr
   pydslrep check --fix                   the same, and mend what leaves nothing to decide
+  pydslrep check --watch                 look again whenever something changes
   pydslrep check --deny warnings         for use in CI
   pydslrep check --format github         the same, with marks beside the lines of a pull request
   pydslrep check --format sarif > x.sarif
@@ -43,6 +46,9 @@ pub(crate) struct Arguments {
     /// standard output
     #[arg(long)]
     fix: bool,
+    /// Check again whenever a program, an import or a pydslrep.toml changes, until Ctrl-C
+    #[arg(long, conflicts_with_all = ["fix", "deny"])]
+    watch: bool,
     /// How bad problems of a code are: off, hint, information, warning or error; for each code once
     #[arg(long, value_name = "CODE=LEVEL")]
     severity: Vec<String>,
@@ -51,7 +57,7 @@ pub(crate) struct Arguments {
     deny: Option<Deny>,
 }
 
-#[derive(Debug, Clone, Copy, Default, ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 enum Format {
     /// With source lines, for people
     #[default]
@@ -78,6 +84,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let options = Config { severities: severities::read(&arguments.severity)?, ..Config::default() };
     let here = [PathBuf::from(".")];
     let paths = if arguments.paths.is_empty() { &here } else { arguments.paths.as_slice() };
+    if arguments.watch {
+        if arguments.format != Format::Human {
+            return Err(Failure::new("--watch is for people: it cannot be used with another --format")
+                .help("leave out one of them"));
+        }
+        return watching::run(paths, &options);
+    }
     let (mut sources, files, mut failures) = Sources::open(paths);
     let projects = Projects::open(&mut sources, &files, &options)?;
     let find = |sources: &Sources| diagnostics(sources, &files, &projects);
@@ -132,20 +145,21 @@ fn written(json: serde_json::Result<String>) -> Result<String, Failure> {
 }
 
 fn human(sources: &Sources, files: &[FileId], diagnostics: &[Diagnostic]) -> String {
+    let problems = render::diagnostics(sources, diagnostics);
+    summary(files, diagnostics).map_or(problems.clone(), |summary| format!("{problems}{summary}\n"))
+}
+
+/// What was found, in one line; `None` where nothing was read: there is nothing to be pleased about.
+fn summary(files: &[FileId], diagnostics: &[Diagnostic]) -> Option<String> {
     if diagnostics.is_empty() {
-        // With nothing read there is nothing to be pleased about.
-        return if files.is_empty() {
-            String::new()
-        } else {
-            format!("No problems in {}.\n", count_files(files))
-        };
+        return (!files.is_empty()).then(|| format!("No problems in {}.", count_files(files)));
     }
-    let (problems, summary) = (render::diagnostics(sources, diagnostics), render::summary(diagnostics));
+    let summary = render::summary(diagnostics);
     let is_mendable = |diagnostic: &&Diagnostic| diagnostic.fixes.iter().any(|fix| fix.safe);
-    match diagnostics.iter().filter(is_mendable).count() {
-        0 => format!("{problems}{summary}.\n"),
-        some => format!("{problems}{summary}; `--fix` mends {some}.\n"),
-    }
+    Some(match diagnostics.iter().filter(is_mendable).count() {
+        0 => format!("{summary}."),
+        some => format!("{summary}; `--fix` mends {some}."),
+    })
 }
 
 /// What was fixed, in words.

@@ -1,0 +1,116 @@
+//! `pydslrep check --watch`.
+
+use std::collections::hash_map::DefaultHasher;
+use std::hash::{Hash, Hasher};
+use std::io::{self, IsTerminal};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use pydslrep_config::Config;
+
+use super::{diagnostics, summary};
+use crate::failure::Failure;
+use crate::interrupt::{self, Interrupts};
+use crate::project::Projects;
+use crate::sources::{Sources, absolute};
+use crate::watch::{Scope, Watch};
+use crate::{output, render};
+
+/// Erases what is on a terminal and above it.
+const CLEAR: &str = "\u{1b}[2J\u{1b}[3J\u{1b}[H";
+
+/// Checks again whenever something changes, until it is interrupted.
+///
+/// # Errors
+/// When nothing can be watched or printed. What is wrong with a file is told, and no reason to end.
+pub(super) fn run(paths: &[PathBuf], options: &Config) -> Result<ExitCode, Failure> {
+    if paths.iter().any(|path| path == Path::new("-")) {
+        return Err(Failure::new("standard input cannot be watched").help("name a file or a folder"));
+    }
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    runtime.map_err(|error| unstarted(&error))?.block_on(watch(paths, options))
+}
+
+fn unstarted(error: &dyn std::fmt::Display) -> Failure {
+    Failure::new(format!("cannot watch for changes: {error}"))
+}
+
+async fn watch(paths: &[PathBuf], options: &Config) -> Result<ExitCode, Failure> {
+    let mut interrupts = Interrupts::listen().map_err(|error| unstarted(&error))?;
+    let mut watch = Watch::new();
+    watch.look_at(scope(paths, &Sources::default())?)?;
+    let mut shown = None;
+    loop {
+        let look = Look::take(paths, options)?;
+        if shown != Some(look.fingerprint) {
+            look.show()?;
+            shown = Some(look.fingerprint);
+        }
+        if *watch.scope() != look.scope {
+            // What is watched only from now on may have changed before.
+            watch.look_at(look.scope)?;
+            continue;
+        }
+        tokio::select! {
+            () = watch.change() => {}
+            () = interrupts.next() => return Ok(ExitCode::from(interrupt::EXIT_CODE)),
+        }
+        watch.look_at(look.scope)?;
+    }
+}
+
+/// What was found at one time.
+struct Look {
+    problems: String,
+    summary: Option<String>,
+    failures: Vec<Failure>,
+    scope: Scope,
+    /// Tells apart what was read and found.
+    fingerprint: u64,
+}
+
+impl Look {
+    fn take(paths: &[PathBuf], options: &Config) -> Result<Self, Failure> {
+        let (mut sources, files, mut failures) = Sources::open(paths);
+        let (problems, summary) = match Projects::open(&mut sources, &files, options) {
+            Ok(projects) => {
+                let found = diagnostics(&sources, &files, &projects);
+                (render::diagnostics(&sources, &found), summary(&files, &found))
+            }
+            Err(failure) => {
+                failures.push(failure);
+                (String::new(), None)
+            }
+        };
+        let mut hasher = DefaultHasher::new();
+        (sources.texts(), &problems, format!("{failures:?}")).hash(&mut hasher);
+        let scope = scope(paths, &sources)?;
+        Ok(Self { problems, summary, failures, scope, fingerprint: hasher.finish() })
+    }
+
+    fn show(&self) -> Result<(), Failure> {
+        if io::stdout().is_terminal() {
+            output::pass_on(CLEAR)?;
+        }
+        output::print(&self.problems)?;
+        self.failures.iter().for_each(output::fail);
+        let time = jiff::Zoned::now().strftime("%H:%M:%S");
+        let summary = self.summary.as_deref().unwrap_or("Nothing was checked.");
+        output::print(&format!("[{time}] {summary} Watching for changes; Ctrl-C ends.\n"))
+    }
+}
+
+/// What matters for these programs, which were opened or could not be.
+fn scope(paths: &[PathBuf], sources: &Sources) -> Result<Scope, Failure> {
+    let mut scope = Scope::default();
+    for path in paths {
+        let whole = absolute(path)?;
+        if whole.is_dir() {
+            scope.folders.insert(whole);
+        } else {
+            scope.files.insert(whole);
+        }
+    }
+    scope.files.extend(sources.paths());
+    Ok(scope)
+}

@@ -1,0 +1,132 @@
+//! When to look again: `check --watch`.
+
+use std::collections::BTreeSet;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use notify::event::ModifyKind;
+use notify::{Event, EventKind, RecommendedWatcher, RecursiveMode, Watcher};
+use pydslrep_config::FILE_NAME;
+use pydslrep_files::is_program;
+use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
+use tokio::time::timeout;
+
+use crate::failure::Failure;
+
+/// How long nothing may happen before it is looked again: editors save in several steps.
+const QUIET: Duration = Duration::from_millis(50);
+
+/// What never comes to rest is looked at nonetheless.
+const MOST_EVENTS: usize = 10_000;
+
+/// What matters of the disk.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(crate) struct Scope {
+    /// Folders whose programs count, however deep below.
+    pub(crate) folders: BTreeSet<PathBuf>,
+    /// Files that count, whether they are there or not.
+    pub(crate) files: BTreeSet<PathBuf>,
+}
+
+/// Watches what matters.
+pub(crate) struct Watch {
+    sender: UnboundedSender<Event>,
+    events: UnboundedReceiver<Event>,
+    scope: Scope,
+    /// Kept, since it ends with its value.
+    watcher: Option<RecommendedWatcher>,
+}
+
+impl Watch {
+    /// Watches nothing yet.
+    pub(crate) fn new() -> Self {
+        let (sender, events) = unbounded_channel();
+        Self { sender, events, scope: Scope::default(), watcher: None }
+    }
+
+    /// Watches this from now on. It is begun anew each time, so that folders count that were replaced; what happens
+    /// meanwhile is seen by the old watcher, except in what only matters from now on.
+    ///
+    /// # Errors
+    /// When the system does not allow it.
+    pub(crate) fn look_at(&mut self, scope: Scope) -> Result<(), Failure> {
+        let sender = self.sender.clone();
+        // Nobody listens any more only where the command ends.
+        let tell = move |event: notify::Result<Event>| drop(event.map(|event| sender.send(event)));
+        let mut watcher = notify::recommended_watcher(tell).map_err(|error| unwatched(&error))?;
+        for (folder, mode) in scope.watched() {
+            match watcher.watch(&folder, mode) {
+                Ok(()) => {}
+                // Removed meanwhile: the folder above it tells. Not all folders above are ours to look into.
+                Err(_) if !folder.exists() || mode == RecursiveMode::NonRecursive => {}
+                Err(error) => return Err(unwatched(&error)),
+            }
+        }
+        self.scope = scope;
+        drop(self.watcher.replace(watcher));
+        Ok(())
+    }
+
+    /// What is watched.
+    pub(crate) fn scope(&self) -> &Scope {
+        &self.scope
+    }
+
+    /// Waits until something has changed that matters, and then until nothing does any more.
+    pub(crate) async fn change(&mut self) {
+        while let Some(event) = self.events.recv().await {
+            if self.scope.concerns(&event) {
+                break;
+            }
+        }
+        for _ in 0..MOST_EVENTS {
+            if timeout(QUIET, self.events.recv()).await.is_err() {
+                break;
+            }
+        }
+    }
+}
+
+fn unwatched(error: &notify::Error) -> Failure {
+    Failure::new(format!("cannot watch for changes: {error}"))
+        .help("a smaller folder may do, or a higher limit of the system for watched files")
+}
+
+impl Scope {
+    /// The folders to watch: those that count with all below them; and of every file its own and those above it, since
+    /// a settings file may come to any of them, and folders may come and go.
+    fn watched(&self) -> Vec<(PathBuf, RecursiveMode)> {
+        let above = self.files.iter().chain(&self.folders).flat_map(|path| path.ancestors().skip(1));
+        let above: BTreeSet<&Path> =
+            above.filter(|folder| folder.is_dir() && !self.is_inside(folder)).collect();
+        let inside = self.folders.iter().filter(|folder| folder.is_dir());
+        let inside = inside.map(|folder| (folder.clone(), RecursiveMode::Recursive));
+        inside
+            .chain(above.into_iter().map(|folder| (folder.to_owned(), RecursiveMode::NonRecursive)))
+            .collect()
+    }
+
+    fn is_inside(&self, path: &Path) -> bool {
+        self.folders.iter().any(|folder| path.starts_with(folder))
+    }
+
+    fn concerns(&self, event: &Event) -> bool {
+        let is_move = match event.kind {
+            // Reading is no change.
+            EventKind::Access(_) => return false,
+            EventKind::Create(_) | EventKind::Remove(_) | EventKind::Modify(ModifyKind::Name(_)) => true,
+            _ => false,
+        };
+        // Nothing was told about what: the system could not keep up.
+        event.need_rescan() || event.paths.iter().any(|path| self.concerns_path(path, is_move))
+    }
+
+    fn concerns_path(&self, path: &Path, is_move: bool) -> bool {
+        path.file_name() == Some(OsStr::new(FILE_NAME))
+            || self.files.contains(path)
+            || (self.is_inside(path) && (is_program(path) || is_move))
+            // A folder on the way to something came or went.
+            || (is_move && self.files.iter().chain(&self.folders).any(|other| other.starts_with(path)))
+    }
+}
