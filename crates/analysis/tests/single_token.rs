@@ -1,14 +1,22 @@
-//! One wrong token in a program of the article: it is reported where it is, about once, and nowhere else.
+//! One wrong token in a program of the article: it is reported where it is, about once, and nowhere else. Whether what
+//! it leaves is still a program, and what is then to be said of it, is for the naive checker to decide.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests are tests, too")]
 
+use std::collections::BTreeSet;
+use std::ops::Range;
+
 use pydslrep_analysis::{Database, Diagnostic};
-use pydslrep_syntax::{KEYWORDS, Lexeme, Span, lex, parse};
+use pydslrep_naive::{Finding, declarations};
+use pydslrep_syntax::{KEYWORDS, Lexeme, Span, lex};
 
 /// What one slip makes of a program, and where the slip is.
 struct Slip {
     text: String,
-    at: Span,
+    /// What was replaced, in the program as it was.
+    was: Range<usize>,
+    /// What stands there now.
+    at: Range<usize>,
     what: String,
 }
 
@@ -24,9 +32,9 @@ fn programs() -> Vec<(String, String)> {
 
 fn replace(text: &str, span: Span, by: &str, what: String) -> Slip {
     let mut changed = text.to_owned();
-    changed.replace_range(std::ops::Range::from(span), by);
-    let end = span.start + u32::try_from(by.len()).unwrap();
-    Slip { text: changed, at: Span::new(span.start, end), what }
+    let was = Range::<usize>::from(span);
+    changed.replace_range(was.clone(), by);
+    Slip { text: changed, at: was.start..was.start + by.len(), was, what }
 }
 
 fn deletions(text: &str, lexemes: &[Lexeme]) -> Vec<Slip> {
@@ -79,32 +87,100 @@ fn is_syntax(diagnostic: &Diagnostic) -> bool {
         .contains(&diagnostic.code())
 }
 
-/// The entity that the slip is in, with its neighbours: what is right beside it.
-fn neighbourhood(slip: &Slip) -> Span {
-    let pieces = parse(&slip.text);
-    let touched = |span: &Span| span.start <= slip.at.end && slip.at.start <= span.end;
-    let touching: Vec<usize> = (0..pieces.len()).filter(|index| touched(&pieces[*index].0)).collect();
-    let (first, last) = (touching[0], touching[touching.len() - 1]);
-    pieces[first.saturating_sub(1)].0.to(pieces[(last + 1).min(pieces.len() - 1)].0)
+fn finding(diagnostic: &Diagnostic) -> Finding {
+    let Range { start, end } = Range::<usize>::from(diagnostic.span);
+    Finding { start, end, code: diagnostic.code() }
 }
 
-fn check(slip: &Slip, program: &str, complaints: &mut Vec<String>) -> u32 {
+impl Slip {
+    /// The same place in the program as it was, for what lies before or behind the slip.
+    fn place_before(&self, mut finding: Finding) -> Finding {
+        for place in [&mut finding.start, &mut finding.end] {
+            if *place >= self.at.end {
+                *place = *place - self.at.end + self.was.end;
+            }
+        }
+        finding
+    }
+
+    /// The entity with the slip in the program as it was, and the white space around it: what is right beside it.
+    fn surroundings(&self, before: &str) -> Range<usize> {
+        let entities = declarations(before).unwrap();
+        let index = entities.iter().position(|entity| self.was.start <= entity.range.end).unwrap();
+        let start = if index == 0 { 0 } else { entities[index - 1].range.end };
+        let end = entities.get(index + 1).map_or(before.len(), |next| next.range.start);
+        start..end
+    }
+
+    /// What may truly be said of the other entities: what was true of them before, as an entity with a syntax error
+    /// declares its name all the same; where the slip took that very name, what is true without the entity; and where
+    /// it took the name of another entity, that nothing uses that one.
+    fn true_consequences(&self, before: &str) -> BTreeSet<Finding> {
+        let mut programs = vec![before.to_owned()];
+        for entity in declarations(before).unwrap() {
+            let touched = self.was.start <= entity.name_range.end && entity.name_range.start <= self.was.end;
+            if touched {
+                let mut without = before.to_owned();
+                without.replace_range(entity.range.clone(), &" ".repeat(entity.range.len()));
+                programs.push(without);
+            }
+        }
+        let lost: Vec<_> = declarations(before).unwrap();
+        let lost = lost.iter().filter(|entity| self.at.is_empty() && entity.name == before[self.was.clone()]);
+        let unused = lost.map(|entity| {
+            let Range { start, end } = entity.name_range.clone();
+            Finding { start, end, code: "unused-declaration" }
+        });
+        let verdicts = programs.iter().map(|program| pydslrep_naive::check(program));
+        verdicts.flat_map(|verdict| [verdict.findings, verdict.excused].concat()).chain(unused).collect()
+    }
+}
+
+/// Where the slip leaves a program, all that the contract says of it is said, and nothing else.
+fn check_program(verdict: pydslrep_naive::Verdict, said: &BTreeSet<Finding>) -> Result<(), String> {
+    let expected: BTreeSet<Finding> = verdict.findings.into_iter().collect();
+    let invented = |finding: &&Finding| !expected.contains(finding) && !verdict.excused.contains(finding);
+    match (expected.difference(said).next(), said.iter().find(invented)) {
+        (None, None) => Ok(()),
+        (missing, invented) => Err(format!("not said: {missing:?}; not in the contract: {invented:?}")),
+    }
+}
+
+/// Where it does not, that is said near the slip, once or twice, and elsewhere stands nothing but the truth.
+fn check_broken(slip: &Slip, before: &str, said: &[Finding], syntax: &[Finding]) -> Result<(), String> {
+    let near = slip.surroundings(before);
+    let is_near = |finding: &Finding| near.start <= finding.start && finding.start <= near.end;
+    if !syntax.iter().any(|finding| is_near(&slip.place_before(finding.clone()))) {
+        return Err("nothing is said near the slip".to_owned());
+    }
+    if syntax.len() > 2 {
+        return Err("a cascade".to_owned());
+    }
+    let truth = slip.true_consequences(before);
+    let far =
+        said.iter().map(|finding| slip.place_before(finding.clone())).filter(|finding| !is_near(finding));
+    match far.into_iter().find(|finding| !truth.contains(finding)) {
+        Some(untrue) => Err(format!("no true consequence: {untrue:?}")),
+        None => Ok(()),
+    }
+}
+
+/// How many syntax errors are reported.
+fn check(slip: &Slip, program: &str, before: &str, complaints: &mut Vec<String>) -> u32 {
     let mut database = Database::new();
     let file = database.open("slip.pyr", &slip.text);
     let diagnostics = database.diagnostics(file);
-    let syntax: Vec<&Diagnostic> = diagnostics.iter().filter(|diagnostic| is_syntax(diagnostic)).collect();
-    let near = neighbourhood(slip);
-    let is_near = |diagnostic: &&Diagnostic| near.touches(diagnostic.span.start);
-    let mut complain =
-        |what: &str| complaints.push(format!("{program}, {}: {what}\n{diagnostics:#?}", slip.what));
-    if !syntax.iter().all(is_near) {
-        complain("a syntax error far from the slip");
-    }
-    if !syntax.is_empty() && !syntax.iter().any(is_near) {
-        complain("nothing is said near the slip");
-    }
-    if syntax.len() > 2 {
-        complain("a cascade");
+    let said: Vec<Finding> = diagnostics.iter().map(finding).collect();
+    let syntax: Vec<Finding> =
+        diagnostics.iter().filter(|diagnostic| is_syntax(diagnostic)).map(finding).collect();
+    let verdict = pydslrep_naive::check(&slip.text);
+    let outcome = if verdict.grammatical {
+        check_program(verdict, &said.into_iter().collect())
+    } else {
+        check_broken(slip, before, &said, &syntax)
+    };
+    if let Err(complaint) = outcome {
+        complaints.push(format!("{program}, {}: {complaint}", slip.what));
     }
     u32::try_from(syntax.len()).unwrap()
 }
@@ -119,7 +195,7 @@ fn a_slip_is_reported_where_it_is_and_about_once() {
         let (mut reported, mut errors) = (0_u32, 0_u32);
         for (program, text) in programs() {
             for slip in kind(&text, &lex(&text)) {
-                let count = check(&slip, &program, &mut complaints);
+                let count = check(&slip, &program, &text, &mut complaints);
                 reported += u32::from(count > 0);
                 errors += count;
             }

@@ -75,11 +75,28 @@ pub fn check(text: &str) -> Verdict {
     Verdict { grammatical: program.is_some(), findings, excused }
 }
 
-/// The name that the entity at a place of the text declares, by its kind and its spelling without `^`; `None` where the
-/// place is outside all entities or the program is not grammatical.
-pub fn declared_at(text: &str, place: usize) -> Option<(&'static str, String)> {
-    let (tokens, _) = tokens::read(text);
-    let program = grammar::read(&tokens, text.len())?;
-    let entity = program.entities.iter().find(|entity| entity.range.contains(&place))?;
-    Some((entity.kind(), entity.name.text.clone()))
+/// An entity of a grammatical program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Declaration {
+    /// `wheel` (also for `wheelH`), `sensor`, `ip`, `robot`, `movement` or `environment`.
+    pub kind: &'static str,
+    /// Its name without `^`.
+    pub name: String,
+    /// Where the name stands, with its `^`.
+    pub name_range: Range<usize>,
+    /// From the first byte of its first token to behind its last.
+    pub range: Range<usize>,
+}
+
+/// All entities of a program in the order of the text; `None` where it is not grammatical.
+pub fn declarations(text: &str) -> Option<Vec<Declaration>> {
+    let (tokens, lexical) = tokens::read(text);
+    let program = grammar::read(&tokens, text.len()).filter(|_| lexical.is_empty())?;
+    let declaration = |entity: program::Entity| Declaration {
+        kind: entity.kind(),
+        name: entity.name.text,
+        name_range: entity.name.range,
+        range: entity.range,
+    };
+    Some(program.entities.into_iter().map(declaration).collect())
 }

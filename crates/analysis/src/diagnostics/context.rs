@@ -160,6 +160,11 @@ impl<'a> Context<'a> {
         }
     }
 
+    /// Whether an entity was read without a syntax error, so that others may conclude something from what it lacks.
+    pub(super) fn is_sound(&self, id: EntityId) -> bool {
+        self.database.parse(id).is_some_and(|parse| parse.errors.is_empty())
+    }
+
     /// The movement a reference leads to.
     pub(super) fn movement(&self, name: &Name) -> Option<(EntityId, &'a Movement)> {
         let id = self.resolve(EntityKind::Movement, name).entity()?;

@@ -61,7 +61,8 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 }
 
 fn radius<'a>(context: &Context<'a>, name: &'a Name) -> Option<(&'a Name, EntityId, &'a Wheel, f64)> {
-    let (id, wheel) = context.wheel(name)?;
+    // Where there is a syntax error, another radius may be meant.
+    let (id, wheel) = context.wheel(name).filter(|(id, _)| context.is_sound(*id))?;
     // One that is beyond all numbers has been reported as that.
     let radius = wheel.radius.as_ref()?.value.filter(|radius| radius.is_finite())?;
     Some((name, id, wheel, radius))
@@ -72,6 +73,17 @@ mod tests {
     use expect_test::expect;
 
     use crate::diagnostics::testing::{check, check_clean};
+
+    #[test]
+    fn of_two_radii_either_may_be_meant() {
+        let mut database = crate::Database::new();
+        let file = database.open(
+            "a.pyr",
+            "wheel a with radius 4 wheel b with radius 7 4 robot r with port 1 has { a b } wheels",
+        );
+        let codes: Vec<_> = database.diagnostics(file).iter().map(crate::Diagnostic::code).collect();
+        assert_eq!(codes, ["syntax-error"]);
+    }
 
     #[test]
     fn radii_are_alike() {

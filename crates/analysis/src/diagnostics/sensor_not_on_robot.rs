@@ -50,7 +50,8 @@ environment yard has { rover } robots with { trip } moves",
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
     let Some((id, robot)) = movement.robot.as_ref().and_then(|name| context.robot(name)) else { return };
-    if robot.sensors.as_ref().is_some_and(|list| list.broken) {
+    // Its list may be in what was not understood.
+    if !context.is_sound(id) {
         return;
     }
     for action in &movement.actions {
@@ -107,6 +108,17 @@ mod tests {
     use crate::diagnostics::testing::{check, check_clean};
 
     const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nsensor s\nsensor t\n";
+
+    #[test]
+    fn what_was_not_understood_may_hold_it() {
+        let mut database = crate::Database::new();
+        let program = format!(
+            "{PARTS}robot r with port 1 has {{ a b }} wheels wiht sensors {{ s t }}\nmovement m of r {{ turn left until {{ s, t }} }}"
+        );
+        let file = database.open("a.pyr", &program);
+        let codes: Vec<_> = database.diagnostics(file).iter().map(crate::Diagnostic::code).collect();
+        assert_eq!(codes, ["syntax-error"]);
+    }
 
     #[test]
     fn the_sensor_is_added_to_the_robot() {

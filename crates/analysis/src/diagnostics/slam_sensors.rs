@@ -63,7 +63,8 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
     let Some((id, robot)) = movement.robot.as_ref().and_then(|name| context.robot(name)) else { return };
     let (Some(name), Some(count)) = (&robot.name, distance_sensors(context, robot)) else { return };
-    if count >= NEEDED {
+    // More of them may be in what was not understood.
+    if count >= NEEDED || !context.is_sound(id) {
         return;
     }
     let has = match count {
@@ -90,9 +91,6 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 /// How many distance sensors the robot has; `None` where one of its sensors is not known.
 fn distance_sensors(context: &Context<'_>, robot: &Robot) -> Option<usize> {
     let names = robot.sensors.as_ref().map_or(&[][..], |list| &list.names);
-    if robot.sensors.as_ref().is_some_and(|list| list.broken) {
-        return None;
-    }
     let mut counted: Vec<&str> = Vec::new();
     for name in names {
         if sees_distance(context, name)? && !counted.contains(&name.text.as_str()) {
@@ -116,6 +114,17 @@ mod tests {
     use crate::diagnostics::testing::{check, check_clean};
 
     const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nsensor s sensor t sensor u sensor v sensor w\nsensor x : bumper\n";
+
+    #[test]
+    fn what_was_not_understood_may_hold_more() {
+        let mut database = crate::Database::new();
+        let program = format!(
+            "{PARTS}robot r with port 1 has {{ a b }} wheels sensors {{ s t u v w }}\nmovement m of r {{ slam }}"
+        );
+        let file = database.open("a.pyr", &program);
+        let codes: Vec<_> = database.diagnostics(file).iter().map(crate::Diagnostic::code).collect();
+        assert_eq!(codes, ["syntax-error"]);
+    }
 
     #[test]
     fn explorers_see_in_five_directions() {
