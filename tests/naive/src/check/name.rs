@@ -1,10 +1,11 @@
 //! Groups "name" and "file": what is declared and what is used.
 
 use crate::Finding;
-use crate::program::{Entity, Program};
+use crate::program::{Entity, Name, Program};
 
 pub(super) fn check(program: &Program, findings: &mut Vec<Finding>) {
-    for (kind, name) in program.references() {
+    let references = program.references();
+    for (kind, name) in &references {
         if program.find(kind, &name.text).is_none() {
             findings.push(Finding::new("unresolved-reference", &name.range));
         }
@@ -13,7 +14,7 @@ pub(super) fn check(program: &Program, findings: &mut Vec<Finding>) {
         if program.entities[..index].iter().any(|earlier| is_same(earlier, entity)) {
             findings.push(Finding::new("duplicate-name", &entity.name.range));
         }
-        if program.has_any("environment") && !is_used(program, entity) {
+        if program.has_any("environment") && !is_used(&references, entity) {
             findings.push(Finding::new("unused-declaration", &entity.name.range));
         }
     }
@@ -25,12 +26,9 @@ fn is_same(one: &Entity, other: &Entity) -> bool {
 }
 
 /// Whether something names it. An environment is what all the rest is for.
-fn is_used(program: &Program, entity: &Entity) -> bool {
+fn is_used(references: &[(&str, &Name)], entity: &Entity) -> bool {
     entity.kind() == "environment"
-        || program
-            .references()
-            .iter()
-            .any(|(kind, name)| *kind == entity.kind() && name.text == entity.name.text)
+        || references.iter().any(|(kind, name)| *kind == entity.kind() && name.text == entity.name.text)
 }
 
 /// Robots and movements but no environment; said at the last entity.
