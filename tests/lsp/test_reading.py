@@ -5,7 +5,7 @@ from __future__ import annotations
 import pathlib
 
 import pytest
-from editor import Editor, offset, position
+from editor import Editor, apply_edits, offset, position
 from lsprotocol import types
 from pytest_lsp import LanguageClient
 
@@ -95,3 +95,86 @@ async def test_a_statement_shows_its_shape(
     current = signature.parameters[shown.active_parameter].label
     assert isinstance(current, tuple | list)
     assert signature.label[current[0] : current[1]] == "DISTANCE"
+
+
+async def test_actions_have_hints(
+    client: LanguageClient, tmp_path: pathlib.Path
+) -> None:
+    text = PROGRAM.replace("turn left", "/* 🤖é */ turn left")
+    uri = Editor(client, tmp_path).open("a.pyr", text)
+    end = text.index("turn left") + len("turn left")
+    line = position(text, end).line
+    asked = types.Range(types.Position(line, 0), types.Position(line + 1, 0))
+    hints = await client.text_document_inlay_hint_async(
+        types.InlayHintParams(identifier(uri), asked)
+    )
+    assert hints is not None
+    assert [hint.label for hint in hints] == ["90", "2.8 s → (4 m, 0 m, 90°)"]
+    assert {(hint.position.line, hint.position.character) for hint in hints} == {
+        (line, position(text, end).character)
+    }
+    edits = hints[0].text_edits
+    assert edits
+    assert edits[0].new_text == " 90"
+
+
+async def test_declarations_have_lenses(
+    client: LanguageClient, tmp_path: pathlib.Path
+) -> None:
+    uri = Editor(client, tmp_path).open("a.pyr", PROGRAM)
+    lenses = await client.text_document_code_lens_async(
+        types.CodeLensParams(identifier(uri))
+    )
+    assert lenses
+    shown = [
+        lens if lens.command else await client.code_lens_resolve_async(lens)
+        for lens in lenses
+    ]
+    titles = [
+        (text_of(PROGRAM, lens.range), lens.command.title)
+        for lens in shown
+        if lens.command
+    ]
+    assert titles[:5] == [
+        ("wheelL", "1 reference"),
+        ("wheelR", "1 reference"),
+        ("rover", "2 references"),
+        ("patrol", "2 references"),
+        ("area", "Generate script"),
+    ]
+    script = shown[4].command
+    assert script
+    assert script.command == "pydslrep.generateScript"
+    assert list(script.arguments or []) == [{"uri": uri, "environment": "area"}]
+
+
+async def test_a_brace_closes_a_movement_in_layout(
+    client: LanguageClient, tmp_path: pathlib.Path
+) -> None:
+    editor = Editor(client, tmp_path)
+    text = PROGRAM.replace("\n  turn left\n}", " turn   left}")
+    uri = editor.open("a.pyr", text)
+    params = types.DocumentOnTypeFormattingParams(
+        identifier(uri),
+        position(text, text.index("left}") + len("left}")),
+        "}",
+        types.FormattingOptions(tab_size=8, insert_spaces=False),
+    )
+    edits = await client.text_document_on_type_formatting_async(params)
+    assert edits is not None
+    assert apply_edits(text, edits) == PROGRAM
+
+
+async def test_settings_choose_the_hints(
+    client: LanguageClient, tmp_path: pathlib.Path
+) -> None:
+    (tmp_path / "pydslrep.toml").write_text(
+        "[inlay-hints]\npose = false\ndefaults = false\n", encoding="utf-8"
+    )
+    uri = Editor(client, tmp_path).open("a.pyr", PROGRAM)
+    asked = types.Range(types.Position(0, 0), types.Position(99, 0))
+    hints = await client.text_document_inlay_hint_async(
+        types.InlayHintParams(identifier(uri), asked)
+    )
+    assert hints is not None
+    assert [hint.label for hint in hints] == ["44.6 s", "2.8 s"]

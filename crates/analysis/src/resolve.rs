@@ -7,7 +7,7 @@ use pydslrep_syntax::{EntityKind, Span, Token};
 
 use crate::environment::{Action, ActionKind, Environment, Movement, Robot, Sensor, Source, Wheel};
 use crate::script_name::script_names;
-use crate::{Database, Diagnostic, EntityId, FileId, Severity, diagnostics};
+use crate::{Database, Diagnostic, EntityId, EntityRef, FileId, Severity, diagnostics};
 
 /// Why an environment cannot run.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,6 +79,19 @@ impl Database {
         Some((parts.robot(robot)?, parts.movement(id, &[robot])?))
     }
 
+    /// The same with the first `count` actions at most, and of those only the ones before the first that is broken: what
+    /// is known of a movement while it is being written.
+    pub fn movement_start(&self, id: EntityId, count: usize) -> Option<(Robot, Movement)> {
+        let parts = Parts { database: self, file: self.file_of(id) };
+        let Entity::Movement(tree) = self.tree(id)? else { return None };
+        let robot = parts.robot(parts.resolve(id, EntityKind::Robot, tree.robot.as_ref()?)?)?;
+        let entity = self.entity(id)?;
+        let actions = tree.actions.iter().take(count);
+        let actions = actions.map_while(|action| parts.action(&entity, action, &robot.sensors)).collect();
+        let name = tree.name.as_ref().map_or_else(String::new, |name| name.text.to_string());
+        Some((robot, Movement { name, robot: 0, actions, source: parts.source(&entity, 0)? }))
+    }
+
     /// The wheel layout of a robot: its type, else what its wheels make it. Four mecanum wheels are never `fw`.
     pub fn drive(&self, robot: EntityId) -> Option<Drive> {
         let file = self.file_of(robot)?;
@@ -147,7 +160,7 @@ impl<'a> Parts<'a> {
             robots: robot_ids.iter().map(|id| self.robot(*id)).collect::<Option<_>>()?,
             movements: movement_ids.iter().map(|id| self.movement(*id, &robot_ids)).collect::<Option<_>>()?,
             schedule: self.schedule(&runs, &movement_ids),
-            source: self.source(id, 0)?,
+            source: self.source(&self.database.entity(id)?, 0)?,
         })
     }
 
@@ -188,7 +201,7 @@ impl<'a> Parts<'a> {
             port: tree.port.as_ref()?.value?,
             wheels: wheels.iter().map(|id| self.wheel(*id)).collect::<Option<_>>()?,
             sensors: sensors.iter().map(|id| self.sensor(*id)).collect::<Option<_>>()?,
-            source: self.source(id, 0)?,
+            source: self.source(&self.database.entity(id)?, 0)?,
         })
     }
 
@@ -212,29 +225,29 @@ impl<'a> Parts<'a> {
         let robot_id = self.resolve(id, EntityKind::Robot, tree.robot.as_ref()?)?;
         let robot = robots.iter().position(|other| *other == robot_id)?;
         let sensors = self.robot(robot_id)?.sensors;
+        let entity = self.database.entity(id)?;
         Some(Movement {
             name: tree.name.as_ref()?.text.to_string(),
             robot,
             actions: tree
                 .actions
                 .iter()
-                .map(|action| self.action(id, action, &sensors))
+                .map(|action| self.action(&entity, action, &sensors))
                 .collect::<Option<_>>()?,
-            source: self.source(id, 0)?,
+            source: self.source(&entity, 0)?,
         })
     }
 
-    fn action(&self, id: EntityId, action: &ast::Action, sensors: &[Sensor]) -> Option<Action> {
+    fn action(&self, entity: &EntityRef<'_>, action: &ast::Action, sensors: &[Sensor]) -> Option<Action> {
         Some(Action {
             kind: action_kind(&action.kind, sensors)?,
-            text: self.folded_text(id, action.span)?,
-            source: self.source(id, action.span.start)?,
+            text: self.folded_text(entity, action.span),
+            source: self.source(entity, action.span.start)?,
         })
     }
 
     /// The tokens of a range with single spaces between them and no comments.
-    fn folded_text(&self, id: EntityId, span: Span) -> Option<String> {
-        let entity = self.database.entity(id)?;
+    fn folded_text(&self, entity: &EntityRef<'_>, span: Span) -> String {
         let tokens = entity.parse.lexemes.iter().filter(|(token, place)| {
             !token.is_comment() && span.start <= place.start && place.end <= span.end
         });
@@ -245,7 +258,7 @@ impl<'a> Parts<'a> {
             }
             text += &self.database.slice(entity.file, place.shifted(entity.span.start));
         }
-        Some(text)
+        text
     }
 
     fn resolve(&self, from: EntityId, kind: EntityKind, name: &Name) -> Option<EntityId> {
@@ -256,8 +269,7 @@ impl<'a> Parts<'a> {
         names.iter().map(|name| self.resolve(from, kind, name)).collect()
     }
 
-    fn source(&self, id: EntityId, offset: u32) -> Option<Source> {
-        let entity = self.database.entity(id)?;
+    fn source(&self, entity: &EntityRef<'_>, offset: u32) -> Option<Source> {
         let line = self.database.text(entity.file)?.byte_to_line((entity.span.start + offset) as usize) + 1;
         let path = self.database.path(entity.file);
         let file =

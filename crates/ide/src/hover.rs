@@ -1,7 +1,7 @@
 //! Hover: what a robot programmer would like to know of the thing under the cursor.
 
-mod drawing;
-mod motion;
+pub(crate) mod drawing;
+pub(crate) mod motion;
 mod parts;
 
 use pydslrep_analysis::Database;
@@ -203,13 +203,13 @@ mod tests {
         check(
             &format!("{PARTS}{}", REST.replace("slam", "sl$0am")),
             &expect![[r#"
-            slam
-            ---
-            ```pydslrep
-            slam
-            ```
-            Where it starts cannot be planned: `turn right until { front }` ends when the way is free.
-        "#]],
+                slam
+                ---
+                ```pydslrep
+                slam
+                ```
+                Where it starts cannot be planned: `turn right until { front }` ends when the way is free.
+            "#]],
         );
     }
 
@@ -248,19 +248,21 @@ mod tests {
         check(
             &format!("{PARTS}{}", REST.replace(" slam ", " ").replace("environment e", "environment $0e")),
             &expect![[r#"
-            e
-            ---
-            ```pydslrep
-            environment e has { rover } robots with { n m } moves
-            ```
-            Runs `rover`; takes a time that cannot be planned.
+                e
+                ---
+                ```pydslrep
+                environment e has { rover } robots with { n m } moves
+                ```
+                Runs `rover`; takes a time that cannot be planned.
 
-            | from | to | robot | movement |
-            |---|---|---|---|
-            | 0 s | 5.7 s | `rover` | `n` |
-            | 5.7 s | ? | `rover` | `m` |
+                | from | to | robot | movement |
+                |---|---|---|---|
+                | 0 s | 5.7 s | `rover` | `n` |
+                | 5.7 s | ? | `rover` | `m` |
 
-        "#]],
+                Unknown from there in `m` on: `turn right until { front }` ends when the way is free, so where `rover` then is, and when anything after it begins, cannot be planned.
+
+            "#]],
         );
     }
 

@@ -3,6 +3,7 @@
 //! Knows `analysis` and what lies below it. Must never know the editors' protocol, lines and columns (places are byte
 //! offsets), files on a disk, or threads.
 
+mod code_lenses;
 mod completion;
 mod cursor;
 mod definition;
@@ -10,6 +11,8 @@ mod folding;
 mod formatting;
 mod highlights;
 mod hover;
+mod inlay_hints;
+mod on_type;
 mod quick_fixes;
 mod reference;
 mod references;
@@ -22,12 +25,15 @@ mod type_definition;
 #[cfg(test)]
 mod fixture;
 
+pub use code_lenses::{CodeLens, code_lenses};
 pub use completion::{Completion, CompletionKind, completions};
 pub use definition::{Definition, Target, goto_definition};
 pub use folding::{Fold, FoldKind, folding_ranges};
 pub use formatting::{format, format_range};
 pub use highlights::{Highlight, highlights};
 pub use hover::{Hover, hover};
+pub use inlay_hints::{InlayHint, InlayHintOptions, inlay_hints};
+pub use on_type::{format_after_brace, format_after_line_break};
 pub use quick_fixes::{QuickFix, quick_fixes};
 pub use reference::{KeywordPage, keyword_page};
 pub use references::references;

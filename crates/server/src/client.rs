@@ -5,6 +5,7 @@ use tower_lsp::ls_types::{
     TextDocumentClientCapabilities, WorkspaceClientCapabilities,
 };
 
+use crate::handlers::code_lenses::SHOW_REFERENCES;
 use crate::positions::Encoding;
 
 /// The client's abilities that change our answers, each off unless the client says otherwise.
@@ -39,6 +40,8 @@ pub(crate) struct ClientFeatures {
     pub(crate) label_offsets: bool,
     /// It shows Markdown beside a signature.
     pub(crate) signature_markdown: bool,
+    /// It has the command that lists references.
+    pub(crate) show_references: bool,
     /// It folds whole lines only.
     pub(crate) line_folding_only: bool,
     /// Code actions may be more than commands.
@@ -61,6 +64,8 @@ pub(crate) struct ClientFeatures {
     pub(crate) progress: bool,
     /// It asks again for diagnostics when it is told to.
     pub(crate) refreshes_diagnostics: bool,
+    /// It can be told to ask for inlay hints again.
+    pub(crate) refreshes_inlay_hints: bool,
     /// It can be asked to show a file.
     pub(crate) show_document: bool,
 }
@@ -75,6 +80,10 @@ impl ClientFeatures {
             features.show_document = window.show_document.as_ref().is_some_and(|show| show.support);
             features.progress = window.work_done_progress == Some(true);
         }
+        let commands =
+            client.experimental.as_ref().and_then(|extra| extra.pointer("/commands/commands")?.as_array());
+        features.show_references =
+            commands.is_some_and(|commands| commands.iter().any(|command| command == SHOW_REFERENCES));
         if let Some(workspace) = &client.workspace {
             features.read_workspace(workspace);
         }
@@ -93,6 +102,8 @@ impl ClientFeatures {
         self.registers_settings = workspace
             .did_change_configuration
             .is_some_and(|settings| settings.dynamic_registration == Some(true));
+        self.refreshes_inlay_hints =
+            workspace.inlay_hint.as_ref().is_some_and(|hints| hints.refresh_support == Some(true));
         self.refreshes_diagnostics =
             workspace.diagnostics.as_ref().is_some_and(|pulled| pulled.refresh_support == Some(true));
         let Some(edit) = &workspace.workspace_edit else { return };

@@ -13,8 +13,8 @@ use tower_lsp::{Client, LanguageServer, NotCancellable, OngoingProgress, Unbound
 use crate::capabilities;
 use crate::client::ClientFeatures;
 use crate::handlers::{
-    self, code_actions, completion, diagnostics, document_symbols, folding, formatting, hover, navigation,
-    references, scripts, selection, semantic_tokens, signature, synchronization,
+    self, code_actions, code_lenses, completion, diagnostics, document_symbols, folding, formatting, hover,
+    inlay_hints, navigation, references, scripts, selection, semantic_tokens, signature, synchronization,
 };
 use crate::log::log;
 use crate::message::Outbox;
@@ -212,6 +212,18 @@ impl LanguageServer for Server {
         Ok(document_symbols::document_symbols(&self.state(), &params))
     }
 
+    async fn inlay_hint(&self, params: InlayHintParams) -> Result<Option<Vec<InlayHint>>> {
+        Ok(inlay_hints::inlay_hints(&self.state(), &params))
+    }
+
+    async fn code_lens(&self, params: CodeLensParams) -> Result<Option<Vec<CodeLens>>> {
+        Ok(code_lenses::code_lenses(&self.state(), &params))
+    }
+
+    async fn code_lens_resolve(&self, lens: CodeLens) -> Result<CodeLens> {
+        code_lenses::resolve(&self.state(), lens)
+    }
+
     async fn folding_range(&self, params: FoldingRangeParams) -> Result<Option<Vec<FoldingRange>>> {
         Ok(folding::folding_ranges(&self.state(), &params))
     }
@@ -226,6 +238,13 @@ impl LanguageServer for Server {
 
     async fn range_formatting(&self, params: DocumentRangeFormattingParams) -> Result<Option<Vec<TextEdit>>> {
         Ok(formatting::range(&self.state(), &params))
+    }
+
+    async fn on_type_formatting(
+        &self,
+        params: DocumentOnTypeFormattingParams,
+    ) -> Result<Option<Vec<TextEdit>>> {
+        Ok(formatting::on_type(&self.state(), &params))
     }
 
     async fn semantic_tokens_full(
@@ -293,10 +312,13 @@ impl Server {
         Some(self.client.progress(token, title).begin().await)
     }
 
-    /// Asks clients that ask for diagnostics to ask again: what changed is not what they changed.
+    /// Asks clients that ask for diagnostics and hints to ask again: what changed is not what they changed.
     async fn refresh(&self) {
         if self.state().client.refreshes_diagnostics {
             let _ = self.client.workspace_diagnostic_refresh().await;
+        }
+        if self.state().client.refreshes_inlay_hints {
+            let _ = self.client.inlay_hint_refresh().await;
         }
     }
 }
@@ -311,6 +333,7 @@ impl Server {
                 self.answer_directly(request, document_symbols::document_symbols)
             }
             "textDocument/references" => self.answer_directly(request, references::references),
+            "textDocument/codeLens" => self.answer_directly(request, code_lenses::code_lenses),
             "textDocument/foldingRange" => self.answer_directly(request, folding::folding_ranges),
             "textDocument/semanticTokens/full" => self.answer_directly(request, semantic_tokens::full),
             _ => false,

@@ -3,7 +3,7 @@
 use pydslrep_kinematics::{Pose, heading_degrees};
 
 /// A number with at most `places` digits behind the point, and no more than it needs.
-pub(super) fn number(value: f64, places: usize) -> String {
+pub(crate) fn number(value: f64, places: usize) -> String {
     let fixed = format!("{value:.places$}");
     let trimmed =
         if fixed.contains('.') { fixed.trim_end_matches('0').trim_end_matches('.') } else { &fixed };
@@ -11,13 +11,13 @@ pub(super) fn number(value: f64, places: usize) -> String {
 }
 
 /// `(1.000 m, 0.500 m, 90°)`
-pub(super) fn pose(pose: &Pose) -> String {
+pub(crate) fn pose(pose: &Pose) -> String {
     let degrees = number(heading_degrees(pose.theta, 1), 1);
     format!("({} m, {} m, {degrees}°)", number(pose.x, 3), number(pose.y, 3))
 }
 
 /// `12.3 s`, or minutes where those are easier to grasp.
-pub(super) fn time(seconds: f64) -> String {
+pub(crate) fn time(seconds: f64) -> String {
     if seconds < 120.0 {
         return format!("{} s", number(seconds, 1));
     }
@@ -26,6 +26,6 @@ pub(super) fn time(seconds: f64) -> String {
 }
 
 /// Names as code, with commas.
-pub(super) fn names<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+pub(crate) fn names<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     names.into_iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }

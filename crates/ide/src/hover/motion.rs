@@ -1,6 +1,6 @@
 //! Actions, movements and environments: where they lead and how long that takes.
 
-use pydslrep_analysis::environment::{ActionKind, Environment, Movement};
+use pydslrep_analysis::environment::{Action, ActionKind, Environment, Movement, Robot};
 use pydslrep_analysis::{Database, EntityId, plan, plan_movement, scene};
 use pydslrep_kinematics::{Leg, Plan, RobotPath};
 use pydslrep_syntax::EntityKind;
@@ -10,12 +10,18 @@ use super::parts::used_by;
 
 /// An action of a movement that starts at the origin.
 pub(super) fn action(database: &Database, id: EntityId, index: usize) -> Option<String> {
-    let (robot, movement) = database.movement(id)?;
+    let (robot, movement) = database.movement_start(id, index + 1)?;
     let path = plan_movement(&robot, &movement).ok()?;
     let text = &movement.actions.get(index)?.text;
-    let head = format!("```pydslrep\n{text}\n```\n");
-    let Some(leg) = path.legs.get(index) else {
-        return Some(head + &unknown(&movement, &path, index));
+    Some(format!("```pydslrep\n{text}\n```\n{}", action_facts(&robot, &movement, &path, index)))
+}
+
+/// What there is to say of an action of a movement with its planned path.
+pub(crate) fn action_facts(robot: &Robot, movement: &Movement, path: &RobotPath, index: usize) -> String {
+    let Some(leg) = leg(robot, movement, path, index) else {
+        let is_cause = path.unknown_after.is_none_or(|cause| cause.action == index);
+        let what = if is_cause { "ends" } else { "starts" };
+        return format!("Where it {what} cannot be planned: {}.", why_unknown(movement, path, index));
     };
     let rates: Vec<String> = robot
         .wheels
@@ -23,26 +29,35 @@ pub(super) fn action(database: &Database, id: EntityId, index: usize) -> Option<
         .zip(&leg.rates)
         .map(|(wheel, rate)| format!("`{}` {} rad/s", wheel.name, number(*rate, 2)))
         .collect();
-    Some(format!(
-        "{head}Takes {}. From {} to {}, counted from where the movement starts.\n\nWheel rates: {}.",
-        time(leg.duration),
-        pose(&leg.from),
-        pose(&leg.to),
-        rates.join(", ")
-    ))
+    let poses = if index < path.legs.len() {
+        format!("From {} to {}, counted from where the movement starts.", pose(&leg.from), pose(&leg.to))
+    } else {
+        format!("Where it starts cannot be planned: {}.", why_unknown(movement, path, index))
+    };
+    format!("Takes {}. {poses}\n\nWheel rates: {}.", time(leg.duration), rates.join(", "))
 }
 
-fn unknown(movement: &Movement, path: &RobotPath, index: usize) -> String {
+/// The drive of an action, planned alone where the movement's path does not reach it: how long it takes is known then
+/// too. `None` where only the world decides when it ends.
+pub(crate) fn leg(robot: &Robot, movement: &Movement, path: &RobotPath, index: usize) -> Option<Leg> {
+    if let Some(leg) = path.legs.get(index) {
+        return Some(leg.clone());
+    }
+    let actions = vec![movement.actions.get(index)?.clone()];
+    let alone = Movement { actions, ..movement.clone() };
+    plan_movement(robot, &alone).ok()?.legs.pop()
+}
+
+/// Why the pose behind an action is unknown.
+pub(crate) fn why_unknown(movement: &Movement, path: &RobotPath, index: usize) -> String {
     let cause = path.unknown_after.map_or(index, |cause| cause.action);
-    let why = match movement.actions.get(cause).map(|action| (&action.kind, &action.text)) {
-        Some((ActionKind::Slam, _)) => "`slam` goes where the world lets it".to_owned(),
-        Some((_, text)) => format!("`{text}` ends when the way is free"),
-        None => "an action before it has an open end".to_owned(),
-    };
-    if cause == index {
-        format!("Where it ends cannot be planned: {why}.")
-    } else {
-        format!("Where it starts cannot be planned: {why}.")
+    movement.actions.get(cause).map_or_else(|| "an action before it has an open end".to_owned(), open_end)
+}
+
+fn open_end(action: &Action) -> String {
+    match action.kind {
+        ActionKind::Slam => "`slam` goes where the world lets it".to_owned(),
+        _ => format!("`{}` ends when the way is free", action.text),
     }
 }
 
@@ -95,7 +110,23 @@ pub(super) fn environment(database: &Database, id: EntityId) -> Option<String> {
     if environment.schedule.is_empty() {
         text = format!("Runs {robots}, but lists no movements: nothing drives.");
     }
+    text += &unknown(&environment, &plan);
     Some(text)
+}
+
+/// Since where and why times and poses are unknown, robot by robot.
+fn unknown(environment: &Environment, plan: &Plan) -> String {
+    let line = |(robot, path): (&Robot, &RobotPath)| {
+        let cause = path.unknown_after?;
+        let movement = *environment.schedule.get(cause.group)?.get(cause.run)?;
+        let movement = environment.movements.get(movement)?;
+        let why = open_end(movement.actions.get(cause.action)?);
+        let (robot, movement) = (&robot.name, &movement.name);
+        Some(format!(
+            "\nUnknown from there in `{movement}` on: {why}, so where `{robot}` then is, and when anything after it begins, cannot be planned.\n"
+        ))
+    };
+    environment.robots.iter().zip(&plan.robots).filter_map(line).collect()
 }
 
 fn row(environment: &Environment, plan: &Plan, group: usize, run: usize, movement: usize) -> Option<String> {

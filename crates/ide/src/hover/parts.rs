@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use pydslrep_analysis::environment::Robot;
-use pydslrep_analysis::{Database, EntityId};
+use pydslrep_analysis::{Database, EntityId, FileId};
 use pydslrep_kinematics::Drive;
 use pydslrep_scene::defaults;
 use pydslrep_syntax::EntityKind;
@@ -97,13 +97,27 @@ fn equations(robot: &Robot) -> String {
     )
 }
 
-/// Who uses an entity, of those in its own file.
+/// More users than these are counted, not named.
+const MOST_USERS: usize = 12;
+
+/// Who uses an entity, in its own file and in those that import it.
 pub(super) fn used_by(database: &Database, id: EntityId, kind: EntityKind) -> String {
     let name = database.tree(id).and_then(Entity::name).map(|name| &name.text);
-    let (Some(file), Some(name)) = (database.file_of(id), name) else { return String::new() };
-    let users = database.users(file, kind, name).iter().filter_map(|user| database.tree(*user)?.name());
-    let mut users: Vec<&str> = users.map(|name| name.text.as_str()).collect();
+    let (Some(home), Some(name)) = (database.file_of(id), name) else { return String::new() };
+    let means_it = |file: &FileId| {
+        database.resolve(*file, kind, name).entity().and_then(|id| database.file_of(id)) == Some(home)
+    };
+    let files = std::iter::once(home).chain(database.importing(home).into_iter().filter(means_it));
+    let users = files.flat_map(|file| database.users(file, kind, name));
+    let mut users: Vec<&str> =
+        users.filter_map(|user| database.tree(*user)?.name()).map(|name| name.text.as_str()).collect();
     users.sort_unstable();
     users.dedup();
-    if users.is_empty() { "Nothing here uses it.".to_owned() } else { format!("Used by {}.", names(users)) }
+    if users.is_empty() {
+        return "Nothing here uses it.".to_owned();
+    }
+    let more = users.len().saturating_sub(MOST_USERS);
+    users.truncate(MOST_USERS);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    format!("Used by {}{more}.", names(users))
 }

@@ -1,9 +1,11 @@
-//! `textDocument/formatting` and `textDocument/rangeFormatting`. The layout has no options: the client's tab size is not
+//! `textDocument/formatting`, `textDocument/rangeFormatting` and `textDocument/onTypeFormatting`. The layout has no options: the client's tab size is not
 //! asked for.
 
 use pydslrep_ide as ide;
 use pydslrep_syntax as syntax;
-use tower_lsp::ls_types::{DocumentFormattingParams, DocumentRangeFormattingParams, TextEdit};
+use tower_lsp::ls_types::{
+    DocumentFormattingParams, DocumentOnTypeFormattingParams, DocumentRangeFormattingParams, TextEdit,
+};
 
 use crate::documents::Document;
 use crate::positions::LineTable;
@@ -20,6 +22,22 @@ pub(crate) fn range(state: &State, params: &DocumentRangeFormattingParams) -> Op
     let (document, file) = state.analysed(&params.text_document.uri)?;
     let span = state.span(document, params.range);
     Some(convert(state, document, ide::format_range(&state.database, file, span)))
+}
+
+/// The edits after a character was typed.
+pub(crate) fn on_type(state: &State, params: &DocumentOnTypeFormattingParams) -> Option<Vec<TextEdit>> {
+    let place = state.place(&params.text_document_position)?;
+    let edits = match params.ch.as_str() {
+        "}" => ide::format_after_brace(&state.database, place.position()),
+        "\n" => ide::format_after_line_break(&state.database, place.position()),
+        _ => Vec::new(),
+    };
+    Some(
+        edits
+            .into_iter()
+            .map(|edit| TextEdit::new(state.range(place.document, edit.span), edit.text))
+            .collect(),
+    )
 }
 
 fn convert(state: &State, document: &Document, edits: Vec<syntax::TextEdit>) -> Vec<TextEdit> {

@@ -1,12 +1,14 @@
 //! One file per group of requests: plain functions of the state and the parameters, without a runtime.
 
 pub(crate) mod code_actions;
+pub(crate) mod code_lenses;
 pub(crate) mod completion;
 pub(crate) mod diagnostics;
 pub(crate) mod document_symbols;
 pub(crate) mod folding;
 pub(crate) mod formatting;
 pub(crate) mod hover;
+pub(crate) mod inlay_hints;
 pub(crate) mod navigation;
 pub(crate) mod references;
 pub(crate) mod scripts;

@@ -1,0 +1,198 @@
+//! Formatting while typing: a closing brace brings what it closes into the canonical layout, a new line is indented.
+//!
+//! Other entities are never touched, and what has errors is only indented.
+
+use pydslrep_analysis::{Database, EntityRef};
+use pydslrep_syntax::ast::Entity;
+use pydslrep_syntax::{EntityKind, Lexeme, Span, TextEdit, Token, format_edits};
+
+use crate::FilePosition;
+use crate::cursor::body;
+
+/// One step of indentation, in spaces.
+const STEP: usize = 2;
+
+/// The edits after a `}` was typed right before a place.
+pub fn format_after_brace(database: &Database, position: FilePosition) -> Vec<TextEdit> {
+    let Some(brace) = position.offset.checked_sub(1) else { return Vec::new() };
+    let Some(entity) = database.entity_at(position.file, brace) else { return Vec::new() };
+    let start = entity.span.start;
+    let closes = |(token, span): &&Lexeme| *token == Token::CloseBrace && span.start + start == brace;
+    if !entity.parse.lexemes.iter().any(|lexeme| closes(&lexeme)) {
+        // It was typed in a comment.
+        return Vec::new();
+    }
+    if !entity.parse.errors.is_empty() {
+        return indent(database, FilePosition { offset: brace, ..position });
+    }
+    let part = match &entity.parse.entity {
+        Some(Entity::Movement(movement)) => {
+            let action = movement.actions.iter().map(|action| action.span.shifted(start));
+            action.into_iter().find(|span| span.touches(position.offset)).unwrap_or_else(|| body(&entity))
+        }
+        _ => body(&entity),
+    };
+    let part = Span::new(part.start, part.end.min(position.offset));
+    in_layout(database, &entity, part)
+}
+
+/// The edits after a line break was typed before a place: the line is indented, if it is in something that is open.
+pub fn format_after_line_break(database: &Database, position: FilePosition) -> Vec<TextEdit> {
+    indent(database, position)
+}
+
+/// The edits of the canonical layout that lie in a part of an entity without errors.
+fn in_layout(database: &Database, entity: &EntityRef<'_>, part: Span) -> Vec<TextEdit> {
+    let start = entity.span.start;
+    let text = database.slice(entity.file, entity.span);
+    let edits = format_edits(&text, [(Span::of(&text), entity.parse)]);
+    let ending = database.line_ending(entity.file);
+    edits
+        .into_iter()
+        .map(|edit| TextEdit {
+            span: edit.span.shifted(start),
+            // The entity alone may have no line ending to go by.
+            text: edit.text.replace("\r\n", "\n").replace('\n', ending),
+        })
+        .filter(|edit| part.start < edit.span.start && edit.span.end < part.end)
+        .collect()
+}
+
+/// Replaces the white space that a line begins with, where it is not what the layout asks for.
+fn indent(database: &Database, position: FilePosition) -> Vec<TextEdit> {
+    let Some(line) = Line::at(database, position) else { return Vec::new() };
+    let Some(depth) = line.depth(database, position) else { return Vec::new() };
+    let wanted = " ".repeat(depth * STEP);
+    if wanted == database.slice(position.file, line.blank) {
+        return Vec::new();
+    }
+    vec![TextEdit { span: line.blank, text: wanted }]
+}
+
+/// A line, as far as it is blank.
+struct Line {
+    blank: Span,
+}
+
+impl Line {
+    fn at(database: &Database, position: FilePosition) -> Option<Self> {
+        let text = database.text(position.file)?;
+        let offset = (position.offset as usize).min(text.len_bytes());
+        let start = text.line_to_byte(text.byte_to_line(offset));
+        let blank = text.byte_slice(start..).bytes().take_while(|byte| matches!(byte, b' ' | b'\t')).count();
+        let to_u32 = |at: usize| u32::try_from(at).ok();
+        Some(Self { blank: Span::new(to_u32(start)?, to_u32(start + blank)?) })
+    }
+
+    /// How many steps it is to be indented; `None` where that cannot be said.
+    fn depth(&self, database: &Database, position: FilePosition) -> Option<usize> {
+        let before = self.blank.start.checked_sub(1)?;
+        let entity = database.entity_at(position.file, before)?;
+        let place = |(token, span): &Lexeme| (*token, span.shifted(entity.span.start));
+        let lexemes = || entity.parse.lexemes.iter().map(place);
+        if lexemes().any(|(_, span)| span.start < self.blank.start && self.blank.start < span.end) {
+            // In a comment, whose lines are the person's own.
+            return None;
+        }
+        let is_sign = |(token, span): &Lexeme| !token.is_comment() && span.end <= self.blank.start;
+        let typed: Vec<Token> = lexemes().filter(is_sign).map(|(token, _)| token).collect();
+        let open = typed.iter().fold(0_usize, |open, token| match token {
+            Token::OpenBrace => open + 1,
+            Token::CloseBrace => open.saturating_sub(1),
+            _ => open,
+        });
+        let closes =
+            lexemes().any(|(token, span)| token == Token::CloseBrace && span.start == self.blank.end);
+        let is_movement = typed.first().and_then(|token| token.entity_kind()) == Some(EntityKind::Movement);
+        match open {
+            0 => self.ends(&entity).then_some(0),
+            // Each line of a movement's body is an action, or goes on with one.
+            1 if is_movement && !closes && continues(&typed) => Some(2),
+            open => Some(open - usize::from(closes)),
+        }
+    }
+
+    /// Whether all of an entity stands before the line, and nothing of it is missing.
+    fn ends(&self, entity: &EntityRef<'_>) -> bool {
+        entity.parse.entity.is_some()
+            && entity.parse.errors.is_empty()
+            && body(entity).end <= self.blank.start
+    }
+}
+
+/// Whether an action cannot be over yet behind these tokens.
+fn continues(typed: &[Token]) -> bool {
+    let last = typed.last().copied();
+    matches!(last, Some(Token::Move | Token::Turn | Token::At | Token::Until))
+        || matches!(typed, [.., Token::Move, number] if number.is_number())
+}
+
+#[cfg(test)]
+mod tests {
+    use pydslrep_syntax::apply_edits;
+
+    use super::*;
+    use crate::fixture::at_cursor;
+
+    fn after(fixture: &str, edit: fn(&Database, FilePosition) -> Vec<TextEdit>) -> String {
+        let (database, position) = at_cursor(fixture);
+        let text = database.text(position.file).unwrap().to_string();
+        apply_edits(&text, &edit(&database, position))
+    }
+
+    fn brace(fixture: &str, expected: &str) {
+        assert_eq!(after(fixture, format_after_brace), expected, "{fixture}");
+    }
+
+    fn line_break(fixture: &str, expected: &str) {
+        assert_eq!(after(fixture, format_after_line_break), expected, "{fixture}");
+    }
+
+    #[test]
+    fn a_brace_formats_the_movement_it_closes_and_nothing_else() {
+        brace(
+            "wheel  a with radius 3\nmovement  m of r {move 1  meters\n    }$0\n\n\nwheel  b with radius 3",
+            "wheel  a with radius 3\nmovement m of r {\n  move 1 meters\n}\n\n\nwheel  b with radius 3",
+        );
+        brace("sensor s\r\nmovement m of r {slam}$0", "sensor s\r\nmovement m of r {\r\n  slam\r\n}");
+    }
+
+    #[test]
+    fn the_brace_of_a_list_formats_its_action_or_clause() {
+        brace(
+            "movement  m of r {\n  slam   slam\n  turn  left until {s,t}$0 slam\n}",
+            "movement  m of r {\n  slam   slam\n  turn left until { s, t } slam\n}",
+        );
+        brace("robot  r with port 1 has {a,b}$0  wheels", "robot r with port 1 has { a b }  wheels");
+    }
+
+    #[test]
+    fn a_brace_in_what_is_broken_is_only_put_in_its_column() {
+        brace("movement  m of {\n  slam\n    }$0", "movement  m of {\n  slam\n}");
+        brace("movement m of r { // }$0", "movement m of r { // }");
+        brace("}$0", "}");
+    }
+
+    #[test]
+    fn a_line_is_indented_as_deep_as_it_stands() {
+        line_break("movement m of r {\n$0}", "movement m of r {\n}");
+        line_break("movement m of r {\n$0\n}", "movement m of r {\n  \n}");
+        line_break("movement m of r {\n  slam\n\t\t$0turn left", "movement m of r {\n  slam\n  turn left");
+        line_break("movement m of r {\n  move\n$0", "movement m of r {\n  move\n    ");
+        line_break(
+            "movement m of r {\n  turn left until {\n  $0s",
+            "movement m of r {\n  turn left until {\n    s",
+        );
+        line_break("robot r with port 1 has {\n$0", "robot r with port 1 has {\n  ");
+        line_break("robot r with port 1 has {\r\n  a\r\n  $0}", "robot r with port 1 has {\r\n  a\r\n}");
+        line_break("wheel a with radius 3\n    $0", "wheel a with radius 3\n");
+    }
+
+    #[test]
+    fn other_lines_are_left_alone() {
+        line_break("robot r with port 1\n   $0has", "robot r with port 1\n   has");
+        line_break("movement m of r { /*\n   $0*/", "movement m of r { /*\n   */");
+        line_break("   $0wheel", "   wheel");
+        line_break("\n   $0wheel a with radius 3", "\n   wheel a with radius 3");
+    }
+}

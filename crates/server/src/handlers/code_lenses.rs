@@ -1,0 +1,89 @@
+//! `textDocument/codeLens`: what can be done with an environment, and how often anything else is used, which is counted
+//! only for the lenses that are seen.
+
+use pydslrep_ide as ide;
+use pydslrep_syntax::EntityKind;
+use serde::{Deserialize, Serialize};
+use tower_lsp::jsonrpc::{Error, Result};
+use tower_lsp::ls_types::{CodeLens, CodeLensParams, Command, Location, Range, Uri};
+
+use crate::handlers::code_actions::GENERATE_SCRIPT;
+use crate::handlers::scripts::ScriptOf;
+use crate::positions::LineTable;
+use crate::state::State;
+
+/// The client's command that lists references; it gets an address, a position and locations. A client that has it says
+/// so in `capabilities.experimental.commands.commands`.
+pub(crate) const SHOW_REFERENCES: &str = "pydslrep.showReferences";
+
+/// What can be done with an environment, with the words on it. Each command takes what [`ScriptOf`] holds.
+const OF_ENVIRONMENTS: &[(&str, &str)] = &[("Generate script", GENERATE_SCRIPT)];
+
+/// Which declaration a lens is about, until it is seen.
+#[derive(Debug, Serialize, Deserialize)]
+struct LensOf {
+    uri: Uri,
+    /// As [`EntityKind::noun`] has it.
+    kind: String,
+    name: String,
+}
+
+/// The lenses of a document.
+pub(crate) fn code_lenses(state: &State, params: &CodeLensParams) -> Option<Vec<CodeLens>> {
+    let uri = &params.text_document.uri;
+    let (document, file) = state.analysed(uri)?;
+    let table = LineTable::new(&document.text, state.client.encoding);
+    let mut lenses = Vec::new();
+    for lens in ide::code_lenses(&state.database, file) {
+        let range = table.range(lens.span);
+        if lens.kind == EntityKind::Environment {
+            lenses.extend(of_environment(uri, &lens.name, range));
+        } else {
+            let data =
+                LensOf { uri: uri.clone(), kind: lens.kind.noun().to_owned(), name: lens.name.to_string() };
+            lenses.push(CodeLens { range, command: None, data: serde_json::to_value(&data).ok() });
+        }
+    }
+    Some(lenses)
+}
+
+fn of_environment(uri: &Uri, name: &str, range: Range) -> Vec<CodeLens> {
+    let argument = serde_json::to_value(ScriptOf { uri: uri.clone(), environment: name.to_owned() });
+    let arguments = argument.ok().map(|argument| vec![argument]);
+    OF_ENVIRONMENTS
+        .iter()
+        .map(|(title, command)| {
+            let command = Command::new((*title).to_owned(), (*command).to_owned(), arguments.clone());
+            CodeLens { range, command: Some(command), data: None }
+        })
+        .collect()
+}
+
+/// `codeLens/resolve`: counts the references.
+pub(crate) fn resolve(state: &State, lens: CodeLens) -> Result<CodeLens> {
+    let Some(data) = &lens.data else { return Ok(lens) };
+    let of: LensOf = serde_json::from_value(data.clone())
+        .map_err(|error| Error::invalid_params(format!("not a lens of this server: {error}")))?;
+    let kind = EntityKind::ALL.into_iter().find(|kind| kind.noun() == of.kind);
+    let known = kind.and_then(|kind| Some((kind, state.analysed(&of.uri)?.1)));
+    // A document may be closed before its lenses are asked for.
+    let places = known
+        .map(|(kind, file)| state.database.references(file, kind, &of.name.as_str().into()))
+        .unwrap_or_default();
+    let title = match places.len() {
+        1 => "1 reference".to_owned(),
+        count => format!("{count} references"),
+    };
+    let mut command = Command::new(title, String::new(), None);
+    if state.client.show_references && !places.is_empty() {
+        let locations: Vec<Location> =
+            places.iter().filter_map(|place| state.location(place.file, place.span)).collect();
+        SHOW_REFERENCES.clone_into(&mut command.command);
+        command.arguments = Some(vec![
+            serde_json::to_value(&of.uri).unwrap_or_default(),
+            serde_json::to_value(lens.range.start).unwrap_or_default(),
+            serde_json::to_value(locations).unwrap_or_default(),
+        ]);
+    }
+    Ok(CodeLens { command: Some(command), ..lens })
+}
