@@ -130,17 +130,19 @@ def test_folders_that_come_later_are_watched(
     (tmp_path / "x.pyr").write_text(GOOD)
     watcher = start()
     watcher.until("No problems in 1 file.")
+    # From here on it only looks where it was told to: nothing else is to be watched than before.
+    (tmp_path / "x.pyr").write_text(BAD)
+    watcher.until("1 error")
     below = tmp_path / "rooms" / "deep"
     below.mkdir(parents=True)
-    (below / "y.pyr").write_text(GOOD)
-    watcher.until("No problems in 2 files.")
     (below / "y.pyr").write_text(BAD)
+    watcher.until("2 errors")
+    (below / "y.pyr").write_text(GOOD)
     watcher.until("1 error")
     (tmp_path / "rooms").rename(tmp_path / "halls")
-    while "halls/deep/y.pyr" not in watcher.until("1 error"):
+    (tmp_path / "halls" / "deep" / "y.pyr").write_text(BAD)
+    while "halls/deep/y.pyr" not in watcher.until("2 errors"):
         pass
-    (tmp_path / "halls" / "deep" / "y.pyr").write_text(GOOD)
-    watcher.until("No problems in 2 files.")
 
 
 def test_imports_are_watched_wherever_they_are(

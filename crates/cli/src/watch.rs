@@ -130,3 +130,37 @@ impl Scope {
             || (is_move && self.files.iter().chain(&self.folders).any(|other| other.starts_with(path)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use notify::event::{AccessKind, CreateKind, DataChange, RemoveKind, RenameMode};
+
+    use super::*;
+
+    fn concerns(kind: EventKind, path: &str) -> bool {
+        let set = |paths: &[&str]| paths.iter().map(PathBuf::from).collect();
+        let scope = Scope { folders: set(&["/p/rooms"]), files: set(&["/p/x.pyr", "/p/parts/wheels.pyr"]) };
+        scope.concerns(&Event::new(kind).add_path(path.into()))
+    }
+
+    #[test]
+    fn only_what_matters_is_a_reason_to_look() {
+        let write = EventKind::Modify(ModifyKind::Data(DataChange::Any));
+        let rename = EventKind::Modify(ModifyKind::Name(RenameMode::Any));
+        let (create, remove) = (EventKind::Create(CreateKind::Any), EventKind::Remove(RemoveKind::Any));
+        for path in ["/p/x.pyr", "/p/rooms/new.pyr", "/p/rooms/a/b.pyr", "/p/pydslrep.toml", "/pydslrep.toml"]
+        {
+            assert!([write, rename, create, remove].into_iter().all(|kind| concerns(kind, path)), "{path}");
+            assert!(!concerns(EventKind::Access(AccessKind::Any), path), "{path}");
+        }
+        // Folders, which may hold programs from their first moment on.
+        for path in ["/p/rooms/new", "/p/parts", "/p", "/p/rooms"] {
+            assert!([rename, create, remove].into_iter().all(|kind| concerns(kind, path)), "{path}");
+            assert!(!concerns(write, path), "{path}");
+        }
+        for path in ["/p/y.pyr", "/p/parts/other.pyr", "/p/rooms/log.txt", "/q", "/p/halls"] {
+            assert!(!concerns(write, path), "{path}");
+        }
+        assert!(!concerns(create, "/p/halls") && !concerns(create, "/q/y.pyr"));
+    }
+}
