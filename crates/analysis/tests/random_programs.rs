@@ -4,7 +4,6 @@
 use std::collections::BTreeSet;
 
 use proptest::prelude::*;
-use proptest::test_runner::TestRunner;
 use pydslrep_analysis::Database;
 use pydslrep_naive::Finding;
 use pydslrep_syntax::{format, parse};
@@ -58,12 +57,15 @@ fn check(text: &str) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-#[test]
-fn random_programs_mean_what_the_contract_says() {
-    let wanted = std::env::var("PYDSLREP_PROGRAMS").ok().and_then(|count| count.parse().ok());
-    let config = ProptestConfig { cases: wanted.unwrap_or(2_000), ..ProptestConfig::default() };
-    let outcome = TestRunner::new(config).run(&pydslrep_naive::programs(), |text| check(&text));
-    if let Err(error) = outcome {
-        panic!("{error}");
+fn how_many() -> u32 {
+    std::env::var("PYDSLREP_PROGRAMS").ok().and_then(|count| count.parse().ok()).unwrap_or(2_000)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: how_many(), failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_programs_mean_what_the_contract_says(text in pydslrep_naive::programs()) {
+        check(&text)?;
     }
 }
