@@ -7,6 +7,7 @@ import pathlib
 import pytest
 from editor import Editor, position
 from lsprotocol import types
+from pygls.exceptions import JsonRpcException
 from pytest_lsp import LanguageClient
 
 pytestmark = pytest.mark.asyncio
@@ -98,3 +99,63 @@ async def test_references_and_highlights(
     assert [
         (program.shown(program.main, place.range), place.kind) for place in found or []
     ] == [("main.pyr:2 lap", write), ("main.pyr:3 lap", read), ("main.pyr:3 lap", read)]
+
+
+async def test_a_rename_across_files(client: LanguageClient, program: Program) -> None:
+    prepared = await client.text_document_prepare_rename_async(
+        types.PrepareRenameParams(*program.where(program.main, "{ a"))
+    )
+    assert isinstance(prepared, types.PrepareRenamePlaceholder)
+    assert prepared.placeholder == "a"
+    assert program.shown(program.main, prepared.range) == "main.pyr:1 a"
+
+    # The editor checks that each edit is for the version that it has.
+    edit = await client.text_document_rename_async(
+        types.RenameParams(*program.where(program.main, "{ a"), new_name="left_1")
+    )
+    assert edit
+    assert edit.document_changes
+    program.editor.apply(edit)
+    assert program.editor.text(program.parts) == PARTS.replace(
+        "wheel a", "wheel left_1"
+    )
+    assert program.editor.text(program.main) == MAIN.replace("{ a", "{ left_1")
+
+
+@pytest.mark.parametrize(
+    ("new", "code", "word"),
+    [
+        ("b", types.LSPErrorCodes.RequestFailed, "there is already a wheel"),
+        ("robots", types.ErrorCodes.InvalidParams, "^robots"),
+        ("two words", types.ErrorCodes.InvalidParams, "not a name"),
+    ],
+)
+async def test_a_rename_that_is_refused_says_why(
+    client: LanguageClient, program: Program, new: str, code: int, word: str
+) -> None:
+    with pytest.raises(JsonRpcException) as refused:
+        await client.text_document_rename_async(
+            types.RenameParams(*program.where(program.main, "{ a"), new_name=new)
+        )
+    assert refused.value.code == code
+    assert word in refused.value.message
+    with pytest.raises(JsonRpcException, match="no name here"):
+        await client.text_document_prepare_rename_async(
+            types.PrepareRenameParams(*program.where(program.main, "ro", "bot rover"))
+        )
+
+
+async def test_names_of_one_file_are_edited_together(
+    client: LanguageClient, program: Program
+) -> None:
+    linked = await client.text_document_linked_editing_range_async(
+        types.LinkedEditingRangeParams(*program.where(program.main, "{ lap"))
+    )
+    assert linked
+    assert [program.shown(program.main, place) for place in linked.ranges] == [
+        "main.pyr:2 lap",
+        "main.pyr:3 lap",
+        "main.pyr:3 lap",
+    ]
+    shared = types.LinkedEditingRangeParams(*program.where(program.parts, "wheel a"))
+    assert not await client.text_document_linked_editing_range_async(shared)

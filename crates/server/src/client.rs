@@ -34,6 +34,8 @@ pub(crate) struct ClientFeatures {
     pub(crate) declaration_links: bool,
     /// The same of type definitions.
     pub(crate) type_definition_links: bool,
+    /// It asks what a rename would change before it asks for the new name.
+    pub(crate) prepare_rename: bool,
     /// Document symbols may be a tree.
     pub(crate) symbol_tree: bool,
     /// Parts of a signature may be told by where they stand in it.
@@ -146,6 +148,8 @@ impl ClientFeatures {
         self.definition_links = links(document.definition.as_ref());
         self.declaration_links = links(document.declaration.as_ref());
         self.type_definition_links = links(document.type_definition.as_ref());
+        self.prepare_rename =
+            document.rename.as_ref().is_some_and(|rename| rename.prepare_support == Some(true));
         self.symbol_tree = document
             .document_symbol
             .as_ref()

@@ -14,7 +14,8 @@ use crate::capabilities;
 use crate::client::ClientFeatures;
 use crate::handlers::{
     self, code_actions, code_lenses, completion, diagnostics, document_symbols, folding, formatting, hover,
-    inlay_hints, navigation, references, scripts, selection, semantic_tokens, signature, synchronization,
+    inlay_hints, navigation, references, rename, scripts, selection, semantic_tokens, signature,
+    synchronization,
 };
 use crate::log::log;
 use crate::message::Outbox;
@@ -206,6 +207,24 @@ impl LanguageServer for Server {
         params: DocumentHighlightParams,
     ) -> Result<Option<Vec<DocumentHighlight>>> {
         Ok(references::highlights(&self.state(), &params))
+    }
+
+    async fn prepare_rename(
+        &self,
+        params: TextDocumentPositionParams,
+    ) -> Result<Option<PrepareRenameResponse>> {
+        rename::prepare(&self.state(), &params)
+    }
+
+    async fn rename(&self, params: RenameParams) -> Result<Option<WorkspaceEdit>> {
+        rename::rename(&self.state(), &params)
+    }
+
+    async fn linked_editing_range(
+        &self,
+        params: LinkedEditingRangeParams,
+    ) -> Result<Option<LinkedEditingRanges>> {
+        Ok(rename::linked_editing_ranges(&self.state(), &params))
     }
 
     async fn document_symbol(&self, params: DocumentSymbolParams) -> Result<Option<DocumentSymbolResponse>> {

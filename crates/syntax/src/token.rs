@@ -192,10 +192,12 @@ pub const KEYWORDS: [(Token, &str); 33] = [
     (Token::Import, "import"),
 ];
 
-/// A name as a program has to write it: keywords need their `^`.
+/// A name as a program has to write it: keywords need their `^`. So does `import`, although it can stand without in
+/// most places: behind `} wheel` it would be taken for the next entity.
 pub fn as_written(name: &str) -> String {
-    let keyword = KEYWORDS.iter().any(|(token, word)| token.is_keyword() && *word == name);
-    if keyword { format!("^{name}") } else { name.to_owned() }
+    let is_escaped = |token: Token| token.is_keyword() || token == Token::Import;
+    let escaped = KEYWORDS.iter().any(|(token, word)| is_escaped(*token) && *word == name);
+    if escaped { format!("^{name}") } else { name.to_owned() }
 }
 
 impl Token {

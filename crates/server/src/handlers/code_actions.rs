@@ -73,7 +73,7 @@ fn as_the_client_has_it(theirs: &[Diagnostic], ours: Diagnostic) -> Diagnostic {
 }
 
 /// Edits of open documents in the form this client understands best.
-fn workspace_edit(state: &State, edits: &[analysis::Edit]) -> WorkspaceEdit {
+pub(crate) fn workspace_edit(state: &State, edits: &[analysis::Edit]) -> WorkspaceEdit {
     let mut by_file: FxHashMap<FileId, Vec<TextEdit>> = FxHashMap::default();
     for edit in edits {
         if let Some(document) = state.document_of(edit.file) {

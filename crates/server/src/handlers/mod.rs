@@ -11,6 +11,7 @@ pub(crate) mod hover;
 pub(crate) mod inlay_hints;
 pub(crate) mod navigation;
 pub(crate) mod references;
+pub(crate) mod rename;
 pub(crate) mod scripts;
 pub(crate) mod selection;
 pub(crate) mod semantic_tokens;

@@ -131,7 +131,8 @@ pub(crate) fn show(uri: Uri) -> ShowDocumentParams {
     ShowDocumentParams { uri, external: Some(false), take_focus: Some(false), selection: None }
 }
 
-fn failure(message: String) -> Error {
+/// An answer that says why something cannot be done.
+pub(crate) fn failure(message: String) -> Error {
     // The protocol's code for a request that is right in form but cannot be done.
     Error { code: ErrorCode::ServerError(-32803), message: message.into(), data: None }
 }

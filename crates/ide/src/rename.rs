@@ -1,0 +1,447 @@
+//! Rename: a new name for a thing, wherever it is declared and used, in all files; refused, with the reason, where the
+//! program would then mean something else.
+//!
+//! Several declarations of one name in one file are renamed together: there is no telling which of them a use means.
+//! Comments are left as they are.
+
+use std::fmt;
+
+use pydslrep_analysis::{Database, Edit, FileId, Place};
+use pydslrep_syntax::{EntityKind, Span, Token, as_written, lex};
+use smol_str::SmolStr;
+
+use crate::FilePosition;
+use crate::cursor::{lexeme_at, name_at, referent_at};
+use crate::references::declarations;
+
+/// What would be renamed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RenameTarget {
+    /// The name at the cursor, with its `^`.
+    pub span: Span,
+    /// The name as it is written there.
+    pub text: String,
+}
+
+/// Why something is not renamed; its words are for the user.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Refusal {
+    /// The new name is no name.
+    Invalid(String),
+    /// The name at the cursor cannot be renamed, or not so.
+    Impossible(String),
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Invalid(reason) | Self::Impossible(reason) => f.write_str(reason),
+        }
+    }
+}
+
+/// The name that a rename at this place would change.
+///
+/// # Errors
+///
+/// If there is none, or it cannot be renamed whatever the new name.
+pub fn prepare_rename(database: &Database, position: FilePosition) -> Result<RenameTarget, Refusal> {
+    renamed_at(database, position)?;
+    let span = name_at(database, position).ok_or_else(no_name)?.span;
+    Ok(RenameTarget { span, text: database.slice(position.file, span) })
+}
+
+/// The edits that give the name at a place another name everywhere, in the order of files and texts.
+///
+/// # Errors
+///
+/// If there is no name, the new one is no name, or the program would mean something else.
+pub fn rename(database: &Database, position: FilePosition, new: &str) -> Result<Vec<Edit>, Refusal> {
+    let renamed = renamed_at(database, position)?;
+    let new = read_name(new)?;
+    if new != renamed.name {
+        renamed.check_free(database, &new)?;
+    }
+    let text = as_written(&new);
+    let edit = |place: Place| {
+        // In `sensor^s` nothing but the `^` keeps the two words apart.
+        let separator = if !text.starts_with('^') && follows_word(database, place) { "^" } else { "" };
+        Edit { file: place.file, span: place.span, text: format!("{separator}{text}") }
+    };
+    Ok(renamed.places.into_iter().map(edit).collect())
+}
+
+fn follows_word(database: &Database, place: Place) -> bool {
+    let before = Span::new(place.span.start.saturating_sub(1), place.span.start);
+    database.slice(place.file, before).starts_with(|c: char| c.is_ascii_alphanumeric() || c == '_')
+}
+
+/// The name that a text is, without `^`.
+fn read_name(text: &str) -> Result<SmolStr, Refusal> {
+    match lex(text)[..] {
+        [(token, span)] if span == Span::of(text) && token.is_name() => {
+            Ok(text.strip_prefix('^').unwrap_or(text).into())
+        }
+        [(token, span)] if span == Span::of(text) && token.is_keyword() => Err(Refusal::Invalid(format!(
+            "`{text}` is a word of the language; write `^{text}` to use it as a name"
+        ))),
+        _ => Err(Refusal::Invalid(format!(
+            "`{text}` is not a name: names are made of letters without accents, digits and `_`, and do not begin with a digit"
+        ))),
+    }
+}
+
+/// A declared name and all its places.
+struct Renamed {
+    kind: EntityKind,
+    name: SmolStr,
+    /// Where it is declared.
+    home: FileId,
+    places: Vec<Place>,
+}
+
+fn renamed_at(database: &Database, position: FilePosition) -> Result<Renamed, Refusal> {
+    let referent = referent_at(database, position).ok_or_else(|| nothing_here(database, position))?;
+    let declared = declarations(database, &referent);
+    let (kind, name, home) = (referent.kind, referent.name, referent.home);
+    if declared.is_empty() {
+        return Err(impossible(format!(
+            "no {} called `{name}` is known to be declared: there is nothing to rename",
+            kind.noun()
+        )));
+    }
+    let candidates = database.candidates(position.file, kind, &name);
+    if candidates.iter().any(|id| database.file_of(*id) != Some(home)) {
+        return Err(impossible(format!(
+            "two imported files declare {} called `{name}`: rename the one you mean where it is declared",
+            kind.a_noun()
+        )));
+    }
+    let mut places = database.references(home, kind, &name);
+    places.extend(declared);
+    places.sort_unstable();
+    let renamed = Renamed { kind, name, home, places };
+    renamed.check_seen(database)?;
+    Ok(renamed)
+}
+
+impl Renamed {
+    /// The file that declares it and those that import this one.
+    fn files<'a>(&self, database: &'a Database) -> impl Iterator<Item = FileId> + 'a {
+        std::iter::once(self.home).chain(database.importing(self.home))
+    }
+
+    /// Text that was not understood may use the name, and would be left behind.
+    fn check_seen(&self, database: &Database) -> Result<(), Refusal> {
+        for file in self.files(database) {
+            let is_own = file == self.home || database.definitions(file, self.kind, &self.name).is_empty();
+            if is_own && database.may_hide(file, &self.name) {
+                return Err(hidden(database, file, &self.name));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses a name that means something already, or would, in any file that this rename concerns.
+    fn check_free(&self, database: &Database, new: &SmolStr) -> Result<(), Refusal> {
+        for file in self.files(database) {
+            let is_edited = file == self.home || self.places.iter().any(|place| place.file == file);
+            let uses_new = !database.users(file, self.kind, new).is_empty();
+            if !is_edited && (!uses_new || !database.definitions(file, self.kind, new).is_empty()) {
+                continue;
+            }
+            if let Some(taken) = database.candidates(file, self.kind, new).first() {
+                return Err(self.taken(database, file, database.file_of(*taken).unwrap_or(file), new));
+            }
+            if uses_new {
+                return Err(impossible(format!(
+                    "{} uses {} called `{new}` that is not declared: it would come to mean this one",
+                    file_name(database, file),
+                    self.kind.a_noun(),
+                )));
+            }
+            if is_edited && database.may_hide(file, new) {
+                return Err(hidden(database, file, new));
+            }
+        }
+        Ok(())
+    }
+
+    fn taken(&self, database: &Database, file: FileId, declaring: FileId, new: &SmolStr) -> Refusal {
+        let (file, declaring) = (file_name(database, file), file_name(database, declaring));
+        let imported = if file == declaring { String::new() } else { format!(", which {file} imports") };
+        impossible(format!("there is already {} called `{new}` in {declaring}{imported}", self.kind.a_noun()))
+    }
+}
+
+fn nothing_here(database: &Database, position: FilePosition) -> Refusal {
+    match lexeme_at(database, position) {
+        Some((Token::Name, _)) => impossible(
+            "the text around this name is not understood: correct it before renaming anything in it"
+                .to_owned(),
+        ),
+        _ => no_name(),
+    }
+}
+
+fn no_name() -> Refusal {
+    impossible("there is no name here to rename".to_owned())
+}
+
+fn hidden(database: &Database, file: FileId, name: &SmolStr) -> Refusal {
+    impossible(format!(
+        "`{name}` stands in text of {} that is not understood and might mean this: correct that first",
+        file_name(database, file)
+    ))
+}
+
+fn impossible(reason: String) -> Refusal {
+    Refusal::Impossible(reason)
+}
+
+/// The last part of a file's path.
+fn file_name(database: &Database, file: FileId) -> String {
+    database.path(file).rsplit('/').next().unwrap_or_default().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::{Expect, expect};
+
+    use super::*;
+    use crate::fixture::at_cursor_in;
+
+    /// Checks all files after a rename, or why there is none.
+    fn check(files: &[(&str, &str)], new: &str, expected: &Expect) {
+        let (mut database, position) = at_cursor_in(files);
+        let shown = match rename(&database, position, new) {
+            Err(Refusal::Invalid(reason)) => format!("invalid: {reason}"),
+            Err(Refusal::Impossible(reason)) => reason,
+            Ok(edits) => {
+                for edit in edits.iter().rev() {
+                    database.edit(edit.file, edit.span, &edit.text);
+                }
+                let text = |file| database.text(file).unwrap().to_string();
+                database.files().map(text).collect::<Vec<_>>().join("\n---\n")
+            }
+        };
+        expected.assert_eq(&shown);
+    }
+
+    #[test]
+    fn a_name_changes_wherever_it_stands() {
+        check(
+            &[
+                (
+                    "parts.pyr",
+                    "wheel a with radius 4 // a\nsensor a\nrobot p with port 1 has { a, a } wheels",
+                ),
+                (
+                    "main.pyr",
+                    "import \"parts.pyr\" robot r with port 1 has { $0a } wheels with sensors { a }",
+                ),
+                (
+                    "own.pyr",
+                    "import \"parts.pyr\" wheel a with radius 3 robot q with port 1 has { a } wheels",
+                ),
+            ],
+            "b",
+            &expect![[r#"
+                wheel b with radius 4 // a
+                sensor a
+                robot p with port 1 has { b, b } wheels
+                ---
+                import "parts.pyr" robot r with port 1 has { b } wheels with sensors { a }
+                ---
+                import "parts.pyr" wheel a with radius 3 robot q with port 1 has { a } wheels"#]],
+        );
+    }
+
+    #[test]
+    fn keywords_come_and_go_with_their_escape() {
+        let program = "robot ^robots with port 1\nmovement m of ^rob$0ots { turn left }";
+        check(
+            &[("a.pyr", program)],
+            "rover",
+            &expect![[r"
+                robot rover with port 1
+                movement m of rover { turn left }"]],
+        );
+        check(
+            &[("a.pyr", program)],
+            "^move",
+            &expect![[r"
+                robot ^move with port 1
+                movement m of ^move { turn left }"]],
+        );
+        check(
+            &[("a.pyr", program)],
+            "^distance",
+            &expect![[r"
+                robot distance with port 1
+                movement m of distance { turn left }"]],
+        );
+        check(
+            &[("a.pyr", program)],
+            "move",
+            &expect!["invalid: `move` is a word of the language; write `^move` to use it as a name"],
+        );
+    }
+
+    #[test]
+    fn an_escape_that_separates_stays() {
+        check(
+            &[("a.pyr", "sensor^s$0\nmovement m of r { turn left until{^s^t s} }")],
+            "front",
+            &expect![[r"
+                sensor^front
+                movement m of r { turn left until{front^t front} }"]],
+        );
+    }
+
+    #[test]
+    fn what_is_no_name_is_refused() {
+        check(
+            &[("a.pyr", "wheel a$0 with radius 4")],
+            "two words",
+            &expect![
+                "invalid: `two words` is not a name: names are made of letters without accents, digits and `_`, and do not begin with a digit"
+            ],
+        );
+        let (database, position) = at_cursor_in(&[("a.pyr", "wheel a$0 with radius 4")]);
+        for text in
+            ["", " a", "a ", "2a", "^", "^^a", "é", "a-b", "4", "{", "\u{feff}a", "// a", "\"a\"", "a\n"]
+        {
+            assert!(matches!(rename(&database, position, text), Err(Refusal::Invalid(_))), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn a_name_that_is_taken_is_refused() {
+        let same = "there is already a wheel called `b` in a.pyr";
+        let check = |files: &[(&str, &str)], reason: Option<&str>| {
+            let (database, position) = at_cursor_in(files);
+            let refused = rename(&database, position, "b").err().map(|refusal| refusal.to_string());
+            assert_eq!(refused.as_deref(), reason, "{files:?}");
+        };
+        check(&[("a.pyr", "wheel a$0 with radius 4 wheelH b with radius 4")], Some(same));
+        check(&[("a.pyr", "wheel a$0 with radius 4 sensor b")], None);
+        // An import would be hidden.
+        check(
+            &[("a.pyr", "wheel b with radius 4"), ("main.pyr", "import \"a.pyr\" wheel a$0 with radius 4")],
+            Some("there is already a wheel called `b` in a.pyr, which main.pyr imports"),
+        );
+        // A use in another file would meet its own.
+        let user = "import \"a.pyr\" wheel b with radius 3 robot r with port 1 has { a b } wheels";
+        check(
+            &[("a.pyr", "wheel a$0 with radius 4"), ("main.pyr", user)],
+            Some("there is already a wheel called `b` in main.pyr"),
+        );
+        // A use of another import would be in doubt.
+        let user = "import \"b.pyr\" import \"a.pyr\" robot r with port 1 has { b } wheels";
+        check(
+            &[("b.pyr", "wheel b with radius 4"), ("a.pyr", "wheel a$0 with radius 4"), ("main.pyr", user)],
+            Some("there is already a wheel called `b` in b.pyr, which main.pyr imports"),
+        );
+        // A file that uses neither, or has its own, does not mind.
+        let user = "import \"b.pyr\" import \"a.pyr\"";
+        check(
+            &[("b.pyr", "wheel b with radius 4"), ("a.pyr", "wheel a$0 with radius 4"), ("main.pyr", user)],
+            None,
+        );
+        let user = "import \"a.pyr\" wheel b with radius 3 robot r with port 1 has { b } wheels";
+        check(&[("a.pyr", "wheel a$0 with radius 4"), ("main.pyr", user)], None);
+        // What is in error would suddenly mean something.
+        let user = "import \"a.pyr\" robot r with port 1 has { b } wheels";
+        check(
+            &[("a.pyr", "wheel a$0 with radius 4"), ("main.pyr", user)],
+            Some("main.pyr uses a wheel called `b` that is not declared: it would come to mean this one"),
+        );
+    }
+
+    #[test]
+    fn twins_are_renamed_together() {
+        check(
+            &[(
+                "a.pyr",
+                "wheel a with radius 4\nwheel $0a with radius 5\nrobot r with port 1 has { a } wheels",
+            )],
+            "b",
+            &expect![[r"
+                wheel b with radius 4
+                wheel b with radius 5
+                robot r with port 1 has { b } wheels"]],
+        );
+    }
+
+    #[test]
+    fn a_name_of_two_imports_is_renamed_at_its_declaration() {
+        let user = "import \"a.pyr\" import \"b.pyr\" robot r with port 1 has { w } wheels";
+        check(
+            &[
+                ("a.pyr", "wheel w with radius 4"),
+                ("b.pyr", "wheel w with radius 4"),
+                ("main.pyr", &user.replace("w }", "$0w }")),
+            ],
+            "v",
+            &expect![
+                "two imported files declare a wheel called `w`: rename the one you mean where it is declared"
+            ],
+        );
+        check(
+            &[("a.pyr", "wheel w with radius 4"), ("b.pyr", "wheel w$0 with radius 4"), ("main.pyr", user)],
+            "v",
+            &expect![[r#"
+                wheel w with radius 4
+                ---
+                wheel v with radius 4
+                ---
+                import "a.pyr" import "b.pyr" robot r with port 1 has { w } wheels"#]],
+        );
+    }
+
+    #[test]
+    fn only_what_is_declared_and_understood_is_renamed() {
+        let check = |text: &str, expected: &Expect| check(&[("a.pyr", text)], "b", expected);
+        check("wheel a with rad$0ius 4", &expect!["there is no name here to rename"]);
+        check(
+            "robot r with port 1 has { a$0 } wheels",
+            &expect!["no wheel called `a` is known to be declared: there is nothing to rename"],
+        );
+        check(
+            "wheel a with radius 4 a$0",
+            &expect![
+                "the text around this name is not understood: correct it before renaming anything in it"
+            ],
+        );
+        check(
+            "wheel a$0 with radius 4 /* robot r has { a",
+            &expect![
+                "`a` stands in text of a.pyr that is not understood and might mean this: correct that first"
+            ],
+        );
+        check(
+            "wheel a$0 with radius 4 b",
+            &expect![
+                "`b` stands in text of a.pyr that is not understood and might mean this: correct that first"
+            ],
+        );
+        // A mistake elsewhere does not matter.
+        check(
+            "wheel a$0 with raduis 4\nrobot r has { a c\nmovement { turn",
+            &expect![[r"
+                wheel b with raduis 4
+                robot r has { b c
+                movement { turn"]],
+        );
+    }
+
+    #[test]
+    fn the_name_to_rename_comes_with_its_escape() {
+        let (database, position) = at_cursor_in(&[("a.pyr", "robot ^robots$0 with port 1")]);
+        let target = prepare_rename(&database, position).unwrap();
+        assert_eq!(target, RenameTarget { span: Span::new(6, 13), text: "^robots".to_owned() });
+        let (database, position) = at_cursor_in(&[("a.pyr", "robot r $0with port 1")]);
+        assert_eq!(prepare_rename(&database, position), Err(no_name()));
+    }
+}

@@ -1,0 +1,61 @@
+//! `textDocument/prepareRename`, `textDocument/rename` and `textDocument/linkedEditingRange`.
+
+use pydslrep_ide as ide;
+use tower_lsp::jsonrpc::{Error, Result};
+use tower_lsp::ls_types::{
+    LinkedEditingRangeParams, LinkedEditingRanges, PrepareRenameResponse, RenameParams,
+    TextDocumentPositionParams, WorkspaceEdit,
+};
+
+use crate::handlers::{code_actions, scripts};
+use crate::state::State;
+
+/// What a name looks like, for editors that stop linking where something else is typed.
+const NAME_PATTERN: &str = r"\^?[A-Za-z_][A-Za-z0-9_]*";
+
+/// The name that a rename would change.
+///
+/// # Errors
+///
+/// If there is none, or it cannot be renamed; the message says why.
+pub(crate) fn prepare(
+    state: &State,
+    params: &TextDocumentPositionParams,
+) -> Result<Option<PrepareRenameResponse>> {
+    let Some(place) = state.place(params) else { return Ok(None) };
+    let target = ide::prepare_rename(&state.database, place.position()).map_err(refused)?;
+    Ok(Some(PrepareRenameResponse::RangeWithPlaceholder {
+        range: state.range(place.document, target.span),
+        placeholder: target.text,
+    }))
+}
+
+/// The edits of a rename, in all documents it concerns.
+///
+/// # Errors
+///
+/// If it is refused; the message says why.
+pub(crate) fn rename(state: &State, params: &RenameParams) -> Result<Option<WorkspaceEdit>> {
+    let Some(place) = state.place(&params.text_document_position) else { return Ok(None) };
+    let edits = ide::rename(&state.database, place.position(), &params.new_name).map_err(refused)?;
+    Ok(Some(code_actions::workspace_edit(state, &edits)))
+}
+
+/// The places that are edited together with the name at a position.
+pub(crate) fn linked_editing_ranges(
+    state: &State,
+    params: &LinkedEditingRangeParams,
+) -> Option<LinkedEditingRanges> {
+    let place = state.place(&params.text_document_position_params)?;
+    let spans = ide::linked_editing_ranges(&state.database, place.position());
+    let ranges: Vec<_> = spans.into_iter().map(|span| state.range(place.document, span)).collect();
+    let word_pattern = Some(NAME_PATTERN.to_owned());
+    (!ranges.is_empty()).then_some(LinkedEditingRanges { ranges, word_pattern })
+}
+
+fn refused(refusal: ide::Refusal) -> Error {
+    match refusal {
+        ide::Refusal::Invalid(reason) => Error::invalid_params(reason),
+        ide::Refusal::Impossible(reason) => scripts::failure(reason),
+    }
+}
