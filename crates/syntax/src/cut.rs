@@ -43,14 +43,40 @@ fn begins_entity(
 ) -> bool {
     match token {
         Token::Import => next.is_some_and(is_string) || previous.is_none_or(is_string),
+        _ if is_taken_for_name(previous, next) => false,
         Token::Ip => previous != Some(Token::With),
-        Token::Movement => previous != Some(Token::Parallel),
-        // `} wheel`, `with sensor {` and `} robot with` are slips for the plural, not entities.
+        Token::Movement | Token::Parallel if previous == Some(Token::Parallel) => false,
+        // `with { parallel m }`: it is said where the movement is declared.
+        Token::Parallel if inside == Some(EntityKind::Environment) => !is_listed(previous, next),
+        // `movement parallel m`; before `parallel movement` somebody is about to write another one.
+        Token::Parallel if previous == Some(Token::Movement) => next == Some(Token::Movement),
+        // `} wheel`, `with sensor {`, `} robot with` and `} movement` are slips for the plural, not entities.
         Token::Wheel if inside == Some(EntityKind::Robot) => !closes_list(previous, next),
-        Token::Robot if inside == Some(EntityKind::Environment) => !closes_list(previous, next),
+        Token::Robot | Token::Movement if inside == Some(EntityKind::Environment) => {
+            !closes_list(previous, next)
+        }
         Token::Sensor if inside == Some(EntityKind::Robot) => previous != Some(Token::With),
         _ => true,
     }
+}
+
+/// `wheel robot with …`, `movement m of robot { … }`: a keyword where only a name can be meant. (`wheel` right before
+/// `robot r` is a wheel that somebody is about to write.)
+fn is_taken_for_name(previous: Option<Token>, next: Option<Token>) -> bool {
+    let (Some(previous), Some(next)) = (previous, next) else { return false };
+    match previous {
+        Token::Of => next == Token::OpenBrace,
+        Token::Parallel => false,
+        _ => {
+            previous.entity_kind().is_some()
+                && matches!(next, Token::With | Token::Of | Token::Has | Token::Colon | Token::Ipv4)
+        }
+    }
+}
+
+fn is_listed(previous: Option<Token>, next: Option<Token>) -> bool {
+    let in_list = |token: Token| matches!(token, Token::OpenBrace | Token::Comma) || token.is_name();
+    previous.is_some_and(in_list) && next.is_some_and(Token::is_name)
 }
 
 fn is_string(token: Token) -> bool {
@@ -121,6 +147,21 @@ mod tests {
                 movement m of r { }
                 wheel
                 environment e has { r } robot with { m } moves"]],
+        );
+    }
+
+    #[test]
+    fn a_keyword_for_a_name_does_not_cut() {
+        check(
+            "wheel robot with radius 3 movement parallel m of robot { } parallel parallel movement n of r { }
+environment e has { r } robots with { parallel m } movement wheel robot r",
+            &expect![[r"
+                wheel robot with radius 3
+                movement parallel m of robot { }
+                parallel parallel movement n of r { }
+                environment e has { r } robots with { parallel m } movement
+                wheel
+                robot r"]],
         );
     }
 }

@@ -34,6 +34,22 @@ pub enum SyntaxErrorKind {
         /// The entity it is part of.
         inside: Option<EntityKind>,
     },
+    /// Something that is missing elsewhere: it stands too early or too late.
+    Misplaced {
+        /// As written.
+        written: SmolStr,
+        /// Where it belongs.
+        to: u32,
+        /// The entity it is part of.
+        inside: Option<EntityKind>,
+    },
+    /// A list or a movement's actions without their braces; the opening one belongs at the error's place.
+    Unbraced {
+        /// Where the closing brace belongs.
+        close: u32,
+        /// The entity it is part of.
+        inside: Option<EntityKind>,
+    },
     /// A word that is nearly a keyword that could stand there.
     Misspelt {
         /// As written.
@@ -66,6 +82,16 @@ pub enum SyntaxErrorKind {
     /// Characters no token starts with.
     InvalidCharacter {
         /// As written.
+        written: SmolStr,
+    },
+    /// A name with characters in it that names cannot have.
+    InvalidName {
+        /// The whole name as written.
+        written: SmolStr,
+    },
+    /// A comment as other languages write it; the error is at what begins it.
+    ForeignComment {
+        /// What begins it.
         written: SmolStr,
     },
     /// `/*` without `*/`.

@@ -90,14 +90,55 @@ mod tests {
     #[test]
     fn comments() {
         check(
-            "// a\r/* b **/ /**/ / * /* c * /",
+            "// a\r/* b **/ /**/ /x *y /* c * /",
             &expect![[r#"
                 LineComment "// a"
                 BlockComment "/* b **/"
                 BlockComment "/**/"
                 Invalid "/"
+                Name "x"
                 Invalid "*"
+                Name "y"
                 UnterminatedComment "/* c * /""#]],
+        );
+    }
+
+    #[test]
+    fn comments_of_other_languages() {
+        check(
+            "# a\r-- b\n% c\r\n/ d\n\\\\ e\n<!-- f -->\n50%;--a /g",
+            &expect![[r##"
+                ForeignComment "# a"
+                ForeignComment "-- b"
+                ForeignComment "% c"
+                ForeignComment "/ d"
+                ForeignComment "\\\\ e"
+                ForeignComment "<!-- f -->"
+                Integer "50"
+                Invalid "%;--"
+                Name "a"
+                Invalid "/"
+                Name "g""##]],
+        );
+    }
+
+    #[test]
+    fn names_that_are_none() {
+        check(
+            "left-wheel räder rover.left it's ^ö-1 move-4 a- b1.5",
+            &expect![[r#"
+                MalformedName "left-wheel"
+                MalformedName "räder"
+                MalformedName "rover.left"
+                MalformedName "it's"
+                MalformedName "^ö"
+                Integer "-1"
+                Move "move"
+                Integer "-4"
+                Name "a"
+                Invalid "-"
+                Name "b1"
+                MalformedNumber ".5""#]],
         );
     }
 
@@ -126,7 +167,9 @@ mod tests {
             "\u{feff}wheel §€é;w \u{feff}",
             &expect![[r#"
                 Wheel "wheel"
-                Invalid "§€é;"
+                Invalid "§€"
+                MalformedName "é"
+                Invalid ";"
                 Name "w"
                 Invalid "\u{feff}""#]],
         );

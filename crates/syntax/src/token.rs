@@ -10,6 +10,10 @@ pub enum Token {
     /// A name, also one escaped by `^`.
     #[regex(r"\^?[A-Za-z_][A-Za-z0-9_]*")]
     Name,
+    /// What somebody took for a name: `left-wheel`, `räder`, `rover.left`. It stands where a name does, and is one
+    /// mistake instead of a row of them.
+    #[regex(r"\^?[\p{L}_][\p{L}\p{M}\p{N}_]*([-.'’][\p{L}_][\p{L}\p{M}\p{N}_]*)*", priority = 1)]
+    MalformedName,
     /// Digits, perhaps with `-` before them.
     #[regex(r"-?[0-9]+", priority = 8)]
     Integer,
@@ -37,6 +41,9 @@ pub enum Token {
     /// `/*` without `*/`; it takes the rest of the text, so that cutting never has to look ahead for its end.
     #[regex(r"/\*([^*]|\*+[^*/])*\**")]
     UnterminatedComment,
+    /// A comment as other languages write it, up to the end of the line: whatever it says is no part of the program.
+    #[regex(r"(#|<!--|(--|%|/|\\\\)[ \t])[^\r\n]*", allow_greedy = true)]
+    ForeignComment,
     /// `{`
     #[token("{")]
     OpenBrace,
@@ -219,12 +226,20 @@ impl Token {
 
     /// Whether it can stand where a name is wanted.
     pub fn is_name(self) -> bool {
-        matches!(self, Self::Name | Self::Distance | Self::Bumper | Self::Import)
+        matches!(self, Self::Name | Self::MalformedName | Self::Distance | Self::Bumper | Self::Import)
     }
 
     /// Whether the parser passes over it.
     pub fn is_comment(self) -> bool {
-        matches!(self, Self::LineComment | Self::BlockComment | Self::UnterminatedComment)
+        matches!(
+            self,
+            Self::LineComment | Self::BlockComment | Self::UnterminatedComment | Self::ForeignComment
+        )
+    }
+
+    /// Whether it is a comment that takes the rest of its line.
+    pub fn ends_line(self) -> bool {
+        matches!(self, Self::LineComment | Self::ForeignComment)
     }
 
     /// Whether it is written where a number belongs.
@@ -324,6 +339,16 @@ impl TokenSet {
     /// The set of all tokens but one.
     pub const fn all_but(token: Token) -> Self {
         Self(!(1 << token as u8))
+    }
+
+    /// The set without those of another.
+    pub const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+
+    /// What is in both.
+    pub const fn and(self, other: Self) -> Self {
+        Self(self.0 & other.0)
     }
 
     /// What is in either.

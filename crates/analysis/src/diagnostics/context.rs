@@ -22,7 +22,22 @@ pub(crate) struct Problem {
     pub(crate) related: Vec<ProblemPlace>,
     /// The declaration that the problem is about, where another problem could be about it too.
     pub(crate) about: Option<(EntityKind, SmolStr)>,
+    /// The kind and the name that were looked for in vain.
+    pub(crate) sought: Option<(EntityKind, SmolStr)>,
+    /// The kinds of entities that could have prevented it by using what it is about.
+    pub(crate) users: &'static [EntityKind],
+    /// What it says of a brace, where another entity may have the other half.
+    pub(crate) brace: Option<Brace>,
     pub(crate) fixes: Vec<ProblemFix>,
+}
+
+/// One half of a pair of braces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Brace {
+    /// Nothing closes it.
+    Unclosed,
+    /// It closes nothing.
+    Stray,
 }
 
 /// A second place.
@@ -62,6 +77,9 @@ impl Rule {
             note: None,
             related: Vec::new(),
             about: None,
+            sought: None,
+            users: &[],
+            brace: None,
             fixes: Vec::new(),
         }
     }
@@ -90,6 +108,21 @@ impl Problem {
 
     pub(super) fn about(mut self, kind: EntityKind, name: impl Into<SmolStr>) -> Self {
         self.about = Some((kind, name.into()));
+        self
+    }
+
+    pub(super) fn sought(mut self, kind: EntityKind, name: &SmolStr) -> Self {
+        self.sought = Some((kind, name.clone()));
+        self
+    }
+
+    pub(super) fn users(mut self, kinds: &'static [EntityKind]) -> Self {
+        self.users = kinds;
+        self
+    }
+
+    pub(super) fn brace(mut self, brace: Brace) -> Self {
+        self.brace = Some(brace);
         self
     }
 
@@ -201,6 +234,56 @@ impl<'a> Context<'a> {
         let before = self.lexemes.iter().rev().find(|(_, other)| other.end <= span.start);
         let start = before.map_or(span.start, |(_, other)| other.end);
         self.replace(Span::new(start, span.end), "")
+    }
+
+    /// Removes characters, with a space where they have one on both sides.
+    pub(super) fn remove_character(&self, span: Span) -> ProblemEdit {
+        let end = self.place().map_or(span.end, Span::len);
+        let blank = |span: Span| [" ", "\t"].contains(&self.text(span).as_str());
+        let before = span.start > 0 && blank(Span::new(span.start - 1, span.start));
+        let behind = self.text(Span::new(span.end, end.min(span.end + 1)));
+        if before && (behind.is_empty() || behind.starts_with(char::is_whitespace)) {
+            return self.replace(Span::new(span.start - 1, span.end), "");
+        }
+        let first = span.start == 0 && behind.starts_with(' ');
+        let is_word = |text: &str| text.contains(|c: char| c.is_alphanumeric() || c == '_');
+        let between = span.start > 0
+            && is_word(&self.text(Span::new(span.start - 1, span.start)))
+            && is_word(&behind)
+            && !self.text(span).contains(['\'', '’', '$', '@']);
+        self.replace(Span::new(span.start, span.end + u32::from(first)), if between { " " } else { "" })
+    }
+
+    /// Removes a word; what stands on other lines stays there.
+    pub(super) fn remove_word(&self, span: Span) -> ProblemEdit {
+        let before = self.lexemes.iter().rev().find(|(_, other)| other.end <= span.start);
+        let start = before.map_or(0, |(_, other)| other.end);
+        let first = self.text(Span::new(start, span.start)).contains(['\n', '\r']) || before.is_none();
+        let behind = self.lexemes.iter().find(|(_, other)| other.start >= span.end);
+        match behind.map(|(_, other)| Span::new(span.end, other.start)) {
+            Some(gap) if first && !self.text(gap).contains(['\n', '\r']) => self.replace(span.to(gap), ""),
+            _ => self.remove(span),
+        }
+    }
+
+    /// Removes what stands on lines of its own together with the end of its line. Whether something else stands
+    /// before it on its line can change with any edit there, and is looked at when the edit gets its place.
+    pub(super) fn remove_line(&self, span: Span) -> ProblemEdit {
+        let end = self.place().map_or(span.end, Span::len);
+        let behind = self.text(Span::new(span.end, end));
+        let blank = behind.len() - behind.trim_start_matches([' ', '\t']).len();
+        let line_end = ["\r\n", "\n", "\r"].into_iter().find(|end| behind[blank..].starts_with(end));
+        let Some(line_end) = line_end else {
+            let start = self.lexemes.first().is_some_and(|(_, first)| first.start == span.start);
+            let blank = u32::try_from(blank).unwrap_or_default();
+            return if start {
+                self.replace(Span::new(span.start, span.end + blank), "")
+            } else {
+                self.remove(span)
+            };
+        };
+        let taken = u32::try_from(blank + line_end.len()).unwrap_or_default();
+        self.replace(Span::new(span.start, span.end + taken), "")
     }
 
     /// Removes one item of a list with the comma before it, or else the one behind it.

@@ -1,6 +1,7 @@
 //! `invalid-character`: characters no token starts with.
 
-use pydslrep_syntax::SyntaxErrorKind;
+use pydslrep_syntax::ast::Entity;
+use pydslrep_syntax::{Span, SyntaxError, SyntaxErrorKind, Token};
 
 use super::context::{Context, Problem};
 use super::{Page, Remedy, Rule};
@@ -29,28 +30,196 @@ const PAGE: Page = Page {
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let mut closed = Vec::new();
     for error in context.errors {
-        let SyntaxErrorKind::InvalidCharacter { written } = &error.kind else { continue };
-        let plural = if written.chars().count() > 1 { "have" } else { "has" };
-        problems.push(
-            RULE.problem(error.span, format!("`{written}` {plural} no meaning here"))
-                .help(help(written))
-                .suggestion(format!("remove `{written}`"), [context.replace(error.span, "")]),
-        );
+        match &error.kind {
+            SyntaxErrorKind::InvalidName { written } => problems.push(name(context, error.span, written)),
+            SyntaxErrorKind::ForeignComment { written } => {
+                problems.push(comment(context, error.span, written));
+            }
+            SyntaxErrorKind::InvalidCharacter { written } if !closed.contains(&error.span) => {
+                if let Some(close) = partner(context, error, written) {
+                    closed.push(close);
+                    problems.push(pair(context, error.span, close, written));
+                } else {
+                    problems.push(characters(context, error.span, written));
+                }
+            }
+            _ => {}
+        }
     }
+}
+
+/// `left-wheel`
+fn name(context: &Context<'_>, span: Span, written: &str) -> Problem {
+    let foreign = context.text(span);
+    let message = format!("`{}` cannot stand in a name", if foreign.is_empty() { written } else { &foreign });
+    let problem = RULE.problem(span, message).help(NAMES);
+    let whole = context.lexemes.iter().find(|(_, other)| other.start <= span.start && span.end <= other.end);
+    let plain = plain_name(written);
+    match whole.filter(|_| plain.chars().any(|c| c.is_ascii_alphanumeric())) {
+        Some((_, whole)) => problem.suggestion(format!("write `{plain}`"), [context.replace(*whole, plain)]),
+        None => problem,
+    }
+}
+
+/// The name in letters that names can have.
+fn plain_name(written: &str) -> String {
+    let mut plain = String::new();
+    for c in written.chars() {
+        match c {
+            'ä' => plain += "ae",
+            'ö' => plain += "oe",
+            'ü' => plain += "ue",
+            'Ä' => plain += "Ae",
+            'Ö' => plain += "Oe",
+            'Ü' => plain += "Ue",
+            'ß' => plain += "ss",
+            '\'' | '’' => {}
+            c if c.is_ascii_alphanumeric() || c == '^' => plain.push(c),
+            _ => plain.push('_'),
+        }
+    }
+    plain
+}
+
+/// `# my robot`
+fn comment(context: &Context<'_>, span: Span, written: &str) -> Problem {
+    let problem = RULE.problem(span, format!("`{written}` begins no comment here"));
+    let line = context.lexemes.iter().find(|(_, other)| other.start == span.start);
+    let text = line.map_or_else(String::new, |(_, line)| context.text(*line));
+    let problem = problem.help(if text.starts_with("#include") {
+        "another file is read by `import \"wheels.pyr\"`; a comment starts with `//`"
+    } else {
+        "a comment starts with `//`"
+    });
+    problem.suggestion("start it with `//`", [context.replace(span, "//")])
+}
+
+/// Where the bracket is closed that this one opens.
+fn partner(context: &Context<'_>, error: &SyntaxError, written: &str) -> Option<Span> {
+    let close = match written {
+        "(" => ")",
+        "[" => "]",
+        "<" => ">",
+        "<!--" => "-->",
+        "'" | "`" | "“" | "„" | "‘" | "«" => "'`”“’‘»",
+        _ => return None,
+    };
+    let behind = context.errors.iter().filter(|other| other.span.start >= error.span.end);
+    let mut other = behind.filter_map(|other| match &other.kind {
+        SyntaxErrorKind::InvalidCharacter { written } => Some((other.span, written)),
+        _ => None,
+    });
+    let (span, text) = other.next()?;
+    let first = text.chars().next()?;
+    let closes = close == text.as_str()
+        || close.contains(first) && (text.len() == first.len_utf8() || text.contains(';'));
+    closes.then_some(span)
+}
+
+/// Two brackets.
+fn pair(context: &Context<'_>, open: Span, close: Span, written: &str) -> Problem {
+    let other = context.text(close);
+    let problem = RULE.problem(open, format!("`{written}` and `{other}` have no meaning here"));
+    let braces = [context.replace(open, "{"), context.replace(close, "}")];
+    let nothing = [context.remove_character(open), context.remove_character(close)];
+    let body = matches!(context.tree, Some(Entity::Movement(_)));
+    let lists = context
+        .lexemes
+        .iter()
+        .rev()
+        .find(|(token, span)| !token.is_comment() && span.end <= open.start)
+        .is_some_and(|(token, _)| {
+            matches!(token, Token::Has | Token::Sensors | Token::With | Token::Until)
+                || body && token.is_name()
+        });
+    let spaced = context.text(Span::new(open.end, close.start)).starts_with([' ', '\n']);
+    if lists && ["(", "["].contains(&written) && (spaced || !body) {
+        problem.help(BRACES).suggestion("write `{` and `}`", braces)
+    } else {
+        problem.help(help(written)).suggestion(format!("remove `{written}` and `{other}`"), nothing)
+    }
+}
+
+fn characters(context: &Context<'_>, span: Span, written: &str) -> Problem {
+    let shown = shown(written);
+    let problem = RULE.problem(span, format!("{shown} has no meaning here")).help(help(written));
+    if written.chars().all(|c| MINUS.contains(&c)) && written.chars().count() == 1 && written != "-" {
+        return problem.suggestion("change to `-`", [context.replace(span, "-")]);
+    }
+    if written == "-" {
+        return match context.lexemes.iter().find(|(_, other)| other.start >= span.end) {
+            Some((token, number)) if token.is_number() && number.start > span.end => problem.suggestion(
+                "join it with its number",
+                [context.replace(Span::new(span.end, number.start), "")],
+            ),
+            _ => problem.suggestion("remove `-`", [context.remove_character(span)]),
+        };
+    }
+    if written.chars().all(is_space) {
+        return problem.suggestion("put a plain space there", [context.replace(span, " ")]);
+    }
+    if written == "/" {
+        // `1/2` without it is another number.
+        return problem;
+    }
+    problem.suggestion(format!("remove {shown}"), [context.remove_character(span)])
+}
+
+const NAMES: &str = "names are made of the letters a to z and A to Z, digits and `_`";
+const BRACES: &str = "lists and actions stand between `{` and `}`";
+
+/// What looks like a minus sign.
+const MINUS: [char; 5] = ['-', '\u{2212}', '\u{2013}', '\u{2014}', '\u{2010}'];
+
+/// White space that is none to the language.
+fn is_space(c: char) -> bool {
+    c.is_whitespace()
+}
+
+/// The characters in quotes, or their numbers where nobody could see them.
+fn shown(written: &str) -> String {
+    let unseen = |c: char| {
+        c.is_whitespace()
+            || c.is_control()
+            || matches!(c, '\u{200b}'..='\u{200f}' | '\u{feff}' | '\u{2060}' | '\u{ad}')
+    };
+    if !written.chars().all(unseen) {
+        return format!("`{written}`");
+    }
+    let numbers: Vec<String> = written.chars().map(|c| format!("U+{:04X}", u32::from(c))).collect();
+    format!("the invisible character {}", numbers.join(" "))
 }
 
 /// What somebody who is used to these characters may not know of the language.
 fn help(written: &str) -> &'static str {
+    let has = |signs: &[char]| written.contains(signs);
     if written.chars().any(char::is_alphabetic) {
-        "names are made of the letters a to z and A to Z, digits and `_`"
-    } else if written.contains(';') {
+        NAMES
+    } else if written.chars().all(is_space) {
+        "it looks like a space, but is none; type a plain space"
+    } else if has(&[';']) {
         "nothing has to mark the end of a line; leave it out"
-    } else if written.contains('=') {
+    } else if has(&['=']) {
         "a value comes right after its word, such as `radius 4.5`; leave it out"
-    } else if written.contains(['(', ')', '[', ']', '<', '>']) {
-        "lists and actions stand between `{` and `}`"
-    } else if written.contains('#') {
+    } else if has(&['(', ')', '[', ']']) {
+        BRACES
+    } else if has(&['°']) {
+        "an angle is always in degrees; leave the sign out"
+    } else if has(&['\'', '“', '”', '„', '‘', '’', '`', '«', '»']) {
+        "only the path of an import stands in quotes, and in these: `\"`"
+    } else if written == "*/" {
+        "no comment is open here: the first `*/` closes one, however many `/*` came before it"
+    } else if has(&['^']) {
+        "`^` stands right before a word that is to be a name, such as `^left`"
+    } else if written == "/" {
+        "a comment starts with `//`; a number is written out, such as `0.5`"
+    } else if has(&['+']) {
+        "a number without a sign is positive; leave it out"
+    } else if written.chars().all(|c| MINUS.contains(&c)) {
+        "a minus sign is `-`, right before its number, such as `-4.5`"
+    } else if has(&['\\']) {
         "a comment starts with `//`"
     } else {
         "leave it out; in a comment, after `//`, every character is fine"
@@ -68,9 +237,9 @@ mod tests {
         check(
             "wheel a with §§ radius 4.5;",
             &expect![[r#"
-                error[invalid-character] 1:14 "§§" `§§` have no meaning here
+                error[invalid-character] 1:14 "§§" `§§` has no meaning here
                   help: leave it out; in a comment, after `//`, every character is fine
-                  suggestion: remove `§§` -> wheel a with  radius 4.5;
+                  suggestion: remove `§§` -> wheel a with radius 4.5;
                 error[invalid-character] 1:29 ";" `;` has no meaning here
                   help: nothing has to mark the end of a line; leave it out
                   suggestion: remove `;` -> wheel a with §§ radius 4.5
@@ -84,26 +253,26 @@ mod tests {
         check(
             "wheel aä with radius 4.5",
             &expect![[r#"
-            error[invalid-character] 1:8 "ä" `ä` has no meaning here
-              help: names are made of the letters a to z and A to Z, digits and `_`
-              suggestion: remove `ä` -> wheel a with radius 4.5
-        "#]],
+                error[invalid-character] 1:8 "ä" `ä` cannot stand in a name
+                  help: names are made of the letters a to z and A to Z, digits and `_`
+                  suggestion: write `aae` -> wheel aae with radius 4.5
+            "#]],
         );
         check(
             "wheel a with radius = 4.5",
             &expect![[r#"
-            error[invalid-character] 1:21 "=" `=` has no meaning here
-              help: a value comes right after its word, such as `radius 4.5`; leave it out
-              suggestion: remove `=` -> wheel a with radius  4.5
-        "#]],
+                error[invalid-character] 1:21 "=" `=` has no meaning here
+                  help: a value comes right after its word, such as `radius 4.5`; leave it out
+                  suggestion: remove `=` -> wheel a with radius 4.5
+            "#]],
         );
         check(
             "wheel a with radius 4.5 #",
             &expect![[r##"
-            error[invalid-character] 1:25 "#" `#` has no meaning here
-              help: a comment starts with `//`
-              suggestion: remove `#` -> wheel a with radius 4.5 
-        "##]],
+                error[invalid-character] 1:25 "#" `#` begins no comment here
+                  help: a comment starts with `//`
+                  suggestion: start it with `//` -> wheel a with radius 4.5 //
+            "##]],
         );
         check(
             "wheel a with radius (4.5",

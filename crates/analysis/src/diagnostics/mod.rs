@@ -1,6 +1,7 @@
 //! The catalogue of problems: one module per code, with its check, its words, its fixes and its tests.
 
 mod ambiguous_import;
+mod consequences;
 mod context;
 mod deprecated_ip_clause;
 mod duplicate_name;
@@ -44,11 +45,11 @@ mod zero_distance;
 #[cfg(test)]
 mod testing;
 
-use pydslrep_syntax::{EntityKind, Span};
+use pydslrep_syntax::Span;
 use rustc_hash::FxHashMap;
-use smol_str::SmolStr;
 
-use self::context::Context;
+use self::consequences::Consequences;
+use self::context::{Brace, Context};
 pub(crate) use self::context::{Problem, ProblemFix};
 pub use self::manual::{Page, Remedy, index};
 use crate::{Database, Diagnostic, Edit, EntityId, FileId, Fix, Related, Severity};
@@ -149,42 +150,31 @@ pub(crate) fn in_entity(database: &Database, id: EntityId, span: Option<Span>) -
 
 /// The problems of a file with absolute places.
 pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
-    let troubled = database.troubled(file).into_iter();
+    let troubled = database.troubled(file);
+    let ids: Vec<EntityId> = troubled.iter().map(|(id, _)| *id).collect();
     let problems: Vec<(u32, &Problem)> = troubled
+        .into_iter()
         .flat_map(|(id, start)| database.problems(id).iter().map(move |problem| (start, problem)))
         .collect();
-    let consequences = Consequences::new(has_hidden_text(database, file), &problems);
+    let consequences = Consequences::new(database, file, &ids, &problems);
     let mut places = Places { database, starts: FxHashMap::default(), searches: 0 };
-    let mut diagnostics: Vec<Diagnostic> = problems
-        .into_iter()
-        .filter(|(_, problem)| !consequences.include(problem))
-        .map(|(start, problem)| places.diagnostic(file, start, problem))
-        .collect();
+    let mut diagnostics: Vec<Diagnostic> = Vec::new();
+    let mut open = None;
+    for (start, problem) in problems.into_iter().filter(|(_, problem)| !consequences.include(problem)) {
+        match problem.brace {
+            Some(Brace::Unclosed) => open = Some(diagnostics.len()),
+            // It closes what was left open before the declarations in between.
+            Some(Brace::Stray) if let Some(unclosed) = open.take() => {
+                syntax_error::nested(&mut diagnostics[unclosed]);
+                continue;
+            }
+            _ => {}
+        }
+        diagnostics.push(places.diagnostic(file, start, problem));
+    }
     diagnostics.extend(no_environment::in_file(database, file));
     diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);
     diagnostics
-}
-
-/// Problems that only follow from others of the file, which are reported.
-struct Consequences<'a> {
-    /// Text that may declare or use anything is hidden in a comment.
-    hidden: bool,
-    /// What references are slips for: it is no wonder that nothing uses it.
-    meant: Vec<&'a (EntityKind, SmolStr)>,
-}
-
-impl<'a> Consequences<'a> {
-    fn new(hidden: bool, problems: &[(u32, &'a Problem)]) -> Self {
-        let slips = problems.iter().filter(|(_, problem)| problem.rule == &unresolved_reference::RULE);
-        Self { hidden, meant: slips.filter_map(|(_, problem)| problem.about.as_ref()).collect() }
-    }
-
-    fn include(&self, problem: &Problem) -> bool {
-        if problem.rule == &unused_declaration::RULE {
-            return self.hidden || problem.about.as_ref().is_some_and(|meant| self.meant.contains(&meant));
-        }
-        self.hidden && problem.rule == &unresolved_reference::RULE
-    }
 }
 
 /// The problems of some entities, wherever they are, with absolute places.
@@ -199,13 +189,29 @@ pub(crate) fn of_entities(database: &Database, ids: &[EntityId]) -> Vec<Diagnost
     diagnostics
 }
 
-/// Whether declarations may be hidden in a comment that never ends.
-fn has_hidden_text(database: &Database, file: FileId) -> bool {
-    std::iter::once(file).chain(database.imported_files(file)).any(|file| database.has_open_comment(file))
-}
-
 /// So many entities are looked for one by one; from then on it is quicker to walk their whole file.
 const MOST_SEARCHES: usize = 16;
+
+/// What to remove so that the lines around it stay as they are: where something else stands before it on its line, the
+/// end of that line is not part of it, but the space between the two is.
+fn tidy_removal(database: &Database, file: FileId, span: Span) -> Span {
+    /// Longer white space between two things of one line may stay.
+    const FAR: u32 = 256;
+    let removed = database.slice(file, span);
+    if !removed.ends_with(['\n', '\r']) || span.start == 0 {
+        return span;
+    }
+    let before = (1..=FAR.min(span.start))
+        .map(|back| (back, database.slice(file, Span::new(span.start - back, span.start - back + 1))));
+    let Some((back, text)) = before.into_iter().find(|(_, text)| text != " " && text != "\t") else {
+        return span;
+    };
+    if text == "\n" || text == "\r" {
+        return span;
+    }
+    let trailing = removed.len() - removed.trim_end().len();
+    Span::new(span.start + 1 - back, span.end - u32::try_from(trailing).unwrap_or_default())
+}
 
 /// Finds where other entities start; files are walked only where a problem points at another entity.
 struct Places<'a> {
@@ -238,6 +244,7 @@ impl Places<'_> {
     fn fix(&mut self, fix: &ProblemFix) -> Option<Fix> {
         let edits = fix.edits.iter().map(|edit| {
             let (file, span) = self.absolute(edit.entity, edit.span)?;
+            let span = if edit.text.is_empty() { tidy_removal(self.database, file, span) } else { span };
             Some(Edit { file, span, text: edit.text.replace('\n', self.database.line_ending(file)) })
         });
         Some(Fix { title: fix.title.clone(), safe: fix.safe, edits: edits.collect::<Option<_>>()? })

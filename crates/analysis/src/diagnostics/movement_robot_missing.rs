@@ -47,7 +47,7 @@ environment yard has { rover scout } robots with { go follow } moves",
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Environment(environment)) = context.tree else { return };
     let (Some(robots), Some(movements)) = (&environment.robots, &environment.movements) else { return };
-    if robots.broken {
+    if robots.broken || robots.names.is_empty() && !context.errors.is_empty() {
         return;
     }
     let listed: Vec<EntityId> =

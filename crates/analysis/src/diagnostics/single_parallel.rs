@@ -53,7 +53,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
     let (Some(parallel), Some(name)) = (movement.parallel, &movement.name) else { return };
     let users = context.database.users(context.file, EntityKind::Movement, &name.text);
-    if users.is_empty() || context.database.is_imported(context.file) {
+    if !context.errors.is_empty() || users.is_empty() || context.database.is_imported(context.file) {
         return;
     }
     let beside = users.iter().any(|user| match context.database.parse(*user) {

@@ -40,7 +40,9 @@ robot rover with port 23000 has { wheelL wheelR } wheels",
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(tree) = context.tree else { return };
     let references = tree.references();
-    for (kind, name) in &references {
+    // A word that cannot be a name has been reported as that.
+    let is_name = |name: &Name| !context.errors.iter().any(|error| error.span == name.span);
+    for (kind, name) in references.iter().filter(|(_, name)| is_name(name)) {
         if context.resolve(*kind, name) == Resolution::Nothing {
             let taken: Vec<&str> = references.iter().map(|(_, other)| other.text.as_str()).collect();
             problems.push(problem(context, tree, *kind, name, &taken));
@@ -49,7 +51,12 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 }
 
 fn problem(context: &Context<'_>, tree: &Entity, kind: EntityKind, name: &Name, taken: &[&str]) -> Problem {
-    let mut problem = RULE.problem(name.span, message(context, kind, name));
+    let mut problem = RULE.problem(name.span, message(context, kind, name)).sought(kind, &name.text);
+    if ["and", "then", "or"].contains(&name.text.as_str()) {
+        return problem
+            .help("names in a list stand side by side, with or without commas")
+            .suggestion(format!("remove `{}`", name.text), [context.remove_item(name.span)]);
+    }
     // A name that the list has already would only make another problem.
     let nearest = context.nearest(kind, name).filter(|nearest| !taken.contains(&nearest.as_str()));
     if let Some(nearest) = nearest {
@@ -142,16 +149,12 @@ mod tests {
         check(
             "wheel a with radius 4\nsensor left\nrobot r with port 1 has { a left } wheels",
             &expect![[r#"
-            error[syntax-error] 2:8 "left" `left` is a word of the language, so a sensor cannot be called that
-              help: write `^left` to use it as a name, or choose another name
-              fix: write `^left` -> sensor ^left
-            error[syntax-error] 3:29 "left" `left` is a word of the language, so a wheel cannot be called that
-              help: write `^left` to use it as a name, or choose another name
-              fix: write `^left` -> robot r with port 1 has { a ^left } wheels
-            error[unresolved-reference] 3:29 "left" `left` is a sensor, not a wheel
-              help: the only wheel is `a`
-              suggestion: declare the wheel `left` -> wheel ^left with radius 4
-        "#]],
+                error[syntax-error] 2:8 "left" `left` is a word of the language, so a sensor cannot be called that
+                  help: write `^left` to use it as a name, or choose another name
+                  fix: write `^left` -> sensor ^left
+                error[syntax-error] 3:29 "left" expected the name of a wheel, found `left`
+                  help: `left` is a word of the language; only a name can stand here
+            "#]],
         );
     }
 

@@ -63,7 +63,8 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let problem = RULE
         .problem(name.span, format!("nothing uses the {} `{}`", kind.noun(), name.text))
         .help(format!("{place}, or leave it out"))
-        .about(kind, name.text.clone());
+        .about(kind, name.text.clone())
+        .users(users_of(kind));
     problems.push(match context.whole() {
         Some(whole) if context.errors.is_empty() && leaves_nothing_unused(context, tree) => {
             problem.suggestion("remove it", [whole])
@@ -81,6 +82,17 @@ fn place_of(kind: EntityKind) -> Option<&'static str> {
         EntityKind::Robot => Some("list it among the robots of an environment"),
         EntityKind::Movement => Some("list it among the moves of an environment"),
         EntityKind::Environment => None,
+    }
+}
+
+/// What uses something of a kind.
+fn users_of(kind: EntityKind) -> &'static [EntityKind] {
+    match kind {
+        EntityKind::Wheel => &[EntityKind::Robot],
+        EntityKind::Sensor => &[EntityKind::Robot, EntityKind::Movement],
+        EntityKind::Robot => &[EntityKind::Movement, EntityKind::Environment],
+        EntityKind::Ip | EntityKind::Movement => &[EntityKind::Environment],
+        EntityKind::Environment => &[],
     }
 }
 

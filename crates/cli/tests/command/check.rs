@@ -77,7 +77,7 @@ fn what_is_missing_is_marked_behind_what_is_there() {
     check(
         "wheel a with\tradius\r\nwheel b with radius 4",
         &expect![[r#"
-            error[syntax-error]: missing a radius in centimetres at the end of this wheel
+            error[syntax-error]: missing a radius in centimetres after `radius`
              --> x.pyr:1:20
               |
             1 | wheel a with    radius 

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use super::writer::{BLANKS, BYTE_ORDER_MARK, LINE_ENDS, Writer};
-use crate::{Lexeme, Span, Token};
+use crate::{Lexeme, Span};
 
 /// What stands between two neighbouring tokens that are not comments.
 pub(super) struct Gap<'a> {
@@ -99,9 +99,9 @@ impl<'a> Gap<'a> {
     pub(super) fn forces_break(&self) -> bool {
         self.groups.iter().enumerate().any(|(index, group)| {
             self.stands_alone(index)
-                || self.comments(group).any(|(token, span)| {
-                    token == Token::LineComment || span.text(self.text).contains(['\n', '\r'])
-                })
+                || self
+                    .comments(group)
+                    .any(|(token, span)| token.ends_line() || span.text(self.text).contains(['\n', '\r']))
         })
     }
 
@@ -113,7 +113,7 @@ impl<'a> Gap<'a> {
                 return (width, true);
             }
             for (token, span) in self.comments(group) {
-                if token == Token::LineComment {
+                if token.ends_line() {
                     return (width, true);
                 }
                 let text = span.text(self.text);
@@ -138,7 +138,7 @@ impl<'a> Gap<'a> {
                 writer.space();
             }
             self.write_group(writer, group, (alone || broken).then_some(indent));
-            let ends_line = self.comments(group).last().is_some_and(|(token, _)| token == Token::LineComment);
+            let ends_line = self.comments(group).last().is_some_and(|(token, _)| token.ends_line());
             broken = alone || ends_line;
         }
         if broken {

@@ -88,7 +88,7 @@ impl<'a> Writer<'a> {
     pub(super) fn comment(&mut self, token: Token, span: Span, indent: Option<&str>) {
         let written = span.text(self.text);
         let wanted = match token {
-            Token::LineComment => Cow::Borrowed(written.trim_end_matches(BLANKS)),
+            token if token.ends_line() => Cow::Borrowed(written.trim_end_matches(BLANKS)),
             _ => block_comment(written, self.line_ending, indent),
         };
         self.flush(span.start);

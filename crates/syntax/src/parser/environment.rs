@@ -1,8 +1,8 @@
 //! The rule for environments.
 
-use chumsky::prelude::{Parser, choice, just};
+use chumsky::prelude::{Parser, choice, end, just};
 
-use super::slot::{NAME, declared_name, keyword, nothing_more, reference, references};
+use super::slot::{NAME, declared_name, keyword, nothing_more, one_in, reference, references};
 use super::{Extra, Input, Rule};
 use crate::ast::{Entity, Environment, IpClause, References};
 use crate::{EntityKind, Token, TokenSet};
@@ -12,6 +12,7 @@ const IP: TokenSet = TokenSet::of(&[Token::Ip]);
 const HAS: TokenSet = TokenSet::of(&[Token::Has]);
 const COMMA: TokenSet = TokenSet::of(&[Token::Comma]);
 const OPEN: TokenSet = TokenSet::of(&[Token::OpenBrace]);
+const BUT_OPEN: TokenSet = TokenSet::all_but(Token::OpenBrace);
 const CLOSE: TokenSet = TokenSet::of(&[Token::CloseBrace]);
 const ROBOTS: TokenSet = TokenSet::of(&[Token::Robots]);
 const MOVES: TokenSet = TokenSet::of(&[Token::Moves]);
@@ -35,7 +36,11 @@ pub(super) fn environment<'s>() -> Rule<'s, Option<Entity>> {
 
 fn ip_clause<'s>() -> impl Parser<'s, Input<'s>, IpClause, Extra<'s>> + Clone {
     let with_comma = choice((
-        just(Token::With).then(keyword(Token::Ip, NAME, TAIL)).to(false),
+        // `with { … } moves` is about movements.
+        just(Token::With)
+            .then_ignore(choice((one_in(BUT_OPEN).ignored(), end())).rewind())
+            .then(keyword(Token::Ip, NAME, TAIL))
+            .to(false),
         just(Token::Comma).to(true),
     ));
     with_comma

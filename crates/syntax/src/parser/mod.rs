@@ -6,6 +6,7 @@
 mod components;
 mod environment;
 mod movement;
+mod pairs;
 mod robot;
 mod slot;
 mod tidy;

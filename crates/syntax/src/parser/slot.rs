@@ -88,7 +88,9 @@ pub(super) fn slot<'s, O: 's>(
     first: TokenSet,
     later: TokenSet,
 ) -> Rule<'s, Option<O>> {
-    let stray = skip_before(ANY, first).ignore_then(part.clone());
+    // `with { … }` begins the next clause and is not passed over for its brace.
+    let passed = ANY.without(later.and(TokenSet::of(&[Token::With])));
+    let stray = skip_before(passed, first).ignore_then(part.clone());
     part.clone()
         .map(Some)
         .recover_with(via_parser(stray.map(Some)))
@@ -169,7 +171,7 @@ pub(super) fn skip_before<'s>(
 }
 
 /// One of the tokens of a set.
-fn one_in<'s>(set: TokenSet) -> impl Parser<'s, Input<'s>, Token, Extra<'s>> + Clone {
+pub(super) fn one_in<'s>(set: TokenSet) -> impl Parser<'s, Input<'s>, Token, Extra<'s>> + Clone {
     any().filter(move |token: &Token| set.has(*token))
 }
 
@@ -189,7 +191,8 @@ const SIGNS: TokenSet =
 const CURSOR: TokenSet = TokenSet::of(&[Token::Cursor]);
 
 /// The first tokens of a name.
-pub(super) const NAME: TokenSet = TokenSet::of(&[Token::Name, Token::Distance, Token::Bumper, Token::Import]);
+pub(super) const NAME: TokenSet =
+    TokenSet::of(&[Token::Name, Token::MalformedName, Token::Distance, Token::Bumper, Token::Import]);
 
 /// The first tokens of a number.
 pub(super) const NUMBER: TokenSet =

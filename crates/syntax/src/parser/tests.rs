@@ -205,6 +205,42 @@ movement m of r { move 4 4 meters turn 90 left turn left right , }
 }
 
 #[test]
+fn two_complaints_that_are_one_mistake() {
+    check(
+        "wheel a radius with 4 robot r with port 1 has a b wheels movement m r of { move meters 4 turn left until }
+environment e has {{ r }} robots with moves { m }",
+        &expect![[r#"
+            wheel a Some(4.0)
+              8..14 Misplaced { written: "radius", to: 19, inside: Some(Wheel) }
+            robot r None Some(Some(1)) {a b} -
+              45..45 Unbraced { close: 27, inside: Some(Robot) }
+            movement m None [move turn]
+              68..69 Misplaced { written: "r", to: 15, inside: Some(Movement) }
+              80..86 Misplaced { written: "meters", to: 31, inside: Some(Movement) }
+              104..104 Missing { expected: [Word(OpenBrace)], found: Text("}"), inside: Some(Movement) }
+            environment e None {r}? {m}
+              126..127 Unexpected { expected: [ReferenceTo(Robot)], found: Text("{"), inside: Some(Environment) }
+              145..150 Misplaced { written: "moves", to: 49, inside: Some(Environment) }
+        "#]],
+    );
+}
+
+#[test]
+fn paths_without_quotes_are_one_mistake() {
+    check(
+        "import 'parts.pyr' // mine\nimport <more.pyr>;\nwheel a with radius 4",
+        &expect![[r#"
+            import - None
+              7..18 Unexpected { expected: [Path], found: Text("'parts.pyr'"), inside: None }
+              34..35 InvalidCharacter { written: "<" }
+              39..40 InvalidName { written: "more.pyr" }
+              43..45 InvalidCharacter { written: ">;" }
+            wheel a Some(4.0)
+        "#]],
+    );
+}
+
+#[test]
 fn keywords_for_names() {
     check(
         "wheel left with radius 3 robot r with port 1 has { left radius } wheels movement slam of turn { slam }",
@@ -258,12 +294,11 @@ fn signs_that_are_none() {
     check(
         "wheel rüd with radius 4,5 §\n/* open\nwheel a with radius 3",
         &expect![[r#"
-        wheel r Some(4.0)
-          7..9 InvalidCharacter { written: "ü" }
-          24..25 Unexpected { expected: [Declaration], found: Text(","), inside: Some(Wheel) }
-          27..29 InvalidCharacter { written: "§" }
-          30..32 UnterminatedComment
-    "#]],
+            wheel rüd Some(4.0)
+              7..9 InvalidName { written: "rüd" }
+              24..25 Unexpected { expected: [Declaration], found: Text(","), inside: Some(Wheel) }
+              30..32 UnterminatedComment
+        "#]],
     );
     check(
         "import \"a.pyr\nwheel a with radius 3 import b",

@@ -5,6 +5,7 @@
 
 use smol_str::SmolStr;
 
+use super::pairs;
 use super::slot::Fault;
 use crate::{EntityKind, Expected, Found, Lexeme, Span, SyntaxError, SyntaxErrorKind, Token, is_similar};
 
@@ -19,10 +20,16 @@ pub(super) fn tidy(
     let piece = Piece { text, inside, tokens, lexemes, faults };
     let mut errors: Vec<SyntaxError> =
         lexemes.iter().filter_map(|lexeme| piece.lexical_error(*lexeme)).collect();
+    if let Some(error) = piece.broken_path() {
+        errors.retain(|other| other.span.start >= error.span.end);
+        errors.insert(0, error);
+        return errors;
+    }
+    errors.retain(|error| !piece.is_passed_over(error));
     errors.extend(faults.iter().filter_map(|fault| piece.plain_error(fault)));
     errors.extend(piece.expectation_errors());
     errors.sort_by_key(|error| (error.span.start, error.span.end));
-    errors
+    pairs::join(errors, tokens)
 }
 
 /// The names among the tokens that were passed over.
@@ -71,8 +78,64 @@ impl Piece<'_> {
                 (Span::new(span.start, span.start + 2), SyntaxErrorKind::UnterminatedComment)
             }
             Token::UnterminatedString => (span, SyntaxErrorKind::UnterminatedString),
+            Token::MalformedName => {
+                (self.foreign_part(span), SyntaxErrorKind::InvalidName { written: self.written(span) })
+            }
+            Token::ForeignComment => {
+                let marker =
+                    span.text(self.text).find([' ', '\t']).filter(|_| !span.text(self.text).starts_with('#'));
+                let marker = u32::try_from(marker.unwrap_or(1)).unwrap_or(1);
+                let span = Span::new(span.start, span.start + marker);
+                (span, SyntaxErrorKind::ForeignComment { written: self.written(span) })
+            }
             _ => return None,
         };
+        Some(SyntaxError { span, kind })
+    }
+
+    /// The characters of a name that names cannot have, from the first to the last of them.
+    fn foreign_part(&self, span: Span) -> Span {
+        let written = span.text(self.text);
+        let foreign = |c: char| !c.is_ascii_alphanumeric() && c != '_';
+        let skipped = usize::from(written.starts_with('^'));
+        let start = written[skipped..].find(foreign).unwrap_or_default() + skipped;
+        let end = written
+            .rfind(foreign)
+            .map_or(written.len(), |last| last + written[last..].chars().next().map_or(0, char::len_utf8));
+        let place = |offset: usize| span.start + u32::try_from(offset).unwrap_or_default();
+        Span::new(place(start), place(end))
+    }
+
+    /// Whether characters stand inside of text that was passed over: that has been said where it begins.
+    fn is_passed_over(&self, error: &SyntaxError) -> bool {
+        let minor = matches!(
+            error.kind,
+            SyntaxErrorKind::InvalidCharacter { .. } | SyntaxErrorKind::InvalidName { .. }
+        );
+        let inside = |fault: &Fault| match fault {
+            Fault::Skipped(span) => {
+                let next = self.tokens.iter().find(|(_, token)| token.start >= span.end);
+                let end = next.map_or(u32::MAX, |(_, token)| token.start);
+                span.start < error.span.start && error.span.end <= end
+            }
+            _ => false,
+        };
+        minor && self.faults.iter().any(inside)
+    }
+
+    /// An import whose path is not in quotes: all that stands on its line is one mistake.
+    fn broken_path(&self) -> Option<SyntaxError> {
+        let (&(first, import), rest) = self.lexemes.split_first()?;
+        let next = rest.iter().find(|(token, _)| !token.is_comment())?;
+        if first != Token::Import || matches!(next.0, Token::String | Token::UnterminatedString) {
+            return None;
+        }
+        let same_line =
+            |(_, span): &&Lexeme| !Span::new(import.end, span.start).text(self.text).contains(['\n', '\r']);
+        let path = rest.iter().take_while(same_line).filter(|(token, _)| !token.is_comment());
+        let span = path.map(|(_, span)| *span).reduce(Span::to)?;
+        let found = Found::Text(self.written(span));
+        let kind = SyntaxErrorKind::Unexpected { expected: vec![Expected::Path], found, inside: None };
         Some(SyntaxError { span, kind })
     }
 
@@ -117,7 +180,8 @@ impl Piece<'_> {
             .faults
             .iter()
             .filter_map(|fault| match fault {
-                Fault::Expected { at, expected } => {
+                // A rule that only looked ahead expects nothing.
+                Fault::Expected { at, expected } if !expected.is_empty() => {
                     let index = self.tokens.partition_point(|(_, span)| span.start < at.start);
                     Some(Complaint { index, expected })
                 }
@@ -168,7 +232,9 @@ impl Piece<'_> {
         if !skipped {
             return self.missing(complaint.index, expected, Found::Text(written));
         }
-        if let Some(keyword) = meant(token, &written, &expected) {
+        // `with sensors` behind a robot is no other declaration.
+        let clause = token == Token::Sensors && self.inside == Some(EntityKind::Robot);
+        if let Some(keyword) = meant(token, &written, &expected).filter(|_| !clause) {
             return SyntaxError { span, kind: SyntaxErrorKind::Misspelt { written, keyword } };
         }
         let kind = SyntaxErrorKind::Unexpected { expected, found: Found::Text(written), inside: self.inside };
@@ -205,7 +271,10 @@ fn meant(token: Token, written: &str, expected: &[Expected]) -> Option<Token> {
         Expected::Declaration => BEGINNINGS.to_vec(),
         _ => Vec::new(),
     });
-    words
-        .filter(|word| word.spelling().is_some_and(|spelling| is_similar(written, spelling)))
-        .min_by_key(|word| strsim::osa_distance(written, word.spelling().unwrap_or_default()))
+    words.filter(|word| word.spelling().is_some_and(|spelling| is_similar(written, spelling))).min_by_key(
+        |word| {
+            let spelling = word.spelling().unwrap_or_default();
+            (!written.eq_ignore_ascii_case(spelling), strsim::osa_distance(written, spelling))
+        },
+    )
 }

@@ -1,0 +1,178 @@
+//! Finding fixes: what could mend an entity is tried, and offered where it does.
+
+use pydslrep_syntax::ast::Entity;
+use pydslrep_syntax::{Expected, Span, Token, parse};
+
+use crate::diagnostics::context::{Context, Problem, ProblemEdit};
+
+/// Trying costs as much as reading the entity again, so it ends where an entity is a mess or very long.
+const MOST_ERRORS: usize = 4;
+const LONGEST: u32 = 16 * 1024;
+
+/// Whether the entity has fewer errors after the edits, and is still one entity.
+pub(super) fn is_mended(context: &Context<'_>, edits: &[ProblemEdit]) -> bool {
+    pieces_if_mended(context, edits) == Some(1)
+}
+
+/// The same, where the edits may also begin another entity.
+pub(super) fn is_split(context: &Context<'_>, edits: &[ProblemEdit]) -> bool {
+    pieces_if_mended(context, edits).is_some()
+}
+
+fn pieces_if_mended(context: &Context<'_>, edits: &[ProblemEdit]) -> Option<usize> {
+    let end = context.lexemes.last()?.1.end;
+    if context.errors.len() > MOST_ERRORS || end > LONGEST {
+        return None;
+    }
+    let mut text = context.text(Span::new(0, end));
+    let mut edits: Vec<&ProblemEdit> = edits.iter().collect();
+    edits.sort_by_key(|edit| std::cmp::Reverse(edit.span.start));
+    for edit in edits {
+        let range = std::ops::Range::from(edit.span);
+        text.get(range.clone())?;
+        text.replace_range(range, &edit.text);
+    }
+    let pieces = parse(&text);
+    let errors: usize = pieces.iter().map(|(_, parse)| parse.errors.len()).sum();
+    (errors < context.errors.len()).then_some(pieces.len())
+}
+
+/// Offers to insert what is missing at `span`, where exactly one thing mends it.
+pub(super) fn insert(context: &Context<'_>, problem: Problem, span: Span, expected: &[Expected]) -> Problem {
+    /// What is often forgotten together.
+    const TOGETHER: [&str; 4] = ["with radius", "} wheels", "} robots", "} moves"];
+    let before = token_before(context, span);
+    let words = expected.iter().filter_map(|expected| match expected {
+        // A list with nothing in it is no better than one that does not end.
+        Expected::Word(Token::CloseBrace) if before == Some(Token::OpenBrace) => None,
+        Expected::Word(word) => word.spelling(),
+        _ => None,
+    });
+    let words: Vec<&str> = words.collect();
+    let edit = |text: &str| match text {
+        "}" => closing(context, span),
+        text => context.replace(span, format!(" {text}")),
+    };
+    let mending: Vec<&str> = words.iter().copied().filter(|text| is_mended(context, &[edit(text)])).collect();
+    let text = match mending[..] {
+        [only] => Some(only),
+        [] => TOGETHER
+            .into_iter()
+            .filter(|text| words.iter().any(|word| text.split(' ').next() == Some(*word)))
+            .find(|text| is_mended(context, &[edit(text)])),
+        _ => None,
+    };
+    match text {
+        Some(text) => problem.fix(format!("insert `{text}`"), [edit(text)]),
+        None => problem,
+    }
+}
+
+/// The edit that closes what is open. A brace that closes a movement gets a line of its own where the movement has
+/// several.
+pub(super) fn closing(context: &Context<'_>, place: Span) -> ProblemEdit {
+    let has_lines = is_body(context, place) && context.text(Span::new(0, place.start)).contains(['\n', '\r']);
+    context.replace(place, if has_lines { "\n}" } else { " }" })
+}
+
+/// Whether a brace at this place is one of a movement's own.
+pub(super) fn is_body(context: &Context<'_>, place: Span) -> bool {
+    let before =
+        context.lexemes.iter().rev().filter(|(token, span)| !token.is_comment() && span.end <= place.start);
+    let opened =
+        before.map(|(token, _)| *token).find(|token| matches!(token, Token::OpenBrace | Token::Until));
+    let list = matches!(opened, Some(Token::Until)) || is_until_list(context, place);
+    matches!(context.tree, Some(Entity::Movement(_))) && !list
+}
+
+fn is_until_list(context: &Context<'_>, place: Span) -> bool {
+    let mut depth = Vec::new();
+    let mut previous = None;
+    for (token, span) in context.lexemes.iter().filter(|(token, _)| !token.is_comment()) {
+        if span.start >= place.start {
+            break;
+        }
+        match token {
+            Token::OpenBrace => depth.push(previous == Some(Token::Until)),
+            Token::CloseBrace => {
+                depth.pop();
+            }
+            _ => {}
+        }
+        previous = Some(*token);
+    }
+    depth.last() == Some(&true)
+}
+
+fn token_before(context: &Context<'_>, span: Span) -> Option<Token> {
+    let before =
+        context.lexemes.iter().rev().find(|(token, other)| !token.is_comment() && other.end <= span.start);
+    before.map(|(token, _)| *token)
+}
+
+/// Whether the text at `span` is what stands right before it, too, and once is enough.
+pub(super) fn is_doubled(context: &Context<'_>, span: Span) -> bool {
+    let before =
+        context.lexemes.iter().rev().find(|(token, other)| !token.is_comment() && other.end <= span.start);
+    let same = before.is_some_and(|(_, before)| context.text(*before) == context.text(span));
+    same && is_mended(context, &[context.remove(span)])
+}
+
+/// Offers what mends a token that does not fit: a word before it, another one in its place, or nothing.
+pub(super) fn repair(
+    context: &Context<'_>,
+    problem: Problem,
+    span: Span,
+    found: &str,
+    expected: &[Expected],
+) -> Problem {
+    let words: Vec<&str> = expected
+        .iter()
+        .filter_map(|expected| match expected {
+            Expected::Word(Token::Comma) => None,
+            Expected::Word(word) => word.spelling(),
+            _ => None,
+        })
+        .collect();
+    let only = |edit: &dyn Fn(&str) -> ProblemEdit| {
+        let mending: Vec<&str> =
+            words.iter().copied().filter(|word| is_mended(context, &[edit(word)])).collect();
+        match mending[..] {
+            [word] => Some(word.to_owned()),
+            _ => None,
+        }
+    };
+    let before = |word: &str| context.replace(Span::at(span.start), format!("{word} "));
+    if let Some(word) = only(&before) {
+        let problem = Problem { message: format!("missing `{word}` before `{found}`"), ..problem };
+        return problem.fix(format!("insert `{word}`"), [before(&word)]);
+    }
+    let instead = |word: &str| context.replace(span, word);
+    if let Some(word) = only(&instead).filter(|_| found.starts_with(char::is_alphabetic)) {
+        return problem.suggestion(format!("change to `{word}`"), [instead(&word)]);
+    }
+    if let Some(close) = braces(context, span, found) {
+        let both = [context.remove(span), context.remove(close)];
+        if is_mended(context, &both) {
+            return problem.fix("remove `{` and `}`", both);
+        }
+    }
+    let names = expected.iter().any(|expected| matches!(expected, Expected::NameOf(_)));
+    let glued = context.lexemes.iter().any(|(_, other)| other.end == span.start || other.start == span.end);
+    let alone = context.lexemes.len() == 1;
+    if names && !found.starts_with(char::is_alphabetic) || glued || alone {
+        return problem;
+    }
+    let nothing = context.remove_word(span);
+    if is_mended(context, std::slice::from_ref(&nothing)) {
+        return problem.suggestion(format!("remove `{found}`"), [nothing]);
+    }
+    problem
+}
+
+/// Where a brace too many is closed.
+fn braces(context: &Context<'_>, span: Span, found: &str) -> Option<Span> {
+    let behind = context.lexemes.iter().filter(|(_, other)| other.start >= span.end);
+    let mut close = behind.filter(|(token, _)| *token == Token::CloseBrace).map(|(_, span)| *span);
+    close.next().filter(|_| found == "{")
+}

@@ -1,0 +1,87 @@
+//! Two complaints that are one mistake: something is missing in one place because it stands in another, or both braces
+//! of a list are missing.
+
+use crate::{Expected, Found, Lexeme, Span, SyntaxError, SyntaxErrorKind, Token};
+
+/// The errors, which are in the order of the text, with each such pair as one.
+pub(super) fn join(mut errors: Vec<SyntaxError>, tokens: &[Lexeme]) -> Vec<SyntaxError> {
+    let mut index = 0;
+    while index + 1 < errors.len() {
+        let joined = too_early(&errors[index], &errors[index + 1], tokens)
+            .or_else(|| too_late(&errors[index], &errors[index + 1], tokens))
+            .or_else(|| unbraced(&errors[index], &errors[index + 1], tokens))
+            .or_else(|| needless(&errors[index], &errors[index + 1]));
+        if let Some(error) = joined {
+            errors[index] = error;
+            errors.remove(index + 1);
+        }
+        index += 1;
+    }
+    errors
+}
+
+/// `has wheels { a b }`
+fn too_early(first: &SyntaxError, second: &SyntaxError, tokens: &[Lexeme]) -> Option<SyntaxError> {
+    misplaced(first, second, tokens)
+}
+
+/// `movement m r of { … }`
+fn too_late(first: &SyntaxError, second: &SyntaxError, tokens: &[Lexeme]) -> Option<SyntaxError> {
+    misplaced(second, first, tokens)
+}
+
+fn misplaced(stray: &SyntaxError, gap: &SyntaxError, tokens: &[Lexeme]) -> Option<SyntaxError> {
+    let SyntaxErrorKind::Unexpected { found: Found::Text(written), inside, .. } = &stray.kind else {
+        return None;
+    };
+    let SyntaxErrorKind::Missing { expected, .. } = &gap.kind else { return None };
+    let (token, _) = tokens.iter().find(|(_, span)| *span == stray.span)?;
+    let kind = SyntaxErrorKind::Misplaced { written: written.clone(), to: gap.span.start, inside: *inside };
+    expected.iter().any(|expected| fills(*token, *expected)).then_some(SyntaxError { span: stray.span, kind })
+}
+
+/// Whether a token is what is missing.
+fn fills(token: Token, expected: Expected) -> bool {
+    match expected {
+        Expected::Word(word) => {
+            word == token && !matches!(word, Token::Comma | Token::OpenBrace | Token::CloseBrace)
+        }
+        Expected::NameOf(_) | Expected::ReferenceTo(_) => token.is_name(),
+        Expected::Radius | Expected::Port | Expected::Distance | Expected::Speed => {
+            matches!(token, Token::Integer | Token::Float)
+        }
+        Expected::Address => token == Token::Ipv4,
+        Expected::Path => token == Token::String,
+        Expected::Angle | Expected::Action | Expected::Declaration => false,
+    }
+}
+
+/// `has a b wheels`
+fn unbraced(first: &SyntaxError, second: &SyntaxError, tokens: &[Lexeme]) -> Option<SyntaxError> {
+    let wants = |error: &SyntaxError, brace: Token| match &error.kind {
+        SyntaxErrorKind::Missing { expected, .. } => expected.contains(&Expected::Word(brace)),
+        _ => false,
+    };
+    if !wants(first, Token::OpenBrace) || !wants(second, Token::CloseBrace) {
+        return None;
+    }
+    let between = Span::new(first.span.start, second.span.start);
+    let opened = tokens.iter().any(|(token, span)| *token == Token::OpenBrace && between.touches(span.start));
+    let mut inner = tokens.iter().filter(|(_, span)| between.start <= span.start && span.end <= between.end);
+    if inner.clone().next().is_some() && inner.all(|(token, _)| *token == Token::CloseBrace) {
+        // `turn left until }`: the brace was taken for the list's.
+        return Some(first.clone());
+    }
+    let SyntaxErrorKind::Missing { inside, .. } = first.kind else { return None };
+    let kind = SyntaxErrorKind::Unbraced { close: second.span.start, inside };
+    (!opened && between.start < between.end).then_some(SyntaxError { span: first.span, kind })
+}
+
+/// `has {{ a b }}`
+fn needless(first: &SyntaxError, second: &SyntaxError) -> Option<SyntaxError> {
+    let is = |error: &SyntaxError, brace: &str| match &error.kind {
+        SyntaxErrorKind::Unexpected { found: Found::Text(found), .. } => found == brace,
+        _ => false,
+    };
+    (is(first, "{") && is(second, "}")).then(|| first.clone())
+}
