@@ -36,6 +36,9 @@ robot scout with port 23000 has { wheelL wheelR } wheels",
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Import(import)) = context.tree else { return };
+    if !context.errors.is_empty() {
+        return;
+    }
     let (Some(written), Some(span)) = (&import.path, import.path_span) else { return };
     let path = context.database.import_path(context.id);
     let absence = path.and_then(|path| context.database.absence(context.file, &path));

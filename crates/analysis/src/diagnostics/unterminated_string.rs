@@ -34,11 +34,13 @@ robot rover with port 23000 has { wheelL wheelR } wheels",
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     for error in context.errors.iter().filter(|error| error.kind == SyntaxErrorKind::UnterminatedString) {
-        problems.push(
-            RULE.problem(error.span, "this path has no closing quote on its line")
-                .help("end it with `\"`")
-                .fix("add the closing quote", [context.replace(Span::at(error.span.end), "\"")]),
-        );
+        let problem = RULE.problem(error.span, "this path has no closing quote on its line");
+        problems.push(if error.span.len() > 1 {
+            let close = context.replace(Span::at(error.span.end), "\"");
+            problem.help("end it with `\"`").fix("add the closing quote", [close])
+        } else {
+            problem.help("write the path of the other file and end it with `\"`")
+        });
     }
 }
 

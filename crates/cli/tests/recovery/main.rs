@@ -31,6 +31,10 @@ fn groups() -> Vec<(String, Group)> {
 /// All cases of a group in one folder, each in a file of its own.
 fn folder(group: &Group) -> (Folder, Vec<String>) {
     let folder = Folder::new();
+    // What imports may name.
+    for part in ["parts.pyr", "more.pyr"] {
+        folder.write(part, "");
+    }
     let name = |number: usize| format!("{number:03}.pyr");
     let cases = group.cases().enumerate();
     let names = cases.map(|(number, case)| {
