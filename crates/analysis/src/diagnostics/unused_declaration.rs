@@ -134,6 +134,26 @@ mod tests {
     }
 
     #[test]
+    fn what_stands_on_the_same_line_stays_there() {
+        let removed = |text: &str| {
+            let mut database = crate::Database::new();
+            let file = database.open("a.pyr", text);
+            let unused = database.diagnostics(file).remove(0);
+            assert_eq!(unused.code(), "unused-declaration");
+            crate::diagnostics::testing::apply(text, file, &unused.fixes[0].edits)
+        };
+        let used = format!("{PARTS}environment e has {{ r }} robots with {{ m }} moves");
+        for (before, after) in [
+            (format!("sensor s wheel c with radius 4\r\n{used}"), format!("wheel c with radius 4\r\n{used}")),
+            (format!("{used} \t sensor s\n\n// end\n"), format!("{used}\n\n// end\n")),
+            (format!("{used}\n\nsensor s\n"), format!("{used}\n\n")),
+            (format!("{used} sensor s // why\n"), format!("{used} // why\n")),
+        ] {
+            assert_eq!(removed(&before), after);
+        }
+    }
+
+    #[test]
     fn a_slip_of_the_only_use_is_one_problem() {
         let codes = |users: &str| {
             let mut database = crate::Database::new();
