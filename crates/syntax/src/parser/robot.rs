@@ -30,7 +30,12 @@ pub(super) fn robot<'s>() -> Rule<'s, Option<Entity>> {
         .then(wheels())
         .then(sensors().or_not())
         .then_ignore(nothing_more())
-        .map(|(((((before, name), after), port), wheels), sensors)| {
+        .validate(|(((((before, name), after), port), wheels), sensors), _, emitter| {
+            if let (Some(_), Some(second)) = (&before, &after) {
+                emitter
+                    .emit(Fault::Expected { at: second.span, expected: vec![Expected::Word(Token::With)] });
+                emitter.emit(Fault::Skipped(second.span));
+            }
             let before = before.map(|clause| DriveClause { before_name: true, ..clause });
             Some(Entity::Robot(Robot { name, drive: after.or(before), port, wheels: Some(wheels), sensors }))
         })
