@@ -9,6 +9,8 @@ mod references;
 pub use self::imports::Absence;
 pub use self::references::Place;
 
+use std::sync::Arc;
+
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Parse, Span, Token};
 use ropey::Rope;
@@ -17,7 +19,7 @@ use smol_str::SmolStr;
 
 use self::imports::Imports;
 use crate::diagnostics::{self, Problem};
-use crate::file::File;
+use crate::file::{File, Piece};
 use crate::names::Names;
 use crate::{Diagnostic, Target};
 
@@ -69,7 +71,7 @@ struct EntityData {
     file: FileId,
     /// Grows through the file; only its order means anything.
     order: u64,
-    parse: Parse,
+    parse: Arc<Parse>,
     problems: Vec<Problem>,
 }
 
@@ -195,7 +197,20 @@ impl Database {
     }
 
     pub(crate) fn parse(&self, id: EntityId) -> Option<&Parse> {
+        self.data(id).map(|data| &*data.parse)
+    }
+
+    pub(crate) fn shared_parse(&self, id: EntityId) -> Option<&Arc<Parse>> {
         self.data(id).map(|data| &data.parse)
+    }
+
+    /// The piece that holds an offset, and where it starts.
+    pub(crate) fn piece_at(&self, file: FileId, offset: u32) -> (usize, u32) {
+        self.get(file).map_or((0, 0), |file| file.piece_at(offset))
+    }
+
+    pub(crate) fn pieces(&self, file: FileId) -> &[Piece] {
+        self.get(file).map_or(&[], |file| &file.pieces)
     }
 
     /// An entity's tree, without its place.

@@ -17,10 +17,12 @@ mod path;
 mod plan;
 mod resolve;
 mod script_name;
+mod snapshot;
 mod target;
 
 pub use database::{Absence, Database, EditCounts, EntityId, EntityRef, FileId, Place, Resolution};
 pub use diagnostic::{Diagnostic, Edit, Fix, Related, Severity};
 pub use plan::{plan, plan_movement, scene};
 pub use resolve::Blocked;
+pub use snapshot::Snapshot;
 pub use target::Target;

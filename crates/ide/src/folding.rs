@@ -2,7 +2,7 @@
 //!
 //! A region is everything from `// #region` (or `// region`) to its `// endregion`, with or without `#`; regions nest.
 
-use pydslrep_analysis::{Database, FileId};
+use pydslrep_analysis::Snapshot;
 use pydslrep_syntax::ast::{Entity, Movement};
 use pydslrep_syntax::{Span, Token};
 
@@ -33,10 +33,10 @@ pub enum FoldKind {
 }
 
 /// Everything in a file that can fold, in the order of the text: one walk over what is known of the file already.
-pub fn folding_ranges(database: &Database, file: FileId) -> Vec<Fold> {
-    let Some(text) = database.text(file).map(ToString::to_string) else { return Vec::new() };
+pub fn folding_ranges(snapshot: &Snapshot) -> Vec<Fold> {
+    let text = snapshot.text().to_string();
     let mut folds = Folds::new(&text);
-    for entity in database.entities(file) {
+    for entity in snapshot.entities() {
         let start = entity.span.start;
         for (token, span) in &entity.parse.lexemes {
             folds.pass(*token, span.shifted(start));
@@ -189,13 +189,15 @@ mod tests {
     use super::*;
 
     fn check(text: &str, expected: &Expect) {
-        let mut database = Database::new();
+        let mut database = pydslrep_analysis::Database::new();
         let file = database.open("a.pyr", text);
         let render = |fold: &Fold| {
             let keeps = if fold.keeps_last_line { ", last line stays" } else { "" };
             format!("{:?}{keeps}: {:?}\n", fold.kind, fold.span.text(text))
         };
-        expected.assert_eq(&folding_ranges(&database, file).iter().map(render).collect::<String>());
+        expected.assert_eq(
+            &folding_ranges(&database.snapshot(file, None).unwrap()).iter().map(render).collect::<String>(),
+        );
     }
 
     #[test]
@@ -253,13 +255,5 @@ mod tests {
                 Imports: "import \"a.pyr\"\n// why\nimport \"b.pyr\""
             "#]],
         );
-    }
-
-    #[test]
-    fn a_closed_file_has_none() {
-        let mut database = Database::new();
-        let file = database.open("a.pyr", "/*\n*/");
-        database.close(file);
-        assert_eq!(folding_ranges(&database, file), []);
     }
 }

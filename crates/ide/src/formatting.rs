@@ -1,20 +1,19 @@
 //! Formatting: the edits that bring a document, or a part of it, into the canonical layout.
 
-use pydslrep_analysis::{Database, FileId};
+use pydslrep_analysis::Snapshot;
 use pydslrep_syntax::{Span, TextEdit, format_edits};
 
 /// The edits that bring a file into the canonical layout, in order and apart from each other. Entities with errors
-/// stay as they are; none for a closed file.
-pub fn format(database: &Database, file: FileId) -> Vec<TextEdit> {
-    let Some(text) = database.text(file) else { return Vec::new() };
-    edits(database, file, &text.to_string())
+/// stay as they are.
+pub fn format(snapshot: &Snapshot) -> Vec<TextEdit> {
+    edits(snapshot, &snapshot.text().to_string())
 }
 
 /// The same for what stands in a range. An edit says where the text behind it stands, so it counts as being where it
 /// ends: selecting whole lines indents the first of them, and not the one after the last.
-pub fn format_range(database: &Database, file: FileId, range: Span) -> Vec<TextEdit> {
-    let Some(text) = database.text(file).map(ToString::to_string) else { return Vec::new() };
-    let mut edits = edits(database, file, &text);
+pub fn format_range(snapshot: &Snapshot, range: Span) -> Vec<TextEdit> {
+    let text = snapshot.text().to_string();
+    let mut edits = edits(snapshot, &text);
     let mut end = range.end;
     if end < Span::of(&text).end {
         // The line after the last is not meant.
@@ -25,8 +24,8 @@ pub fn format_range(database: &Database, file: FileId, range: Span) -> Vec<TextE
     edits
 }
 
-fn edits(database: &Database, file: FileId, text: &str) -> Vec<TextEdit> {
-    let pieces = database.entities(file).map(|entity| (entity.span, entity.parse));
+fn edits(snapshot: &Snapshot, text: &str) -> Vec<TextEdit> {
+    let pieces = snapshot.entities().map(|entity| (entity.span, entity.parse));
     format_edits(text, pieces)
 }
 
@@ -34,7 +33,13 @@ fn edits(database: &Database, file: FileId, text: &str) -> Vec<TextEdit> {
 mod tests {
     use pydslrep_syntax::apply_edits;
 
+    use pydslrep_analysis::{Database, FileId};
+
     use super::*;
+
+    fn all(database: &Database, file: FileId) -> Snapshot {
+        database.snapshot(file, None).unwrap()
+    }
 
     #[test]
     fn a_document_is_formatted_around_what_is_broken() {
@@ -42,11 +47,9 @@ mod tests {
         let mut database = Database::new();
         let file = database.open("a.pyr", text);
         assert_eq!(
-            apply_edits(text, &format(&database, file)),
+            apply_edits(text, &format(&all(&database, file))),
             "wheel a with radius 3\r\n\r\nmovement m of r {\r\n  slam\r\n}\r\n\r\nwheel  b with 3\r\n"
         );
-        database.close(file);
-        assert_eq!(format(&database, file), []);
     }
 
     #[test]
@@ -55,7 +58,7 @@ mod tests {
         let file = database.open("a.pyr", "wheel a with radius 3\nsensor  s\n");
         database.edit(file, Span::new(5, 6), "   ");
         let text = database.text(file).map(ToString::to_string).unwrap();
-        assert_eq!(apply_edits(&text, &format(&database, file)), "wheel a with radius 3\n\nsensor s\n");
+        assert_eq!(apply_edits(&text, &format(&all(&database, file))), "wheel a with radius 3\n\nsensor s\n");
     }
 
     #[test]
@@ -66,10 +69,10 @@ mod tests {
         let lines = Span::new(33, 45);
         assert_eq!(lines.text(text), "turn   left\n");
         assert_eq!(
-            apply_edits(text, &format_range(&database, file, lines)),
+            apply_edits(text, &format_range(&all(&database, file), lines)),
             "movement m of r {\nmove 1  meters\n  turn left\nslam\n}\n"
         );
-        assert_eq!(format_range(&database, file, Span::of(text)), format(&database, file));
-        assert_eq!(format_range(&database, file, Span::at(3)), []);
+        assert_eq!(format_range(&all(&database, file), Span::of(text)), format(&all(&database, file)));
+        assert_eq!(format_range(&all(&database, file), Span::at(3)), []);
     }
 }

@@ -42,7 +42,7 @@ pub use reference::{KeywordPage, keyword_page};
 pub use references::references;
 pub use rename::{Refusal, RenameTarget, prepare_rename, rename};
 pub use selection::selection_ranges;
-pub use semantic_tokens::{Modifier, SemanticToken, TokenKind, semantic_tokens};
+pub use semantic_tokens::{Modifier, SemanticToken, TokenKind, entity_tokens, semantic_tokens};
 pub use signature::{Signature, SignatureHelp, signature_help};
 pub use symbols::{Symbol, SymbolKind, document_symbols};
 pub use type_definition::goto_type_definition;

@@ -1,6 +1,6 @@
 //! Semantic tokens: what every word of a file is, for colouring.
 
-use pydslrep_analysis::{Database, EntityRef, FileId};
+use pydslrep_analysis::{EntityRef, Snapshot};
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Lexeme, Span, Token};
 
@@ -41,14 +41,11 @@ pub enum Modifier {
     Deprecated,
 }
 
-/// The tokens of a file, or of the entities that touch a range of it, in the order of the text.
-pub fn semantic_tokens(database: &Database, file: FileId, range: Option<Span>) -> Vec<SemanticToken> {
-    let wanted = |entity: &EntityRef<'_>| {
-        range.is_none_or(|range| entity.span.start <= range.end && range.start <= entity.span.end)
-    };
+/// The tokens of a file, or those that touch a range of it, in the order of the text.
+pub fn semantic_tokens(snapshot: &Snapshot, range: Option<Span>) -> Vec<SemanticToken> {
     let mut tokens = Vec::new();
-    for entity in database.entities(file).filter(wanted) {
-        entity_tokens(database, &entity, &mut tokens);
+    for entity in snapshot.entities() {
+        entity_tokens(snapshot, &entity, &mut tokens);
     }
     if let Some(range) = range {
         tokens.retain(|token| token.span.start < range.end && range.start < token.span.end);
@@ -56,24 +53,25 @@ pub fn semantic_tokens(database: &Database, file: FileId, range: Option<Span>) -
     tokens
 }
 
-fn entity_tokens(database: &Database, entity: &EntityRef<'_>, tokens: &mut Vec<SemanticToken>) {
+/// Adds the tokens of one entity, which depend on nothing but its own text.
+pub fn entity_tokens(snapshot: &Snapshot, entity: &EntityRef<'_>, tokens: &mut Vec<SemanticToken>) {
     let names = Names::of(entity.parse.entity.as_ref());
     for lexeme in &entity.parse.lexemes {
         if let Some((kind, modifiers)) = names.classify(*lexeme) {
             let span = lexeme.1.shifted(entity.span.start);
-            push_lines(database, entity.file, SemanticToken { span, kind, modifiers }, tokens);
+            push_lines(snapshot, SemanticToken { span, kind, modifiers }, tokens);
         }
     }
 }
 
 /// Only block comments reach over lines; editors want a token for each.
-fn push_lines(database: &Database, file: FileId, token: SemanticToken, tokens: &mut Vec<SemanticToken>) {
+fn push_lines(snapshot: &Snapshot, token: SemanticToken, tokens: &mut Vec<SemanticToken>) {
     if token.kind != TokenKind::Comment {
         tokens.push(token);
         return;
     }
     let mut start = token.span.start;
-    for line in database.slice(file, token.span).split(['\n', '\r']) {
+    for line in snapshot.slice(token.span).split(['\n', '\r']) {
         let end = start + Span::of(line).end;
         if end > start {
             tokens.push(SemanticToken { span: Span::new(start, end), ..token.clone() });
@@ -137,9 +135,9 @@ mod tests {
     use super::*;
 
     fn check(text: &str, range: Option<Span>, expected: &Expect) {
-        let mut database = Database::new();
+        let mut database = pydslrep_analysis::Database::new();
         let file = database.open("a.pyr", text);
-        let rendered = semantic_tokens(&database, file, range)
+        let rendered = semantic_tokens(&database.snapshot(file, range).unwrap(), range)
             .into_iter()
             .map(|token| format!("{:?} {:?} {:?}\n", token.span.text(text), token.kind, token.modifiers));
         expected.assert_eq(&rendered.collect::<String>());

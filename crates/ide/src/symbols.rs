@@ -1,6 +1,6 @@
 //! Document symbols: the outline of a file.
 
-use pydslrep_analysis::{Database, EntityRef, FileId};
+use pydslrep_analysis::{EntityRef, Snapshot};
 use pydslrep_syntax::ast::{Action, ActionKind, Entity, References};
 use pydslrep_syntax::{EntityKind, Span};
 
@@ -33,11 +33,11 @@ pub enum SymbolKind {
 }
 
 /// The named entities of a file in the order of the text, movements with their actions.
-pub fn document_symbols(database: &Database, file: FileId) -> Vec<Symbol> {
-    database.entities(file).filter_map(|entity| symbol(database, &entity)).collect()
+pub fn document_symbols(snapshot: &Snapshot) -> Vec<Symbol> {
+    snapshot.entities().filter_map(|entity| symbol(snapshot, &entity)).collect()
 }
 
-fn symbol(database: &Database, entity: &EntityRef<'_>) -> Option<Symbol> {
+fn symbol(snapshot: &Snapshot, entity: &EntityRef<'_>) -> Option<Symbol> {
     let tree = entity.parse.entity.as_ref()?;
     let name = tree.name()?;
     Some(Symbol {
@@ -46,7 +46,7 @@ fn symbol(database: &Database, entity: &EntityRef<'_>) -> Option<Symbol> {
         kind: SymbolKind::Entity(tree.kind()?),
         full: body(entity),
         focus: name.span.shifted(entity.span.start),
-        children: children(database, entity, tree),
+        children: children(snapshot, entity, tree),
     })
 }
 
@@ -86,11 +86,11 @@ fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
-fn children(database: &Database, entity: &EntityRef<'_>, tree: &Entity) -> Vec<Symbol> {
+fn children(snapshot: &Snapshot, entity: &EntityRef<'_>, tree: &Entity) -> Vec<Symbol> {
     let Entity::Movement(movement) = tree else { return Vec::new() };
     let child = |action: &Action| {
         let full = action.span.shifted(entity.span.start);
-        let text = database.slice(entity.file, full);
+        let text = snapshot.slice(full);
         let mut words = text.split_whitespace();
         Symbol {
             name: words.next().unwrap_or_default().to_owned(),
@@ -143,13 +143,13 @@ mod tests {
 
     #[test]
     fn the_outline_has_every_entity_and_action() {
-        let mut database = Database::new();
+        let mut database = pydslrep_analysis::Database::new();
         let text = format!(
             "{PARTS}ip here 127.0.0.1 // home\nwheel\nparallel movement m of rover {{ move 4  meters\n at 9 slam }}\nenvironment e has {{ rover }} robots"
         );
         let file = database.open("a.pyr", &text);
         let mut out = String::new();
-        render(&document_symbols(&database, file), 0, &mut out);
+        render(&document_symbols(&database.snapshot(file, None).unwrap()), 0, &mut out);
         expect![[r#"
             wheel wheelL (radius 4.5 cm) 0..28 6..12
             wheel wheelR (radius 4.5 cm) 29..57 35..41

@@ -2,7 +2,7 @@
 
 use tower_lsp::ls_types::{
     ClientCapabilities, DiagnosticTag, GotoCapability, MarkupKind, ResourceOperationKind,
-    TextDocumentClientCapabilities, WorkspaceClientCapabilities,
+    SemanticTokensFullOptions, TextDocumentClientCapabilities, WorkspaceClientCapabilities,
 };
 
 use crate::handlers::code_lenses::SHOW_REFERENCES;
@@ -56,6 +56,8 @@ pub(crate) struct ClientFeatures {
     pub(crate) versioned_edits: bool,
     /// Edits may create files.
     pub(crate) create_files: bool,
+    /// It takes changes of semantic tokens.
+    pub(crate) token_deltas: bool,
     /// It can be asked to tell when files change.
     pub(crate) watched_files: bool,
     /// It can be asked for settings.
@@ -150,6 +152,9 @@ impl ClientFeatures {
         self.type_definition_links = links(document.type_definition.as_ref());
         self.prepare_rename =
             document.rename.as_ref().is_some_and(|rename| rename.prepare_support == Some(true));
+        self.token_deltas = document.semantic_tokens.as_ref().is_some_and(|tokens| {
+            matches!(tokens.requests.full, Some(SemanticTokensFullOptions::Delta { delta: Some(true) }))
+        });
         self.symbol_tree = document
             .document_symbol
             .as_ref()

@@ -1,6 +1,7 @@
 //! The documents: what the client shows, exactly as it sent it, and the files of the workspace besides.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use pydslrep_analysis::FileId;
 use pydslrep_config::{FILE_NAME, Settings};
@@ -9,6 +10,7 @@ use ropey::Rope;
 use rustc_hash::FxHashMap;
 use tower_lsp::ls_types::{Diagnostic, TextDocumentContentChangeEvent, Uri};
 
+use crate::handlers::semantic_tokens::SentTokens;
 use crate::positions::{self, Encoding};
 
 /// A document that is open in the client, or a file that matters to one of those.
@@ -30,6 +32,10 @@ pub(crate) struct Document {
     pub(crate) imports: Vec<String>,
     /// What is set for it.
     pub(crate) settings: Arc<Settings>,
+    /// Set once the text is no longer this one.
+    pub(crate) outdated: Arc<AtomicBool>,
+    /// The semantic tokens the client has, if it takes changes of them.
+    pub(crate) tokens: Option<SentTokens>,
 }
 
 impl Document {
@@ -44,7 +50,14 @@ impl Document {
             published: None,
             imports: Vec::new(),
             settings: Arc::default(),
+            outdated: Arc::default(),
+            tokens: None,
         }
+    }
+
+    /// Stops work on the text as it was.
+    pub(crate) fn set_outdated(&mut self) {
+        std::mem::take(&mut self.outdated).store(true, Ordering::Relaxed);
     }
 
     /// Whether it is a program; else it holds settings.

@@ -13,6 +13,7 @@
 //!
 //! With the feature `process` off there is no runtime, no stdio and no socket: a browser feeds a session itself.
 
+mod bulk;
 mod capabilities;
 mod client;
 mod documents;

@@ -1,21 +1,21 @@
-//! The whole surface of the server, one entry per message of the protocol.
+//! The whole surface of the server, one entry per message of the protocol; those about whole files are in
+//! [`bulk`](crate::bulk).
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 use futures::channel::oneshot;
-use serde::{Deserialize, Serialize};
-use tower_lsp::jsonrpc::{Error, Request, Result};
+use tower_lsp::jsonrpc::{Error, Result};
 #[allow(clippy::wildcard_imports, reason = "this file names half of the protocol")]
 use tower_lsp::ls_types::*;
 use tower_lsp::{Client, LanguageServer, NotCancellable, OngoingProgress, Unbounded};
 
+use crate::bulk::Running;
 use crate::capabilities;
 use crate::client::ClientFeatures;
 use crate::handlers::{
-    self, code_actions, code_lenses, completion, diagnostics, document_symbols, folding, formatting, hover,
-    inlay_hints, navigation, references, rename, scripts, selection, semantic_tokens, signature,
-    synchronization,
+    self, code_actions, code_lenses, completion, diagnostics, formatting, hover, inlay_hints, navigation,
+    references, rename, scripts, selection, semantic_tokens, signature, synchronization,
 };
 use crate::log::log;
 use crate::message::Outbox;
@@ -30,13 +30,15 @@ use crate::workspace;
 pub(crate) struct Server {
     state: Arc<Mutex<State>>,
     client: Client,
-    outbox: Outbox,
+    pub(crate) outbox: Outbox,
+    /// Requests about whole files that are not answered yet.
+    pub(crate) running: Running,
 }
 
 impl Server {
     /// A session that talks to `client`; notifications of ours go to `outbox`, in order with the answers.
     pub(crate) fn new(client: Client, outbox: Outbox) -> Self {
-        Self { state: Arc::default(), client, outbox }
+        Self { state: Arc::default(), client, outbox, running: Running::default() }
     }
 
     /// The state, for as long as one handler runs. Never keep it across an `.await`.
@@ -198,10 +200,6 @@ impl LanguageServer for Server {
         Ok(navigation::type_definition(&self.state(), &params))
     }
 
-    async fn references(&self, params: ReferenceParams) -> Result<Option<Vec<Location>>> {
-        Ok(references::references(&self.state(), &params))
-    }
-
     async fn document_highlight(
         &self,
         params: DocumentHighlightParams,
@@ -227,32 +225,16 @@ impl LanguageServer for Server {
         Ok(rename::linked_editing_ranges(&self.state(), &params))
     }
 
-    async fn document_symbol(&self, params: DocumentSymbolParams) -> Result<Option<DocumentSymbolResponse>> {
-        Ok(document_symbols::document_symbols(&self.state(), &params))
-    }
-
     async fn inlay_hint(&self, params: InlayHintParams) -> Result<Option<Vec<InlayHint>>> {
         Ok(inlay_hints::inlay_hints(&self.state(), &params))
-    }
-
-    async fn code_lens(&self, params: CodeLensParams) -> Result<Option<Vec<CodeLens>>> {
-        Ok(code_lenses::code_lenses(&self.state(), &params))
     }
 
     async fn code_lens_resolve(&self, lens: CodeLens) -> Result<CodeLens> {
         code_lenses::resolve(&self.state(), lens)
     }
 
-    async fn folding_range(&self, params: FoldingRangeParams) -> Result<Option<Vec<FoldingRange>>> {
-        Ok(folding::folding_ranges(&self.state(), &params))
-    }
-
     async fn selection_range(&self, params: SelectionRangeParams) -> Result<Option<Vec<SelectionRange>>> {
         Ok(selection::selection_ranges(&self.state(), &params))
-    }
-
-    async fn formatting(&self, params: DocumentFormattingParams) -> Result<Option<Vec<TextEdit>>> {
-        Ok(formatting::document(&self.state(), &params))
     }
 
     async fn range_formatting(&self, params: DocumentRangeFormattingParams) -> Result<Option<Vec<TextEdit>>> {
@@ -264,13 +246,6 @@ impl LanguageServer for Server {
         params: DocumentOnTypeFormattingParams,
     ) -> Result<Option<Vec<TextEdit>>> {
         Ok(formatting::on_type(&self.state(), &params))
-    }
-
-    async fn semantic_tokens_full(
-        &self,
-        params: SemanticTokensParams,
-    ) -> Result<Option<SemanticTokensResult>> {
-        Ok(semantic_tokens::full(&self.state(), &params).map(Into::into))
     }
 
     async fn semantic_tokens_range(
@@ -344,33 +319,6 @@ impl Server {
 
 /// What the session calls besides the handlers.
 impl Server {
-    /// Answers a request whose answer may be megabytes, if this is one: the router would build a JSON value of it first,
-    /// which takes several times as long as all the rest. Whatever is wrong with the request is left to the router.
-    pub(crate) fn answer_bulk(&self, request: &Request) -> bool {
-        match request.method() {
-            "textDocument/documentSymbol" => {
-                self.answer_directly(request, document_symbols::document_symbols)
-            }
-            "textDocument/references" => self.answer_directly(request, references::references),
-            "textDocument/codeLens" => self.answer_directly(request, code_lenses::code_lenses),
-            "textDocument/foldingRange" => self.answer_directly(request, folding::folding_ranges),
-            "textDocument/semanticTokens/full" => self.answer_directly(request, semantic_tokens::full),
-            _ => false,
-        }
-    }
-
-    fn answer_directly<P, R>(&self, request: &Request, handler: fn(&State, &P) -> R) -> bool
-    where
-        P: for<'a> Deserialize<'a>,
-        R: Serialize,
-    {
-        let (Some(id), Some(params)) = (request.id(), request.params()) else { return false };
-        let Ok(params) = P::deserialize(params) else { return false };
-        let result = handler(&self.state(), &params);
-        self.outbox.answer(id, &result);
-        true
-    }
-
     /// All messages that had arrived are handled: time to tell the client what they changed.
     pub(crate) fn settle(&self) {
         diagnostics::publish(&mut self.state(), &self.outbox);

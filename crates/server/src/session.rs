@@ -15,6 +15,7 @@ use tower_lsp::jsonrpc::{ErrorCode, Id, Request, Response};
 use tower_lsp::{ClientSocket, ExitedError, LspService};
 use tower_service::Service;
 
+use crate::bulk::Bulk;
 use crate::log::log;
 use crate::message::{Incoming, Outbox, parse, refuse};
 use crate::server::Server;
@@ -113,11 +114,21 @@ impl Session {
 
     /// Runs a handler up to its first `.await`; hands over what remains.
     fn call(&mut self, request: Request) {
+        if request.method() == "$/cancelRequest" && self.cancels_bulk(&request) {
+            return;
+        }
         let id = request.id().cloned();
         let method = request.method().to_owned();
         let started = catch_unwind(AssertUnwindSafe(|| {
-            if self.stage == Stage::Serving && self.server.answer_bulk(&request) {
-                return Ok(Ok(None));
+            if self.stage == Stage::Serving {
+                match self.server.answer_bulk(&request) {
+                    Bulk::Other => {}
+                    Bulk::Answered => return Ok(Ok(None)),
+                    Bulk::Later(work) => {
+                        (self.spawn)(work);
+                        return Ok(Ok(None));
+                    }
+                }
             }
             let mut running = self.service.call(request);
             let mut unheard = Context::from_waker(Waker::noop());
@@ -139,6 +150,11 @@ impl Session {
                 report_panic(&self.server, &self.outbox, &method, id, panic.as_ref());
             }
         }
+    }
+
+    fn cancels_bulk(&self, request: &Request) -> bool {
+        let id = request.params().and_then(|params| params.get("id")).cloned();
+        id.and_then(|id| serde_json::from_value(id).ok()).is_some_and(|id| self.server.running.cancel(&id))
     }
 
     fn advance(&mut self, answered: &str) {

@@ -1,9 +1,10 @@
 //! What the server knows between two messages.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
 
 use futures::channel::oneshot;
-use pydslrep_analysis::{Database, FileId};
+use pydslrep_analysis::{Database, FileId, Snapshot};
 use pydslrep_ide::FilePosition;
 use pydslrep_syntax::Span;
 use ropey::Rope;
@@ -12,9 +13,10 @@ use tower_lsp::ls_types::{
     DidChangeTextDocumentParams, Location, Position, Range, TextDocumentItem, TextDocumentPositionParams, Uri,
 };
 
+use crate::bulk::Work;
 use crate::client::ClientFeatures;
 use crate::documents::{Document, Documents, key};
-use crate::positions::{to_offset, to_range, to_span};
+use crate::positions::{Encoding, to_offset, to_range, to_span};
 use crate::settings::SettingsStore;
 
 /// Documents, their analysis, and what the client can do.
@@ -30,6 +32,8 @@ pub(crate) struct State {
     pub(crate) settings: SettingsStore,
     /// The keys of the folders open in the client, each with `/` at its end.
     pub(crate) folders: Vec<String>,
+    /// How many answers have been given a number so far.
+    pub(crate) answers: u64,
     /// How many documents have been opened so far, each time counted.
     openings: u64,
     /// Whose diagnostics may have changed since they were last told, beside what the database says.
@@ -53,7 +57,9 @@ impl State {
     /// Takes in a document; one that is open already gets the new text.
     pub(crate) fn open(&mut self, opened: TextDocumentItem) {
         let key = key(&opened.uri);
-        self.documents.remove(&key);
+        if let Some(mut before) = self.documents.remove(&key) {
+            before.set_outdated();
+        }
         self.openings += 1;
         let mut document = Document::new(opened.uri, Rope::from_str(&opened.text), Some(opened.version));
         document.opening = self.openings;
@@ -75,6 +81,7 @@ impl State {
         let open = self.documents.get_mut(&key).filter(|document| document.version.is_some());
         let Some(document) = open else { return false };
         document.version = Some(params.text_document.version);
+        document.set_outdated();
         // All of the document before any of the analysis: should that fail, the document is still right.
         let spans: Vec<Option<Span>> =
             params.content_changes.iter().map(|change| document.apply(change, encoding)).collect();
@@ -112,7 +119,8 @@ impl State {
 
     /// Forgets a document, open or not.
     pub(crate) fn remove(&mut self, key: &str) {
-        if let Some(document) = self.documents.remove(key) {
+        if let Some(mut document) = self.documents.remove(key) {
+            document.set_outdated();
             if document.published.is_some_and(|published| !published.is_empty()) {
                 self.stale.gone.push(document.uri);
             }
@@ -164,6 +172,20 @@ impl State {
     pub(crate) fn analysed(&self, uri: &Uri) -> Option<(&Document, FileId)> {
         let document = self.document(uri)?;
         Some((document, document.file?))
+    }
+
+    /// Work on a document as it is now; `None` where it is not open or could not be analysed.
+    pub(crate) fn work<R>(
+        &self,
+        uri: &Uri,
+        run: impl FnOnce(&Document, Encoding) -> Box<dyn FnOnce(&Snapshot) -> R + Send>,
+    ) -> Option<Work<R>> {
+        let (document, file) = self.analysed(uri)?;
+        Some(Work {
+            snapshot: self.database.snapshot(file, None)?,
+            outdated: Arc::clone(&document.outdated),
+            run: run(document, self.client.encoding),
+        })
     }
 
     /// What a position in a document points at.

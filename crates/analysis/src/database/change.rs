@@ -1,6 +1,7 @@
 //! How the database changes: what an edit replaces, and whose answers it makes doubtful.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Lexeme, Parse, Span, parse};
@@ -136,7 +137,7 @@ impl Database {
         let Window { replaced, untouched, mut parses } = window;
         let old = &self.pieces(file)[replaced.clone()];
         let same = |(piece, (span, parse)): &(&Piece, &(Span, Parse))| {
-            piece.len == span.len() && self.data(piece.entity).is_some_and(|data| data.parse == *parse)
+            piece.len == span.len() && self.data(piece.entity).is_some_and(|data| *data.parse == *parse)
         };
         let head = old.iter().zip(&parses).take(untouched.0).take_while(same).count();
         let (old, rest) = (&old[head..], &parses[head..]);
@@ -156,7 +157,7 @@ impl Database {
                 doubtful.keys.extend(visible_keys(file, &data.parse));
                 doubtful.keys.extend(visible_keys(file, &parse));
             }
-            data.parse = parse;
+            data.parse = Arc::new(parse);
         }
         self.register(id, file);
         Piece { entity: id, len: span.len() }
@@ -217,7 +218,7 @@ impl Database {
     }
 
     fn add(&mut self, file: FileId, span: Span, parse: Parse, order: u64) -> Piece {
-        let data = Some(EntityData { file, order, parse, problems: Vec::new() });
+        let data = Some(EntityData { file, order, parse: Arc::new(parse), problems: Vec::new() });
         let id = if let Some(index) = self.free.pop() {
             self.entities[index as usize] = data;
             EntityId(index)
@@ -368,10 +369,6 @@ impl Database {
         } else if let Some(troubled) = self.troubled.get_mut(&file) {
             troubled.remove(&id);
         }
-    }
-
-    pub(super) fn pieces(&self, file: FileId) -> &[Piece] {
-        self.get(file).map_or(&[], |file| &file.pieces)
     }
 }
 

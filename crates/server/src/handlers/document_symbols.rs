@@ -7,24 +7,30 @@ use tower_lsp::ls_types::{
     Uri,
 };
 
+use crate::bulk::Work;
 use crate::positions::LineTable;
 use crate::state::State;
 
 /// The outline of a document.
 pub(crate) fn document_symbols(
-    state: &State,
+    state: &mut State,
     params: &DocumentSymbolParams,
-) -> Option<DocumentSymbolResponse> {
-    let (document, file) = state.analysed(&params.text_document.uri)?;
-    let symbols = ide::document_symbols(&state.database, file);
-    let table = LineTable::new(&document.text, state.client.encoding);
-    if state.client.symbol_tree {
-        let tree = symbols.into_iter().map(|symbol| convert(&table, symbol)).collect();
-        return Some(DocumentSymbolResponse::Nested(tree));
-    }
-    let mut flat = Vec::new();
-    flatten(&table, &document.uri, symbols, None, &mut flat);
-    Some(DocumentSymbolResponse::Flat(flat))
+) -> Option<Work<DocumentSymbolResponse>> {
+    let as_tree = state.client.symbol_tree;
+    state.work(&params.text_document.uri, |document, encoding| {
+        let uri = document.uri.clone();
+        Box::new(move |snapshot| {
+            let symbols = ide::document_symbols(snapshot);
+            let table = LineTable::new(snapshot.text(), encoding);
+            if as_tree {
+                let tree = symbols.into_iter().map(|symbol| convert(&table, symbol)).collect();
+                return DocumentSymbolResponse::Nested(tree);
+            }
+            let mut flat = Vec::new();
+            flatten(&table, &uri, symbols, None, &mut flat);
+            DocumentSymbolResponse::Flat(flat)
+        })
+    })
 }
 
 #[expect(deprecated, reason = "the field must be filled even where it is not used")]

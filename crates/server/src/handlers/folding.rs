@@ -3,16 +3,23 @@
 use pydslrep_ide as ide;
 use tower_lsp::ls_types::{FoldingRange, FoldingRangeKind, FoldingRangeParams, Range};
 
+use crate::bulk::Work;
 use crate::positions::LineTable;
 use crate::state::State;
 
 /// Everything in a document that can fold.
-pub(crate) fn folding_ranges(state: &State, params: &FoldingRangeParams) -> Option<Vec<FoldingRange>> {
-    let (document, file) = state.analysed(&params.text_document.uri)?;
-    let table = LineTable::new(&document.text, state.client.encoding);
-    let folds = ide::folding_ranges(&state.database, file);
+pub(crate) fn folding_ranges(
+    state: &mut State,
+    params: &FoldingRangeParams,
+) -> Option<Work<Vec<FoldingRange>>> {
     let whole_lines = state.client.line_folding_only;
-    Some(folds.iter().filter_map(|fold| convert(fold, table.range(fold.span), whole_lines)).collect())
+    state.work(&params.text_document.uri, |_, encoding| {
+        Box::new(move |snapshot| {
+            let table = LineTable::new(snapshot.text(), encoding);
+            let folds = ide::folding_ranges(snapshot);
+            folds.iter().filter_map(|fold| convert(fold, table.range(fold.span), whole_lines)).collect()
+        })
+    })
 }
 
 fn convert(fold: &ide::Fold, range: Range, whole_lines: bool) -> Option<FoldingRange> {

@@ -1,27 +1,30 @@
 //! `textDocument/formatting`, `textDocument/rangeFormatting` and `textDocument/onTypeFormatting`. The layout has no options: the client's tab size is not
 //! asked for.
 
+use pydslrep_analysis::Snapshot;
 use pydslrep_ide as ide;
 use pydslrep_syntax as syntax;
 use tower_lsp::ls_types::{
     DocumentFormattingParams, DocumentOnTypeFormattingParams, DocumentRangeFormattingParams, TextEdit,
 };
 
-use crate::documents::Document;
-use crate::positions::LineTable;
+use crate::bulk::Work;
+use crate::positions::{Encoding, LineTable};
 use crate::state::State;
 
 /// The edits that bring a document into the canonical layout.
-pub(crate) fn document(state: &State, params: &DocumentFormattingParams) -> Option<Vec<TextEdit>> {
-    let (document, file) = state.analysed(&params.text_document.uri)?;
-    Some(convert(state, document, ide::format(&state.database, file)))
+pub(crate) fn document(state: &mut State, params: &DocumentFormattingParams) -> Option<Work<Vec<TextEdit>>> {
+    state.work(&params.text_document.uri, |_, encoding| {
+        Box::new(move |snapshot| convert(snapshot, encoding, ide::format(snapshot)))
+    })
 }
 
 /// The same for a range.
 pub(crate) fn range(state: &State, params: &DocumentRangeFormattingParams) -> Option<Vec<TextEdit>> {
     let (document, file) = state.analysed(&params.text_document.uri)?;
     let span = state.span(document, params.range);
-    Some(convert(state, document, ide::format_range(&state.database, file, span)))
+    let snapshot = state.database.snapshot(file, None)?;
+    Some(convert(&snapshot, state.client.encoding, ide::format_range(&snapshot, span)))
 }
 
 /// The edits after a character was typed.
@@ -40,7 +43,7 @@ pub(crate) fn on_type(state: &State, params: &DocumentOnTypeFormattingParams) ->
     )
 }
 
-fn convert(state: &State, document: &Document, edits: Vec<syntax::TextEdit>) -> Vec<TextEdit> {
-    let table = LineTable::new(&document.text, state.client.encoding);
+fn convert(snapshot: &Snapshot, encoding: Encoding, edits: Vec<syntax::TextEdit>) -> Vec<TextEdit> {
+    let table = LineTable::new(snapshot.text(), encoding);
     edits.into_iter().map(|edit| TextEdit::new(table.range(edit.span), edit.text)).collect()
 }

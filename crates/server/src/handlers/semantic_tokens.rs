@@ -1,38 +1,161 @@
 //! `textDocument/semanticTokens`: the colours that only the meaning of a name can tell.
 
+use std::sync::{Arc, OnceLock};
+
+use pydslrep_analysis::Snapshot;
 use pydslrep_ide as ide;
-use pydslrep_syntax::EntityKind;
+use pydslrep_syntax::{EntityKind, Span};
 use tower_lsp::ls_types::{
-    Position, SemanticToken, SemanticTokenModifier, SemanticTokenType, SemanticTokens, SemanticTokensLegend,
-    SemanticTokensParams, SemanticTokensRangeParams,
+    Position, SemanticToken, SemanticTokenModifier, SemanticTokenType, SemanticTokens, SemanticTokensDelta,
+    SemanticTokensDeltaParams, SemanticTokensEdit, SemanticTokensFullDeltaResult, SemanticTokensLegend,
+    SemanticTokensParams, SemanticTokensRangeParams, Uri,
 };
 
-use crate::positions::LineTable;
+use crate::bulk::Work;
+use crate::documents::key;
+use crate::positions::{Encoding, LineTable};
 use crate::state::State;
 
+/// What the client has of a document's tokens.
+#[derive(Debug)]
+pub(crate) struct SentTokens {
+    /// The id they were sent under.
+    id: String,
+    /// The text they are of.
+    snapshot: Snapshot,
+    /// How many tokens each entity of it has; not there before the work is done.
+    counts: Counts,
+}
+
+type Counts = Arc<OnceLock<Vec<usize>>>;
+
 /// The tokens of a whole document.
-pub(crate) fn full(state: &State, params: &SemanticTokensParams) -> Option<SemanticTokens> {
-    let (document, file) = state.analysed(&params.text_document.uri)?;
-    let tokens = ide::semantic_tokens(&state.database, file, None);
-    Some(encode(&LineTable::new(&document.text, state.client.encoding), &tokens))
+pub(crate) fn full(state: &mut State, params: &SemanticTokensParams) -> Option<Work<SemanticTokens>> {
+    let uri = &params.text_document.uri;
+    let (result_id, counts) = remember(state, uri);
+    state.work(uri, |_, encoding| Box::new(move |snapshot| all(snapshot, encoding, result_id, &counts)))
+}
+
+/// What changed since the tokens that the client has.
+pub(crate) fn delta(
+    state: &mut State,
+    params: &SemanticTokensDeltaParams,
+) -> Option<Work<SemanticTokensFullDeltaResult>> {
+    let uri = &params.text_document.uri;
+    let before = state.documents.get_mut(&key(uri)).and_then(|document| document.tokens.take());
+    let before = before.filter(|before| before.id == params.previous_result_id);
+    let (result_id, counts) = remember(state, uri);
+    state.work(uri, |_, encoding| {
+        Box::new(move |snapshot| {
+            let known =
+                before.as_ref().and_then(|before| Some((&before.snapshot, before.counts.get()?.as_slice())));
+            match known {
+                Some(known) => change(known, snapshot, encoding, result_id, &counts).into(),
+                None => all(snapshot, encoding, result_id, &counts).into(),
+            }
+        })
+    })
+}
+
+/// Keeps what the client is about to get, if it will want to know what changed since.
+fn remember(state: &mut State, uri: &Uri) -> (Option<String>, Counts) {
+    let counts = Counts::default();
+    if !state.client.token_deltas {
+        return (None, counts);
+    }
+    state.answers += 1;
+    let id = state.answers.to_string();
+    let snapshot = state.analysed(uri).and_then(|(_, file)| state.database.snapshot(file, None));
+    if let (Some(snapshot), Some(document)) = (snapshot, state.documents.get_mut(&key(uri))) {
+        document.tokens = Some(SentTokens { id: id.clone(), snapshot, counts: Arc::clone(&counts) });
+    }
+    (Some(id), counts)
+}
+
+fn all(
+    snapshot: &Snapshot,
+    encoding: Encoding,
+    result_id: Option<String>,
+    counts: &Counts,
+) -> SemanticTokens {
+    let (mut tokens, mut lengths) = (Vec::new(), Vec::with_capacity(snapshot.len()));
+    for entity in snapshot.entities() {
+        let before = tokens.len();
+        ide::entity_tokens(snapshot, &entity, &mut tokens);
+        lengths.push(tokens.len() - before);
+    }
+    if lengths.len() == snapshot.len() {
+        let _ = counts.set(lengths);
+    }
+    let table = LineTable::new(snapshot.text(), encoding);
+    SemanticTokens { result_id, data: encode(&table, Position::new(0, 0), &tokens) }
+}
+
+/// The entities that read otherwise, and the first one behind them, whose place counts from theirs.
+fn change(
+    (before, before_counts): (&Snapshot, &[usize]),
+    now: &Snapshot,
+    encoding: Encoding,
+    result_id: Option<String>,
+    counts: &Counts,
+) -> SemanticTokensDelta {
+    let (head, mut tail) = now.unchanged_ends(before);
+    while tail > 0 && before_counts[before.len() - tail] == 0 {
+        tail -= 1;
+    }
+    tail = tail.saturating_sub(1);
+    let (old_end, new_end) = (before.len() - tail, now.len() - tail);
+    // The first new token is told by its distance from the last that stays.
+    let context = (0..head).rev().find(|index| before_counts[*index] > 0).unwrap_or(head);
+    let (mut tokens, mut lengths) = (Vec::new(), Vec::new());
+    for entity in now.entities().take(new_end).skip(context) {
+        let from = tokens.len();
+        ide::entity_tokens(now, &entity, &mut tokens);
+        lengths.push(tokens.len() - from);
+    }
+    let kept = lengths[..(head - context).min(lengths.len())].iter().sum::<usize>();
+    let covered = tokens.first().zip(tokens.last()).map(|(first, last)| first.span.to(last.span));
+    let table = LineTable::of_part(now.text(), covered.unwrap_or(Span::at(0)), encoding);
+    let origin =
+        kept.checked_sub(1).map_or(Position::new(0, 0), |last| table.position(tokens[last].span.start));
+    let edit = SemanticTokensEdit {
+        start: numbers(before_counts[..head].iter().sum()),
+        delete_count: numbers(before_counts[head..old_end].iter().sum()),
+        data: Some(encode(&table, origin, &tokens[kept..])),
+    };
+    let new_counts = lengths.into_iter().skip(head - context);
+    let all = before_counts[..head]
+        .iter()
+        .copied()
+        .chain(new_counts)
+        .chain(before_counts[old_end..].iter().copied());
+    let _ = counts.set(all.collect());
+    let is_nothing = edit.delete_count == 0 && edit.data.as_ref().is_none_or(Vec::is_empty);
+    SemanticTokensDelta { result_id, edits: if is_nothing { Vec::new() } else { vec![edit] } }
+}
+
+/// How many numbers so many tokens are.
+fn numbers(tokens: usize) -> u32 {
+    u32::try_from(5 * tokens).unwrap_or(u32::MAX)
 }
 
 /// The tokens that touch a range: what the editor shows first.
 pub(crate) fn range(state: &State, params: &SemanticTokensRangeParams) -> Option<SemanticTokens> {
     let (document, file) = state.analysed(&params.text_document.uri)?;
     let span = state.span(document, params.range);
-    let tokens = ide::semantic_tokens(&state.database, file, Some(span));
+    let snapshot = state.database.snapshot(file, Some(span))?;
+    let tokens = ide::semantic_tokens(&snapshot, Some(span));
     let (Some(first), Some(last)) = (tokens.first(), tokens.last()) else {
         return Some(SemanticTokens { result_id: None, data: Vec::new() });
     };
     let covered = first.span.to(last.span);
-    Some(encode(&LineTable::of_part(&document.text, covered, state.client.encoding), &tokens))
+    let table = LineTable::of_part(&document.text, covered, state.client.encoding);
+    Some(SemanticTokens { result_id: None, data: encode(&table, Position::new(0, 0), &tokens) })
 }
 
 /// Each token by its distance from the one before; none reaches over the end of a line.
-fn encode(table: &LineTable, tokens: &[ide::SemanticToken]) -> SemanticTokens {
+fn encode(table: &LineTable, mut before: Position, tokens: &[ide::SemanticToken]) -> Vec<SemanticToken> {
     let mut data = Vec::with_capacity(tokens.len());
-    let mut before = Position::new(0, 0);
     for token in tokens {
         let start = table.position(token.span.start);
         let end = table.position(token.span.end);
@@ -46,7 +169,7 @@ fn encode(table: &LineTable, tokens: &[ide::SemanticToken]) -> SemanticTokens {
         });
         before = start;
     }
-    SemanticTokens { result_id: None, data }
+    data
 }
 
 /// The protocol's names for our kinds of token, its own ones so that every theme colours them; [`token_type`] and
@@ -98,11 +221,13 @@ fn modifier_bit(modifier: ide::Modifier) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use pydslrep_syntax::Span;
     use ropey::Rope;
+    use tower_lsp::ls_types::{
+        DidChangeTextDocumentParams, TextDocumentContentChangeEvent, TextDocumentItem,
+        VersionedTextDocumentIdentifier,
+    };
 
     use super::*;
-    use crate::positions::Encoding;
 
     #[test]
     fn tokens_are_told_by_their_distances() {
@@ -131,7 +256,111 @@ mod tests {
                 token.token_modifiers_bitset,
             ]
         };
-        let encoded: Vec<_> = encode(&table, &tokens).data.into_iter().map(numbers).collect();
+        let encoded: Vec<_> = encode(&table, Position::new(0, 0), &tokens).into_iter().map(numbers).collect();
         assert_eq!(encoded, [[0, 0, 6, 3, 0], [0, 7, 2, 1, 0], [2, 0, 1, 6, 3]]);
+    }
+
+    const PROGRAM: &str = "wheel a with radius 4 /* é🤖\n*/ sensor s\n\nrobot type tw r with port 1 has { a a } wheels\n\
+                           movement m of r {\n  move 4 meters // far\n  turn left\n}\n";
+
+    fn state(text: &str) -> State {
+        let mut state = State::default();
+        state.client.token_deltas = true;
+        state.open(TextDocumentItem::new(uri(), "pydslrep".to_owned(), 1, text.to_owned()));
+        state
+    }
+
+    fn uri() -> Uri {
+        "file:///a.pyr".parse().unwrap()
+    }
+
+    fn edit(state: &mut State, start: u32, end: u32, text: &str) {
+        let (document, _) = state.analysed(&uri()).unwrap();
+        let length = u32::try_from(document.text.len_bytes()).unwrap();
+        let span = Span::new(start.min(length), end.min(length));
+        let range = Some(state.range(document, span));
+        let content_changes =
+            vec![TextDocumentContentChangeEvent { range, range_length: None, text: text.to_owned() }];
+        let text_document = VersionedTextDocumentIdentifier::new(uri(), 2);
+        state.change(&DidChangeTextDocumentParams { text_document, content_changes });
+    }
+
+    fn all_of(state: &mut State) -> SemanticTokens {
+        let params = serde_json::from_value(serde_json::json!({ "textDocument": { "uri": uri() } })).unwrap();
+        let work = full(state, &params).unwrap();
+        (work.run)(&work.snapshot)
+    }
+
+    fn changes_since(state: &mut State, id: &str) -> SemanticTokensFullDeltaResult {
+        let params = serde_json::json!({ "textDocument": { "uri": uri() }, "previousResultId": id });
+        let work = delta(state, &serde_json::from_value(params).unwrap()).unwrap();
+        (work.run)(&work.snapshot)
+    }
+
+    /// As a client applies changes, to its list of tokens.
+    fn applied(mut data: Vec<SemanticToken>, edits: &[SemanticTokensEdit]) -> Vec<SemanticToken> {
+        for edit in edits {
+            let (start, count) = (edit.start as usize / 5, edit.delete_count as usize / 5);
+            data.splice(start..start + count, edit.data.clone().unwrap_or_default());
+        }
+        data
+    }
+
+    fn check_changes(edits: &[(u32, u32, &str)]) {
+        let mut state = state(PROGRAM);
+        let SemanticTokens { result_id, mut data } = all_of(&mut state);
+        let mut id = result_id.unwrap();
+        for (start, end, text) in edits {
+            edit(&mut state, *start, *end, text);
+            let change = changes_since(&mut state, &id);
+            let SemanticTokensFullDeltaResult::TokensDelta(change) = change else { panic!("{change:?}") };
+            data = applied(data, &change.edits);
+            id = change.result_id.unwrap();
+            let text = state.document(&uri()).unwrap().text.to_string();
+            let mut fresh = self::state(&text);
+            assert_eq!(data, all_of(&mut fresh).data, "{text}");
+        }
+    }
+
+    #[test]
+    fn an_edit_sends_what_it_touches() {
+        let mut state = state(PROGRAM);
+        let id = all_of(&mut state).result_id.unwrap();
+        let at = u32::try_from(PROGRAM.find("4 meters").unwrap()).unwrap();
+        edit(&mut state, at, at, "1");
+        let SemanticTokensFullDeltaResult::TokensDelta(change) = changes_since(&mut state, &id) else {
+            panic!()
+        };
+        let [edit] = &change.edits[..] else { panic!("{change:?}") };
+        // Of all the tokens, only those of the movement.
+        assert_eq!((edit.start, edit.delete_count), (5 * 20, 5 * 10));
+        let again = changes_since(&mut state, change.result_id.as_deref().unwrap());
+        let SemanticTokensFullDeltaResult::TokensDelta(nothing) = again else { panic!() };
+        assert_eq!(nothing.edits, []);
+        let unknown = changes_since(&mut state, "7777");
+        assert!(matches!(unknown, SemanticTokensFullDeltaResult::Tokens(_)));
+    }
+
+    #[test]
+    fn changes_lead_to_the_same_tokens() {
+        check_changes(&[
+            (0, 0, "// x\n"),
+            (0, 5, ""),
+            (22, 22, "\n"),
+            (22, 23, " "),
+            (0, 300, ""),
+            (0, 0, PROGRAM),
+        ]);
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn any_changes_lead_to_the_same_tokens(
+            edits in proptest::collection::vec((0_u32..160, 0_u32..9, "[ a\n\r{}é🤖/*\"]{0,3}|wheel |sensor b\n"), 1..12)
+        ) {
+            let edits: Vec<(u32, u32, &str)> =
+                edits.iter().map(|(at, len, text)| (*at, at + len, text.as_str())).collect();
+            check_changes(&edits);
+        }
     }
 }

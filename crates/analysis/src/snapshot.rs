@@ -1,0 +1,155 @@
+//! A file as it was at one moment, to be worked on while the database goes on.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use pydslrep_syntax::{Parse, Span};
+use ropey::Rope;
+
+use crate::{Database, EntityId, EntityRef, FileId};
+
+/// A file, or a part of it, as it was. It shares text and trees with the database, so it costs little to take and to
+/// keep.
+#[derive(Debug, Clone)]
+pub struct Snapshot {
+    file: FileId,
+    text: Rope,
+    start: u32,
+    pieces: Vec<Kept>,
+    stops: Vec<Arc<AtomicBool>>,
+}
+
+#[derive(Debug, Clone)]
+struct Kept {
+    entity: EntityId,
+    len: u32,
+    parse: Arc<Parse>,
+}
+
+impl Database {
+    /// A file as it is now, or the entities of it that touch a range; `None` for a closed file.
+    pub fn snapshot(&self, file: FileId, range: Option<Span>) -> Option<Snapshot> {
+        let text = self.text(file)?.clone();
+        let all = self.pieces(file);
+        let (from, start, end) = match range {
+            None => (0, 0, u32::MAX),
+            Some(range) => {
+                // The one that ends where the range begins touches it too.
+                let (index, start) = self.piece_at(file, range.start.saturating_sub(1));
+                (index, start, range.end)
+            }
+        };
+        let mut at = start;
+        let pieces = all.get(from..).unwrap_or_default().iter().take_while(|piece| {
+            let begins = at;
+            at += piece.len;
+            begins <= end
+        });
+        let keep = |piece: &crate::file::Piece| {
+            let parse = Arc::clone(self.shared_parse(piece.entity)?);
+            Some(Kept { entity: piece.entity, len: piece.len, parse })
+        };
+        let pieces = pieces.filter_map(keep).collect();
+        Some(Snapshot { file, text, start, pieces, stops: Vec::new() })
+    }
+}
+
+impl Snapshot {
+    /// The whole text of the file.
+    pub fn text(&self) -> &Rope {
+        &self.text
+    }
+
+    /// A part of the text; empty where it does not fit.
+    pub fn slice(&self, span: Span) -> String {
+        let slice = self.text.get_byte_slice(std::ops::Range::from(span));
+        slice.map_or_else(String::new, |slice| slice.to_string())
+    }
+
+    /// Its entities in the order of the text; they end early once work on it is to [stop](Self::stop_on).
+    pub fn entities(&self) -> impl Iterator<Item = EntityRef<'_>> {
+        let mut at = self.start;
+        self.pieces.iter().take_while(|_| !self.is_stopped()).map(move |kept| {
+            let span = Span::new(at, at + kept.len);
+            at = span.end;
+            EntityRef { id: kept.entity, file: self.file, span, parse: &kept.parse }
+        })
+    }
+
+    /// Lets work on it end early once the flag is set.
+    pub fn stop_on(mut self, flag: Arc<AtomicBool>) -> Self {
+        self.stops.push(flag);
+        self
+    }
+
+    /// Whether work on it is to stop.
+    pub fn is_stopped(&self) -> bool {
+        self.stops.iter().any(|flag| flag.load(Ordering::Relaxed))
+    }
+
+    /// How many entities at the start and at the end read as they did before, in the same places of the order.
+    pub fn unchanged_ends(&self, before: &Self) -> (usize, usize) {
+        let same = |(a, b): &(&Kept, &Kept)| Arc::ptr_eq(&a.parse, &b.parse);
+        let head = self.pieces.iter().zip(&before.pieces).take_while(same).count();
+        let (ours, theirs) = (self.pieces[head..].iter().rev(), before.pieces[head..].iter().rev());
+        (head, ours.zip(theirs).take_while(same).count())
+    }
+
+    /// How many entities it has.
+    pub fn len(&self) -> usize {
+        self.pieces.len()
+    }
+
+    /// Whether it has no entities, which only a part of a file can be.
+    pub fn is_empty(&self) -> bool {
+        self.pieces.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "wheel a with radius 4\nsensor s\nsensor t\n";
+
+    fn spans(snapshot: &Snapshot) -> Vec<String> {
+        snapshot.entities().map(|entity| snapshot.slice(entity.span)).collect()
+    }
+
+    #[test]
+    fn a_snapshot_stays_as_it_was() {
+        let mut database = Database::new();
+        let file = database.open("a.pyr", TEXT);
+        let before = database.snapshot(file, None).unwrap();
+        database.edit(file, Span::at(22), "sensor r ");
+        database.edit(file, Span::at(0), "// x\n");
+        assert_eq!(spans(&before).concat(), TEXT);
+        let after = database.snapshot(file, None).unwrap();
+        assert_eq!((after.len(), after.unchanged_ends(&before)), (before.len() + 2, (0, 2)));
+        database.close(file);
+        assert!(database.snapshot(file, None).is_none());
+        assert_eq!(spans(&before).concat(), TEXT);
+    }
+
+    #[test]
+    fn a_range_takes_what_it_touches() {
+        let mut database = Database::new();
+        let file = database.open("a.pyr", TEXT);
+        let part = |start, end| spans(&database.snapshot(file, Some(Span::new(start, end))).unwrap());
+        assert_eq!(part(25, 26), ["sensor s\n"]);
+        assert_eq!(part(22, 31), ["wheel a with radius 4\n", "sensor s\n", "sensor t\n"]);
+        assert_eq!(part(40, 90), ["sensor t\n"]);
+    }
+
+    #[test]
+    fn work_stops_when_it_is_no_longer_wanted() {
+        let mut database = Database::new();
+        let file = database.open("a.pyr", TEXT);
+        let flag = Arc::new(AtomicBool::new(false));
+        let snapshot = database.snapshot(file, None).unwrap().stop_on(Arc::clone(&flag));
+        let mut entities = snapshot.entities();
+        assert!(entities.next().is_some());
+        flag.store(true, Ordering::Relaxed);
+        assert!(entities.next().is_none());
+    }
+}
