@@ -43,6 +43,7 @@ def capabilities(editor: str) -> types.ClientCapabilities:
         hover=types.HoverClientCapabilities(content_format=[types.MarkupKind.Markdown]),
         definition=types.DefinitionClientCapabilities(link_support=True),
         declaration=types.DeclarationClientCapabilities(link_support=True),
+        document_link=types.DocumentLinkClientCapabilities(tooltip_support=True),
         rename=types.RenameClientCapabilities(prepare_support=True),
         document_symbol=types.DocumentSymbolClientCapabilities(
             hierarchical_document_symbol_support=True

@@ -159,3 +159,67 @@ async def test_names_of_one_file_are_edited_together(
     ]
     shared = types.LinkedEditingRangeParams(*program.where(program.parts, "wheel a"))
     assert not await client.text_document_linked_editing_range_async(shared)
+
+
+async def test_symbols_of_all_files(client: LanguageClient, program: Program) -> None:
+    async def found(query: str) -> list[tuple[str, str | None]]:
+        symbols = await client.workspace_symbol_async(
+            types.WorkspaceSymbolParams(query)
+        )
+        result = []
+        for symbol in symbols or []:
+            place = symbol.location
+            assert isinstance(place, types.Location)
+            assert program.shown(place.uri, place.range).endswith(f" {symbol.name}")
+            result.append((symbol.name, symbol.container_name))
+        return result
+
+    assert await found("RVR") == [("rover", None)]
+    assert await found("lp") == [("lap", "rover")]
+    assert [name for name, _ in await found("")] == ["a", "b", "rover", "lap", "yard"]
+
+
+async def test_from_an_environment_to_its_robots_and_back(
+    client: LanguageClient, program: Program
+) -> None:
+    async def prepared(before: str) -> types.CallHierarchyItem:
+        where = program.where(program.main, before)
+        items = await client.text_document_prepare_call_hierarchy_async(
+            types.CallHierarchyPrepareParams(*where)
+        )
+        assert items
+        [item] = items
+        return item
+
+    yard = await prepared("environment yard")
+    runs = await client.call_hierarchy_outgoing_calls_async(
+        types.CallHierarchyOutgoingCallsParams(yard)
+    )
+    assert runs
+    [run] = runs
+    assert run.to.name == "lap"
+    assert [program.shown(program.main, place) for place in run.from_ranges] == [
+        "main.pyr:3 lap",
+        "main.pyr:3 lap",
+    ]
+
+    rover = await prepared("of rover")
+    drivers = await client.call_hierarchy_incoming_calls_async(
+        types.CallHierarchyIncomingCallsParams(rover)
+    )
+    assert drivers
+    [driver] = drivers
+    assert driver.from_.name == "lap"
+    assert program.shown(program.main, driver.from_.selection_range) == "main.pyr:2 lap"
+    [use] = driver.from_ranges
+    assert program.shown(program.main, use) == "main.pyr:2 rover"
+
+
+async def test_imports_are_links(client: LanguageClient, program: Program) -> None:
+    links = await client.text_document_document_link_async(
+        types.DocumentLinkParams(types.TextDocumentIdentifier(program.main))
+    )
+    assert links
+    [link] = links
+    assert program.shown(program.main, link.range) == "main.pyr:0 parts.pyr"
+    assert (link.target, link.tooltip) == (program.parts, "Open parts.pyr: 2 wheels")

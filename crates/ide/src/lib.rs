@@ -3,10 +3,12 @@
 //! Knows `analysis` and what lies below it. Must never know the editors' protocol, lines and columns (places are byte
 //! offsets), files on a disk, or threads.
 
+mod call_hierarchy;
 mod code_lenses;
 mod completion;
 mod cursor;
 mod definition;
+mod document_links;
 mod folding;
 mod formatting;
 mod highlights;
@@ -23,13 +25,16 @@ mod semantic_tokens;
 mod signature;
 mod symbols;
 mod type_definition;
+mod workspace_symbols;
 
 #[cfg(test)]
 mod fixture;
 
+pub use call_hierarchy::{Call, CallItem, call_item, call_items, incoming_calls, outgoing_calls};
 pub use code_lenses::{CodeLens, code_lenses};
 pub use completion::{Completion, CompletionKind, completions};
 pub use definition::{Definition, Target, goto_definition};
+pub use document_links::{DocumentLink, document_links};
 pub use folding::{Fold, FoldKind, folding_ranges};
 pub use formatting::{format, format_range};
 pub use highlights::{Highlight, highlights};
@@ -46,6 +51,7 @@ pub use semantic_tokens::{Modifier, SemanticToken, TokenKind, entity_tokens, sem
 pub use signature::{Signature, SignatureHelp, signature_help};
 pub use symbols::{Symbol, SymbolKind, document_symbols};
 pub use type_definition::goto_type_definition;
+pub use workspace_symbols::{WorkspaceSymbol, workspace_symbols};
 
 use pydslrep_analysis::FileId;
 

@@ -50,7 +50,8 @@ fn symbol(snapshot: &Snapshot, entity: &EntityRef<'_>) -> Option<Symbol> {
     })
 }
 
-fn detail(tree: &Entity) -> String {
+/// What is worth knowing of an entity at a glance.
+pub(crate) fn detail(tree: &Entity) -> String {
     match tree {
         Entity::Wheel(wheel) => {
             let kind = if wheel.mecanum { "mecanum, " } else { "" };
@@ -82,7 +83,8 @@ fn detail(tree: &Entity) -> String {
     }
 }
 
-fn counted(count: usize, noun: &str) -> String {
+/// A number of things: `1 wheel`, `2 wheels`.
+pub(crate) fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 

@@ -34,6 +34,8 @@ pub(crate) struct ClientFeatures {
     pub(crate) declaration_links: bool,
     /// The same of type definitions.
     pub(crate) type_definition_links: bool,
+    /// Links may say beforehand where they lead.
+    pub(crate) link_tooltips: bool,
     /// It asks what a rename would change before it asks for the new name.
     pub(crate) prepare_rename: bool,
     /// Document symbols may be a tree.
@@ -150,6 +152,8 @@ impl ClientFeatures {
         self.definition_links = links(document.definition.as_ref());
         self.declaration_links = links(document.declaration.as_ref());
         self.type_definition_links = links(document.type_definition.as_ref());
+        self.link_tooltips =
+            document.document_link.as_ref().is_some_and(|link| link.tooltip_support == Some(true));
         self.prepare_rename =
             document.rename.as_ref().is_some_and(|rename| rename.prepare_support == Some(true));
         self.token_deltas = document.semantic_tokens.as_ref().is_some_and(|tokens| {

@@ -14,8 +14,9 @@ use crate::bulk::Running;
 use crate::capabilities;
 use crate::client::ClientFeatures;
 use crate::handlers::{
-    self, code_actions, code_lenses, completion, diagnostics, formatting, hover, inlay_hints, navigation,
-    references, rename, scripts, selection, semantic_tokens, signature, synchronization,
+    self, call_hierarchy, code_actions, code_lenses, completion, diagnostics, document_links,
+    document_symbols, folding, formatting, hover, inlay_hints, navigation, references, rename, scripts,
+    selection, semantic_tokens, signature, synchronization, workspace_symbols,
 };
 use crate::log::log;
 use crate::message::Outbox;
@@ -205,6 +206,35 @@ impl LanguageServer for Server {
         params: DocumentHighlightParams,
     ) -> Result<Option<Vec<DocumentHighlight>>> {
         Ok(references::highlights(&self.state(), &params))
+    }
+
+    async fn symbol(&self, params: WorkspaceSymbolParams) -> Result<Option<WorkspaceSymbolResponse>> {
+        Ok(Some(workspace_symbols::workspace_symbols(&self.state(), &params)))
+    }
+
+    async fn document_link(&self, params: DocumentLinkParams) -> Result<Option<Vec<DocumentLink>>> {
+        Ok(document_links::document_links(&self.state(), &params))
+    }
+
+    async fn prepare_call_hierarchy(
+        &self,
+        params: CallHierarchyPrepareParams,
+    ) -> Result<Option<Vec<CallHierarchyItem>>> {
+        Ok(call_hierarchy::prepare(&self.state(), &params))
+    }
+
+    async fn incoming_calls(
+        &self,
+        params: CallHierarchyIncomingCallsParams,
+    ) -> Result<Option<Vec<CallHierarchyIncomingCall>>> {
+        Ok(call_hierarchy::incoming(&self.state(), &params))
+    }
+
+    async fn outgoing_calls(
+        &self,
+        params: CallHierarchyOutgoingCallsParams,
+    ) -> Result<Option<Vec<CallHierarchyOutgoingCall>>> {
+        Ok(call_hierarchy::outgoing(&self.state(), &params))
     }
 
     async fn prepare_rename(

@@ -70,7 +70,8 @@ fn flatten(
     }
 }
 
-fn kind(kind: ide::SymbolKind) -> SymbolKind {
+/// The protocol's nearest kind, a different one for each of ours.
+pub(crate) fn kind(kind: ide::SymbolKind) -> SymbolKind {
     match kind {
         ide::SymbolKind::Entity(EntityKind::Wheel) => SymbolKind::VARIABLE,
         ide::SymbolKind::Entity(EntityKind::Sensor) => SymbolKind::PROPERTY,

@@ -1,9 +1,11 @@
 //! One file per group of requests: plain functions of the state and the parameters, without a runtime.
 
+pub(crate) mod call_hierarchy;
 pub(crate) mod code_actions;
 pub(crate) mod code_lenses;
 pub(crate) mod completion;
 pub(crate) mod diagnostics;
+pub(crate) mod document_links;
 pub(crate) mod document_symbols;
 pub(crate) mod folding;
 pub(crate) mod formatting;
@@ -18,3 +20,4 @@ pub(crate) mod semantic_tokens;
 pub(crate) mod signature;
 pub(crate) mod synchronization;
 pub(crate) mod workspace;
+pub(crate) mod workspace_symbols;

@@ -1,0 +1,259 @@
+//! Call hierarchy: which movements an environment runs and which robot each of them drives, and back from a robot to
+//! its movements and from those to their environments.
+
+use pydslrep_analysis::{Database, EntityId, EntityRef, FileId, Place};
+use pydslrep_syntax::ast::{Entity, Name};
+use pydslrep_syntax::{EntityKind, Span};
+use smol_str::SmolStr;
+
+use crate::FilePosition;
+use crate::cursor::{body, name_at};
+use crate::symbols::detail;
+
+/// An environment, a movement or a robot.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CallItem {
+    /// Which one.
+    pub id: EntityId,
+    /// Its file.
+    pub file: FileId,
+    /// What it is.
+    pub kind: EntityKind,
+    /// Its name.
+    pub name: String,
+    /// What is worth knowing of it at a glance.
+    pub detail: String,
+    /// The whole of it.
+    pub full: Span,
+    /// Its name's place.
+    pub focus: Span,
+}
+
+/// An item at the other end of a call.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Call {
+    /// Who calls, or who is called.
+    pub item: CallItem,
+    /// Where the caller names whom it calls, in the caller's file.
+    pub ranges: Vec<Span>,
+}
+
+/// What the name at a place stands for; several where it is declared twice.
+pub fn call_items(database: &Database, position: FilePosition) -> Vec<CallItem> {
+    let Some(at) = name_at(database, position) else { return Vec::new() };
+    let candidates = database.candidates(position.file, at.kind, &at.name.text).into_iter();
+    candidates.filter_map(|id| item(&database.entity(id)?)).collect()
+}
+
+/// The item that was found before under a name and at a place; the first of that name if nothing is there any more.
+pub fn call_item(
+    database: &Database,
+    file: FileId,
+    kind: EntityKind,
+    name: &str,
+    focus: Span,
+) -> Option<CallItem> {
+    let declared = database.definitions(file, kind, &SmolStr::new(name)).iter();
+    let mut items: Vec<CallItem> = declared.filter_map(|id| item(&database.entity(*id)?)).collect();
+    let place = items.iter().position(|item| item.focus == focus).unwrap_or(0);
+    (place < items.len()).then(|| items.swap_remove(place))
+}
+
+/// The movements of a robot, or the environments that run a movement, in all files.
+pub fn incoming_calls(database: &Database, called: &CallItem) -> Vec<Call> {
+    let caller_kind = match called.kind {
+        EntityKind::Robot => EntityKind::Movement,
+        EntityKind::Movement => EntityKind::Environment,
+        _ => return Vec::new(),
+    };
+    let places = database.references(called.file, called.kind, &SmolStr::new(&called.name));
+    let mut calls = Vec::new();
+    for uses in places.chunk_by(|a, b| a.file == b.file) {
+        calls.extend(users(database, uses).into_iter().filter(|call| call.item.kind == caller_kind));
+    }
+    calls
+}
+
+/// The named entities that hold these places of one file.
+fn users(database: &Database, mut places: &[Place]) -> Vec<Call> {
+    let Some(first) = places.first() else { return Vec::new() };
+    let mut found = Vec::new();
+    for entity in database.entities(first.file) {
+        let count = places.partition_point(|place| place.span.start < entity.span.end);
+        let (inside, behind) = places.split_at(count);
+        places = behind;
+        if let (false, Some(item)) = (inside.is_empty(), item(&entity)) {
+            found.push(Call { item, ranges: inside.iter().map(|place| place.span).collect() });
+        }
+        if places.is_empty() {
+            break;
+        }
+    }
+    found
+}
+
+/// The movements that an environment runs, each once, or the robot that a movement drives.
+pub fn outgoing_calls(database: &Database, caller: &CallItem) -> Vec<Call> {
+    let Some(entity) = database.entity(caller.id) else { return Vec::new() };
+    let (kind, names): (EntityKind, Vec<&Name>) = match &entity.parse.entity {
+        Some(Entity::Environment(environment)) => {
+            (EntityKind::Movement, environment.movements.iter().flat_map(|list| &list.names).collect())
+        }
+        Some(Entity::Movement(movement)) => (EntityKind::Robot, movement.robot.iter().collect()),
+        _ => return Vec::new(),
+    };
+    let mut calls: Vec<Call> = Vec::new();
+    for name in names {
+        let Some(id) = database.resolve(entity.file, kind, &name.text).entity() else { continue };
+        let range = name.span.shifted(entity.span.start);
+        if let Some(known) = calls.iter_mut().find(|call| call.item.id == id) {
+            known.ranges.push(range);
+        } else if let Some(item) = database.entity(id).as_ref().and_then(item) {
+            calls.push(Call { item, ranges: vec![range] });
+        }
+    }
+    calls
+}
+
+fn item(entity: &EntityRef<'_>) -> Option<CallItem> {
+    let tree = entity.parse.entity.as_ref()?;
+    let kind = tree.kind()?;
+    if !matches!(kind, EntityKind::Robot | EntityKind::Movement | EntityKind::Environment) {
+        return None;
+    }
+    let name = tree.name()?;
+    Some(CallItem {
+        id: entity.id,
+        file: entity.file,
+        kind,
+        name: name.text.to_string(),
+        detail: detail(tree),
+        full: body(entity),
+        focus: name.span.shifted(entity.span.start),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::{Expect, expect};
+
+    use super::*;
+    use crate::fixture::at_cursor_in;
+
+    fn shown(database: &Database, caller: Option<FileId>, calls: &[Call]) -> String {
+        let line = |call: &Call| {
+            let item = &call.item;
+            let texts = call.ranges.iter().map(|span| {
+                format!("{} {:?}", span.start, database.slice(caller.unwrap_or(item.file), *span))
+            });
+            let texts: Vec<String> = texts.collect();
+            let kind = item.kind.noun();
+            format!(
+                "  {kind} {} ({}) in {}: {}\n",
+                item.name,
+                item.detail,
+                database.path(item.file),
+                texts.join(", ")
+            )
+        };
+        calls.iter().map(line).collect()
+    }
+
+    fn check(files: &[(&str, &str)], expected: &Expect) {
+        let (database, position) = at_cursor_in(files);
+        let mut all = String::new();
+        for item in call_items(&database, position) {
+            let again = call_item(&database, item.file, item.kind, &item.name, item.focus);
+            assert_eq!(again.as_ref(), Some(&item));
+            all += &format!("{} {} at {}\n", item.kind.noun(), item.name, item.focus.start);
+            all += &format!(" incoming\n{}", shown(&database, None, &incoming_calls(&database, &item)));
+            all += &format!(
+                " outgoing\n{}",
+                shown(&database, Some(item.file), &outgoing_calls(&database, &item))
+            );
+        }
+        expected.assert_eq(&all);
+    }
+
+    const PARTS: (&str, &str) =
+        ("parts.pyr", "robot ^robots type tw with port 1\nmovement far of ^robots { move 1 meters }");
+
+    #[test]
+    fn environments_run_movements_that_drive_robots() {
+        let main = "import \"parts.pyr\"\nmovement near of ^robots { }\nmovement lost of nobody { }\n\
+                    environment e has { ^robots } robots with { far near far gone } moves";
+        let at = |name: &str| {
+            [PARTS, ("main.pyr", &*main.replacen(name, &format!("$0{name}"), 1))]
+                .map(|(path, text)| (path.to_owned(), text.to_owned()))
+        };
+        let check = |name: &str, expected: &Expect| {
+            let files = at(name);
+            check(&files.each_ref().map(|(path, text)| (path.as_str(), text.as_str())), expected);
+        };
+        check(
+            "^robots",
+            &expect![[r#"
+            robot robots at 6
+             incoming
+              movement far (of robots, 1 action) in parts.pyr: 50 "^robots"
+              movement near (of robots, 0 actions) in main.pyr: 36 "^robots"
+             outgoing
+        "#]],
+        );
+        check(
+            "e has",
+            &expect![[r#"
+            environment e at 88
+             incoming
+             outgoing
+              movement far (of robots, 1 action) in parts.pyr: 120 "far", 129 "far"
+              movement near (of robots, 0 actions) in main.pyr: 124 "near"
+        "#]],
+        );
+        check(
+            "far",
+            &expect![[r#"
+            movement far at 43
+             incoming
+              environment e (1 robot, 4 movements) in main.pyr: 120 "far", 129 "far"
+             outgoing
+              robot robots (tw, port 1) in parts.pyr: 50 "^robots"
+        "#]],
+        );
+        check(
+            "lost",
+            &expect![[r#"
+            movement lost at 57
+             incoming
+             outgoing
+        "#]],
+        );
+        check("gone", &expect![[""]]);
+    }
+
+    #[test]
+    fn twins_and_broken_text() {
+        check(
+            &[(
+                "a.pyr",
+                "robot r\nmovement m of r {\nmovement m of { }\nenvironment e has { r } robots with { m$0 m",
+            )],
+            &expect![[r#"
+                movement m at 17
+                 incoming
+                  environment e (1 robot, 2 movements) in a.pyr: 82 "m", 84 "m"
+                 outgoing
+                  robot r () in a.pyr: 22 "r"
+                movement m at 35
+                 incoming
+                  environment e (1 robot, 2 movements) in a.pyr: 82 "m", 84 "m"
+                 outgoing
+            "#]],
+        );
+    }
+
+    #[test]
+    fn parts_call_nobody() {
+        check(&[("a.pyr", "wheel $0w with radius 4 robot r with port 1 has { w } wheels")], &expect![[""]]);
+    }
+}

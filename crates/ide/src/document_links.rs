@@ -1,0 +1,100 @@
+//! Document links: the path of an import opens the file, and says beforehand what it declares.
+
+use pydslrep_analysis::{Database, FileId};
+use pydslrep_syntax::ast::Entity;
+use pydslrep_syntax::{EntityKind, Span};
+
+use crate::symbols::counted;
+
+/// A path that leads to a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DocumentLink {
+    /// The path between its quotes.
+    pub span: Span,
+    /// Where it leads.
+    pub file: FileId,
+    /// What is to be found there.
+    pub tooltip: String,
+}
+
+/// The imports of a file that lead somewhere, in the order of the text.
+pub fn document_links(database: &Database, file: FileId) -> Vec<DocumentLink> {
+    let links = database.import_statements(file).into_iter().filter_map(|(entity, path)| {
+        let Some(Entity::Import(import)) = &entity.parse.entity else { return None };
+        let imported = database.imported_files(file).find(|other| database.path(*other) == path)?;
+        let quoted = import.path_span?.shifted(entity.span.start);
+        Some(DocumentLink {
+            span: between_quotes(database, file, quoted),
+            file: imported,
+            tooltip: tooltip(database, imported),
+        })
+    });
+    links.collect()
+}
+
+/// A path may lack its closing quote.
+fn between_quotes(database: &Database, file: FileId, span: Span) -> Span {
+    let text = database.slice(file, span);
+    let opening = u32::from(text.starts_with('"'));
+    let closing = u32::from(text.len() > 1 && text.ends_with('"'));
+    Span::new(span.start + opening, span.end - closing)
+}
+
+fn tooltip(database: &Database, file: FileId) -> String {
+    let name = database.path(file).rsplit('/').next().unwrap_or_default();
+    let counts: Vec<String> = EntityKind::ALL
+        .iter()
+        .map(|kind| (database.count(file, *kind), kind.noun()))
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, noun)| counted(count as usize, noun))
+        .collect();
+    let contents = if counts.is_empty() { "declares nothing".to_owned() } else { counts.join(", ") };
+    format!("Open {name}: {contents}")
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::{Expect, expect};
+    use pydslrep_analysis::Absence;
+
+    use super::*;
+
+    fn shown(database: &Database, file: FileId) -> String {
+        let line = |link: DocumentLink| {
+            let place = database.slice(file, link.span);
+            format!("{} {place:?} -> {}: {}\n", link.span.start, database.path(link.file), link.tooltip)
+        };
+        document_links(database, file).into_iter().map(line).collect()
+    }
+
+    fn check(text: &str, expected: &Expect) {
+        let mut database = Database::new();
+        database.open("d/parts.pyr", "wheel a with radius 4 wheelH b sensor s : bumper robot r has");
+        database.open("empty.pyr", "// é\n");
+        let file = database.open("d/main.pyr", text);
+        expected.assert_eq(&shown(&database, file));
+    }
+
+    #[test]
+    fn imports_lead_to_their_files() {
+        check(
+            "/* é */ import \"parts.pyr\"\nimport \"gone.pyr\"\nwheel a\nimport import \"../empty.pyr\"\nimport \"parts.pyr",
+            &expect![[r#"
+                17 "parts.pyr" -> d/parts.pyr: Open parts.pyr: 2 wheels, 1 sensor, 1 robot
+                69 "../empty.pyr" -> empty.pyr: Open empty.pyr: declares nothing
+                91 "parts.pyr" -> d/parts.pyr: Open parts.pyr: 2 wheels, 1 sensor, 1 robot
+            "#]],
+        );
+        check("wheel a with radius 4\n// import \"parts.pyr\"\nimport \"\"", &expect![[""]]);
+    }
+
+    #[test]
+    fn what_may_not_be_imported_is_no_link() {
+        let mut database = Database::new();
+        database.open("a.pyr", "sensor s");
+        let file = database.open("b.pyr", "import \"a.pyr\"");
+        assert_eq!(document_links(&database, file).len(), 1);
+        database.set_absence(file, "a.pyr", Some(Absence::Outside));
+        assert_eq!(document_links(&database, file), []);
+    }
+}
