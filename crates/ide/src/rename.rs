@@ -65,21 +65,23 @@ pub fn rename(database: &Database, position: FilePosition, new: &str) -> Result<
     let text = as_written(&new);
     let edit = |place: Place| {
         // In `sensor^s` nothing but the `^` keeps the two words apart.
-        let separator = if !text.starts_with('^') && follows_word(database, place) { "^" } else { "" };
+        let separator = if text.starts_with('^') || stands_apart(database, place) { "" } else { "^" };
         Edit { file: place.file, span: place.span, text: format!("{separator}{text}") }
     };
     Ok(renamed.places.into_iter().map(edit).collect())
 }
 
-fn follows_word(database: &Database, place: Place) -> bool {
+/// Whether nothing before a place could run into a name there.
+fn stands_apart(database: &Database, place: Place) -> bool {
     let before = Span::new(place.span.start.saturating_sub(1), place.span.start);
-    database.slice(place.file, before).starts_with(|c: char| c.is_ascii_alphanumeric() || c == '_')
+    let apart = |c: char| c.is_ascii_whitespace() || "{},:/\"".contains(c);
+    place.span.start == 0 || database.slice(place.file, before).starts_with(apart)
 }
 
 /// The name that a text is, without `^`.
 fn read_name(text: &str) -> Result<SmolStr, Refusal> {
     match lex(text)[..] {
-        [(token, span)] if span == Span::of(text) && token.is_name() => {
+        [(token, span)] if span == Span::of(text) && token.is_name() && token != Token::MalformedName => {
             Ok(text.strip_prefix('^').unwrap_or(text).into())
         }
         [(token, span)] if span == Span::of(text) && token.is_keyword() => Err(Refusal::Invalid(format!(
@@ -176,7 +178,7 @@ impl Renamed {
 
 fn nothing_here(database: &Database, position: FilePosition) -> Refusal {
     match lexeme_at(database, position) {
-        Some((Token::Name, _)) => impossible(
+        Some((token, _)) if token.is_name() => impossible(
             "the text around this name is not understood: correct it before renaming anything in it"
                 .to_owned(),
         ),
@@ -291,11 +293,11 @@ mod tests {
     #[test]
     fn an_escape_that_separates_stays() {
         check(
-            &[("a.pyr", "sensor^s$0\nmovement m of r { turn left until{^s^t s} }")],
+            &[("a.pyr", "sensor^s$0\nmovement m of r { turn left until{^s^t s, ö^s x-^s} }")],
             "front",
             &expect![[r"
                 sensor^front
-                movement m of r { turn left until{front^t front} }"]],
+                movement m of r { turn left until{front^t front, ö^front x-^front} }"]],
         );
     }
 
@@ -309,9 +311,24 @@ mod tests {
             ],
         );
         let (database, position) = at_cursor_in(&[("a.pyr", "wheel a$0 with radius 4")]);
-        for text in
-            ["", " a", "a ", "2a", "^", "^^a", "é", "a-b", "4", "{", "\u{feff}a", "// a", "\"a\"", "a\n"]
-        {
+        for text in [
+            "",
+            " a",
+            "a ",
+            "2a",
+            "^",
+            "^^a",
+            "é",
+            "a-b",
+            "4",
+            "a.b",
+            "it's",
+            "{",
+            "\u{feff}a",
+            "// a",
+            "\"a\"",
+            "a\n",
+        ] {
             assert!(matches!(rename(&database, position, text), Err(Refusal::Invalid(_))), "{text:?}");
         }
     }

@@ -30,11 +30,11 @@ pub struct WorkspaceSymbol {
 pub fn workspace_symbols(database: &Database, query: &str) -> Vec<WorkspaceSymbol> {
     let pattern = Pattern::new(query, CaseMatching::Ignore, Normalization::Never, AtomKind::Fuzzy);
     let mut matcher = Matcher::new(Config::DEFAULT);
+    let mut letters = Vec::new();
     let mut found: Vec<(u32, EntityRef<'_>)> = Vec::new();
     for entity in database.files().flat_map(|file| database.entities(file)) {
         let Some(name) = entity.parse.entity.as_ref().and_then(Entity::name) else { continue };
-        // Names are ASCII, all of them.
-        if let Some(score) = pattern.score(Utf32Str::Ascii(name.text.as_bytes()), &mut matcher) {
+        if let Some(score) = pattern.score(Utf32Str::new(&name.text, &mut letters), &mut matcher) {
             found.push((score, entity));
         }
     }
@@ -85,7 +85,7 @@ mod tests {
         );
         database.open(
             "main.pyr",
-            "// é\nmovement wheelie of rover {\nenvironment yard has\nip Wheel_host 127.0.0.1\nwheel",
+            "// é\nmovement wheelie of rover {\nenvironment yard has\nip Wheel_host 127.0.0.1\nsensor räder\nwheel",
         );
         let line = |symbol: WorkspaceSymbol| {
             let text = database.slice(symbol.file, symbol.focus);
@@ -113,6 +113,7 @@ mod tests {
         check("WHLL", &expect![[r#"wheel wheelL of rover: parts.pyr "wheelL""#]]);
         check("ss", &expect![[r#"sensor sensors: parts.pyr "^sensors""#]]);
         check("lw", &expect![[""]]);
+        check("rä", &expect![[r#"sensor räder: main.pyr "räder""#]]);
         check("é", &expect![[""]]);
     }
 
@@ -121,15 +122,16 @@ mod tests {
         check(
             "",
             &expect![[r#"
-            wheel wheelL of rover: parts.pyr "wheelL"
-            sensor front: parts.pyr "front"
-            sensor sensors: parts.pyr "^sensors"
-            robot rover: parts.pyr "rover"
-            robot other: parts.pyr "other"
-            robot third: parts.pyr "third"
-            movement wheelie of rover: main.pyr "wheelie"
-            environment yard: main.pyr "yard"
-            ip Wheel_host: main.pyr "Wheel_host""#]],
+                wheel wheelL of rover: parts.pyr "wheelL"
+                sensor front: parts.pyr "front"
+                sensor sensors: parts.pyr "^sensors"
+                robot rover: parts.pyr "rover"
+                robot other: parts.pyr "other"
+                robot third: parts.pyr "third"
+                movement wheelie of rover: main.pyr "wheelie"
+                environment yard: main.pyr "yard"
+                ip Wheel_host: main.pyr "Wheel_host"
+                sensor räder: main.pyr "räder""#]],
         );
     }
 

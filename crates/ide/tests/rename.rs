@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use pydslrep_analysis::{Database, FileId, Place, Resolution};
 use pydslrep_ide::{FilePosition, references, rename};
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{EntityKind, KEYWORDS, Span, Token};
+use pydslrep_syntax::{EntityKind, KEYWORDS, Span};
 use smol_str::SmolStr;
 
 /// What the programs say but for their names: all other words, and what every reference leads to.
@@ -20,9 +20,8 @@ fn meaning_of_file(database: &Database, file: FileId) -> Vec<String> {
     let mut said = Vec::new();
     for entity in database.entities(file) {
         for (token, span) in &entity.parse.lexemes {
-            let is_name = matches!(token, Token::Name | Token::Import | Token::Distance | Token::Bumper);
             let text = database.slice(file, span.shifted(entity.span.start));
-            said.push(if is_name { "a name".to_owned() } else { text });
+            said.push(if token.is_name() { "a name".to_owned() } else { text });
         }
         let uses = entity.parse.entity.as_ref().map(Entity::references).unwrap_or_default();
         said.extend(uses.into_iter().map(|(kind, name)| match database.resolve(file, kind, &name.text) {
