@@ -14,9 +14,9 @@ use crate::bulk::Running;
 use crate::capabilities;
 use crate::client::ClientFeatures;
 use crate::handlers::{
-    self, call_hierarchy, code_actions, code_lenses, completion, diagnostics, document_links,
-    document_symbols, folding, formatting, hover, inlay_hints, navigation, references, rename, scripts,
-    selection, semantic_tokens, signature, synchronization, workspace_symbols,
+    self, call_hierarchy, code_actions, code_lenses, completion, diagnostics, document_links, formatting,
+    hover, inlay_hints, navigation, references, rename, scripts, selection, semantic_tokens, signature,
+    synchronization, workspace_symbols,
 };
 use crate::log::log;
 use crate::message::Outbox;
