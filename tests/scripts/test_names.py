@@ -45,20 +45,19 @@ environment ^E0 with ip ^I0 has { ^R0 ^R1 ^R2 } robots with { ^M0 ^M1 ^M2 ^M3 } 
 """
 PLACES = sorted(set(re.findall(r"\^([A-Z]\d)", PROGRAM)))
 
-# One name for as much as can have it: each kind of things has names of its own. Only a wheel and a sensor of one robot
-# cannot share theirs: they are objects side by side in the scene.
+# One name for as much as can have it: each kind of things has names of its own. The robot of that name is not the first
+# one in the scene, and another robot's wheel has its name, too.
 ONE_NAME = """
 wheel ^X with radius 4.5
-wheel left_one with radius 4.5
 wheel right_one with radius 4.5
 sensor ^X
 ip ^X 127.0.0.1
-robot ^X type tw with port 23000 has { left_one right_one } wheels with sensors { ^X }
+robot ^X type tw with port 23000 has { ^X right_one } wheels with sensors { ^X }
 robot with_wheel type tw with port 23000 has { ^X right_one } wheels
 movement ^X of ^X { move 5 centimeters turn left until { ^X } turn right 20 }
 parallel movement second of with_wheel { move 5 centimeters }
 parallel movement third of ^X { move 5 centimeters }
-environment ^X with ip ^X has { ^X with_wheel } robots with { ^X second third } moves
+environment ^X with ip ^X has { with_wheel ^X } robots with { ^X second third } moves
 """
 
 

@@ -423,28 +423,53 @@ class SimulatedRobot:
     def _find_objects(self) -> None:
         """Finds the robot's parts and measures them: nothing about them is assumed."""
         name = self.model.name
+        joint = self._sim.object_joint_type
+        sensor = self._sim.object_proximitysensor_type
         self._missing: list[str] = []
-        self._body = self._find(f"/{name}")
-        self._joints = self._find_parts(self.model.wheels)
+        self._body = self._find(
+            "robot", lambda kind: kind not in (joint, sensor), f"/{name}"
+        )
+        self._joints = self._find_parts("joint", joint, self.model.wheels)
         if self._missing:
             raise SetupError(
-                f"robot {name}: the scene at {self._address} has no object "
-                + ", no object ".join(self._missing)
+                f"robot {name}: the scene at {self._address} has no "
+                + ", no ".join(self._missing)
             )
         self.time_step: float = self._ask(self._sim.getSimulationTimeStep)
         self._measure()
 
-    def _find_parts(self, names: Iterable[str]) -> list[int]:
-        robot = self.model.name
-        return [self._find(f"/{robot}/{name}", f"/{name}_{robot}") for name in names]
+    def _find_parts(self, what: str, kind: int, names: Iterable[str]) -> list[int]:
+        def fits(found: int) -> bool:
+            return found == kind
 
-    def _find(self, *paths: str) -> int:
+        robot = self.model.name
+        return [
+            self._find(what, fits, f"/{robot}/{name}", f"/{name}_{robot}")
+            for name in names
+        ]
+
+    def _find(self, what: str, fits: Callable[[int], bool], *paths: str) -> int:
+        """The first object of a kind: others may share its name, as a wheel and a sensor may."""
+        tried = []
         for path in paths:
-            handle: int = self._ask(self._sim.getObject, path, {"noError": True})
-            if handle >= 0:
-                return handle
-        self._missing.append(" or ".join(paths))
+            others: set[int] = set()
+            handle = self._object(path, 0)
+            while handle >= 0 and handle not in others:
+                if fits(self._ask(self._sim.getObjectType, handle)):
+                    return handle
+                others.add(handle)
+                handle = self._object(path, len(others))
+            tried.append(
+                f"{path} (what is there is of another kind)" if others else path
+            )
+        self._missing.append(f"{what} {' or '.join(tried)}")
         return -1
+
+    def _object(self, path: str, index: int) -> int:
+        """One of the objects that a path leads to, or -1 when there are no more."""
+        options = {"noError": True, "index": index}
+        handle: int = self._ask(self._sim.getObject, path, options)
+        return handle
 
     def _measure(self) -> None:
         """Reads from the scene where the wheels are and which way round their joints turn."""

@@ -143,7 +143,7 @@ class FakeWorld:
         self.waiting: set[str] = set()
         self.noise = random.Random(seed)
         self.objects: list[Any] = []
-        self.paths: dict[str, int] = {}
+        self.paths: dict[str, list[int]] = {}
         for robot in robots:
             self._add(f"/{robot.name}", robot)
             for joint in robot.joints:
@@ -152,7 +152,7 @@ class FakeWorld:
                 self._add(f"/{robot.name}/{sensor}", (robot, sensor))
 
     def _add(self, path: str, thing: Any) -> None:
-        self.paths[path] = len(self.objects) + 10
+        self.paths.setdefault(path, []).append(len(self.objects) + 10)
         self.objects.append(thing)
 
     def object(self, handle: int) -> Any:
@@ -223,6 +223,8 @@ class FakeSim:
     simulation_advancing = 16
     jointintparam_dynctrlmode = 2039
     jointdynctrl_velocity = 4
+    object_joint_type = 1
+    object_proximitysensor_type = 5
 
     def __init__(self, world: FakeWorld, uuid: str) -> None:
         self._world, self._uuid = world, uuid
@@ -237,8 +239,18 @@ class FakeSim:
 
     def getObject(self, path: str, options: dict[str, Any]) -> int:
         """A handle, or -1."""
-        assert options == {"noError": True}
-        return self._world.paths.get(path, -1)
+        assert options.keys() == {"noError", "index"}
+        assert options["noError"] is True
+        return dict(enumerate(self._world.paths.get(path, []))).get(
+            options["index"], -1
+        )
+
+    def getObjectType(self, handle: int) -> int:
+        """A shape, a joint or a proximity sensor."""
+        thing = self._world.object(handle)
+        if isinstance(thing, FakeRobot):
+            return 0
+        return 1 if isinstance(thing[1], FakeJoint) else 5
 
     def getObjectMatrix(self, handle: int) -> list[float]:
         """Rows of rotation and translation."""

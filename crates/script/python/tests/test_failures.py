@@ -65,8 +65,44 @@ def test_all_missing_objects_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(SetupError) as error:
         drive_alone(world, monkeypatch, "two-wheel", move_a_metre)
     assert str(error.value) == (
-        "robot r: the scene at 127.0.0.1:19999 has no object /r/wheelR or /wheelR_r, no object /r/eye or /eye_r"
+        "robot r: the scene at 127.0.0.1:19999 has no joint /r/wheelR or /wheelR_r, "
+        "no proximity sensor /r/eye or /eye_r"
     )
+
+
+def test_objects_of_another_kind_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    fake = FakeRobot("r", joints("two-wheel"), sensors={"eye": lambda _: False})
+    world = FakeWorld(fake)
+    world.paths["/r"] = world.paths["/r/eye"]
+    world.paths["/r/wheelR"] = world.paths["/r/eye"]
+    world.paths["/eye_r"] = world.paths.pop("/r/wheelL") * 3
+    del world.paths["/r/eye"]
+    with pytest.raises(SetupError) as error:
+        drive_alone(world, monkeypatch, "two-wheel", move_a_metre)
+    assert str(error.value) == (
+        "robot r: the scene at 127.0.0.1:19999 has no robot /r (what is there is of another kind), "
+        "no joint /r/wheelL or /wheelL_r, "
+        "no joint /r/wheelR (what is there is of another kind) or /wheelR_r, "
+        "no proximity sensor /r/eye or /eye_r (what is there is of another kind)"
+    )
+
+
+def test_robot_wheel_and_sensor_may_share_a_name(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    wheels = joints("two-wheel")
+    wheels[0].name = "r"
+    fake = FakeRobot("r", wheels, sensors={"r": lambda robot: robot.theta < 0.5})
+    world = FakeWorld(fake)
+    world.paths["/r/r"].reverse()
+    world.paths["/r"] = world.paths["/r/r"] + world.paths["/r"]
+    drive_alone(
+        world,
+        monkeypatch,
+        "two-wheel",
+        lambda robot: robot.turn_until_free("left", "r"),
+    )
+    assert 0.5 < fake.theta < 0.6
 
 
 def test_parts_are_found_by_their_flat_names(monkeypatch: pytest.MonkeyPatch) -> None:

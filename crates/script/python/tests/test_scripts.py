@@ -128,7 +128,7 @@ def test_a_missing_robot_is_exit_code_2(
     world = FakeWorld(FakeRobot("robot_7", joints("two-wheel")))
     assert run("area_1", world, "--host", "10.0.0.1", "--port", "23000") == 2
     error = capsys.readouterr().err
-    assert "the scene at 10.0.0.1:23000 has no object /robot_1, " in error
+    assert "the scene at 10.0.0.1:23000 has no robot /robot_1, " in error
     assert "/robot_1/wheelL or /wheelL_robot_1" in error
     assert not world.running
 

@@ -1,6 +1,7 @@
 //! The scene as a tree of named objects with handles, as clients see it.
 
 use std::f64::consts::FRAC_PI_2;
+use std::iter;
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use pydslrep_kinematics::Pose;
@@ -61,7 +62,9 @@ impl Objects {
     }
 
     /// The `index`-th object that a path leads to. `/a/b` searches the whole scene for an `a` with a `b` anywhere
-    /// below it, `./b` searches below `proxy`; a name may carry its own index, as in `/a[1]/b`.
+    /// below it, `./b` searches below `proxy`; a name may carry its index among the objects of that name below the
+    /// same parent, as in `/a[1]/b`. Objects come before the parts of their neighbours: a robot `a` is found before
+    /// a wheel `a` of any robot.
     pub(super) fn find(&self, path: &str, proxy: Option<Handle>, index: usize) -> Option<Handle> {
         let mut parts = path.split('/');
         let mut candidates: Vec<Option<Handle>> = match parts.next()? {
@@ -72,16 +75,31 @@ impl Objects {
         };
         for part in parts {
             let (alias, nth) = split_index(part)?;
-            let below = self.iter().filter(|(handle, object)| {
-                object.alias == alias && candidates.iter().any(|&root| self.is_below(*handle, root))
-            });
-            let below = below.map(|(handle, _)| Some(handle));
-            candidates = match nth {
-                Some(nth) => below.skip(nth).take(1).collect(),
-                None => below.collect(),
-            };
+            let mut below: Vec<Handle> = self
+                .iter()
+                .filter(|(_, object)| object.alias == alias)
+                .filter(|&(handle, _)| candidates.iter().any(|&root| self.is_below(handle, root)))
+                .filter(|&(handle, _)| nth.is_none_or(|nth| self.namesakes(handle).nth(nth) == Some(handle)))
+                .map(|(handle, _)| handle)
+                .collect();
+            below.sort_by_key(|&handle| self.depth(handle));
+            candidates = below.into_iter().map(Some).collect();
         }
         *candidates.get(index)?
+    }
+
+    /// An object and all others of its name below the same parent, in their order.
+    fn namesakes(&self, handle: Handle) -> impl Iterator<Item = Handle> {
+        let object = self.get(handle);
+        let is_namesake = move |other: &Object| {
+            object.is_some_and(|object| object.alias == other.alias && object.parent == other.parent)
+        };
+        self.iter().filter(move |(_, other)| is_namesake(other)).map(|(handle, _)| handle)
+    }
+
+    fn depth(&self, handle: Handle) -> usize {
+        let parent = |&handle: &Handle| self.get(handle).and_then(|object| object.parent);
+        iter::successors(Some(handle), parent).count()
     }
 
     fn is_below(&self, handle: Handle, root: Option<Handle>) -> bool {
@@ -99,11 +117,7 @@ impl Objects {
     /// apart by an index.
     pub(super) fn path(&self, handle: Handle) -> Option<String> {
         let object = self.get(handle)?;
-        let twins: Vec<Handle> = self
-            .iter()
-            .filter(|(_, other)| other.alias == object.alias && other.parent == object.parent)
-            .map(|(handle, _)| handle)
-            .collect();
+        let twins: Vec<Handle> = self.namesakes(handle).collect();
         let parent = object.parent.and_then(|parent| self.path(parent)).unwrap_or_default();
         let index = twins.iter().position(|&twin| twin == handle).filter(|_| twins.len() > 1);
         let index = index.map_or_else(String::new, |index| format!("[{index}]"));
@@ -194,6 +208,8 @@ mod tests {
         assert_eq!((find("/a/l[1]"), find("/a/l[2]"), find("/b[0]/r")), (Some(5), None, Some(8)));
         assert_eq!((objects.find("./r", Some(6), 0), objects.find("./a", Some(6), 0)), (Some(8), None));
         assert_eq!(objects.find("..", Some(8), 0), Some(6));
+        // Indices count among neighbours: no two `r` stand side by side.
+        assert_eq!((find("/l[1]"), find("/r[0]"), find("/r[1]")), (Some(5), Some(3), None));
         for wrong in ["", "a", "/", "//", "/a/", "/a/nothing", "/a[", "/a[x]", "/l/a", "/a/r/r", ".", "./"] {
             assert_eq!(find(wrong), None, "{wrong}");
         }
@@ -209,6 +225,20 @@ mod tests {
         for wrong in [0, -1, 11, i64::MIN, i64::MAX] {
             assert!(objects.get(wrong).is_none());
         }
+    }
+
+    #[test]
+    fn a_robot_comes_before_parts_of_its_name() {
+        let robot = |name: &str| {
+            let wheels = vec![Wheel::new("x", 0.05), Wheel::new("r", 0.05)];
+            Robot::new(name, Drive::TwoWheel, wheels, vec![("x".to_owned(), SensorKind::Distance)])
+        };
+        let objects = Objects::of(&Scene::empty_floor(vec![robot("a"), robot("x")]));
+        let all = |path: &str| -> Vec<Handle> {
+            (0..).map_while(|index| objects.find(path, None, index)).collect()
+        };
+        assert_eq!(all("/x"), [5, 2, 4, 6, 8]);
+        assert_eq!((all("/x/x"), all("/a/x")), (vec![6, 8], vec![2, 4]));
     }
 
     #[test]

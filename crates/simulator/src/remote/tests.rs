@@ -215,6 +215,23 @@ fn objects_by_path_option_and_alias() {
 }
 
 #[test]
+fn a_wheel_and_a_sensor_of_one_name_are_told_apart_by_their_type() {
+    let mut scene = Lab::new(1).session.world().scene().clone();
+    scene.robots[0].sensors[0].name = "wheelL".to_owned();
+    let mut lab = Lab::new(1);
+    lab.session = Session::new(World::new(scene).unwrap());
+    let mut types = vec![];
+    for index in 0..3 {
+        let arguments = cbor!(["/robot_1/wheelL", { "noError" => true, "index" => index }]).unwrap();
+        let handle = lab.call("a", "sim.getObject", arguments).remove(0);
+        if handle != Value::from(-1) {
+            types.push(lab.number("a", "sim.getObjectType", Value::Array(vec![handle])));
+        }
+    }
+    assert_near(&types, &[1.0, 5.0]);
+}
+
+#[test]
 fn poses_in_every_form() {
     let mut lab = Lab::new(2);
     let (robot, joint) = (lab.object("/robot_2"), lab.object("/robot_2/wheelL"));
