@@ -10,7 +10,9 @@ use tower_lsp::ls_types::{
 };
 
 use crate::client::ClientFeatures;
-use crate::handlers::{code_actions, semantic_tokens};
+#[cfg(feature = "process")]
+use crate::handlers::runs;
+use crate::handlers::{code_actions, hover, semantic_tokens};
 
 /// The answer to `initialize`.
 pub(crate) fn initialize_result(client: &ClientFeatures) -> InitializeResult {
@@ -105,9 +107,21 @@ fn server_capabilities(client: &ClientFeatures) -> ServerCapabilities {
             .into(),
         ),
         execute_command_provider: Some(ExecuteCommandOptions {
-            commands: vec![code_actions::GENERATE_SCRIPT.to_owned()],
+            commands: commands(),
             ..ExecuteCommandOptions::default()
         }),
         ..ServerCapabilities::default()
     }
+}
+
+fn commands() -> Vec<String> {
+    let all = [
+        code_actions::GENERATE_SCRIPT,
+        hover::SHOW_KINEMATICS,
+        #[cfg(feature = "process")]
+        runs::RUN,
+        #[cfg(feature = "process")]
+        runs::PREVIEW_PATH,
+    ];
+    all.map(str::to_owned).to_vec()
 }

@@ -1,6 +1,9 @@
 //! The whole surface of the server, one entry per message of the protocol; those about whole files are in
 //! [`bulk`](crate::bulk).
 
+#[cfg(feature = "process")]
+mod run;
+
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
@@ -13,10 +16,13 @@ use tower_lsp::{Client, LanguageServer, NotCancellable, OngoingProgress, Unbound
 use crate::bulk::Running;
 use crate::capabilities;
 use crate::client::ClientFeatures;
+#[cfg(feature = "process")]
+use crate::handlers::runs;
+use crate::handlers::scripts::ScriptOf;
 use crate::handlers::{
     self, call_hierarchy, code_actions, code_lenses, completion, diagnostics, document_links, formatting,
-    hover, inlay_hints, navigation, references, rename, scripts, selection, semantic_tokens, signature,
-    synchronization, workspace_symbols,
+    hover, inlay_hints, navigation, planned_path, references, rename, scripts, selection, semantic_tokens,
+    signature, synchronization, workspace_symbols,
 };
 use crate::log::log;
 use crate::message::Outbox;
@@ -84,6 +90,10 @@ impl LanguageServer for Server {
     }
 
     async fn shutdown(&self) -> Result<()> {
+        #[cfg(feature = "process")]
+        for (_, running) in &self.state().runs {
+            running.interrupt();
+        }
         Ok(())
     }
 
@@ -168,6 +178,9 @@ impl LanguageServer for Server {
                 }
                 Ok(None)
             }
+            hover::SHOW_KINEMATICS => Ok(Some(hover::kinematics(&self.state(), &params)?.into())),
+            #[cfg(feature = "process")]
+            runs::RUN | runs::PREVIEW_PATH => self.run(params).await.map(Some),
             other => Err(Error::invalid_params(format!("no command `{other}`"))),
         }
     }
@@ -322,6 +335,25 @@ impl Server {
         self.refresh().await;
     }
 
+    /// A request of ours: see [`planned_path`].
+    #[allow(clippy::unused_async, reason = "what the router takes")]
+    pub(crate) async fn planned_path(&self, which: ScriptOf) -> Result<serde_json::Value> {
+        planned_path::planned_path(&mut self.state(), &which)
+    }
+
+    /// The person pressed the button beside a progress.
+    #[allow(clippy::unused_async, reason = "what the router takes")]
+    pub(crate) async fn cancel_progress(&self, params: WorkDoneProgressCancelParams) {
+        #[cfg(feature = "process")]
+        for (token, running) in &self.state().runs {
+            if *token == params.token {
+                running.interrupt();
+            }
+        }
+        #[cfg(not(feature = "process"))]
+        drop(params);
+    }
+
     async fn begin(&self, title: &str) -> Option<OngoingProgress<Unbounded, NotCancellable>> {
         if !self.state().client.progress {
             return None;
@@ -351,7 +383,10 @@ impl Server {
 impl Server {
     /// All messages that had arrived are handled: time to tell the client what they changed.
     pub(crate) fn settle(&self) {
-        diagnostics::publish(&mut self.state(), &self.outbox);
+        let mut state = self.state();
+        if diagnostics::publish(&mut state, &self.outbox) {
+            planned_path::announce(&mut state, &self.outbox);
+        }
     }
 
     /// A handler panicked and may have left the analysis half changed: it is made anew from the documents.

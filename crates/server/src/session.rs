@@ -16,6 +16,7 @@ use tower_lsp::{ClientSocket, ExitedError, LspService};
 use tower_service::Service;
 
 use crate::bulk::Bulk;
+use crate::handlers::planned_path::PLANNED_PATH;
 use crate::log::log;
 use crate::message::{Incoming, Outbox, parse, refuse};
 use crate::server::Server;
@@ -61,7 +62,10 @@ impl fmt::Debug for Session {
 impl Session {
     /// A session whose messages to the client go to `outbox`. `spawn` runs what outlasts the message that began it.
     pub fn new(outbox: Outbox, spawn: impl Fn(BoxFuture<'static, ()>) + 'static) -> Self {
-        let (service, socket) = LspService::new(|client| Server::new(client, outbox.clone()));
+        let (service, socket) = LspService::build(|client| Server::new(client, outbox.clone()))
+            .custom_method(PLANNED_PATH, Server::planned_path)
+            .custom_method("window/workDoneProgress/cancel", Server::cancel_progress)
+            .finish();
         Self::of_service(service, socket, outbox, Box::new(spawn))
     }
 

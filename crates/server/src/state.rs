@@ -9,6 +9,8 @@ use pydslrep_ide::FilePosition;
 use pydslrep_syntax::Span;
 use ropey::Rope;
 use rustc_hash::FxHashSet;
+#[cfg(feature = "process")]
+use tower_lsp::ls_types::ProgressToken;
 use tower_lsp::ls_types::{
     DidChangeTextDocumentParams, Location, Position, Range, TextDocumentItem, TextDocumentPositionParams, Uri,
 };
@@ -16,6 +18,9 @@ use tower_lsp::ls_types::{
 use crate::bulk::Work;
 use crate::client::ClientFeatures;
 use crate::documents::{Document, Documents, key};
+use crate::handlers::planned_path::Watched;
+#[cfg(feature = "process")]
+use crate::handlers::runs::Running;
 use crate::positions::{Encoding, to_offset, to_range, to_span};
 use crate::settings::SettingsStore;
 
@@ -40,6 +45,14 @@ pub(crate) struct State {
     pub(crate) stale: Stale,
     /// Requests that are answered when any diagnostics change.
     pub(crate) waiting: Vec<oneshot::Sender<()>>,
+    /// Planned paths that the client has.
+    pub(crate) watched: Vec<Watched>,
+    /// Child processes that can be cancelled, by the names of their progress.
+    #[cfg(feature = "process")]
+    pub(crate) runs: Vec<(ProgressToken, Running)>,
+    /// How many there were.
+    #[cfg(feature = "process")]
+    pub(crate) run_count: u64,
 }
 
 /// Documents whose diagnostics have to be told again.

@@ -8,6 +8,8 @@ use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::{CodeLens, CodeLensParams, Command, Location, Range, Uri};
 
 use crate::handlers::code_actions::GENERATE_SCRIPT;
+#[cfg(feature = "process")]
+use crate::handlers::runs;
 use crate::handlers::scripts::ScriptOf;
 use crate::positions::LineTable;
 use crate::state::State;
@@ -17,7 +19,13 @@ use crate::state::State;
 pub(crate) const SHOW_REFERENCES: &str = "pydslrep.showReferences";
 
 /// What can be done with an environment, with the words on it. Each command takes what [`ScriptOf`] holds.
-const OF_ENVIRONMENTS: &[(&str, &str)] = &[("Generate script", GENERATE_SCRIPT)];
+const OF_ENVIRONMENTS: &[(&str, &str)] = &[
+    ("Generate script", GENERATE_SCRIPT),
+    #[cfg(feature = "process")]
+    ("Run", runs::RUN),
+    #[cfg(feature = "process")]
+    ("Preview", runs::PREVIEW_PATH),
+];
 
 /// Which declaration a lens is about, until it is seen.
 #[derive(Debug, Serialize, Deserialize)]

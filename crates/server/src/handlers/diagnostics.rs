@@ -26,8 +26,9 @@ use crate::state::State;
 /// What diagnostics are marked with, so that a person knows who says so.
 const SOURCE: &str = "pydslrep";
 
-/// Tells the client what changed since it was last told; once per document, however many changes there were.
-pub(crate) fn publish(state: &mut State, outbox: &Outbox) {
+/// Tells the client what changed since it was last told; once per document, however many changes there were. Returns
+/// whether anything did.
+pub(crate) fn publish(state: &mut State, outbox: &Outbox) -> bool {
     let touched = state.database.take_touched();
     let stale = std::mem::take(&mut state.stale);
     let is_changed =
@@ -39,7 +40,7 @@ pub(crate) fn publish(state: &mut State, outbox: &Outbox) {
                 let _ = waiting.send(());
             }
         }
-        return;
+        return is_changed;
     }
     for gone in stale.gone {
         publish_one(gone, Vec::new(), None, outbox);
@@ -53,6 +54,7 @@ pub(crate) fn publish(state: &mut State, outbox: &Outbox) {
     for key in keys {
         publish_changed(state, &key, outbox);
     }
+    is_changed
 }
 
 fn publish_changed(state: &mut State, key: &str, outbox: &Outbox) {

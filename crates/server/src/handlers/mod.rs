@@ -12,8 +12,11 @@ pub(crate) mod formatting;
 pub(crate) mod hover;
 pub(crate) mod inlay_hints;
 pub(crate) mod navigation;
+pub(crate) mod planned_path;
 pub(crate) mod references;
 pub(crate) mod rename;
+#[cfg(feature = "process")]
+pub(crate) mod runs;
 pub(crate) mod scripts;
 pub(crate) mod selection;
 pub(crate) mod semantic_tokens;

@@ -50,7 +50,18 @@ impl Script {
 ///
 /// If the document is not open, has no place for a script, or the environment is missing or has errors.
 pub(crate) fn generate(state: &State, which: &ScriptOf) -> jsonrpc::Result<Script> {
-    let (document, file) = state
+    let id = environment(state, which)?;
+    let program = state.document(&which.uri).map_or(&which.uri, |document| &document.uri);
+    of_environment(state, program, id).map_err(failure)
+}
+
+/// The environment that is meant.
+///
+/// # Errors
+///
+/// If the document is not open, or has no such environment.
+pub(crate) fn environment(state: &State, which: &ScriptOf) -> jsonrpc::Result<EntityId> {
+    let (_, file) = state
         .analysed(&which.uri)
         .ok_or_else(|| failure(format!("`{}` is not open in the editor", which.uri.as_str())))?;
     let declared = state.database.environments(file);
@@ -58,7 +69,7 @@ pub(crate) fn generate(state: &State, which: &ScriptOf) -> jsonrpc::Result<Scrip
         .iter()
         .find(|(_, name)| name.text == which.environment)
         .ok_or_else(|| failure(format!("there is no environment `{}`", which.environment)))?;
-    of_environment(state, &document.uri, *id).map_err(failure)
+    Ok(*id)
 }
 
 /// Generates the script of an environment; the error says why there is none.
@@ -104,15 +115,24 @@ pub(crate) fn edit(script: &Script) -> WorkspaceEdit {
     WorkspaceEdit { document_changes, ..WorkspaceEdit::default() }
 }
 
-/// The command `pydslrep.generateScript`, for clients that cannot create files: writes the script itself and tells
-/// where.
-pub(crate) fn execute(state: &State, params: &ExecuteCommandParams, outbox: &Outbox) -> jsonrpc::Result<Uri> {
+/// The environment that a command is about.
+///
+/// # Errors
+///
+/// If its arguments are others than they should be.
+pub(crate) fn which(params: &ExecuteCommandParams) -> jsonrpc::Result<ScriptOf> {
     let which = match params.arguments.as_slice() {
         [argument] => serde_json::from_value(argument.clone()).ok(),
         _ => None,
     };
     let expected = "one argument is expected: {\"uri\": of the program, \"environment\": its name}";
-    let script = generate(state, &which.ok_or_else(|| Error::invalid_params(expected))?)?;
+    which.ok_or_else(|| Error::invalid_params(expected))
+}
+
+/// The command `pydslrep.generateScript`, for clients that cannot create files: writes the script itself and tells
+/// where.
+pub(crate) fn execute(state: &State, params: &ExecuteCommandParams, outbox: &Outbox) -> jsonrpc::Result<Uri> {
+    let script = generate(state, &which(params)?)?;
     let path = path(&script.uri).ok_or_else(|| failure(NO_PLACE.to_owned()))?;
     // Nothing could bring back what is overwritten here.
     if fs::read(&path).is_ok_and(|content| !pydslrep_script::may_replace(&content)) {

@@ -1,0 +1,103 @@
+//! `pydslrep/plannedPath`, a request of our own, and `pydslrep/plannedPathChanged`, the notification that goes with it.
+//! Both are described in `docs/protocol.md`.
+
+use pydslrep_ide as ide;
+use serde::Serialize;
+use serde_json::Value;
+use tower_lsp::jsonrpc::Result;
+
+use crate::handlers::scripts::{ScriptOf, environment, failure};
+use crate::message::Outbox;
+use crate::state::State;
+
+/// Name of the request.
+pub(crate) const PLANNED_PATH: &str = "pydslrep/plannedPath";
+
+/// Name of the notification.
+const PLANNED_PATH_CHANGED: &str = "pydslrep/plannedPathChanged";
+
+/// A path the client has, and how it looked then; `None` where there was none.
+#[derive(Debug)]
+pub(crate) struct Watched {
+    which: ScriptOf,
+    path: Option<Value>,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Path {
+    environment: String,
+    duration: Option<f64>,
+    robots: Vec<Robot>,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Robot {
+    name: String,
+    poses: Vec<Pose>,
+    unknown_after: Option<Action>,
+}
+
+#[derive(Serialize)]
+struct Pose {
+    t: Option<f64>,
+    x: f64,
+    y: f64,
+    theta: f64,
+    action: Option<Action>,
+}
+
+#[derive(Serialize)]
+struct Action {
+    movement: String,
+    index: usize,
+    text: String,
+}
+
+/// The planned path of an environment. From now on the client is told when it changes.
+pub(crate) fn planned_path(state: &mut State, which: &ScriptOf) -> Result<Value> {
+    let path = plan(state, which);
+    state.watched.retain(|watched| watched.which != *which);
+    state.watched.push(Watched { which: which.clone(), path: path.as_ref().ok().cloned() });
+    path
+}
+
+fn plan(state: &State, which: &ScriptOf) -> Result<Value> {
+    let path = ide::planned_path(&state.database, environment(state, which)?).map_err(failure)?;
+    serde_json::to_value(convert(path)).map_err(|error| failure(error.to_string()))
+}
+
+/// Tells the client which of the paths that it has are no longer right, each once; it asks again if it still wants them.
+pub(crate) fn announce(state: &mut State, outbox: &Outbox) {
+    let watched = std::mem::take(&mut state.watched);
+    for watched in watched {
+        if plan(state, &watched.which).ok() == watched.path {
+            state.watched.push(watched);
+        } else {
+            outbox.notify(PLANNED_PATH_CHANGED, &watched.which);
+        }
+    }
+}
+
+fn convert(path: ide::PlannedPath) -> Path {
+    let action =
+        |ide::PlannedAction { movement, index, text }: ide::PlannedAction| Action { movement, index, text };
+    let pose = |planned: ide::PlannedPose| Pose {
+        t: planned.time,
+        x: planned.pose.x,
+        y: planned.pose.y,
+        theta: planned.pose.theta,
+        action: planned.action.map(action),
+    };
+    let robot = |robot: ide::PlannedRobot| Robot {
+        name: robot.name,
+        poses: robot.poses.into_iter().map(pose).collect(),
+        unknown_after: robot.unknown_after.map(action),
+    };
+    Path {
+        environment: path.environment,
+        duration: path.duration,
+        robots: path.robots.into_iter().map(robot).collect(),
+    }
+}

@@ -1,0 +1,95 @@
+//! Runs, from their start to their picture: progress, cancellation, and the answer.
+
+use std::collections::VecDeque;
+
+use futures::StreamExt;
+use tower_lsp::jsonrpc::Result;
+use tower_lsp::ls_types::{
+    ExecuteCommandParams, LSPAny, ProgressToken, ShowDocumentParams, Uri, WorkDoneProgressCreateParams,
+    request,
+};
+
+use super::Server;
+use crate::handlers::{runs, scripts};
+
+/// Of what a run that failed has said, so many lines are told.
+const MOST_LINES: usize = 50;
+
+impl Server {
+    /// Drives or plans an environment in a child process; answers with the picture's address and what was printed.
+    pub(super) async fn run(&self, params: ExecuteCommandParams) -> Result<LSPAny> {
+        let which = scripts::which(&params)?;
+        let job = runs::prepare(&self.state(), &which, &params.command)?;
+        let picture = job.picture().to_owned();
+        let (running, mut news) = job.start()?;
+        let _leash = runs::Leash(running.clone());
+        let token = self.run_token(params.work_done_progress_params.work_done_token).await;
+        let progress = match &token {
+            Some(token) => {
+                self.state().runs.push((token.clone(), running));
+                let title = format!(
+                    "{} {}",
+                    if params.command == runs::RUN { "Running" } else { "Planning" },
+                    which.environment
+                );
+                Some(self.client.progress(token.clone(), title).with_cancel_button().begin().await)
+            }
+            None => None,
+        };
+        let mut said = VecDeque::new();
+        let mut ended = (None, String::new());
+        while let Some(news) = news.next().await {
+            match news {
+                runs::News::Ended(code, printed) => ended = (code, printed),
+                runs::News::Line(line) => {
+                    if let Some(progress) = &progress {
+                        progress.report_with_message(line.clone(), None).await;
+                    }
+                    said.push_back(line);
+                    if said.len() > MOST_LINES {
+                        said.pop_front();
+                    }
+                }
+            }
+        }
+        self.state().runs.retain(|(other, _)| Some(other) != token.as_ref());
+        if let Some(progress) = progress {
+            progress.finish().await;
+        }
+        let (code, printed) = ended;
+        if code != Some(0) {
+            // Nothing was drawn.
+            let _ = std::fs::remove_file(&picture);
+            return Err(runs::ended_badly(code, said.make_contiguous()));
+        }
+        let picture = Uri::from_file_path(&picture);
+        let shows_documents = self.state().client.show_document;
+        if let (Some(uri), true) = (&picture, shows_documents) {
+            let show = ShowDocumentParams {
+                uri: uri.clone(),
+                external: Some(true),
+                take_focus: Some(false),
+                selection: None,
+            };
+            // The picture is there, whether or not the client then shows it.
+            let _ = self.client.show_document(show).await;
+        }
+        Ok(serde_json::json!({ "picture": picture, "output": printed }))
+    }
+
+    /// Under which name a run shows its progress: the client's, else one of ours; `None` where it shows none.
+    async fn run_token(&self, asked: Option<ProgressToken>) -> Option<ProgressToken> {
+        if asked.is_some() || !self.state().client.progress {
+            return asked;
+        }
+        let number = {
+            let mut state = self.state();
+            state.run_count += 1;
+            state.run_count
+        };
+        let token = ProgressToken::String(format!("pydslrep run {number}"));
+        let params = WorkDoneProgressCreateParams { token: token.clone() };
+        self.client.send_request::<request::WorkDoneProgressCreate>(params).await.ok()?;
+        Some(token)
+    }
+}

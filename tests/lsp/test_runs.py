@@ -1,0 +1,173 @@
+"""Environments driven and previewed from an editor, as it shows them: saved or not."""
+
+from __future__ import annotations
+
+import pathlib
+import shutil
+from collections.abc import Iterator
+from typing import Any
+from urllib.parse import unquote, urlsplit
+
+import pytest
+from raw import RawServer, answer, notification, request
+
+PARTS = """\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+sensor front
+robot rover with port 1 has { wheelL wheelR } wheels with sensors { front }
+"""
+PROGRAM = """\
+import "parts.pyr"
+/* 🤖 */ movement patrol of rover {
+  move 1 meters
+  turn left
+}
+environment area has { rover } robots with { patrol } moves
+"""
+
+# Stands in for a run that lasts until it is interrupted.
+ENDLESS = """\
+#!/bin/sh
+trap 'echo interrupted >&2; exit 130' INT
+cat "$2" "$(dirname "$2")/parts.pyr" > "$(dirname "$0")/seen"
+echo "$@" > "$(dirname "$0")/arguments"
+echo begun >&2
+while :; do sleep 0.01; done
+"""
+
+
+class Session:
+    """A server with a program open whose text is nowhere on the disk."""
+
+    def __init__(self, raw: RawServer, folder: pathlib.Path) -> None:
+        self.raw = raw
+        self.uri = (folder / "program.pyr").as_uri()
+        (folder / "parts.pyr").write_text("older", encoding="utf-8")
+        raw.initialize({"window": {"workDoneProgress": True}})
+        self.open((folder / "parts.pyr").as_uri(), PARTS)
+        self.open(self.uri, PROGRAM)
+
+    def open(self, uri: str, text: str) -> None:
+        item = {"uri": uri, "languageId": "pydslrep", "version": 1, "text": text}
+        self.raw.send(notification("textDocument/didOpen", {"textDocument": item}))
+
+    def replace(self, version: int, old: str, new: str) -> None:
+        document = {"uri": self.uri, "version": version}
+        changes = [{"text": PROGRAM.replace(old, new)}]
+        self.raw.send(
+            notification(
+                "textDocument/didChange",
+                {"textDocument": document, "contentChanges": changes},
+            )
+        )
+
+    @property
+    def area(self) -> dict[str, str]:
+        return {"uri": self.uri, "environment": "area"}
+
+    def execute(self, ident: int, command: str, argument: object) -> None:
+        self.raw.send(
+            request(
+                ident,
+                "workspace/executeCommand",
+                {"command": command, "arguments": [argument]},
+            )
+        )
+
+    def accept_progress(self) -> Any:
+        """Lets the server show its progress; the token."""
+        while True:
+            asked = self.raw.read_until("window/workDoneProgress/create")
+            self.raw.send(answer(asked["id"], None))
+            token = asked["params"]["token"]
+            if "run" in str(token):
+                return token
+
+
+@pytest.fixture
+def session(server: str, tmp_path: pathlib.Path) -> Iterator[Session]:
+    with RawServer(server, "--stdio") as raw:
+        yield Session(raw, tmp_path)
+
+
+@pytest.fixture
+def endless(server: str, tmp_path: pathlib.Path) -> Iterator[Session]:
+    beside = tmp_path / "bin"
+    beside.mkdir()
+    own = shutil.copy2(server, beside / "pydslrep-lsp")
+    program = beside / "pydslrep"
+    program.write_text(ENDLESS, encoding="utf-8")
+    program.chmod(0o755)
+    with RawServer(str(own), "--stdio") as raw:
+        yield Session(raw, tmp_path)
+
+
+def test_a_preview_draws_what_the_editor_shows(session: Session, command: str) -> None:
+    assert pathlib.Path(command).exists()
+    session.execute(1, "pydslrep.previewPath", session.area)
+    session.accept_progress()
+    done = session.raw.answer(1)
+    picture = pathlib.Path(unquote(urlsplit(done["result"]["picture"]).path))
+    assert "<svg" in picture.read_text(encoding="utf-8")
+    assert "rover" in done["result"]["output"]
+    picture.unlink()
+
+
+def test_a_run_can_be_cancelled(endless: Session, tmp_path: pathlib.Path) -> None:
+    endless.execute(1, "pydslrep.run", endless.area)
+    token = endless.accept_progress()
+    while True:
+        progress = endless.raw.read_until("$/progress")["params"]
+        if progress["value"].get("message") == "begun":
+            break
+    assert progress["token"] == token
+    assert (tmp_path / "bin" / "seen").read_text(encoding="utf-8") == PROGRAM + PARTS
+    arguments = (tmp_path / "bin" / "arguments").read_text(encoding="utf-8").split()
+    assert arguments[0] == "run"
+    assert arguments[2:5] == ["--environment", "area", "--picture"]
+    endless.raw.send(notification("window/workDoneProgress/cancel", {"token": token}))
+    assert endless.raw.answer(1)["error"]["code"] == -32800
+    assert not pathlib.Path(arguments[1]).exists(), "what was run is tidied up"
+    assert not pathlib.Path(arguments[5]).exists(), "nothing was drawn"
+
+
+def test_what_has_errors_does_not_run(session: Session) -> None:
+    session.replace(2, "turn left", "turn leftt")
+    session.execute(1, "pydslrep.run", session.area)
+    assert "`area` has errors" in session.raw.answer(1)["error"]["message"]
+    session.execute(2, "pydslrep.run", {"uri": session.uri, "environment": "x"})
+    assert "no environment `x`" in session.raw.answer(2)["error"]["message"]
+    session.execute(3, "pydslrep.run", "area")
+    assert session.raw.answer(3)["error"]["code"] == -32602
+
+
+def test_the_kinematics_of_a_robot_are_shown(session: Session) -> None:
+    session.open(session.uri, PARTS)
+    session.execute(
+        1, "pydslrep.showKinematics", {"uri": session.uri, "robot": "rover"}
+    )
+    assert "right = (v + ω d/2) / r" in session.raw.answer(1)["result"]
+    session.execute(2, "pydslrep.showKinematics", {"uri": session.uri, "robot": "x"})
+    assert session.raw.answer(2)["error"]["message"] == "there is no robot `x`"
+
+
+def test_a_planned_path_is_told_and_that_it_changed(session: Session) -> None:
+    session.raw.send(request(1, "pydslrep/plannedPath", session.area))
+    path = session.raw.answer(1)["result"]
+    [robot] = path["robots"]
+    assert (path["environment"], robot["name"]) == ("area", "rover")
+    assert robot["poses"][0] == {"t": 0, "x": 0, "y": 0, "theta": 0, "action": None}
+    last = robot["poses"][-1]
+    assert last["t"] == pytest.approx(path["duration"])
+    assert (last["x"], last["y"]) == pytest.approx((1, 0))
+    assert last["action"] == {"movement": "patrol", "index": 1, "text": "turn left"}
+    assert robot["unknownAfter"] is None
+
+    session.replace(2, "turn left", "turn left until { front }")
+    changed = session.raw.read_until("pydslrep/plannedPathChanged")
+    assert changed["params"] == session.area
+    session.raw.send(request(2, "pydslrep/plannedPath", session.area))
+    path = session.raw.answer(2)["result"]
+    assert path["duration"] is None
+    assert path["robots"][0]["unknownAfter"]["index"] == 1
