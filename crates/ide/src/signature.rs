@@ -255,6 +255,7 @@ mod tests {
                 "robot r type $0",
                 "robot r with port 1 has $0",
                 "robot r with port 1 has { a $0 } wheels",
+                "robot r with port 1 has { a } wheels $0",
                 "robot r with port 1 has { a } wheels with $0",
                 "environment e with ip $0",
                 "environment e has { r } robots with { m $0",
@@ -272,6 +273,7 @@ mod tests {
                 robot NAME [type «tw | fw | fwh»] with port PORT has { WHEELS } wheels [with sensors { SENSORS }] (1 of 1)
                 robot NAME [type tw | fw | fwh] with port PORT has { «WHEELS» } wheels [with sensors { SENSORS }] (1 of 1)
                 robot NAME [type tw | fw | fwh] with port PORT has { «WHEELS» } wheels [with sensors { SENSORS }] (1 of 1)
+                robot NAME [type tw | fw | fwh] with port PORT has { WHEELS } wheels [«with» sensors { SENSORS }] (1 of 1)
                 robot NAME [type tw | fw | fwh] with port PORT has { WHEELS } wheels [with «sensors» { SENSORS }] (1 of 1)
                 environment NAME [with ip «IP»] has { ROBOTS } robots [with { MOVEMENTS } moves] (1 of 1)
                 environment NAME [with ip IP] has { ROBOTS } robots [with { «MOVEMENTS» } moves] (1 of 1)
