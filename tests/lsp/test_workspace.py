@@ -20,6 +20,11 @@ CLIENT = {
         "didChangeConfiguration": {"dynamicRegistration": True},
     },
     "window": {"workDoneProgress": True},
+    "textDocument": {
+        "codeAction": {
+            "codeActionLiteralSupport": {"codeActionKind": {"valueSet": ["quickfix"]}}
+        }
+    },
 }
 PULLING = {**CLIENT, "textDocument": {"diagnostic": {}}}
 
@@ -179,6 +184,71 @@ def test_wrong_settings_are_told(workspace: Workspace) -> None:
     while (message := workspace.next()).get("method") != "window/showMessage":
         pass
     assert "did you mean `severity`" in message["params"]["message"]
+
+
+def test_settings_files_are_completed_explained_and_mended(
+    workspace: Workspace,
+) -> None:
+    workspace.start(CLIENT)
+    workspace.indexed()
+    document = {
+        "uri": workspace.uri("pydslrep.toml"),
+        "languageId": "toml",
+        "version": 1,
+        "text": "# 🤖\n[sevrity]\nwheel-count = 'off'\n",
+    }
+    server = workspace.server
+    server.send(notification("textDocument/didOpen", {"textDocument": document}))
+    assert workspace.published("pydslrep.toml") == ["unknown-key"]
+
+    def ask(method: str, **params: Any) -> Any:
+        workspace.ident += 1
+        params["textDocument"] = {"uri": document["uri"]}
+        server.send(request(workspace.ident, method, params))
+        while (message := workspace.next()).get("id") != workspace.ident:
+            pass
+        return message["result"]
+
+    slip = {
+        "start": {"line": 1, "character": 3},
+        "end": {"line": 1, "character": 3},
+    }
+    (fix,) = ask("textDocument/codeAction", range=slip, context={"diagnostics": []})
+    assert fix["title"] == "change to `severity`"
+    assert fix["diagnostics"][0]["code"] == "unknown-key"
+    ((edit,),) = fix["edit"]["changes"].values()
+    assert edit["newText"] == "severity"
+    changes = [
+        {"range": edit["range"], "text": edit["newText"]},
+        {
+            "range": {
+                "start": {"line": 3, "character": 0},
+                "end": {"line": 3, "character": 0},
+            },
+            "text": "wheel-o",
+        },
+    ]
+    version = {"uri": document["uri"], "version": 2}
+    server.send(
+        notification(
+            "textDocument/didChange",
+            {"textDocument": version, "contentChanges": changes},
+        )
+    )
+    found = ask("textDocument/completion", position={"line": 3, "character": 7})
+    labels = [item["label"] for item in found["items"]]
+    assert "wheel-order" in labels
+    assert "wheel-count" not in labels, "it is there already"
+    order = found["items"][labels.index("wheel-order")]
+    assert order["textEdit"] == {
+        "range": {
+            "start": {"line": 3, "character": 0},
+            "end": {"line": 3, "character": 7},
+        },
+        "newText": 'wheel-order = ""',
+    }
+    hover = ask("textDocument/hover", position={"line": 2, "character": 4})
+    assert "`wheel-count`" in str(hover["contents"])
 
 
 def test_clients_ask_for_the_whole_workspace(workspace: Workspace) -> None:

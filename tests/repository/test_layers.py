@@ -47,6 +47,7 @@ ONLY_IN: dict[str, set[str]] = {
     "ropey": {"analysis", "server"},
     "minijinja": {"script"},
     "toml": {"config", "scene"},
+    "toml_parser": {"config"},
 }
 
 # Files, clocks, threads and sockets stay out of what is to run in a browser.

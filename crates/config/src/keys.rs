@@ -124,6 +124,17 @@ pub const KEYS: [Key; 8] = [
     },
 ];
 
+/// The names of all tables, each once.
+pub fn tables() -> Vec<&'static str> {
+    let table = |key: &'static Key| match key.values {
+        Values::Levels => Some(key.name),
+        _ => key.name.rsplit_once('.').map(|(table, _)| table),
+    };
+    let mut tables: Vec<&str> = KEYS.iter().filter_map(table).collect();
+    tables.dedup();
+    tables
+}
+
 /// The parts right behind this one, each once: of the whole for "", of a table for its name and a dot.
 pub(crate) fn parts_behind(prefix: &str) -> Vec<&'static str> {
     let rest = KEYS.iter().filter_map(|key| key.name.strip_prefix(prefix));
@@ -170,6 +181,7 @@ mod tests {
             parts_behind(""),
             ["target", "output", "generate-on-save", "default-speed", "severity", "inlay-hints"]
         );
+        assert_eq!(tables(), ["severity", "inlay-hints"]);
         assert_eq!(parts_behind("inlay-hints."), ["pose", "duration", "defaults"]);
     }
 }

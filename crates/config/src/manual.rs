@@ -29,15 +29,33 @@ pub fn manual() -> String {
         );
     }
     for key in &KEYS {
-        out += &format!("\n## {}\n\n{}\n", key.name, key.summary);
-        if let Values::Words(words) = key.values {
-            out.push('\n');
-            for word in words {
-                out += &format!("* `\"{}\"`: {}\n", word.word, word.summary);
-            }
+        out += &format!("\n## {}\n\n{}", key.name, description(key));
+    }
+    out
+}
+
+/// What a setting does and can be, in Markdown.
+fn description(key: &Key) -> String {
+    let mut out = format!("{}\n", key.summary);
+    if let Values::Words(words) = key.values {
+        out.push('\n');
+        for word in words {
+            out += &format!("* `\"{}\"`: {}\n", word.word, word.summary);
         }
     }
     out
+}
+
+impl Key {
+    /// What an editor shows of the setting, in Markdown.
+    pub fn markdown(&self) -> String {
+        let default = match self.values {
+            // What it says leads to another page of the documentation.
+            Values::Levels => String::new(),
+            _ => format!("\nDefault: {}\n", self.default),
+        };
+        format!("**`{}`**: {}\n\n{}{default}", self.name, values(self.values), description(self))
+    }
 }
 
 const EXAMPLE: &str = "\

@@ -41,6 +41,17 @@ impl Level {
         self.severity().map_or("off", Severity::word)
     }
 
+    /// What it does with problems, in a few words.
+    pub fn summary(self) -> &'static str {
+        match self {
+            Self::Off => "not shown",
+            Self::Hint => "shown as a hint, hardly visible",
+            Self::Information => "shown as information",
+            Self::Warning => "shown as a warning",
+            Self::Error => "shown as an error; `pydslrep check` fails",
+        }
+    }
+
     /// The level of a word.
     ///
     /// # Errors

@@ -47,6 +47,8 @@ pub enum CompletionKind {
     Value,
     /// The name of an entity.
     Reference(EntityKind),
+    /// A key or a table of a settings file.
+    Setting,
 }
 
 /// What fits at a place.

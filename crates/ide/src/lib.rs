@@ -1,4 +1,5 @@
-//! Editor features, one file each: a database and a place in, plain structs out.
+//! Editor features, one file each: a database and a place in, plain structs out. Those of a settings file, in
+//! `settings`, take its text.
 //!
 //! Knows `analysis` and what lies below it. Must never know the editors' protocol, lines and columns (places are byte
 //! offsets), files on a disk, or threads.
@@ -23,6 +24,7 @@ mod references;
 mod rename;
 mod selection;
 mod semantic_tokens;
+mod settings;
 mod signature;
 mod symbols;
 mod type_definition;
@@ -50,6 +52,7 @@ pub use references::references;
 pub use rename::{Refusal, RenameTarget, prepare_rename, rename};
 pub use selection::selection_ranges;
 pub use semantic_tokens::{Modifier, SemanticToken, TokenKind, entity_tokens, semantic_tokens};
+pub use settings::{SettingsFix, settings_completions, settings_fixes, settings_hover};
 pub use signature::{Signature, SignatureHelp, signature_help};
 pub use symbols::{Symbol, SymbolKind, document_symbols};
 pub use type_definition::goto_type_definition;

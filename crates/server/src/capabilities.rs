@@ -50,7 +50,8 @@ fn server_capabilities(client: &ClientFeatures) -> ServerCapabilities {
             ..WorkspaceServerCapabilities::default()
         }),
         completion_provider: Some(CompletionOptions {
-            trigger_characters: Some([" ", "{"].map(str::to_owned).to_vec()),
+            // The last two are for settings files.
+            trigger_characters: Some([" ", "{", "[", "\""].map(str::to_owned).to_vec()),
             ..CompletionOptions::default()
         }),
         signature_help_provider: Some(SignatureHelpOptions {

@@ -207,6 +207,12 @@ impl State {
         Some(Place { document, file, offset: self.offset(document, at.position) })
     }
 
+    /// The settings file at an address, with its text.
+    pub(crate) fn settings_text(&self, uri: &Uri) -> Option<(&Document, String)> {
+        let document = self.document(uri).filter(|document| !document.is_program())?;
+        Some((document, document.text.to_string()))
+    }
+
     /// The document that the database knows as `file`.
     pub(crate) fn document_of(&self, file: FileId) -> Option<&Document> {
         self.documents.get(self.database.path(file))

@@ -24,10 +24,14 @@ pub(crate) const GENERATE_SCRIPT: &str = "pydslrep.generateScript";
 
 /// `textDocument/codeAction`.
 pub(crate) fn code_actions(state: &State, params: &CodeActionParams) -> Option<CodeActionResponse> {
-    let (document, file) = state.analysed(&params.text_document.uri)?;
     let wanted = |kind: &CodeActionKind| {
         params.context.only.as_ref().is_none_or(|only| only.iter().any(|wish| covers(wish, kind)))
     };
+    if let Some((document, text)) = state.settings_text(&params.text_document.uri) {
+        let is_wanted = wanted(&CodeActionKind::QUICKFIX) && state.client.action_literals;
+        return Some(if is_wanted { settings_fixes(state, document, &text, params) } else { Vec::new() });
+    }
+    let (document, file) = state.analysed(&params.text_document.uri)?;
     let mut actions = Vec::new();
     if wanted(&CodeActionKind::QUICKFIX) && state.client.action_literals {
         actions.extend(quick_fixes(state, document, file, params));
@@ -66,6 +70,28 @@ fn quick_fixes(
     fixes.collect()
 }
 
+/// The fixes of what is wrong with a settings file where the range is.
+fn settings_fixes(
+    state: &State,
+    document: &Document,
+    text: &str,
+    params: &CodeActionParams,
+) -> Vec<CodeActionOrCommand> {
+    let found = ide::settings_fixes(text, state.span(document, params.range));
+    let action = |fix: ide::SettingsFix| {
+        let edit = TextEdit::new(state.range(document, fix.span), fix.text);
+        let shown = diagnostics::convert_settings(state, document, fix.problem);
+        CodeAction {
+            title: fix.title,
+            kind: Some(CodeActionKind::QUICKFIX),
+            diagnostics: Some(vec![as_the_client_has_it(&params.context.diagnostics, shown)]),
+            edit: Some(edit_of_documents(state, [(document, vec![edit])])),
+            ..CodeAction::default()
+        }
+    };
+    found.into_iter().map(|fix| action(fix).into()).collect()
+}
+
 /// Clients find the diagnostic an action belongs to by comparing: their own copy is the one that matches.
 fn as_the_client_has_it(theirs: &[Diagnostic], ours: Diagnostic) -> Diagnostic {
     let same = |their: &&Diagnostic| their.range == ours.range && their.code == ours.code;
@@ -84,6 +110,14 @@ pub(crate) fn workspace_edit(state: &State, edits: &[analysis::Edit]) -> Workspa
     let of_documents = by_file
         .into_iter()
         .filter_map(|(file, edits)| state.document_of(file).map(|document| (document, edits)));
+    edit_of_documents(state, of_documents)
+}
+
+fn edit_of_documents<'a>(
+    state: &State,
+    of_documents: impl IntoIterator<Item = (&'a Document, Vec<TextEdit>)>,
+) -> WorkspaceEdit {
+    let of_documents = of_documents.into_iter();
     if state.client.versioned_edits {
         let changes = of_documents.map(|(document, edits)| TextDocumentEdit {
             text_document: OptionalVersionedTextDocumentIdentifier {

@@ -7,22 +7,37 @@ use tower_lsp::ls_types::{
     CompletionTextEdit, Documentation, InsertTextFormat, MarkupContent, TextEdit,
 };
 
+use crate::documents::Document;
 use crate::state::{Place, State};
 
 /// No more are sent at once: a long answer freezes the client. It asks again when more is typed.
 const MOST: usize = 500;
 
-/// What the grammar allows at a position, and which names make sense there.
+/// What the grammar allows at a position, and which names make sense there; in a settings file, which settings.
 pub(crate) fn completion(state: &State, params: &CompletionParams) -> Option<CompletionResponse> {
-    let place = state.place(&params.text_document_position)?;
+    let at = &params.text_document_position;
+    if let Some((document, text)) = state.settings_text(&at.text_document.uri) {
+        let found = ide::settings_completions(&text, state.offset(document, at.position));
+        return Some(list(state, document, found, false));
+    }
+    let place = state.place(at)?;
     let mut found = ide::completions(&state.database, place.position());
     let is_incomplete = found.len() > MOST;
     if is_incomplete {
         keep_the_likeliest(&place, &mut found);
     }
+    Some(list(state, place.document, found, is_incomplete))
+}
+
+fn list(
+    state: &State,
+    document: &Document,
+    found: Vec<ide::Completion>,
+    is_incomplete: bool,
+) -> CompletionResponse {
     let items =
-        found.into_iter().zip(0..).map(|(completion, at)| convert(state, &place, completion, at)).collect();
-    Some(CompletionResponse::List(CompletionList { is_incomplete, items }))
+        found.into_iter().zip(0..).map(|(completion, at)| convert(state, document, completion, at)).collect();
+    CompletionResponse::List(CompletionList { is_incomplete, items })
 }
 
 /// Those that begin as what is typed already, then the first in order.
@@ -36,14 +51,14 @@ fn keep_the_likeliest(place: &Place<'_>, found: &mut Vec<ide::Completion>) {
 }
 
 /// `at` is its place in the list, which clients would otherwise order by label.
-fn convert(state: &State, place: &Place<'_>, completion: ide::Completion, at: usize) -> CompletionItem {
+fn convert(state: &State, document: &Document, completion: ide::Completion, at: usize) -> CompletionItem {
     let is_snippet = completion.is_snippet && state.client.snippets;
     let new_text = if completion.is_snippet && !is_snippet {
         without_places(&completion.insert)
     } else {
         completion.insert
     };
-    let range = state.range(place.document, completion.replace);
+    let range = state.range(document, completion.replace);
     let documentation = Some(completion.documentation).filter(|text| !text.is_empty());
     let documentation = documentation.map(|value| match state.client.completion_format.clone() {
         Some(kind) => Documentation::MarkupContent(MarkupContent { kind, value }),
@@ -67,7 +82,9 @@ fn item_kind(kind: ide::CompletionKind) -> CompletionItemKind {
         ide::CompletionKind::Snippet => CompletionItemKind::SNIPPET,
         ide::CompletionKind::Value => CompletionItemKind::VALUE,
         ide::CompletionKind::Reference(EntityKind::Wheel) => CompletionItemKind::VARIABLE,
-        ide::CompletionKind::Reference(EntityKind::Sensor) => CompletionItemKind::PROPERTY,
+        ide::CompletionKind::Reference(EntityKind::Sensor) | ide::CompletionKind::Setting => {
+            CompletionItemKind::PROPERTY
+        }
         ide::CompletionKind::Reference(EntityKind::Ip) => CompletionItemKind::CONSTANT,
         ide::CompletionKind::Reference(EntityKind::Robot) => CompletionItemKind::CLASS,
         ide::CompletionKind::Reference(EntityKind::Movement) => CompletionItemKind::FUNCTION,

@@ -186,7 +186,12 @@ pub(crate) fn convert(
 /// What is wrong with a `pydslrep.toml`.
 fn of_settings(state: &State, document: &Document) -> Vec<Diagnostic> {
     let (_, problems) = Config::from_toml(&document.text.to_string());
-    let diagnostic = |problem: Problem| Diagnostic {
+    problems.into_iter().map(|problem| convert_settings(state, document, problem)).collect()
+}
+
+/// One problem of a `pydslrep.toml`.
+pub(crate) fn convert_settings(state: &State, document: &Document, problem: Problem) -> Diagnostic {
+    Diagnostic {
         range: state.range(document, problem.span.unwrap_or(Span::at(0))),
         severity: Some(DiagnosticSeverity::ERROR),
         code: Some(NumberOrString::String(problem.kind.code().to_owned())),
@@ -196,8 +201,7 @@ fn of_settings(state: &State, document: &Document) -> Vec<Diagnostic> {
             None => problem.message,
         },
         ..Diagnostic::default()
-    };
-    problems.into_iter().map(diagnostic).collect()
+    }
 }
 
 fn severity(severity: analysis::Severity) -> DiagnosticSeverity {

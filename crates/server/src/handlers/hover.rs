@@ -40,12 +40,17 @@ pub(crate) fn kinematics(state: &State, params: &ExecuteCommandParams) -> Result
 
 /// What is known about the thing at a position.
 pub(crate) fn hover(state: &State, params: &HoverParams) -> Option<Hover> {
-    let place = state.place(&params.text_document_position_params)?;
-    let found = ide::hover(&state.database, place.position())?;
+    let at = &params.text_document_position_params;
+    let (document, found) = if let Some((document, text)) = state.settings_text(&at.text_document.uri) {
+        (document, ide::settings_hover(&text, state.offset(document, at.position))?)
+    } else {
+        let place = state.place(at)?;
+        (place.document, ide::hover(&state.database, place.position())?)
+    };
     let contents = match &state.client.hover_format {
         Some(kind) => HoverContents::Markup(MarkupContent { kind: kind.clone(), value: found.markdown }),
         // The older form, which is Markdown by definition.
         None => HoverContents::Scalar(MarkedString::String(found.markdown)),
     };
-    Some(Hover { contents, range: Some(state.range(place.document, found.span)) })
+    Some(Hover { contents, range: Some(state.range(document, found.span)) })
 }

@@ -1,0 +1,457 @@
+//! What stands where in a `pydslrep.toml`, also where it is half typed and no TOML.
+
+use std::borrow::Cow;
+
+use pydslrep_syntax::Span;
+use toml_parser::Source;
+use toml_parser::parser::{Event, EventKind, RecursionGuard, parse_document};
+
+use crate::value;
+
+/// How deep values may lie in each other; what lies deeper is not looked at.
+const DEEPEST: u32 = 16;
+
+/// A part of a name, in a key or in the brackets that begin a table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Named {
+    /// The whole name up to and with this part, tables included: `inlay-hints.pose`.
+    pub name: String,
+    /// Where the part is.
+    pub span: Span,
+}
+
+/// What can stand at a place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// The text there, which is being typed or would be replaced.
+    pub word: Span,
+    /// What it is.
+    pub slot: Slot,
+}
+
+/// What a text at a place would be.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Slot {
+    /// The name of a table, in brackets.
+    Table {
+        /// Whether the bracket behind it is there.
+        is_closed: bool,
+    },
+    /// A key.
+    Key {
+        /// The table it is in, with a dot behind it; empty outside of all tables.
+        table: String,
+        /// Whether a `=` follows.
+        has_value: bool,
+        /// Whether it is the first on its line, so that a table could begin there.
+        begins_line: bool,
+    },
+    /// The value of the key with this name.
+    Value {
+        /// The whole name, tables included.
+        key: String,
+    },
+}
+
+/// All parts of names, in the order of the text.
+pub fn names(text: &str) -> Vec<Named> {
+    let mut names = Vec::new();
+    for chunk in chunks(text) {
+        let mut reader = Reader::new(chunk);
+        for event in chunk.events() {
+            reader.take(&event);
+            if event.kind() == EventKind::SimpleKey && !event.span().is_empty() {
+                names.push(Named { name: reader.name(), span: chunk.span(&event) });
+            }
+        }
+    }
+    names
+}
+
+/// What a text at an offset in bytes would be; `None` where no setting can be typed.
+pub fn place_at(text: &str, offset: u32) -> Option<Place> {
+    let chunk = chunks(text).into_iter().rfind(|chunk| chunk.start <= offset)?;
+    let events = chunk.events();
+    let next = events.iter().position(|event| chunk.span(event).start >= offset).unwrap_or(events.len());
+    let (before, behind) = events.split_at(next);
+    let mut reader = Reader::new(chunk);
+    for event in before {
+        reader.take(event);
+    }
+    let last = before.last().filter(|event| is_word(event) && chunk.span(event).end >= offset);
+    let next = behind.first().filter(|event| is_word(event) && chunk.span(event).start == offset);
+    if last.is_some() {
+        reader.take_back();
+    }
+    let word = last.or(next).map_or(Span::at(offset), |event| chunk.span(event));
+    let rest =
+        || behind.iter().take_while(|event| !ends_statement(event)).filter(|event| !event.span().is_empty());
+    let slot = match reader.stage {
+        Stage::Header if reader.parts.is_empty() => {
+            Slot::Table { is_closed: rest().any(|event| event.kind() == EventKind::StdTableClose) }
+        }
+        Stage::Key if reader.wants_part => Slot::Key {
+            begins_line: reader.parts.is_empty() && reader.outer.is_empty(),
+            table: reader.table(),
+            has_value: rest().any(|event| event.kind() == EventKind::KeyValSep),
+        },
+        Stage::Value => Slot::Value { key: reader.name() },
+        Stage::Header | Stage::Key | Stage::Nothing => return None,
+    };
+    Some(Place { word, slot })
+}
+
+fn is_word(event: &Event) -> bool {
+    matches!(event.kind(), EventKind::SimpleKey | EventKind::Scalar)
+}
+
+fn ends_statement(event: &Event) -> bool {
+    matches!(event.kind(), EventKind::Newline | EventKind::ValueSep | EventKind::InlineTableClose)
+}
+
+/// A piece of the text that is understood on its own.
+#[derive(Debug, Clone, Copy)]
+struct Chunk<'t> {
+    text: &'t str,
+    start: u32,
+}
+
+impl Chunk<'_> {
+    fn events(self) -> Vec<Event> {
+        let tokens = Source::new(self.text).lex().into_vec();
+        let mut events = Vec::new();
+        let mut take = |event: Event| events.push(event);
+        parse_document(&tokens, &mut RecursionGuard::new(&mut take, DEEPEST), &mut ());
+        events
+    }
+
+    fn span(self, event: &Event) -> Span {
+        let span = event.span();
+        value::span(span.start()..span.end()).shifted(self.start)
+    }
+
+    fn begins_table(self) -> bool {
+        self.text.trim_start().starts_with('[')
+    }
+}
+
+/// A line that begins with a bracket begins a table, whatever is left open above it: no setting is a list.
+fn chunks(text: &str) -> Vec<Chunk<'_>> {
+    let mut chunks = Vec::new();
+    let (mut start, mut at) = (0, 0);
+    for line in text.split_inclusive('\n') {
+        if line.trim_start().starts_with('[') && at > start {
+            chunks.push(start..at);
+            start = at;
+        }
+        at += line.len();
+    }
+    chunks.push(start..at);
+    let chunk =
+        |range: std::ops::Range<usize>| Chunk { text: &text[range.clone()], start: value::span(range).start };
+    chunks.into_iter().map(chunk).collect()
+}
+
+/// What the next word is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    Header,
+    Key,
+    Value,
+    Nothing,
+}
+
+/// Where in the nest of tables one is while reading.
+struct Reader<'t> {
+    source: Source<'t>,
+    stage: Stage,
+    /// The table that keys are in.
+    path: Vec<String>,
+    /// For each brace that is open, the table outside of it.
+    outer: Vec<Vec<String>>,
+    /// The parts of the name that is being read.
+    parts: Vec<String>,
+    /// Whether another part may follow at once.
+    wants_part: bool,
+    /// What the last word changed: the stage before it.
+    before_word: Stage,
+}
+
+impl<'t> Reader<'t> {
+    fn new(chunk: Chunk<'t>) -> Self {
+        // Before a bracket there is room for nothing.
+        let stage = if chunk.begins_table() { Stage::Nothing } else { Stage::Key };
+        Self {
+            source: Source::new(chunk.text),
+            stage,
+            path: Vec::new(),
+            outer: Vec::new(),
+            parts: Vec::new(),
+            wants_part: true,
+            before_word: stage,
+        }
+    }
+
+    fn take(&mut self, event: &Event) {
+        match event.kind() {
+            EventKind::StdTableOpen => self.begin(Stage::Header),
+            EventKind::StdTableClose => {
+                self.path = std::mem::take(&mut self.parts);
+                self.stage = Stage::Nothing;
+            }
+            EventKind::SimpleKey => {
+                self.parts.push(self.decoded(event));
+                self.wants_part = false;
+            }
+            EventKind::KeySep => self.wants_part = true,
+            EventKind::KeyValSep => self.stage = Stage::Value,
+            EventKind::Scalar => {
+                self.before_word = self.stage;
+                self.stage = Stage::Nothing;
+            }
+            EventKind::InlineTableOpen => {
+                self.outer.push(self.path.clone());
+                self.path.append(&mut self.parts);
+                self.begin(Stage::Key);
+            }
+            // What is not there does not close anything: what is typed there is still inside.
+            EventKind::InlineTableClose if event.span().is_empty() => {}
+            EventKind::InlineTableClose => {
+                self.path = self.outer.pop().unwrap_or_default();
+                self.begin(Stage::Nothing);
+            }
+            EventKind::ValueSep if !self.outer.is_empty() => self.begin(Stage::Key),
+            EventKind::Newline if self.outer.is_empty() => {
+                if self.stage == Stage::Header {
+                    self.path = std::mem::take(&mut self.parts);
+                }
+                self.begin(Stage::Key);
+            }
+            EventKind::Comment
+            | EventKind::Error
+            | EventKind::ArrayOpen
+            | EventKind::ArrayClose
+            | EventKind::ArrayTableOpen
+            | EventKind::ArrayTableClose => self.stage = Stage::Nothing,
+            EventKind::ValueSep | EventKind::Newline | EventKind::Whitespace => {}
+        }
+    }
+
+    /// Forgets the word that was taken last.
+    fn take_back(&mut self) {
+        if self.stage == Stage::Nothing {
+            self.stage = self.before_word;
+        } else {
+            self.parts.pop();
+            self.wants_part = true;
+        }
+    }
+
+    fn begin(&mut self, stage: Stage) {
+        self.parts.clear();
+        self.wants_part = true;
+        self.stage = stage;
+    }
+
+    fn decoded(&self, event: &Event) -> String {
+        let mut key = Cow::default();
+        if let Some(raw) = self.source.get(event) {
+            raw.decode_key(&mut key, &mut ());
+        }
+        key.into_owned()
+    }
+
+    fn whole(&self) -> impl Iterator<Item = &str> {
+        // The brackets of a table say its whole name.
+        let path = if self.stage == Stage::Header { &[][..] } else { &self.path };
+        path.iter().chain(&self.parts).map(String::as_str)
+    }
+
+    fn name(&self) -> String {
+        self.whole().collect::<Vec<_>>().join(".")
+    }
+
+    fn table(&self) -> String {
+        self.whole().flat_map(|part| [part, "."]).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::{Expect, expect};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// What is at each `$0`, a line each.
+    fn check(fixtures: &[&str], expected: &Expect) {
+        let mut out = String::new();
+        for fixture in fixtures {
+            let offset = u32::try_from(fixture.find("$0").unwrap()).unwrap();
+            let text = fixture.replacen("$0", "", 1);
+            let told = place_at(&text, offset).map(|Place { word, slot }| match slot {
+                Slot::Table { is_closed } => format!("table `{}`, closed: {is_closed}", word.text(&text)),
+                Slot::Key { table, has_value, begins_line } => format!(
+                    "key `{}` of `{table}`, value: {has_value}, first: {begins_line}",
+                    word.text(&text)
+                ),
+                Slot::Value { key } => format!("value `{}` of `{key}`", word.text(&text)),
+            });
+            out += &format!("{fixture:?}: {}\n", told.as_deref().unwrap_or("nothing"));
+        }
+        expected.assert_eq(&out);
+    }
+
+    #[test]
+    fn keys_know_their_table() {
+        check(
+            &[
+                "$0",
+                "tar$0",
+                "ta$0rget = 1",
+                "$0target = 1",
+                "target $0",
+                "severity.$0",
+                "severity.wh$0el-count",
+                "x = 1\n[severity]\n$0\ny = 1",
+                "[severity]\nwh$0",
+                "[\"severity\"]\nwh$0",
+                "[severity\nwh$0",
+                "severity = { $0",
+                "severity = { $0 }",
+                "severity = { wheel-count = \"off\", wh$0\n[inlay-hints]\npose = true",
+                "severity = { wheel-count = \"off\n[inlay-hints]\np$0",
+                "severity = {} \nt$0",
+                "[inlay-hints]\npose = \n$0\nduration = true",
+                "# $0",
+                "target = 'vrep' # $0",
+                "[inlay-hints] $0",
+                "x = [$0",
+                "x = [1, $0",
+            ],
+            &expect![[r##"
+                "$0": key `` of ``, value: false, first: true
+                "tar$0": key `tar` of ``, value: false, first: true
+                "ta$0rget = 1": key `target` of ``, value: true, first: true
+                "$0target = 1": key `target` of ``, value: true, first: true
+                "target $0": nothing
+                "severity.$0": key `` of `severity.`, value: false, first: false
+                "severity.wh$0el-count": key `whel-count` of `severity.`, value: false, first: false
+                "x = 1\n[severity]\n$0\ny = 1": key `` of `severity.`, value: false, first: true
+                "[severity]\nwh$0": key `wh` of `severity.`, value: false, first: true
+                "[\"severity\"]\nwh$0": key `wh` of `severity.`, value: false, first: true
+                "[severity\nwh$0": key `wh` of `severity.`, value: false, first: true
+                "severity = { $0": key `` of `severity.`, value: false, first: false
+                "severity = { $0 }": key `` of `severity.`, value: false, first: false
+                "severity = { wheel-count = \"off\", wh$0\n[inlay-hints]\npose = true": key `wh` of `severity.`, value: false, first: false
+                "severity = { wheel-count = \"off\n[inlay-hints]\np$0": key `p` of `inlay-hints.`, value: false, first: true
+                "severity = {} \nt$0": key `t` of ``, value: false, first: true
+                "[inlay-hints]\npose = \n$0\nduration = true": key `` of `inlay-hints.`, value: false, first: true
+                "# $0": nothing
+                "target = 'vrep' # $0": nothing
+                "[inlay-hints] $0": nothing
+                "x = [$0": nothing
+                "x = [1, $0": nothing
+            "##]],
+        );
+    }
+
+    #[test]
+    fn values_know_their_key() {
+        check(
+            &[
+                "target =$0",
+                "target = $0",
+                "target = v$0",
+                "target = \"v$0rep\"",
+                "target = \"v$0\n[severity]",
+                "target = \"vrep\" $0",
+                "[inlay-hints]\npose = $0tr",
+                "[severity]\nwheel-count = \"$0\"",
+                "severity.wheel-count=$0",
+                "severity = { wheel-count = $0 }",
+                "severity = { wheel-count = 'off', wheel-order = '$0",
+            ],
+            &expect![[r#"
+                "target =$0": value `` of `target`
+                "target = $0": value `` of `target`
+                "target = v$0": value `v` of `target`
+                "target = \"v$0rep\"": value `"vrep"` of `target`
+                "target = \"v$0\n[severity]": value `"v` of `target`
+                "target = \"vrep\" $0": nothing
+                "[inlay-hints]\npose = $0tr": value `tr` of `inlay-hints.pose`
+                "[severity]\nwheel-count = \"$0\"": value `""` of `severity.wheel-count`
+                "severity.wheel-count=$0": value `` of `severity.wheel-count`
+                "severity = { wheel-count = $0 }": value `` of `severity.wheel-count`
+                "severity = { wheel-count = 'off', wheel-order = '$0": value `'` of `severity.wheel-order`
+            "#]],
+        );
+    }
+
+    #[test]
+    fn tables_are_named_in_brackets() {
+        check(
+            &[
+                "[$0",
+                "[$0]",
+                "[sev$0]",
+                "[sev$0\nx = 1",
+                "x = 1\n[$0sev]",
+                "$0[severity]",
+                "[severity]$0",
+                "[inlay-hints.$0]",
+            ],
+            &expect![[r#"
+                "[$0": table ``, closed: false
+                "[$0]": table ``, closed: true
+                "[sev$0]": table `sev`, closed: true
+                "[sev$0\nx = 1": table `sev`, closed: false
+                "x = 1\n[$0sev]": table `sev`, closed: true
+                "$0[severity]": nothing
+                "[severity]$0": nothing
+                "[inlay-hints.$0]": nothing
+            "#]],
+        );
+    }
+
+    #[test]
+    fn names_are_whole() {
+        let text = "target = 1\nseverity.wheel-count = 1\n[inlay-hints]\n'pose' = {\n[severity]\nwheel-order";
+        let told: Vec<String> = names(text)
+            .into_iter()
+            .map(|named| format!("{} `{}`", named.name, named.span.text(text)))
+            .collect();
+        expect![[r#"
+            target `target`
+            severity `severity`
+            severity.wheel-count `wheel-count`
+            inlay-hints `inlay-hints`
+            inlay-hints.pose `'pose'`
+            severity `severity`
+            severity.wheel-order `wheel-order`"#]]
+        .assert_eq(&told.join("\n"));
+    }
+
+    proptest! {
+        #[test]
+        fn any_text_has_places(text in "[a-z\\[\\]{}=.,#\"'\\n\\r é-]{0,60}", at in 0..70_usize) {
+            let offset = text.char_indices().map(|(offset, _)| offset).nth(at).unwrap_or(text.len());
+            let offset = u32::try_from(offset).unwrap();
+            if let Some(place) = place_at(&text, offset) {
+                prop_assert!(place.word.touches(offset));
+                prop_assert!(text.get(std::ops::Range::from(place.word)).is_some());
+            }
+            for named in names(&text) {
+                prop_assert!(text.get(std::ops::Range::from(named.span)).is_some());
+            }
+        }
+    }
+
+    #[test]
+    fn a_deep_nest_is_no_danger() {
+        for open in ["[", "{ a = ", "a = [", "a = {"] {
+            let text = open.repeat(100_000);
+            place_at(&text, Span::of(&text).end);
+        }
+    }
+}
