@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{EntityKind, Lexeme, Parse, Span, parse};
+use pydslrep_syntax::{EntityKind, Lexeme, Parse, Span, parse_each};
 use ropey::Rope;
 use rustc_hash::FxHashSet;
 
@@ -22,17 +22,15 @@ impl Database {
     pub fn open(&mut self, path: &str, text: &str) -> FileId {
         let file = self.file_for(path);
         self.forget(file);
-        let parses = parse(text);
-        self.last_edit = EditCounts { reparsed: parses.len(), revalidated: 0 };
         self.files[file.0 as usize] =
             Some(File { path: path.to_owned(), text: Rope::from_str(text), pieces: Vec::new() });
         let before = self.imports(file).to_vec();
-        let orders = (1..).map(|index: u64| index * ORDER_STEP);
-        let pieces = parses
-            .into_iter()
-            .zip(orders)
-            .map(|((span, parse), order)| self.add(file, span, parse, order))
-            .collect();
+        let mut pieces = Vec::new();
+        parse_each(text, |span, parse| {
+            let order = (pieces.len() as u64 + 1) * ORDER_STEP;
+            pieces.push(self.add(file, span, parse, order));
+        });
+        self.last_edit = EditCounts { reparsed: pieces.len(), revalidated: 0 };
         self.set_pieces(file, pieces);
         self.touch(file);
         self.update_imports(file);

@@ -39,9 +39,20 @@ pub struct Parse {
     pub skipped_names: Vec<SmolStr>,
 }
 
+/// How many pieces are read with the same rules: so many that building those hardly counts, and so few that what is
+/// kept beside them stays small.
+const BATCH: usize = 512;
+
 /// Cuts and parses a whole text: each piece with the range it covers. The pieces tile the text; spans inside a piece
 /// count from its start. There is always at least one piece, and only the first can be without an entity.
 pub fn parse(text: &str) -> Vec<(Span, Parse)> {
+    let mut parses = Vec::new();
+    parse_each(text, |span, parse| parses.push((span, parse)));
+    parses
+}
+
+/// As [`parse`], handing over one piece after the other.
+pub fn parse_each(text: &str, mut emit: impl FnMut(Span, Parse)) {
     let lexemes = lex(text);
     let end = Span::of(text).end;
     let starts = cut(&lexemes);
@@ -58,7 +69,9 @@ pub fn parse(text: &str) -> Vec<(Span, Parse)> {
             (&lexemes[from..to], Span::new(start, end))
         })
         .collect();
-    parse_pieces(text, &bounds)
+    for batch in bounds.chunks(BATCH) {
+        parse_batch(text, batch, &mut emit);
+    }
 }
 
 /// What could stand behind these tokens of one entity, each kind of thing once; `lexemes` are places in `text`. This is
@@ -81,7 +94,7 @@ pub fn expected_after(text: &str, lexemes: &[Lexeme]) -> Vec<Expected> {
     expected
 }
 
-fn parse_pieces(text: &str, bounds: &[(&[Lexeme], Span)]) -> Vec<(Span, Parse)> {
+fn parse_batch(text: &str, bounds: &[(&[Lexeme], Span)], emit: &mut impl FnMut(Span, Parse)) {
     let relative: Vec<Box<[Lexeme]>> =
         bounds.iter().map(|(lexemes, span)| relocate(lexemes, span.start)).collect();
     let significant: Vec<Vec<Lexeme>> = relative.iter().map(|lexemes| without_trivia(lexemes)).collect();
@@ -92,16 +105,13 @@ fn parse_pieces(text: &str, bounds: &[(&[Lexeme], Span)]) -> Vec<(Span, Parse)> 
         .map(|((_, span), tokens)| parser.run(span.text(text), tokens))
         .collect();
     drop(parser);
-    let mut parses = Vec::with_capacity(trees.len());
-    for (((entity, faults), lexemes), ((_, span), tokens)) in
-        trees.into_iter().zip(relative).zip(bounds.iter().zip(&significant))
-    {
+    let read = trees.into_iter().zip(relative);
+    for (((entity, faults), lexemes), ((_, span), tokens)) in read.zip(bounds.iter().zip(&significant)) {
         let piece = span.text(text);
         let errors = tidy::tidy(piece, entity.as_ref().and_then(Entity::kind), tokens, &lexemes, &faults);
         let skipped_names = tidy::skipped_names(piece, tokens, &faults);
-        parses.push((*span, Parse { entity, errors, lexemes, skipped_names }));
+        emit(*span, Parse { entity, errors, lexemes, skipped_names });
     }
-    parses
 }
 
 fn relocate(lexemes: &[Lexeme], start: u32) -> Box<[Lexeme]> {
