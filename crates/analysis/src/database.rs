@@ -269,8 +269,14 @@ impl Database {
     }
 
     /// The declared names of a kind in a file, in no order.
+    #[cfg(test)]
     pub(crate) fn names(&self, file: FileId, kind: EntityKind) -> impl Iterator<Item = &SmolStr> {
         self.names.all(file, kind)
+    }
+
+    /// The names of environments of a file that are the same as `name` but for case, itself included, in no order.
+    pub(crate) fn environments_but_for_case(&self, file: FileId, name: &SmolStr) -> &[SmolStr] {
+        self.names.environments_but_for_case(file, name)
     }
 
     /// What is wrong with a file, in the order of the text.

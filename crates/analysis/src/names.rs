@@ -1,5 +1,7 @@
 //! Who declares a name, and who uses it.
 
+use std::hash::Hash;
+
 use pydslrep_syntax::EntityKind;
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
@@ -16,6 +18,9 @@ pub(crate) struct Names {
     defined: FxHashMap<Key, Vec<EntityId>>,
     /// The names of `defined`, by file and kind.
     by_kind: FxHashMap<(FileId, EntityKind), FxHashSet<SmolStr>>,
+    /// The names of environments that are the same but for case, by how they are in lower case: their scripts would
+    /// be the same file on some computers.
+    folded: FxHashMap<(FileId, SmolStr), Vec<SmolStr>>,
     used: FxHashMap<Key, Vec<EntityId>>,
     skipped: FxHashMap<(FileId, SmolStr), u32>,
 }
@@ -46,9 +51,17 @@ impl Names {
         self.skipped.keys().any(|(other, _)| *other == file)
     }
 
+    /// The declared names of environments that are the same as `name` but for case, itself included, in no order.
+    pub(crate) fn environments_but_for_case(&self, file: FileId, name: &SmolStr) -> &[SmolStr] {
+        self.folded.get(&(file, name.to_ascii_lowercase().into())).map_or(&[], Vec::as_slice)
+    }
+
     /// Adds a declaration; `order` tells where in the file an entity stands.
     pub(crate) fn define(&mut self, key: Key, entity: EntityId, order: impl Fn(EntityId) -> u64) {
-        self.by_kind.entry((key.0, key.1)).or_default().insert(key.2.clone());
+        let is_new = self.by_kind.entry((key.0, key.1)).or_default().insert(key.2.clone());
+        if is_new && key.1 == EntityKind::Environment {
+            self.folded.entry((key.0, key.2.to_ascii_lowercase().into())).or_default().push(key.2.clone());
+        }
         let entities = self.defined.entry(key).or_default();
         let place = entities.partition_point(|other| order(*other) < order(entity));
         entities.insert(place, entity);
@@ -56,11 +69,14 @@ impl Names {
 
     /// Removes a declaration.
     pub(crate) fn undefine(&mut self, key: &Key, entity: EntityId) {
-        remove(&mut self.defined, key, entity);
+        remove(&mut self.defined, key, &entity);
         if !self.defined.contains_key(key)
             && let Some(names) = self.by_kind.get_mut(&(key.0, key.1))
         {
             names.remove(&key.2);
+            if key.1 == EntityKind::Environment {
+                remove(&mut self.folded, &(key.0, key.2.to_ascii_lowercase().into()), &key.2);
+            }
         }
     }
 
@@ -71,7 +87,7 @@ impl Names {
 
     /// Removes one use.
     pub(crate) fn unreference(&mut self, key: &Key, entity: EntityId) {
-        remove(&mut self.used, key, entity);
+        remove(&mut self.used, key, &entity);
     }
 
     /// Adds a name in skipped text.
@@ -91,12 +107,13 @@ impl Names {
     }
 }
 
-fn remove(map: &mut FxHashMap<Key, Vec<EntityId>>, key: &Key, entity: EntityId) {
-    if let Some(entities) = map.get_mut(key) {
-        if let Some(place) = entities.iter().position(|other| *other == entity) {
-            entities.remove(place);
+/// Removes one value of a key, and the key with its last one.
+fn remove<K: Eq + Hash, V: Eq>(map: &mut FxHashMap<K, Vec<V>>, key: &K, value: &V) {
+    if let Some(values) = map.get_mut(key) {
+        if let Some(place) = values.iter().position(|other| other == value) {
+            values.remove(place);
         }
-        if entities.is_empty() {
+        if values.is_empty() {
             map.remove(key);
         }
     }

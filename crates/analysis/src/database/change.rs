@@ -298,7 +298,7 @@ impl Database {
         for (file, kind, name) in &doubtful.keys {
             // Two environments whose names differ by case only cannot both have a script of their name.
             if *kind == EntityKind::Environment {
-                let twins = self.names.all(*file, *kind).filter(|other| other.eq_ignore_ascii_case(name));
+                let twins = self.names.environments_but_for_case(*file, name).iter();
                 let twins = twins.flat_map(|other| self.names.defined(&(*file, *kind, other.clone())));
                 doubtful.entities.extend(twins);
             }

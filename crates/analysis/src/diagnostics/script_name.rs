@@ -1,6 +1,5 @@
 //! `script-name`: an environment's script cannot be called like the environment.
 
-use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::{Entity, Name};
 
 use super::context::{Context, Problem};
@@ -67,8 +66,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 
 /// Whether another environment of the file has the same name but for case.
 fn has_twin(context: &Context<'_>, name: &Name) -> bool {
-    let mut names = context.database.names(context.file, EntityKind::Environment);
-    names.any(|other| *other != name.text && other.eq_ignore_ascii_case(&name.text))
+    context.database.environments_but_for_case(context.file, &name.text).len() > 1
 }
 
 fn problem(
