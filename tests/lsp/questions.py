@@ -1,0 +1,260 @@
+"""Every request there is about a program, with parameters for one program, and answers made comparable.
+
+The program's columns differ in bytes, UTF-16 and characters wherever something is asked.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+NOTE = "/* 🤖 日本 e\u0301 */ "
+PARTS = "wheel far with radius 4.5\n"
+PROGRAM = f"""\
+import "parts.pyr"
+{NOTE}wheel a with radius 4.5
+{NOTE}wheel b with radius 4.5
+{NOTE}sensor s
+{NOTE}robot rover type tw with port 19999 has {{ a b }} wheels with sensors {{ s }}
+{NOTE}movement lap of rover {{ // 日本
+  {NOTE}move 4.0 meters
+  {NOTE}turn left
+}}
+{NOTE}environment yard has {{ rover }} robots with {{ lap lap }} moves
+{NOTE}robot spare type tw with port 20000 has {{ far wheeel }} wheels
+{NOTE}wheel   untidy with radius 4.5
+{NOTE}movement   back of rover {{ turn   right }}
+"""
+LINE_ENDING = re.compile(r"\r\n|\n|\r")
+ENDINGS = {"lf": ["\n"], "crlf": ["\r\n"], "cr": ["\r"], "mixed": ["\r\n", "\n", "\r"]}
+
+
+def with_endings(text: str, kind: str) -> str:
+    """The text with other line endings."""
+    endings, lines = ENDINGS[kind], text.split("\n")
+    last = len(lines) - 1
+    return "".join(
+        line + (endings[number % len(endings)] if number < last else "")
+        for number, line in enumerate(lines)
+    )
+
+
+class Buffer:
+    """A document as a client sees it that counts columns in one encoding."""
+
+    def __init__(self, uri: str, text: str, encoding: str) -> None:
+        self.uri = uri
+        self.text = text
+        self.encoding = encoding
+        self.unit = {"utf-8": 1, "utf-16": 2, "utf-32": 4}[encoding]
+        self.codec = encoding if encoding == "utf-8" else f"{encoding}-le"
+        ends = [match.end() for match in LINE_ENDING.finditer(text)]
+        self.starts = [0, *ends]
+
+    def document(self) -> dict[str, str]:
+        """What names it."""
+        return {"uri": self.uri}
+
+    def position(self, index: int) -> dict[str, int]:
+        """The position of an index into the text."""
+        line = max(n for n, start in enumerate(self.starts) if start <= index)
+        before = self.text[self.starts[line] : index]
+        units = len(before.encode(self.codec)) // self.unit
+        return {"line": line, "character": units}
+
+    def index(self, position: dict[str, int]) -> int:
+        """The index of a position, which must be one of the text's, between characters."""
+        line, column = position["line"], position["character"]
+        start = self.starts[line]
+        ending = LINE_ENDING.search(self.text, start)
+        content = self.text[start : ending.start() if ending else len(self.text)]
+        units = content.encode(self.codec)
+        assert column * self.unit <= len(units), f"{position} is behind its line"
+        return start + len(units[: column * self.unit].decode(self.codec))
+
+    def at(self, before: str, behind: str = "") -> dict[str, Any]:
+        """Parameters for the place between two texts that follow each other once."""
+        assert self.text.count(before + behind) == 1, before + behind
+        index = self.text.index(before + behind) + len(before)
+        return {"textDocument": self.document(), "position": self.position(index)}
+
+    def span(self, start: str, end: str = "") -> dict[str, Any]:
+        """The range from one text to the end of another."""
+        first = self.text.index(start)
+        last = self.text.index(end, first) + len(end) if end else first + len(start)
+        return {"start": self.position(first), "end": self.position(last)}
+
+    def everything(self) -> dict[str, Any]:
+        """The range of the whole text."""
+        last = self.position(len(self.text))
+        return {"start": {"line": 0, "character": 0}, "end": last}
+
+
+OPTIONS = {"tabSize": 8, "insertSpaces": False}
+
+
+def of(buffer: Buffer, **more: Any) -> dict[str, Any]:
+    """Parameters about a whole document."""
+    return {"textDocument": buffer.document(), **more}
+
+
+def call_item(buffer: Buffer, kind: int, start: str, name: str) -> dict[str, Any]:
+    """An item of the call hierarchy, as a client has it from an earlier answer."""
+    index = buffer.text.index(f"{start} {name}") + len(start) + 1
+    focus = {
+        "start": buffer.position(index),
+        "end": buffer.position(index + len(name)),
+    }
+    item = {"name": name, "kind": kind, "uri": buffer.uri}
+    return {"item": {**item, "range": focus, "selectionRange": focus}}
+
+
+def lens(buffer: Buffer) -> dict[str, Any]:
+    """A lens that was not resolved yet."""
+    data = {"uri": buffer.uri, "kind": "wheel", "name": "a"}
+    index = buffer.text.index("wheel a ") + len("wheel ")
+    start, end = buffer.position(index), buffer.position(index + 1)
+    return {"range": {"start": start, "end": end}, "data": data}
+
+
+def actions(buffer: Buffer, only: str) -> dict[str, Any]:
+    """Code actions of one kind where a wheel's name is mistyped."""
+    context = {"diagnostics": [], "only": [only]}
+    return of(buffer, range=buffer.span("wheeel"), context=context)
+
+
+def script(buffer: Buffer) -> dict[str, Any]:
+    """What a script is generated of."""
+    return {"uri": buffer.uri, "environment": "yard"}
+
+
+# By method; a word behind `#` tells several requests of one method apart.
+REQUESTS: dict[str, Callable[[Buffer], dict[str, Any]]] = {
+    "textDocument/hover": lambda b: b.at("{ a"),
+    "textDocument/completion": lambda b: b.at("{ far ", "wh"),
+    "textDocument/signatureHelp": lambda b: b.at(" meters"),
+    "textDocument/definition": lambda b: b.at("{ a"),
+    "textDocument/declaration": lambda b: b.at("{ a b"),
+    "textDocument/typeDefinition": lambda b: b.at("{ lap"),
+    "textDocument/references": lambda b: {
+        **b.at("{ lap"),
+        "context": {"includeDeclaration": True},
+    },
+    "textDocument/documentHighlight": lambda b: b.at("movement la"),
+    "textDocument/prepareRename": lambda b: b.at("{ lap l"),
+    "textDocument/rename": lambda b: {**b.at("{ lap"), "newName": "round_1"},
+    "textDocument/linkedEditingRange": lambda b: b.at("{ lap"),
+    "textDocument/prepareCallHierarchy": lambda b: b.at("{ lap"),
+    "callHierarchy/incomingCalls": lambda b: call_item(b, 12, "movement", "lap"),
+    "callHierarchy/outgoingCalls": lambda b: call_item(b, 12, "movement", "lap"),
+    "textDocument/inlayHint": lambda b: of(b, range=b.everything()),
+    "textDocument/codeLens": of,
+    "codeLens/resolve": lens,
+    "textDocument/foldingRange": of,
+    "textDocument/selectionRange": lambda b: of(
+        b, positions=[b.at("{ a")["position"], b.at("move 4")["position"]]
+    ),
+    "textDocument/documentSymbol": of,
+    "workspace/symbol": lambda b: {"query": "lap"},
+    "textDocument/documentLink": of,
+    "textDocument/semanticTokens/full": of,
+    "textDocument/semanticTokens/range": lambda b: of(
+        b, range=b.span("robot rover", "port 19999")
+    ),
+    "textDocument/formatting": lambda b: of(b, options=OPTIONS),
+    "textDocument/rangeFormatting": lambda b: of(
+        b, range=b.span("wheel   untidy", "4.5"), options=OPTIONS
+    ),
+    "textDocument/onTypeFormatting": lambda b: {
+        **b.at("turn   right }"),
+        "ch": "}",
+        "options": OPTIONS,
+    },
+    "textDocument/codeAction#quickfix": lambda b: actions(b, "quickfix"),
+    "textDocument/codeAction#script": lambda b: actions(b, "source.generateScript"),
+    "codeAction/resolve": lambda b: {
+        "title": "Generate script yard.py",
+        "kind": "source.generateScript",
+        "data": script(b),
+    },
+    "textDocument/diagnostic": of,
+    "workspace/diagnostic": lambda b: {"previousResultIds": []},
+}
+
+
+def comparable(result: Any, buffer: Buffer, method: str) -> Any:
+    """An answer with every place as its line and text, so that it is the same in every encoding and line ending."""
+    if method == "textDocument/foldingRange":
+        result = [fold(item) for item in result]
+    if method.startswith("textDocument/semanticTokens"):
+        return tokens(result["data"], buffer)
+    if method.endswith("ormatting"):
+        return LINE_ENDING.sub("\n", edited(buffer, result))
+    return places(result, buffer)
+
+
+def fold(item: dict[str, Any]) -> dict[str, Any]:
+    """A folding range as any other range."""
+    ends = {
+        end: {"line": item[f"{end}Line"], "character": item[f"{end}Character"]}
+        for end in ("start", "end")
+    }
+    return {"kind": item.get("kind"), "range": ends}
+
+
+def edited(buffer: Buffer, edits: list[dict[str, Any]]) -> str:
+    """The text after edits, which must not overlap."""
+    text, before = "", 0
+    for edit in edits:
+        start, end = (buffer.index(edit["range"][place]) for place in ("start", "end"))
+        assert before <= start <= end, f"{edit} overlaps"
+        text += buffer.text[before:start] + edit["newText"]
+        before = end
+    return text + buffer.text[before:]
+
+
+def places(value: Any, buffer: Buffer) -> Any:
+    """A part of an answer, with its places as lines and texts."""
+    if isinstance(value, list):
+        return [places(item, buffer) for item in value]
+    if isinstance(value, str):
+        return LINE_ENDING.sub("\n", value)
+    if not isinstance(value, dict):
+        return value
+    if value.keys() == {"start", "end"}:
+        start, end = value["start"], value["end"]
+        if end["line"] >= len(buffer.starts):
+            return "everything"
+        text = buffer.text[buffer.index(start) : buffer.index(end)]
+        return (
+            f"{start['line']}-{end['line']}",
+            LINE_ENDING.sub("\n", text),
+            column(start, buffer),
+        )
+    if value.keys() == {"line", "character"}:
+        return column(value, buffer)
+    return {
+        key: places(item, buffer)
+        for key, item in value.items()
+        if key not in ("resultId", "version")
+    }
+
+
+def column(position: dict[str, int], buffer: Buffer) -> str:
+    """A position as its line up to there."""
+    line = buffer.starts[position["line"]]
+    return f"{position['line']}: {buffer.text[line : buffer.index(position)]}"
+
+
+def tokens(data: list[int], buffer: Buffer) -> list[tuple[str, str, int, int]]:
+    """Semantic tokens as lines, texts, kinds and modifiers."""
+    found, line, character = [], 0, 0
+    for n in range(0, len(data), 5):
+        step, right, length, kind, modifiers = data[n : n + 5]
+        line, character = line + step, right + (0 if step else character)
+        start = buffer.index({"line": line, "character": character})
+        end = buffer.index({"line": line, "character": character + length})
+        before = column({"line": line, "character": character}, buffer)
+        found.append((before, buffer.text[start:end], kind, modifiers))
+    return found
