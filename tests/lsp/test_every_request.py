@@ -225,7 +225,7 @@ def test_work_on_a_long_text_is_for_the_text_it_was_asked_about_or_given_up(
         "textDocument/formatting",
         "textDocument/semanticTokens/full",
     ]
-    more = "".join(f"wheel w{n} with radius 4.5 // and so on\n" for n in range(2000))
+    more = "".join(f"wheel w{n} with radius 4.5 // {n:0200}\n" for n in range(400))
     texts = [PROGRAM + more, PROGRAM.replace("lap", "round") + more]
     expected = []
     for text in texts:

@@ -1,6 +1,7 @@
 //! Messages: the bytes of a frame as a JSON-RPC request, notification or response, or the error to answer with.
 
 use std::sync::mpsc::Sender;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -113,20 +114,37 @@ pub(crate) fn refuse(id: Id, code: ErrorCode, message: String) -> Response {
 
 /// Where messages to the client go; it never blocks, and messages arrive in the order in which they were sent.
 #[derive(Debug, Clone)]
-pub struct Outbox(Sender<Option<Vec<u8>>>);
+pub struct Outbox {
+    sender: Sender<Option<Vec<u8>>>,
+    /// Set by [`Self::only_answer`], and held while something unasked is sent, so that nothing slips through behind it.
+    only_answers: Arc<Mutex<bool>>,
+}
 
 impl Outbox {
     /// An outbox whose messages, encoded but not framed, come out of `sender`'s receiver; `None` is the last.
     pub fn new(sender: Sender<Option<Vec<u8>>>) -> Self {
-        Self(sender)
+        Self { sender, only_answers: Arc::default() }
     }
 
-    /// Sends a response, or a request or notification of ours.
-    pub(crate) fn send(&self, message: &impl Serialize) {
+    /// Sends a response.
+    pub(crate) fn send(&self, response: &impl Serialize) {
         // Serialising our own plain structs cannot fail, and without a receiver there is nobody left to tell.
-        if let Ok(body) = serde_json::to_vec(message) {
-            let _ = self.0.send(Some(body));
+        if let Ok(body) = serde_json::to_vec(response) {
+            let _ = self.sender.send(Some(body));
         }
+    }
+
+    /// Sends a request or notification of ours, unless the client has said that it wants no more of them.
+    pub(crate) fn send_unasked(&self, message: &impl Serialize) {
+        let only_answers = self.only_answers.lock().unwrap_or_else(PoisonError::into_inner);
+        if !*only_answers {
+            self.send(message);
+        }
+    }
+
+    /// From now on sends answers only: the client has shut the session down, and listens to nothing else.
+    pub(crate) fn only_answer(&self) {
+        *self.only_answers.lock().unwrap_or_else(PoisonError::into_inner) = true;
     }
 
     /// Sends a notification without the detour over a JSON value.
@@ -137,7 +155,7 @@ impl Outbox {
             method: &'static str,
             params: &'a P,
         }
-        self.send(&Notification { jsonrpc: "2.0", method, params });
+        self.send_unasked(&Notification { jsonrpc: "2.0", method, params });
     }
 
     /// Answers a request without the detour over a JSON value.
@@ -154,7 +172,7 @@ impl Outbox {
     /// Tells the receiver that nothing follows.
     #[cfg(feature = "process")]
     pub(crate) fn close(&self) {
-        let _ = self.0.send(None);
+        let _ = self.sender.send(None);
     }
 }
 

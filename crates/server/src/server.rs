@@ -358,7 +358,12 @@ impl Server {
         if !self.state().client.progress {
             return None;
         }
-        let token = ProgressToken::String(format!("pydslrep: {title}"));
+        let number = {
+            let mut state = self.state();
+            state.progresses += 1;
+            state.progresses
+        };
+        let token = ProgressToken::String(format!("pydslrep: {title} ({number})"));
         self.client
             .send_request::<request::WorkDoneProgressCreate>(WorkDoneProgressCreateParams {
                 token: token.clone(),

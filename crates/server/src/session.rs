@@ -21,6 +21,9 @@ use crate::log::log;
 use crate::message::{Incoming, Outbox, parse, refuse};
 use crate::server::Server;
 
+/// The protocol's code for a request that comes too early.
+const NOT_INITIALIZED: ErrorCode = ErrorCode::ServerError(-32002);
+
 /// How a session ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ending {
@@ -79,7 +82,7 @@ impl Session {
         let (requests, mut responses) = socket.split();
         let forward = outbox.clone();
         let forwarding = requests.for_each(move |request| {
-            forward.send(&request);
+            forward.send_unasked(&without_null(request));
             std::future::ready(())
         });
         spawn(forwarding.boxed());
@@ -121,6 +124,13 @@ impl Session {
         if request.method() == "$/cancelRequest" && self.cancels_bulk(&request) {
             return;
         }
+        if let Some((code, reason)) = self.why_not(&request) {
+            match request.id() {
+                Some(id) => self.outbox.send(&refuse(id.clone(), code, reason.to_owned())),
+                None => log(format_args!("`{}` is passed over: {reason}", request.method())),
+            }
+            return;
+        }
         let id = request.id().cloned();
         let method = request.method().to_owned();
         let started = catch_unwind(AssertUnwindSafe(|| {
@@ -156,6 +166,25 @@ impl Session {
         }
     }
 
+    /// Why a message cannot be taken now. The router would say so too, but not of methods that it does not know; and
+    /// it would begin or end a session without an answer, and answer nothing to requests that begin with `$/`.
+    fn why_not(&self, request: &Request) -> Option<(ErrorCode, &'static str)> {
+        let begins = request.method() == "initialize";
+        match self.stage {
+            Stage::Starting if !begins => Some((NOT_INITIALIZED, "a session begins with `initialize`")),
+            Stage::ShutDown if request.method() != "$/cancelRequest" => {
+                Some((ErrorCode::InvalidRequest, "after `shutdown` only `exit` may follow"))
+            }
+            _ if request.id().is_some() && request.method().starts_with("$/") => {
+                Some((ErrorCode::MethodNotFound, "there is no such request"))
+            }
+            _ if request.id().is_none() && (begins || request.method() == "shutdown") => {
+                Some((ErrorCode::InvalidRequest, "it is a request and needs an id"))
+            }
+            _ => None,
+        }
+    }
+
     fn cancels_bulk(&self, request: &Request) -> bool {
         let id = request.params().and_then(|params| params.get("id")).cloned();
         id.and_then(|id| serde_json::from_value(id).ok()).is_some_and(|id| self.server.running.cancel(&id))
@@ -164,7 +193,10 @@ impl Session {
     fn advance(&mut self, answered: &str) {
         match answered {
             "initialize" => self.stage = Stage::Serving,
-            "shutdown" => self.stage = Stage::ShutDown,
+            "shutdown" => {
+                self.stage = Stage::ShutDown;
+                self.outbox.only_answer();
+            }
             _ => {}
         }
     }
@@ -193,6 +225,19 @@ impl Session {
             log(format_args!("an answer from the client to nothing that was asked"));
         }
     }
+}
+
+/// The library writes `params: null` into requests that have no parameters, which JSON-RPC does not allow.
+fn without_null(request: Request) -> Request {
+    let (method, id, params) = request.into_parts();
+    let mut mended = Request::build(method);
+    if let Some(params) = params.filter(|params| !params.is_null()) {
+        mended = mended.params(params);
+    }
+    if let Some(id) = id {
+        mended = mended.id(id);
+    }
+    mended.finish()
 }
 
 fn send_reply(outbox: &Outbox, reply: Reply) {

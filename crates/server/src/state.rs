@@ -41,6 +41,8 @@ pub(crate) struct State {
     pub(crate) answers: u64,
     /// How many documents have been opened so far, each time counted.
     openings: u64,
+    /// How many times progress was told so far; each time needs a name of its own.
+    pub(crate) progresses: u64,
     /// Whose diagnostics may have changed since they were last told, beside what the database says.
     pub(crate) stale: Stale,
     /// Requests that are answered when any diagnostics change.
