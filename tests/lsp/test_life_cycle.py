@@ -36,7 +36,8 @@ def everything_left(raw: RawServer) -> list[dict[str, Any]]:
 
 
 def code(message: dict[str, Any]) -> int | None:
-    return message.get("error", {}).get("code")
+    error: dict[str, int] = message.get("error", {})
+    return error.get("code")
 
 
 #### The beginning ####
