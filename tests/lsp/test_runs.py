@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import pathlib
 import shutil
 from collections.abc import Iterator
@@ -33,6 +34,16 @@ trap 'echo interrupted >&2; exit 130' INT
 cat "$2" "$(dirname "$2")/parts.pyr" > "$(dirname "$0")/seen"
 echo "$@" > "$(dirname "$0")/arguments"
 echo begun >&2
+while :; do sleep 0.01; done
+"""
+
+
+# The same, with nothing more to say: it has closed its outputs and tells so through a pipe.
+SILENT = """\
+#!/bin/sh
+trap 'exit 130' INT
+exec >&- 2>&-
+echo silent > "$(dirname "$0")/told"
 while :; do sleep 0.01; done
 """
 
@@ -130,6 +141,22 @@ def test_a_run_can_be_cancelled(endless: Session, tmp_path: pathlib.Path) -> Non
     assert endless.raw.answer(1)["error"]["code"] == -32800
     assert not pathlib.Path(arguments[1]).exists(), "what was run is tidied up"
     assert not pathlib.Path(arguments[5]).exists(), "nothing was drawn"
+
+
+def test_a_run_that_says_nothing_more_can_be_cancelled(
+    endless: Session, tmp_path: pathlib.Path
+) -> None:
+    (tmp_path / "bin" / "pydslrep").write_text(SILENT, encoding="utf-8")
+    told = tmp_path / "bin" / "told"
+    os.mkfifo(told)
+    endless.execute(1, "pydslrep.run", endless.area)
+    token = endless.accept_progress()
+    assert told.read_text() == "silent\n"
+    endless.raw.send(
+        notification("window/workDoneProgress/cancel", {"token": token}),
+        request(2, "shutdown", None),
+    )
+    endless.raw.answer(2)
 
 
 def test_what_has_errors_does_not_run(session: Session) -> None:

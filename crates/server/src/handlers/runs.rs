@@ -12,6 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 use futures::channel::mpsc::{UnboundedReceiver, UnboundedSender, unbounded};
+use pydslrep_analysis::FileId;
 use pydslrep_files::FILE_NAME;
 use tempfile::TempDir;
 use tower_lsp::jsonrpc::{Error, ErrorCode, Result};
@@ -77,9 +78,16 @@ fn write_programs(state: &State, which: &ScriptOf, folder: &Path) -> Result<Path
     let (document, file) = state.analysed(&which.uri).ok_or_else(unopened)?;
     let database = &state.database;
     let own = database.path(file);
-    let imported = database.imports(file).iter().filter_map(|path| database.file(path));
-    let files: Vec<(&str, String)> = std::iter::once(file)
-        .chain(imported)
+    let mut needed = vec![file];
+    let mut next = 0;
+    while let Some(importer) = needed.get(next).copied() {
+        let imported = database.imported_files(importer);
+        let new: Vec<FileId> = imported.filter(|file| !needed.contains(file)).collect();
+        needed.extend(new);
+        next += 1;
+    }
+    let files: Vec<(&str, String)> = needed
+        .into_iter()
         .filter_map(|file| Some((database.path(file), database.text(file)?.to_string())))
         .collect();
     let common = common_folder(&files.iter().map(|(path, _)| *path).collect::<Vec<_>>());
@@ -176,7 +184,7 @@ fn follow(
         line.clear();
     }
     let printed = printed.join().unwrap_or_default();
-    // Its pipes are closed: it is about to end, and nobody who wants to interrupt it waits long for the lock.
+    await_end(child);
     let status = child.0.lock().unwrap_or_else(PoisonError::into_inner).wait();
     let _ = sender.unbounded_send(News::Ended(status.ok().and_then(|status| status.code()), printed));
 }
@@ -200,6 +208,21 @@ impl Running {
         }
     }
 }
+
+/// Waits without the lock, which whoever wants to interrupt the child needs; its number stays its own until the one who
+/// has the lock takes note of its end.
+#[cfg(unix)]
+fn await_end(child: &Running) {
+    use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};
+
+    let pid = Pid::from_child(&child.0.lock().unwrap_or_else(PoisonError::into_inner));
+    let wait = || waitid(WaitId::Pid(pid), WaitIdOptions::EXITED | WaitIdOptions::NOWAIT);
+    while wait().is_err_and(|error| error == rustix::io::Errno::INTR) {}
+}
+
+/// Its pipes are closed: it is about to end, and nobody waits long for the lock.
+#[cfg(not(unix))]
+fn await_end(_: &Running) {}
 
 #[cfg(unix)]
 fn interrupt(child: &mut Child) {
