@@ -2,7 +2,7 @@
 
 mod change;
 #[cfg(test)]
-mod differential;
+mod counts;
 mod imports;
 mod references;
 

@@ -140,8 +140,11 @@ impl<'a> Folds<'a> {
         Span::new(span.start + first.unwrap_or_else(|| span.len()), span.end)
     }
 
-    /// What is between braces, of which the second may be missing.
+    /// What is between braces, of which the second may be missing, or both.
     fn inside(&self, braces: Span) -> Span {
+        if braces.is_empty() {
+            return braces;
+        }
         let closed = braces.len() > 1 && braces.text(self.text).ends_with('}');
         Span::new(braces.start + 1, braces.end - u32::from(closed))
     }
@@ -220,6 +223,13 @@ mod tests {
                 Entity: "\nradius"
             "#]],
         );
+    }
+
+    #[test]
+    fn a_movement_without_braces_has_nothing_between_them() {
+        for text in ["movement", "movement m of r", "movement {", "movement }\n"] {
+            check(text, &expect![""]);
+        }
     }
 
     #[test]

@@ -1,0 +1,497 @@
+//! Files that are edited, opened and closed, with a plain model of what they must hold.
+
+use std::collections::BTreeMap;
+
+use proptest::prelude::*;
+use pydslrep_analysis::{Absence, Database, Diagnostic, FileId, Snapshot, Target};
+use pydslrep_syntax::{KEYWORDS, Span, lex, parse};
+
+use crate::answers::{self, Focus};
+use crate::panics::without_panic;
+use crate::programs::{self, IMPORTS, PATHS, Start};
+use crate::smallest::Failure;
+
+/// What a person does, or their editor.
+#[derive(Debug, Clone)]
+pub(crate) enum Step {
+    /// Text goes and other text comes.
+    Replace { file: usize, at: Anchor, len: Length, text: String },
+    /// An entity goes, and comes again in front of another one, perhaps of another file.
+    Move { file: usize, entity: u8, to_file: usize, to: u8 },
+    /// The same, but it also stays.
+    Copy { file: usize, entity: u8, to_file: usize, to: u8 },
+    /// The last edits are taken back one by one.
+    Undo(u8),
+    /// Those that were taken back are made again.
+    Redo(u8),
+    /// A file is closed, or opened again as it was.
+    CloseOrOpen { file: usize },
+    /// An open file is opened once more, with the text of another one.
+    Reopen { file: usize, like: usize },
+    /// Somebody looked at the disk.
+    Absence { file: usize, import: usize, why: Option<Absence> },
+    /// A setting changed.
+    Target { file: usize, target: Target },
+}
+
+/// A place that stays near what it was when something before it is left out.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Anchor {
+    /// So many bytes behind the start of a token; of the last where there are fewer.
+    Token(u8, u8),
+    /// A part of 65536 of the text. It may be inside a character.
+    Part(u16),
+}
+
+/// How much goes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Length {
+    Bytes(u8),
+    Tokens(u8),
+}
+
+const SIGNS: [&str; 60] = [
+    "{",
+    "}",
+    ",",
+    ":",
+    "/*",
+    "*/",
+    "//",
+    "\"",
+    "/",
+    "*",
+    "\n",
+    "\r",
+    "\r\n",
+    "^",
+    "-",
+    ".",
+    " ",
+    "\t",
+    "é",
+    "🤖",
+    "größe ",
+    "\u{feff}",
+    "s",
+    "s ",
+    "a ",
+    "b ",
+    "r ",
+    "m ",
+    "wheelL ",
+    "4.5",
+    "0",
+    "19999",
+    "1e400 ",
+    "10.0.0.7",
+    "import \"lib.pyr\" ",
+    "import \"base.pyr\"\n",
+    "import \"main.pyr\" ",
+    "import \"parts/more.pyr\" ",
+    "import \"missing.pyr\"\n",
+    "import ",
+    "wheel a with radius 3\n",
+    "wheelH b with radius 5 ",
+    "sensor s\n",
+    "sensor t : bumper ",
+    "movement m of r { turn left }\n",
+    "parallel movement n of r { move 1 meters }",
+    "robot r with port 19999 has { a b } wheels ",
+    "robot r ",
+    "sensor s ",
+    "environment f has { r } robots ",
+    "environment E has { r } robots with { m n } moves\n",
+    "environment math has { q } robots ",
+    "} wheel ",
+    "parallel ",
+    "ip here 10.0.0.1\n",
+    "with ip here ",
+    "type fwh ",
+    "until { s }",
+    "with sensors { s } ",
+    "",
+];
+
+fn files() -> impl Strategy<Value = usize> {
+    // Most happens in the file that a person has before them.
+    prop_oneof![3 => Just(0), 2 => Just(1), 1 => Just(2), 1 => Just(3)]
+}
+
+fn steps() -> impl Strategy<Value = Step> {
+    let text = prop_oneof![
+        2 => proptest::sample::select(KEYWORDS.map(|(_, word)| format!("{word} ")).to_vec()),
+        1 => (proptest::sample::select(KEYWORDS.map(|(_, word)| word).to_vec()), any::<u8>())
+            .prop_map(|(word, cut)| word[..usize::from(cut) % word.len()].to_owned()),
+        6 => proptest::sample::select(SIGNS.map(str::to_owned).to_vec()),
+    ];
+    let at = prop_oneof![
+        4 => (any::<u8>(), prop_oneof![3 => Just(0_u8), 1 => 1..12_u8]).prop_map(|(token, bytes)| Anchor::Token(token, bytes)),
+        1 => any::<u16>().prop_map(Anchor::Part),
+    ];
+    let len = prop_oneof![
+        5 => Just(Length::Bytes(0)),
+        2 => (1..4_u8).prop_map(Length::Bytes),
+        2 => (1..4_u8).prop_map(Length::Tokens),
+        1 => (4..80_u8).prop_map(Length::Bytes),
+    ];
+    let import = 0..IMPORTS.len();
+    let why = prop_oneof![
+        Just(None),
+        Just(Some(Absence::Missing)),
+        Just(Some(Absence::Outside)),
+        Just(Some(Absence::Unreadable("it is a folder".to_owned()))),
+    ];
+    let moved = || (files(), any::<u8>(), files(), any::<u8>());
+    prop_oneof![
+        30 => (files(), at, len, text).prop_map(|(file, at, len, text)| Step::Replace { file, at, len, text }),
+        4 => moved().prop_map(|(file, entity, to_file, to)| Step::Move { file, entity, to_file, to }),
+        2 => moved().prop_map(|(file, entity, to_file, to)| Step::Copy { file, entity, to_file, to }),
+        6 => (1..4_u8).prop_map(Step::Undo),
+        3 => (1..4_u8).prop_map(Step::Redo),
+        2 => files().prop_map(|file| Step::CloseOrOpen { file }),
+        1 => (files(), files()).prop_map(|(file, like)| Step::Reopen { file, like }),
+        2 => (files(), import, why).prop_map(|(file, import, why)| Step::Absence { file, import, why }),
+        1 => (files(), proptest::sample::select(Target::ALL.to_vec())).prop_map(|(file, target)| Step::Target { file, target }),
+    ]
+}
+
+/// Programs, and about so many steps from there.
+pub(crate) fn strategy(steps_in_a_row: usize) -> impl Strategy<Value = (Start, Vec<Step>)> {
+    let steps = proptest::collection::vec(steps(), steps_in_a_row / 2..=steps_in_a_row * 3 / 2);
+    (steps, programs::starts()).prop_map(|(steps, start)| (start, steps))
+}
+
+/// Everything a database was told, as plainly as can be.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Model {
+    /// `None` for a closed file.
+    pub(crate) texts: [Option<String>; 4],
+    pub(crate) absences: BTreeMap<(usize, String), Absence>,
+    pub(crate) targets: [Target; 4],
+}
+
+/// What a database is told.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Change {
+    Edit { file: usize, span: Span, text: String },
+    Open { file: usize, text: String },
+    Close { file: usize },
+    Absence { file: usize, path: String, why: Option<Absence> },
+    Target { file: usize, target: Target },
+}
+
+impl Change {
+    pub(crate) fn file(&self) -> usize {
+        match self {
+            Self::Edit { file, .. }
+            | Self::Open { file, .. }
+            | Self::Close { file }
+            | Self::Absence { file, .. }
+            | Self::Target { file, .. } => *file,
+        }
+    }
+
+    /// Tells a database.
+    pub(crate) fn tell(&self, database: &mut Database, files: [FileId; 4]) {
+        match self {
+            Self::Edit { file, span, text } => database.edit(files[*file], *span, text),
+            Self::Open { file, text } => assert_eq!(database.open(PATHS[*file], text), files[*file]),
+            Self::Close { file } => database.close(files[*file]),
+            Self::Absence { file, path, why } => database.set_absence(files[*file], path, why.clone()),
+            Self::Target { file, target } => database.set_target(files[*file], *target),
+        }
+    }
+}
+
+impl Model {
+    pub(crate) fn apply(&mut self, change: &Change) {
+        match change {
+            Change::Edit { file, span, text } => {
+                if let Some(before) = &mut self.texts[*file] {
+                    let span = fit(before, *span);
+                    before.replace_range(span.start as usize..span.end as usize, text);
+                }
+            }
+            Change::Open { file, text } => {
+                self.texts[*file] = Some(text.clone());
+                self.absences.retain(|(_, path), why| path != PATHS[*file] || *why == Absence::Outside);
+            }
+            Change::Close { file } => {
+                self.texts[*file] = None;
+                self.absences.retain(|(importer, _), _| importer != file);
+            }
+            Change::Absence { file, path, why } if self.texts[*file].is_some() => {
+                let key = (*file, path.clone());
+                match why {
+                    Some(why) => self.absences.insert(key, why.clone()),
+                    None => self.absences.remove(&key),
+                };
+            }
+            Change::Absence { .. } => {}
+            Change::Target { file, target } => self.targets[*file] = *target,
+        }
+    }
+
+    /// A fresh database that was told this and nothing else. In which order it is told must not matter; `turn` varies
+    /// it.
+    pub(crate) fn fresh(&self, turn: usize) -> (Database, [FileId; 4]) {
+        let mut database = Database::new();
+        // Numbers of files are given in the order of opening; they must be the same ones.
+        let files = PATHS.map(|path| {
+            let file = database.open(path, "");
+            database.close(file);
+            file
+        });
+        for index in (0..PATHS.len()).map(|index| (index + turn) % PATHS.len()) {
+            database.set_target(files[index], self.targets[index]);
+            if let Some(text) = &self.texts[index] {
+                database.open(PATHS[index], text);
+            }
+        }
+        for ((file, path), why) in &self.absences {
+            database.set_absence(files[*file], path, Some(why.clone()));
+        }
+        (database, files)
+    }
+
+    /// The place behind an edit that was made here.
+    pub(crate) fn behind(&self, change: &Change) -> u32 {
+        match change {
+            Change::Edit { file, span, text } => {
+                let behind = span.start.saturating_add(u32::try_from(text.len()).unwrap());
+                fit(self.text(*file), Span::at(behind)).start
+            }
+            _ => 0,
+        }
+    }
+
+    fn text(&self, file: usize) -> &str {
+        self.texts[file].as_deref().unwrap_or_default()
+    }
+}
+
+/// The nearest range before that fits the text and cuts no character.
+fn fit(text: &str, span: Span) -> Span {
+    let snap = |offset: u32| {
+        let mut offset = (offset as usize).min(text.len());
+        while !text.is_char_boundary(offset) {
+            offset -= 1;
+        }
+        u32::try_from(offset).unwrap()
+    };
+    let start = snap(span.start);
+    Span::new(start, snap(span.end.max(span.start)))
+}
+
+/// One database that is edited on and on.
+pub(crate) struct Editing {
+    database: Database,
+    files: [FileId; 4],
+    model: Model,
+    /// A database with the same texts as they were last checked, and its files' diagnostics.
+    last: Database,
+    reported: [Vec<Diagnostic>; 4],
+    /// How to take the last edits back.
+    undo: Vec<Change>,
+    redo: Vec<Change>,
+    /// What was last in a file that is closed now.
+    closed: [String; 4],
+    /// Files as they were at some time, with a database that stays as it was then.
+    kept: Vec<(Snapshot, usize)>,
+    beginning: Database,
+    turn: usize,
+}
+
+impl Editing {
+    pub(crate) fn new(start: &Start) -> Self {
+        let mut model = Model::default();
+        let mut closed: [String; 4] = std::array::from_fn(|_| String::new());
+        for (file, text) in start.texts().into_iter().enumerate() {
+            if start.is_open(file) {
+                model.apply(&Change::Open { file, text });
+            } else {
+                closed[file] = text;
+            }
+        }
+        let (mut database, files) = model.fresh(0);
+        database.take_touched();
+        let reported = files.map(|file| database.diagnostics(file));
+        let kept = files
+            .iter()
+            .enumerate()
+            .filter_map(|(index, file)| Some((database.snapshot(*file, None)?, index)));
+        Self {
+            kept: kept.collect(),
+            last: model.fresh(1).0,
+            beginning: model.fresh(2).0,
+            database,
+            files,
+            model,
+            reported,
+            undo: Vec::new(),
+            redo: Vec::new(),
+            closed,
+            turn: 0,
+        }
+    }
+
+    /// Makes the edits of a step, and compares after each of them. Says how many there were.
+    pub(crate) fn take(&mut self, step: &Step) -> Result<u64, Box<Failure>> {
+        let mut count = 0;
+        match step {
+            Step::Undo(times) => {
+                for _ in 0..*times {
+                    let Some(change) = self.undo.pop() else { break };
+                    self.redo.extend(self.inverse(&change));
+                    self.change(&change)?;
+                    count += 1;
+                }
+            }
+            Step::Redo(times) => {
+                for _ in 0..*times {
+                    let Some(change) = self.redo.pop() else { break };
+                    self.undo.extend(self.inverse(&change));
+                    self.change(&change)?;
+                    count += 1;
+                }
+            }
+            _ => {
+                for change in self.changes(step) {
+                    match self.inverse(&change) {
+                        Some(inverse) => self.undo.push(inverse),
+                        // Nobody takes back the closing of a file, or anything that was before.
+                        None => self.undo.clear(),
+                    }
+                    self.redo.clear();
+                    self.change(&change)?;
+                    count += 1;
+                }
+            }
+        }
+        Ok(count)
+    }
+
+    /// What takes an edit back.
+    fn inverse(&self, change: &Change) -> Option<Change> {
+        let Change::Edit { file, span, text } = change else { return None };
+        let before = self.model.texts[*file].as_ref()?;
+        let span = fit(before, *span);
+        let end = span.start + u32::try_from(text.len()).ok()?;
+        Some(Change::Edit {
+            file: *file,
+            span: Span::new(span.start, end),
+            text: span.text(before).to_owned(),
+        })
+    }
+
+    fn changes(&self, step: &Step) -> Vec<Change> {
+        match step {
+            Step::Replace { file, at, len, text } => {
+                let span = span(self.model.text(*file), *at, *len);
+                vec![Change::Edit { file: *file, span, text: text.clone() }]
+            }
+            Step::Move { file, entity, to_file, to } => self.moved(*file, *entity, *to_file, *to, true),
+            Step::Copy { file, entity, to_file, to } => self.moved(*file, *entity, *to_file, *to, false),
+            Step::CloseOrOpen { file } => vec![match self.model.texts[*file] {
+                Some(_) => Change::Close { file: *file },
+                None => Change::Open { file: *file, text: self.closed[*file].clone() },
+            }],
+            Step::Reopen { file, like } => {
+                vec![Change::Open { file: *file, text: self.model.text(*like).to_owned() }]
+            }
+            Step::Absence { file, import, why } => {
+                vec![Change::Absence { file: *file, path: IMPORTS[*import].to_owned(), why: why.clone() }]
+            }
+            Step::Target { file, target } => vec![Change::Target { file: *file, target: *target }],
+            Step::Undo(_) | Step::Redo(_) => Vec::new(),
+        }
+    }
+
+    fn moved(&self, file: usize, entity: u8, to_file: usize, to: u8, is_move: bool) -> Vec<Change> {
+        let text = self.model.text(file);
+        let chosen = |text: &str, index: u8| {
+            let pieces = parse(text);
+            pieces.get(usize::from(index) % pieces.len()).map_or(Span::at(0), |(span, _)| *span)
+        };
+        let from = chosen(text, entity);
+        let moved = from.text(text).to_owned();
+        let mut to = chosen(self.model.text(to_file), to).start;
+        let insert = |to| Change::Edit { file: to_file, span: Span::at(to), text: moved.clone() };
+        if !is_move {
+            return vec![insert(to)];
+        }
+        if file == to_file && to > from.start {
+            to -= from.len();
+        }
+        vec![Change::Edit { file, span: from, text: String::new() }, insert(to)]
+    }
+
+    fn change(&mut self, change: &Change) -> Result<(), Box<Failure>> {
+        let before = self.model.clone();
+        if let Change::Close { file } = change {
+            self.model.text(*file).clone_into(&mut self.closed[*file]);
+        }
+        let snapshots: Vec<(Snapshot, usize)> = self
+            .files
+            .iter()
+            .enumerate()
+            .filter_map(|(index, file)| Some((self.database.snapshot(*file, None)?, index)))
+            .collect();
+        self.turn += 1;
+        self.model.apply(change);
+        let (fresh, _) = self.model.fresh(self.turn);
+        let outcome = without_panic(|| {
+            change.tell(&mut self.database, self.files);
+            self.compare(&fresh, change, &snapshots)
+        });
+        self.last = fresh;
+        outcome.map_err(|difference| Box::new(Failure::new(before, change.clone(), difference)))
+    }
+
+    fn compare(
+        &mut self,
+        fresh: &Database,
+        change: &Change,
+        snapshots: &[(Snapshot, usize)],
+    ) -> Result<(), String> {
+        let focus = Focus { file: change.file(), offset: self.model.behind(change), turn: self.turn };
+        answers::compare(&self.database, fresh, self.files, &focus)?;
+        for (snapshot, index) in snapshots {
+            answers::compare_snapshot(snapshot, &self.last, self.files[*index])?;
+        }
+        if let Some((snapshot, index)) = self.kept.get(self.turn % PATHS.len()) {
+            answers::compare_snapshot(snapshot, &self.beginning, self.files[*index])?;
+        }
+        let touched = self.database.take_touched();
+        answers::untold(&self.database, self.files, &touched, &self.reported)?;
+        for (index, file) in self.files.into_iter().enumerate() {
+            if touched.contains(&file) {
+                self.reported[index] = self.database.diagnostics(file);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The text that an anchor and a length stand for.
+fn span(text: &str, at: Anchor, len: Length) -> Span {
+    let lexemes = lex(text);
+    let start = match at {
+        Anchor::Part(part) => u32::try_from(text.len() * usize::from(part) / usize::from(u16::MAX)).unwrap(),
+        Anchor::Token(token, bytes) => match usize::from(token) % (lexemes.len() + 1) {
+            0 => 0,
+            index => {
+                let span = lexemes[index - 1].1;
+                span.start + u32::from(bytes).min(span.len())
+            }
+        },
+    };
+    match len {
+        Length::Bytes(bytes) => Span::new(start, start + u32::from(bytes)),
+        Length::Tokens(count) => {
+            let behind = lexemes.iter().filter(|(_, span)| span.end > start).take(usize::from(count));
+            Span::new(start, behind.last().map_or(start, |(_, span)| span.end))
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! The acceptance test of the incremental database: after any edit, everything that an editor can ask equals what a
+//! fresh database with the same texts answers.
+//!
+//! `cargo test` does twenty thousand edits, other ones each time; `PYDSLREP_EDITS=10000000 cargo test --release -p
+//! pydslrep-ide --test incremental` as many as that. What fails is made small: first the edits before, then the programs
+//! it began with, then the texts right before the edit that fails.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests are tests, too")]
+
+mod answers;
+mod editing;
+mod panics;
+mod programs;
+mod smallest;
+
+use std::cell::Cell;
+
+use proptest::test_runner::{Config, TestCaseError, TestError, TestRunner};
+
+use crate::editing::{Editing, Step};
+use crate::panics::Silence;
+use crate::programs::Start;
+
+/// How many edits the test command makes.
+const EDITS: u32 = 20_000;
+
+/// About how many edits are made in one set of files, before the next set is begun.
+const IN_A_ROW: usize = 40;
+
+/// After so many edits of a long run, it says how far it is.
+const TELL_EVERY: u64 = 100_000;
+
+#[test]
+fn an_edited_database_answers_as_a_fresh_one() {
+    let wanted = std::env::var("PYDSLREP_EDITS").ok();
+    let edits = wanted.as_deref().map_or(EDITS, |number| number.parse().expect("PYDSLREP_EDITS is a number"));
+    let cases = edits.div_ceil(u32::try_from(IN_A_ROW).unwrap());
+    let config = Config { cases, max_shrink_iters: 20_000, failure_persistence: None, ..Config::default() };
+    let done = Cell::new(0_u64);
+    let silence = Silence::new();
+    let outcome = TestRunner::new(config).run(&editing::strategy(IN_A_ROW), |(start, steps)| {
+        let mut editing = Editing::new(&start);
+        for step in &steps {
+            let edits = editing.take(step).map_err(|failure| TestCaseError::fail(failure.difference))?;
+            let before = done.replace(done.get() + edits);
+            if wanted.is_some() && before / TELL_EVERY != done.get() / TELL_EVERY {
+                tell(done.get());
+            }
+        }
+        Ok(())
+    });
+    let failure = match outcome {
+        Ok(()) => None,
+        Err(TestError::Fail(_, (start, steps))) => Some(explain(&start, &steps)),
+        Err(TestError::Abort(reason)) => Some(reason.to_string()),
+    };
+    drop(silence);
+    if wanted.is_some() {
+        tell(done.get());
+    }
+    if let Some(failure) = failure {
+        panic!("{failure}");
+    }
+}
+
+/// What goes wrong, made small.
+fn explain(start: &Start, steps: &[Step]) -> String {
+    let mut editing = Editing::new(start);
+    let failure = steps.iter().find_map(|step| editing.take(step).err());
+    failure.map_or_else(|| "it fails no more".to_owned(), |failure| failure.smallest().to_string())
+}
+
+/// Says how far a long run is.
+#[expect(clippy::print_stderr, reason = "somebody waits for it")]
+fn tell(done: u64) {
+    eprintln!("{done} edits");
+}

@@ -1,0 +1,135 @@
+//! What the files hold before the first edit.
+
+use proptest::prelude::*;
+use pydslrep_naive::Recipe;
+use pydslrep_syntax::parse;
+
+/// The files, in the order of opening.
+pub(crate) const PATHS: [&str; 4] = ["main.pyr", "lib.pyr", "parts/more.pyr", "base.pyr"];
+
+/// Where imports may lead, as written in a file of the main folder.
+pub(crate) const IMPORTS: [&str; 6] =
+    ["lib.pyr", "parts/more.pyr", "main.pyr", "base.pyr", "missing.pyr", "/else/where.pyr"];
+
+/// The article's programs, and others that people wrote.
+const WRITTEN: [&str; 8] = [
+    include_str!("../../../../tests/paper/table2_two_wheels.pyr"),
+    include_str!("../../../../tests/paper/table3_four_wheels.pyr"),
+    include_str!("../../../../tests/paper/table4_holonomic.pyr"),
+    include_str!("../../../../tests/paper/table5_angles_as_printed.pyr"),
+    include_str!("../../../../tests/paper/table6_sensors.pyr"),
+    include_str!("../../../../tests/paper/table7_slam.pyr"),
+    include_str!("../../../../tests/programs/table5_with_wheels.pyr"),
+    ROBOTS,
+];
+
+/// Much of it is wrong, in ways that look at other entities.
+const ROBOTS: &str = "\
+// a robot
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot r type tw with port 19999 has { wheelL wheelR } wheels with sensors { s }
+parallel movement m of r { move 4.0 meters at 9 turn left until { s, t } turn right }
+movement n of q { move 1 meters turn left }
+environment e has { r q p } robots with { m m n o } moves
+environment E has { q } robots
+sensor s
+sensor t : bumper
+ip here 10.0.0.7
+wheelH a with radius 3 /* mecanum */
+wheelH b with radius 3
+robot q with port 2 has { a b a b } wheels
+movement m of q { slam }
+parallel movement o of p { turn right 30 }
+wheel b with radius 3
+wheel c with radius 3
+robot p with port 2 has { b c } wheels
+";
+
+/// How the files begin. What is left out makes a failure smaller.
+#[derive(Debug, Clone)]
+pub(crate) struct Start {
+    /// What the generator begins with.
+    seed: u64,
+    /// One of the written programs in place of the first generated one.
+    written: Option<usize>,
+    /// Whether one program is dealt out to all files, so that they need each other; else each has its own.
+    dealt: bool,
+    /// Six bits for each file: what it imports.
+    imports: u32,
+    /// A bit for each file but the first, which is always open: whether it is.
+    open: u8,
+    /// Which entities are there at all.
+    kept: Vec<bool>,
+}
+
+pub(crate) fn starts() -> impl Strategy<Value = Start> {
+    let written = proptest::option::of(0..WRITTEN.len());
+    let kept = proptest::collection::vec(proptest::bool::weighted(0.97), 128);
+    let imports = proptest::bits::u32::masked(0xff_ffff);
+    (any::<u64>().no_shrink(), written, any::<bool>(), imports, proptest::bits::u8::masked(0b1110), kept)
+        .prop_map(|(seed, written, dealt, imports, open, kept)| Start {
+            seed,
+            written,
+            dealt,
+            imports,
+            open,
+            kept,
+        })
+}
+
+impl Start {
+    /// The text of each file.
+    pub(crate) fn texts(&self) -> [String; 4] {
+        let mut kept = self.kept.iter().copied().chain(std::iter::repeat(true));
+        let mut programs: Vec<String> = (0..PATHS.len()).map(|index| self.program(index)).collect();
+        for program in &mut programs {
+            *program = keep(program, &mut kept);
+        }
+        let mut texts: [String; 4] = std::array::from_fn(|index| self.imports(index));
+        if self.dealt {
+            for (index, piece) in pieces(&programs[0]).chain(pieces(&programs[1])).enumerate() {
+                // Neither in turn nor all to one.
+                let file = (self.seed.rotate_right(u32::try_from(index).unwrap_or_default()) & 3) as usize;
+                texts[file].push_str(piece);
+            }
+        } else {
+            for (text, program) in texts.iter_mut().zip(programs) {
+                text.push_str(&program);
+            }
+        }
+        texts
+    }
+
+    /// Whether a file is open before the first step.
+    pub(crate) fn is_open(&self, file: usize) -> bool {
+        file == 0 || self.open >> file & 1 == 1
+    }
+
+    fn program(&self, index: usize) -> String {
+        let seed = self.seed.wrapping_add(index as u64);
+        match self.written {
+            Some(written) if index == 0 => WRITTEN[written].to_owned(),
+            _ => {
+                let lines = if self.dealt { 18 } else { 5 + (seed % 12) as usize };
+                let odd_layout = seed.is_multiple_of(3);
+                Recipe { lines, odd_layout, imports: seed.is_multiple_of(4), ..Recipe::default() }
+                    .seeded(seed)
+            }
+        }
+    }
+
+    fn imports(&self, file: usize) -> String {
+        let from = if PATHS[file].contains('/') { "../" } else { "" };
+        let chosen = IMPORTS.iter().enumerate().filter(|(bit, _)| self.imports >> (file * 6 + bit) & 1 == 1);
+        chosen.flat_map(|(_, path)| ["import \"", from, path, "\"\n"]).collect()
+    }
+}
+
+fn pieces(program: &str) -> impl Iterator<Item = &str> {
+    parse(program).into_iter().map(|(span, _)| span.text(program))
+}
+
+fn keep(program: &str, kept: &mut impl Iterator<Item = bool>) -> String {
+    pieces(program).zip(kept).filter(|(_, kept)| *kept).map(|(piece, _)| piece).collect()
+}
