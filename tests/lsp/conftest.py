@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import pathlib
 from collections.abc import AsyncIterator
 
@@ -11,10 +10,9 @@ import pytest_lsp
 from editor import capabilities
 from lsprotocol import types
 from pytest_lsp import ClientServerConfig, LanguageClient
+from raw import SERVER
 
 ROOT = pathlib.Path(__file__).parents[2]
-DEBUG = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "debug"
-SERVER = os.environ.get("PYDSLREP_LSP", str(DEBUG / "pydslrep-lsp"))
 
 
 @pytest.fixture

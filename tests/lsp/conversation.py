@@ -93,6 +93,7 @@ class Conversation:
         self.heard: list[dict[str, Any]] = []
         self.answers: dict[int, dict[str, Any]] = {}
         self.capabilities: dict[str, Any] = {}
+        self.settings: dict[str, Any] = {}
 
     def start(
         self, *, folder: pathlib.Path | None = None, pulling: bool = False
@@ -152,7 +153,7 @@ class Conversation:
             self.answers[message["id"]] = message
         elif "id" in message:
             is_settings = message["method"] == "workspace/configuration"
-            result: object = [{}] if is_settings else None
+            result: object = [self.settings] if is_settings else None
             if message["method"] == "window/showDocument":
                 result = {"success": True}
             if message["method"] == "workspace/applyEdit":

@@ -56,6 +56,14 @@ def capabilities(editor: str) -> types.ClientCapabilities:
                 ),
             )
         ),
+        semantic_tokens=types.SemanticTokensClientCapabilities(
+            requests=types.ClientSemanticTokensRequestOptions(
+                range=True, full=types.ClientSemanticTokensRequestFullDelta(delta=True)
+            ),
+            token_types=[],
+            token_modifiers=[],
+            formats=[types.TokenFormat.Relative],
+        ),
         folding_range=types.FoldingRangeClientCapabilities(
             line_folding_only=editor == "lines"
         ),

@@ -125,13 +125,16 @@ def faults_of_structure(value: object, kind: Any, path: str) -> list[str]:
             is_required = (
                 field.default is attrs.NOTHING
                 or named in REQUIRED_NULLABLE
-                or name in ("jsonrpc", "method", "result")
+                or isinstance(field.default, str)
+                or name == "result"
             )
             found += [f"{own} is missing"] if is_required else []
         elif (
             value[name] is None and field.default is not attrs.NOTHING and not nullable
         ):
             found.append(f"{own} is null instead of missing")
+        elif isinstance(field.default, str) and value[name] != field.default:
+            found.append(f"{own}: {value[name]!r} instead of {field.default!r}")
         else:
             found += faults(value[name], field.type, own)
             if isinstance(value[name], int) and field.validator:

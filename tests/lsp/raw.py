@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 import json
+import os
+import pathlib
 import subprocess
 from typing import Any
+
+ROOT = pathlib.Path(__file__).parents[2]
+DEBUG = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "debug"
+SERVER = os.environ.get("PYDSLREP_LSP", str(DEBUG / "pydslrep-lsp"))
 
 
 class RawServer:

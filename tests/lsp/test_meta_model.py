@@ -1,0 +1,174 @@
+"""A session that uses everything, each message of it held against the protocol's meta model."""
+
+from __future__ import annotations
+
+import pathlib
+from typing import Any
+
+import pytest
+from conversation import Conversation, Refused
+from meta_model import faults_of_message
+from questions import PARTS, PROGRAM, REQUESTS, Buffer, script
+from raw import RawServer, notification
+
+NOWHERE = {"start": {"line": 0, "character": 0}, "end": {"line": 0, "character": 1}}
+FAULTLESS = PROGRAM.replace("wheeel", "a")
+
+
+def opened(uri: str, text: str, version: int = 1) -> bytes:
+    item = {"uri": uri, "languageId": "pydslrep", "version": version, "text": text}
+    return notification("textDocument/didOpen", {"textDocument": item})
+
+
+def use_everything(talk: Conversation, folder: pathlib.Path) -> None:
+    """All requests and notifications there are, in a folder with two programs and settings."""
+    buffer = Buffer((folder / "main.pyr").as_uri(), PROGRAM, "utf-16")
+    talk.hear_until("$/progress")
+    while talk.heard[-1].get("params", {}).get("value", {}).get("kind") != "end":
+        talk.hear()
+    talk.server.send(opened(buffer.uri, PROGRAM))
+    for name, make in REQUESTS.items():
+        talk.ask(name.partition("#")[0], make(buffer))
+    for name, make in REQUESTS.items():
+        asked = make(buffer)
+        if "textDocument" in asked:
+            nowhere = {"uri": (folder / "nowhere.pyr").as_uri()}
+            try:
+                talk.ask(name.partition("#")[0], {**asked, "textDocument": nowhere})
+            except Refused:
+                assert "rename" in name.lower()
+    full = "textDocument/semanticTokens/full"
+    named = {"textDocument": buffer.document()}
+    known = talk.ask(full, named)["resultId"]
+    change = {"textDocument": {"uri": buffer.uri, "version": 2}}
+    talk.server.send(
+        notification(
+            "textDocument/didChange",
+            {**change, "contentChanges": [{"text": FAULTLESS}]},
+        )
+    )
+    talk.ask(f"{full}/delta", {**named, "previousResultId": known})
+    talk.ask("pydslrep/plannedPath", script(buffer))
+    robot = {"uri": buffer.uri, "robot": "rover"}
+    for command, argument in (
+        ("pydslrep.generateScript", script(buffer)),
+        ("pydslrep.showKinematics", robot),
+    ):
+        params = {"command": command, "arguments": [argument]}
+        talk.ask("workspace/executeCommand", params)
+    with pytest.raises(Refused, match="no command"):
+        talk.ask("workspace/executeCommand", {"command": "x", "arguments": []})
+    with pytest.raises(Refused):
+        talk.ask("no/such", {})
+    longer = FAULTLESS.replace("move 4.0", "move 8.0")
+    change["textDocument"] = {"uri": buffer.uri, "version": 3}
+    talk.server.send(
+        notification(
+            "textDocument/didChange", {**change, "contentChanges": [{"text": longer}]}
+        )
+    )
+    talk.hear_until("pydslrep/plannedPathChanged")
+    settings = (folder / "pydslrep.toml").as_uri()
+    talk.server.send(opened(settings, "[inlay-hints]\npose = 7\n"))
+    for method in ("hover", "completion"):
+        at = {"textDocument": {"uri": settings}, "position": NOWHERE["end"]}
+        talk.ask(f"textDocument/{method}", at)
+    context: dict[str, Any] = {"diagnostics": []}
+    asked = {"textDocument": {"uri": settings}, "range": NOWHERE, "context": context}
+    talk.ask("textDocument/codeAction", asked)
+    talk.server.send(
+        notification("workspace/didChangeConfiguration", {"settings": None}),
+        notification(
+            "workspace/didChangeWatchedFiles",
+            {"changes": [{"uri": (folder / "parts.pyr").as_uri(), "type": 2}]},
+        ),
+        notification("textDocument/didClose", {"textDocument": {"uri": settings}}),
+    )
+    talk.hear_until("workspace/inlayHint/refresh")
+
+
+@pytest.mark.parametrize("pulling", [False, True])
+def test_every_message_of_a_whole_session_is_as_the_protocol_has_it(
+    server: str, tmp_path: pathlib.Path, *, pulling: bool
+) -> None:
+    (tmp_path / "parts.pyr").write_text(PARTS, encoding="utf-8")
+    with RawServer(server, "--stdio") as raw:
+        talk = Conversation(raw)
+        talk.settings = {"severety": {}}
+        talk.start(folder=tmp_path, pulling=pulling)
+        use_everything(talk, tmp_path)
+        assert talk.leave() == 0
+    said = {message["method"] for message in talk.heard if "method" in message}
+    expected = {
+        "client/registerCapability",
+        "workspace/configuration",
+        "window/workDoneProgress/create",
+        "$/progress",
+        "window/showMessage",
+        "window/showDocument",
+        "workspace/diagnostic/refresh",
+        "workspace/inlayHint/refresh",
+        "pydslrep/plannedPathChanged",
+    }
+    assert said == expected | (
+        set() if pulling else {"textDocument/publishDiagnostics"}
+    )
+
+
+def told(method: str, params: object) -> dict[str, Any]:
+    return {"jsonrpc": "2.0", "method": method, "params": params}
+
+
+def answered(result: object) -> dict[str, Any]:
+    return {"jsonrpc": "2.0", "id": 1, "result": result}
+
+
+HOVER = "textDocument/hover"
+SYMBOL = {"name": "a", "kind": 6, "range": NOWHERE, "selectionRange": NOWHERE}
+PUBLISH = "textDocument/publishDiagnostics"
+
+
+@pytest.mark.parametrize(
+    ("message", "asked", "fault"),
+    [
+        (answered({"contents": "x"}), HOVER, None),
+        (answered(None), HOVER, None),
+        (answered({}), HOVER, "contents is missing"),
+        (answered({"contents": 1}), HOVER, "contents"),
+        (answered({"contents": "x", "range": None}), HOVER, "null instead"),
+        (answered({"contents": "x", "more": 1}), HOVER, "more is unknown"),
+        (answered([]), HOVER, "Hover"),
+        ({"jsonrpc": "2.0", "id": 1}, HOVER, "a result or an error"),
+        ({**answered(None), "error": {}}, HOVER, "a result or an error"),
+        ({"jsonrpc": "2.0", "id": 1, "error": {"code": 1}}, HOVER, "message"),
+        (answered([SYMBOL]), "textDocument/documentSymbol", None),
+        (answered([{**SYMBOL, "kind": 99}]), "textDocument/documentSymbol", "kind"),
+        (told(PUBLISH, {"uri": "file:///a", "diagnostics": []}), None, None),
+        (told(PUBLISH, {"uri": "file:///a"}), None, "diagnostics is missing"),
+        (
+            told(PUBLISH, {"uri": "file:///a", "diagnostics": [], "version": True}),
+            None,
+            "version",
+        ),
+        (told("textDocument/didOpen", {}), None, "not for servers"),
+        (told("textDocument/nothing", {}), None, "not in the protocol"),
+        (told("$/progress", {"token": 1, "value": {"kind": "x"}}), None, "value"),
+        (
+            {**told("workspace/diagnostic/refresh", None), "id": 1},
+            None,
+            "null instead of missing",
+        ),
+    ],
+)
+def test_what_is_not_as_the_protocol_has_it_is_found(
+    message: dict[str, Any], asked: str | None, fault: str | None
+) -> None:
+    found = faults_of_message(message, asked)
+    assert bool(found) == bool(fault), found
+    assert not fault or any(fault in text for text in found), found
+
+
+def test_numbers_of_the_protocol_have_limits() -> None:
+    below = {"line": -1, "character": 0}
+    message = answered({"contents": "x", "range": {"start": below, "end": below}})
+    assert faults_of_message(message, HOVER)
