@@ -268,12 +268,6 @@ impl Database {
         files.any(|file| !self.definitions(file, kind, name).is_empty())
     }
 
-    /// The declared names of a kind in a file, in no order.
-    #[cfg(test)]
-    pub(crate) fn names(&self, file: FileId, kind: EntityKind) -> impl Iterator<Item = &SmolStr> {
-        self.names.all(file, kind)
-    }
-
     /// The names of environments of a file that are the same as `name` but for case, itself included, in no order.
     pub(crate) fn environments_but_for_case(&self, file: FileId, name: &SmolStr) -> &[SmolStr] {
         self.names.environments_but_for_case(file, name)
