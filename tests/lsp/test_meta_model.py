@@ -47,7 +47,8 @@ def use_everything(talk: Conversation, folder: pathlib.Path) -> None:
             {**change, "contentChanges": [{"text": FAULTLESS}]},
         )
     )
-    talk.ask(f"{full}/delta", {**named, "previousResultId": known})
+    delta = "textDocument/semanticTokens/full/delta"
+    talk.ask(delta, {**named, "previousResultId": known})
     talk.ask("pydslrep/plannedPath", script(buffer))
     robot = {"uri": buffer.uri, "robot": "rover"}
     for command, argument in (

@@ -1,4 +1,6 @@
-//! Hover: what a robot programmer would like to know of the thing under the cursor.
+//! Hover: what a robot programmer would like to know of the thing under the cursor: of a wheel its circumference, of a
+//! robot its equations with its numbers, of an action its time and poses, of an environment who drives when, and of a
+//! keyword its syntax with an example.
 
 pub(crate) mod drawing;
 pub(crate) mod motion;

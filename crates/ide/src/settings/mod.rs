@@ -1,5 +1,7 @@
-//! What an editor helps with in a `pydslrep.toml`, also while it is half typed: its text and a place in, plain structs
-//! out.
+//! Settings files: keys and values of a `pydslrep.toml` are completed, explained and mended, also while it is half
+//! typed.
+//!
+//! Its text and a place in, plain structs out.
 
 mod completion;
 mod fixes;

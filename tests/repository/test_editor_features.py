@@ -1,0 +1,123 @@
+"""The page of editor features is made from the features' own files: `UPDATE_EXPECT=1` writes it."""
+
+import os
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+FEATURES = ROOT / "crates" / "ide" / "src"
+PAGE = ROOT / "docs" / "editor-features.md"
+
+# What the features are built from.
+PARTS = {"cursor", "fixture", "reference"}
+
+# Each feature's file, and how an editor asks for it.
+GROUPS: dict[str, dict[str, list[str]]] = {
+    "While typing": {
+        "completion": ["textDocument/completion"],
+        "signature": ["textDocument/signatureHelp"],
+        "on_type": ["textDocument/onTypeFormatting"],
+        "linked_editing": ["textDocument/linkedEditingRange"],
+        "quick_fixes": ["textDocument/codeAction"],
+        "settings": [
+            "textDocument/completion",
+            "textDocument/hover",
+            "textDocument/codeAction",
+        ],
+    },
+    "Reading": {
+        "hover": ["textDocument/hover"],
+        "inlay_hints": ["textDocument/inlayHint"],
+        "code_lenses": ["textDocument/codeLens", "codeLens/resolve"],
+        "semantic_tokens": [
+            "textDocument/semanticTokens/full",
+            "textDocument/semanticTokens/full/delta",
+            "textDocument/semanticTokens/range",
+        ],
+        "symbols": ["textDocument/documentSymbol"],
+        "folding": ["textDocument/foldingRange"],
+        "selection": ["textDocument/selectionRange"],
+        "planned_path": ["pydslrep/plannedPath", "pydslrep/plannedPathChanged"],
+    },
+    "Finding one's way": {
+        "definition": ["textDocument/definition", "textDocument/declaration"],
+        "type_definition": ["textDocument/typeDefinition"],
+        "references": ["textDocument/references"],
+        "highlights": ["textDocument/documentHighlight"],
+        "workspace_symbols": ["workspace/symbol"],
+        "call_hierarchy": [
+            "textDocument/prepareCallHierarchy",
+            "callHierarchy/incomingCalls",
+            "callHierarchy/outgoingCalls",
+        ],
+        "document_links": ["textDocument/documentLink"],
+    },
+    "Changing": {
+        "rename": ["textDocument/prepareRename", "textDocument/rename"],
+        "formatting": ["textDocument/formatting", "textDocument/rangeFormatting"],
+    },
+}
+
+TOP = """\
+# Editor features
+
+What an editor shows of a program, by the messages of the Language Server Protocol that it uses for it. Besides, mistakes
+are told as they are made, each with a page in [diagnostics](diagnostics/README.md), *Generate script* is a code action
+of every program, and [protocol.md](protocol.md) has the commands and what else the server adds to the protocol.
+"""
+
+
+def first_paragraph(feature: str) -> tuple[str, str]:
+    """A feature's name, and what it does."""
+    file = FEATURES / f"{feature}.rs"
+    if not file.exists():
+        file = FEATURES / feature / "mod.rs"
+    lines = []
+    for line in file.read_text(encoding="utf-8").splitlines():
+        text = line.removeprefix("//!").strip()
+        if not line.startswith("//!") or not text:
+            break
+        lines.append(text)
+    name, colon, meaning = " ".join(lines).partition(": ")
+    assert colon, f"{file.name} begins with the feature's name and a colon"
+    assert "](" not in meaning, f"{file.name}: a link does not lead anywhere there"
+    return name, meaning[0].upper() + meaning[1:]
+
+
+def page() -> str:
+    parts = [TOP]
+    for group, features in GROUPS.items():
+        parts.append(
+            f"\n## {group}\n\n| feature | what it shows | messages |\n|---|---|---|\n"
+        )
+        for feature, methods in features.items():
+            name, meaning = first_paragraph(feature)
+            messages = ", ".join(f"`{method}`" for method in methods)
+            cell = meaning.replace("|", "\\|")
+            parts.append(f"| {name} | {cell} | {messages} |\n")
+    return "".join(parts)
+
+
+def test_the_page_says_what_the_features_say() -> None:
+    if os.environ.get("UPDATE_EXPECT"):
+        PAGE.write_text(page(), encoding="utf-8")
+    assert PAGE.read_text(encoding="utf-8") == page(), "run it with UPDATE_EXPECT=1"
+
+
+def test_every_feature_is_on_the_page() -> None:
+    listed = [feature for features in GROUPS.values() for feature in features]
+    modules = re.findall(
+        r"^mod (\w+);", (FEATURES / "lib.rs").read_text(encoding="utf-8"), re.MULTILINE
+    )
+    assert sorted(listed) == sorted(set(modules) - PARTS)
+
+
+def test_every_message_on_the_page_is_sent_in_a_test() -> None:
+    tests = "".join(
+        file.read_text(encoding="utf-8")
+        for file in (ROOT / "tests" / "lsp").glob("*.py")
+    )
+    for features in GROUPS.values():
+        for methods in features.values():
+            for method in methods:
+                assert f'"{method}' in tests, method
