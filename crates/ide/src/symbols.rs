@@ -90,13 +90,22 @@ pub(crate) fn counted(count: usize, noun: &str) -> String {
 
 fn children(snapshot: &Snapshot, entity: &EntityRef<'_>, tree: &Entity) -> Vec<Symbol> {
     let Entity::Movement(movement) = tree else { return Vec::new() };
+    // Once for all of them: to look up each in the text of the file takes longer than all the rest.
+    let text = snapshot.slice(entity.span);
     let child = |action: &Action| {
         let full = action.span.shifted(entity.span.start);
-        let text = snapshot.slice(full);
-        let mut words = text.split_whitespace();
+        let mut words = action.span.text(&text).split_whitespace();
+        let name = words.next().unwrap_or_default().to_owned();
+        let mut detail = String::with_capacity(action.span.len() as usize);
+        for word in words {
+            if !detail.is_empty() {
+                detail.push(' ');
+            }
+            detail.push_str(word);
+        }
         Symbol {
-            name: words.next().unwrap_or_default().to_owned(),
-            detail: words.collect::<Vec<_>>().join(" "),
+            name,
+            detail,
             kind: SymbolKind::Action,
             full,
             focus: Span::new(full.start, full.start + keyword_length(action)),
