@@ -417,7 +417,7 @@ def test_progress_has_a_token_of_its_own_each_time(
             change = {"event": {"added": added, "removed": []}}
             raw.send(notification("workspace/didChangeWorkspaceFolders", change))
         kinds: dict[str, list[str]] = {}
-        while sum("end" in seen for seen in kinds.values()) < 3:
+        while sum(seen.count("end") for seen in kinds.values()) < 3:
             progress = talk.hear_until("$/progress")["params"]
             kinds.setdefault(progress["token"], []).append(progress["value"]["kind"])
         assert list(kinds.values()) == [["begin", "end"]] * 3
