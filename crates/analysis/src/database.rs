@@ -66,7 +66,7 @@ pub struct EntityRef<'a> {
     pub parse: &'a Parse,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct EntityData {
     file: FileId,
     /// Grows through the file; only its order means anything.
@@ -75,8 +75,8 @@ struct EntityData {
     problems: Vec<Problem>,
 }
 
-/// Documents and everything known about them.
-#[derive(Debug, Default)]
+/// Documents and everything known about them. A clone shares texts and trees, so that something can be tried on it.
+#[derive(Debug, Clone, Default)]
 pub struct Database {
     files: Vec<Option<File>>,
     by_path: FxHashMap<String, FileId>,

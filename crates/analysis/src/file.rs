@@ -8,7 +8,7 @@ use ropey::Rope;
 use crate::EntityId;
 
 /// One document.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct File {
     pub(crate) path: String,
     pub(crate) text: Rope,

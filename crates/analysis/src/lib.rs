@@ -12,6 +12,7 @@ mod diagnostic;
 pub mod diagnostics;
 pub mod environment;
 mod file;
+mod fixing;
 mod names;
 mod path;
 mod plan;
@@ -22,6 +23,7 @@ mod target;
 
 pub use database::{Absence, Database, EditCounts, EntityId, EntityRef, FileId, Place, Resolution};
 pub use diagnostic::{Diagnostic, Edit, Fix, Related, Severity};
+pub use fixing::Fixing;
 pub use plan::{plan, plan_movement, scene};
 pub use resolve::Blocked;
 pub use snapshot::Snapshot;

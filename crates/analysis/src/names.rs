@@ -13,7 +13,7 @@ pub(crate) type Key = (FileId, EntityKind, SmolStr);
 
 /// The index of names over all files. Names of different files never meet here; what an import makes visible is
 /// looked up file by file.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Names {
     defined: FxHashMap<Key, Vec<EntityId>>,
     /// The names of `defined`, by file and kind.

@@ -1,6 +1,6 @@
 //! Programs with a cursor for tests: `$0` marks it.
 
-use pydslrep_analysis::{Database, FileId};
+use pydslrep_analysis::{Database, Edit, FileId};
 use pydslrep_syntax::Span;
 
 use crate::FilePosition;
@@ -41,3 +41,14 @@ pub(crate) fn marked(database: &Database, file: FileId, spans: &[(Span, &str)]) 
 /// The parts of a program that most fixtures need.
 pub(crate) const PARTS: &str = "wheel wheelL with radius 4.5\nwheel wheelR with radius 4.5\nsensor front\nsensor back : bumper\n\
      robot rover type tw with port 19999 has { wheelL wheelR } wheels with sensors { front }\n";
+
+/// The text of a file after edits, which are apart from each other.
+pub(crate) fn applied(database: &Database, file: FileId, edits: &[Edit]) -> String {
+    let mut text = database.text(file).unwrap().to_string();
+    let mut edits: Vec<&Edit> = edits.iter().filter(|edit| edit.file == file).collect();
+    edits.sort_by_key(|edit| (edit.span.start, edit.span.end));
+    for edit in edits.into_iter().rev() {
+        text.replace_range(std::ops::Range::from(edit.span), &edit.text);
+    }
+    text
+}

@@ -72,7 +72,7 @@ pub fn rename(database: &Database, position: FilePosition, new: &str) -> Result<
 }
 
 /// Whether nothing before a place could run into a name there.
-fn stands_apart(database: &Database, place: Place) -> bool {
+pub(crate) fn stands_apart(database: &Database, place: Place) -> bool {
     let before = Span::new(place.span.start.saturating_sub(1), place.span.start);
     let apart = |c: char| c.is_ascii_whitespace() || "{},:/\"".contains(c);
     place.span.start == 0 || database.slice(place.file, before).starts_with(apart)

@@ -18,7 +18,7 @@ pub enum Absence {
 }
 
 /// The imports of a file, in order.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Imports {
     pub(super) entities: Vec<EntityId>,
     /// Of those that name one.

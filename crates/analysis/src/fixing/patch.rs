@@ -1,0 +1,91 @@
+//! Edits on top of edits, as edits of the first text.
+
+use pydslrep_syntax::Span;
+
+use crate::{Edit, FileId};
+
+/// A text that was changed, as what is left of the one it was and what came in between.
+#[derive(Debug)]
+pub(super) struct Patch {
+    /// How long the text was.
+    len: u32,
+    pieces: Vec<Piece>,
+}
+
+#[derive(Debug)]
+enum Piece {
+    /// Text that was there.
+    Kept(Span),
+    /// Text that came.
+    New(String),
+}
+
+impl Patch {
+    /// A text as it is.
+    pub(super) fn of(text: &str) -> Self {
+        let all = Span::of(text);
+        Self { len: all.len(), pieces: vec![Piece::Kept(all)] }
+    }
+
+    /// Changes the text; the edits are of what it is now, in its order.
+    pub(super) fn apply(&mut self, edits: &[&Edit]) {
+        let mut changed = Vec::with_capacity(self.pieces.len() + 2 * edits.len());
+        let mut done = 0;
+        for edit in edits {
+            self.copy(Span::new(done, edit.span.start), &mut changed);
+            changed.push(Piece::New(edit.text.clone()));
+            done = edit.span.end;
+        }
+        self.copy(Span::new(done, u32::MAX), &mut changed);
+        self.pieces = changed;
+    }
+
+    /// The pieces of a range of the text as it is now, cut to it.
+    fn copy(&self, range: Span, to: &mut Vec<Piece>) {
+        let mut start = 0;
+        for piece in &self.pieces {
+            let end = start + piece.len();
+            let (from, until) = (range.start.max(start), range.end.min(end));
+            if from < until {
+                to.push(piece.part(Span::new(from - start, until - start)));
+            }
+            start = end;
+        }
+    }
+
+    /// What changed, as edits of the text that it was.
+    pub(super) fn edits(&self, file: FileId) -> Vec<Edit> {
+        let mut edits = Vec::new();
+        let (mut done, mut come) = (0, String::new());
+        let end = Piece::Kept(Span::at(self.len));
+        for piece in self.pieces.iter().chain([&end]) {
+            match piece {
+                Piece::New(text) => come += text,
+                Piece::Kept(span) => {
+                    if done < span.start || !come.is_empty() {
+                        let text = std::mem::take(&mut come);
+                        edits.push(Edit { file, span: Span::new(done, span.start), text });
+                    }
+                    done = span.end;
+                }
+            }
+        }
+        edits
+    }
+}
+
+impl Piece {
+    fn len(&self) -> u32 {
+        match self {
+            Self::Kept(span) => span.len(),
+            Self::New(text) => Span::of(text).len(),
+        }
+    }
+
+    fn part(&self, part: Span) -> Self {
+        match self {
+            Self::Kept(span) => Self::Kept(Span::new(span.start + part.start, span.start + part.end)),
+            Self::New(text) => Self::New(part.text(text).to_owned()),
+        }
+    }
+}

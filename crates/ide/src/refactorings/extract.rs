@@ -1,0 +1,312 @@
+//! Extract actions into a new movement of the same robot. Wherever the movement is listed the parts are listed one behind
+//! the other, so that the robot does the same as before.
+
+use pydslrep_analysis::{Database, Edit, FileId, Place as UseOf};
+use pydslrep_syntax::ast::{Entity, Movement};
+use pydslrep_syntax::{EntityKind, Span, format};
+use smol_str::{SmolStr, format_smolstr};
+
+use super::{Place, Refactoring, RefactoringKind};
+use crate::rename::stands_apart;
+
+/// The offer for selected actions; a cursor alone selects none.
+pub(super) fn extract(place: &Place<'_>) -> Option<Refactoring> {
+    if place.range.is_empty() {
+        return None;
+    }
+    let movement = place.movement()?;
+    let selected = |index: &usize| {
+        let span = movement.actions[*index].span;
+        span.start < place.range.end && place.range.start < span.end
+    };
+    let mut selection = (0..movement.actions.len()).filter(selected);
+    let first = selection.next()?;
+    let parts = Parts { place, movement, first, behind: selection.last().unwrap_or(first) + 1 };
+    Some(match parts.edits() {
+        Ok((name, edits)) => Refactoring::new(
+            format!("extract into the new movement `{name}`"),
+            RefactoringKind::Extract,
+            edits,
+        ),
+        Err(reason) => Refactoring::refused("extract into a new movement", RefactoringKind::Extract, reason),
+    })
+}
+
+/// A movement with some of its actions selected.
+struct Parts<'a> {
+    place: &'a Place<'a>,
+    movement: &'a Movement,
+    first: usize,
+    /// One behind the last.
+    behind: usize,
+}
+
+impl Parts<'_> {
+    fn edits(&self) -> Result<(SmolStr, Vec<Edit>), String> {
+        let (database, file) = (self.place.database, self.place.file);
+        let broken = || "the movement is not complete".to_owned();
+        let name = self.movement.name.as_ref().ok_or_else(broken)?;
+        let body = self.movement.body.ok_or_else(broken)?;
+        if self.first == 0 && self.behind == self.movement.actions.len() {
+            return Err(format!("these are all actions of `{}`: select some of them", name.text));
+        }
+        if self.movement.parallel.is_some() {
+            let reason = "is parallel: its parts would start together, not one after the other";
+            return Err(format!("`{}` {reason}", name.text));
+        }
+        if database.declarations(file, EntityKind::Movement, &name.text).len() != 1 {
+            return Err(format!("there are two movements called `{}`", name.text));
+        }
+        let mut free = free_names(database, file, &name.text);
+        let new = free.next().ok_or_else(broken)?;
+        let rest =
+            (self.first > 0 && self.behind < self.movement.actions.len()).then(|| free.next()).flatten();
+        let bounds = self.bounds(body);
+        let mut added =
+            self.entity(&new, Span::new(bounds[self.first], bounds[self.behind])).ok_or_else(broken)?;
+        let cut_end = match &rest {
+            Some(rest) => {
+                let end = bounds[self.movement.actions.len()];
+                added += &self.entity(rest, Span::new(bounds[self.behind], end)).ok_or_else(broken)?;
+                end
+            }
+            None => bounds[self.behind],
+        };
+        let mut edits = vec![
+            self.place.edit(Span::new(bounds[self.first], cut_end), self.join(bounds[self.first], cut_end)),
+            self.place.edit(Span::at(self.behind_entity(body)), added),
+        ];
+        let is_before = self.first == 0;
+        let names: Vec<&str> = [Some(new.as_str()), rest.as_deref()].into_iter().flatten().collect();
+        for place in database.references(file, EntityKind::Movement, &name.text) {
+            edits.push(listed(database, place, &names, is_before));
+        }
+        Ok((new, edits))
+    }
+
+    /// What stands for text that is cut out. Before it there may be a comment that its line ends.
+    fn join(&self, start: u32, end: u32) -> &'static str {
+        let begins = |at| self.place.text(Span::new(at, at + 1)).starts_with(['\n', '\r']);
+        if begins(start) && !begins(end) { self.place.database.line_ending(self.place.file) } else { "" }
+    }
+
+    /// Where the text of the actions is parted: before the first, between two, behind the last. What is on the line of
+    /// an action belongs to it, and so does what is on the lines before it.
+    fn bounds(&self, body: Span) -> Vec<u32> {
+        let actions = &self.movement.actions;
+        let ends = std::iter::once(body.start + 1).chain(actions.iter().map(|action| action.span.end));
+        let starts = actions.iter().map(|action| action.span.start).chain([body.end.saturating_sub(1)]);
+        let mut bounds: Vec<u32> = ends
+            .zip(starts)
+            .map(|(end, start)| {
+                let gap = Span::new(end, start);
+                self.line_end(gap).unwrap_or_else(|| self.behind_comments(gap))
+            })
+            .collect();
+        if let (Some(last), Some(action)) = (bounds.last_mut(), actions.last()) {
+            *last = self.behind_comments(Span::new(action.span.end, body.end.saturating_sub(1)));
+        }
+        bounds
+    }
+
+    /// The first end of a line in a gap that is not inside of a comment.
+    fn line_end(&self, gap: Span) -> Option<u32> {
+        let text = self.place.text(gap);
+        let ends = (gap.start..).zip(text.bytes()).filter(|(_, byte)| matches!(byte, b'\n' | b'\r'));
+        let mut ends = ends.map(|(at, _)| at);
+        ends.find(|at| !self.comments(gap).any(|comment| comment.start <= *at && *at < comment.end))
+    }
+
+    fn behind_comments(&self, gap: Span) -> u32 {
+        self.comments(gap).last().map_or(gap.start, |comment| comment.end)
+    }
+
+    fn comments(&self, gap: Span) -> impl Iterator<Item = Span> {
+        let lexemes = self.place.entity.parse.lexemes.iter();
+        let inside = move |span: &Span| gap.start <= span.start && span.end <= gap.end;
+        lexemes.filter(|(token, _)| token.is_comment()).map(|(_, span)| *span).filter(inside)
+    }
+
+    /// Where another entity can stand: at the end of the line.
+    fn behind_entity(&self, body: Span) -> u32 {
+        let end = self.place.entity.span.len();
+        let behind = Span::new(body.end, end);
+        let is_last = self.place.entity.span.end == Span::of_file(self.place).end;
+        self.line_end(behind).unwrap_or(if is_last { self.behind_comments(behind) } else { body.end })
+    }
+
+    /// A new movement with the actions of a range, to stand behind another entity.
+    fn entity(&self, name: &str, actions: Span) -> Option<String> {
+        let line_end = self.place.database.line_ending(self.place.file);
+        let robot = self.place.text(self.movement.robot.as_ref()?.span);
+        let actions = self.place.text(actions);
+        let whole = format!("movement {name} of {robot} {{{line_end}{actions}{line_end}}}{line_end}");
+        Some(format!("{line_end}{line_end}{}", format(&whole).trim_end()))
+    }
+}
+
+trait OfFile {
+    fn of_file(place: &Place<'_>) -> Span;
+}
+
+impl OfFile for Span {
+    fn of_file(place: &Place<'_>) -> Span {
+        let len = place.database.text(place.file).map_or(0, |text| text.len_bytes());
+        Span::new(0, u32::try_from(len).unwrap_or(u32::MAX))
+    }
+}
+
+/// Names for parts of a movement that mean nothing yet wherever the movement can be listed.
+fn free_names(database: &Database, file: FileId, name: &SmolStr) -> impl Iterator<Item = SmolStr> {
+    let files: Vec<FileId> = std::iter::once(file).chain(database.importing(file)).collect();
+    let is_taken = move |name: &SmolStr| {
+        files.iter().any(|file| {
+            !database.candidates(*file, EntityKind::Movement, name).is_empty()
+                || !database.users(*file, EntityKind::Movement, name).is_empty()
+                || database.may_hide(*file, name)
+        })
+    };
+    (2_u32..).map(move |number| format_smolstr!("{name}_{number}")).filter(move |name| !is_taken(name))
+}
+
+/// The edit that lists more movements before or behind one that is listed.
+fn listed(database: &Database, place: UseOf, names: &[&str], is_before: bool) -> Edit {
+    let separator = if has_commas(database, place) { ", " } else { " " };
+    let names = names.join(separator);
+    let (at, text) = if is_before {
+        let gap = if stands_apart(database, place) { "" } else { " " };
+        (place.span.start, format!("{gap}{names}{separator}"))
+    } else {
+        (place.span.end, format!("{separator}{names}"))
+    };
+    Edit { file: place.file, span: Span::at(at), text }
+}
+
+fn has_commas(database: &Database, place: UseOf) -> bool {
+    let Some(entity) = database.entity_at(place.file, place.span.start) else { return false };
+    let Some(Entity::Environment(environment)) = &entity.parse.entity else { return false };
+    let list = environment.movements.as_ref();
+    list.is_some_and(|list| database.slice(place.file, list.span.shifted(entity.span.start)).contains(','))
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::refactorings::testing::check;
+
+    #[test]
+    fn from_the_middle() {
+        check(
+            "  // ahead\n  move 4.0 meters // far\n  // around\n  $0turn left // ho\n  turn$0 left\n\n  // back\n  move 1 meters\n  // done",
+            &expect![[r#"
+                Rewrite: convert all moves of `tour` to centimeters
+                    |   move 400.0 centimeters // far
+                    |   // around
+                    |   turn left // ho
+                    |   turn left
+                    | 
+                    |   // back
+                    |   move 100 centimeters
+                Rewrite: write the default speed out in all moves of `tour`
+                    |   move 4.0 meters at 9.0 // far
+                    |   // around
+                    |   turn left // ho
+                    |   turn left
+                    | 
+                    |   // back
+                    |   move 1 meters at 9.0
+                Extract: extract into the new movement `tour_2`
+                    | }
+                    | 
+                    | movement tour_2 of rover {
+                    |   // around
+                    |   turn left // ho
+                    |   turn left
+                    | }
+                    | 
+                    | movement tour_3 of rover {
+                    |   // back
+                    |   move 1 meters
+                    |   // done
+                    | }
+                    | environment yard has { rover } robots with { tour tour_2 tour_3 } moves
+            "#]],
+        );
+    }
+
+    #[test]
+    fn from_the_start_and_from_the_end() {
+        check(
+            "  $0move 4 meters\n  turn$0 left\n  move 1 meters",
+            &expect![[r#"
+                Rewrite: convert to centimeters
+                    |   move 400 centimeters
+                Rewrite: convert all moves of `tour` to centimeters
+                    |   move 400 centimeters
+                    |   turn left
+                    |   move 100 centimeters
+                Rewrite: write the default speed out
+                    |   move 4 meters at 9.0
+                Rewrite: write the default speed out in all moves of `tour`
+                    |   move 4 meters at 9.0
+                    |   turn left
+                    |   move 1 meters at 9.0
+                Extract: extract into the new movement `tour_2`
+                    |   move 1 meters
+                    | }
+                    | 
+                    | movement tour_2 of rover {
+                    |   move 4 meters
+                    |   turn left
+                    | }
+                    | environment yard has { rover } robots with { tour_2 tour } moves
+            "#]],
+        );
+        check(
+            "  move 4 meters\n  turn left $0move 1 meters$0",
+            &expect![[r#"
+                Rewrite: convert to centimeters
+                    |   turn left move 100 centimeters
+                Rewrite: convert all moves of `tour` to centimeters
+                    |   move 400 centimeters
+                    |   turn left move 100 centimeters
+                Rewrite: write the default speed out
+                    |   turn left move 1 meters at 9.0
+                Rewrite: write the default speed out in all moves of `tour`
+                    |   move 4 meters at 9.0
+                    |   turn left move 1 meters at 9.0
+                Extract: extract into the new movement `tour_2`
+                    |   turn left
+                    | }
+                    | 
+                    | movement tour_2 of rover {
+                    |   move 1 meters
+                    | }
+                    | environment yard has { rover } robots with { tour tour_2 } moves
+            "#]],
+        );
+    }
+
+    #[test]
+    fn not_all_and_not_nothing() {
+        check(
+            "  $0move 4 centimeters\n  slam$0",
+            &expect![[r#"
+                Rewrite: convert to meters
+                    |   move 0.04 meters
+                Rewrite: write the default speed out
+                    |   move 4 centimeters at 9.0
+                Extract: extract into a new movement
+                  not here: these are all actions of `tour`: select some of them
+            "#]],
+        );
+        check(
+            "  move $04 meters at 10",
+            &expect![[r#"
+                Rewrite: convert to centimeters
+                    |   move 400 centimeters at 10
+            "#]],
+        );
+    }
+}

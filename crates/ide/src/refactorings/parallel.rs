@@ -1,0 +1,295 @@
+//! Make movements parallel or sequential. Offers say which movements then start together or no longer do; none makes a
+//! robot do two things at once, and none leaves a `parallel` that means nothing.
+
+use pydslrep_analysis::{Database, Edit, EntityId};
+use pydslrep_syntax::ast::{Entity, Movement};
+use pydslrep_syntax::{EntityKind, Span, Token};
+
+use super::{Place, Refactoring, RefactoringKind};
+
+/// The offers for the movement whose head has the cursor.
+pub(super) fn change(place: &Place<'_>) -> Vec<Refactoring> {
+    let Some(movement) = place.movement() else { return Vec::new() };
+    let (Some(name), Some(body)) = (&movement.name, movement.body) else { return Vec::new() };
+    if place.range.start > body.start {
+        return Vec::new();
+    }
+    let lists = Lists::of(place.database, place.entity.id);
+    let Some(lists) = lists else { return Vec::new() };
+    if movement.parallel.is_some() {
+        return vec![make_sequential(&lists, place.entity.id)];
+    }
+    let offers = make_parallel(&lists, place.entity.id);
+    offers.unwrap_or_else(|reason| {
+        let title = format!("make `{}` parallel", name.text);
+        vec![Refactoring::refused(title, RefactoringKind::Rewrite, reason)]
+    })
+}
+
+fn make_sequential(lists: &Lists<'_>, id: EntityId) -> Refactoring {
+    let mut changed = vec![id];
+    let mut next = 0;
+    // Who ran beside one of them and would run beside nobody any more becomes sequential, too.
+    while let Some(&id) = changed.get(next) {
+        next += 1;
+        for other in lists.beside(id, |id| lists.is_parallel(id)) {
+            let is_left = |id| lists.is_parallel(id) && !changed.contains(&id);
+            let lists = Lists::of(lists.database, other);
+            if !changed.contains(&other) && lists.is_some_and(|lists| lists.beside(other, is_left).is_empty())
+            {
+                changed.push(other);
+            }
+        }
+    }
+    let title = match changed[..] {
+        [_] => format!("make {} sequential: it runs alone", lists.names(&changed)),
+        _ => format!("make {} sequential: one runs after the other", lists.names(&changed)),
+    };
+    let edits = changed.iter().filter_map(|id| lists.remove_parallel(*id)).collect();
+    Refactoring::new(title, RefactoringKind::Rewrite, edits)
+}
+
+fn make_parallel(lists: &Lists<'_>, id: EntityId) -> Result<Vec<Refactoring>, String> {
+    let running = lists.beside(id, |id| lists.is_parallel(id));
+    if !running.is_empty() {
+        if let Some(conflict) = lists.conflict(&[id]) {
+            return Err(conflict);
+        }
+        let title = format!(
+            "make {} parallel: it starts together with {}",
+            lists.names(&[id]),
+            lists.names(&running)
+        );
+        let edits = lists.add_parallel(id).into_iter().collect();
+        return Ok(vec![Refactoring::new(title, RefactoringKind::Rewrite, edits)]);
+    }
+    let neighbours = lists.beside(id, |_| true);
+    if neighbours.is_empty() {
+        return Err(
+            "no environment lists it next to another movement that it could start together with".to_owned()
+        );
+    }
+    let mut conflicts = Vec::new();
+    let mut offers = Vec::new();
+    for other in neighbours {
+        let both = [id, other];
+        if Lists::of(lists.database, other).is_none() {
+            conflicts.push(format!("an environment that lists {} is not complete", lists.names(&[other])));
+            continue;
+        }
+        match lists.conflict(&both) {
+            Some(conflict) => conflicts.push(conflict),
+            None => offers.push(Refactoring::new(
+                format!("make {} parallel: they start together", lists.names(&both)),
+                RefactoringKind::Rewrite,
+                both.iter().filter_map(|id| lists.add_parallel(*id)).collect(),
+            )),
+        }
+    }
+    if offers.is_empty() { Err(conflicts.swap_remove(0)) } else { Ok(offers) }
+}
+
+/// The environments that list a movement.
+struct Lists<'a> {
+    database: &'a Database,
+    /// What each lists, in order.
+    lists: Vec<Vec<EntityId>>,
+}
+
+impl<'a> Lists<'a> {
+    /// `None` where something in one of them cannot be understood.
+    fn of(database: &'a Database, movement: EntityId) -> Option<Self> {
+        let file = database.file_of(movement)?;
+        let name = database.tree(movement)?.name()?;
+        let mut seen = Vec::new();
+        let mut lists = Vec::new();
+        for place in database.references(file, EntityKind::Movement, &name.text) {
+            let entity = database.entity_at(place.file, place.span.start)?;
+            let Entity::Environment(environment) = entity.parse.entity.as_ref()? else { continue };
+            if seen.contains(&entity.id) {
+                continue;
+            }
+            seen.push(entity.id);
+            if !entity.parse.errors.is_empty() {
+                return None;
+            }
+            let names = &environment.movements.as_ref()?.names;
+            let listed = names
+                .iter()
+                .map(|name| database.resolve(place.file, EntityKind::Movement, &name.text).entity());
+            lists.push(listed.collect::<Option<_>>()?);
+        }
+        Some(Self { database, lists })
+    }
+
+    fn tree(&self, id: EntityId) -> Option<&'a Movement> {
+        match self.database.tree(id)? {
+            Entity::Movement(movement) => Some(movement),
+            _ => None,
+        }
+    }
+
+    fn is_parallel(&self, id: EntityId) -> bool {
+        self.tree(id).is_some_and(|movement| movement.parallel.is_some())
+    }
+
+    /// The other movements of a kind that stand right before or behind one.
+    fn beside(&self, id: EntityId, wanted: impl Fn(EntityId) -> bool) -> Vec<EntityId> {
+        let mut found = Vec::new();
+        for pair in self.lists.iter().flat_map(|list| list.windows(2)) {
+            for (one, other) in [(pair[0], pair[1]), (pair[1], pair[0])] {
+                if one == id && other != id && wanted(other) && !found.contains(&other) {
+                    found.push(other);
+                }
+            }
+        }
+        found
+    }
+
+    /// Why some movements cannot become parallel: a robot would do two things at once.
+    fn conflict(&self, changed: &[EntityId]) -> Option<String> {
+        let others = changed.iter().filter_map(|id| Lists::of(self.database, *id));
+        let lists: Vec<Vec<EntityId>> = others.flat_map(|lists| lists.lists).collect();
+        let is_parallel = |id: &EntityId| changed.contains(id) || self.is_parallel(*id);
+        for group in lists.iter().flat_map(|list| list.chunk_by(|a, b| is_parallel(a) && is_parallel(b))) {
+            for (index, id) in group.iter().enumerate() {
+                let rival = group[..index].iter().find(|other| self.robot(**other) == self.robot(*id));
+                let robot = self.tree(*id).and_then(|movement| movement.robot.as_ref());
+                if let (Some(rival), Some(robot)) = (rival, robot) {
+                    let what = if rival == id {
+                        format!("{} twice", self.names(&[*id]))
+                    } else {
+                        self.names(&[*rival, *id])
+                    };
+                    return Some(format!("`{}` cannot run {what} at the same time", robot.text));
+                }
+            }
+        }
+        None
+    }
+
+    fn robot(&self, id: EntityId) -> Option<EntityId> {
+        let file = self.database.file_of(id)?;
+        self.database.resolve(file, EntityKind::Robot, &self.tree(id)?.robot.as_ref()?.text).entity()
+    }
+
+    /// In words: "`a`, `b` and `c`".
+    fn names(&self, ids: &[EntityId]) -> String {
+        let name = |id: &EntityId| self.tree(*id).and_then(|movement| movement.name.as_ref());
+        let names: Vec<String> = ids.iter().filter_map(name).map(|name| format!("`{}`", name.text)).collect();
+        match names.split_last() {
+            Some((last, [])) => last.clone(),
+            Some((last, before)) => format!("{} and {last}", before.join(", ")),
+            None => String::new(),
+        }
+    }
+
+    fn add_parallel(&self, id: EntityId) -> Option<Edit> {
+        let entity = self.database.entity(id)?;
+        let (_, keyword) = entity.parse.lexemes.iter().find(|(token, _)| *token == Token::Movement)?;
+        let span = Span::at(keyword.start).shifted(entity.span.start);
+        Some(Edit { file: entity.file, span, text: "parallel ".to_owned() })
+    }
+
+    fn remove_parallel(&self, id: EntityId) -> Option<Edit> {
+        let entity = self.database.entity(id)?;
+        let parallel = self.tree(id)?.parallel?;
+        let (_, next) = entity.parse.lexemes.iter().find(|(_, span)| span.start >= parallel.end)?;
+        let span = Span::new(parallel.start, next.start).shifted(entity.span.start);
+        Some(Edit { file: entity.file, span, text: String::new() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::{Expect, expect};
+
+    use crate::refactorings::testing::check_whole;
+
+    const ROBOTS: &str = "wheel l with radius 4\nwheel r with radius 4\nrobot a with port 1 has { l r } wheels\n\
+                          robot b with port 2 has { l r } wheels\n";
+
+    #[track_caller]
+    fn check(movements: &str, list: &str, expected: &Expect) {
+        check_whole(
+            &format!("{ROBOTS}{movements}\nenvironment e has {{ a b }} robots with {{ {list} }} moves"),
+            expected,
+        );
+    }
+
+    const TWO: &str = "$0movement go of a { turn left }\nmovement come of b { turn left }\nmovement rest of a { turn left }";
+
+    #[test]
+    fn neighbours_become_parallel_together() {
+        check(
+            TWO,
+            "go come rest",
+            &expect![[r#"
+                Rewrite: make `go` and `come` parallel: they start together
+                    | parallel movement go of a { turn left }
+                    | parallel movement come of b { turn left }
+            "#]],
+        );
+        check(
+            TWO,
+            "rest go",
+            &expect![[r#"
+                Rewrite: make `go` parallel
+                  not here: `a` cannot run `rest` and `go` at the same time
+            "#]],
+        );
+        check(
+            TWO,
+            "go",
+            &expect![[r#"
+                Rewrite: make `go` parallel
+                  not here: no environment lists it next to another movement that it could start together with
+            "#]],
+        );
+    }
+
+    #[test]
+    fn one_joins_those_that_are() {
+        let movements = "movement $0go of a { turn left }\nparallel movement come of b { turn left }";
+        check(
+            movements,
+            "go come",
+            &expect![[r#"
+                Rewrite: make `go` parallel: it starts together with `come`
+                    | parallel movement go of a { turn left }
+            "#]],
+        );
+        check(
+            movements,
+            "go come go",
+            &expect![[r#"
+                Rewrite: make `go` parallel
+                  not here: `a` cannot run `go` and `go` at the same time
+            "#]],
+        );
+    }
+
+    #[test]
+    fn who_is_left_alone_becomes_sequential_too() {
+        let movements =
+            "parallel movement $0go of a { turn left }\nparallel movement come of b { turn left }";
+        check(
+            movements,
+            "go come",
+            &expect![[r#"
+                Rewrite: make `go` and `come` sequential: one runs after the other
+                    | movement go of a { turn left }
+                    | movement come of b { turn left }
+            "#]],
+        );
+        check(
+            movements,
+            "come go come",
+            &expect![[r#"
+                Rewrite: make `go` and `come` sequential: one runs after the other
+                    | movement go of a { turn left }
+                    | movement come of b { turn left }
+            "#]],
+        );
+    }
+}
