@@ -185,5 +185,5 @@ fn nothing_is_left_that_can_be_fixed_safely() {
         let left = database.diagnostics(file).into_iter().find(is_safely_fixed);
         assert_eq!(left, None, "of\n{text}\nbecame\n{after}");
     }
-    assert!(mended > 10);
+    assert!(mended > 0);
 }

@@ -101,7 +101,14 @@ fn server_capabilities(client: &ClientFeatures) -> ServerCapabilities {
         ),
         code_action_provider: Some(
             CodeActionOptions {
-                code_action_kinds: Some(vec![CodeActionKind::QUICKFIX, code_actions::GENERATE_SCRIPT_KIND]),
+                code_action_kinds: Some(vec![
+                    CodeActionKind::QUICKFIX,
+                    CodeActionKind::REFACTOR_EXTRACT,
+                    CodeActionKind::REFACTOR_INLINE,
+                    CodeActionKind::REFACTOR_REWRITE,
+                    CodeActionKind::SOURCE_FIX_ALL,
+                    code_actions::GENERATE_SCRIPT_KIND,
+                ]),
                 resolve_provider: Some(client.resolve_edits),
                 ..CodeActionOptions::default()
             }

@@ -21,7 +21,7 @@ pub(super) fn extract(place: &Place<'_>) -> Option<Refactoring> {
     };
     let mut selection = (0..movement.actions.len()).filter(selected);
     let first = selection.next()?;
-    let parts = Parts { place, movement, first, behind: selection.last().unwrap_or(first) + 1 };
+    let parts = Parts { place, movement, first, behind: selection.next_back().unwrap_or(first) + 1 };
     Some(match parts.edits() {
         Ok((name, edits)) => Refactoring::new(
             format!("extract into the new movement `{name}`"),
@@ -131,7 +131,8 @@ impl Parts<'_> {
     fn behind_entity(&self, body: Span) -> u32 {
         let end = self.place.entity.span.len();
         let behind = Span::new(body.end, end);
-        let is_last = self.place.entity.span.end == Span::of_file(self.place).end;
+        let next = self.place.database.entity_at(self.place.file, self.place.entity.span.end);
+        let is_last = next.is_none_or(|next| next.id == self.place.entity.id);
         self.line_end(behind).unwrap_or(if is_last { self.behind_comments(behind) } else { body.end })
     }
 
@@ -142,17 +143,6 @@ impl Parts<'_> {
         let actions = self.place.text(actions);
         let whole = format!("movement {name} of {robot} {{{line_end}{actions}{line_end}}}{line_end}");
         Some(format!("{line_end}{line_end}{}", format(&whole).trim_end()))
-    }
-}
-
-trait OfFile {
-    fn of_file(place: &Place<'_>) -> Span;
-}
-
-impl OfFile for Span {
-    fn of_file(place: &Place<'_>) -> Span {
-        let len = place.database.text(place.file).map_or(0, |text| text.len_bytes());
-        Span::new(0, u32::try_from(len).unwrap_or(u32::MAX))
     }
 }
 

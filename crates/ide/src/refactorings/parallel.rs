@@ -264,7 +264,7 @@ mod tests {
             "go come go",
             &expect![[r#"
                 Rewrite: make `go` parallel
-                  not here: `a` cannot run `go` and `go` at the same time
+                  not here: `a` cannot run `go` twice at the same time
             "#]],
         );
     }

@@ -80,7 +80,7 @@ fn share(place: &Place<'_>, name: &str, selected: &[&Move], all: &[&Move]) -> Op
     (!edits.is_empty()).then(|| Refactoring::new(title, RefactoringKind::Rewrite, edits))
 }
 
-fn speed<'a>(step: &'a Move) -> Option<&'a Number> {
+fn speed(step: &Move) -> Option<&Number> {
     step.speed.as_ref()?.value.as_ref()
 }
 

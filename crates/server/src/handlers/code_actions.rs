@@ -1,4 +1,7 @@
-//! Code actions: quick fixes of diagnostics first, then **Generate script** for every environment.
+//! Code actions: quick fixes of diagnostics first, then refactorings, then what is done to a whole file, last of it
+//! **Generate script** for every environment.
+
+mod rewriting;
 
 use pydslrep_analysis as analysis;
 use pydslrep_analysis::{EntityId, FileId};
@@ -11,6 +14,7 @@ use tower_lsp::ls_types::{
     TextDocumentEdit, TextEdit, Uri, WorkspaceEdit,
 };
 
+use self::rewriting::FixAllOf;
 use crate::documents::Document;
 use crate::handlers::diagnostics;
 use crate::handlers::scripts::{self, ScriptOf};
@@ -35,6 +39,13 @@ pub(crate) fn code_actions(state: &State, params: &CodeActionParams) -> Option<C
     let mut actions = Vec::new();
     if wanted(&CodeActionKind::QUICKFIX) && state.client.action_literals {
         actions.extend(quick_fixes(state, document, file, params));
+        actions.extend(rewriting::fix_all_of_a_code(state, document, file, params));
+    }
+    if state.client.action_literals {
+        actions.extend(rewriting::refactorings(state, document, file, params, wanted));
+    }
+    if wanted(&CodeActionKind::SOURCE_FIX_ALL) && state.client.action_literals {
+        actions.extend(rewriting::fix_all(state, document, file));
     }
     if wanted(&GENERATE_SCRIPT_KIND) {
         actions.extend(script_actions(state, document, file));
@@ -179,9 +190,13 @@ fn disabled(state: &State, name: &str, reason: String) -> Option<CodeActionOrCom
     })
 }
 
-/// `codeAction/resolve`: generates the script of an action that was chosen.
+/// `codeAction/resolve`: finds the edit of an action that was chosen.
 pub(crate) fn resolve(state: &State, action: CodeAction) -> Result<CodeAction> {
     let Some(data) = &action.data else { return Ok(action) };
+    if let Ok(which) = serde_json::from_value::<FixAllOf>(data.clone()) {
+        let edit = Some(workspace_edit(state, &rewriting::edits(state, &which)));
+        return Ok(CodeAction { edit, ..action });
+    }
     let which: ScriptOf = serde_json::from_value(data.clone())
         .map_err(|error| Error::invalid_params(format!("not an action of this server: {error}")))?;
     let script = scripts::generate(state, &which)?;

@@ -1,0 +1,114 @@
+//! Refactorings, and fixing many problems at once.
+
+use pydslrep_analysis::{Database, Diagnostic, Edit, FileId};
+use pydslrep_ide as ide;
+use serde::{Deserialize, Serialize};
+use tower_lsp::ls_types::{CodeAction, CodeActionDisabled, CodeActionKind, CodeActionOrCommand, CodeActionParams, Uri};
+
+use super::workspace_edit;
+use crate::documents::Document;
+use crate::state::State;
+
+/// What to fix, carried by an action until it is chosen: finding the edits means trying them.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub(crate) struct FixAllOf {
+    /// The program.
+    pub(crate) uri: Uri,
+    /// The code of the problems; all codes where it is `None`.
+    pub(crate) fix_all: Option<String>,
+}
+
+/// Every refactoring that fits what is selected; those that cannot be done with the reason, if the client shows it.
+pub(super) fn refactorings(
+    state: &State,
+    document: &Document,
+    file: FileId,
+    params: &CodeActionParams,
+    wanted: impl Fn(&CodeActionKind) -> bool,
+) -> Vec<CodeActionOrCommand> {
+    let offers = ide::refactorings(&state.database, file, state.span(document, params.range));
+    let action = |offer: ide::Refactoring| {
+        let kind = kind(offer.kind);
+        if !wanted(&kind) {
+            return None;
+        }
+        let action = CodeAction { title: offer.title, kind: Some(kind), ..CodeAction::default() };
+        Some(match offer.edits {
+            Ok(edits) => CodeAction { edit: Some(workspace_edit(state, &edits)), ..action },
+            Err(reason) if state.client.disabled_actions => {
+                CodeAction { disabled: Some(CodeActionDisabled { reason }), ..action }
+            }
+            Err(_) => return None,
+        })
+    };
+    offers.into_iter().filter_map(action).map(Into::into).collect()
+}
+
+fn kind(kind: ide::RefactoringKind) -> CodeActionKind {
+    match kind {
+        ide::RefactoringKind::Extract => CodeActionKind::REFACTOR_EXTRACT,
+        ide::RefactoringKind::Inline => CodeActionKind::REFACTOR_INLINE,
+        ide::RefactoringKind::Rewrite => CodeActionKind::REFACTOR_REWRITE,
+    }
+}
+
+/// "fix all … problems" for the codes of the problems in the range that are there more than once.
+pub(super) fn fix_all_of_a_code(
+    state: &State,
+    document: &Document,
+    file: FileId,
+    params: &CodeActionParams,
+) -> Vec<CodeActionOrCommand> {
+    let range = state.span(document, params.range);
+    let mut shown = shown(&state.database, document, file);
+    shown.retain(|problem| problem.span.start <= range.end && range.start <= problem.span.end);
+    let codes = ide::codes_to_fix_all(&state.database, file, &shown).into_iter();
+    let action = |code: &str| {
+        let title = format!("fix all `{code}` problems");
+        offer(state, document, title, CodeActionKind::QUICKFIX, Some(code))
+    };
+    codes.map(action).collect()
+}
+
+/// `source.fixAll`, where there is anything to fix.
+pub(super) fn fix_all(state: &State, document: &Document, file: FileId) -> Option<CodeActionOrCommand> {
+    let any = shown(&state.database, document, file).iter().any(ide::is_safely_fixed);
+    let title = "fix all that leaves nothing to decide".to_owned();
+    any.then(|| offer(state, document, title, CodeActionKind::SOURCE_FIX_ALL, None))
+}
+
+/// The problems that are not switched off.
+fn shown(database: &Database, document: &Document, file: FileId) -> Vec<Diagnostic> {
+    let mut problems = database.diagnostics(file);
+    problems.retain(|problem| is_shown(document, problem));
+    problems
+}
+
+fn is_shown(document: &Document, problem: &Diagnostic) -> bool {
+    document.settings.severities.severity(problem.code(), problem.severity).is_some()
+}
+
+fn offer(
+    state: &State,
+    document: &Document,
+    title: String,
+    kind: CodeActionKind,
+    code: Option<&str>,
+) -> CodeActionOrCommand {
+    let action = CodeAction { title, kind: Some(kind), ..CodeAction::default() };
+    let which = FixAllOf { uri: document.uri.clone(), fix_all: code.map(str::to_owned) };
+    if state.client.resolve_edits {
+        return CodeAction { data: serde_json::to_value(which).ok(), ..action }.into();
+    }
+    CodeAction { edit: Some(workspace_edit(state, &edits(state, &which))), ..action }.into()
+}
+
+/// The edits that fix what is meant, in the text as it is now.
+pub(super) fn edits(state: &State, which: &FixAllOf) -> Vec<Edit> {
+    let Some((document, file)) = state.analysed(&which.uri) else { return Vec::new() };
+    let is_meant = |problem: &Diagnostic| {
+        is_shown(document, problem) && which.fix_all.as_ref().is_none_or(|code| code == problem.code())
+    };
+    ide::fix_all(&state.database, file, is_meant)
+}
