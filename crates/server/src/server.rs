@@ -107,6 +107,10 @@ impl LanguageServer for Server {
         synchronization::change(&mut self.state(), &params);
     }
 
+    async fn did_save(&self, params: DidSaveTextDocumentParams) {
+        scripts::save(&mut self.state(), &params.text_document.uri, &self.outbox);
+    }
+
     async fn did_close(&self, params: DidCloseTextDocumentParams) {
         synchronization::close(&mut self.state(), &params);
     }

@@ -1,6 +1,6 @@
 //! What is set for each document: by the client, and by the `pydslrep.toml` that is nearest to it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use pydslrep_config::{Config, FILE_NAME, Problem};
@@ -8,6 +8,9 @@ use pydslrep_files::project_folder;
 use rustc_hash::FxHashMap;
 use serde_json::Value;
 
+use tower_lsp::ls_types::Uri;
+
+use crate::documents::key;
 use crate::state::State;
 
 /// What is set, and where.
@@ -64,6 +67,22 @@ impl State {
         if *document.settings != settings {
             document.settings = Arc::new(settings);
         }
+    }
+
+    /// The folder for the scripts of a program: beside the file that says so, or in the client's folder if the client
+    /// does. `None` if nobody does.
+    pub(crate) fn output_folder(&self, program: &Uri) -> Option<PathBuf> {
+        let key = key(program);
+        let folder = key.rsplit_once('/').filter(|_| key.starts_with('/'))?.0;
+        let output = self.documents.get(&key)?.settings.output.clone()?;
+        let base = if self.settings.client.output.is_some() {
+            let open = self.folders.iter().filter(|open| key.starts_with(open.as_str()));
+            open.max_by_key(|open| open.len()).map_or(folder, String::as_str)
+        } else {
+            let file = self.settings.nearest.get(folder)?.as_ref()?;
+            file.rsplit_once('/')?.0
+        };
+        Some(Path::new(base).join(output))
     }
 
     /// The key of the settings file that a program belongs to; it is read if it was not yet.

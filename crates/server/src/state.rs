@@ -47,6 +47,8 @@ pub(crate) struct State {
     pub(crate) stale: Stale,
     /// Requests that are answered when any diagnostics change.
     pub(crate) waiting: Vec<oneshot::Sender<()>>,
+    /// What was told about scripts that are written on every save.
+    pub(crate) told: FxHashSet<String>,
     /// Planned paths that the client has.
     pub(crate) watched: Vec<Watched>,
     /// Child processes that can be cancelled, by the names of their progress.

@@ -1,10 +1,10 @@
 //! The script of an environment: where it goes, and how it gets there in every client.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use pydslrep_analysis::EntityId;
+use pydslrep_analysis::{self as analysis, EntityId};
 use pydslrep_script::Target;
 use serde::{Deserialize, Serialize};
 use tower_lsp::jsonrpc::{self, Error, ErrorCode};
@@ -75,16 +75,27 @@ pub(crate) fn environment(state: &State, which: &ScriptOf) -> jsonrpc::Result<En
 /// Generates the script of an environment; the error says why there is none.
 pub(crate) fn of_environment(state: &State, program: &Uri, id: EntityId) -> Result<Script, String> {
     let environment = state.database.environment(id).map_err(|blocked| blocked.reason())?;
-    let uri = address(program, &pydslrep_script::file_name(&environment)).ok_or(NO_PLACE)?;
-    let text =
-        pydslrep_script::generate(&environment, Target::CoppeliaSim).map_err(|error| error.to_string())?;
+    let target = match state.document(program).map(|document| document.settings.target) {
+        Some(analysis::Target::VRep) => return Err(NO_VREP.to_owned()),
+        Some(analysis::Target::CoppeliaSim) | None => Target::CoppeliaSim,
+    };
+    let file_name = pydslrep_script::file_name(&environment);
+    let uri = match state.output_folder(program) {
+        Some(folder) => Uri::from_file_path(folder.join(file_name)),
+        None => address(program, &file_name),
+    };
+    let uri = uri.ok_or(NO_PLACE)?;
+    let text = pydslrep_script::generate(&environment, target).map_err(|error| error.to_string())?;
     Ok(Script { uri, text })
 }
 
 /// Why a document that was never saved has no script.
 const NO_PLACE: &str = "save the program first: its script goes into the same folder";
 
-/// Where the script of a program goes: into the same folder. `None` if the program is in none.
+const NO_VREP: &str =
+    "scripts for `vrep` cannot be generated yet: set `target` to `coppeliasim`, V-REP's successor";
+
+/// Where the script of a program goes, if nothing else is set: into the same folder. `None` if the program is in none.
 fn address(program: &Uri, file_name: &str) -> Option<Uri> {
     let whole = program.as_str();
     let address = whole.split(['?', '#']).next()?;
@@ -134,16 +145,52 @@ pub(crate) fn which(params: &ExecuteCommandParams) -> jsonrpc::Result<ScriptOf> 
 pub(crate) fn execute(state: &State, params: &ExecuteCommandParams, outbox: &Outbox) -> jsonrpc::Result<Uri> {
     let script = generate(state, &which(params)?)?;
     let path = path(&script.uri).ok_or_else(|| failure(NO_PLACE.to_owned()))?;
-    // Nothing could bring back what is overwritten here.
-    if fs::read(&path).is_ok_and(|content| !pydslrep_script::may_replace(&content)) {
-        let reason = "exists and is no generated script: move it away, or rename the environment";
-        return Err(failure(format!("{} {reason}", path.display())));
-    }
-    fs::write(&path, &script.text)
-        .map_err(|error| failure(format!("cannot write {}: {error}", path.display())))?;
-    let message = format!("wrote {}", path.display());
-    outbox.notify("window/showMessage", &ShowMessageParams { typ: MessageType::INFO, message });
+    write(&path, &script.text).map_err(failure)?;
+    tell(outbox, MessageType::INFO, format!("wrote {}", path.display()));
     Ok(script.uri)
+}
+
+/// Writes the scripts of all environments without errors, if that is set. Each script is told of once, and so is each
+/// that cannot be written: a person who saves every minute knows by then.
+pub(crate) fn save(state: &mut State, program: &Uri, outbox: &Outbox) {
+    let Some((document, file)) = state.analysed(program) else { return };
+    if !document.settings.generate_on_save {
+        return;
+    }
+    let environments = state.database.environments(file);
+    let generated = environments.iter().filter_map(|(id, _)| of_environment(state, &document.uri, *id).ok());
+    let scripts: Vec<Script> = generated.collect();
+    for script in scripts {
+        let Some(path) = path(&script.uri) else { continue };
+        let (kind, message) = match write(&path, &script.text) {
+            Ok(()) => (MessageType::INFO, format!("wrote {}, as on every save from now on", path.display())),
+            Err(reason) => (MessageType::WARNING, reason),
+        };
+        if state.told.insert(message.clone()) {
+            tell(outbox, kind, message);
+        }
+    }
+}
+
+/// Writes a script to its place, but never over a file that is none; the error says why not.
+fn write(path: &Path, text: &str) -> Result<(), String> {
+    let before = fs::read(path);
+    // Nothing could bring back what is overwritten here.
+    if before.as_ref().is_ok_and(|content| !pydslrep_script::may_replace(content)) {
+        let reason = "exists and is no generated script: move it away, or rename the environment";
+        return Err(format!("{} {reason}", path.display()));
+    }
+    if before.is_ok_and(|content| content == text.as_bytes()) {
+        return Ok(());
+    }
+    let folder = path.parent().map_or(Ok(()), fs::create_dir_all);
+    folder
+        .and_then(|()| fs::write(path, text))
+        .map_err(|error| format!("cannot write {}: {error}", path.display()))
+}
+
+fn tell(outbox: &Outbox, typ: MessageType, message: String) {
+    outbox.notify("window/showMessage", &ShowMessageParams { typ, message });
 }
 
 /// The request to show a script beside its program.

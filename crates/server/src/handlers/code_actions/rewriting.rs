@@ -3,7 +3,9 @@
 use pydslrep_analysis::{Database, Diagnostic, Edit, FileId};
 use pydslrep_ide as ide;
 use serde::{Deserialize, Serialize};
-use tower_lsp::ls_types::{CodeAction, CodeActionDisabled, CodeActionKind, CodeActionOrCommand, CodeActionParams, Uri};
+use tower_lsp::ls_types::{
+    CodeAction, CodeActionDisabled, CodeActionKind, CodeActionOrCommand, CodeActionParams, Uri,
+};
 
 use super::workspace_edit;
 use crate::documents::Document;
