@@ -51,9 +51,9 @@ pub enum CompletionKind {
     Setting,
 }
 
-/// What fits at a place.
-pub fn completions(database: &Database, position: FilePosition) -> Vec<Completion> {
-    let Some(place) = Place::find(database, position) else { return Vec::new() };
+/// What fits at a place; `speed` is for patterns with one, in centimetres per second.
+pub fn completions(database: &Database, position: FilePosition, speed: f64) -> Vec<Completion> {
+    let Some(place) = Place::find(database, position, speed) else { return Vec::new() };
     let mut found = Vec::new();
     for expected in expected_after(&place.text, &place.before) {
         place.complete(expected, &mut found);
@@ -74,6 +74,8 @@ struct Place<'a> {
     before: Vec<Lexeme>,
     /// Whether nothing of the entity is written behind that word.
     at_end: bool,
+    /// The speed in patterns, centimetres per second.
+    speed: f64,
     /// The cursor, from the entity's start.
     offset: u32,
     /// The word at the cursor, in the file.
@@ -81,7 +83,7 @@ struct Place<'a> {
 }
 
 impl<'a> Place<'a> {
-    fn find(database: &'a Database, position: FilePosition) -> Option<Self> {
+    fn find(database: &'a Database, position: FilePosition, speed: f64) -> Option<Self> {
         let word = word_at(database, position)?;
         // A word that looks like a keyword begins an entity of its own; it is still only a word being typed.
         let at = database.entity_at(position.file, word.start)?;
@@ -100,6 +102,7 @@ impl<'a> Place<'a> {
             entity: at.parse.entity.as_ref().map(|tree| (at.id, tree)),
             text: database.slice(position.file, at.span),
             before: before.collect(),
+            speed,
             offset: word.start - start,
             word,
         })
@@ -191,9 +194,9 @@ impl<'a> Place<'a> {
             label: snippet.label.to_owned(),
             kind: CompletionKind::Snippet,
             detail: snippet.detail.to_owned(),
-            documentation: format!("```pydslrep\n{}\n```", without_stops(snippet.insert)),
+            documentation: format!("```pydslrep\n{}\n```", without_stops(&snippet.filled_in(self.speed))),
             replace: self.word,
-            insert: snippet.insert.to_owned(),
+            insert: snippet.filled_in(self.speed),
             is_snippet: true,
             rank: 2,
         });
@@ -380,7 +383,7 @@ mod tests {
 
     fn check(fixture: &str, expected: &Expect) {
         let (database, position) = at_cursor(fixture);
-        let rendered = completions(&database, position).into_iter().map(|item| {
+        let rendered = completions(&database, position, 9.0).into_iter().map(|item| {
             let replaced = database.slice(position.file, item.replace);
             format!("{} [{}] {replaced:?} -> {:?}\n", item.label, item.detail, item.insert)
         });

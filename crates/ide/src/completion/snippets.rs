@@ -45,7 +45,7 @@ pub(super) const ACTIONS: &[Snippet] = &[
     Snippet {
         label: "move … centimeters at …",
         detail: "straight ahead, with a speed",
-        insert: "move ${1:50} centimeters at ${2:9.0}",
+        insert: "move ${1:50} centimeters at ${2:SPEED}",
     },
     Snippet { label: "turn left", detail: "in place", insert: "turn left ${1:90}" },
     Snippet { label: "turn right", detail: "in place", insert: "turn right ${1:90}" },
@@ -55,6 +55,13 @@ pub(super) const ACTIONS: &[Snippet] = &[
         insert: "turn ${1:right} until { $0 }",
     },
 ];
+
+impl Snippet {
+    /// What is inserted, with a speed in centimetres per second where there is one.
+    pub(super) fn filled_in(&self, speed: f64) -> String {
+        self.insert.replace("SPEED", &format!("{speed:?}"))
+    }
+}
 
 /// A snippet as it reads once it is inserted.
 pub(super) fn without_stops(insert: &str) -> String {
@@ -88,8 +95,9 @@ mod tests {
         let in_movement = |text: String| format!("movement m of r {{ {text} }}");
         let entities = ENTITIES.iter().map(|snippet| without_stops(snippet.insert));
         // A list must not be empty, and `until`'s is for the person to fill in.
-        let actions =
-            ACTIONS.iter().map(|snippet| in_movement(without_stops(snippet.insert).replace("{  }", "{ s }")));
+        let actions = ACTIONS
+            .iter()
+            .map(|snippet| in_movement(without_stops(&snippet.filled_in(20.0)).replace("{  }", "{ s }")));
         for text in entities.chain(actions) {
             for (_, parse) in pydslrep_syntax::parse(&text) {
                 assert_eq!(parse.errors, [], "{text}");

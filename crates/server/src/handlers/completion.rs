@@ -21,7 +21,8 @@ pub(crate) fn completion(state: &State, params: &CompletionParams) -> Option<Com
         return Some(list(state, document, found, false));
     }
     let place = state.place(at)?;
-    let mut found = ide::completions(&state.database, place.position());
+    let mut found =
+        ide::completions(&state.database, place.position(), place.document.settings.default_speed);
     let is_incomplete = found.len() > MOST;
     if is_incomplete {
         keep_the_likeliest(&place, &mut found);

@@ -1,0 +1,137 @@
+"""Code actions beyond the fix of one problem: one of each kind, chosen and applied as an editor does it."""
+
+from __future__ import annotations
+
+import pathlib
+
+import pytest
+from editor import Editor, position
+from lsprotocol import types
+from pytest_lsp import LanguageClient
+
+pytestmark = pytest.mark.asyncio
+
+PROGRAM = """\
+wheel port_side with radius 4.5
+wheel far_side with radius 4.5
+
+robot rover with port 19999 has { port_side far_side } wheels
+
+movement tour of rover {
+  move 0 meters
+  move 1 meters at 9.0
+  turn left 0
+  move 0 meters
+  turn left
+}
+
+environment yard has { rover } robots with { tour } moves
+"""
+
+
+async def offered(
+    client: LanguageClient, editor: Editor, uri: str, selected: str, kind: str
+) -> list[types.CodeAction]:
+    """What is offered for the first occurrence of a text."""
+    text = editor.text(uri)
+    start = text.index(selected)
+    span = types.Range(position(text, start), position(text, start + len(selected)))
+    context = types.CodeActionContext(diagnostics=[], only=[kind])
+    params = types.CodeActionParams(types.TextDocumentIdentifier(uri), span, context)
+    actions = await client.text_document_code_action_async(params) or []
+    return [action for action in actions if isinstance(action, types.CodeAction)]
+
+
+@pytest.mark.parametrize("client", ["complete", "eager"], indirect=True)
+@pytest.mark.parametrize(
+    ("kind", "selected", "title", "gone", "come"),
+    [
+        (
+            "quickfix",
+            "move 0",
+            "fix all `zero-distance` problems",
+            "  move 0 meters\n",
+            "",
+        ),
+        (
+            "source.fixAll",
+            "wheel",
+            "fix all that leaves nothing to decide",
+            "turn left 0",
+            "",
+        ),
+        ("refactor.rewrite", "move 1", "convert to centimeters", "", "move 100 cent"),
+        (
+            "refactor.inline",
+            "move 1",
+            "leave out the default speed of 9.0 cm/s",
+            " at 9.0",
+            "",
+        ),
+        (
+            "refactor.extract",
+            "move 1 meters at 9.0\n  turn",
+            "extract into the new movement `tour_2`",
+            "",
+            "{ tour tour_2 tour_3 } moves",
+        ),
+        ("refactor", "robot rover", "add `type tw`", "", "robot rover type tw with"),
+    ],
+)
+async def test_one_of_each_kind(
+    client: LanguageClient,
+    tmp_path: pathlib.Path,
+    kind: str,
+    selected: str,
+    title: str,
+    gone: str,
+    come: str,
+) -> None:
+    editor = Editor(client, tmp_path)
+    uri = editor.open("tour.pyr", PROGRAM)
+    actions = await offered(client, editor, uri, selected, kind)
+    assert all((action.kind or "").startswith(kind) for action in actions)
+    [action] = [action for action in actions if action.title == title]
+    if not action.edit:
+        action = await client.code_action_resolve_async(action)
+    assert action.edit
+    editor.apply(action.edit)
+    after = editor.text(uri)
+    assert after != PROGRAM
+    assert not gone or gone not in after
+    assert come in after
+
+
+async def test_what_cannot_be_done_says_why(
+    client: LanguageClient, tmp_path: pathlib.Path
+) -> None:
+    editor = Editor(client, tmp_path)
+    uri = editor.open("tour.pyr", PROGRAM)
+    [action] = [
+        action
+        for action in await offered(client, editor, uri, "movement", "refactor")
+        if action.disabled
+    ]
+    assert action.title == "make `tour` parallel"
+    assert action.disabled
+    assert "no environment lists it" in action.disabled.reason
+
+
+async def test_scripts_are_written_on_save_where_the_settings_say(
+    client: LanguageClient, tmp_path: pathlib.Path
+) -> None:
+    settings = 'generate-on-save = true\noutput = "scripts"\n'
+    (tmp_path / "pydslrep.toml").write_text(settings, encoding="utf-8")
+    editor = Editor(client, tmp_path)
+    uri = editor.open("tour.pyr", PROGRAM)
+    saved = types.DidSaveTextDocumentParams(types.TextDocumentIdentifier(uri))
+    client.text_document_did_save(saved)
+    told = await client.wait_for_notification(types.WINDOW_SHOW_MESSAGE)
+    assert "wrote" in told.message
+    script = tmp_path / "scripts" / "yard.py"
+    assert script.is_file()
+    script.write_text("mine\n", encoding="utf-8")
+    client.text_document_did_save(saved)
+    told = await client.wait_for_notification(types.WINDOW_SHOW_MESSAGE)
+    assert "no generated script" in told.message
+    assert script.read_text(encoding="utf-8") == "mine\n"
