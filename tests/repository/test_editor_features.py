@@ -19,6 +19,8 @@ GROUPS: dict[str, dict[str, list[str]]] = {
         "on_type": ["textDocument/onTypeFormatting"],
         "linked_editing": ["textDocument/linkedEditingRange"],
         "quick_fixes": ["textDocument/codeAction"],
+        "fix_all": ["textDocument/codeAction"],
+        "refactorings": ["textDocument/codeAction"],
         "settings": [
             "textDocument/completion",
             "textDocument/hover",

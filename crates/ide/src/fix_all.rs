@@ -1,4 +1,4 @@
-//! Many problems mended at once: all of one code, or all that leave nothing to decide.
+//! Fix all: many problems mended at once, all of one code, or all that leave nothing to decide.
 
 use pydslrep_analysis::{Database, Diagnostic, Edit, FileId, Fixing};
 
