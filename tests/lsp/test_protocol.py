@@ -242,3 +242,32 @@ def test_a_client_that_dies_takes_the_server_with_it(server: str) -> None:
         raw.process.kill()
         assert raw.read() is None
         assert not raw.input.closed
+
+
+def test_a_client_that_traces_is_told_what_changes_cost(server: str) -> None:
+    def told_before(raw: RawServer, ident: int) -> list[dict[str, Any]]:
+        raw.send(outline(ident))
+        heard = []
+        while (message := raw.read()) is not None and message.get("id") != ident:
+            heard.append(message)
+        return [m["params"] for m in heard if m["method"] == "$/logTrace"]
+
+    def traced(value: str) -> bytes:
+        return notification("$/setTrace", {"value": value})
+
+    wheel = "wheel a with radius 3\n"
+    with RawServer(server, "--stdio") as raw:
+        raw.initialize()
+        raw.send(opened(wheel), inserted(2, wheel), traced("messages"))
+        raw.send(inserted(3, wheel))
+        assert told_before(raw, 1) == []
+        raw.send(traced("verbose"), inserted(4, "wheel b with radius 3\n"))
+        [told] = told_before(raw, 2)
+        assert told["message"] == f"changed {URI}"
+        assert told["verbose"] == (
+            "relexed: 30 tokens, reparsed: 2 entities, revalidated: 4 entities"
+        )
+        raw.send(traced("off"), inserted(5, wheel))
+        assert told_before(raw, 3) == []
+        raw.send(SHUTDOWN, EXIT)
+        assert raw.leave() == 0

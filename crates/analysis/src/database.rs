@@ -105,6 +105,8 @@ pub struct Database {
 /// How much the latest edit cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct EditCounts {
+    /// Tokens read again, each as often as it was; also those behind the edit that show where its effect ends.
+    pub relexed: usize,
     /// Entities read again.
     pub reparsed: usize,
     /// Entities whose problems were looked for again.

@@ -30,6 +30,8 @@ pub(crate) struct Window {
     /// How many pieces at the window's head and tail the edit did not touch; they were read for what stands around
     /// them, and can turn out as before.
     pub(crate) untouched: (usize, usize),
+    /// How many tokens were lexed to find all this.
+    pub(crate) relexed: usize,
     pub(crate) parses: Vec<(Span, Parse)>,
 }
 
@@ -83,19 +85,19 @@ impl File {
         let mut end = touched + 1;
         let mut end_offset = touched_start + self.pieces[touched].len;
         let mut growth = 1;
+        let mut relexed = 0;
         loop {
-            if end >= self.pieces.len() {
+            let parses = if end >= self.pieces.len() {
                 let window = Span::new(first_start, Span::of_rope(&self.text).len());
-                let replaced = first..self.pieces.len();
-                return Window {
-                    untouched: untouched(&replaced),
-                    replaced,
-                    parses: parse(&self.slice(window)),
-                };
-            }
-            let boundary = shift(end_offset, grown);
-            if let Some(parses) = self.read_up_to(first_start, boundary, end, grown, end_offset) {
-                return Window { untouched: untouched(&(first..end)), replaced: first..end, parses };
+                Some(parse(&self.slice(window)))
+            } else {
+                let boundary = shift(end_offset, grown);
+                self.read_up_to(first_start, boundary, end, grown, end_offset, &mut relexed)
+            };
+            if let Some(parses) = parses {
+                let replaced = first..end.min(self.pieces.len());
+                relexed += token_count(&parses);
+                return Window { untouched: untouched(&replaced), replaced, relexed, parses };
             }
             let next_end = (end + growth).min(self.pieces.len());
             end_offset += self.pieces[end..next_end].iter().map(|piece| piece.len).sum::<u32>();
@@ -114,10 +116,12 @@ impl File {
         end: usize,
         grown: i64,
         end_offset: u32,
+        relexed: &mut usize,
     ) -> Option<Vec<(Span, Parse)>> {
         let ahead: u32 = self.pieces[end..].iter().take(2).map(|piece| piece.len).sum();
         let text = self.slice(Span::new(start, shift(end_offset + ahead, grown)));
         let lexemes = lex(&text);
+        *relexed += lexemes.len();
         let holds = cut(&lexemes).into_iter().any(|index| lexemes[index].1.start + start == boundary);
         holds.then(|| parse(Span::new(0, boundary - start).text(&text)))
     }
@@ -152,6 +156,11 @@ impl File {
 
 fn shift(offset: u32, by: i64) -> u32 {
     u32::try_from(i64::from(offset) + by).unwrap_or(u32::MAX)
+}
+
+/// How many tokens some entities have together.
+fn token_count(parses: &[(Span, Parse)]) -> usize {
+    parses.iter().map(|(_, parse)| parse.lexemes.len()).sum()
 }
 
 /// The range of a whole document.

@@ -64,6 +64,7 @@ impl LanguageServer for Server {
         let mut state = self.state();
         state.client = features;
         state.folders = workspace::folders_of(&params);
+        state.trace = params.trace.unwrap_or_default();
         if let Some(settings) = &params.initialization_options {
             handlers::workspace::set(&mut state, settings, &self.outbox);
         }
@@ -104,7 +105,9 @@ impl LanguageServer for Server {
     }
 
     async fn did_change(&self, params: DidChangeTextDocumentParams) {
-        synchronization::change(&mut self.state(), &params);
+        let mut state = self.state();
+        synchronization::change(&mut state, &params);
+        synchronization::tell_costs(&mut state, &params, &self.outbox);
     }
 
     async fn did_save(&self, params: DidSaveTextDocumentParams) {
@@ -343,6 +346,12 @@ impl Server {
     #[allow(clippy::unused_async, reason = "what the router takes")]
     pub(crate) async fn planned_path(&self, which: ScriptOf) -> Result<serde_json::Value> {
         planned_path::planned_path(&mut self.state(), &which)
+    }
+
+    /// The client wants to know more, or less, of what the server does.
+    #[allow(clippy::unused_async, reason = "what the router takes")]
+    pub(crate) async fn set_trace(&self, params: SetTraceParams) {
+        synchronization::set_trace(&mut self.state(), &params);
     }
 
     /// The person pressed the button beside a progress.

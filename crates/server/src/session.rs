@@ -67,6 +67,7 @@ impl Session {
     pub fn new(outbox: Outbox, spawn: impl Fn(BoxFuture<'static, ()>) + 'static) -> Self {
         let (service, socket) = LspService::build(|client| Server::new(client, outbox.clone()))
             .custom_method(PLANNED_PATH, Server::planned_path)
+            .custom_method("$/setTrace", Server::set_trace)
             .custom_method("window/workDoneProgress/cancel", Server::cancel_progress)
             .finish();
         Self::of_service(service, socket, outbox, Box::new(spawn))

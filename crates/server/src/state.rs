@@ -4,7 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
 use futures::channel::oneshot;
-use pydslrep_analysis::{Database, FileId, Snapshot};
+use pydslrep_analysis::{Database, EditCounts, FileId, Snapshot};
 use pydslrep_ide::FilePosition;
 use pydslrep_syntax::Span;
 use ropey::Rope;
@@ -12,7 +12,8 @@ use rustc_hash::FxHashSet;
 #[cfg(feature = "process")]
 use tower_lsp::ls_types::ProgressToken;
 use tower_lsp::ls_types::{
-    DidChangeTextDocumentParams, Location, Position, Range, TextDocumentItem, TextDocumentPositionParams, Uri,
+    DidChangeTextDocumentParams, Location, Position, Range, TextDocumentItem, TextDocumentPositionParams,
+    TraceValue, Uri,
 };
 
 use crate::bulk::Work;
@@ -45,6 +46,10 @@ pub(crate) struct State {
     pub(crate) progresses: u64,
     /// Whose diagnostics may have changed since they were last told, beside what the database says.
     pub(crate) stale: Stale,
+    /// Whether the client wants to know what changes cost.
+    pub(crate) trace: TraceValue,
+    /// What the changes of the last message cost, one by one, if that is wanted.
+    pub(crate) costs: Vec<EditCounts>,
     /// Requests that are answered when any diagnostics change.
     pub(crate) waiting: Vec<oneshot::Sender<()>>,
     /// What was told about scripts that are written on every save.
@@ -111,6 +116,9 @@ impl State {
             match span {
                 Some(span) => self.database.edit(file, span, &change.text),
                 None => document.file = Some(self.database.open(&key, &change.text)),
+            }
+            if self.trace == TraceValue::Verbose {
+                self.costs.push(self.database.last_edit());
             }
         }
         self.follow_changed_imports(&key);

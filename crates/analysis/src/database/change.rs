@@ -25,12 +25,13 @@ impl Database {
         self.files[file.0 as usize] =
             Some(File { path: path.to_owned(), text: Rope::from_str(text), pieces: Vec::new() });
         let before = self.imports(file).to_vec();
-        let mut pieces = Vec::new();
+        let (mut pieces, mut relexed) = (Vec::new(), 0);
         parse_each(text, |span, parse| {
             let order = (pieces.len() as u64 + 1) * ORDER_STEP;
+            relexed += parse.lexemes.len();
             pieces.push(self.add(file, span, parse, order));
         });
-        self.last_edit = EditCounts { reparsed: pieces.len(), revalidated: 0 };
+        self.last_edit = EditCounts { relexed, reparsed: pieces.len(), revalidated: 0 };
         self.set_pieces(file, pieces);
         self.touch(file);
         self.update_imports(file);
@@ -94,11 +95,13 @@ impl Database {
     }
 
     fn apply(&mut self, file: FileId, window: Window) {
-        self.last_edit = EditCounts { reparsed: window.parses.len(), revalidated: 0 };
+        self.last_edit =
+            EditCounts { relexed: window.relexed, reparsed: window.parses.len(), revalidated: 0 };
         let Window { replaced, parses, .. } = self.without_unchanged_ends(file, window);
         let old: Vec<EntityId> =
             self.pieces(file)[replaced.clone()].iter().map(|piece| piece.entity).collect();
         let had_imports = self.any_import(&old);
+        let imports_before = self.which_are_imports(&old);
         let had_environments = self.count(file, EntityKind::Environment) > 0;
         let mut doubtful = Doubtful::default();
         let new: Vec<Piece> = if old.len() == parses.len() {
@@ -121,8 +124,10 @@ impl Database {
             // Whether anything is unused is only asked where something could be used.
             self.validate_file(file);
         }
-        if let Some(imports) = self.imports.get(&file) {
-            // Whether an import comes too late depends on what stands before it.
+        if let Some(imports) = self.imports.get(&file)
+            && self.which_are_imports(&ids) != imports_before
+        {
+            // Whether an import comes too late, and where it belongs, depends on what stands before it.
             doubtful.entities.extend(&imports.entities);
         }
         doubtful.entities.extend(ids);
@@ -132,7 +137,7 @@ impl Database {
     /// Pieces at either end of a window that the edit did not touch and that read as before keep their entities and
     /// all their answers.
     fn without_unchanged_ends(&self, file: FileId, window: Window) -> Window {
-        let Window { replaced, untouched, mut parses } = window;
+        let Window { replaced, untouched, relexed, mut parses } = window;
         let old = &self.pieces(file)[replaced.clone()];
         let same = |(piece, (span, parse)): &(&Piece, &(Span, Parse))| {
             piece.len == span.len() && self.data(piece.entity).is_some_and(|data| *data.parse == *parse)
@@ -142,7 +147,7 @@ impl Database {
         let tail = old.iter().rev().zip(rest.iter().rev()).take(untouched.1).take_while(same).count();
         parses.truncate(parses.len() - tail);
         parses.drain(..head);
-        Window { replaced: replaced.start + head..replaced.end - tail, untouched: (0, 0), parses }
+        Window { replaced: replaced.start + head..replaced.end - tail, untouched: (0, 0), relexed, parses }
     }
 
     /// Reads an entity anew in its place.

@@ -2,44 +2,125 @@
 
 use pydslrep_syntax::Span;
 
+use super::EditCounts;
 use crate::Database;
 
-/// A file of many cells, each with its own wheels, robot and movement.
+/// A file of many cells, each with its own wheels, robot, movement and environment.
 fn large(cells: usize) -> String {
-    let cell = |number: usize| {
-        format!(
-            "wheel l{number} with radius 4\nwheel r{number} with radius 4\n\
-             robot robot{number} type tw with port 1 has {{ l{number} r{number} }} wheels\n\
-             movement m{number} of robot{number} {{\n  move 4.0 meters\n  turn left 30\n}}\n\
-             environment e{number} has {{ robot{number} }} robots with {{ m{number} }} moves\n"
-        )
-    };
     (0..cells).map(cell).collect()
 }
 
-#[test]
-fn an_edit_inside_a_movement_costs_the_same_in_any_file() {
-    for cells in [10, 1000] {
+fn cell(number: usize) -> String {
+    format!(
+        "wheel l{number} with radius 4\nwheel r{number} with radius 4\n\
+         robot robot{number} type tw with port 1 has {{ l{number} r{number} }} wheels\n\
+         movement m{number} of robot{number} {{\n  move 4.0 meters\n  turn left 30\n}}\n\
+         environment e{number} has {{ robot{number} }} robots with {{ m{number} }} moves\n"
+    )
+}
+
+/// What it costs to replace `old`, which is in a file of many cells once, by `new`; the same in a file a hundred times as
+/// long.
+fn cost(old: &str, new: &str) -> EditCounts {
+    let [short, long] = [10, 1000].map(|cells| {
         let mut database = Database::new();
-        let text = large(cells);
-        let file = database.open("large.pyr", &text);
-        let at = text.find("turn left 30").unwrap() + "turn left 3".len();
-        let at = u32::try_from(at).unwrap();
-        database.edit(file, Span::at(at), "6");
-        let counts = database.last_edit();
-        assert_eq!((counts.reparsed, counts.revalidated), (1, 1), "{cells} cells");
-    }
+        let file = database.open("large.pyr", &large(cells));
+        replace(&mut database, file, old, new)
+    });
+    assert_eq!(short, long);
+    short
+}
+
+fn replace(database: &mut Database, file: crate::FileId, old: &str, new: &str) -> EditCounts {
+    let text = database.text(file).unwrap().to_string();
+    assert_eq!(text.matches(old).count(), 1, "{old}");
+    // What both begin and end with is not typed again.
+    let head = old.bytes().zip(new.bytes()).take_while(|(a, b)| a == b).count();
+    let (gone, come) = (&old[head..], &new[head..]);
+    let tail = gone.bytes().rev().zip(come.bytes().rev()).take_while(|(a, b)| a == b).count();
+    let at = u32::try_from(text.find(old).unwrap() + head).unwrap();
+    let span = Span::new(at, at + u32::try_from(gone.len() - tail).unwrap());
+    database.edit(file, span, &come[..come.len() - tail]);
+    database.last_edit()
+}
+
+fn counts(relexed: usize, reparsed: usize, revalidated: usize) -> EditCounts {
+    EditCounts { relexed, reparsed, revalidated }
+}
+
+#[test]
+fn an_edit_inside_a_movement_asks_nobody_else() {
+    let movement = |angle: &str| format!("movement m5 of robot5 {{\n  move 4.0 meters\n  turn left {angle}");
+    assert_eq!(cost(&movement("30"), &movement("36")), counts(41, 1, 1));
+    assert_eq!(cost(&movement("30"), &movement("")), counts(39, 1, 1));
+}
+
+#[test]
+fn a_radius_is_of_interest_to_the_robots_that_have_the_wheel() {
+    assert_eq!(cost("wheel l5 with radius 4\n", "wheel l5 with radius 45\n"), counts(28, 1, 4));
+}
+
+#[test]
+fn a_port_is_of_interest_to_those_who_use_the_robot() {
+    assert_eq!(cost("robot5 type tw with port 1 ", "robot5 type tw with port 12 "), counts(50, 1, 3));
 }
 
 #[test]
 fn renaming_a_robot_asks_only_those_who_use_it() {
+    assert_eq!(cost("robot robot5 ", "robot robot5x "), counts(60, 2, 3));
     let mut database = Database::new();
-    let text = large(1000);
-    let file = database.open("large.pyr", &text);
-    let at = u32::try_from(text.find("robot robot500 ").unwrap() + "robot robot500".len()).unwrap();
-    database.edit(file, Span::at(at), "x");
-    // The robot itself, its movement and its environment.
-    assert_eq!(database.last_edit().revalidated, 3);
+    let file = database.open("large.pyr", &large(10));
+    replace(&mut database, file, "robot robot5 ", "robot robot5x ");
     let codes: Vec<_> = database.diagnostics(file).iter().map(crate::Diagnostic::code).collect();
     assert_eq!(codes, ["unused-declaration", "unresolved-reference", "unresolved-reference"]);
+}
+
+#[test]
+fn an_entity_is_split_in_two() {
+    let split = "environment e5 has { robot5 } robots\nenvironment x with { m5 } moves";
+    assert_eq!(cost("environment e5 has { robot5 } robots with { m5 } moves", split), counts(38, 2, 4));
+}
+
+/// A comment that is begun reaches to the end of the next one; what it hides is what comes back.
+#[test]
+fn a_comment_is_begun_and_taken_back() {
+    for cells in [10, 1000] {
+        let mut database = Database::new();
+        let behind: String = (6..cells).map(cell).collect();
+        let text = large(6) + "/* a comment */\n" + &behind;
+        let file = database.open("large.pyr", &text);
+        let (plain, begun) = ("wheel r5 with radius 4\n", "wheel r5 /*with radius 4\n");
+        assert_eq!(replace(&mut database, file, plain, begun), counts(22, 1, 2), "{cells} cells");
+        assert_eq!(replace(&mut database, file, begun, plain), counts(96, 4, 5), "{cells} cells");
+    }
+}
+
+#[test]
+fn an_edit_in_an_imported_file_asks_who_uses_the_name() {
+    for cells in [10, 1000] {
+        let mut database = Database::new();
+        let lib = database.open("lib.pyr", "wheel a with radius 4\nwheel b with radius 4\nsensor s\n");
+        let text =
+            "import \"lib.pyr\"\nrobot far with port 1 has { a b } wheels\n".to_owned() + &large(cells);
+        let main = database.open("main.pyr", &text);
+        assert_eq!(replace(&mut database, lib, "a with radius 4", "a with radius 5"), counts(17, 1, 2));
+        let codes: Vec<_> = database.diagnostics(main).iter().map(crate::Diagnostic::code).collect();
+        assert_eq!(codes, ["unused-declaration", "mixed-radii"], "{cells} cells");
+        // And the other way round: nobody in a file asks what it imports again.
+        assert_eq!(
+            replace(&mut database, main, "m5 of robot5 {\n  move 4.0", "m5 of robot5 {\n  move 41.0"),
+            counts(41, 1, 1)
+        );
+    }
+}
+
+/// An import that comes too late goes to the top: an edit there makes it another place, though it keeps its words.
+#[test]
+fn a_late_import_is_asked_when_the_top_of_its_file_changes() {
+    let mut database = Database::new();
+    let file = database.open("main.pyr", "movement\nimport \"lib.pyr\"\n");
+    database.edit(file, Span::at(0), "/");
+    let mut fresh = Database::new();
+    let fresh_file = fresh.open("main.pyr", "/movement\nimport \"lib.pyr\"\n");
+    assert_eq!(database.diagnostics(file), fresh.diagnostics(fresh_file));
 }

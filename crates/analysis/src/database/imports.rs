@@ -135,6 +135,11 @@ impl Database {
         ids.iter().any(|id| matches!(self.tree(*id), Some(Entity::Import(_))))
     }
 
+    /// Of entities in a row, whether each is an import; `None` for what stands before the first entity.
+    pub(super) fn which_are_imports(&self, ids: &[EntityId]) -> Vec<Option<bool>> {
+        ids.iter().map(|id| self.tree(*id).map(|tree| matches!(tree, Entity::Import(_)))).collect()
+    }
+
     /// The files that import a path, in no order.
     pub(super) fn importers(&self, path: &str) -> impl Iterator<Item = FileId> + '_ {
         self.importers.get(path).into_iter().flatten().copied()

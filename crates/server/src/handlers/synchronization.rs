@@ -2,10 +2,12 @@
 //! may close a document and open it again with a version that is lower.
 
 use tower_lsp::ls_types::{
-    DidChangeTextDocumentParams, DidCloseTextDocumentParams, DidOpenTextDocumentParams,
+    DidChangeTextDocumentParams, DidCloseTextDocumentParams, DidOpenTextDocumentParams, LogTraceParams,
+    SetTraceParams,
 };
 
 use crate::log::log;
+use crate::message::Outbox;
 use crate::state::State;
 
 /// `textDocument/didOpen`.
@@ -18,6 +20,23 @@ pub(crate) fn change(state: &mut State, params: &DidChangeTextDocumentParams) {
     if !state.change(params) {
         let uri = params.text_document.uri.as_str();
         log(format_args!("a change to a document that is not open: {uri}"));
+    }
+}
+
+/// `$/setTrace`.
+pub(crate) fn set_trace(state: &mut State, params: &SetTraceParams) {
+    state.trace = params.value;
+}
+
+/// `$/logTrace`: what the changes of a message cost, for a client that wants to know.
+pub(crate) fn tell_costs(state: &mut State, params: &DidChangeTextDocumentParams, outbox: &Outbox) {
+    for counts in state.costs.drain(..) {
+        let message = format!("changed {}", params.text_document.uri.as_str());
+        let verbose = format!(
+            "relexed: {} tokens, reparsed: {} entities, revalidated: {} entities",
+            counts.relexed, counts.reparsed, counts.revalidated
+        );
+        outbox.notify("$/logTrace", &LogTraceParams { message, verbose: Some(verbose) });
     }
 }
 
