@@ -25,8 +25,6 @@ T = TypeVar("T")
 
 # What the contract has a word for and other work is still to bring: whoever announces one moves it to an exercise.
 NOT_YET = {
-    "codeActionProvider.codeActionKinds[refactor]",
-    "codeActionProvider.codeActionKinds[source.fixAll]",
     "completionProvider.resolveProvider",
     "workspace.fileOperations.willRename",
 }
@@ -189,6 +187,56 @@ async def fixes_mend(s: Session) -> None:
     s.show(mended)
     params.range = s.span("wheeel }")
     assert not await s.client.text_document_code_action_async(params)
+
+
+ROUNDABOUT = """\
+wheel a with radius 4
+wheel b with radius 4
+robot rover with port 1 has { a b } wheels
+movement tour of rover { move 0 meters move 1 meters at 9.0 turn left }
+environment yard has { rover } robots with { tour } moves
+"""
+
+
+@exercises(
+    "codeActionProvider.codeActionKinds[refactor.extract]",
+    "codeActionProvider.codeActionKinds[refactor.inline]",
+    "codeActionProvider.codeActionKinds[refactor.rewrite]",
+    "codeActionProvider.codeActionKinds[source.fixAll]",
+)
+async def programs_are_rewritten(s: Session) -> None:
+    for kind, before, after in (
+        ("refactor.extract", "turn left", "with { tour tour_2 } moves"),
+        ("refactor.inline", "move 1", "move 1 meters turn"),
+        ("refactor.rewrite", "robot", "robot rover type tw with"),
+        ("source.fixAll", "wheel a", "rover { move 1 meters at 9.0 turn"),
+    ):
+        s.show(ROUNDABOUT)
+        context = types.CodeActionContext([], only=[kind])
+        params = types.CodeActionParams(s.document, s.span(before), context)
+        found = await s.client.text_document_code_action_async(params)
+        action = only(found, types.CodeAction)
+        if action.edit is None:
+            action = await s.client.code_action_resolve_async(action)
+        assert action.edit
+        assert action.edit.document_changes
+        change = only(action.edit.document_changes, types.TextDocumentEdit)
+        edits = [edit for edit in change.edits if isinstance(edit, types.TextEdit)]
+        assert after in apply_edits(ROUNDABOUT, edits)
+
+
+@exercises("textDocumentSync.save")
+async def scripts_are_written_on_save(s: Session) -> None:
+    folder = s.folder / "saved"
+    folder.mkdir()
+    (folder / "pydslrep.toml").write_text("generate-on-save = true", encoding="utf-8")
+    document = s.open("saved/main.pyr", ROUNDABOUT)
+    identifier = types.TextDocumentIdentifier(document.uri)
+    s.client.text_document_did_save(types.DidSaveTextDocumentParams(identifier))
+    told = await s.client.wait_for_notification(types.WINDOW_SHOW_MESSAGE)
+    assert "wrote" in told.message
+    assert (folder / "yard.py").is_file()
+    s.client.text_document_did_close(types.DidCloseTextDocumentParams(identifier))
 
 
 @exercises(
