@@ -37,7 +37,11 @@ def capabilities(editor: str) -> types.ClientCapabilities:
         else None,
         completion=types.CompletionClientCapabilities(
             completion_item=types.ClientCompletionItemOptions(
-                snippet_support=True, documentation_format=[types.MarkupKind.Markdown]
+                snippet_support=True,
+                documentation_format=[types.MarkupKind.Markdown],
+                resolve_support=None
+                if editor == "eager"
+                else types.ClientCompletionItemResolveOptions(["documentation"]),
             )
         ),
         hover=types.HoverClientCapabilities(content_format=[types.MarkupKind.Markdown]),

@@ -25,7 +25,6 @@ T = TypeVar("T")
 
 # What the contract has a word for and other work is still to bring: whoever announces one moves it to an exercise.
 NOT_YET = {
-    "completionProvider.resolveProvider",
     "workspace.fileOperations.willRename",
 }
 
@@ -284,6 +283,36 @@ async def completions_in_programs(s: Session) -> None:
     assert not {"rover", "lap", "s"} & await completed(s, "third has {", "{")
     s.show(PROGRAM + "movement third of ")
     assert {"rover", "spare"} <= await completed(s, "third of ", " ")
+
+
+@exercises(
+    "completionProvider.triggerCharacters[/]", "completionProvider.triggerCharacters[^]"
+)
+async def completions_of_paths_and_escaped_names(s: Session) -> None:
+    (s.folder / "lib").mkdir()
+    other = s.open("lib/other.pyr", "sensor ^robots")
+    s.show('import "lib/"\n')
+    assert "lib/other.pyr" in await completed(s, 'import "lib/', "/")
+    s.show(PROGRAM + "sensor ^until movement third of rover { turn left until { ^")
+    assert "s" in await completed(s, "until { ^", "^")
+    s.client.text_document_did_close(
+        types.DidCloseTextDocumentParams(types.TextDocumentIdentifier(other.uri))
+    )
+
+
+@exercises("completionProvider.resolveProvider")
+async def completions_are_explained(s: Session) -> None:
+    s.show(PROGRAM + "movement third of ")
+    document, place = s.at("third of ")
+    found = await s.client.text_document_completion_async(
+        types.CompletionParams(document, place)
+    )
+    assert isinstance(found, types.CompletionList)
+    [rover] = [item for item in found.items if item.label == "rover"]
+    told = (await s.client.completion_item_resolve_async(rover)).documentation
+    text = told.value if isinstance(told, types.MarkupContent) else told
+    assert text
+    assert "port 19999" in text
 
 
 @exercises(

@@ -188,6 +188,15 @@ impl Database {
         })
     }
 
+    /// The entities next to an offset, at most so many on either side of the one that holds it, in the order of the text:
+    /// their number does not follow the length of the file.
+    pub fn entities_around(&self, file: FileId, offset: u32, reach: usize) -> impl Iterator<Item = EntityId> {
+        let (index, _) = self.piece_at(file, offset);
+        let pieces = self.pieces(file);
+        let around = index.saturating_sub(reach)..(index + reach + 1).min(pieces.len());
+        pieces.get(around).unwrap_or_default().iter().map(|piece| piece.entity)
+    }
+
     /// An entity with its place.
     pub fn entity(&self, id: EntityId) -> Option<EntityRef<'_>> {
         let data = self.data(id)?;
@@ -259,7 +268,7 @@ impl Database {
     }
 
     /// Every name of a kind that a file sees, in no order, some perhaps more than once.
-    pub(crate) fn names_in_sight(&self, file: FileId, kind: EntityKind) -> impl Iterator<Item = &SmolStr> {
+    pub fn names_in_sight(&self, file: FileId, kind: EntityKind) -> impl Iterator<Item = &SmolStr> {
         let files = std::iter::once(file).chain(self.imported_files(file));
         files.flat_map(move |file| self.names.all(file, kind))
     }
@@ -268,6 +277,11 @@ impl Database {
     pub(crate) fn is_in_sight(&self, file: FileId, kind: EntityKind, name: &SmolStr) -> bool {
         let mut files = std::iter::once(file).chain(self.imported_files(file));
         files.any(|file| !self.definitions(file, kind, name).is_empty())
+    }
+
+    /// The declared names of a kind in a file, in no order.
+    pub fn names(&self, file: FileId, kind: EntityKind) -> impl Iterator<Item = &SmolStr> {
+        self.names.all(file, kind)
     }
 
     /// The names of environments of a file that are the same as `name` but for case, itself included, in no order.

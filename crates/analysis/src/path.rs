@@ -23,6 +23,19 @@ pub(crate) fn join(base: &str, relative: &str) -> String {
     }
 }
 
+/// How the file at `base` has to write the path `target`, so that [`join`] leads there; `None` where it cannot.
+pub(crate) fn relative(base: &str, target: &str) -> Option<String> {
+    let folders = |path: &str| path.split('/').map(str::to_owned).collect::<Vec<_>>();
+    let (mut from, to) = (folders(base), folders(target));
+    from.pop();
+    let common = from.iter().zip(&to[..to.len() - 1]).take_while(|(one, other)| one == other).count();
+    let up = std::iter::repeat_n("..", from.len() - common);
+    let written: Vec<&str> = up.chain(to[common..].iter().map(String::as_str)).collect();
+    let written = written.join("/");
+    let fits_in_quotes = !written.contains(['"', '\n', '\r']);
+    (fits_in_quotes && join(base, &written) == target).then_some(written)
+}
+
 fn slashes(folder: &str) -> &str {
     let start = folder.find("://").map_or(0, |colon| colon + 1);
     let run = folder[start..].len() - folder[start..].trim_start_matches('/').len();
@@ -31,7 +44,7 @@ fn slashes(folder: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
-    use super::join;
+    use super::{join, relative};
 
     #[test]
     fn paths_are_relative_to_the_importing_file() {
@@ -40,5 +53,24 @@ mod tests {
         assert_eq!(join("b.pyr", "../c.pyr"), "../c.pyr");
         assert_eq!(join("file:///w/a.pyr", "parts/x.pyr"), "file:///w/parts/x.pyr");
         assert_eq!(join("file:///w/a.pyr", "../../../x.pyr"), "file:///../../x.pyr");
+    }
+
+    #[test]
+    fn a_path_can_be_written_as_imports_want_it() {
+        let pairs = [
+            ("a/b.pyr", "a/c.pyr", "c.pyr"),
+            ("/a/b/c.pyr", "/a/d/e.pyr", "../d/e.pyr"),
+            ("/a.pyr", "/b/c d/é.pyr", "b/c d/é.pyr"),
+            ("/a/b/c.pyr", "/d.pyr", "../../d.pyr"),
+            ("b.pyr", "../c.pyr", "../c.pyr"),
+            ("file:///w/a.pyr", "file:///w/parts/x.pyr", "parts/x.pyr"),
+        ];
+        for (base, target, written) in pairs {
+            assert_eq!(relative(base, target).as_deref(), Some(written));
+            assert_eq!(join(base, written), target);
+        }
+        for (base, target) in [("untitled:one", "/a.pyr"), ("/a.pyr", "/b\"c.pyr"), ("../a.pyr", "b.pyr")] {
+            assert_eq!(relative(base, target), None, "{target}");
+        }
     }
 }

@@ -2,18 +2,32 @@
 //!
 //! Which words fit is asked of the parser itself ([`expected_after`]), so it cannot drift from the language.
 
+mod documentation;
+mod names;
+mod paths;
+mod place;
 mod snippets;
+mod words;
 
-use std::collections::HashMap;
+use pydslrep_analysis::{Database, FileId};
+use pydslrep_syntax::{EntityKind, Expected, Span, TextEdit, Token, expected_after};
 
-use pydslrep_analysis::{Database, EntityId, EntityRef, FileId};
-use pydslrep_syntax::ast::{Action, DriveWord, Entity, Movement, Name, References, Robot};
-use pydslrep_syntax::{EntityKind, Expected, KEYWORDS, Lexeme, Span, Token, expected_after};
-
-use self::snippets::{ACTIONS, ENTITIES, Snippet, without_stops};
+pub use self::documentation::completion_documentation;
+use self::place::Place;
+use self::snippets::{ACTIONS, ENTITIES, SPEEDS, without_stops};
 use crate::FilePosition;
-use crate::cursor::{body, resolved};
-use crate::reference::keyword_page;
+
+/// No more are given at once: a long list takes an editor longer than whoever reads it.
+const MOST: usize = 200;
+
+/// What fits at a place.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Completions {
+    /// The best first.
+    pub items: Vec<Completion>,
+    /// Whether there are more, of which others may be better once more is typed.
+    pub is_incomplete: bool,
+}
 
 /// One thing to complete with.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -24,16 +38,46 @@ pub struct Completion {
     pub kind: CompletionKind,
     /// A few words beside the label.
     pub detail: String,
-    /// Markdown.
-    pub documentation: String,
+    /// What there is to say of it.
+    pub documentation: Documentation,
     /// What it replaces: the word at the cursor.
     pub replace: Span,
     /// What it inserts; with `$1`, `${1:text}` and `$0` for the cursor's stops if `is_snippet`.
     pub insert: String,
     /// Whether `insert` has stops.
     pub is_snippet: bool,
-    /// Its place in the list: names, then words, then whole patterns.
-    pub rank: u8,
+    /// Whether the word at the cursor begins with `^`, so that what is typed is like `insert` and not like `label`.
+    pub is_escaped: bool,
+    /// The file that this brings into sight, which was not before.
+    pub imports: Option<FileId>,
+    /// What has to change elsewhere in the file for that.
+    pub import_edit: Option<TextEdit>,
+    /// Its place in the list, before its place among those of the same rank.
+    pub(crate) rank: Rank,
+}
+
+impl Completion {
+    /// One that inserts its label, with nothing more to say of it.
+    pub(crate) fn new(label: &str, kind: CompletionKind, replace: Span) -> Self {
+        Self {
+            label: label.to_owned(),
+            kind,
+            detail: String::new(),
+            documentation: Documentation::Text(String::new()),
+            replace,
+            insert: label.to_owned(),
+            is_snippet: false,
+            is_escaped: false,
+            imports: None,
+            import_edit: None,
+            rank: Rank::Fitting,
+        }
+    }
+
+    /// What it inserts where there are no stops.
+    pub fn plain(&self) -> String {
+        if self.is_snippet { without_stops(&self.insert) } else { self.insert.clone() }
+    }
 }
 
 /// What a completion is.
@@ -45,306 +89,81 @@ pub enum CompletionKind {
     Snippet,
     /// A number or an address.
     Value,
+    /// The path of a file.
+    File,
     /// The name of an entity.
     Reference(EntityKind),
     /// A key or a table of a settings file.
     Setting,
 }
 
+/// What there is to say of a completion.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Documentation {
+    /// Markdown; perhaps nothing.
+    Text(String),
+    /// What [`completion_documentation`] says of what a file declares: it takes longer, and only one is looked at.
+    Of(FileId, EntityKind),
+}
+
+/// Names, then words, then whole patterns, then what is not in sight yet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Rank {
+    Fitting,
+    Word,
+    Closing,
+    Pattern,
+    Elsewhere,
+}
+
 /// What fits at a place; `speed` is for patterns with one, in centimetres per second.
-pub fn completions(database: &Database, position: FilePosition, speed: f64) -> Vec<Completion> {
-    let Some(place) = Place::find(database, position, speed) else { return Vec::new() };
-    let mut found = Vec::new();
-    for expected in expected_after(&place.text, &place.before) {
-        place.complete(expected, &mut found);
+pub fn completions(database: &Database, position: FilePosition, speed: f64) -> Completions {
+    let mut found = Completions::default();
+    if let Some(string) = paths::string_at(database, position) {
+        found.items = paths::paths(database, position.file, &string);
+    } else if let Some(place) = Place::find(database, position, speed) {
+        for expected in expected_after(&place.text, &place.before) {
+            complete(&place, expected, &mut found);
+        }
     }
-    found.sort_by(|a, b| (a.rank, &a.label).cmp(&(b.rank, &b.label)));
+    found.items.sort_by_key(|item| item.rank);
     found
 }
 
-/// The entity before the cursor, as far as it is written.
-struct Place<'a> {
-    database: &'a Database,
-    file: FileId,
-    /// The entity that the cursor continues; `None` at the start of a file.
-    entity: Option<(EntityId, &'a Entity)>,
-    /// Its text.
-    text: String,
-    /// Its tokens before the word at the cursor.
-    before: Vec<Lexeme>,
-    /// Whether nothing of the entity is written behind that word.
-    at_end: bool,
-    /// The speed in patterns, centimetres per second.
-    speed: f64,
-    /// The cursor, from the entity's start.
-    offset: u32,
-    /// The word at the cursor, in the file.
-    word: Span,
-}
-
-impl<'a> Place<'a> {
-    fn find(database: &'a Database, position: FilePosition, speed: f64) -> Option<Self> {
-        let word = word_at(database, position)?;
-        // A word that looks like a keyword begins an entity of its own; it is still only a word being typed.
-        let at = database.entity_at(position.file, word.start)?;
-        let at = match word.start.checked_sub(1) {
-            Some(before) if at.span.start == word.start => database.entity_at(position.file, before)?,
-            _ => at,
-        };
-        let start = at.span.start;
-        let significant = at.parse.lexemes.iter().filter(|(token, _)| !token.is_comment());
-        let at_end = !significant.clone().any(|(_, span)| span.start + start >= word.end);
-        let before = significant.take_while(|(_, span)| span.end + start <= word.start).copied();
-        Some(Self {
-            at_end,
-            database,
-            file: position.file,
-            entity: at.parse.entity.as_ref().map(|tree| (at.id, tree)),
-            text: database.slice(position.file, at.span),
-            before: before.collect(),
-            speed,
-            offset: word.start - start,
-            word,
-        })
-    }
-
-    fn complete(&self, expected: Expected, found: &mut Vec<Completion>) {
-        match expected {
-            Expected::Word(word) => found.extend(self.word(word)),
-            Expected::ReferenceTo(kind) => found.extend(self.references(kind)),
-            Expected::Action => found.extend(self.words(&[Token::Move, Token::Turn, Token::Slam], ACTIONS)),
-            Expected::Declaration => found.extend(self.words(&BEGINNINGS, ENTITIES)),
-            Expected::Port => found.push(self.value(&self.free_port(), "the next free port")),
-            Expected::Address => found.push(self.value("127.0.0.1", "this machine")),
-            Expected::Radius => found.push(self.value("4.5", "centimetres")),
-            Expected::Distance | Expected::Speed | Expected::Angle | Expected::NameOf(_) | Expected::Path => {
+fn complete(place: &Place<'_>, expected: Expected, found: &mut Completions) {
+    match expected {
+        Expected::Word(word) => {
+            found.items.extend(words::word(place, word));
+            if word == Token::At {
+                found.items.extend(words::patterns(place, SPEEDS));
             }
         }
-    }
-
-    /// A word, followed by those that can only follow it.
-    fn word(&self, word: Token) -> Option<Completion> {
-        let spelling = word.spelling().filter(|_| !matches!(word, Token::Comma))?;
-        let Continued { insert, is_snippet, last } = self.continued(word);
-        let label =
-            insert.replace(" $0 ", " … ").replace("$0", "…").split_whitespace().collect::<Vec<_>>().join(" ");
-        // `with` and braces say little by themselves; the word they lead to says it.
-        let leads = matches!(word, Token::With | Token::Has | Token::OpenBrace | Token::CloseBrace);
-        let page = keyword_page(if leads { last } else { word });
-        Some(Completion {
-            label: if word == Token::OpenBrace { label } else { label.trim_end_matches(" …").to_owned() },
-            kind: CompletionKind::Keyword,
-            detail: page
-                .map_or_else(String::new, |page| page.syntax.lines().next().unwrap_or_default().to_owned()),
-            documentation: page.map_or_else(|| format!("`{spelling}`"), |page| page.markdown()),
-            replace: self.word,
-            insert,
-            is_snippet,
-            rank: 1,
-        })
-    }
-
-    /// `with` continues to `with port`, `has` to `has { $0 } wheels`: as long as only one word can follow, and nothing
-    /// is written there yet.
-    fn continued(&self, word: Token) -> Continued {
-        const MOST: usize = 6;
-        let mut before = self.before.clone();
-        let insert = word.spelling().unwrap_or_default().to_owned();
-        let mut continued = Continued { insert, is_snippet: false, last: word };
-        for _ in 0..if self.at_end { MOST } else { 0 } {
-            let end = Span::at(before.last().map_or(0, |(_, span)| span.end));
-            before.push((continued.last, end));
-            if continued.last == Token::OpenBrace && self.lists_names(&before) {
-                continued.insert += " $0 }";
-                continued.is_snippet = true;
-                before.extend([(Token::Name, end), (Token::CloseBrace, end)]);
-            }
-            match expected_after(&self.text, &before)[..] {
-                [Expected::Word(word)] if word != Token::Comma && word != Token::CloseBrace => {
-                    continued.insert =
-                        format!("{} {}", continued.insert, word.spelling().unwrap_or_default());
-                    continued.last = word;
-                }
-                _ => break,
-            }
+        Expected::ReferenceTo(kind) => names::names(place, kind, found),
+        Expected::Action => {
+            found.items.extend(words::plain_words(place, &[Token::Move, Token::Turn, Token::Slam]));
+            found.items.extend(words::patterns(place, ACTIONS));
         }
-        continued
-    }
-
-    fn lists_names(&self, before: &[Lexeme]) -> bool {
-        expected_after(&self.text, before).iter().any(|expected| matches!(expected, Expected::ReferenceTo(_)))
-    }
-
-    fn words(&self, words: &[Token], snippets: &[Snippet]) -> Vec<Completion> {
-        let keywords = words.iter().filter_map(|word| {
-            let spelling = word.spelling()?;
-            let page = keyword_page(*word)?;
-            Some(Completion {
-                label: spelling.to_owned(),
-                kind: CompletionKind::Keyword,
-                detail: page.syntax.lines().next().unwrap_or_default().to_owned(),
-                documentation: page.markdown(),
-                replace: self.word,
-                insert: spelling.to_owned(),
-                is_snippet: false,
-                rank: 1,
-            })
-        });
-        let snippets = snippets.iter().map(|snippet| Completion {
-            label: snippet.label.to_owned(),
-            kind: CompletionKind::Snippet,
-            detail: snippet.detail.to_owned(),
-            documentation: format!("```pydslrep\n{}\n```", without_stops(&snippet.filled_in(self.speed))),
-            replace: self.word,
-            insert: snippet.filled_in(self.speed),
-            is_snippet: true,
-            rank: 2,
-        });
-        keywords.chain(snippets).collect()
-    }
-
-    fn value(&self, text: &str, detail: &str) -> Completion {
-        Completion {
-            label: text.to_owned(),
-            kind: CompletionKind::Value,
-            detail: detail.to_owned(),
-            documentation: String::new(),
-            replace: self.word,
-            insert: text.to_owned(),
-            is_snippet: false,
-            rank: 0,
+        Expected::Declaration => {
+            let words = if place.may_import() { &BEGINNINGS[..] } else { &BEGINNINGS[1..] };
+            found.items.extend(words::plain_words(place, words));
+            found.items.extend(words::patterns(place, ENTITIES));
         }
-    }
-
-    fn free_port(&self) -> String {
-        let ports = self.database.entities(self.file).filter_map(|entity| match &entity.parse.entity {
-            Some(Entity::Robot(robot)) => robot.port.as_ref()?.value,
-            _ => None,
-        });
-        let highest = ports.max().unwrap_or(FIRST_PORT - 1);
-        highest.checked_add(1).unwrap_or(FIRST_PORT).to_string()
-    }
-
-    fn references(&self, kind: EntityKind) -> Vec<Completion> {
-        let names = self.database.visible_names(self.file, kind);
-        let taken = self.taken(kind);
-        let wanted = names.iter().filter(|name| !taken.iter().any(|taken| taken == name.as_str()));
-        let fitting =
-            wanted.filter(|name| self.fits(kind, &Name { text: (*name).clone(), span: Span::default() }));
-        let bodies = self.bodies(kind);
-        fitting.map(|name| self.reference(kind, name, &bodies)).collect()
-    }
-
-    /// Where the entities of a kind stand, found in one walk over each file that is seen from here.
-    fn bodies(&self, kind: EntityKind) -> HashMap<EntityId, (FileId, Span)> {
-        let imported = self.database.imported_files(self.file);
-        let files = std::iter::once(self.file).chain(imported);
-        let of_kind = |entity: &EntityRef<'_>| {
-            entity.parse.entity.as_ref().is_some_and(|tree| tree.kind() == Some(kind))
-        };
-        let entities = files.flat_map(|file| self.database.entities(file).filter(of_kind));
-        entities.map(|entity| (entity.id, (entity.file, body(&entity)))).collect()
-    }
-
-    fn reference(
-        &self,
-        kind: EntityKind,
-        name: &str,
-        bodies: &HashMap<EntityId, (FileId, Span)>,
-    ) -> Completion {
-        let id = self.database.resolve(self.file, kind, &name.into()).entity();
-        let preview = id.and_then(|id| bodies.get(&id)).map(|(file, body)| self.database.slice(*file, *body));
-        let escaped = KEYWORDS.iter().any(|(token, word)| token.is_keyword() && *word == name);
-        Completion {
-            label: name.to_owned(),
-            kind: CompletionKind::Reference(kind),
-            detail: kind.noun().to_owned(),
-            documentation: preview.map_or_else(String::new, |text| format!("```pydslrep\n{text}\n```")),
-            replace: self.word,
-            insert: if escaped { format!("^{name}") } else { name.to_owned() },
-            is_snippet: false,
-            rank: 0,
+        Expected::Port => {
+            let port = words::free_port(place);
+            found.items.extend(port.map(|port| words::value(place, &port, "the next free port")));
         }
-    }
-
-    /// The names that the list at the cursor has already. A movement may be listed again.
-    fn taken(&self, kind: EntityKind) -> Vec<String> {
-        let list = match self.entity.map(|(_, tree)| tree) {
-            Some(Entity::Robot(robot)) if kind == EntityKind::Wheel => robot.wheels.as_ref(),
-            Some(Entity::Robot(robot)) => robot.sensors.as_ref(),
-            Some(Entity::Movement(movement)) if kind == EntityKind::Sensor => self.until_list(movement),
-            Some(Entity::Environment(environment)) if kind == EntityKind::Robot => {
-                environment.robots.as_ref()
-            }
-            _ => None,
-        };
-        let names = list.into_iter().flat_map(|list: &References| &list.names);
-        // The word at the cursor is what is being replaced.
-        names.filter(|name| name.span.start != self.offset).map(|name| name.text.to_string()).collect()
-    }
-
-    fn until_list<'m>(&self, movement: &'m Movement) -> Option<&'m References> {
-        let around = |action: &&Action| action.span.touches(self.offset);
-        movement.actions.iter().filter(around).find_map(Action::until)
-    }
-
-    /// Whether a name makes sense at the cursor.
-    fn fits(&self, kind: EntityKind, name: &Name) -> bool {
-        match (self.entity.map(|(_, tree)| tree), kind) {
-            (Some(Entity::Robot(robot)), EntityKind::Wheel) => self.wheel_fits(robot, name),
-            (Some(Entity::Movement(movement)), EntityKind::Sensor) => self.carries(movement, name),
-            (Some(Entity::Environment(environment)), EntityKind::Movement) => {
-                self.is_driven(environment.robots.as_ref(), name)
-            }
-            _ => true,
+        Expected::Address => found.items.push(words::value(place, "127.0.0.1", "this machine")),
+        Expected::Radius => found.items.push(words::value(place, "4.5", "centimetres")),
+        Expected::Speed => {
+            found.items.push(words::value(place, &format!("{:?}", place.speed), "centimetres per second"));
         }
-    }
-
-    fn wheel_fits(&self, robot: &Robot, name: &Name) -> bool {
-        let Some(word) = robot.drive.and_then(|clause| clause.word) else { return true };
-        match resolved(self.database, self.file, EntityKind::Wheel, name) {
-            Some((_, Entity::Wheel(wheel))) => wheel.mecanum == (word == DriveWord::Fwh),
-            _ => true,
-        }
-    }
-
-    fn carries(&self, movement: &Movement, name: &Name) -> bool {
-        let robot = movement
-            .robot
-            .as_ref()
-            .and_then(|robot| resolved(self.database, self.file, EntityKind::Robot, robot));
-        match robot {
-            Some((_, Entity::Robot(robot))) => {
-                robot.sensors.iter().flat_map(|list| &list.names).any(|sensor| sensor.text == name.text)
-            }
-            _ => true,
-        }
-    }
-
-    fn is_driven(&self, robots: Option<&References>, name: &Name) -> bool {
-        let movement = resolved(self.database, self.file, EntityKind::Movement, name);
-        match (movement, robots) {
-            (Some((_, Entity::Movement(movement))), Some(robots)) => movement
-                .robot
-                .as_ref()
-                .is_none_or(|robot| robots.names.iter().any(|listed| listed.text == robot.text)),
-            _ => true,
-        }
+        Expected::Path => found.items.extend(paths::quoted_paths(place)),
+        Expected::Distance | Expected::Angle | Expected::NameOf(_) => {}
     }
 }
-
-/// A word with those that can only follow it.
-struct Continued {
-    insert: String,
-    is_snippet: bool,
-    /// The last of the words.
-    last: Token,
-}
-
-/// The first port offered: V-REP's.
-const FIRST_PORT: u16 = 19999;
 
 const BEGINNINGS: [Token; 9] = [
+    Token::Import,
     Token::Wheel,
     Token::WheelH,
     Token::Sensor,
@@ -353,37 +172,18 @@ const BEGINNINGS: [Token; 9] = [
     Token::Movement,
     Token::Parallel,
     Token::Environment,
-    Token::Import,
 ];
-
-/// The word before and behind the cursor; `None` inside comments and strings, where nothing is completed.
-fn word_at(database: &Database, position: FilePosition) -> Option<Span> {
-    let entity = database.entity_at(position.file, position.offset)?;
-    let offset = position.offset - entity.span.start;
-    let covering = |(_, span): &&Lexeme| span.start < offset && offset <= span.end;
-    let Some((token, span)) = entity.parse.lexemes.iter().find(covering) else {
-        return Some(Span::at(position.offset));
-    };
-    let ends_before = span.end == offset;
-    let in_comment = token.is_comment() && !(*token == Token::BlockComment && ends_before);
-    let in_string = *token == Token::UnterminatedString || (*token == Token::String && !ends_before);
-    if in_comment || in_string {
-        return None;
-    }
-    let is_word = token.is_name() || token.is_keyword();
-    Some(if is_word { span.shifted(entity.span.start) } else { Span::at(position.offset) })
-}
 
 #[cfg(test)]
 mod tests {
     use expect_test::{Expect, expect};
 
     use super::*;
-    use crate::fixture::{PARTS, at_cursor};
+    use crate::fixture::{PARTS, at_cursor, at_cursor_in};
 
     fn check(fixture: &str, expected: &Expect) {
         let (database, position) = at_cursor(fixture);
-        let rendered = completions(&database, position, 9.0).into_iter().map(|item| {
+        let rendered = completions(&database, position, 9.0).items.into_iter().map(|item| {
             let replaced = database.slice(position.file, item.replace);
             format!("{} [{}] {replaced:?} -> {:?}\n", item.label, item.detail, item.insert)
         });
@@ -395,23 +195,23 @@ mod tests {
         check(
             "$0",
             &expect![[r#"
-                environment [environment NAME [with ip IP] has { ROBOTS } robots [with { MOVEMENTS } moves]] "" -> "environment"
                 import [import "FILE.pyr"] "" -> "import"
-                ip [ip NAME 127.0.0.1] "" -> "ip"
-                movement [[parallel] movement NAME of ROBOT { ACTIONS }] "" -> "movement"
-                parallel [[parallel] movement NAME of ROBOT { ACTIONS }] "" -> "parallel"
-                robot [robot NAME [type tw | fw | fwh] with port PORT has { WHEELS } wheels [with sensors { SENSORS }]] "" -> "robot"
-                sensor [sensor NAME [: distance | bumper]] "" -> "sensor"
                 wheel [wheel NAME with radius CENTIMETRES] "" -> "wheel"
                 wheelH [wheelH NAME with radius CENTIMETRES] "" -> "wheelH"
-                environment … [a whole environment] "" -> "environment ${1:area} has { ${2:rover} } robots with { ${3:patrol} } moves"
-                ip … [a whole address] "" -> "ip ${1:lab} ${2:127.0.0.1}"
-                movement … [a whole movement] "" -> "movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}"
-                parallel movement … [a movement that runs beside others] "" -> "parallel movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}"
-                robot … [a whole robot] "" -> "robot ${1:rover} type ${2:tw} with port ${3:19999} has { ${4:wheelL wheelR} } wheels"
-                sensor … [a whole sensor] "" -> "sensor ${1:front}"
+                sensor [sensor NAME [: distance | bumper]] "" -> "sensor"
+                ip [ip NAME 127.0.0.1] "" -> "ip"
+                robot [robot NAME [type tw | fw | fwh] with port PORT has { WHEELS } wheels [with sensors { SENSORS }]] "" -> "robot"
+                movement [[parallel] movement NAME of ROBOT { ACTIONS }] "" -> "movement"
+                parallel [[parallel] movement NAME of ROBOT { ACTIONS }] "" -> "parallel"
+                environment [environment NAME [with ip IP] has { ROBOTS } robots [with { MOVEMENTS } moves]] "" -> "environment"
                 wheel … [a whole wheel] "" -> "wheel ${1:wheelL} with radius ${2:4.5}"
                 wheelH … [a whole mecanum wheel] "" -> "wheelH ${1:wheelLF} with radius ${2:4.5}"
+                sensor … [a whole sensor] "" -> "sensor ${1:front}"
+                ip … [a whole address] "" -> "ip ${1:lab} ${2:127.0.0.1}"
+                robot … [a whole robot] "" -> "robot ${1:rover} type ${2:tw} with port ${3:19999} has { ${4:wheelL wheelR} } wheels"
+                movement … [a whole movement] "" -> "movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}"
+                parallel movement … [a movement that runs beside others] "" -> "parallel movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}"
+                environment … [a whole environment] "" -> "environment ${1:area} has { ${2:rover} } robots with { ${3:patrol} } moves"
             "#]],
         );
     }
@@ -427,8 +227,8 @@ mod tests {
         check(
             &format!("{PARTS}robot r $0"),
             &expect![[r#"
-                type [type tw | fw | fwh] "" -> "type"
                 with port [with port NUMBER] "" -> "with port"
+                type [type tw | fw | fwh] "" -> "type"
             "#]],
         );
         check(
@@ -440,17 +240,17 @@ mod tests {
         check(
             &format!("{PARTS}environment e $0"),
             &expect![[r#"
-                has { … } robots [has { ROBOTS } robots] "" -> "has { $0 } robots"
                 with ip [ip NAME 127.0.0.1] "" -> "with ip"
+                has { … } robots [has { ROBOTS } robots] "" -> "has { $0 } robots"
             "#]],
         );
         check(
             "robot r type $0",
             &expect![[r#"
-            fw with port [type tw | fw | fwh] "" -> "fw with port"
-            fwh with port [type tw | fw | fwh] "" -> "fwh with port"
-            tw with port [type tw | fw | fwh] "" -> "tw with port"
-        "#]],
+                tw with port [Two-wheel differential drive] "" -> "tw with port"
+                fw with port [Four-wheel skid-steer drive] "" -> "fw with port"
+                fwh with port [Mecanum drive] "" -> "fwh with port"
+            "#]],
         );
         check(
             "robot r with port $0",
@@ -465,10 +265,10 @@ mod tests {
         check(
             &format!("{PARTS}robot r type $0 with port 1 has {{ wheelL wheelR }} wheels"),
             &expect![[r#"
-            fw [type tw | fw | fwh] "" -> "fw"
-            fwh [type tw | fw | fwh] "" -> "fwh"
-            tw [type tw | fw | fwh] "" -> "tw"
-        "#]],
+                tw [Two-wheel differential drive] "" -> "tw"
+                fw [Four-wheel skid-steer drive] "" -> "fw"
+                fwh [Mecanum drive] "" -> "fwh"
+            "#]],
         );
         check(
             &format!("{PARTS}robot r with port 1 h$0 {{ wheelL wheelR }} wheels"),
@@ -507,9 +307,8 @@ mod tests {
         check(
             &format!("{PARTS}movement m of rover {{ turn left until {{ $0"),
             &expect![[r#"
-            front [sensor] "" -> "front"
-            } [] "" -> "}"
-        "#]],
+                front [sensor] "" -> "front"
+            "#]],
         );
     }
 
@@ -531,15 +330,15 @@ mod tests {
         check(
             &format!("{PARTS}movement m of rover {{ move 4.0 $0 }}"),
             &expect![[r#"
-                centimeters [move DISTANCE centimeters] "" -> "centimeters"
                 meters [move DISTANCE meters | centimeters [at SPEED]] "" -> "meters"
+                centimeters [move DISTANCE centimeters] "" -> "centimeters"
             "#]],
         );
         check(
             &format!("{PARTS}movement m of rover {{ move 4.0 me$0 turn left }}"),
             &expect![[r#"
-                centimeters [move DISTANCE centimeters] "me" -> "centimeters"
                 meters [move DISTANCE meters | centimeters [at SPEED]] "me" -> "meters"
+                centimeters [move DISTANCE centimeters] "me" -> "centimeters"
             "#]],
         );
         check(
@@ -547,11 +346,12 @@ mod tests {
             &expect![[r#"
                 at [move DISTANCE meters | centimeters [at SPEED]] "" -> "at"
                 move [move DISTANCE meters | centimeters [at SPEED]] "" -> "move"
-                slam [slam] "" -> "slam"
                 turn [turn left | right [DEGREES]] "" -> "turn"
+                slam [slam] "" -> "slam"
                 } [] "" -> "}"
-                move … centimeters at … [straight ahead, with a speed] "" -> "move ${1:50} centimeters at ${2:9.0}"
+                at … [a speed in centimetres per second] "" -> "at ${1:9.0}"
                 move … meters [straight ahead] "" -> "move ${1:1.0} meters"
+                move … centimeters at … [straight ahead, with a speed] "" -> "move ${1:50} centimeters at ${2:9.0}"
                 turn left [in place] "" -> "turn left ${1:90}"
                 turn right [in place] "" -> "turn right ${1:90}"
                 turn … until [until the way is free] "" -> "turn ${1:right} until { $0 }"
@@ -564,23 +364,22 @@ mod tests {
         check(
             "wheel w with radius 4\nrobot$0",
             &expect![[r#"
-                environment [environment NAME [with ip IP] has { ROBOTS } robots [with { MOVEMENTS } moves]] "robot" -> "environment"
-                import [import "FILE.pyr"] "robot" -> "import"
-                ip [ip NAME 127.0.0.1] "robot" -> "ip"
-                movement [[parallel] movement NAME of ROBOT { ACTIONS }] "robot" -> "movement"
-                parallel [[parallel] movement NAME of ROBOT { ACTIONS }] "robot" -> "parallel"
-                robot [robot NAME [type tw | fw | fwh] with port PORT has { WHEELS } wheels [with sensors { SENSORS }]] "robot" -> "robot"
-                sensor [sensor NAME [: distance | bumper]] "robot" -> "sensor"
                 wheel [wheel NAME with radius CENTIMETRES] "robot" -> "wheel"
                 wheelH [wheelH NAME with radius CENTIMETRES] "robot" -> "wheelH"
-                environment … [a whole environment] "robot" -> "environment ${1:area} has { ${2:rover} } robots with { ${3:patrol} } moves"
-                ip … [a whole address] "robot" -> "ip ${1:lab} ${2:127.0.0.1}"
-                movement … [a whole movement] "robot" -> "movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}"
-                parallel movement … [a movement that runs beside others] "robot" -> "parallel movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}"
-                robot … [a whole robot] "robot" -> "robot ${1:rover} type ${2:tw} with port ${3:19999} has { ${4:wheelL wheelR} } wheels"
-                sensor … [a whole sensor] "robot" -> "sensor ${1:front}"
+                sensor [sensor NAME [: distance | bumper]] "robot" -> "sensor"
+                ip [ip NAME 127.0.0.1] "robot" -> "ip"
+                robot [robot NAME [type tw | fw | fwh] with port PORT has { WHEELS } wheels [with sensors { SENSORS }]] "robot" -> "robot"
+                movement [[parallel] movement NAME of ROBOT { ACTIONS }] "robot" -> "movement"
+                parallel [[parallel] movement NAME of ROBOT { ACTIONS }] "robot" -> "parallel"
+                environment [environment NAME [with ip IP] has { ROBOTS } robots [with { MOVEMENTS } moves]] "robot" -> "environment"
                 wheel … [a whole wheel] "robot" -> "wheel ${1:wheelL} with radius ${2:4.5}"
                 wheelH … [a whole mecanum wheel] "robot" -> "wheelH ${1:wheelLF} with radius ${2:4.5}"
+                sensor … [a whole sensor] "robot" -> "sensor ${1:front}"
+                ip … [a whole address] "robot" -> "ip ${1:lab} ${2:127.0.0.1}"
+                robot … [a whole robot] "robot" -> "robot ${1:rover} type ${2:tw} with port ${3:19999} has { ${4:wheelL wheelR} } wheels"
+                movement … [a whole movement] "robot" -> "movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}"
+                parallel movement … [a movement that runs beside others] "robot" -> "parallel movement ${1:patrol} of ${2:rover} {\n  move ${3:1.0} meters\n  $0\n}"
+                environment … [a whole environment] "robot" -> "environment ${1:area} has { ${2:rover} } robots with { ${3:patrol} } moves"
             "#]],
         );
     }
@@ -591,5 +390,179 @@ mod tests {
         check("// a$0", &expect![]);
         check("import \"$0", &expect![]);
         check("import \"a$0\"", &expect![]);
+    }
+
+    fn check_in(files: &[(&str, &str)], expected: &Expect) {
+        let (database, position) = at_cursor_in(files);
+        let rendered = completions(&database, position, 9.0).items.into_iter().map(|item| {
+            let replaced = database.slice(position.file, item.replace);
+            let import = item.import_edit.map(|edit| format!(" and {:?} at {}", edit.text, edit.span.start));
+            let import = import.unwrap_or_default();
+            format!("{} [{}] {replaced:?} -> {:?}{import}\n", item.label, item.detail, item.insert)
+        });
+        expected.assert_eq(&rendered.collect::<String>());
+    }
+
+    #[test]
+    fn names_of_other_files_bring_their_import() {
+        let wheels = ("lib/wheels.pyr", "wheel big with radius 9 wheelH round with radius 9");
+        let more = ("more.pyr", "wheel ^type with radius 1 wheel big with radius 2");
+        check_in(
+            &[wheels, more, ("a.pyr", "import \"more.pyr\"\nrobot r type tw with port 1 has { $0 } wheels")],
+            &expect![[r#"
+                big [wheel from more.pyr] "" -> "big"
+                type [wheel from more.pyr] "" -> "^type"
+                } [] "" -> "}"
+            "#]],
+        );
+        check_in(
+            &[wheels, more, ("a.pyr", "// head\nimport \"more.pyr\"\nrobot r with port 1 has { rou$0")],
+            &expect![[r#"
+                big [wheel from more.pyr] "rou" -> "big"
+                type [wheel from more.pyr] "rou" -> "^type"
+                } wheels [has { WHEELS } wheels] "rou" -> "} wheels"
+                round [wheel from lib/wheels.pyr, adds the import] "rou" -> "round" and "import \"lib/wheels.pyr\"\n" at 8
+            "#]],
+        );
+        check_in(
+            &[wheels, ("a.pyr", "\u{feff}robot r type fwh with port 1 has { $0 } wheels")],
+            &expect![[r#"
+            } [] "" -> "}"
+            round [wheel from lib/wheels.pyr, adds the import] "" -> "round" and "import \"lib/wheels.pyr\"\n\n" at 3
+        "#]],
+        );
+    }
+
+    #[test]
+    fn imports_offer_the_files_there_are() {
+        let files =
+            |last| [("lib/wheels.pyr", "wheel big with radius 9"), ("b.pyr", ""), ("lib/a.pyr", last)];
+        check_in(
+            &files("import \"$0\""),
+            &expect![[r#"
+            wheels.pyr [1 wheel] "" -> "wheels.pyr"
+            ../b.pyr [declares nothing] "" -> "../b.pyr"
+        "#]],
+        );
+        check_in(
+            &files("import \"whe$0\nsensor s"),
+            &expect![[r#"
+            wheels.pyr [1 wheel] "whe" -> "wheels.pyr\""
+            ../b.pyr [declares nothing] "whe" -> "../b.pyr\""
+        "#]],
+        );
+        check_in(
+            &files("import \"wheels.pyr\" import $0"),
+            &expect![[r#"
+            "../b.pyr" [declares nothing] "" -> "\"../b.pyr\""
+        "#]],
+        );
+    }
+
+    #[test]
+    fn keywords_as_names_are_escaped() {
+        check(
+            "sensor ^robots robot r with port 1 has { } wheels with sensors { ro$0",
+            &expect![[r#"
+            robots [sensor] "ro" -> "^robots"
+        "#]],
+        );
+        check(
+            "sensor ^robots sensor s robot r with port 1 has { } wheels with sensors { ^$0 }",
+            &expect![[r#"
+            robots [sensor] "^" -> "^robots"
+            s [sensor] "^" -> "s"
+        "#]],
+        );
+    }
+
+    #[test]
+    fn a_port_that_is_free() {
+        check(
+            "robot r with port 65535 has { } wheels robot q with port $0",
+            &expect![[r#"
+            19999 [the next free port] "" -> "19999"
+        "#]],
+        );
+        check(
+            "robot r with port 20000 has { } wheels robot q with port $0",
+            &expect![[r#"
+            20001 [the next free port] "" -> "20001"
+        "#]],
+        );
+    }
+
+    #[test]
+    fn a_number_is_left_alone() {
+        check("movement m of r { move 4$0.0 meters }", &expect![]);
+        check(
+            "movement m of r { move 4$0 }",
+            &expect![[r#"
+            meters [move DISTANCE meters | centimeters [at SPEED]] "" -> " meters"
+            centimeters [move DISTANCE centimeters] "" -> " centimeters"
+        "#]],
+        );
+        check(
+            "movement m of r { move 4 meters at $0 }",
+            &expect![[r#"
+                9.0 [centimetres per second] "" -> "9.0"
+            "#]],
+        );
+    }
+
+    #[test]
+    fn the_likeliest_wheels_come_first() {
+        check(
+            "wheel a with radius 9 wheel b with radius 4 wheel c with radius 4 wheel d with radius 4 wheelH e with radius 4\n\
+             robot q with port 1 has { b } wheels robot r with port 1 has { c $0 } wheels",
+            &expect![[r#"
+                d [wheel] "" -> "d"
+                b [wheel] "" -> "b"
+                a [wheel] "" -> "a"
+                } [] "" -> "}"
+            "#]],
+        );
+        check(
+            "wheelH a with radius 4 wheelH b with radius 4 wheelH c with radius 4 wheelH d with radius 4\n\
+             robot r type $0 with port 1 has { a b c d } wheels",
+            &expect![[r#"
+                fwh [Mecanum drive] "" -> "fwh"
+                tw [Two-wheel differential drive] "" -> "tw"
+                fw [Four-wheel skid-steer drive] "" -> "fw"
+            "#]],
+        );
+    }
+
+    #[test]
+    fn a_list_is_as_long_as_anybody_reads() {
+        let many: Vec<String> = (0..5_000).map(|number| format!("sensor s{number}")).collect();
+        let many = many.join("\n");
+        let found = |typed: &str| {
+            let (database, position) = at_cursor(&format!(
+                "sensor zz\n{many}\nsensor near robot r with port 1 has {{ }} wheels with sensors {{ {typed}$0"
+            ));
+            let found = completions(&database, position, 9.0);
+            let labels: Vec<String> = found.items.into_iter().map(|item| item.label).collect();
+            (labels, found.is_incomplete)
+        };
+        let (labels, is_incomplete) = found("");
+        assert_eq!((labels.len(), is_incomplete), (MOST, true));
+        assert!(labels.contains(&"near".to_owned()), "what is declared right before");
+        let (labels, is_incomplete) = found("s4321");
+        assert_eq!((&labels[..], is_incomplete), (&["s4321".to_owned()][..], false));
+        assert_eq!(found("Z").0, ["zz"]);
+    }
+
+    #[test]
+    fn a_name_says_what_it_is_when_it_is_looked_at() {
+        let (database, position) = at_cursor(&format!("{PARTS}movement m of $0"));
+        let item = completions(&database, position, 9.0).items.remove(0);
+        let Documentation::Of(home, kind) = item.documentation else { panic!("{item:?}") };
+        expect![[r#"
+            ```pydslrep
+            robot rover type tw with port 19999 has { wheelL wheelR } wheels with sensors { front }
+            ```
+            Two-wheel differential drive (`tw`), port 19999."#]]
+        .assert_eq(&completion_documentation(&database, home, kind, &item.label.into()).unwrap_or_default());
     }
 }

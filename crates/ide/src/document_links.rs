@@ -42,14 +42,18 @@ fn between_quotes(database: &Database, file: FileId, span: Span) -> Span {
 
 fn tooltip(database: &Database, file: FileId) -> String {
     let name = database.path(file).rsplit('/').next().unwrap_or_default();
+    format!("Open {name}: {}", contents(database, file))
+}
+
+/// What a file declares, in a few words.
+pub(crate) fn contents(database: &Database, file: FileId) -> String {
     let counts: Vec<String> = EntityKind::ALL
         .iter()
         .map(|kind| (database.count(file, *kind), kind.noun()))
         .filter(|(count, _)| *count > 0)
         .map(|(count, noun)| counted(count as usize, noun))
         .collect();
-    let contents = if counts.is_empty() { "declares nothing".to_owned() } else { counts.join(", ") };
-    format!("Open {name}: {contents}")
+    if counts.is_empty() { "declares nothing".to_owned() } else { counts.join(", ") }
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ pub(crate) mod drawing;
 pub(crate) mod motion;
 mod parts;
 
-use pydslrep_analysis::Database;
+use pydslrep_analysis::{Database, EntityId};
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Span};
 
@@ -31,19 +31,24 @@ pub fn hover(database: &Database, position: FilePosition) -> Option<Hover> {
 fn name(database: &Database, position: FilePosition) -> Option<Hover> {
     let at = name_at(database, position)?;
     let id = database.resolve(position.file, at.kind, &at.name.text).entity()?;
-    let facts = match at.kind {
+    let facts = facts(database, id);
+    let entity = database.entity(id)?;
+    let declaration = database.slice(entity.file, body(&entity));
+    let first_line = declaration.lines().next().unwrap_or_default();
+    let facts = facts.unwrap_or_else(|| "There is more to say of it once its errors are mended.".to_owned());
+    Some(Hover { span: at.span, markdown: format!("```pydslrep\n{first_line}\n```\n{facts}") })
+}
+
+/// What there is to say of an entity; `None` where it has errors.
+pub(crate) fn facts(database: &Database, id: EntityId) -> Option<String> {
+    match database.tree(id)?.kind()? {
         EntityKind::Wheel => parts::wheel(database, id),
         EntityKind::Sensor => parts::sensor(database, id),
         EntityKind::Ip => parts::ip(database, id),
         EntityKind::Robot => parts::robot(database, id),
         EntityKind::Movement => motion::movement(database, id),
         EntityKind::Environment => motion::environment(database, id),
-    };
-    let entity = database.entity(id)?;
-    let declaration = database.slice(entity.file, body(&entity));
-    let first_line = declaration.lines().next().unwrap_or_default();
-    let facts = facts.unwrap_or_else(|| "There is more to say of it once its errors are mended.".to_owned());
-    Some(Hover { span: at.span, markdown: format!("```pydslrep\n{first_line}\n```\n{facts}") })
+    }
 }
 
 /// An action, where the cursor is on one of its words.

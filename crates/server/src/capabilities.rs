@@ -52,8 +52,9 @@ fn server_capabilities(client: &ClientFeatures) -> ServerCapabilities {
             ..WorkspaceServerCapabilities::default()
         }),
         completion_provider: Some(CompletionOptions {
-            // The last two are for settings files.
-            trigger_characters: Some([" ", "{", "[", "\""].map(str::to_owned).to_vec()),
+            // `[` is for settings files.
+            trigger_characters: Some([" ", "{", "[", "\"", "/", "^"].map(str::to_owned).to_vec()),
+            resolve_provider: Some(true),
             ..CompletionOptions::default()
         }),
         signature_help_provider: Some(SignatureHelpOptions {

@@ -28,6 +28,8 @@ pub(crate) struct ClientFeatures {
     pub(crate) completion_format: Option<MarkupKind>,
     /// Completions may have places to fill in.
     pub(crate) snippets: bool,
+    /// It asks for the documentation of a completion when it shows it.
+    pub(crate) resolve_completions: bool,
     /// Definitions may say which text leads to them.
     pub(crate) definition_links: bool,
     /// The same of declarations.
@@ -147,6 +149,10 @@ impl ClientFeatures {
         {
             self.completion_format = best(item.documentation_format.as_ref());
             self.snippets = item.snippet_support == Some(true);
+            self.resolve_completions = item
+                .resolve_support
+                .as_ref()
+                .is_some_and(|support| support.properties.iter().any(|property| property == "documentation"));
         }
         let links = |goto: Option<&GotoCapability>| goto.is_some_and(|goto| goto.link_support == Some(true));
         self.definition_links = links(document.definition.as_ref());

@@ -198,6 +198,10 @@ impl LanguageServer for Server {
         Ok(completion::completion(&self.state(), &params))
     }
 
+    async fn completion_resolve(&self, item: CompletionItem) -> Result<CompletionItem> {
+        completion::resolve(&self.state(), item)
+    }
+
     async fn hover(&self, params: HoverParams) -> Result<Option<Hover>> {
         Ok(hover::hover(&self.state(), &params))
     }

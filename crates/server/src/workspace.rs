@@ -147,7 +147,7 @@ impl State {
     }
 
     /// Imports stay inside the folders that are open; those of a file outside of all of them near that file.
-    fn may_import(&self, importer: &str, path: &str) -> bool {
+    pub(crate) fn may_import(&self, importer: &str, path: &str) -> bool {
         if self.is_in_workspace(importer) {
             return self.is_in_workspace(path);
         }

@@ -1,5 +1,7 @@
 //! "Grammar" of the contract, one function per rule, in its order. `None` means: not in the language.
 
+use std::cell::Cell;
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use crate::Finding;
@@ -9,7 +11,17 @@ use crate::program::{
 use crate::tokens::{Kind, Token};
 
 pub(crate) fn read(tokens: &[Token], end: usize) -> Option<Program> {
-    Reader { tokens, at: 0, end, older_spellings: Vec::new() }.program()
+    Reader::new(tokens, end).program()
+}
+
+/// The words and signs that a reader looks for where the tokens end; `None` where no program begins like this.
+pub(crate) fn looked_for(tokens: &[Token], end: usize) -> Option<BTreeSet<&'static str>> {
+    let mut reader = Reader::new(tokens, end);
+    if reader.entities().is_some() {
+        // The next entity.
+        let _ = reader.entity();
+    }
+    reader.ran_out.get().then_some(reader.looked_for)
 }
 
 struct Reader<'a> {
@@ -18,11 +30,30 @@ struct Reader<'a> {
     /// Where the text ends.
     end: usize,
     older_spellings: Vec<Finding>,
+    /// Whether anything was looked for behind the last token.
+    ran_out: Cell<bool>,
+    /// The words and signs that were.
+    looked_for: BTreeSet<&'static str>,
+}
+
+impl<'a> Reader<'a> {
+    fn new(tokens: &'a [Token], end: usize) -> Self {
+        let (ran_out, looked_for) = (Cell::new(false), BTreeSet::new());
+        Self { tokens, at: 0, end, older_spellings: Vec::new(), ran_out, looked_for }
+    }
 }
 
 impl Reader<'_> {
     fn peek(&self) -> Option<&Token> {
-        self.tokens.get(self.at)
+        let token = self.tokens.get(self.at);
+        if token.is_none() {
+            self.ran_out.set(true);
+        }
+        token
+    }
+
+    fn sees_any(&self) -> bool {
+        self.peek().is_some()
     }
 
     /// The next token, if it is of this kind.
@@ -32,13 +63,20 @@ impl Reader<'_> {
         Some(token)
     }
 
-    fn sees(&self, word: &str) -> bool {
+    fn sees(&mut self, word: &'static str) -> bool {
         let is_word = |token: &Token| matches!(token.kind, Kind::Keyword | Kind::Sign) && token.text == word;
-        self.peek().is_some_and(is_word)
+        let seen = self.peek().map(is_word);
+        if seen.is_none() {
+            self.looked_for.insert(word);
+        }
+        seen == Some(true)
     }
 
-    fn word(&mut self, word: &str) -> Option<Range<usize>> {
-        let range = self.peek().filter(|_| self.sees(word))?.range.clone();
+    fn word(&mut self, word: &'static str) -> Option<Range<usize>> {
+        if !self.sees(word) {
+            return None;
+        }
+        let range = self.peek()?.range.clone();
         self.at += 1;
         Some(range)
     }
@@ -48,7 +86,10 @@ impl Reader<'_> {
     }
 
     /// A word that stays usable as a name: `distance`, `bumper`, `import`, all without `^`.
-    fn contextual(&mut self, word: &str) -> Option<()> {
+    fn contextual(&mut self, word: &'static str) -> Option<()> {
+        if self.peek().is_none() {
+            self.looked_for.insert(word);
+        }
         let plain = |token: &&Token| {
             token.kind == Kind::Name && token.text == word && token.range.len() == word.len()
         };
@@ -81,6 +122,11 @@ impl Reader<'_> {
 
     // Program = { Import } { Entity } ;
     fn program(mut self) -> Option<Program> {
+        let entities = self.entities()?;
+        Some(Program { entities, older_spellings: self.older_spellings })
+    }
+
+    fn entities(&mut self) -> Option<Vec<Entity>> {
         while self.contextual("import").is_some() {
             self.next(Kind::Text)?;
         }
@@ -88,24 +134,26 @@ impl Reader<'_> {
         while self.at < self.tokens.len() {
             entities.push(self.entity()?);
         }
-        Some(Program { entities, older_spellings: self.older_spellings })
+        Some(entities)
     }
 
     // Entity = Wheel | Sensor | Ip | Robot | Movement | Environment ;
     fn entity(&mut self) -> Option<Entity> {
         let start = self.start();
         let parallel = self.word("parallel");
-        let (name, body) =
-            match self.one_of(&["wheel", "wheelH", "sensor", "ip", "robot", "movement", "environment"])? {
-                "movement" => self.movement(parallel)?,
-                _ if parallel.is_some() => return None,
-                "wheel" => self.wheel(false)?,
-                "wheelH" => self.wheel(true)?,
-                "sensor" => self.sensor()?,
-                "ip" => self.ip()?,
-                "robot" => self.robot()?,
-                _ => self.environment()?,
-            };
+        let words: &[&'static str] = match parallel {
+            Some(_) => &["movement"],
+            None => &["wheel", "wheelH", "sensor", "ip", "robot", "movement", "environment"],
+        };
+        let (name, body) = match self.one_of(words)? {
+            "wheel" => self.wheel(false)?,
+            "wheelH" => self.wheel(true)?,
+            "sensor" => self.sensor()?,
+            "ip" => self.ip()?,
+            "robot" => self.robot()?,
+            "movement" => self.movement(parallel)?,
+            _ => self.environment()?,
+        };
         Some(Entity { range: start..self.last_end(), name, body })
     }
 
@@ -142,7 +190,8 @@ impl Reader<'_> {
     //         "has" "{" [ Refs(Wheel) ] "}" "wheels" [ "with" "sensors" "{" Refs(Sensor) "}" ] ;
     fn robot(&mut self) -> Option<(Name, Body)> {
         let start = self.start();
-        let mut drive = self.drive()?;
+        // Understood here, but nothing anybody should look for.
+        let mut drive = if self.sees_any() { self.drive()? } else { None };
         if drive.is_some() {
             let misplaced = start..self.last_end();
             self.older_spellings.push(Finding::new("misplaced-type", &misplaced));
@@ -160,8 +209,7 @@ impl Reader<'_> {
         let mut sensors = Vec::new();
         if self.word("with").is_some() {
             self.word("sensors")?;
-            sensors = self.braced_refs()?.0;
-            (!sensors.is_empty()).then_some(())?;
+            sensors = self.some_braced_refs()?;
         }
         Some((name, Body::Robot(Robot { drive, port, wheels, wheel_list, sensors })))
     }
@@ -217,8 +265,7 @@ impl Reader<'_> {
     fn turn(&mut self) -> Option<ActionKind> {
         self.one_of(&["left", "right"])?;
         if self.word("until").is_some() {
-            let (sensors, _) = self.braced_refs()?;
-            return (!sensors.is_empty()).then_some(ActionKind::TurnUntil { sensors });
+            return self.some_braced_refs().map(|sensors| ActionKind::TurnUntil { sensors });
         }
         Some(ActionKind::Turn { angle: self.number() })
     }
@@ -232,7 +279,7 @@ impl Reader<'_> {
         if self.word("with").is_some() {
             self.word("ip")?;
             ip = Some(self.name()?);
-        } else if self.word(",").is_some() {
+        } else if self.sees_any() && self.word(",").is_some() {
             ip = Some(self.name()?);
             let older = start..self.last_end();
             self.older_spellings.push(Finding::new("deprecated-ip-clause", &older));
@@ -248,9 +295,22 @@ impl Reader<'_> {
         Some((name, Body::Environment(Environment { ip, robots, robot_list, movements })))
     }
 
-    // "{" [ Refs(T) ] "}" where Refs(T) = Ref(T) { [ "," ] Ref(T) } [ "," ] ;
+    // "{" Refs(T) "}"
+    fn some_braced_refs(&mut self) -> Option<Vec<Name>> {
+        let start = self.word("{")?.start;
+        // The first is looked at twice.
+        self.peek().filter(|token| token.kind == Kind::Name)?;
+        self.refs_and_brace(start).map(|(names, _)| names)
+    }
+
+    // "{" [ Refs(T) ] "}"
     fn braced_refs(&mut self) -> Option<(Vec<Name>, Range<usize>)> {
         let start = self.word("{")?.start;
+        self.refs_and_brace(start)
+    }
+
+    // Refs(T) = Ref(T) { [ "," ] Ref(T) } [ "," ] ;
+    fn refs_and_brace(&mut self, start: usize) -> Option<(Vec<Name>, Range<usize>)> {
         let mut names = Vec::new();
         while let Some(name) = self.name() {
             names.push(name);

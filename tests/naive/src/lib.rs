@@ -16,6 +16,7 @@ mod tokens;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 pub use generate::{Recipe, program, programs};
@@ -73,6 +74,13 @@ pub fn check(text: &str) -> Verdict {
         |finding: &Finding| program.as_ref().is_some_and(|program| check::is_excused(program, finding));
     let (excused, findings) = findings.into_iter().partition(excused);
     Verdict { grammatical: program.is_some(), findings, excused }
+}
+
+/// The words and signs with which a text can go on so that it is still the beginning of a program; `None` where it is no
+/// such beginning itself. The two older spellings are not among them.
+pub fn continuations(beginning: &str) -> Option<BTreeSet<&'static str>> {
+    let (tokens, lexical) = tokens::read(beginning);
+    grammar::looked_for(&tokens, beginning.len()).filter(|_| lexical.is_empty())
 }
 
 /// An entity of a grammatical program.

@@ -170,3 +170,64 @@ fn the_grammar_has_its_contextual_names() {
     "#]],
     );
 }
+
+/// Every state that the grammar can be in lies on one of these, the last of which are for what follows a whole entity.
+const SKELETONS: [&str; 14] = [
+    "wheel a with radius 1",
+    "wheelH a with radius 1",
+    "sensor a : distance",
+    "sensor a : bumper",
+    "ip a 127.0.0.1",
+    "robot a type tw with port 1 has { } wheels with sensors { a }",
+    "robot a type fw with port 1 has { a , } wheels",
+    "robot type fwh a with port 1 has { a , a } wheels with sensors { a , a , }",
+    "parallel movement a of a { move 1 meters at 1 slam turn left turn right 1 }",
+    "movement a of a { turn left until { a a , } move 1 centimeters }",
+    "environment a with ip a has { } robots with { } moves",
+    "environment a , a has { a } robots with { a , a } moves",
+    "import \"a.pyr\" sensor a sensor a",
+    "environment a has { a } robots sensor a",
+];
+
+/// Whether any rest of a skeleton makes a program of it, tried one by one.
+fn can_go_on(beginning: &str, rests: &[Vec<tokens::Token>]) -> bool {
+    let (beginning, _) = tokens::read(beginning);
+    rests.iter().any(|rest| grammar::read(&[&beginning[..], rest].concat(), 0).is_some())
+}
+
+/// Understood, but nothing anybody should be told to write.
+fn is_older_spelling(beginning: &str, word: &str) -> bool {
+    match word {
+        "type" => beginning.ends_with("robot"),
+        "," => beginning.ends_with("environment a"),
+        _ => false,
+    }
+}
+
+#[test]
+fn continuations_are_what_can_be_continued() {
+    let split = SKELETONS.map(|text| text.split(' ').collect::<Vec<_>>());
+    let rests = split.iter().flat_map(|words| (0..=words.len()).map(|from| words[from..].join(" ")));
+    let rests: Vec<_> = rests.collect::<BTreeSet<_>>().iter().map(|rest| tokens::read(rest).0).collect();
+    let fixed: BTreeSet<&str> = split.iter().flatten().copied().filter(|word| is_fixed(word)).collect();
+    for beginning in split.iter().flat_map(|words| (0..=words.len()).map(|end| words[..end].join(" "))) {
+        let told = continuations(&beginning).unwrap_or_else(|| panic!("{beginning}"));
+        let takes_name = can_go_on(&format!("{beginning} a"), &rests);
+        for word in &fixed {
+            // Where a name fits, so do those words that can be one.
+            if !(takes_name && CONTEXTUAL.contains(word)) {
+                let goes_on =
+                    !is_older_spelling(&beginning, word) && can_go_on(&format!("{beginning} {word}"), &rests);
+                assert_eq!(told.contains(word), goes_on, "`{word}` behind {beginning:?}: {told:?}");
+            }
+        }
+        assert_eq!(continuations(&format!("{beginning} meters meters")), None);
+    }
+}
+
+const CONTEXTUAL: [&str; 3] = ["distance", "bumper", "import"];
+
+fn is_fixed(word: &str) -> bool {
+    CONTEXTUAL.contains(&word)
+        || matches!(tokens::read(word).0[0].kind, tokens::Kind::Keyword | tokens::Kind::Sign)
+}

@@ -77,6 +77,11 @@ impl Database {
         }
     }
 
+    /// How an import in one file has to name another one; `None` where no path leads there.
+    pub fn path_for_import(&self, importer: FileId, imported: FileId) -> Option<String> {
+        path::relative(self.path(importer), self.path(imported))
+    }
+
     /// The files that import a path, whether or not there is such a file, in the order of opening.
     pub fn importing_files(&self, path: &str) -> Vec<FileId> {
         let mut files: Vec<FileId> = self.importers(path).collect();

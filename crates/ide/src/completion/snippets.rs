@@ -56,6 +56,10 @@ pub(super) const ACTIONS: &[Snippet] = &[
     },
 ];
 
+/// Behind a move.
+pub(super) const SPEEDS: &[Snippet] =
+    &[Snippet { label: "at …", detail: "a speed in centimetres per second", insert: "at ${1:SPEED}" }];
+
 impl Snippet {
     /// What is inserted, with a speed in centimetres per second where there is one.
     pub(super) fn filled_in(&self, speed: f64) -> String {
@@ -63,22 +67,27 @@ impl Snippet {
     }
 }
 
-/// A snippet as it reads once it is inserted.
-pub(super) fn without_stops(insert: &str) -> String {
-    let mut out = String::new();
-    let mut rest = insert;
-    while let Some(dollar) = rest.find('$') {
-        out += &rest[..dollar];
-        rest = &rest[dollar + 1..];
-        if let Some(inner) = rest.strip_prefix('{') {
-            let end = inner.find('}').unwrap_or(inner.len());
-            out += inner[..end].split_once(':').map_or("", |(_, text)| text);
-            rest = inner.get(end + 1..).unwrap_or_default();
-        } else {
-            rest = rest.trim_start_matches(|c: char| c.is_ascii_digit());
+/// A snippet as plain text: `${1:name}` becomes `name`, `$0` nothing.
+pub(super) fn without_stops(snippet: &str) -> String {
+    let mut plain = String::with_capacity(snippet.len());
+    let mut depth = 0_u32;
+    let mut characters = snippet.chars().peekable();
+    while let Some(character) = characters.next() {
+        match character {
+            '\\' => plain.extend(characters.next()),
+            '$' => {
+                let braced = characters.next_if_eq(&'{').is_some();
+                while characters.next_if(char::is_ascii_digit).is_some() {}
+                if braced {
+                    characters.next_if_eq(&':');
+                    depth += 1;
+                }
+            }
+            '}' if depth > 0 => depth -= 1,
+            other => plain.push(other),
         }
     }
-    out + rest
+    plain
 }
 
 #[cfg(test)]
@@ -88,6 +97,7 @@ mod tests {
     #[test]
     fn stops_leave_their_text() {
         assert_eq!(without_stops("a ${1:b} {\n  $0\n}"), "a b {\n  \n}");
+        assert_eq!(without_stops("{ $1 } ${2:a ${3:b}} \\$ \\}"), "{  } a b $ }");
     }
 
     #[test]

@@ -4,7 +4,8 @@ use pydslrep_analysis::diagnostics::CATALOGUE;
 use pydslrep_config::{KEYS, Level, Place, Slot, Values, names, place_at, tables};
 
 use super::{Meaning, documentation, meaning};
-use crate::{Completion, CompletionKind};
+use crate::completion::Rank;
+use crate::{Completion, CompletionKind, Documentation};
 
 /// What fits at an offset in the text of a settings file. Keys and tables that are there already do not.
 pub fn settings_completions(text: &str, offset: u32) -> Vec<Completion> {
@@ -16,7 +17,7 @@ pub fn settings_completions(text: &str, offset: u32) -> Vec<Completion> {
         Slot::Table { is_closed } => {
             let end = if *is_closed { "" } else { "]" };
             let free = tables().into_iter().filter(|table| is_free(table));
-            free.map(|table| setting(&place, table, table.to_owned(), format!("{table}{end}"), 0)).collect()
+            free.map(|table| setting(&place, table, table, format!("{table}{end}"), Rank::Fitting)).collect()
         }
         Slot::Key { table, has_value, begins_line } => {
             let free = keys_in(table).into_iter().filter(|name| is_free(name));
@@ -25,7 +26,7 @@ pub fn settings_completions(text: &str, offset: u32) -> Vec<Completion> {
                 let free = tables().into_iter().filter(|table| is_free(table));
                 found.extend(free.map(|table| {
                     let header = format!("[{table}]");
-                    setting(&place, table, header.clone(), format!("{header}\n$0"), 1)
+                    setting(&place, table, &header, format!("{header}\n$0"), Rank::Word)
                 }));
             }
             found
@@ -54,10 +55,10 @@ fn key(place: &Place, table: &str, name: &str, has_value: bool) -> Completion {
         }
         _ => format!("{written} = $0"),
     };
-    setting(place, name, written, insert, 0)
+    setting(place, name, &written, insert, Rank::Fitting)
 }
 
-fn setting(place: &Place, name: &str, label: String, insert: String, rank: u8) -> Completion {
+fn setting(place: &Place, name: &str, label: &str, insert: String, rank: Rank) -> Completion {
     let meaning = meaning(name);
     let detail = match &meaning {
         Some(Meaning::Key(key)) if key.values != Values::Levels => {
@@ -67,27 +68,19 @@ fn setting(place: &Place, name: &str, label: String, insert: String, rank: u8) -
         _ => "a table".to_owned(),
     };
     Completion {
-        label,
-        kind: CompletionKind::Setting,
         detail,
-        documentation: meaning.as_ref().map(documentation).unwrap_or_default(),
-        replace: place.word,
+        documentation: Documentation::Text(meaning.as_ref().map(documentation).unwrap_or_default()),
         is_snippet: insert.contains("$0"),
         insert,
         rank,
+        ..Completion::new(label, CompletionKind::Setting, place.word)
     }
 }
 
 fn values(place: &Place, key: &str) -> Vec<Completion> {
     let value = |text: String, detail: &str| Completion {
-        label: text.clone(),
-        kind: CompletionKind::Value,
         detail: detail.to_owned(),
-        documentation: String::new(),
-        replace: place.word,
-        insert: text,
-        is_snippet: false,
-        rank: 0,
+        ..Completion::new(&text, CompletionKind::Value, place.word)
     };
     match meaning(key) {
         Some(Meaning::Code(rule)) => Level::ALL
@@ -270,6 +263,7 @@ mod tests {
     fn documentation_says_what_a_key_does() {
         let (text, offset) = at_cursor("tar$0");
         let found = settings_completions(&text, offset).remove(0);
+        let Documentation::Text(text) = &found.documentation else { panic!("{found:?}") };
         expect![[r#"
             **`target`**: `"coppeliasim"` or `"vrep"`
 
@@ -280,7 +274,7 @@ mod tests {
 
             Default: `"coppeliasim"`
         "#]]
-        .assert_eq(&found.documentation);
+        .assert_eq(text);
     }
 
     /// What is offered is what is read.

@@ -49,11 +49,12 @@ fn broken_texts(text: &str) -> Vec<&str> {
     let pieces = parse(text);
     let broken = pieces.iter().filter(|(_, parse)| !parse.errors.is_empty());
     broken
-        .map(|(span, parse)| {
+        .filter_map(|(span, parse)| {
             let stays = |token: Token| !token.is_comment() || token == Token::UnterminatedComment;
             let mut kept = parse.lexemes.iter().filter(|(token, _)| stays(*token)).map(|(_, span)| *span);
-            let first = kept.next().unwrap();
-            first.to(kept.next_back().unwrap_or(first)).shifted(span.start).text(text)
+            // A comment of another language is a mistake without any token.
+            let first = kept.next()?;
+            Some(first.to(kept.next_back().unwrap_or(first)).shifted(span.start).text(text))
         })
         .collect()
 }

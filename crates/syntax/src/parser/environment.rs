@@ -41,7 +41,8 @@ fn ip_clause<'s>() -> impl Parser<'s, Input<'s>, IpClause, Extra<'s>> + Clone {
             .then_ignore(choice((one_in(BUT_OPEN).ignored(), end())).rewind())
             .then(keyword(Token::Ip, NAME, TAIL))
             .to(false),
-        just(Token::Comma).to(true),
+        // The older spelling is understood, but never expected.
+        one_in(COMMA).to(true),
     ));
     with_comma
         .then(reference(EntityKind::Ip, HAS, TAIL))

@@ -91,7 +91,19 @@ pub fn expected_after(text: &str, lexemes: &[Lexeme]) -> Vec<Expected> {
     let mut expected = expected.unwrap_or_default();
     expected.sort_unstable();
     expected.dedup();
+    let brace = Expected::Word(Token::CloseBrace);
+    if expected.contains(&brace) && must_not_close(text, &tokens) {
+        expected.retain(|other| *other != brace);
+    }
     expected
+}
+
+/// Whether `tokens`, the last of which is the cursor, end in a list that must not be empty and still is.
+fn must_not_close(text: &str, tokens: &[Lexeme]) -> bool {
+    let [before @ .., (Token::OpenBrace, open), (Token::Cursor, cursor)] = tokens else { return false };
+    let closed = [before, &[(Token::OpenBrace, *open), (Token::CloseBrace, *cursor)]].concat();
+    let (_, faults) = Parser::new().run(text, &closed);
+    faults.iter().any(|fault| matches!(fault, Fault::EmptyList(span, _) if span.end >= cursor.end))
 }
 
 fn parse_batch(text: &str, bounds: &[(&[Lexeme], Span)], emit: &mut impl FnMut(Span, Parse)) {

@@ -1,10 +1,12 @@
 //! The rule for robots.
 
-use chumsky::prelude::{Parser, choice, just};
+use chumsky::prelude::{Parser, choice, empty, just};
 
-use super::slot::{Fault, NAME, NUMBER, declared_name, keyword, nothing_more, references, slot, take};
+use super::slot::{
+    Fault, NAME, NUMBER, declared_name, keyword, nothing_more, one_in, references, slot, take,
+};
 use super::{Extra, Input, Rule};
-use crate::ast::{DriveClause, DriveWord, Entity, PortNumber, References, Robot};
+use crate::ast::{DriveClause, DriveWord, Entity, Name, PortNumber, References, Robot};
 use crate::{EntityKind, Expected, Span, Token, TokenSet};
 
 const TYPE: TokenSet = TokenSet::of(&[Token::Type]);
@@ -23,9 +25,7 @@ const TAIL: TokenSet = HAS.or(OPEN).or(CLOSE).or(WHEELS);
 /// `robot name type tw with port 19999 has { … } wheels with sensors { … }`
 pub(super) fn robot<'s>() -> Rule<'s, Option<Entity>> {
     just(Token::Robot)
-        .ignore_then(drive(NAME.or(WITH)).or_not())
-        .then(declared_name(EntityKind::Robot, TYPE.or(WITH), PORT.or(NUMBER).or(TAIL)))
-        .then(drive(WITH.or(PORT)).or_not())
+        .ignore_then(head())
         .then(port())
         .then(wheels())
         .then(sensors().or_not())
@@ -42,13 +42,28 @@ pub(super) fn robot<'s>() -> Rule<'s, Option<Entity>> {
         .boxed()
 }
 
-fn drive<'s>(next: TokenSet) -> impl Parser<'s, Input<'s>, DriveClause, Extra<'s>> + Clone {
+/// A type, the name, a type.
+type Head = ((Option<DriveClause>, Option<Name>), Option<DriveClause>);
+
+fn head<'s>() -> Rule<'s, Head> {
+    let name = || declared_name(EntityKind::Robot, TYPE.or(WITH), PORT.or(NUMBER).or(TAIL));
+    // Before the name, and behind the name once more, a type is understood, but never expected.
+    let before = drive(one_in(TYPE), NAME.or(WITH)).map(Some).then(name());
+    let before = before.then(drive(one_in(TYPE), WITH.or(PORT)).or_not());
+    let behind = empty().to(None).then(name()).then(drive(just(Token::Type), WITH.or(PORT)).or_not());
+    choice((before, behind)).boxed()
+}
+
+fn drive<'s>(
+    first: impl Parser<'s, Input<'s>, Token, Extra<'s>> + Clone + 's,
+    next: TokenSet,
+) -> impl Parser<'s, Input<'s>, DriveClause, Extra<'s>> + Clone {
     let word = choice((
         just(Token::Tw).to(DriveWord::Tw),
         just(Token::Fw).to(DriveWord::Fw),
         just(Token::Fwh).to(DriveWord::Fwh),
     ));
-    just(Token::Type)
+    first
         .ignore_then(slot(word, DRIVES, next.or(PORT).or(NUMBER).or(TAIL)))
         .map_with(|word, extra| DriveClause { word, span: extra.span(), before_name: false })
         .boxed()

@@ -334,7 +334,7 @@ fn the_grammar_says_what_can_follow() {
     check_expected("robot r with port 1 has { a b } wheels", &expect!["[Word(With), Declaration]"]);
     check_expected(
         "robot r with port 1 has { a b } wheels with sensors {",
-        &expect!["[Word(CloseBrace), ReferenceTo(Sensor)]"],
+        &expect!["[ReferenceTo(Sensor)]"],
     );
     check_expected("movement m of", &expect!["[ReferenceTo(Robot)]"]);
     check_expected("movement m of r {", &expect!["[Word(CloseBrace), Action]"]);
@@ -345,7 +345,7 @@ fn the_grammar_says_what_can_follow() {
         "movement m of r { turn left until { s",
         &expect!["[Word(CloseBrace), Word(Comma), ReferenceTo(Sensor)]"],
     );
-    check_expected("environment e", &expect!["[Word(Comma), Word(With), Word(Has)]"]);
+    check_expected("environment e", &expect!["[Word(With), Word(Has)]"]);
     check_expected(
         "environment e has { r } robots with {",
         &expect!["[Word(CloseBrace), ReferenceTo(Movement)]"],

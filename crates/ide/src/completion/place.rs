@@ -1,0 +1,134 @@
+//! Where something is completed: the entity before the cursor, as far as it is written.
+
+use pydslrep_analysis::{Database, EntityRef, FileId};
+use pydslrep_syntax::ast::Entity;
+use pydslrep_syntax::{Lexeme, Span, Token};
+use smol_str::SmolStr;
+
+use crate::FilePosition;
+
+/// The entity before the cursor, as far as it is written.
+pub(super) struct Place<'a> {
+    pub(super) database: &'a Database,
+    pub(super) file: FileId,
+    /// The entity that the cursor continues; `None` at the start of a file.
+    pub(super) tree: Option<&'a Entity>,
+    /// Its text.
+    pub(super) text: String,
+    /// Its tokens before the word at the cursor.
+    pub(super) before: Vec<Lexeme>,
+    /// The tokens behind that word, in the file, as far as the next entity.
+    behind: Vec<Lexeme>,
+    /// Whether nothing of the entity is written behind that word.
+    pub(super) at_end: bool,
+    /// The speed in patterns, centimetres per second.
+    pub(super) speed: f64,
+    /// The word at the cursor, in the file.
+    pub(super) word: Span,
+    /// That word up to the cursor, without `^`, in small letters.
+    pub(super) typed: String,
+    /// Whether it begins with `^`.
+    pub(super) is_escaped: bool,
+    /// Whether something that is no word ends right at the cursor, and would run into one.
+    pub(super) needs_space: bool,
+}
+
+impl<'a> Place<'a> {
+    pub(super) fn find(database: &'a Database, position: FilePosition, speed: f64) -> Option<Self> {
+        let word = word_at(database, position)?;
+        // A word that looks like a keyword begins an entity of its own; it is still only a word being typed.
+        let own = database.entity_at(position.file, word.start)?;
+        let at = match word.start.checked_sub(1) {
+            Some(before) if own.span.start == word.start => database.entity_at(position.file, before)?,
+            _ => own,
+        };
+        let (start, significant) = (at.span.start, significant(&at));
+        let at_end = !significant.iter().any(|(_, span)| span.start + start >= word.end);
+        let before: Vec<Lexeme> =
+            significant.into_iter().take_while(|(_, span)| span.end + start <= word.start).collect();
+        let number =
+            before.last().is_some_and(|(token, span)| token.is_number() && span.end + start == word.start);
+        let behind =
+            self::significant(&own).into_iter().map(|(token, span)| (token, span.shifted(own.span.start)));
+        let typed = database.slice(position.file, Span::new(word.start, position.offset));
+        Some(Self {
+            database,
+            file: position.file,
+            tree: at.parse.entity.as_ref(),
+            text: database.slice(position.file, at.span),
+            before,
+            behind: behind.filter(|(_, span)| span.start >= word.end).collect(),
+            at_end,
+            speed,
+            word,
+            is_escaped: typed.starts_with('^'),
+            typed: typed.trim_start_matches('^').to_lowercase(),
+            needs_space: number,
+        })
+    }
+
+    /// The names that the list around the cursor has already, but for the word at the cursor.
+    pub(super) fn listed(&self) -> Vec<SmolStr> {
+        let in_list = |token: Token| token == Token::Comma || token.is_name();
+        let before = self.before.iter().rev().take_while(|(token, _)| in_list(*token));
+        let before = before.filter(|(token, _)| token.is_name()).map(|(_, span)| name(span.text(&self.text)));
+        let behind = self.behind.iter().take_while(|(token, _)| in_list(*token));
+        let behind = behind.filter(|(token, _)| token.is_name());
+        let mut listed: Vec<SmolStr> = before.collect();
+        listed.reverse();
+        listed.extend(behind.map(|(_, span)| name(&self.database.slice(self.file, *span))));
+        listed
+    }
+
+    /// Whether no entity stands before the cursor that an import must not follow.
+    pub(super) fn may_import(&self) -> bool {
+        let is_entity =
+            |entity: &EntityRef<'_>| !matches!(entity.parse.entity, None | Some(Entity::Import(_)));
+        let first = self.database.entities(self.file).find(is_entity);
+        first.is_none_or(|first| self.word.start <= first.span.start)
+    }
+}
+
+fn name(written: &str) -> SmolStr {
+    written.trim_start_matches('^').into()
+}
+
+/// The tokens of an entity that the parser sees.
+fn significant(entity: &EntityRef<'_>) -> Vec<Lexeme> {
+    entity.parse.lexemes.iter().filter(|(token, _)| !token.is_comment()).copied().collect()
+}
+
+/// The word before and behind the cursor; `None` inside comments, strings and numbers, where nothing is completed.
+fn word_at(database: &Database, position: FilePosition) -> Option<Span> {
+    let entity = database.entity_at(position.file, position.offset)?;
+    let start = entity.span.start;
+    let offset = position.offset - start;
+    // A keyword right behind the cursor begins an entity, and a word right before it belongs to the one before.
+    let before = position.offset.checked_sub(1).filter(|_| offset == 0);
+    if let Some(before) = before.and_then(|before| database.entity_at(position.file, before)) {
+        return word_in(database, &before, position.offset);
+    }
+    word_in(database, &entity, position.offset)
+}
+
+fn word_in(database: &Database, entity: &EntityRef<'_>, offset: u32) -> Option<Span> {
+    let start = entity.span.start;
+    let covering = |(_, span): &&Lexeme| span.start + start < offset && offset <= span.end + start;
+    let Some((token, span)) = entity.parse.lexemes.iter().find(covering) else {
+        return Some(Span::at(offset));
+    };
+    let span = span.shifted(start);
+    let inside = offset < span.end;
+    match token {
+        Token::BlockComment | Token::String if !inside => Some(Span::at(offset)),
+        Token::String | Token::UnterminatedString => None,
+        token if token.is_comment() => None,
+        token if token.is_name() || token.is_keyword() => Some(span),
+        token if token.is_number() && inside => None,
+        // The beginning of an escaped name.
+        Token::Invalid if database.slice(entity.file, Span::new(span.start, offset)).ends_with('^') => {
+            Some(Span::new(offset - 1, offset))
+        }
+        _ => Some(Span::at(offset)),
+    }
+}

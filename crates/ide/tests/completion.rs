@@ -1,0 +1,182 @@
+//! What is offered is what the grammar allows, and what was going to be typed is among it.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests are tests, too")]
+
+use std::collections::{BTreeSet, HashSet};
+use std::path::Path;
+
+use pydslrep_analysis::{Database, FileId};
+use pydslrep_ide::{Completion, CompletionKind, Definition, FilePosition, completions, goto_definition};
+use pydslrep_syntax::{Found, KEYWORDS, Lexeme, Span, SyntaxErrorKind, Token, cut, lex, parse};
+
+/// The article's programs, and those made from them.
+fn article() -> Vec<String> {
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests");
+    let mut programs = Vec::new();
+    for folder in ["paper", "programs"] {
+        let mut files: Vec<_> =
+            std::fs::read_dir(tests.join(folder)).unwrap().map(|entry| entry.unwrap().path()).collect();
+        files.sort();
+        programs.extend(files.into_iter().map(|file| std::fs::read_to_string(file).unwrap()));
+    }
+    assert!(programs.len() >= 7);
+    programs
+}
+
+fn tokens(text: &str) -> Vec<Lexeme> {
+    lex(text).into_iter().filter(|(token, _)| !token.is_comment()).collect()
+}
+
+fn length(text: &str) -> u32 {
+    u32::try_from(text.len()).unwrap()
+}
+
+fn offered(database: &Database, file: FileId, offset: u32) -> Vec<Completion> {
+    completions(database, FilePosition { file, offset }, 9.0).items
+}
+
+/// The words and signs that a list of completions begins with; a comma is never offered.
+fn words(items: &[Completion]) -> BTreeSet<&str> {
+    let words =
+        items.iter().filter(|item| matches!(item.kind, CompletionKind::Keyword | CompletionKind::Snippet));
+    words.map(|item| item.insert.split_whitespace().next().unwrap()).collect()
+}
+
+fn allowed(beginning: &str) -> BTreeSet<&'static str> {
+    let mut allowed = pydslrep_naive::continuations(beginning).unwrap_or_else(|| panic!("{beginning}"));
+    allowed.remove(",");
+    allowed
+}
+
+/// Whether nothing is wrong with a text but that it ends too early.
+fn is_beginning(text: &str) -> bool {
+    let pieces = parse(text);
+    let last = pieces.len() - 1;
+    pieces.iter().enumerate().all(|(index, (_, piece))| {
+        piece.errors.iter().all(|error| {
+            index == last && matches!(&error.kind, SyntaxErrorKind::Missing { found: Found::End, .. })
+        })
+    })
+}
+
+/// What tells one place from another: the entity's keyword and the last tokens, whatever the names and numbers are. (No
+/// rule of the grammar looks back further than its own clause; seven tokens are more than any has.)
+fn context(entity: &[Lexeme], may_import: bool) -> (Vec<Token>, bool) {
+    let kind = |(token, _): &Lexeme| if *token == Token::Float { Token::Integer } else { *token };
+    let last = entity.len().saturating_sub(7).max(1);
+    (entity.iter().take(1).chain(entity.iter().skip(last)).map(kind).collect(), may_import)
+}
+
+/// Types a program token by token, and compares what is offered behind each of them, where all that is written is the
+/// program so far, with what a reader written from the language's contract alone would look for there: each word that
+/// is offered can stand there in some program, and each that can is offered. (A text that ends is the only one of which
+/// that can be said: behind a cursor in the middle, what was right before the word was typed is wrong until the rest is
+/// written.) Whatever is inserted, with all that comes with it, may be wrong in one way only: the program is not
+/// finished.
+///
+/// Places of the same [`context`] are asked about once.
+fn check_while_typed(text: &str, seen: &mut HashSet<(Vec<Token>, bool)>) {
+    let mut database = Database::new();
+    let file = database.open("a.pyr", " ");
+    let tokens = tokens(text);
+    let starts = cut(&tokens);
+    let (mut typed, mut entity, mut imports) = (String::new(), Vec::new(), true);
+    for index in 0..=tokens.len() {
+        let end = if index == 0 { 0 } else { tokens[index - 1].1.end as usize };
+        if index > 0 {
+            let token = tokens[index - 1];
+            if starts.contains(&(index - 1)) {
+                entity.clear();
+                imports &= token.0 == Token::Import;
+            }
+            entity.push(token);
+        }
+        if !seen.insert(context(&entity, imports)) {
+            continue;
+        }
+        let more = &text[typed.len()..end];
+        database.edit(file, Span::at(length(&typed)), more);
+        typed.push_str(more);
+        let start = database.entity_at(file, length(&typed)).unwrap().span.start;
+        let items = offered(&database, file, length(&typed) + 1);
+        let begun = &typed[start as usize..];
+        // What comes before matters for imports alone.
+        let beginning = if imports { typed.clone() } else { format!("sensor s {begun}") };
+        assert_eq!(words(&items), allowed(&beginning), "behind {begun:?}");
+        for mut item in items.into_iter().filter(|item| !matches!(item.kind, CompletionKind::Reference(_))) {
+            // A person fills in the list.
+            item.insert = item.insert.replace("{ $0 }", "{ x }");
+            let whole = format!("{begun} {}", item.plain());
+            // Without a name behind it, `} wheel` is a slip for `} wheels`.
+            assert!(is_beginning(&whole) || is_beginning(&format!("{whole} x")), "{whole:?}");
+        }
+    }
+}
+
+#[test]
+fn the_words_offered_are_those_that_fit() {
+    let mut seen = HashSet::new();
+    for text in article() {
+        check_while_typed(&text, &mut seen);
+    }
+    for seed in 0..200 {
+        check_while_typed(&pydslrep_naive::program(seed, 30), &mut seen);
+    }
+    let imports = pydslrep_naive::Recipe { imports: true, lines: 5, ..pydslrep_naive::Recipe::default() };
+    for seed in 0..20 {
+        check_while_typed(&imports.seeded(seed), &mut seen);
+    }
+    assert!(seen.len() > 1_000, "only {} places", seen.len());
+    let contextual = [Token::Distance, Token::Bumper, Token::Import];
+    for (token, word) in KEYWORDS.iter().filter(|(token, _)| token.is_keyword() || contextual.contains(token))
+    {
+        let used = |(tokens, _): &(Vec<Token>, bool)| tokens.contains(token);
+        assert!(seen.iter().any(used), "no program has `{word}`");
+    }
+}
+
+/// Whether a token is what somebody can be helped to write: a word or a brace, or a name that is declared.
+fn can_be_offered(database: &Database, file: FileId, token: Token, span: Span) -> bool {
+    if token == Token::Comma || token.is_number() || token == Token::String {
+        return false;
+    }
+    let declared = |offset| goto_definition(database, FilePosition { file, offset });
+    let is_declaration =
+        |found: Definition| found.targets.iter().any(|target| target.file == file && target.focus == span);
+    !token.is_name() || declared(span.start).is_some_and(|found| !is_declaration(found))
+}
+
+/// With the word written up to `typed`, and what `behind` is behind it: the word is what is replaced, and offered.
+fn check_half_typed(before: &str, word: &str, typed: usize, behind: &str) {
+    let mut database = Database::new();
+    let file = database.open("a.pyr", &format!("{before}{}{behind}", &word[..typed]));
+    let items = offered(&database, file, length(before) + u32::try_from(typed).unwrap());
+    let place = || format!("{:?}|{:?}", &before[before.len().saturating_sub(60)..], &word[..typed]);
+    let begins = |item: &&Completion| item.insert.split_whitespace().next() == Some(word);
+    let Some(item) = items.iter().find(begins) else { panic!("no {word:?} at {}", place()) };
+    let replaced = Span::new(length(before), length(before) + u32::try_from(typed).unwrap());
+    assert_eq!(item.replace, replaced, "{word:?} at {}", place());
+}
+
+#[test]
+fn a_half_typed_word_is_replaced_by_what_it_was_going_to_be() {
+    for text in article() {
+        let mut database = Database::new();
+        let file = database.open("a.pyr", &text);
+        for (token, span) in tokens(&text) {
+            if !can_be_offered(&database, file, token, span) {
+                continue;
+            }
+            let (start, end) = (span.start as usize, span.end as usize);
+            let word = &text[start..end];
+            // Right behind a word it is that one which is being typed.
+            let touches = text[..start].ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
+            for typed in usize::from(touches)..word.len() {
+                check_half_typed(&text[..start], word, typed, &text[end..]);
+                if !token.is_name() {
+                    check_half_typed(&text[..start], word, typed, "");
+                }
+            }
+        }
+    }
+}

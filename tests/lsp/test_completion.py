@@ -1,0 +1,67 @@
+"""What is offered while a program is typed, and what is said of it when it is looked at."""
+
+from __future__ import annotations
+
+import pathlib
+
+import pytest
+from editor import Editor, apply_edits, position
+from lsprotocol import types
+from pytest_lsp import LanguageClient
+
+pytestmark = pytest.mark.asyncio
+
+# Columns in it differ in UTF-8, UTF-16 and UTF-32.
+WHEELS = "/* 🤖é */ wheel wheelL with radius 4.5\n"
+ROBOT = "/* 🤖é */ robot rover with port 19999 has { wh"
+
+
+async def offered(
+    client: LanguageClient, uri: str, text: str
+) -> list[types.CompletionItem]:
+    place = types.TextDocumentIdentifier(uri)
+    found = await client.text_document_completion_async(
+        types.CompletionParams(place, position(text, len(text)))
+    )
+    assert isinstance(found, types.CompletionList)
+    assert not found.is_incomplete
+    return list(found.items)
+
+
+@pytest.mark.parametrize("client", ["complete", "eager"], indirect=True)
+async def test_a_name_is_explained(
+    client: LanguageClient, tmp_path: pathlib.Path, request: pytest.FixtureRequest
+) -> None:
+    uri = Editor(client, tmp_path).open("a.pyr", WHEELS + ROBOT)
+    [wheel, *_] = await offered(client, uri, WHEELS + ROBOT)
+    assert wheel.label == "wheelL"
+    if request.node.callspec.params["client"] == "complete":
+        assert wheel.documentation is None
+        wheel = await client.completion_item_resolve_async(wheel)
+    assert isinstance(wheel.documentation, types.MarkupContent)
+    assert "wheel wheelL with radius 4.5" in wheel.documentation.value
+    assert "28.3 cm a turn" in wheel.documentation.value
+
+
+async def test_a_name_that_is_gone_is_not_explained(
+    client: LanguageClient, tmp_path: pathlib.Path
+) -> None:
+    editor = Editor(client, tmp_path)
+    uri = editor.open("a.pyr", WHEELS + ROBOT)
+    [wheel, *_] = await offered(client, uri, WHEELS + ROBOT)
+    editor.replace(uri, "wheel wheelL", "wheel left")
+    assert (await client.completion_item_resolve_async(wheel)).documentation is None
+
+
+async def test_a_name_brings_its_import(
+    client: LanguageClient, tmp_path: pathlib.Path
+) -> None:
+    editor = Editor(client, tmp_path)
+    editor.open("wheels.pyr", WHEELS)
+    uri = editor.open("a.pyr", ROBOT)
+    found = await offered(client, uri, ROBOT)
+    [wheel] = [item for item in found if item.label == "wheelL"]
+    assert isinstance(wheel.text_edit, types.TextEdit)
+    edits = [wheel.text_edit, *(wheel.additional_text_edits or [])]
+    done = apply_edits(ROBOT, edits)
+    assert done == 'import "wheels.pyr"\n\n' + ROBOT.removesuffix("wh") + "wheelL"
