@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use annotate_snippets::{AnnotationKind, Group, Level, Snippet};
 use pydslrep_analysis::FileId;
 use pydslrep_config::{Config, FILE_NAME, Problem, Settings, Target};
-use pydslrep_files::project_folder;
+use pydslrep_files::{project_folder, without_mark};
 
 use crate::failure::Failure;
 use crate::output::renderer;
 use crate::render::with_one_line_ending;
-use crate::sources::{Sources, near, read_file, shown, without_mark};
+use crate::sources::{Sources, near, read_file, shown};
 
 /// The projects of the programs that were named.
 #[derive(Debug)]

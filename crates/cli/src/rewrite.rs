@@ -4,10 +4,10 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
+use pydslrep_files::without_mark;
 use tempfile::Builder;
 
 use crate::failure::Failure;
-use crate::sources::without_mark;
 
 /// Puts a text in place of another one. Whatever happens meanwhile, the file holds one of the two; a byte order mark,
 /// permissions and links to the file stay.

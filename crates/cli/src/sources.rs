@@ -5,12 +5,10 @@ use std::io;
 use std::path::{Component, Path, PathBuf};
 
 use pydslrep_analysis::{Absence, Database, Diagnostic, FileId};
-use pydslrep_files::{EXTENSION, Found, Unread, decode, find, import_bound, read};
+use pydslrep_files::{EXTENSION, Found, Unread, decode, find, import_bound, read, without_mark};
 
 use crate::failure::Failure;
 use crate::output::count;
-
-const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// What standard input is called on the command line and in what is printed.
 const STDIN: &str = "-";
@@ -232,11 +230,6 @@ fn failure(shown: &str, unread: &Unread) -> Failure {
         }
         Unread::Failed(_) => Failure::new(format!("cannot read {shown}: {unread}")),
     }
-}
-
-/// A byte order mark is not part of the text: editors hide it, and columns would be off by one.
-pub(crate) fn without_mark(text: &str) -> &str {
-    text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text)
 }
 
 /// The whole path, without `.` and `..`: the same file has the same one however it was named.

@@ -9,7 +9,7 @@ mod search;
 use std::path::Path;
 
 pub use pydslrep_config::FILE_NAME;
-pub use read::{MOST_BYTES, Unread, decode, read};
+pub use read::{MOST_BYTES, Unread, decode, read, without_mark};
 pub use search::{Found, belongs, find};
 
 /// The ending of programs.

@@ -73,6 +73,13 @@ pub fn decode(stream: impl Read) -> Result<String, Unread> {
     })
 }
 
+const BYTE_ORDER_MARK: char = '\u{feff}';
+
+/// A byte order mark is not part of the text: editors hide it, and columns would be off by one.
+pub fn without_mark(text: &str) -> &str {
+    text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -10,7 +10,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use futures::FutureExt;
 use futures::future::BoxFuture;
-use pydslrep_analysis::Snapshot;
 use rustc_hash::FxHashMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -21,6 +20,7 @@ use crate::log::log;
 use crate::message::{Outbox, refuse};
 use crate::server::Server;
 use crate::state::State;
+use crate::work::Work;
 
 /// A shorter text is done sooner than it is handed over.
 const LONG: usize = 64 << 10;
@@ -28,16 +28,6 @@ const LONG: usize = 64 << 10;
 /// The protocol's codes for answers that are not given.
 const CANCELLED: ErrorCode = ErrorCode::ServerError(-32800);
 const CONTENT_MODIFIED: ErrorCode = ErrorCode::ServerError(-32801);
-
-/// Work on one file.
-pub(crate) struct Work<R> {
-    /// The file.
-    pub(crate) snapshot: Snapshot,
-    /// Set when the file is no longer what it was.
-    pub(crate) outdated: Arc<AtomicBool>,
-    /// What to do with it.
-    pub(crate) run: Box<dyn FnOnce(&Snapshot) -> R + Send>,
-}
 
 /// What became of a request.
 pub(crate) enum Bulk {

@@ -5,8 +5,11 @@ use tower_lsp::ls_types::{
     SemanticTokensFullOptions, TextDocumentClientCapabilities, WorkspaceClientCapabilities,
 };
 
-use crate::handlers::code_lenses::SHOW_REFERENCES;
 use crate::positions::Encoding;
+
+/// The client's command that lists references; it gets an address, a position and locations. A client that has it says
+/// so in `capabilities.experimental.commands.commands`.
+pub(crate) const SHOW_REFERENCES: &str = "pydslrep.showReferences";
 
 /// The client's abilities that change our answers, each off unless the client says otherwise.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

@@ -34,6 +34,7 @@ mod server;
 mod session;
 mod settings;
 mod state;
+mod work;
 mod workspace;
 
 pub use message::Outbox;

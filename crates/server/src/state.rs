@@ -16,7 +16,6 @@ use tower_lsp::ls_types::{
     TraceValue, Uri,
 };
 
-use crate::bulk::Work;
 use crate::client::ClientFeatures;
 use crate::documents::{Document, Documents, key};
 use crate::handlers::planned_path::Watched;
@@ -24,6 +23,7 @@ use crate::handlers::planned_path::Watched;
 use crate::handlers::runs::Running;
 use crate::positions::{Encoding, to_offset, to_range, to_span};
 use crate::settings::SettingsStore;
+use crate::work::Work;
 
 /// Documents, their analysis, and what the client can do.
 #[derive(Debug, Default)]

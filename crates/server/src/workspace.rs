@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use pydslrep_analysis::Absence;
-use pydslrep_files::{FILE_NAME, Unread, belongs, import_bound};
+use pydslrep_files::{FILE_NAME, Unread, belongs, import_bound, without_mark};
 use ropey::Rope;
 use tower_lsp::ls_types::{InitializeParams, Uri};
 
@@ -15,8 +15,6 @@ pub(crate) const MOST_PROGRAMS: usize = 5_000;
 
 /// More files and folders than these are not walked in search of programs: somebody may have opened a whole disk.
 pub(crate) const MOST_ENTRIES: usize = 100_000;
-
-const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// The folders a client has open, as prefixes of keys.
 pub(crate) fn folders<'a>(uris: impl IntoIterator<Item = &'a Uri>) -> Vec<String> {
@@ -155,7 +153,7 @@ impl State {
     }
 
     fn insert_from_disk(&mut self, key: String, uri: Uri, text: &str) {
-        let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
+        let text = without_mark(text);
         let mut document = Document::new(uri, Rope::from_str(text), None);
         if !document.is_program() {
             self.stale.documents.insert(key.clone());

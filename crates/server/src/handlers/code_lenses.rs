@@ -7,16 +7,13 @@ use serde::{Deserialize, Serialize};
 use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::{CodeLens, CodeLensParams, Command, Location, Range, Uri};
 
+use crate::client::SHOW_REFERENCES;
 use crate::handlers::code_actions::GENERATE_SCRIPT;
 #[cfg(feature = "process")]
 use crate::handlers::runs;
 use crate::handlers::scripts::ScriptOf;
 use crate::positions::LineTable;
 use crate::state::State;
-
-/// The client's command that lists references; it gets an address, a position and locations. A client that has it says
-/// so in `capabilities.experimental.commands.commands`.
-pub(crate) const SHOW_REFERENCES: &str = "pydslrep.showReferences";
 
 /// What can be done with an environment, with the words on it. Each command takes what [`ScriptOf`] holds.
 const OF_ENVIRONMENTS: &[(&str, &str)] = &[

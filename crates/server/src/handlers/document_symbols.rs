@@ -7,9 +7,9 @@ use tower_lsp::ls_types::{
     Uri,
 };
 
-use crate::bulk::Work;
 use crate::positions::LineTable;
 use crate::state::State;
+use crate::work::Work;
 
 /// The outline of a document.
 pub(crate) fn document_symbols(

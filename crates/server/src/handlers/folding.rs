@@ -3,9 +3,9 @@
 use pydslrep_ide as ide;
 use tower_lsp::ls_types::{FoldingRange, FoldingRangeKind, FoldingRangeParams, Range};
 
-use crate::bulk::Work;
 use crate::positions::LineTable;
 use crate::state::State;
+use crate::work::Work;
 
 /// Everything in a document that can fold.
 pub(crate) fn folding_ranges(

@@ -8,9 +8,9 @@ use tower_lsp::ls_types::{
     DocumentFormattingParams, DocumentOnTypeFormattingParams, DocumentRangeFormattingParams, TextEdit,
 };
 
-use crate::bulk::Work;
 use crate::positions::{Encoding, LineTable};
 use crate::state::State;
+use crate::work::Work;
 
 /// The edits that bring a document into the canonical layout.
 pub(crate) fn document(state: &mut State, params: &DocumentFormattingParams) -> Option<Work<Vec<TextEdit>>> {

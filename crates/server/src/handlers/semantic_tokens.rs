@@ -11,10 +11,10 @@ use tower_lsp::ls_types::{
     SemanticTokensParams, SemanticTokensRangeParams, Uri,
 };
 
-use crate::bulk::Work;
 use crate::documents::key;
 use crate::positions::{Encoding, LineTable};
 use crate::state::State;
+use crate::work::Work;
 
 /// What the client has of a document's tokens.
 #[derive(Debug)]
