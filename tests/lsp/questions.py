@@ -23,6 +23,7 @@ import "parts.pyr"
 }}
 {NOTE}environment yard has {{ rover }} robots with {{ lap lap }} moves
 {NOTE}robot spare type tw with port 20000 has {{ far wheeel }} wheels
+{NOTE}movement idle of rover {{ turn right 0 }}
 {NOTE}wheel   untidy with radius 4.5
 {NOTE}movement   back of rover {{ turn   right }}
 """
@@ -118,10 +119,17 @@ def lens(buffer: Buffer) -> dict[str, Any]:
     return {"range": {"start": start, "end": end}, "data": data}
 
 
-def actions(buffer: Buffer, only: str) -> dict[str, Any]:
-    """Code actions of one kind where a wheel's name is mistyped."""
+def actions(buffer: Buffer, only: str, where: str = "wheeel") -> dict[str, Any]:
+    """Code actions of one kind at a text, where a wheel's name is mistyped if nothing else is said."""
     context = {"diagnostics": [], "only": [only]}
-    return of(buffer, range=buffer.span("wheeel"), context=context)
+    return of(buffer, range=buffer.span(where), context=context)
+
+
+def moving(buffer: Buffer) -> dict[str, Any]:
+    """What is imported goes into a folder."""
+    folder = buffer.uri.removesuffix("main.pyr")
+    renamed = {"oldUri": f"{folder}parts.pyr", "newUri": f"{folder}lib/parts.pyr"}
+    return {"files": [renamed]}
 
 
 def script(buffer: Buffer) -> dict[str, Any]:
@@ -172,12 +180,24 @@ REQUESTS: dict[str, Callable[[Buffer], dict[str, Any]]] = {
         "options": OPTIONS,
     },
     "textDocument/codeAction#quickfix": lambda b: actions(b, "quickfix"),
+    "textDocument/codeAction#rewrite": lambda b: actions(b, "refactor", "turn left"),
     "textDocument/codeAction#script": lambda b: actions(b, "source.generateScript"),
     "codeAction/resolve": lambda b: {
         "title": "Generate script yard.py",
         "kind": "source.generateScript",
         "data": script(b),
     },
+    "codeAction/resolve#all": lambda b: {
+        "title": "Fix all",
+        "kind": "source.fixAll",
+        "data": {"uri": b.uri, "fixAll": None},
+    },
+    "workspace/executeCommand": lambda b: {
+        "command": "pydslrep.showKinematics",
+        "arguments": [{"uri": b.uri, "robot": "rover"}],
+    },
+    "workspace/willRenameFiles": moving,
+    "pydslrep/plannedPath": script,
     "textDocument/diagnostic": of,
     "workspace/diagnostic": lambda b: {"previousResultIds": []},
 }

@@ -23,11 +23,6 @@ CONVERTER = get_converter()
 OPTIONS = types.FormattingOptions(tab_size=8, insert_spaces=False)
 T = TypeVar("T")
 
-# What the contract has a word for and other work is still to bring: whoever announces one moves it to an exercise.
-NOT_YET = {
-    "workspace.fileOperations.willRename",
-}
-
 
 class Session:
     """A client, what was announced to it, and an open program."""
@@ -662,6 +657,56 @@ async def folders_come_and_go(s: Session) -> None:
     assert await found() == []
 
 
+@exercises("workspace.fileOperations.willRename", "workspace.fileOperations.didRename")
+async def imports_follow_files(s: Session) -> None:
+    old, new = s.folder / "parts.pyr", s.folder / "lib" / "round parts.pyr"
+    renamed = types.FileRename(old.as_uri(), new.as_uri())
+    params = types.RenameFilesParams([renamed])
+    edit = await s.client.workspace_will_rename_files_async(params)
+    assert edit
+    change = only(edit.document_changes, types.TextDocumentEdit)
+    edits = [item for item in change.edits if isinstance(item, types.TextEdit)]
+    s.show(apply_edits(PROGRAM, edits))
+    assert s.buffer.text == PROGRAM.replace("parts.pyr", "lib/round parts.pyr")
+    assert await codes(s) == ["unresolved-import", *await codes_without_imports(s)]
+    new.parent.mkdir(exist_ok=True)
+    old.rename(new)
+    s.client.workspace_did_rename_files(params)
+    assert await codes(s) == await codes_without_imports(s)
+    new.rename(old)
+    back = types.RenameFilesParams([types.FileRename(new.as_uri(), old.as_uri())])
+    s.client.workspace_did_rename_files(back)
+
+
+@exercises("workspace.fileOperations.didCreate", "workspace.fileOperations.didDelete")
+async def files_are_created_and_deleted(s: Session) -> None:
+    parts = s.folder / "parts.pyr"
+    parts.unlink()
+    uri = parts.as_uri()
+    deleted = types.DeleteFilesParams([types.FileDelete(uri)])
+    s.client.workspace_did_delete_files(deleted)
+    assert "unresolved-import" in await codes(s)
+    parts.write_text(PARTS, encoding="utf-8")
+    s.client.workspace_did_create_files(
+        types.CreateFilesParams([types.FileCreate(uri)])
+    )
+    assert "unresolved-import" not in await codes(s)
+
+
+async def codes(s: Session) -> list[int | str | None]:
+    """What is wrong with the program."""
+    report = await s.client.text_document_diagnostic_async(
+        types.DocumentDiagnosticParams(s.document)
+    )
+    assert isinstance(report, types.RelatedFullDocumentDiagnosticReport)
+    return [item.code for item in report.items]
+
+
+async def codes_without_imports(s: Session) -> list[int | str | None]:
+    """What is wrong with the program, apart from its imports."""
+    return [code for code in await codes(s) if code != "unresolved-import"]
+
+
 #### Commands ####
 
 
@@ -708,7 +753,7 @@ def names_of(value: Any, path: str = "") -> set[str]:
     """Capabilities by name: what is on, each element of a list of choices, and the name of any other value."""
     if value is None or value is False:
         return set()
-    if path.startswith("semanticTokensProvider.legend."):
+    if path.startswith(("semanticTokensProvider.legend.", "workspace.fileOperations.")):
         return {path}
     if isinstance(value, dict) and value:
         parts = [names_of(v, f"{path}.{k}".strip(".")) for k, v in value.items()]
@@ -737,7 +782,6 @@ async def test_what_is_announced_is_what_the_contract_has_and_does_it(
     announced = names_of(CONVERTER.unstructure(session.announced))
     assert sorted(announced - EXERCISES.keys()) == [], "announced, but not exercised"
     assert sorted(EXERCISES.keys() - announced) == [], "exercised, but not announced"
-    assert sorted(announced & NOT_YET) == []
     for exercise in dict.fromkeys(EXERCISES.values()):
         session.show(PROGRAM)
         await exercise(session)

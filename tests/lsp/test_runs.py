@@ -125,6 +125,32 @@ def test_a_preview_draws_what_the_editor_shows(session: Session, command: str) -
     picture.unlink()
 
 
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        "robot other with port 2 has { wheelL wheelX } wheels",
+        "environment other has { rover } robots with { patroll } moves",
+        "movement other of rover { move",
+    ],
+)
+def test_what_is_wrong_elsewhere_is_in_nobodys_way(
+    session: Session, wrong: str
+) -> None:
+    """Of an environment in which everything is right there are a path, a picture and a script."""
+    session.open(session.uri, f"{PROGRAM}{wrong}\n")
+    session.raw.send(request(1, "pydslrep/plannedPath", session.area))
+    assert session.raw.answer(1)["result"]["environment"] == "area"
+    session.execute(2, "pydslrep.generateScript", session.area)
+    assert session.raw.answer(2)["result"] is None
+    session.execute(3, "pydslrep.previewPath", session.area)
+    session.accept_progress()
+    done = session.raw.answer(3)["result"]
+    picture = pathlib.Path(unquote(urlsplit(done["picture"]).path))
+    assert "<svg" in picture.read_text(encoding="utf-8")
+    assert done["output"].startswith("area: ")
+    picture.unlink()
+
+
 def test_a_run_can_be_cancelled(endless: Session, tmp_path: pathlib.Path) -> None:
     endless.execute(1, "pydslrep.run", endless.area)
     token = endless.accept_progress()

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from questions import Buffer, edited
 from raw import RawServer, answer, notification, request
 
 WHEELS = "wheel a with radius 4\nwheel b with radius 4\n"
@@ -249,6 +250,93 @@ def test_settings_files_are_completed_explained_and_mended(
     }
     hover = ask("textDocument/hover", position={"line": 2, "character": 4})
     assert "`wheel-count`" in str(hover["contents"])
+
+
+def opened(workspace: Workspace, name: str) -> None:
+    text = (workspace.folder / name).read_text(encoding="utf-8")
+    document = {"uri": workspace.uri(name), "languageId": "pydslrep", "version": 1}
+    opened = notification(
+        "textDocument/didOpen", {"textDocument": document | {"text": text}}
+    )
+    workspace.server.send(opened)
+
+
+def renamed(workspace: Workspace, old: str, new: str) -> dict[str, Any]:
+    return {"files": [{"oldUri": workspace.uri(old), "newUri": workspace.uri(new)}]}
+
+
+def will_rename(workspace: Workspace, old: str, new: str) -> dict[str, str]:
+    """The texts of files after the edits that a rename asks for."""
+    workspace.ident += 1
+    params = renamed(workspace, old, new)
+    workspace.server.send(request(workspace.ident, "workspace/willRenameFiles", params))
+    while (message := workspace.next()).get("id") != workspace.ident:
+        pass
+    after = {}
+    for uri, edits in ((message["result"] or {}).get("changes") or {}).items():
+        name = uri.removeprefix(workspace.folder.as_uri() + "/")
+        text = (workspace.folder / name).read_text(encoding="utf-8")
+        buffer = Buffer(uri, text, "utf-16")
+        after[name] = edited(buffer, edits)
+    return after
+
+
+def test_a_folder_is_renamed_by_the_editor(workspace: Workspace) -> None:
+    parts = workspace.folder / "parts"
+    parts.mkdir()
+    (workspace.folder / "wheels.pyr").rename(parts / "wheels.pyr")
+    (parts / "near.pyr").write_text('import "wheels.pyr"\n', encoding="utf-8")
+    robot = ROBOT.replace("wheels.pyr", "parts/wheels.pyr")
+    (workspace.folder / "robot.pyr").write_text(robot, encoding="utf-8")
+    workspace.start(CLIENT)
+    workspace.indexed()
+    after = will_rename(workspace, "parts", "lib")
+    assert after == {"robot.pyr": robot.replace("parts/", "lib/")}
+    parts.rename(workspace.folder / "lib")
+    told = notification("workspace/didRenameFiles", renamed(workspace, "parts", "lib"))
+    workspace.server.send(told)
+    assert workspace.published("robot.pyr") == ["unresolved-import"]
+    workspace.write("robot.pyr", after["robot.pyr"])
+    assert workspace.published("robot.pyr") == []
+    (workspace.folder / "lib" / "wheels.pyr").unlink()
+    workspace.tell("lib/wheels.pyr", 3)
+    assert workspace.published("lib/near.pyr") == ["unresolved-import"], (
+        "what is in the folder is known again"
+    )
+
+
+def test_a_file_is_moved_by_the_editor(workspace: Workspace) -> None:
+    workspace.start(CLIENT)
+    workspace.indexed()
+    opened(workspace, "robot.pyr")
+    assert will_rename(workspace, "robot.pyr", "a/b/robot.pyr") == {
+        "robot.pyr": ROBOT.replace("wheels.pyr", "../../wheels.pyr")
+    }
+    assert will_rename(workspace, "robot.pyr", "robot_2.pyr") == {}
+    assert will_rename(workspace, "gone.pyr", "gone_2.pyr") == {}
+
+
+def test_a_file_is_renamed_outside_and_back(workspace: Workspace) -> None:
+    workspace.start(CLIENT)
+    workspace.indexed()
+    wheels, round_ = workspace.folder / "wheels.pyr", workspace.folder / "round.pyr"
+
+    def tell(gone: str, new: str) -> None:
+        changes = [
+            {"uri": workspace.uri(new), "type": 1},
+            {"uri": workspace.uri(gone), "type": 3},
+        ]
+        told = notification("workspace/didChangeWatchedFiles", {"changes": changes})
+        workspace.server.send(told)
+
+    wheels.rename(round_)
+    tell("wheels.pyr", "round.pyr")
+    assert workspace.published("robot.pyr") == ["unresolved-import"]
+    workspace.write("robot.pyr", ROBOT.replace("wheels.pyr", "round.pyr"))
+    assert workspace.published("robot.pyr") == []
+    round_.rename(wheels)
+    tell("round.pyr", "wheels.pyr")
+    assert workspace.published("robot.pyr") == ["unresolved-import"]
 
 
 def test_clients_ask_for_the_whole_workspace(workspace: Workspace) -> None:

@@ -56,6 +56,7 @@ GROUPS: dict[str, dict[str, list[str]]] = {
     },
     "Changing": {
         "rename": ["textDocument/prepareRename", "textDocument/rename"],
+        "file_rename": ["workspace/willRenameFiles"],
         "formatting": ["textDocument/formatting", "textDocument/rangeFormatting"],
     },
 }

@@ -14,7 +14,7 @@ pub mod environment;
 mod file;
 mod fixing;
 mod names;
-mod path;
+pub mod path;
 mod plan;
 mod resolve;
 mod script_name;

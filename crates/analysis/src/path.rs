@@ -1,7 +1,7 @@
-//! Paths of imports. A path is text with `/` between its parts; nothing here looks at a disk.
+//! Paths of imports: what they lead to, and how they are written. A path is text with `/` between its parts; nothing here looks at a disk.
 
 /// The path that `relative`, written in the file at `base`, leads to. `.` and `..` are resolved where they can be.
-pub(crate) fn join(base: &str, relative: &str) -> String {
+pub fn join(base: &str, relative: &str) -> String {
     let folder = base.rfind('/').map_or("", |slash| &base[..=slash]);
     let rooted = folder.starts_with('/');
     let mut parts: Vec<&str> = Vec::new();
@@ -24,7 +24,7 @@ pub(crate) fn join(base: &str, relative: &str) -> String {
 }
 
 /// How the file at `base` has to write the path `target`, so that [`join`] leads there; `None` where it cannot.
-pub(crate) fn relative(base: &str, target: &str) -> Option<String> {
+pub fn relative(base: &str, target: &str) -> Option<String> {
     let folders = |path: &str| path.split('/').map(str::to_owned).collect::<Vec<_>>();
     let (mut from, to) = (folders(base), folders(target));
     from.pop();

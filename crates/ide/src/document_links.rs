@@ -1,6 +1,6 @@
 //! Document links: the path of an import opens the file, and says beforehand what it declares.
 
-use pydslrep_analysis::{Database, FileId};
+use pydslrep_analysis::{Database, EntityRef, FileId};
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Span};
 
@@ -20,11 +20,9 @@ pub struct DocumentLink {
 /// The imports of a file that lead somewhere, in the order of the text.
 pub fn document_links(database: &Database, file: FileId) -> Vec<DocumentLink> {
     let links = database.import_statements(file).into_iter().filter_map(|(entity, path)| {
-        let Some(Entity::Import(import)) = &entity.parse.entity else { return None };
         let imported = database.imported_files(file).find(|other| database.path(*other) == path)?;
-        let quoted = import.path_span?.shifted(entity.span.start);
         Some(DocumentLink {
-            span: between_quotes(database, file, quoted),
+            span: path_place(database, &entity)?,
             file: imported,
             tooltip: tooltip(database, imported),
         })
@@ -32,12 +30,14 @@ pub fn document_links(database: &Database, file: FileId) -> Vec<DocumentLink> {
     links.collect()
 }
 
-/// A path may lack its closing quote.
-fn between_quotes(database: &Database, file: FileId, span: Span) -> Span {
-    let text = database.slice(file, span);
+/// Where an import's path stands, between its quotes; it may lack the closing one.
+pub(crate) fn path_place(database: &Database, entity: &EntityRef<'_>) -> Option<Span> {
+    let Some(Entity::Import(import)) = &entity.parse.entity else { return None };
+    let quoted = import.path_span?.shifted(entity.span.start);
+    let text = database.slice(entity.file, quoted);
     let opening = u32::from(text.starts_with('"'));
     let closing = u32::from(text.len() > 1 && text.ends_with('"'));
-    Span::new(span.start + opening, span.end - closing)
+    Some(Span::new(quoted.start + opening, quoted.end - closing))
 }
 
 fn tooltip(database: &Database, file: FileId) -> String {

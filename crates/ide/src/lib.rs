@@ -10,6 +10,7 @@ mod completion;
 mod cursor;
 mod definition;
 mod document_links;
+mod file_rename;
 mod fix_all;
 mod folding;
 mod formatting;
@@ -42,6 +43,7 @@ pub use completion::{
 };
 pub use definition::{Definition, Target, goto_definition};
 pub use document_links::{DocumentLink, document_links};
+pub use file_rename::{FileRename, rename_files};
 pub use fix_all::{codes_to_fix_all, fix_all, is_safely_fixed};
 pub use folding::{Fold, FoldKind, folding_ranges};
 pub use formatting::{format, format_range};

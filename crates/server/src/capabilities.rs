@@ -13,7 +13,7 @@ use tower_lsp::ls_types::{
 use crate::client::ClientFeatures;
 #[cfg(feature = "process")]
 use crate::handlers::runs;
-use crate::handlers::{code_actions, hover, semantic_tokens};
+use crate::handlers::{code_actions, file_operations, hover, semantic_tokens};
 
 /// The answer to `initialize`.
 pub(crate) fn initialize_result(client: &ClientFeatures) -> InitializeResult {
@@ -49,7 +49,7 @@ fn server_capabilities(client: &ClientFeatures) -> ServerCapabilities {
                 supported: Some(true),
                 change_notifications: Some(OneOf::Left(true)),
             }),
-            ..WorkspaceServerCapabilities::default()
+            file_operations: Some(file_operations::capabilities()),
         }),
         completion_provider: Some(CompletionOptions {
             // `[` is for settings files.

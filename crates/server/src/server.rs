@@ -20,9 +20,9 @@ use crate::client::ClientFeatures;
 use crate::handlers::runs;
 use crate::handlers::scripts::ScriptOf;
 use crate::handlers::{
-    self, call_hierarchy, code_actions, code_lenses, completion, diagnostics, document_links, formatting,
-    hover, inlay_hints, navigation, planned_path, references, rename, scripts, selection, semantic_tokens,
-    signature, synchronization, workspace_symbols,
+    self, call_hierarchy, code_actions, code_lenses, completion, diagnostics, document_links,
+    file_operations, formatting, hover, inlay_hints, navigation, planned_path, references, rename, scripts,
+    selection, semantic_tokens, signature, synchronization, workspace_symbols,
 };
 use crate::log::log;
 use crate::message::Outbox;
@@ -137,6 +137,33 @@ impl LanguageServer for Server {
         } else {
             handlers::workspace::set(&mut self.state(), &params.settings, &self.outbox);
         }
+        self.refresh().await;
+    }
+
+    async fn will_rename_files(&self, params: RenameFilesParams) -> Result<Option<WorkspaceEdit>> {
+        Ok(file_operations::will_rename(&self.state(), &params))
+    }
+
+    async fn did_rename_files(&self, params: RenameFilesParams) {
+        let added = {
+            let mut state = self.state();
+            file_operations::gone(&mut state, params.files.iter().map(|file| file.old_uri.as_str()));
+            file_operations::come(&mut state, params.files.iter().map(|file| file.new_uri.as_str()))
+        };
+        self.index(added).await;
+        self.refresh().await;
+    }
+
+    async fn did_create_files(&self, params: CreateFilesParams) {
+        let new = params.files.iter().map(|file| file.uri.as_str());
+        let added = file_operations::come(&mut self.state(), new);
+        self.index(added).await;
+        self.refresh().await;
+    }
+
+    async fn did_delete_files(&self, params: DeleteFilesParams) {
+        let gone = params.files.iter().map(|file| file.uri.as_str());
+        file_operations::gone(&mut self.state(), gone);
         self.refresh().await;
     }
 

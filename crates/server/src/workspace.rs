@@ -64,7 +64,8 @@ impl State {
         self.follow_imports_of(&key);
     }
 
-    fn is_part_of_workspace(&self, key: &str) -> bool {
+    /// Whether a search in the folders that are open in the client would find a program.
+    pub(crate) fn is_part_of_workspace(&self, key: &str) -> bool {
         let path = Path::new(key);
         let mut folders = self.folders.iter().filter(|folder| key.starts_with(folder.as_str()));
         folders.any(|folder| belongs(Path::new(folder), path))

@@ -7,6 +7,7 @@ pub(crate) mod completion;
 pub(crate) mod diagnostics;
 pub(crate) mod document_links;
 pub(crate) mod document_symbols;
+pub(crate) mod file_operations;
 pub(crate) mod folding;
 pub(crate) mod formatting;
 pub(crate) mod hover;

@@ -82,7 +82,12 @@ pub(crate) fn index(server: &Server, folders: &[String]) -> String {
         for failure in found.failures {
             log(format_args!("cannot look into {failure}"));
         }
+        // A folder in another may be left out there.
+        let is_open = server.state().folders.contains(folder);
         for path in found.programs {
+            if !is_open && !server.state().is_part_of_workspace(&path.to_string_lossy()) {
+                continue;
+            }
             if programs == MOST_PROGRAMS {
                 left_out = true;
                 break;

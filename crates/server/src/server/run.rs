@@ -57,7 +57,10 @@ impl Server {
             progress.finish().await;
         }
         let (code, printed) = ended;
-        if code != Some(0) {
+        // A plan of one environment is drawn whatever is wrong with others; its exit code still tells of that.
+        let is_drawn = || std::fs::metadata(&picture).is_ok_and(|file| file.len() > 0);
+        let is_done = code == Some(0) || params.command == runs::PREVIEW_PATH && is_drawn();
+        if !is_done {
             // Nothing was drawn.
             let _ = std::fs::remove_file(&picture);
             return Err(runs::ended_badly(code, said.make_contiguous()));

@@ -1,0 +1,79 @@
+//! What a client does to files and folders in its own tree: `workspace/willRenameFiles`, asked before, and
+//! `workspace/didRenameFiles`, `didCreateFiles` and `didDeleteFiles`, told afterwards.
+//!
+//! A client that also watches files tells the same twice, which does no harm.
+
+use std::path::Path;
+use std::str::FromStr;
+
+use pydslrep_config::FILE_NAME;
+use pydslrep_files::EXTENSION;
+use pydslrep_ide as ide;
+use tower_lsp::ls_types::{
+    FileOperationFilter, FileOperationPattern, FileOperationPatternKind, FileOperationRegistrationOptions,
+    RenameFilesParams, Uri, WorkspaceEdit, WorkspaceFileOperationsServerCapabilities,
+};
+
+use crate::documents::key;
+use crate::handlers::code_actions;
+use crate::state::State;
+use crate::workspace::folders;
+
+/// The operations that matter to programs: on themselves, on folders, which may hold some, and on settings.
+pub(crate) fn capabilities() -> WorkspaceFileOperationsServerCapabilities {
+    let filter = |glob: String, kind: FileOperationPatternKind| FileOperationFilter {
+        scheme: Some("file".to_owned()),
+        pattern: FileOperationPattern { glob, matches: Some(kind), options: None },
+    };
+    let programs = filter(format!("**/*.{EXTENSION}"), FileOperationPatternKind::File);
+    let settings = filter(format!("**/{FILE_NAME}"), FileOperationPatternKind::File);
+    let folders = filter("**".to_owned(), FileOperationPatternKind::Folder);
+    let all = FileOperationRegistrationOptions { filters: vec![programs.clone(), settings, folders.clone()] };
+    WorkspaceFileOperationsServerCapabilities {
+        will_rename: Some(FileOperationRegistrationOptions { filters: vec![programs, folders] }),
+        did_rename: Some(all.clone()),
+        did_create: Some(all.clone()),
+        did_delete: Some(all),
+        ..WorkspaceFileOperationsServerCapabilities::default()
+    }
+}
+
+/// The edits that keep all imports right; `None` where none is needed.
+pub(crate) fn will_rename(state: &State, params: &RenameFilesParams) -> Option<WorkspaceEdit> {
+    let path = |uri: &str| Some(key(&Uri::from_str(uri).ok()?).trim_end_matches('/').to_owned());
+    let renames: Vec<ide::FileRename> = params
+        .files
+        .iter()
+        .filter_map(|file| Some(ide::FileRename { from: path(&file.old_uri)?, to: path(&file.new_uri)? }))
+        .collect();
+    let edits = ide::rename_files(&state.database, &renames);
+    (!edits.is_empty()).then(|| code_actions::workspace_edit(state, &edits))
+}
+
+/// Files and folders, by their addresses, are no longer where they were.
+pub(crate) fn gone<'a>(state: &mut State, addresses: impl Iterator<Item = &'a str>) {
+    for uri in addresses.filter_map(|address| Uri::from_str(address).ok()) {
+        let [folder] = &folders([&uri])[..] else { continue };
+        let inside = state.documents.iter().filter(|(key, _)| key.starts_with(folder));
+        let inside: Vec<Uri> = inside.map(|(_, document)| document.uri.clone()).collect();
+        state.file_changed(&uri);
+        for uri in inside {
+            state.file_changed(&uri);
+        }
+    }
+}
+
+/// Files and folders are new; returns the folders of the workspace among them, in which there may be programs.
+pub(crate) fn come<'a>(state: &mut State, addresses: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut new = Vec::new();
+    for uri in addresses.filter_map(|address| Uri::from_str(address).ok()) {
+        if !Path::new(&key(&uri)).is_dir() {
+            state.file_changed(&uri);
+            continue;
+        }
+        new.extend(folders([&uri]).into_iter().filter(|folder| state.is_in_workspace(folder)));
+        // It may have brought a file of settings along.
+        state.reload_settings();
+    }
+    new
+}
