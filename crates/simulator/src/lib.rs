@@ -5,7 +5,7 @@
 //! so the same requests always give the same trace, bit for bit.
 //!
 //! * [`World`]: robots with wheel joints, stepped in simulation time.
-//! * [`Session`]: the remote API's calls on a world, for several clients that may step it in lockstep.
+//! * [`Session`]: the calls of both remote APIs on a world, for several clients that may step it in lockstep.
 //! * [`edge`] (feature `remote`): the same on TCP ports, and [`Simulator`] to embed it all.
 //! * [`picture`]: planned against driven path, as SVG.
 
@@ -18,6 +18,6 @@ mod world;
 
 #[cfg(feature = "remote")]
 pub use edge::{Options, Simulator, StartError};
-pub use remote::{Answer, Session};
+pub use remote::{Answer, Malformed, Pass, Session};
 pub use trace::TraceRecord;
 pub use world::{World, WorldError};

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
 use super::zmtp::{self, Message};
-use crate::{Answer, Session};
+use crate::{Answer, Malformed, Session};
 
 /// More connections than this at once are not served.
 const MOST_CONNECTIONS: usize = 256;
@@ -64,6 +64,15 @@ impl Exchange {
         inner.open.insert(ticket, Origin { connection, envelope: message.envelope });
         let answers = inner.session.request(connection, ticket, now, &message.body);
         inner.deliver(answers);
+    }
+
+    /// Handles a message of the legacy remote API: its reply, and whether the client is done.
+    pub(super) fn legacy_message(&self, connection: u64, bytes: &[u8]) -> Result<(Vec<u8>, bool), Malformed> {
+        let now = self.begin.elapsed();
+        let mut inner = self.lock();
+        let pass = inner.session.legacy_message(connection, now, bytes)?;
+        inner.deliver(pass.answers);
+        Ok((pass.reply, pass.is_last))
     }
 
     /// Forgets a connection and the clients behind it.

@@ -4,11 +4,16 @@
 //! reserves as much memory as a frame's header announces: nine bytes from anyone end the whole process. Here
 //! memory grows with what has really arrived, and what announces more than [`LARGEST_MESSAGE`] is refused.
 
+use super::Violation;
+
 /// Real requests have some hundred bytes.
 const LARGEST_MESSAGE: usize = 1 << 20;
 
 /// A message with its envelope has two frames; routers on the way may add some.
 const MOST_FRAMES: usize = 16;
+
+/// What the first byte of a connection is in this protocol.
+pub(super) const MARK: u8 = 0xff;
 
 const GREETING_LENGTH: usize = 64;
 const MECHANISM: &[u8; 20] = b"NULL\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0";
@@ -23,10 +28,6 @@ pub(super) struct Message {
     pub(super) envelope: Vec<Vec<u8>>,
     pub(super) body: Vec<u8>,
 }
-
-/// Why a connection is given up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Violation(pub(super) &'static str);
 
 /// The receiving end of one connection.
 #[derive(Debug, Default)]
@@ -48,7 +49,7 @@ enum Stage {
 /// What to send as soon as a connection is open: greeting and READY. With the NULL mechanism neither depends on
 /// what the other side says.
 pub(super) fn opening() -> Vec<u8> {
-    let mut bytes = vec![0xff, 0, 0, 0, 0, 0, 0, 0, 0, 0x7f, 3, 0];
+    let mut bytes = vec![MARK, 0, 0, 0, 0, 0, 0, 0, 0, 0x7f, 3, 0];
     bytes.extend_from_slice(MECHANISM);
     bytes.resize(GREETING_LENGTH, 0);
     push_frame(&mut bytes, FLAG_COMMAND, b"\x05READY\x0bSocket-Type\0\0\0\x06ROUTER");
@@ -144,7 +145,7 @@ impl Receiver {
 /// Looks at as much of a greeting as has come, so that a stranger is turned away at the first wrong byte.
 fn check_greeting(bytes: &[u8]) -> Result<(), Violation> {
     let is_wrong = |index: usize, wrong: fn(u8) -> bool| bytes.get(index).is_some_and(|&byte| wrong(byte));
-    if is_wrong(0, |byte| byte != 0xff) || is_wrong(9, |byte| byte != 0x7f) {
+    if is_wrong(0, |byte| byte != MARK) || is_wrong(9, |byte| byte != 0x7f) {
         return Err(Violation("this is not ZeroMQ"));
     }
     if is_wrong(10, |byte| byte < 3) {

@@ -113,16 +113,20 @@ pub(super) fn pose(frame: &Isometry3<f64>) -> Value {
     list(frame.translation.vector.iter().chain(quaternion.iter()).copied())
 }
 
-/// Euler angles α, β, γ with rotation = Rx(α) Ry(β) Rz(γ), the engine's convention.
 pub(super) fn euler_angles(frame: &Isometry3<f64>) -> Value {
+    list(angles(frame))
+}
+
+/// Euler angles α, β, γ with rotation = Rx(α) Ry(β) Rz(γ), the engine's convention.
+pub(super) fn angles(frame: &Isometry3<f64>) -> [f64; 3] {
     let m = frame.rotation.to_rotation_matrix();
     // asin(m02) would lose half the digits near ±90°.
     let beta = m[(0, 2)].atan2(m[(0, 0)].hypot(m[(0, 1)]));
     if m[(0, 2)].abs() > 1.0 - 1e-12 {
         // Looking along x: α and γ turn about the same axis, all of it goes to γ.
-        return list([0.0, beta, m[(1, 0)].atan2(m[(1, 1)])]);
+        return [0.0, beta, m[(1, 0)].atan2(m[(1, 1)])];
     }
-    list([(-m[(1, 2)]).atan2(m[(2, 2)]), beta, (-m[(0, 1)]).atan2(m[(0, 0)])])
+    [(-m[(1, 2)]).atan2(m[(2, 2)]), beta, (-m[(0, 1)]).atan2(m[(0, 0)])]
 }
 
 /// The upper three rows of the homogeneous matrix, row by row.
@@ -142,13 +146,12 @@ mod tests {
 
     use super::*;
 
-    fn angles(rotation: Rotation3<f64>) -> Vec<f64> {
+    fn angles_of(rotation: Rotation3<f64>) -> [f64; 3] {
         let frame = Isometry3::from_parts(
             nalgebra::Translation3::identity(),
             UnitQuaternion::from_rotation_matrix(&rotation),
         );
-        let Value::Array(values) = euler_angles(&frame) else { panic!("no list") };
-        values.iter().map(|value| value.as_float().unwrap()).collect()
+        angles(&frame)
     }
 
     fn rotation(a: f64, b: f64, c: f64) -> Rotation3<f64> {
@@ -160,7 +163,7 @@ mod tests {
     proptest! {
         #[test]
         fn euler_angles_give_the_rotation_back(a in -3.1..3.1, b in -1.5..1.5, c in -3.1..3.1) {
-            let found = angles(rotation(a, b, c));
+            let found = angles_of(rotation(a, b, c));
             let again = rotation(found[0], found[1], found[2]);
             let difference = (again.matrix() - rotation(a, b, c).matrix()).norm();
             prop_assert!(difference < 1e-9, "{found:?}");
@@ -171,7 +174,7 @@ mod tests {
     fn euler_angles_at_the_pole() {
         let quarter = std::f64::consts::FRAC_PI_2;
         for (a, c) in [(0.0, 0.0), (0.3, 0.4), (-1.0, 2.0)] {
-            let found = angles(rotation(a, quarter, c));
+            let found = angles_of(rotation(a, quarter, c));
             let again = rotation(found[0], found[1], found[2]);
             assert!((again.matrix() - rotation(a, quarter, c).matrix()).norm() < 1e-9, "{found:?}");
         }

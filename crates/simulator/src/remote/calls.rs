@@ -1,5 +1,7 @@
 //! The calls of `sim` that read or command objects; those about time and stepping are in `session`.
 
+use std::collections::BTreeMap;
+
 use ciborium::Value;
 use nalgebra::{Isometry3, Vector3};
 
@@ -14,14 +16,21 @@ pub(super) struct Bench<'a> {
     pub(super) objects: &'a Objects,
     /// Whether the simulation is started, running or paused.
     pub(super) started: bool,
+    pub(super) drivers: &'a mut Drivers,
+    /// Who calls.
+    pub(super) connection: u64,
 }
 
+/// Which connection asked each wheel for its rate last, by robot and wheel.
+pub(super) type Drivers = BTreeMap<(usize, usize), u64>;
+
 /// A wheel joint that a call names.
-struct Joint {
-    robot: usize,
-    wheel: usize,
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Joint {
+    pub(super) robot: usize,
+    pub(super) wheel: usize,
     /// −1 for a joint whose axis points to the right: its own rate is the opposite of the rolling rate.
-    sense: f64,
+    pub(super) sense: f64,
 }
 
 /// Answers a call by its name without `sim.`; `None` when there is no such function.
@@ -68,6 +77,15 @@ fn parameter(arguments: &Arguments, known: i64, value: Value) -> Outcome {
         return Ok(vec![value]);
     }
     Err(arguments.failure(316, "invalid parameter."))
+}
+
+/// The number of an object's type.
+pub(super) fn type_of(kind: Kind) -> i64 {
+    match kind {
+        Kind::Robot(_) => info::TYPE_SHAPE,
+        Kind::Wheel { .. } => info::TYPE_JOINT,
+        Kind::Sensor { .. } => info::TYPE_SENSOR,
+    }
 }
 
 impl Bench<'_> {
@@ -118,12 +136,7 @@ impl Bench<'_> {
 
     fn get_object_type(&self, arguments: &Arguments) -> Outcome {
         let (_, kind) = self.object(arguments)?;
-        let kind = match kind {
-            Kind::Robot(_) => info::TYPE_SHAPE,
-            Kind::Wheel { .. } => info::TYPE_JOINT,
-            Kind::Sensor { .. } => info::TYPE_SENSOR,
-        };
-        Ok(vec![kind.into()])
+        Ok(vec![type_of(kind).into()])
     }
 
     fn is_handle(&self, arguments: &Arguments) -> Outcome {
@@ -133,19 +146,22 @@ impl Bench<'_> {
     /// The frame of the first argument's object, relative to the second argument's (left out: the world).
     fn frame(&self, arguments: &Arguments) -> Result<Isometry3<f64>, arguments::Failure> {
         let (handle, _) = self.object(arguments)?;
-        let parent = self.objects.get(handle).and_then(|object| object.parent);
-        let base = match arguments.integer_or(1, info::HANDLE_WORLD)? {
+        let base = arguments.integer_or(1, info::HANDLE_WORLD)?;
+        self.frame_of(handle, base).ok_or_else(|| arguments.failure(316, "object does not exist."))
+    }
+
+    /// The frame of an object relative to another one, or to what the special handles stand for.
+    pub(super) fn frame_of(&self, handle: Handle, base: Handle) -> Option<Isometry3<f64>> {
+        let own = self.objects.frame(handle, self.world)?;
+        let base = match base {
             info::HANDLE_WORLD | info::HANDLE_SCENE => None,
-            info::HANDLE_PARENT => parent,
+            info::HANDLE_PARENT => self.objects.get(handle)?.parent,
             base => Some(base),
         };
-        let missing = || arguments.failure(316, "object does not exist.");
-        let frame = |handle| self.objects.frame(handle, self.world).ok_or_else(missing);
-        let own = frame(handle)?;
-        Ok(match base {
-            Some(base) => frame(base)?.inv_mul(&own),
-            None => own,
-        })
+        match base {
+            Some(base) => Some(self.objects.frame(base, self.world)?.inv_mul(&own)),
+            None => Some(own),
+        }
     }
 
     /// Linear and angular velocity in the world, m/s and rad/s.
@@ -154,19 +170,33 @@ impl Bench<'_> {
         let Kind::Robot(robot) = kind else {
             return Err(arguments.failure(316, "object is not a shape."));
         };
+        Ok(self.velocity_of(robot).map(arguments::vector).into())
+    }
+
+    /// Linear and angular velocity of a robot in the world, m/s and rad/s.
+    pub(super) fn velocity_of(&self, robot: usize) -> [Vector3<f64>; 2] {
         let (twist, (sin, cos)) = (self.world.twist(robot), self.world.pose(robot).theta.sin_cos());
         let linear = Vector3::new(twist.vx * cos - twist.vy * sin, twist.vx * sin + twist.vy * cos, 0.0);
-        Ok(vec![arguments::vector(linear), arguments::vector(Vector3::new(0.0, 0.0, twist.omega))])
+        [linear, Vector3::new(0.0, 0.0, twist.omega)]
     }
 
     fn joint(&self, arguments: &Arguments) -> Result<Joint, arguments::Failure> {
-        let (_, kind) = self.object(arguments)?;
-        let Kind::Wheel { robot, wheel } = kind else {
-            return Err(arguments.failure(316, "object is not a joint."));
-        };
+        let (handle, _) = self.object(arguments)?;
+        self.joint_of(handle).ok_or_else(|| arguments.failure(316, "object is not a joint."))
+    }
+
+    /// The joint with this handle, if it is one.
+    pub(super) fn joint_of(&self, handle: Handle) -> Option<Joint> {
+        let Kind::Wheel { robot, wheel } = self.objects.get(handle)?.kind else { return None };
         let parts = self.world.scene().robots.get(robot).and_then(|robot| robot.wheels.get(wheel));
         let sense = if parts.is_some_and(|wheel| wheel.mirrored) { -1.0 } else { 1.0 };
-        Ok(Joint { robot, wheel, sense })
+        Some(Joint { robot, wheel, sense })
+    }
+
+    /// Asks a joint for a rate in its own sense of rotation, rad/s.
+    pub(super) fn set_rate(&mut self, joint: Joint, rate: f64) {
+        self.world.set_target(joint.robot, joint.wheel, joint.sense * rate);
+        self.drivers.insert((joint.robot, joint.wheel), self.connection);
     }
 
     /// A rate or angle of a wheel, in its joint's own sense of rotation.
@@ -180,8 +210,8 @@ impl Bench<'_> {
     }
 
     fn set_joint_target_velocity(&mut self, arguments: &Arguments) -> Outcome {
-        let Joint { robot, wheel, sense } = self.joint(arguments)?;
-        self.world.set_target(robot, wheel, sense * arguments.number(1)?);
+        let joint = self.joint(arguments)?;
+        self.set_rate(joint, arguments.number(1)?);
         Ok(vec![Value::from(1)])
     }
 
@@ -223,10 +253,14 @@ impl Bench<'_> {
     /// State, distance, point, handle of what was detected, its normal. The floor has nothing on it to detect.
     fn read_proximity_sensor(&self, arguments: &Arguments) -> Outcome {
         self.sensor(arguments)?;
-        let handled = self.started && self.world.steps() > 0;
-        let state = if handled { 0 } else { -1 };
+        let state = if self.has_handled_sensors() { 0 } else { -1 };
         let nothing = || arguments::list([0.0; 3]);
         Ok(vec![Value::from(state), Value::from(0.0), nothing(), Value::from(-1), nothing()])
+    }
+
+    /// Whether sensors have looked around since the start: the first step lets them.
+    pub(super) fn has_handled_sensors(&self) -> bool {
+        self.started && self.world.steps() > 0
     }
 
     fn handle_proximity_sensor(&self, arguments: &Arguments) -> Outcome {

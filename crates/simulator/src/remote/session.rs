@@ -6,8 +6,9 @@ use std::time::Duration;
 use ciborium::Value;
 
 use super::arguments::{Arguments, Failure, Outcome, integer};
-use super::calls::{self, Bench};
+use super::calls::{self, Bench, Drivers};
 use super::info;
+use super::legacy;
 use super::objects::Objects;
 use crate::{TraceRecord, World};
 
@@ -41,17 +42,20 @@ pub struct Answer {
 /// is answered when the step was taken, and it is taken when every client in stepping mode has asked for it.
 #[derive(Debug, Clone)]
 pub struct Session {
-    world: World,
-    objects: Objects,
-    state: State,
+    pub(super) world: World,
+    pub(super) objects: Objects,
+    pub(super) state: State,
     clients: BTreeMap<String, Client>,
+    /// Clients of the legacy remote API, by connection.
+    pub(super) legacy: BTreeMap<u64, legacy::Client>,
+    pub(super) drivers: Drivers,
     trace: Option<Vec<TraceRecord>>,
     /// Steps that clients may still have taken; `None` is any number.
     allowance: Option<u32>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum State {
+pub(super) enum State {
     Stopped,
     Paused,
     Running,
@@ -89,7 +93,16 @@ impl Session {
     /// A session on a world at rest; the simulation is stopped.
     pub fn new(world: World) -> Self {
         let objects = Objects::of(world.scene());
-        Self { world, objects, state: State::Stopped, clients: BTreeMap::new(), trace: None, allowance: None }
+        Self {
+            world,
+            objects,
+            state: State::Stopped,
+            clients: BTreeMap::new(),
+            legacy: BTreeMap::new(),
+            drivers: Drivers::new(),
+            trace: None,
+            allowance: None,
+        }
     }
 
     /// Begins to record all robots at the start of the simulation and after every step.
@@ -127,12 +140,14 @@ impl Session {
 
     /// How many clients are remembered.
     pub fn client_count(&self) -> usize {
-        self.clients.len()
+        self.clients.len() + self.legacy.len()
     }
 
     /// Whether time passes by itself: the simulation runs and no client steps it.
     pub fn is_free_running(&self) -> bool {
-        self.state == State::Running && self.clients.values().all(|client| client.level == 0)
+        let nobody_steps = self.clients.values().all(|client| client.level == 0)
+            && !self.legacy.values().any(legacy::Client::holds_time);
+        self.state == State::Running && nobody_steps
     }
 
     /// Takes a request of one CBOR map.
@@ -160,9 +175,18 @@ impl Session {
         answers
     }
 
-    /// A connection is gone, and with it the clients that spoke through it: nobody waits for them any more.
+    /// A connection is gone, and with it the clients that spoke through it: nobody waits for them any more, and the
+    /// wheels that they drove stop.
     pub fn disconnect(&mut self, connection: u64) -> Vec<Answer> {
         self.clients.retain(|_, client| client.connection != connection);
+        self.legacy.remove(&connection);
+        self.drivers.retain(|&(robot, wheel), driver| {
+            let stays = *driver != connection;
+            if !stays {
+                self.world.set_target(robot, wheel, 0.0);
+            }
+            stays
+        });
         self.settle()
     }
 
@@ -224,7 +248,8 @@ impl Session {
             "sim.getSimulationState" => Ok(vec![self.state_number().into()]),
             function => {
                 let started = self.state != State::Stopped;
-                let mut bench = Bench { world: &mut self.world, objects: &self.objects, started };
+                let (world, objects, drivers) = (&mut self.world, &self.objects, &mut self.drivers);
+                let mut bench = Bench { world, objects, started, drivers, connection };
                 let name = function.strip_prefix("sim.").unwrap_or_default();
                 calls::call(&mut bench, name, &arguments)
                     .unwrap_or_else(|| Err(Failure(format!("No such function: {function}"))))
@@ -286,7 +311,7 @@ impl Session {
         Ok(vec![before.into()])
     }
 
-    fn start(&mut self) {
+    pub(super) fn start(&mut self) {
         if self.state == State::Stopped {
             self.world.reset();
             self.note();
@@ -294,11 +319,12 @@ impl Session {
         self.state = State::Running;
     }
 
-    fn stop(&mut self) {
+    pub(super) fn stop(&mut self) {
         if self.state != State::Stopped {
             self.state = State::Stopped;
             self.world.park();
         }
+        self.legacy.values_mut().for_each(legacy::Client::release);
         for client in self.clients.values_mut() {
             client.level = 0;
             // The next run counts its steps from 0 again.
@@ -308,7 +334,7 @@ impl Session {
         }
     }
 
-    fn pause(&mut self) {
+    pub(super) fn pause(&mut self) {
         if self.state == State::Running {
             self.state = State::Paused;
         }
@@ -324,12 +350,14 @@ impl Session {
     }
 
     /// Takes the step that everybody waits for, if so, and answers whom it concerns.
-    fn settle(&mut self) -> Vec<Answer> {
+    pub(super) fn settle(&mut self) -> Vec<Answer> {
         let steps = self.world.steps();
         let asks = |client: &Client| client.wanted.as_ref().is_some_and(|wanted| wanted.steps > steps);
-        let mut joined = self.clients.values().filter(|client| client.level > 0).peekable();
+        let stepping = self.clients.values().filter(|client| client.level > 0).map(asks);
+        let triggering = self.legacy.values().filter(|client| client.holds_time());
+        let mut joined = stepping.chain(triggering.map(legacy::Client::asks)).peekable();
         let may = self.state == State::Running && self.allowance != Some(0);
-        if may && joined.peek().is_some() && joined.all(asks) {
+        if may && joined.peek().is_some() && joined.all(|asks| asks) {
             self.allowance = self.allowance.map(|left| left.saturating_sub(1));
             self.take_step();
         }
@@ -349,6 +377,7 @@ impl Session {
 
     fn take_step(&mut self) {
         self.world.step();
+        self.legacy.values_mut().for_each(legacy::Client::await_trigger);
         self.note();
     }
 
