@@ -12,7 +12,6 @@ const LEFT: i32 = 2;
 const RIGHT: i32 = 3;
 const SENSOR: i32 = 4;
 
-const ONESHOT: i32 = 0;
 const BLOCKING: i32 = 0x1_0000;
 const STREAMING: i32 = 0x2_0000;
 const DISCONTINUE: i32 = 0x5_0000;
@@ -348,7 +347,7 @@ fn a_trigger_is_answered_before_its_step() {
     assert!(lab.session.tick().is_empty());
     assert_eq!(lab.time(1), 0, "no step without a trigger");
     let trigger = command(0x0003 + BLOCKING, &[], &[]);
-    let seen = lab.send(1, &[trigger.clone()]);
+    let seen = lab.send(1, std::slice::from_ref(&trigger));
     assert_eq!((seen.state, seen.commands[0].time, seen.commands[0].failed), (5, 0, false));
     assert_eq!(lab.time(1), 50);
     assert_eq!(lab.time(1), 50);
