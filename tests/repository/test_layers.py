@@ -11,10 +11,11 @@ ROOT = Path(__file__).resolve().parents[2]
 # Lowest first. A crate may know those named here and nothing else of ours.
 MAY_KNOW: dict[str, set[str]] = {
     "syntax": set(),
+    "notation": {"syntax"},
     "kinematics": set(),
-    "scene": {"kinematics"},
+    "scene": {"notation", "kinematics"},
     "analysis": {"syntax", "kinematics", "scene"},
-    "config": {"syntax", "kinematics", "analysis"},
+    "config": {"syntax", "notation", "kinematics", "analysis"},
     "ide": {"config", "analysis", "syntax", "kinematics", "scene"},
     "script": {"analysis", "kinematics"},
     "files": {"config"},
@@ -22,6 +23,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "server": {"ide", "script", "config", "analysis", "syntax", "files"},
     "cli": {
         "syntax",
+        "notation",
         "kinematics",
         "scene",
         "analysis",
@@ -46,12 +48,12 @@ ONLY_IN: dict[str, set[str]] = {
     "logos": {"syntax"},
     "ropey": {"analysis", "server"},
     "minijinja": {"script"},
-    "toml": {"config", "scene"},
+    "toml": {"notation"},
     "toml_parser": {"config"},
 }
 
 # Files, clocks, threads and sockets stay out of what is to run in a browser.
-PURE = ["syntax", "kinematics", "scene", "analysis", "config", "ide", "script"]
+PURE = ["syntax", "notation", "kinematics", "scene", "analysis", "config", "ide", "script"]
 IMPURE = re.compile(
     r"\bstd::(fs|net::(Tcp|Udp)|thread|process|time::(Instant|SystemTime)|env)\b"
 )

@@ -7,6 +7,7 @@
 //! * [`sources`]: programs and what they import, from files into the database.
 //! * [`render`], [`json`], [`github`], [`sarif`]: problems for people and for programs.
 //! * [`project`], [`severities`]: what is set for programs, and how bad problems are to whoever asks.
+//! * [`scenes`]: what else stands on the floor.
 //! * [`fixing`], [`rewrite`]: what is done about them.
 //! * [`lines`]: how much people and the generator write.
 //! * [`watch`]: when to look again.
@@ -33,6 +34,7 @@ mod python;
 mod render;
 mod rewrite;
 mod sarif;
+mod scenes;
 mod severities;
 mod sources;
 mod watch;

@@ -104,7 +104,7 @@ fn read(path: &Path) -> Result<(Config, String), Failure> {
 }
 
 /// A problem with its line, with an empty line behind it.
-fn render(path: &str, text: &str, problem: &Problem) -> String {
+pub(crate) fn render(path: &str, text: &str, problem: &Problem) -> String {
     let span = problem.span.unwrap_or_default();
     let text = with_one_line_ending(text.to_owned());
     let place = |offset: u32| (offset as usize).min(text.len());

@@ -1,6 +1,7 @@
 //! The one list of settings.
 
-use crate::value::Value;
+use pydslrep_notation::Value;
+
 use crate::{Config, Target, read};
 
 /// A setting.

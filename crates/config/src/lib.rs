@@ -11,17 +11,15 @@ mod config;
 mod keys;
 mod manual;
 mod outline;
-mod problem;
 mod read;
 mod severities;
-mod value;
 
 pub use config::{Config, InlayHints, InlayHintsConfig, Settings};
 pub use keys::{KEYS, Key, Values, Word, tables};
 pub use manual::{json_schema, manual};
 pub use outline::{Named, Place, Slot, names, place_at};
-pub use problem::{Problem, ProblemKind};
 pub use pydslrep_analysis::Target;
+pub use pydslrep_notation::{Problem, ProblemKind};
 pub use severities::{Level, Severities, UnknownWord, find_rule};
 
 /// What the file is called. It stands in the folder that it is about, and holds for all programs in it and below.

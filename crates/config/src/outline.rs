@@ -2,11 +2,10 @@
 
 use std::borrow::Cow;
 
+use pydslrep_notation::span;
 use pydslrep_syntax::Span;
 use toml_parser::Source;
 use toml_parser::parser::{Event, EventKind, RecursionGuard, parse_document};
-
-use crate::value;
 
 /// How deep values may lie in each other; what lies deeper is not looked at.
 const DEEPEST: u32 = 16;
@@ -126,8 +125,8 @@ impl Chunk<'_> {
     }
 
     fn span(self, event: &Event) -> Span {
-        let span = event.span();
-        value::span(span.start()..span.end()).shifted(self.start)
+        let place = event.span();
+        span(place.start()..place.end()).shifted(self.start)
     }
 
     fn begins_table(self) -> bool {
@@ -148,7 +147,7 @@ fn chunks(text: &str) -> Vec<Chunk<'_>> {
     }
     chunks.push(start..at);
     let chunk =
-        |range: std::ops::Range<usize>| Chunk { text: &text[range.clone()], start: value::span(range).start };
+        |range: std::ops::Range<usize>| Chunk { text: &text[range.clone()], start: span(range).start };
     chunks.into_iter().map(chunk).collect()
 }
 

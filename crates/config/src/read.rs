@@ -1,12 +1,10 @@
 //! From a text or a JSON value to a [`Config`].
 
 use pydslrep_analysis::diagnostics::rule;
-use pydslrep_syntax::{Span, closest};
-use toml::de::{DeTable, Error};
+use pydslrep_notation::{Entry, Node, Value, closest, did_you_mean, from_json};
 
 use crate::keys::{KEYS, Key, Values, parts_behind};
-use crate::severities::{UnknownWord, did_you_mean, find_rule};
-use crate::value::{self, Entry, Node, Value};
+use crate::severities::{UnknownWord, find_rule};
 use crate::{Config, Level, Problem, ProblemKind, SECTION, Target};
 
 /// What extensions of editors keep beside the settings, for themselves.
@@ -16,14 +14,14 @@ impl Config {
     /// Reads a `pydslrep.toml`. Of a text that is no TOML nothing holds; else what is fine does, whatever else is not.
     /// Problems are in the order of the text.
     pub fn from_toml(text: &str) -> (Self, Vec<Problem>) {
-        let (table, errors) = DeTable::parse_recoverable(text);
-        // One slip makes several errors, and only the first one is about the slip.
-        if let Some(error) = errors.iter().min_by_key(|error| error.span().map(|span| span.start)) {
-            return (Self::default(), vec![no_toml(text, error)]);
+        match pydslrep_notation::parse(text, "setting") {
+            Err(problem) => (Self::default(), vec![problem]),
+            Ok(entries) => {
+                let mut reader = Reader::new(Spelling::Kebab);
+                reader.table("", "", &entries);
+                reader.finish()
+            }
         }
-        let mut reader = Reader::new(Spelling::Kebab);
-        reader.table("", "", &value::from_toml(table.get_ref()));
-        reader.finish()
     }
 
     /// Reads what an editor says: the settings themselves, or all of them under `pydslrep`. Keys may be written in
@@ -31,7 +29,7 @@ impl Config {
     pub fn from_json(value: &serde_json::Value) -> (Self, Vec<Problem>) {
         let value = value.get(SECTION).unwrap_or(value);
         let mut reader = Reader::new(Spelling::KebabOrCamel);
-        match value::from_json(value) {
+        match from_json(value) {
             Value::Nothing => {}
             Value::Table(mut entries) => {
                 entries.retain(|entry| !KEPT_BY_EDITORS.contains(&entry.key.as_str()));
@@ -298,46 +296,6 @@ pub(crate) fn folder(value: &Value) -> Result<String, Refusal> {
         }
     }
     Ok(if parts.is_empty() { ".".to_owned() } else { parts.join("/") })
-}
-
-/// What the library found, in words for people who may have never heard of TOML.
-fn no_toml(text: &str, error: &Error) -> Problem {
-    let span = error.span().map_or(Span::default(), value::span);
-    let (what, expected) = match error.message().split_once(", expected ") {
-        Some((what, expected)) => (what, Some(expected)),
-        None => (error.message(), None),
-    };
-    let found = text.get(span.start as usize..span.end as usize).unwrap_or_default();
-    let (message, help) = match what {
-        "string values must be quoted" if found.is_empty() => {
-            ("the value is missing".to_owned(), Some("a setting is written `KEY = VALUE`".to_owned()))
-        }
-        "string values must be quoted" => {
-            (format!("`{found}` is no value"), Some(format!("texts stand in quotes: `\"{found}\"`")))
-        }
-        "key with no value" => (
-            "there is no `=` behind the key".to_owned(),
-            Some("a setting is written `KEY = VALUE`".to_owned()),
-        ),
-        "duplicate key" => (format!("`{found}` is set twice"), Some("leave one of them out".to_owned())),
-        "unclosed table" => ("`]` is missing".to_owned(), Some("a table begins with `[NAME]`".to_owned())),
-        "invalid basic string" | "invalid literal string" => (
-            "the text does not end on its line".to_owned(),
-            expected.map(|quote| format!("close it by {quote}")),
-        ),
-        other => {
-            let expected = expected.filter(|expected| *expected != "nothing");
-            (format!("this is no TOML: {other}"), expected.map(|expected| format!("expected: {expected}")))
-        }
-    };
-    Problem {
-        kind: ProblemKind::InvalidToml,
-        key: String::new(),
-        span: Some(span),
-        message,
-        help,
-        replacement: None,
-    }
 }
 
 #[cfg(test)]

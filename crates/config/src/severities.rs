@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use pydslrep_analysis::diagnostics::{CATALOGUE, Rule, rule};
 use pydslrep_analysis::{Diagnostic, Severity};
-use pydslrep_syntax::closest;
+use pydslrep_notation::{closest, did_you_mean};
 
 /// How bad problems of a code are, or that they are not shown at all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,10 +89,6 @@ pub fn find_rule(code: &str) -> Result<&'static Rule, UnknownWord> {
         let help = near.map_or_else(|| "`pydslrep explain` lists them all".to_owned(), did_you_mean);
         UnknownWord { message: format!("there is no diagnostic `{code}`"), near, help }
     })
-}
-
-pub(crate) fn did_you_mean(near: &str) -> String {
-    format!("did you mean `{near}`?")
 }
 
 /// Levels in place of the severities of the catalogue.

@@ -15,6 +15,18 @@ pub const CONE: f64 = 20.0 * std::f64::consts::PI / 180.0;
 /// [`pydslrep_kinematics::motion::RIM_ACCELERATION`], so that a controller which ramps at that rate has room to correct.
 pub const MOTOR_ACCELERATION: f64 = 1.0;
 
+/// How thick walls are, metres.
+pub const WALL_THICKNESS: f64 = 0.1;
+
+/// What noise is made from.
+pub const SEED: u64 = 1;
+
+/// Standard deviation of wheel slip where noise is on, as a share of the way a wheel rolls.
+pub const WHEEL_SLIP: f64 = 0.02;
+
+/// Standard deviation of a sensor's reading where noise is on, metres.
+pub const SENSOR_NOISE: f64 = 0.01;
+
 /// Where the robot at `index` (from 0) of an environment starts: (0, −index m, 0°).
 pub fn start(index: usize) -> Pose {
     let row = u32::try_from(index).unwrap_or(u32::MAX);

@@ -23,6 +23,8 @@ pub struct Robot {
     pub geometry: Geometry,
     /// How fast the motors can change the wheels' rim speed, metres per second squared.
     pub motor_acceleration: f64,
+    /// The highest rim speed that the motors can give a wheel, metres per second; infinite for no limit.
+    pub motor_speed: f64,
 }
 
 /// A driven wheel.
@@ -105,6 +107,7 @@ impl Robot {
             body,
             geometry: defaults::GEOMETRY,
             motor_acceleration: defaults::MOTOR_ACCELERATION,
+            motor_speed: f64::INFINITY,
         }
     }
 

@@ -343,12 +343,12 @@ mod tests {
     #[test]
     fn says_which_robot_cannot_drive() {
         let mut robot = Robot::new("r", Drive::TwoWheel, vec![Wheel::new("w", 0.05)], vec![]);
-        let error = World::new(Scene { robots: vec![robot.clone()] }).unwrap_err();
+        let error = World::new(Scene::empty_floor(vec![robot.clone()])).unwrap_err();
         let want = "robot `r` cannot drive: this layout has 2 wheels, but 1 wheel radii are given";
         assert_eq!(error.to_string(), want);
         robot.wheels.push(Wheel::new("v", 0.05));
         robot.motor_acceleration = 0.0;
-        assert!(World::new(Scene { robots: vec![robot] }).is_err());
+        assert!(World::new(Scene::empty_floor(vec![robot])).is_err());
         assert!(World::with_step(Scene::default(), f64::NAN).is_err());
     }
 }

@@ -9,10 +9,11 @@ use clap::Args;
 use crate::failure::Failure;
 use crate::output;
 use pydslrep_files::EXTENSION;
+use pydslrep_scene::ENDING;
 
 const EXAMPLES: &str = "\
 Examples:
-  pydslrep new patrol           makes patrol/patrol.pyr
+  pydslrep new patrol           makes patrol/patrol.pyr and its scene
   pydslrep run patrol/patrol.pyr";
 
 /// Start a program: a robot that drives a square
@@ -39,8 +40,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
     let program = folder.join(format!("{name}.{EXTENSION}"));
     fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, &error))?;
-    fs::write(&program, text(name)).map_err(|error| Failure::unwritten(&program, &error))?;
-    output::print(&next_steps(&program))?;
+    let scene = folder.join(format!("{name}_area{ENDING}"));
+    for (path, text) in [(&program, text(name)), (&scene, scene_text())] {
+        fs::write(path, text).map_err(|error| Failure::unwritten(path, &error))?;
+    }
+    output::print(&next_steps(&program, &scene))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -85,7 +89,34 @@ environment {name}_area has {{ robot_1 }} robots with {{ square }} moves
     )
 }
 
-fn next_steps(program: &Path) -> String {
-    let program = program.display();
-    format!("Made {program}. Drive it with\n\n    pydslrep run {program}\n")
+/// What the robot drives around.
+fn scene_text() -> String {
+    "\
+# What the embedded simulator puts on the floor. Metres and degrees; x is ahead of a robot with heading 0, y to its left.
+
+[world]
+size = [4, 4]
+
+# In the middle of the square.
+[[box]]
+name = \"crate\"
+at = [0.5, 0.5]
+size = [0.4, 0.4]
+heading = 20
+
+# Where the robot starts: x, y and heading.
+[robots.robot_1]
+start = [0, 0, 0]
+
+# Without this table, robots drive in an ideal world.
+# [noise]
+# wheel-slip = 2
+# sensor = 0.01
+"
+    .to_owned()
+}
+
+fn next_steps(program: &Path, scene: &Path) -> String {
+    let (program, scene) = (program.display(), scene.display());
+    format!("Made {program} and its scene {scene}. Drive it with\n\n    pydslrep run {program}\n")
 }

@@ -16,7 +16,7 @@ use crate::driven::Driven;
 use crate::failure::Failure;
 use crate::project::Projects;
 use crate::sources::Sources;
-use crate::{output, program};
+use crate::{output, program, scenes};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -42,6 +42,9 @@ pub(crate) struct Arguments {
     /// Draw the path into a file, as SVG
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
+    /// The scene to plan in [default: ENVIRONMENT.scene.toml beside the program, if it is there]
+    #[arg(long, value_name = "FILE")]
+    scene: Option<PathBuf>,
 }
 
 /// An environment with its plan.
@@ -52,12 +55,11 @@ pub(crate) struct Planned {
 }
 
 impl Planned {
-    /// Plans an environment on an empty floor.
+    /// Plans an environment in a scene.
     ///
     /// # Errors
     /// When a robot cannot drive.
-    pub(crate) fn new(environment: Environment) -> Result<Self, Failure> {
-        let scene = pydslrep_analysis::scene(&environment);
+    pub(crate) fn new(environment: Environment, scene: Scene) -> Result<Self, Failure> {
         let plan = plan(&environment, &scene)?;
         Ok(Self { environment, scene, plan })
     }
@@ -115,13 +117,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let (mut sources, file) = Sources::open_one(&arguments.program)?;
     let projects = Projects::open(&mut sources, &[file], &Config::default())?;
     let ids = program::environments(&sources, file, arguments.environment.as_deref());
-    if ids.is_empty() || arguments.picture.is_some() {
-        // A picture shows one environment; and where there is none, this says which there are.
+    if ids.is_empty() || arguments.picture.is_some() || arguments.scene.is_some() {
+        // A picture shows one environment, as a scene is of one; and where there is none, this says which there are.
         program::environment(&sources, file, arguments.environment.as_deref())?;
     }
     let prepared = program::prepare(&sources, projects.of(file), file, &ids);
-    let plans: Vec<Planned> =
-        prepared.environments.into_iter().map(Planned::new).collect::<Result<_, _>>()?;
+    let named = arguments.scene.as_deref();
+    let planned = |environment: Environment| {
+        let scene = scenes::scene(&environment, sources.place(file), named)?;
+        Planned::new(environment, scene)
+    };
+    let plans: Vec<Planned> = prepared.environments.into_iter().map(planned).collect::<Result<_, _>>()?;
     output::print(&if arguments.json { json(&plans)? } else { plans.iter().map(table).collect() })?;
     if let (Some(path), Some(planned)) = (&arguments.picture, plans.first()) {
         let title = format!("{}: planned path", planned.environment.name);

@@ -21,12 +21,13 @@ use crate::outcome::Outcome;
 use crate::progress::Progress;
 use crate::project::Projects;
 use crate::sources::Sources;
-use crate::{output, program, python};
+use crate::{output, program, python, scenes};
 
 const EXAMPLES: &str = "\
 Examples:
   pydslrep run patrol.pyr                          in the embedded simulator
   pydslrep run patrol.pyr --picture patrol.svg     and draw planned and driven path
+  pydslrep run patrol.pyr --scene hall.scene.toml  among what stands in a hall
   pydslrep run patrol.pyr --host 127.0.0.1 --port 23000
                                                    in a CoppeliaSim that runs there
 
@@ -42,6 +43,12 @@ pub(crate) struct Arguments {
     /// The environment to run; needed where there are several
     #[arg(long, value_name = "NAME")]
     environment: Option<String>,
+    /// The scene to drive in [default: ENVIRONMENT.scene.toml beside the program, if it is there]
+    #[arg(long, value_name = "FILE", conflicts_with = "host")]
+    scene: Option<PathBuf>,
+    /// What the noise of the scene is made from: the same number, the same run
+    #[arg(long, value_name = "N", conflicts_with = "host")]
+    seed: Option<u64>,
     /// Draw planned and driven path into a file, as SVG
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
@@ -92,7 +99,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             return Ok(ExitCode::FAILURE);
         }
     };
-    let run = Run { arguments, planned: Planned::new(environment)? };
+    let mut scene = scenes::scene(&environment, sources.place(file), arguments.scene.as_deref())?;
+    scene.seed = arguments.seed.unwrap_or(scene.seed);
+    let run = Run { arguments, planned: Planned::new(environment, scene)? };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let code = runtime.map_err(|error| unstarted(&error))?.block_on(run.drive(&name, &text))?;
     Ok(ExitCode::from(code))

@@ -13,6 +13,8 @@ fn the_program_is_clean_and_builds() {
         assert!(done.out.contains(&format!("pydslrep run {name}/{last}.pyr")), "{}", done.out);
         assert_eq!(place.run(&["check", "--deny", "warnings", name]).code, Some(0), "{name}");
         assert_eq!(place.run(&["build", name]).code, Some(0), "{name}");
+        let planned = place.run(&["plan", &format!("{name}/{last}.pyr")]);
+        assert_eq!((planned.code, planned.err.as_str()), (Some(0), ""), "{name}");
         assert!(place.path(&format!("{name}/{last}_area.py")).exists(), "{name}");
     }
 }

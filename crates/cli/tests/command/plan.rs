@@ -76,3 +76,60 @@ fn errors_are_shown_instead() {
     assert_eq!(done.code, Some(1));
     assert!(done.err.contains("there is no wheel called `wheelL0`"), "{}", done.err);
 }
+
+const TWO_ROBOTS: &str = "\
+wheel a with radius 4.5 wheel b with radius 4.5
+robot first with port 1 has { a b } wheels with sensors { eye }
+robot second with port 2 has { a b } wheels
+sensor eye
+movement m of first { move 1 meters }
+movement n of second { turn left }
+environment hall has { first second } robots with { m n } moves";
+
+#[test]
+fn a_scene_beside_the_program_says_where_robots_start() {
+    let place = Place::with("x.pyr", TWO_ROBOTS);
+    place.write("hall.scene.toml", "[robots.first]\nstart = [1, 2, 90]\n");
+    let done = place.run(&["plan", "--json", "x.pyr"]);
+    assert_eq!((done.code, done.err.as_str()), (Some(0), ""));
+    let plans: Value = serde_json::from_str(&done.out).unwrap();
+    let y = plans[0]["robots"][0]["poses"][0]["y"].as_f64().unwrap();
+    assert!((y - 3.0).abs() < 1e-9, "{y}");
+    place.write("other.toml", "");
+    let named = place.run(&["plan", "--json", "x.pyr", "--scene", "other.toml"]);
+    let plans: Value = serde_json::from_str(&named.out).unwrap();
+    assert_eq!(plans[0]["robots"][0]["poses"][0]["y"], json!(0.0));
+}
+
+#[test]
+fn a_scene_with_a_mistake_is_not_driven() {
+    let place = Place::with("x.pyr", TWO_ROBOTS);
+    place.write("hall.scene.toml", "[robots.frist]\n\n[robots.first.sensors.eye]\nrnage = 2\n");
+    let done = place.run(&["plan", "x.pyr"]);
+    assert_eq!((done.code, done.out.as_str()), (Some(2), ""));
+    expect![[r#"
+        error: the environment has no robot `frist`
+         --> hall.scene.toml:1:9
+          |
+        1 | [robots.frist]
+          |         ^^^^^
+          |
+          = help: did you mean `first`?
+
+        error: there is no key `rnage` in `robots.first.sensors.eye`
+         --> hall.scene.toml:4:1
+          |
+        4 | rnage = 2
+          | ^^^^^
+          |
+          = help: did you mean `range`?
+
+    "#]]
+    .assert_eq(&done.err);
+    let missing = place.run(&["plan", "x.pyr", "--scene", "nowhere.toml"]);
+    expect![[r#"
+        error: nowhere.toml does not exist
+    "#]]
+    .assert_eq(&missing.err);
+    assert_eq!(missing.code, Some(2));
+}

@@ -28,6 +28,10 @@ pub enum ProblemKind {
     UnknownKey,
     /// A setting cannot have this value.
     InvalidValue,
+    /// A key is missing that others make no sense without.
+    MissingKey,
+    /// The program has nothing of this name.
+    UnknownName,
 }
 
 impl ProblemKind {
@@ -37,6 +41,8 @@ impl ProblemKind {
             Self::InvalidToml => "invalid-toml",
             Self::UnknownKey => "unknown-key",
             Self::InvalidValue => "invalid-value",
+            Self::MissingKey => "missing-key",
+            Self::UnknownName => "unknown-name",
         }
     }
 }

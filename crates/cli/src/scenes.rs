@@ -1,0 +1,40 @@
+//! The scene of an environment: what its scene file says, else an empty floor.
+
+use std::path::{Path, PathBuf};
+
+use pydslrep_analysis::environment::Environment;
+use pydslrep_files::without_mark;
+use pydslrep_scene::{ENDING, Scene};
+
+use crate::failure::Failure;
+use crate::project::render;
+use crate::sources::{near, read_file, shown};
+
+/// The scene that an environment of a program is to be driven in: of the file that was named, else of the one beside
+/// the program, `<environment>.scene.toml`, if there is one.
+///
+/// # Errors
+/// When the file cannot be read, and with everything that is wrong in it: what robots would meet could be another
+/// thing than what was meant.
+pub(crate) fn scene(
+    environment: &Environment,
+    program: Option<&Path>,
+    named: Option<&Path>,
+) -> Result<Scene, Failure> {
+    let floor = pydslrep_analysis::scene(environment);
+    let Some(path) = named.map(Path::to_owned).or_else(|| beside(environment, program?)) else {
+        return Ok(floor);
+    };
+    let whole = read_file(&path)?;
+    let text = without_mark(&whole);
+    let (scene, problems) = pydslrep_scene::read(text, floor);
+    if problems.is_empty() {
+        return Ok(scene);
+    }
+    Err(Failure::Shown(problems.iter().map(|problem| render(&shown(&path), text, problem)).collect()))
+}
+
+fn beside(environment: &Environment, program: &Path) -> Option<PathBuf> {
+    let path = program.with_file_name(format!("{}{ENDING}", environment.name));
+    path.exists().then(|| near(&path))
+}

@@ -1,0 +1,379 @@
+//! How far things are from each other: the geometry of a scene, by parry2d.
+
+use parry2d_f64::math::{Pose as Placement, Vector};
+use parry2d_f64::query::{self, Ray};
+use parry2d_f64::shape::{Ball, Cuboid, TriMesh, Triangle};
+use pydslrep_kinematics::Pose;
+
+use crate::{Body, Mount, Obstacle, Scene, Shape};
+
+/// The obstacles of a scene, cut into convex pieces.
+#[derive(Debug, Clone, Default)]
+pub struct Space {
+    pieces: Vec<Piece>,
+}
+
+/// A convex body somewhere on the floor.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    /// Which obstacle or robot it belongs to.
+    owner: usize,
+    solid: Solid,
+    placement: Placement,
+    /// The centre of a circle that holds it all.
+    centre: Vector,
+    /// The radius of that circle.
+    reach: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Solid {
+    Cuboid(Cuboid),
+    Ball(Ball),
+    Triangle(Triangle),
+}
+
+/// What is near, and how near it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Near {
+    /// Metres; 0 where it touches or overlaps.
+    pub distance: f64,
+    /// Its index in [`Scene::obstacles`].
+    pub obstacle: usize,
+}
+
+/// What a sensor sees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sighting {
+    /// From the sensor to the nearest point in its cone, metres.
+    pub distance: f64,
+    /// Where that point is on the floor.
+    pub point: (f64, f64),
+    /// The direction away from the surface there, a unit vector on the floor.
+    pub normal: (f64, f64),
+    /// What it belongs to.
+    pub what: Thing,
+}
+
+/// Something that can be seen or run into.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Thing {
+    /// The index in [`Scene::obstacles`].
+    Obstacle(usize),
+    /// The index in [`Scene::robots`].
+    Robot(usize),
+}
+
+impl Space {
+    /// The obstacles of a scene. A polygon that crosses itself counts as its corners' hull.
+    pub fn of(scene: &Scene) -> Self {
+        let pieces = scene.obstacles.iter().enumerate();
+        Self { pieces: pieces.flat_map(|(owner, obstacle)| pieces_of(owner, obstacle)).collect() }
+    }
+
+    /// The obstacle nearest to a body, if it is nearer than `within` metres; the first of equals.
+    pub fn nearest(&self, body: Body, pose: Pose, within: f64) -> Option<Near> {
+        let body = Piece::robot(0, body, pose);
+        let mut nearest: Option<Near> = None;
+        for piece in &self.pieces {
+            let bound = nearest.map_or(within, |near| near.distance);
+            if piece.is_beyond(&body, bound) {
+                continue;
+            }
+            let distance = piece.distance(&body);
+            if distance < bound {
+                nearest = Some(Near { distance, obstacle: piece.owner });
+            }
+        }
+        nearest
+    }
+
+    /// What a sensor with this mount sees first from a robot at `pose`: an obstacle, or one of the `others`, which are
+    /// robots by their index, with bodies and poses.
+    pub fn sight(&self, pose: Pose, mount: &Mount, others: &[(usize, Body, Pose)]) -> Option<Sighting> {
+        let eye = Eye::new(pose.compose(&mount.pose), mount);
+        let obstacles = self.pieces.iter().map(|piece| (Thing::Obstacle(piece.owner), *piece));
+        let robots =
+            others.iter().map(|&(robot, body, pose)| (Thing::Robot(robot), Piece::robot(robot, body, pose)));
+        let mut first: Option<Sighting> = None;
+        for (what, piece) in obstacles.chain(robots) {
+            let bound = first.map_or(mount.range, |sighting| sighting.distance);
+            let seen = eye
+                .sees(&piece, bound)
+                .filter(|(_, distance, _)| first.is_none_or(|first| *distance < first.distance));
+            if let Some((point, distance, normal)) = seen {
+                let (point, normal) = ((point.x, point.y), (normal.x, normal.y));
+                first = Some(Sighting { distance, point, normal, what });
+            }
+        }
+        first
+    }
+}
+
+/// How far two bodies are apart, metres; 0 where they touch or overlap.
+pub fn distance_between(a: (Body, Pose), b: (Body, Pose)) -> f64 {
+    Piece::robot(0, a.0, a.1).distance(&Piece::robot(0, b.0, b.1))
+}
+
+fn placement(pose: Pose) -> Placement {
+    Placement::new(Vector::new(pose.x, pose.y), pose.theta)
+}
+
+fn pieces_of(owner: usize, obstacle: &Obstacle) -> Vec<Piece> {
+    match &obstacle.shape {
+        Shape::Box(body) => vec![Piece::robot(owner, *body, obstacle.pose)],
+        Shape::Cylinder { radius } => {
+            let placement = placement(obstacle.pose);
+            let (solid, centre) = (Solid::Ball(Ball::new(*radius)), placement.translation);
+            vec![Piece { owner, solid, placement, centre, reach: *radius }]
+        }
+        Shape::Polygon(corners) => {
+            let triangles = triangles(corners).into_iter();
+            triangles.map(|triangle| Piece::triangle(owner, triangle, obstacle.pose)).collect()
+        }
+    }
+}
+
+/// A polygon as triangles; nothing when it has fewer than three corners or crosses itself.
+pub(crate) fn triangles(corners: &[(f64, f64)]) -> Vec<Triangle> {
+    let mut corners: Vec<Vector> = corners.iter().map(|&(x, y)| Vector::new(x, y)).collect();
+    let last = corners.len().saturating_sub(1);
+    let twice_area: f64 = (0..corners.len())
+        .map(|index| corners[if index == 0 { last } else { index - 1 }].perp_dot(corners[index]))
+        .sum();
+    if corners.len() < 3 || twice_area == 0.0 {
+        return Vec::new();
+    }
+    if twice_area < 0.0 {
+        corners.reverse();
+    }
+    TriMesh::from_polygon(corners).map_or_else(Vec::new, |mesh| mesh.triangles().collect())
+}
+
+impl Piece {
+    fn robot(owner: usize, body: Body, pose: Pose) -> Self {
+        let half = Vector::new(body.length / 2.0, body.width / 2.0);
+        let placement = placement(pose);
+        let solid = Solid::Cuboid(Cuboid::new(half));
+        Self { owner, solid, placement, centre: placement.translation, reach: half.length() }
+    }
+
+    fn triangle(owner: usize, triangle: Triangle, pose: Pose) -> Self {
+        let placement = placement(pose);
+        let middle = triangle.center();
+        let reach = triangle.vertices().iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max);
+        let centre = placement.transform_point(middle);
+        Self { owner, solid: Solid::Triangle(triangle), placement, centre, reach }
+    }
+
+    /// Whether it is surely further away than `bound`.
+    fn is_beyond(&self, other: &Self, bound: f64) -> bool {
+        self.centre.distance(other.centre) - self.reach - other.reach > bound
+    }
+
+    fn distance(&self, other: &Self) -> f64 {
+        let distance =
+            query::distance(&self.placement, self.solid.shape(), &other.placement, other.solid.shape());
+        // Every pair of our shapes is supported.
+        distance.map_or(f64::INFINITY, |found| found.distance)
+    }
+}
+
+impl Solid {
+    fn shape(&self) -> &dyn parry2d_f64::shape::Shape {
+        match self {
+            Self::Cuboid(cuboid) => cuboid,
+            Self::Ball(ball) => ball,
+            Self::Triangle(triangle) => triangle,
+        }
+    }
+}
+
+/// A sensor on the floor.
+struct Eye {
+    at: Vector,
+    heading: Vector,
+    /// Cosine of half the cone's opening.
+    edge_cosine: f64,
+    /// The directions of the cone's edges.
+    edges: [Vector; 2],
+}
+
+impl Eye {
+    fn new(pose: Pose, mount: &Mount) -> Self {
+        let direction = |angle: f64| Vector::new((pose.theta + angle).cos(), (pose.theta + angle).sin());
+        let half = mount.cone / 2.0;
+        Self {
+            at: Vector::new(pose.x, pose.y),
+            heading: direction(0.0),
+            edge_cosine: half.cos(),
+            edges: [direction(half), direction(-half)],
+        }
+    }
+
+    /// The nearest point of a convex piece within the cone and `range`: the point, how far it is, the normal there.
+    ///
+    /// The distance of a convex body, as a function of the direction in which one looks, falls to one least value and
+    /// rises again. So its nearest point counts if it is in the cone, and otherwise the nearest one in the cone is on
+    /// one of the cone's edges.
+    fn sees(&self, piece: &Piece, range: f64) -> Option<(Vector, f64, Vector)> {
+        if piece.centre.distance(self.at) - piece.reach > range {
+            return None;
+        }
+        let shape = piece.solid.shape();
+        let nearest = shape.project_point(&piece.placement, self.at, true);
+        let way = nearest.point - self.at;
+        let distance = way.length();
+        if distance > range {
+            return None;
+        }
+        if nearest.is_inside || distance == 0.0 {
+            return Some((self.at, 0.0, -self.heading));
+        }
+        if way.dot(self.heading) >= distance * self.edge_cosine {
+            return Some((nearest.point, distance, -way / distance));
+        }
+        let hit = |edge: Vector| {
+            let ray = Ray::new(self.at, edge);
+            let hit = shape.cast_ray_and_get_normal(&piece.placement, &ray, range, true)?;
+            Some((self.at + edge * hit.time_of_impact, hit.time_of_impact, hit.normal))
+        };
+        self.edges.into_iter().filter_map(hit).min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const BODY: Body = Body { length: 0.4, width: 0.2 };
+
+    fn space(obstacles: Vec<Obstacle>) -> Space {
+        Space::of(&Scene { obstacles, ..Scene::default() })
+    }
+
+    fn obstacle(pose: Pose, shape: Shape) -> Obstacle {
+        Obstacle { name: String::new(), pose, shape }
+    }
+
+    fn looking(range: f64, degrees: f64) -> Mount {
+        Mount { pose: Pose::new(0.2, 0.0, 0.0), range, cone: degrees.to_radians() }
+    }
+
+    /// A U that opens to the right, 1 m outside and 0.2 m thick.
+    fn u_shape() -> Shape {
+        Shape::Polygon(vec![
+            (0.0, 0.0),
+            (1.0, 0.0),
+            (1.0, 0.2),
+            (0.2, 0.2),
+            (0.2, 0.8),
+            (1.0, 0.8),
+            (1.0, 1.0),
+            (0.0, 1.0),
+        ])
+    }
+
+    fn close(a: f64, b: f64) -> bool {
+        (a - b).abs() < 1e-9
+    }
+
+    #[test]
+    fn distances_to_every_shape() {
+        let at = Pose::new(2.0, 0.0, FRAC_PI_2);
+        for (shape, distance) in [
+            (Shape::Box(Body { length: 1.0, width: 0.6 }), 2.0 - 0.3 - 0.2),
+            (Shape::Cylinder { radius: 0.5 }, 2.0 - 0.5 - 0.2),
+            (Shape::Polygon(vec![(1.0, 0.4), (-1.0, 0.4), (-1.0, 0.3), (1.0, 0.3)]), 2.0 - 0.4 - 0.2),
+        ] {
+            let space = space(vec![obstacle(at, shape)]);
+            let near = space.nearest(BODY, Pose::default(), 5.0);
+            assert!(near.is_some_and(|near| close(near.distance, distance)), "{near:?}");
+            assert_eq!(space.nearest(BODY, Pose::default(), distance - 1e-9), None);
+        }
+    }
+
+    #[test]
+    fn inside_of_a_bay_is_free_whichever_way_round_its_corners_go() {
+        let mut corners = match u_shape() {
+            Shape::Polygon(corners) => corners,
+            other => panic!("{other:?}"),
+        };
+        for _ in 0..2 {
+            let space = space(vec![obstacle(Pose::default(), Shape::Polygon(corners.clone()))]);
+            let near = space.nearest(BODY, Pose::new(0.6, 0.5, 0.0), 5.0).unwrap();
+            assert!(close(near.distance, 0.2), "{near:?}");
+            corners.reverse();
+        }
+    }
+
+    #[test]
+    fn the_nearest_of_several() {
+        let walls = [3.0, 1.0, 2.0].map(|x| Obstacle::wall("w", (x, -1.0), (x, 1.0), 0.1));
+        let near = space(walls.to_vec()).nearest(BODY, Pose::default(), 9.0).unwrap();
+        assert!(near.obstacle == 1 && close(near.distance, 1.0 - 0.05 - 0.2), "{near:?}");
+        let other = (BODY, Pose::new(0.0, 1.0, FRAC_PI_2));
+        assert!(close(distance_between((BODY, Pose::default()), other), 1.0 - 0.1 - 0.2));
+    }
+
+    #[test]
+    fn a_sensor_sees_the_nearest_thing_in_its_cone() {
+        let wall = Obstacle::wall("w", (1.0, -1.0), (1.0, 1.0), 0.1);
+        let space = space(vec![wall]);
+        let seen = space.sight(Pose::default(), &looking(1.0, 20.0), &[]).unwrap();
+        assert!(close(seen.distance, 0.75) && close(seen.point.0, 0.95) && close(seen.normal.0, -1.0));
+        assert_eq!(seen.what, Thing::Obstacle(0));
+        assert_eq!(space.sight(Pose::default(), &looking(0.7, 20.0), &[]), None);
+        assert_eq!(space.sight(Pose::new(0.0, 0.0, PI), &looking(1.0, 20.0), &[]), None);
+        // Turned by 30°, only the cone's edge sees it, under 20°.
+        let seen = space.sight(Pose::new(0.8, 0.0, 30_f64.to_radians()), &looking(1.0, 20.0), &[]);
+        let x = 0.8 + 0.2 * 30_f64.to_radians().cos();
+        assert!(seen.is_none() || x > 0.95, "{seen:?}");
+        let robot = (3, BODY, Pose::new(0.7, 0.0, 0.0));
+        let seen = space.sight(Pose::default(), &looking(1.0, 20.0), &[robot]).unwrap();
+        assert!(seen.what == Thing::Robot(3) && close(seen.distance, 0.3), "{seen:?}");
+    }
+
+    #[test]
+    fn a_post_thinner_than_any_ray_is_seen() {
+        let post = obstacle(Pose::new(0.9, 0.05, 0.0), Shape::Cylinder { radius: 0.001 });
+        let seen = space(vec![post]).sight(Pose::default(), &looking(1.0, 20.0), &[]).unwrap();
+        assert!((seen.distance - 0.7_f64.hypot(0.05) + 0.001).abs() < 1e-9, "{seen:?}");
+    }
+
+    proptest! {
+        /// The cone against many rays: never further than the nearest ray says, and not much nearer either.
+        #[test]
+        fn a_cone_sees_what_its_rays_see(
+            x in -1.5..1.5, y in -1.5..1.5, theta in -3.0..3.0,
+            cone in 5.0..120.0, which in 0..3,
+        ) {
+            let shape = match which {
+                0 => Shape::Box(Body { length: 0.7, width: 0.3 }),
+                1 => Shape::Cylinder { radius: 0.3 },
+                _ => u_shape(),
+            };
+            let space = space(vec![obstacle(Pose::new(0.1, -0.2, 0.4), shape)]);
+            let pose = Pose::new(x, y, theta);
+            let mount = Mount { pose: Pose::default(), range: 2.0, cone: f64::to_radians(cone) };
+            let seen = space.sight(pose, &mount, &[]).map(|seen| seen.distance);
+            let rays = 400;
+            let by_ray = (0..=rays).filter_map(|ray| {
+                let bearing = mount.cone * (f64::from(ray) / f64::from(rays) - 0.5);
+                let thin = Mount { pose: Pose::new(0.0, 0.0, bearing), cone: 0.0, ..mount };
+                space.sight(pose, &thin, &[]).map(|seen| seen.distance)
+            });
+            match (seen, by_ray.min_by(f64::total_cmp)) {
+                (Some(seen), Some(by_ray)) => {
+                    prop_assert!(seen <= by_ray + 1e-9 && seen >= by_ray - 0.02, "{seen} {by_ray}");
+                }
+                (None, by_ray) => prop_assert_eq!(by_ray, None),
+                (Some(_), None) => {} // between two rays
+            }
+        }
+    }
+}
