@@ -20,6 +20,7 @@ mod resolve;
 mod script_name;
 mod snapshot;
 mod target;
+mod trial;
 
 pub use database::{Absence, Database, EditCounts, EntityId, EntityRef, FileId, Place, Resolution};
 pub use diagnostic::{Diagnostic, Edit, Fix, Related, Severity};
@@ -28,3 +29,4 @@ pub use plan::{plan, plan_movement, scene};
 pub use resolve::Blocked;
 pub use snapshot::Snapshot;
 pub use target::Target;
+pub use trial::Trial;

@@ -1,6 +1,6 @@
 //! Quick fixes: the edits that mend the problems at a place.
 
-use pydslrep_analysis::{Database, Diagnostic, FileId, Fix};
+use pydslrep_analysis::{Database, Diagnostic, FileId, Fix, Trial};
 use pydslrep_syntax::Span;
 
 /// A fix with the problem it mends.
@@ -14,21 +14,35 @@ pub struct QuickFix {
     pub is_preferred: bool,
 }
 
-/// The fixes of all problems that touch a range.
+/// Suggestions are tried out, which takes its time: those beyond are not offered. Nobody chooses among more.
+const MOST_SUGGESTIONS: usize = 64;
+
+/// The fixes of all problems that touch a range. What is only a suggestion is tried out, and offered where it mends its
+/// problem and brings no other.
 pub fn quick_fixes(database: &Database, file: FileId, range: Span) -> Vec<QuickFix> {
     let touching =
         |diagnostic: &Diagnostic| diagnostic.span.start <= range.end && range.start <= diagnostic.span.end;
     let diagnostics = database.diagnostics(file).into_iter().filter(touching);
-    diagnostics
-        .flat_map(|diagnostic| {
-            let only = diagnostic.fixes.len() == 1;
-            diagnostic.fixes.clone().into_iter().map(move |fix| QuickFix {
-                diagnostic: diagnostic.clone(),
-                is_preferred: only && fix.safe,
-                fix,
-            })
-        })
-        .collect()
+    let mut trial = None;
+    let mut suggestions = 0;
+    let mut is_offered = |diagnostic: &Diagnostic, fix: &Fix| {
+        suggestions += usize::from(!fix.safe);
+        fix.safe
+            || suggestions <= MOST_SUGGESTIONS
+                && trial.get_or_insert_with(|| Trial::new(database)).holds(diagnostic, fix)
+    };
+    let mut found = Vec::new();
+    for diagnostic in diagnostics {
+        let mut fixes = diagnostic.fixes.clone();
+        fixes.retain(|fix| is_offered(&diagnostic, fix));
+        let is_only = fixes.len() == 1;
+        found.extend(fixes.into_iter().map(|fix| QuickFix {
+            diagnostic: diagnostic.clone(),
+            is_preferred: is_only && fix.safe,
+            fix,
+        }));
+    }
+    found
 }
 
 #[cfg(test)]

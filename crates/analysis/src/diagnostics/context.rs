@@ -1,7 +1,7 @@
 //! What a check sees, and what it reports.
 
 use pydslrep_syntax::ast::{Entity, Movement, Name, References, Robot, Wheel};
-use pydslrep_syntax::{EntityKind, Lexeme, Span, SyntaxError, closest_of_any_order};
+use pydslrep_syntax::{EntityKind, Lexeme, Span, SyntaxError, Token, closest_of_any_order};
 use smol_str::SmolStr;
 
 pub(crate) use pydslrep_syntax::as_written;
@@ -229,11 +229,33 @@ impl<'a> Context<'a> {
         ProblemEdit { entity: self.id, span, text: text.into() }
     }
 
-    /// The smallest edit that removes `span` and the white space around it that would be left over.
+    /// The smallest edit that removes `span` and the white space around it that would be left over. A comment that the
+    /// end of its line ends would swallow what follows, and keeps it.
     pub(super) fn remove(&self, span: Span) -> ProblemEdit {
         let before = self.lexemes.iter().rev().find(|(_, other)| other.end <= span.start);
-        let start = before.map_or(span.start, |(_, other)| other.end);
-        self.replace(Span::new(start, span.end), "")
+        match before {
+            Some((token, comment)) if token.ends_line() => self.remove_behind(*comment, span),
+            Some((_, other)) => self.replace(Span::new(other.end, span.end), ""),
+            None => self.replace(span, ""),
+        }
+    }
+
+    /// Removes what a comment of the line before stands before: with its line, or as far as the line goes on.
+    fn remove_behind(&self, comment: Span, span: Span) -> ProblemEdit {
+        let rest = self.place().map_or(span.end, Span::len);
+        let next = self.lexemes.iter().find(|(_, other)| other.start >= span.end);
+        let next = next.map_or(rest, |(_, other)| other.start);
+        let gap = self.text(Span::new(comment.end, span.start));
+        let last_line = gap.rfind(['\n', '\r']).map_or(0, |end| end + 1);
+        let behind = self.text(Span::new(span.end, next));
+        match behind.find(['\n', '\r']) {
+            Some(end) => {
+                let end = end + if behind[end..].starts_with("\r\n") { 2 } else { 1 };
+                let length = |bytes: usize| u32::try_from(bytes).unwrap_or_default();
+                self.replace(Span::new(comment.end + length(last_line), span.end + length(end)), "")
+            }
+            None => self.replace(Span::new(span.start, next), ""),
+        }
     }
 
     /// Removes characters, with a space where they have one on both sides.
@@ -286,20 +308,34 @@ impl<'a> Context<'a> {
         self.replace(Span::new(span.start, span.end + taken), "")
     }
 
-    /// Removes one item of a list with the comma before it, or else the one behind it.
-    pub(super) fn remove_item(&self, item: Span) -> ProblemEdit {
-        let before = self.lexemes.iter().rev().find(|(_, span)| span.end <= item.start);
-        match before {
-            Some((pydslrep_syntax::Token::Comma, comma)) => self.remove(comma.to(item)),
-            _ => self.remove(item),
+    /// Removes one item of a list with the comma before it, or else, of the first item, the one behind it.
+    pub(super) fn remove_item(&self, item: Span) -> Vec<ProblemEdit> {
+        let is_word = |(token, _): &&Lexeme| !token.is_comment();
+        let before = self.lexemes.iter().rev().filter(is_word).find(|(_, span)| span.end <= item.start);
+        let behind = self.lexemes.iter().filter(is_word).find(|(_, span)| span.start >= item.end);
+        let is_comment_between = |comma: Span| {
+            self.lexemes.iter().any(|(token, span)| {
+                token.is_comment() && comma.start <= span.start && span.end <= item.start
+            })
+        };
+        match (before, behind) {
+            (Some((Token::Comma, comma)), _) if is_comment_between(*comma) => {
+                vec![self.replace(*comma, ""), self.remove(item)]
+            }
+            (Some((Token::Comma, comma)), _) => vec![self.remove(comma.to(item))],
+            (Some((Token::OpenBrace, _)), Some((Token::Comma, comma))) => {
+                vec![self.remove(item), self.replace(*comma, "")]
+            }
+            _ => vec![self.remove(item)],
         }
     }
 
-    /// Removes the whole entity; `None` where a comment behind it would go with it.
+    /// Removes the whole entity, but not the comments behind it.
     pub(super) fn whole(&self) -> Option<ProblemEdit> {
         let end = self.place()?.len();
-        let comment = self.lexemes.iter().find(|(token, _)| token.is_comment());
-        let end = comment.map_or(end, |(_, span)| span.start);
+        let is_word = |(token, _): &Lexeme| !token.is_comment();
+        let behind = self.lexemes.iter().rposition(is_word).map_or(0, |last| last + 1);
+        let end = self.lexemes.get(behind).map_or(end, |(_, comment)| comment.start);
         Some(self.replace(Span::new(0, end), ""))
     }
 

@@ -89,6 +89,19 @@ impl PartialEq for Rule {
     }
 }
 
+impl Rule {
+    /// Whether it is about text that is not understood, so that what there is to say of its meaning is hidden.
+    pub(crate) fn is_of_text(&self) -> bool {
+        let of_text = [
+            &syntax_error::RULE,
+            &invalid_character::RULE,
+            &unterminated_comment::RULE,
+            &unterminated_string::RULE,
+        ];
+        of_text.contains(&self)
+    }
+}
+
 /// All rules, in the order of the language's contract.
 pub const CATALOGUE: [&Rule; 38] = [
     &syntax_error::RULE,
@@ -213,6 +226,27 @@ fn tidy_removal(database: &Database, file: FileId, span: Span) -> Span {
     Span::new(span.start + 1 - back, span.end - u32::try_from(trailing).unwrap_or_default())
 }
 
+/// The text of an edit, with a space where a word in it, or beside a gap it leaves, would run into another one: before
+/// `^` or a sign, a number or a name needs none.
+fn kept_apart(database: &Database, file: FileId, span: Span, text: &str) -> String {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let first = |text: &str| text.chars().next().is_some_and(is_word);
+    let last = |text: &str| text.chars().next_back().is_some_and(is_word);
+    // Texts are cut between characters, and no character is longer than this.
+    let beside = |start: u32, end: u32| database.slice(file, Span::new(start, end));
+    let before = (1..=4_u32.min(span.start)).map(|back| beside(span.start - back, span.start));
+    let runs_in = before.into_iter().find(|text| !text.is_empty()).is_some_and(|text| last(&text));
+    let behind = (1..=4).map(|ahead| beside(span.end, span.end + ahead)).find(|text| !text.is_empty());
+    let runs_on = behind.is_some_and(|text| first(&text));
+    let replaced = database.slice(file, span);
+    if text.is_empty() {
+        return if runs_in && runs_on { " ".to_owned() } else { String::new() };
+    }
+    let left = if runs_in && first(text) && !first(&replaced) { " " } else { "" };
+    let right = if runs_on && last(text) && !last(&replaced) { " " } else { "" };
+    format!("{left}{text}{right}")
+}
+
 /// Finds where other entities start; files are walked only where a problem points at another entity.
 struct Places<'a> {
     database: &'a Database,
@@ -245,7 +279,8 @@ impl Places<'_> {
         let edits = fix.edits.iter().map(|edit| {
             let (file, span) = self.absolute(edit.entity, edit.span)?;
             let span = if edit.text.is_empty() { tidy_removal(self.database, file, span) } else { span };
-            Some(Edit { file, span, text: edit.text.replace('\n', self.database.line_ending(file)) })
+            let text = kept_apart(self.database, file, span, &edit.text);
+            Some(Edit { file, span, text: text.replace('\n', self.database.line_ending(file)) })
         });
         Some(Fix { title: fix.title.clone(), safe: fix.safe, edits: edits.collect::<Option<_>>()? })
     }

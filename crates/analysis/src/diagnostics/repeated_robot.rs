@@ -47,7 +47,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         problems.push(
             RULE.problem(again.span, format!("`{}` is in this environment already", again.text))
                 .related(context.id, first.span, "first listed here")
-                .fix(format!("remove the second `{}`", again.text), [context.remove_item(again.span)]),
+                .fix(format!("remove the second `{}`", again.text), context.remove_item(again.span)),
         );
     }
 }

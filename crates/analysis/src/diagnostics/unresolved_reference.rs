@@ -55,7 +55,7 @@ fn problem(context: &Context<'_>, tree: &Entity, kind: EntityKind, name: &Name, 
     if ["and", "then", "or"].contains(&name.text.as_str()) {
         return problem
             .help("names in a list stand side by side, with or without commas")
-            .suggestion(format!("remove `{}`", name.text), [context.remove_item(name.span)]);
+            .suggestion(format!("remove `{}`", name.text), context.remove_item(name.span));
     }
     // A name that the list has already would only make another problem.
     let nearest = context.nearest(kind, name).filter(|nearest| !taken.contains(&nearest.as_str()));
@@ -121,7 +121,10 @@ fn wheel(context: &Context<'_>, robot: &Robot, name: &str) -> String {
     let others: Vec<_> = others.map(|(_, wheel)| wheel).collect();
     let drive = robot.drive.and_then(|clause| clause.word);
     let mecanum = others.first().map_or(drive == Some(DriveWord::Fwh), |wheel| wheel.mecanum);
-    let radius = others.iter().filter_map(|wheel| wheel.radius.as_ref()?.value).find(|radius| *radius > 0.0);
+    let radius = others
+        .iter()
+        .filter_map(|wheel| wheel.radius.as_ref()?.value)
+        .find(|radius| *radius > 0.0 && radius.is_finite());
     format!("{} {name} with radius {}", if mecanum { "wheelH" } else { "wheel" }, radius.unwrap_or(4.5))
 }
 

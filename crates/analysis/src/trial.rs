@@ -1,0 +1,113 @@
+//! Fixes tried out: what one would leave behind.
+
+use std::collections::BTreeMap;
+
+use crate::{Database, Diagnostic, Edit, FileId, Fix, Severity};
+
+/// A database to try fixes in; the one it was made of stays as it is.
+#[derive(Debug)]
+pub struct Trial {
+    tried: Database,
+}
+
+/// How many problems there are in a file by code. Hints are left out: they say what could be nicer, which mending
+/// something may well lead on to.
+type Counts = BTreeMap<(FileId, &'static str), usize>;
+
+impl Trial {
+    /// A trial of fixes for a database as it is now.
+    pub fn new(database: &Database) -> Self {
+        Self { tried: database.clone() }
+    }
+
+    /// Whether a fix mends its problem and brings no other into the files it changes. What is said of the meaning of
+    /// text that was not understood before was hidden, and is not brought.
+    pub fn holds(&mut self, problem: &Diagnostic, fix: &Fix) -> bool {
+        let mut files: Vec<FileId> = fix.edits.iter().map(|edit| edit.file).collect();
+        files.push(problem.file);
+        files.sort_unstable();
+        files.dedup();
+        let before = self.counts(&files, problem);
+        let back = self.apply(&fix.edits);
+        let after = self.counts(&files, problem);
+        self.apply(&back);
+        let count = |counts: &Counts, key: &(FileId, &'static str)| counts.get(key).copied().unwrap_or(0);
+        let key = (problem.file, problem.code());
+        let is_brought = |key: &(FileId, &'static str)| count(&after, key) > count(&before, key);
+        count(&after, &key) < count(&before, &key) && !after.keys().any(is_brought)
+    }
+
+    fn counts(&self, files: &[FileId], problem: &Diagnostic) -> Counts {
+        let of_text = problem.rule.is_of_text();
+        let mut counts = Counts::new();
+        for other in files.iter().flat_map(|file| self.tried.diagnostics(*file)) {
+            let is_like_it = other.rule == problem.rule;
+            if is_like_it || (other.severity > Severity::Hint && (!of_text || other.rule.is_of_text())) {
+                *counts.entry((other.file, other.code())).or_default() += 1;
+            }
+        }
+        counts
+    }
+
+    /// Makes edits that are apart from each other; returns those that take them back.
+    fn apply(&mut self, edits: &[Edit]) -> Vec<Edit> {
+        let mut edits: Vec<&Edit> = edits.iter().collect();
+        edits.sort_by_key(|edit| std::cmp::Reverse((edit.file, edit.span.start, edit.span.end)));
+        let mut back: Vec<Edit> = Vec::new();
+        for edit in edits {
+            let removed = self.tried.slice(edit.file, edit.span);
+            self.tried.edit(edit.file, edit.span, &edit.text);
+            let behind = edit.span.start + u32::try_from(edit.text.len()).unwrap_or_default();
+            let grown = i64::from(behind) - i64::from(edit.span.end);
+            for later in back.iter_mut().filter(|later| later.file == edit.file) {
+                let moved = |offset: u32| u32::try_from(i64::from(offset) + grown).unwrap_or_default();
+                later.span = pydslrep_syntax::Span::new(moved(later.span.start), moved(later.span.end));
+            }
+            let span = pydslrep_syntax::Span::new(edit.span.start, behind);
+            back.push(Edit { file: edit.file, span, text: removed });
+        }
+        back
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The titles of the fixes that hold; the database must be the same afterwards.
+    fn held(text: &str) -> Vec<String> {
+        let mut database = Database::new();
+        let file = database.open("a.pyr", text);
+        let mut trial = Trial::new(&database);
+        let problems = database.diagnostics(file);
+        let fixes = problems.iter().flat_map(|problem| problem.fixes.iter().map(move |fix| (problem, fix)));
+        let held = fixes.filter(|(problem, fix)| trial.holds(problem, fix)).map(|(_, fix)| fix.title.clone());
+        let held = held.collect();
+        assert_eq!(trial.tried.diagnostics(file), problems);
+        assert_eq!(trial.tried.text(file), database.text(file));
+        held
+    }
+
+    const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nsensor s\n\
+                         robot r type tw with port 1 has { a b } wheels with sensors { s }\n\
+                         environment e has { r } robots with { m } moves\n";
+
+    #[test]
+    fn what_moves_a_problem_elsewhere_does_not_hold() {
+        let program = |sensor: &str| format!("{PARTS}movement m of r {{ turn left until {{ {sensor} }} }}");
+        assert_eq!(held(&program("ss")), ["change to `s`"], "nobody carries a new sensor");
+    }
+
+    #[test]
+    fn what_was_hidden_may_come_to_light() {
+        let program = format!("{PARTS}movement m off r {{ move 0 meters }}");
+        assert_eq!(held(&program), ["change to `of`", "remove the move"]);
+    }
+
+    #[test]
+    fn several_edits_are_taken_back() {
+        let program =
+            format!("{PARTS}movement m of r {{ slam }} robot type tw q with port 2 has {{ b c }} wheels");
+        assert_eq!(held(&program), ["move it after the name", "declare the wheel `c`"]);
+    }
+}

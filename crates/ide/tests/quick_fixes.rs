@@ -1,0 +1,151 @@
+//! Every single quick fix that is offered on programs with mistakes mends what it is for and nothing else changes: tried
+//! on programs at random, half of them with a slip of the finger besides. `PYDSLREP_FIXED` says on how many.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests are tests, too")]
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use pydslrep_analysis::{Database, Diagnostic, Edit, FileId, Severity};
+use pydslrep_ide::{QuickFix, quick_fixes};
+use pydslrep_naive::Recipe;
+use pydslrep_syntax::{Span, lex};
+
+/// Problems of text that is not understood; mending one shows what it hid.
+const OF_TEXT: [&str; 4] =
+    ["syntax-error", "invalid-character", "unterminated-comment", "unterminated-string"];
+
+/// What goes along with a problem, elsewhere in the program: the same cause, or what it made impossible.
+const GOES_ALONG: [(&str, &[&str]); 6] = [
+    ("movement-robot-missing", &["movement-robot-missing", "empty-environment"]),
+    ("unresolved-reference", &["unresolved-reference", "movement-robot-missing", "sensor-not-on-robot"]),
+    ("sensor-not-on-robot", &["sensor-not-on-robot"]),
+    ("unused-declaration", &["duplicate-name"]),
+    ("wheel-count", &["slam-robot"]),
+    // One half of a pair of braces.
+    ("syntax-error", &["syntax-error"]),
+];
+
+fn opened(text: &str) -> (Database, FileId) {
+    let mut database = Database::new();
+    let file = database.open("test.pyr", text);
+    (database, file)
+}
+
+/// Edits in the order of the text, which must be apart from each other.
+fn in_order(edits: &[Edit]) -> Vec<Edit> {
+    let mut edits = edits.to_vec();
+    edits.sort_by_key(|edit| (edit.span.start, edit.span.end));
+    assert!(edits.windows(2).all(|pair| pair[0].span.end <= pair[1].span.start), "{edits:?}");
+    edits
+}
+
+fn applied(text: &str, edits: &[Edit]) -> String {
+    let mut text = text.to_owned();
+    for edit in edits.iter().rev() {
+        text.replace_range(Range::from(edit.span), &edit.text);
+    }
+    text
+}
+
+/// Where a place is after edits; `None` if one of them changes it.
+fn moved(span: Span, edits: &[Edit]) -> Option<Span> {
+    let mut shift = 0;
+    for edit in edits {
+        let (length, new) = (i64::from(edit.span.len()), i64::try_from(edit.text.len()).unwrap());
+        // What is missing is missed right behind something.
+        let is_beside = span.is_empty() && length > 0 && edit.span.touches(span.start);
+        if is_beside || (edit.span.start < span.end && span.start < edit.span.end) {
+            return None;
+        }
+        if edit.span.end <= span.start {
+            shift += new - length;
+        }
+    }
+    let moved = |offset: u32| u32::try_from(i64::from(offset) + shift).unwrap();
+    Some(Span::new(moved(span.start), moved(span.end)))
+}
+
+/// A program at random with the words of it that a slip makes others.
+fn program(seed: u64) -> String {
+    let text = Recipe { lines: 12, ..Recipe::default() }.seeded(seed);
+    let lexemes = lex(&text);
+    if seed.is_multiple_of(2) || lexemes.is_empty() {
+        return text;
+    }
+    let (_, span) = lexemes[usize::try_from(seed * 7919).unwrap() % lexemes.len()];
+    let word = span.text(&text);
+    let slip = match seed % 3 {
+        0 => String::new(),
+        1 => format!("{word} {word}"),
+        _ => word.chars().take(word.chars().count() - 1).collect(),
+    };
+    let mut text = text.clone();
+    text.replace_range(Range::from(span), &slip);
+    text
+}
+
+/// Tries a fix; `index` is its problem's among those `before`.
+fn try_out(text: &str, database: &Database, before: &[Diagnostic], index: usize, offer: &QuickFix) {
+    let mended = &before[index];
+    let entity = |span: Span| database.entity_at(mended.file, span.start).map(|entity| entity.id);
+    let is_of_text = OF_TEXT.contains(&mended.code());
+    let edits = in_order(&offer.fix.edits);
+    let after_text = applied(text, &edits);
+    let (database, file) = opened(&after_text);
+    let mut after = database.diagnostics(file);
+    let told = format!("{}: {} in\n{text}\nmakes\n{after_text}", mended.message, offer.fix.title);
+
+    let mut gone = Vec::new();
+    for (_, other) in before.iter().enumerate().filter(|(other, _)| *other != index) {
+        let span = moved(other.span, &edits);
+        match after.iter().position(|left| left.code() == other.code() && Some(left.span) == span) {
+            Some(left) => drop(after.remove(left)),
+            None => gone.push((other, span)),
+        }
+    }
+    for (other, span) in gone {
+        // What is said of a whole list may be said of another place in it.
+        if let Some(elsewhere) = after.iter().position(|left| left.code() == other.code()) {
+            after.remove(elsewhere);
+            continue;
+        }
+        let goes_along =
+            GOES_ALONG.iter().any(|(code, along)| *code == mended.code() && along.contains(&other.code()));
+        // What was half understood may mean something else.
+        let is_read_again = is_of_text && entity(other.span) == entity(mended.span);
+        // One hint may take the place of another: what nothing used may be used now.
+        let may_go = span.is_none() || goes_along || is_read_again || other.severity == Severity::Hint;
+        assert!(may_go, "{} {:?} is gone, too: {told}", other.code(), other.message);
+    }
+    for new in after {
+        assert!(new.message != mended.message, "it is still there: {told}");
+        let came_to_light = is_of_text && !OF_TEXT.contains(&new.code());
+        let may_come = if offer.fix.safe { Severity::Warning } else { Severity::Hint };
+        assert!(
+            new.severity <= may_come || came_to_light,
+            "it brings {} {:?}: {told}",
+            new.code(),
+            new.message
+        );
+    }
+}
+
+#[test]
+fn every_fix_mends_its_problem_and_nothing_else_changes() {
+    let count = std::env::var("PYDSLREP_FIXED").ok().and_then(|count| count.parse().ok()).unwrap_or(400);
+    let mut tried: BTreeMap<&'static str, usize> = BTreeMap::new();
+    for text in (0..count).map(program) {
+        let (database, file) = opened(&text);
+        let before = database.diagnostics(file);
+        for (index, problem) in before.iter().enumerate() {
+            for offer in quick_fixes(&database, file, problem.span) {
+                if offer.diagnostic == *problem {
+                    try_out(&text, &database, &before, index, &offer);
+                    *tried.entry(problem.code()).or_default() += 1;
+                }
+            }
+        }
+    }
+    assert!(tried.len() > 15 && tried.values().sum::<usize>() > 500, "{tried:?}");
+}
