@@ -1,11 +1,16 @@
-//! Robots on a floor, moved by their wheels in fixed steps of simulation time.
+//! Robots on a floor, moved by their wheels in fixed steps of simulation time, stopped by what they touch.
+
+mod contact;
+mod noise;
 
 use std::fmt;
 
 use pydslrep_kinematics::{Model, ModelError, Pose, Twist, motion};
-use pydslrep_scene::Scene;
+use pydslrep_scene::{Body, Scene, SensorKind, Sighting, Space};
 
 use crate::TraceRecord;
+use contact::Surroundings;
+use noise::{Slip, reading_error};
 
 /// Motors and motion are integrated this many times per step, as CoppeliaSim does (5 ms in a step of 50 ms).
 const SUBSTEPS: u32 = 10;
@@ -15,6 +20,7 @@ const SUBSTEPS: u32 = 10;
 #[derive(Debug, Clone)]
 pub struct World {
     scene: Scene,
+    space: Space,
     robots: Vec<Moving>,
     step: f64,
     steps: u64,
@@ -23,17 +29,19 @@ pub struct World {
 #[derive(Debug, Clone)]
 struct Moving {
     model: Model,
+    body: Body,
     pose: Pose,
     twist: Twist,
     joints: Vec<Joint>,
 }
 
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 struct Joint {
     target: f64,
     rate: f64,
     angle: f64,
     released: bool,
+    slip: Slip,
 }
 
 /// Why a scene cannot move.
@@ -46,7 +54,7 @@ pub enum WorldError {
         /// Why.
         error: ModelError,
     },
-    /// A robot's motors cannot change their rate.
+    /// A robot's motors cannot turn or change their rate.
     Motor {
         /// Its name.
         robot: String,
@@ -63,7 +71,10 @@ impl fmt::Display for WorldError {
         match self {
             Self::Model { robot, error } => write!(f, "robot `{robot}` cannot drive: {error}"),
             Self::Motor { robot } => {
-                write!(f, "robot `{robot}` cannot drive: the acceleration of its motors must be above zero")
+                write!(
+                    f,
+                    "robot `{robot}` cannot drive: the acceleration and speed of its motors must be above zero"
+                )
             }
             Self::Step { step } => write!(f, "the simulation step must be above zero, it is {step} s"),
         }
@@ -89,8 +100,8 @@ impl World {
         if !(step.is_finite() && step > 0.0) {
             return Err(WorldError::Step { step });
         }
-        let robots = scene.robots.iter().map(at_rest).collect::<Result<_, _>>()?;
-        Ok(Self { scene, robots, step, steps: 0 })
+        let robots = (0..scene.robots.len()).map(|robot| at_rest(&scene, robot)).collect::<Result<_, _>>()?;
+        Ok(Self { space: Space::of(&scene), scene, robots, step, steps: 0 })
     }
 
     /// What the world was made from.
@@ -119,6 +130,11 @@ impl World {
     pub fn reset(&mut self) {
         self.steps = 0;
         self.park();
+        for (robot, moving) in self.robots.iter_mut().enumerate() {
+            for (wheel, joint) in moving.joints.iter_mut().enumerate() {
+                joint.slip = Slip::new(self.scene.noise, self.scene.seed, robot, wheel);
+            }
+        }
     }
 
     /// Robots back to their starts and at rest; the time stays.
@@ -127,7 +143,7 @@ impl World {
             moving.pose = robot.start;
             moving.twist = Twist::default();
             for joint in &mut moving.joints {
-                *joint = Joint { released: joint.released, ..Joint::default() };
+                (joint.target, joint.rate, joint.angle) = (0.0, 0.0, 0.0);
             }
         }
     }
@@ -178,13 +194,60 @@ impl World {
 
     /// One step of simulation time for everybody.
     pub fn step(&mut self) {
+        for joint in self.robots.iter_mut().flat_map(|moving| &mut moving.joints) {
+            joint.slip.advance(self.step);
+        }
         let seconds = self.step / f64::from(SUBSTEPS);
-        for (moving, robot) in self.robots.iter_mut().zip(&self.scene.robots) {
-            for _ in 0..SUBSTEPS {
-                moving.advance(robot.motor_acceleration, seconds);
+        for _ in 0..SUBSTEPS {
+            for robot in 0..self.robots.len() {
+                self.advance(robot, seconds);
             }
         }
         self.steps += 1;
+    }
+
+    /// What a sensor sees, as it measures it; `None` for nothing.
+    pub fn sight(&self, robot: usize, sensor: usize) -> Option<Sighting> {
+        let part = self.scene.robots.get(robot)?.sensors.get(sensor)?;
+        let others: Vec<(usize, Body, Pose)> = self
+            .robots
+            .iter()
+            .enumerate()
+            .filter(|&(index, _)| index != robot)
+            .map(|(index, other)| (index, other.body, other.pose))
+            .collect();
+        let seen = self.space.sight(self.pose(robot), &part.mount, &others)?;
+        if part.kind == SensorKind::Bumper {
+            return Some(seen);
+        }
+        let error = reading_error(self.scene.noise, self.scene.seed, robot, sensor, self.steps);
+        let distance = (seen.distance + error).max(0.0);
+        (distance <= part.mount.range).then_some(Sighting { distance, ..seen })
+    }
+
+    /// Motors and body of a robot over a short time. The body moves with the mean rates of that time, which makes the
+    /// wheels' angles and the body's path agree.
+    fn advance(&mut self, robot: usize, seconds: f64) {
+        let others: Vec<(Body, Pose)> = if self.scene.collisions {
+            let others = self.robots.iter().enumerate().filter(|&(index, _)| index != robot);
+            others.map(|(_, other)| (other.body, other.pose)).collect()
+        } else {
+            Vec::new()
+        };
+        let (Some(moving), Some(parts)) = (self.robots.get_mut(robot), self.scene.robots.get(robot)) else {
+            return;
+        };
+        let twist = moving.drive(parts.motor_acceleration, parts.motor_speed, seconds);
+        if !self.scene.collisions {
+            moving.pose = moving.pose.advance(twist, seconds);
+            return;
+        }
+        let around = Surroundings { space: &self.space, others: &others };
+        let (pose, is_stopped) = around.advance(moving.body, moving.pose, twist, seconds);
+        moving.pose = pose;
+        if is_stopped {
+            moving.twist = Twist::default();
+        }
     }
 
     /// All robots as they are now.
@@ -211,35 +274,47 @@ impl World {
     }
 }
 
-fn at_rest(robot: &pydslrep_scene::Robot) -> Result<Moving, WorldError> {
+fn at_rest(scene: &Scene, index: usize) -> Result<Moving, WorldError> {
+    let robot = &scene.robots[index];
     let model = robot.model().map_err(|error| WorldError::Model { robot: robot.name.clone(), error })?;
-    if !(robot.motor_acceleration.is_finite() && robot.motor_acceleration > 0.0) {
+    let can_speed_up = robot.motor_acceleration.is_finite() && robot.motor_acceleration > 0.0;
+    if !can_speed_up || robot.motor_speed.is_nan() || robot.motor_speed <= 0.0 {
         return Err(WorldError::Motor { robot: robot.name.clone() });
     }
-    let joints = vec![Joint::default(); robot.wheels.len()];
-    Ok(Moving { model, pose: robot.start, twist: Twist::default(), joints })
+    let joint = |wheel| Joint {
+        target: 0.0,
+        rate: 0.0,
+        angle: 0.0,
+        released: false,
+        slip: Slip::new(scene.noise, scene.seed, index, wheel),
+    };
+    let joints = (0..robot.wheels.len()).map(joint).collect();
+    Ok(Moving { model, body: robot.body, pose: robot.start, twist: Twist::default(), joints })
 }
 
 impl Moving {
-    /// Motors and body over a short time. The body moves with the mean rates of that time, which makes the
-    /// wheels' angles and the body's path agree.
-    fn advance(&mut self, rim_acceleration: f64, seconds: f64) {
+    /// Runs the motors; the mean twist that the wheels give the body in that time, if nothing stops it.
+    fn drive(&mut self, rim_acceleration: f64, rim_speed: f64, seconds: f64) -> Twist {
+        let on_floor = |rate: f64, joint: &Joint| rate * (1.0 + joint.slip.value);
         let means: Vec<f64> = self
             .joints
             .iter_mut()
             .zip(self.model.radii())
-            .map(|(joint, radius)| joint.advance(rim_acceleration / radius, seconds))
+            .map(|(joint, radius)| {
+                let mean = joint.advance(rim_acceleration / radius, rim_speed / radius, seconds);
+                on_floor(mean, joint)
+            })
             .collect();
-        self.pose = self.pose.advance(self.model.forward(&means), seconds);
-        let rates: Vec<f64> = self.joints.iter().map(|joint| joint.rate).collect();
+        let rates: Vec<f64> = self.joints.iter().map(|joint| on_floor(joint.rate, joint)).collect();
         self.twist = self.model.forward(&rates);
+        self.model.forward(&means)
     }
 }
 
 impl Joint {
-    /// Runs the motor towards its target at `acceleration` rad/s²; returns the mean rate.
-    fn advance(&mut self, acceleration: f64, seconds: f64) -> f64 {
-        let target = if self.released { 0.0 } else { self.target };
+    /// Runs the motor towards its target at `acceleration` rad/s², up to `most` rad/s; returns the mean rate.
+    fn advance(&mut self, acceleration: f64, most: f64, seconds: f64) -> f64 {
+        let target = if self.released { 0.0 } else { self.target.clamp(-most, most) };
         let before = self.rate;
         let ramp = ((target - before).abs() / acceleration).min(seconds);
         self.rate = if ramp < seconds {
@@ -256,7 +331,7 @@ impl Joint {
 #[cfg(test)]
 mod tests {
     use pydslrep_kinematics::Drive;
-    use pydslrep_scene::{Robot, Wheel};
+    use pydslrep_scene::{Noise, Obstacle, Robot, Thing, Wheel};
 
     use super::*;
 
@@ -350,5 +425,125 @@ mod tests {
         robot.motor_acceleration = 0.0;
         assert!(World::new(Scene::empty_floor(vec![robot])).is_err());
         assert!(World::with_step(Scene::default(), f64::NAN).is_err());
+    }
+
+    fn drive(world: &mut World, robot: usize, rates: [f64; 2]) {
+        for (wheel, rate) in rates.into_iter().enumerate() {
+            world.set_target(robot, wheel, rate);
+        }
+    }
+
+    fn robot(name: &str, x: f64, y: f64, theta: f64) -> Robot {
+        let wheels = vec![Wheel::new("l", 0.05), Wheel::new("r", 0.05)];
+        let sensors =
+            vec![("front".to_owned(), SensorKind::Distance), ("bump".to_owned(), SensorKind::Bumper)];
+        let mut robot = Robot::new(name, Drive::TwoWheel, wheels, sensors);
+        robot.start = Pose::new(x, y, theta);
+        robot
+    }
+
+    #[test]
+    fn a_wall_stops_a_robot_and_lets_it_go() {
+        let wall = Obstacle::wall("w", (1.0, -1.0), (1.0, 1.0), 0.1);
+        let scene =
+            Scene { robots: vec![robot("r", 0.0, 0.0, 0.0)], obstacles: vec![wall], ..Scene::default() };
+        let mut world = World::new(scene.clone()).unwrap();
+        drive(&mut world, 0, [10.0, 10.0]);
+        for _ in 0..100 {
+            world.step();
+        }
+        let pose = world.pose(0);
+        assert!((pose.x - 0.8).abs() < 0.002 && pose.y.abs() < 1e-9, "{pose:?}");
+        assert!(
+            world.twist(0) == Twist::default() && (world.rate(0, 0) - 10.0).abs() < 1e-12,
+            "its wheels still turn"
+        );
+        drive(&mut world, 0, [-10.0, -10.0]);
+        for _ in 0..100 {
+            world.step();
+        }
+        assert!(world.pose(0).x < 0.0, "{:?}", world.pose(0));
+        let mut ghost = World::new(Scene { collisions: false, ..scene }).unwrap();
+        drive(&mut ghost, 0, [10.0, 10.0]);
+        for _ in 0..100 {
+            ghost.step();
+        }
+        assert!(ghost.pose(0).x > 2.0);
+    }
+
+    #[test]
+    fn robots_meet_and_neither_gets_through() {
+        let robots = vec![robot("a", 0.0, 0.0, 0.0), robot("b", 1.0, 0.05, std::f64::consts::PI)];
+        let mut world = World::new(Scene { robots, ..Scene::default() }).unwrap();
+        drive(&mut world, 0, [6.0, 6.0]);
+        drive(&mut world, 1, [6.0, 6.0]);
+        for _ in 0..100 {
+            world.step();
+        }
+        let (a, b) = (world.pose(0), world.pose(1));
+        assert!(b.x - a.x > 0.3 && b.x - a.x < 0.303 && (a.x - 0.35).abs() < 0.01, "{a:?} {b:?}");
+    }
+
+    #[test]
+    fn sensors_see_walls_and_robots_but_not_their_own() {
+        let wall = Obstacle::wall("w", (1.0, -1.0), (1.0, 1.0), 0.1);
+        let robots = vec![robot("a", 0.0, 0.0, 0.0), robot("b", 0.0, 3.0, 0.0), robot("c", 0.5, 3.0, 0.0)];
+        let world = World::new(Scene { robots, obstacles: vec![wall], ..Scene::default() }).unwrap();
+        let seen = world.sight(0, 0).unwrap();
+        assert!((seen.distance - 0.8).abs() < 1e-9 && seen.what == Thing::Obstacle(0), "{seen:?}");
+        assert_eq!(world.sight(0, 1), None, "a bumper sees nothing that far");
+        let seen = world.sight(1, 0).unwrap();
+        assert!((seen.distance - 0.2).abs() < 1e-9 && seen.what == Thing::Robot(2), "{seen:?}");
+        assert_eq!((world.sight(2, 0), world.sight(9, 0), world.sight(0, 9)), (None, None, None));
+    }
+
+    #[test]
+    fn noise_is_made_from_the_seed_and_nothing_else() {
+        let wall = Obstacle::wall("w", (9.0, -1.0), (9.0, 1.0), 0.1);
+        let run = |seed, noise, reads: bool| {
+            let mut a = robot("a", 0.0, 0.0, 0.0);
+            a.sensors[0].mount.range = 20.0;
+            let mut world = World::new(Scene {
+                robots: vec![a],
+                obstacles: vec![wall.clone()],
+                noise,
+                seed,
+                collisions: true,
+            })
+            .unwrap();
+            let mut first = None;
+            for _ in 0..2 {
+                drive(&mut world, 0, [2.0, 2.0]);
+                for _ in 0..200 {
+                    world.step();
+                    if reads {
+                        world.sight(0, 0);
+                    }
+                }
+                let end = (world.pose(0), world.sight(0, 0).unwrap().distance);
+                assert_eq!(*first.get_or_insert(end), end, "a second run is like the first");
+                world.reset();
+            }
+            first.unwrap()
+        };
+        let noise = Some(Noise::default());
+        assert_eq!(run(1, noise, false), run(1, noise, true));
+        assert_ne!(run(1, noise, false), run(2, noise, false));
+        let (pose, reading) = run(1, noise, false);
+        let off = pose.relative(&run(1, None, false).0);
+        assert!(off.y.abs() > 1e-4 && off.y.abs() < 0.2 && off.x.abs() < 0.05, "{off:?}");
+        assert!((reading - (9.0 - 0.05 - 0.15 - pose.x)).abs() < 0.05, "{reading}");
+    }
+
+    #[test]
+    fn motors_have_a_top_speed() {
+        let mut slow = robot("r", 0.0, 0.0, 0.0);
+        slow.motor_speed = 0.2;
+        let mut world = World::new(Scene { robots: vec![slow], ..Scene::default() }).unwrap();
+        drive(&mut world, 0, [-100.0, 100.0]);
+        for _ in 0..20 {
+            world.step();
+        }
+        assert!((world.rate(0, 0) + 4.0).abs() < 1e-12 && (world.rate(0, 1) - 4.0).abs() < 1e-12);
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use ciborium::Value;
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, Point3, Vector3};
 
 use super::arguments::{self, Arguments, Outcome};
 use super::info;
@@ -31,6 +31,18 @@ pub(super) struct Joint {
     pub(super) wheel: usize,
     /// −1 for a joint whose axis points to the right: its own rate is the opposite of the rolling rate.
     pub(super) sense: f64,
+}
+
+/// What a proximity sensor detects, in its own frame.
+pub(super) struct Detected {
+    /// Metres.
+    pub(super) distance: f64,
+    /// The nearest point.
+    pub(super) point: Vector3<f64>,
+    /// What it belongs to.
+    pub(super) handle: Handle,
+    /// The direction away from the surface there.
+    pub(super) normal: Vector3<f64>,
 }
 
 /// Answers a call by its name without `sim.`; `None` when there is no such function.
@@ -82,7 +94,7 @@ fn parameter(arguments: &Arguments, known: i64, value: Value) -> Outcome {
 /// The number of an object's type.
 pub(super) fn type_of(kind: Kind) -> i64 {
     match kind {
-        Kind::Robot(_) => info::TYPE_SHAPE,
+        Kind::Robot(_) | Kind::Obstacle(_) => info::TYPE_SHAPE,
         Kind::Wheel { .. } => info::TYPE_JOINT,
         Kind::Sensor { .. } => info::TYPE_SENSOR,
     }
@@ -167,10 +179,12 @@ impl Bench<'_> {
     /// Linear and angular velocity in the world, m/s and rad/s.
     fn get_object_velocity(&self, arguments: &Arguments) -> Outcome {
         let (_, kind) = self.object(arguments)?;
-        let Kind::Robot(robot) = kind else {
-            return Err(arguments.failure(316, "object is not a shape."));
+        let velocity = match kind {
+            Kind::Robot(robot) => self.velocity_of(robot),
+            Kind::Obstacle(_) => [Vector3::zeros(); 2],
+            _ => return Err(arguments.failure(316, "object is not a shape.")),
         };
-        Ok(self.velocity_of(robot).map(arguments::vector).into())
+        Ok(velocity.map(arguments::vector).into())
     }
 
     /// Linear and angular velocity of a robot in the world, m/s and rad/s.
@@ -243,19 +257,43 @@ impl Bench<'_> {
         Ok(vec![rate.into()])
     }
 
-    fn sensor(&self, arguments: &Arguments) -> Result<(), arguments::Failure> {
+    fn sensor(&self, arguments: &Arguments) -> Result<Handle, arguments::Failure> {
         match self.object(arguments)? {
-            (_, Kind::Sensor { .. }) => Ok(()),
+            (handle, Kind::Sensor { .. }) => Ok(handle),
             _ => Err(arguments.failure(316, "object is not a proximity sensor.")),
         }
     }
 
-    /// State, distance, point, handle of what was detected, its normal. The floor has nothing on it to detect.
+    /// State, distance, point, handle of what was detected, its normal.
     fn read_proximity_sensor(&self, arguments: &Arguments) -> Outcome {
-        self.sensor(arguments)?;
-        let state = if self.has_handled_sensors() { 0 } else { -1 };
+        let handle = self.sensor(arguments)?;
         let nothing = || arguments::list([0.0; 3]);
-        Ok(vec![Value::from(state), Value::from(0.0), nothing(), Value::from(-1), nothing()])
+        let Some(seen) = self.detected(handle) else {
+            let state = if self.has_handled_sensors() { 0 } else { -1 };
+            return Ok(vec![Value::from(state), Value::from(0.0), nothing(), Value::from(-1), nothing()]);
+        };
+        let (point, normal) = (arguments::vector(seen.point), arguments::vector(seen.normal));
+        Ok(vec![Value::from(1), seen.distance.into(), point, seen.handle.into(), normal])
+    }
+
+    /// What a proximity sensor detects since the first step.
+    pub(super) fn detected(&self, handle: Handle) -> Option<Detected> {
+        let Kind::Sensor { robot, sensor } = self.objects.get(handle)?.kind else { return None };
+        if !self.has_handled_sensors() {
+            return None;
+        }
+        let seen = self.world.sight(robot, sensor)?;
+        let frame = self.objects.frame(handle, self.world)?;
+        // What is on the floor is as high as the sensor.
+        let point = Point3::new(seen.point.0, seen.point.1, frame.translation.z);
+        let way = frame.inverse_transform_point(&point).coords;
+        Some(Detected {
+            distance: seen.distance,
+            // Where it would be at the distance that was measured.
+            point: way.try_normalize(f64::MIN_POSITIVE).map_or(way, |way| way * seen.distance),
+            handle: self.objects.handle_of(seen.what).unwrap_or(-1),
+            normal: frame.inverse_transform_vector(&Vector3::new(seen.normal.0, seen.normal.1, 0.0)),
+        })
     }
 
     /// Whether sensors have looked around since the start: the first step lets them.

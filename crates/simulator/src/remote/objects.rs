@@ -5,7 +5,7 @@ use std::iter;
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use pydslrep_kinematics::Pose;
-use pydslrep_scene::Scene;
+use pydslrep_scene::{Scene, Thing};
 
 use crate::World;
 
@@ -18,6 +18,7 @@ pub(super) enum Kind {
     Robot(usize),
     Wheel { robot: usize, wheel: usize },
     Sensor { robot: usize, sensor: usize },
+    Obstacle(usize),
 }
 
 /// An object of the scene.
@@ -28,7 +29,7 @@ pub(super) struct Object {
     pub(super) kind: Kind,
 }
 
-/// All objects: each robot, then its wheels, then its sensors.
+/// All objects: each robot, then its wheels, then its sensors; obstacles after all robots.
 #[derive(Debug, Clone)]
 pub(super) struct Objects(Vec<Object>);
 
@@ -44,7 +45,19 @@ impl Objects {
                 objects.add(&part.name, parent, Kind::Sensor { robot: index, sensor });
             }
         }
+        for (index, obstacle) in scene.obstacles.iter().enumerate() {
+            objects.add(&obstacle.name, None, Kind::Obstacle(index));
+        }
         objects
+    }
+
+    /// The handle of something that can be seen.
+    pub(super) fn handle_of(&self, thing: Thing) -> Option<Handle> {
+        let kind = match thing {
+            Thing::Robot(robot) => Kind::Robot(robot),
+            Thing::Obstacle(obstacle) => Kind::Obstacle(obstacle),
+        };
+        self.iter().find(|(_, object)| object.kind == kind).map(|(handle, _)| handle)
     }
 
     fn add(&mut self, alias: &str, parent: Option<Handle>, kind: Kind) -> Handle {
@@ -135,12 +148,17 @@ impl Objects {
     /// it looks in, as in CoppeliaSim.
     pub(super) fn frame(&self, handle: Handle, world: &World) -> Option<Isometry3<f64>> {
         let kind = self.get(handle)?.kind;
-        let (Kind::Robot(robot) | Kind::Wheel { robot, .. } | Kind::Sensor { robot, .. }) = kind;
+        let robot = match kind {
+            Kind::Obstacle(obstacle) => {
+                return Some(planar(world.scene().obstacles.get(obstacle)?.pose, 0.0));
+            }
+            Kind::Robot(robot) | Kind::Wheel { robot, .. } | Kind::Sensor { robot, .. } => robot,
+        };
         let scene = world.scene().robots.get(robot)?;
         let height = scene.wheels.iter().map(|wheel| wheel.radius).fold(0.0, f64::max);
         let body = planar(world.pose(robot), height);
         Some(match kind {
-            Kind::Robot(_) => body,
+            Kind::Robot(_) | Kind::Obstacle(_) => body,
             Kind::Wheel { wheel, .. } => {
                 let &(x, y) = scene.geometry.wheel_positions(scene.drive).get(wheel)?;
                 let wheel = scene.wheels.get(wheel)?;

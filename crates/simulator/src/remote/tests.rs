@@ -5,7 +5,7 @@ use std::time::Duration;
 use ciborium::{Value, cbor};
 use proptest::prelude::*;
 use pydslrep_kinematics::Drive;
-use pydslrep_scene::{Robot, Scene, SensorKind, Wheel};
+use pydslrep_scene::{Obstacle, Robot, Scene, SensorKind, Wheel};
 
 use super::*;
 use crate::World;
@@ -23,12 +23,16 @@ struct Lab {
 impl Lab {
     /// Robots `robot_1`, `robot_2`, …, each with wheels `wheelL`, `wheelR` and a sensor `fSensor`.
     fn new(robots: usize) -> Self {
+        Self::among(robots, vec![])
+    }
+
+    fn among(robots: usize, obstacles: Vec<Obstacle>) -> Self {
         let robot = |number| {
             let wheels = vec![Wheel::new("wheelL", 0.035), Wheel::new("wheelR", 0.035)];
             let sensors = vec![("fSensor".to_owned(), SensorKind::Distance)];
             Robot::new(format!("robot_{number}"), Drive::TwoWheel, wheels, sensors)
         };
-        let scene = Scene::empty_floor((1..=robots).map(robot).collect());
+        let scene = Scene { obstacles, ..Scene::empty_floor((1..=robots).map(robot).collect()) };
         let mut session = Session::new(World::new(scene).unwrap());
         session.record();
         Self { session, now: Duration::ZERO, last_ticket: 0, answers: vec![] }
@@ -519,6 +523,37 @@ fn values() -> impl Strategy<Value = Value> {
             prop::collection::vec(("[a-zA-Z]{0,8}".prop_map(Value::from), inner), 0..3).prop_map(Value::Map),
         ]
     })
+}
+
+#[test]
+fn a_sensor_tells_what_it_sees_in_its_own_frame() {
+    // The wall's surface is 0.5 m before the first robot, which looks along x, and turned a little to the left of it.
+    let wall = Obstacle::wall("wall_7", (0.72, -0.4), (0.68, 0.4), 0.01);
+    let mut lab = Lab::among(2, vec![wall]);
+    let (sensor, wall) = (lab.object("/robot_1/fSensor"), lab.object("/wall_7"));
+    lab.join("a");
+    lab.start();
+    let read = |lab: &mut Lab| lab.call("a", "sim.readProximitySensor", cbor!([sensor]).unwrap());
+    assert_eq!(read(&mut lab)[0], Value::from(-1), "nobody has looked yet");
+    lab.call("a", "sim.step", none());
+    let seen = read(&mut lab);
+    let vector = |value: &Value| value.as_array().unwrap().iter().map(float).collect::<Vec<_>>();
+    let (distance, point, normal) = (float(&seen[1]), vector(&seen[2]), vector(&seen[4]));
+    assert_eq!((&seen[0], &seen[3]), (&Value::from(1), &Value::from(wall)));
+    let lean = (0.04_f64 / 0.8).atan();
+    assert!((distance - (0.55 * lean.cos() - 0.005)).abs() < 1e-9, "{distance}");
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+    // The sensor's z looks ahead, its y to the left.
+    assert!(
+        near(point[0], 0.0) && near(point[1], distance * lean.sin()) && near(point[2], distance * lean.cos())
+    );
+    assert!(near(normal[1], -lean.sin()) && near(normal[2], -lean.cos()), "{normal:?}");
+    assert_eq!(lab.call("a", "sim.getObjectType", cbor!([wall]).unwrap()), [Value::from(0)]);
+    let still = lab.call("a", "sim.getObjectVelocity", cbor!([wall]).unwrap());
+    assert_eq!(vector(&still[0]), [0.0; 3]);
+    let other = lab.object("/robot_2/fSensor");
+    let seen = lab.call("a", "sim.readProximitySensor", cbor!([other]).unwrap());
+    assert_eq!((&seen[0], &seen[3]), (&Value::from(0), &Value::from(-1)), "the other robot looks past it");
 }
 
 proptest! {

@@ -1,5 +1,7 @@
 //! What the commands of the legacy remote API do; those about time are in the module above.
 
+use nalgebra::Vector3;
+
 use super::super::arguments::angles;
 use super::super::calls::{Bench, type_of};
 use super::super::info;
@@ -66,11 +68,17 @@ fn set_target_velocity(bench: &mut Bench, handle: Handle, rate: f64) -> Option<O
     })
 }
 
-/// State, point in the sensor's frame, handle of what was detected, its normal. The floor has nothing on it to detect.
+/// State, point in the sensor's frame, handle of what was detected, its normal.
 fn read_proximity_sensor(bench: &Bench, handle: Handle) -> Option<Outcome> {
     let Kind::Sensor { .. } = bench.objects.get(handle)?.kind else { return None };
     let mut payload = vec![0; 29];
     payload[13..17].copy_from_slice(&(-1_i32).to_le_bytes());
+    if let Some(seen) = bench.detected(handle) {
+        payload[0] = 1;
+        payload[1..13].copy_from_slice(&vector(seen.point));
+        payload[13..17].copy_from_slice(&to_handle(seen.handle).to_le_bytes());
+        payload[17..].copy_from_slice(&vector(seen.normal));
+    }
     let outcome = Outcome { payload, failed: false };
     if bench.has_handled_sensors() {
         return Some(outcome);
@@ -78,6 +86,12 @@ fn read_proximity_sensor(bench: &Bench, handle: Handle) -> Option<Outcome> {
     let mut blind = outcome.but_failed();
     blind.payload[0] = 0xff;
     Some(blind)
+}
+
+/// Three numbers of 32 bits.
+fn vector(vector: Vector3<f64>) -> Vec<u8> {
+    #[allow(clippy::cast_possible_truncation)] // a point within a sensor's range
+    vector.iter().flat_map(|&number| (number as f32).to_le_bytes()).collect()
 }
 
 fn objects_of_type(bench: &Bench, kind: i64) -> Outcome {

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use pydslrep_kinematics::Drive;
-use pydslrep_scene::{Robot, Scene, SensorKind, Wheel};
+use pydslrep_scene::{Obstacle, Robot, Scene, SensorKind, Wheel};
 
 use super::*;
 use crate::World;
@@ -42,10 +42,15 @@ struct Part {
 
 impl Lab {
     fn new() -> Self {
+        Self::among(vec![])
+    }
+
+    fn among(obstacles: Vec<Obstacle>) -> Self {
         let mut wheels = vec![Wheel::new("l", 0.05), Wheel::new("m", 0.05)];
         wheels[1].mirrored = true;
         let sensors = vec![("s".to_owned(), SensorKind::Distance)];
-        let scene = Scene::empty_floor(vec![Robot::new("r", Drive::TwoWheel, wheels, sensors)]);
+        let robots = vec![Robot::new("r", Drive::TwoWheel, wheels, sensors)];
+        let scene = Scene { obstacles, ..Scene::empty_floor(robots) };
         Self { session: Session::new(World::new(scene).unwrap()), now: Duration::from_secs(3), last_id: -1 }
     }
 
@@ -266,6 +271,18 @@ fn sensors_are_blind_before_the_first_step() {
     lab.ask(1, 0x1007, &[0], &[]);
     lab.session.tick();
     assert_eq!(lab.ask(1, 0x1009, &[SENSOR], &[])[0], 0);
+}
+
+#[test]
+fn a_sensor_tells_what_it_sees() {
+    let mut lab = Lab::among(vec![Obstacle::wall("w", (1.0, -1.0), (1.0, 1.0), 0.1)]);
+    lab.ask(1, 0x1007, &[0], &[]);
+    lab.session.tick();
+    let seen = lab.ask(1, 0x1009, &[SENSOR], &[]);
+    // Half a body of 0.3 m is in front of the robot's middle, half a wall before the wall's.
+    let (point, normal) = (floats(&seen[1..13]), floats(&seen[17..]));
+    assert!((point[2] - 0.8).abs() < 1e-6 && point[1].abs() < 1e-6 && (normal[2] + 1.0).abs() < 1e-6);
+    assert_eq!((seen[0], seen.len(), &seen[13..17]), (1, 29, &(SENSOR + 1).to_le_bytes()[..]));
 }
 
 #[test]
