@@ -48,14 +48,26 @@ while :; do sleep 0.01; done
 """
 
 
+# Tells through a pipe that it has begun, what it was called with, and that it was interrupted.
+TELLING = """\
+#!/bin/sh
+told="$(dirname "$0")/told"
+trap 'echo interrupted > "$told"; exit 130' INT
+echo "$@" > "$told"
+while :; do sleep 0.01; done
+"""
+
+
 class Session:
     """A server with a program open whose text is nowhere on the disk."""
 
-    def __init__(self, raw: RawServer, folder: pathlib.Path) -> None:
+    def __init__(
+        self, raw: RawServer, folder: pathlib.Path, *, progress: bool = True
+    ) -> None:
         self.raw = raw
         self.uri = (folder / "program.pyr").as_uri()
         (folder / "parts.pyr").write_text("older", encoding="utf-8")
-        raw.initialize({"window": {"workDoneProgress": True}})
+        raw.initialize({"window": {"workDoneProgress": progress}})
         self.open((folder / "parts.pyr").as_uri(), PARTS)
         self.open(self.uri, PROGRAM)
 
@@ -183,6 +195,45 @@ def test_a_run_that_says_nothing_more_can_be_cancelled(
         request(2, "shutdown", None),
     )
     endless.raw.answer(2)
+
+
+@pytest.mark.parametrize("progress", [True, False])
+@pytest.mark.parametrize("ending", ["end of input", "exit", "shutdown"])
+def test_a_run_ends_with_its_session(
+    server: str, tmp_path: pathlib.Path, ending: str, *, progress: bool
+) -> None:
+    told = telling(server, tmp_path)
+    with RawServer(str(tmp_path / "bin" / "pydslrep-lsp"), "--stdio") as raw:
+        session = Session(raw, tmp_path, progress=progress)
+        session.execute(1, "pydslrep.run", session.area)
+        if progress:
+            session.accept_progress()
+        arguments = told.read_text().split()
+        program, picture = (pathlib.Path(arguments[at]) for at in (1, 5))
+        assert program.exists()
+        assert picture.parent.exists()
+        if ending == "end of input":
+            raw.input.close()
+        elif ending == "exit":
+            raw.send(notification("exit", None))
+        else:
+            raw.send(request(2, "shutdown", None), notification("exit", None))
+        assert told.read_text() == "interrupted\n"
+        assert raw.leave() == (0 if ending == "shutdown" else 1)
+    assert not program.parent.exists(), "what was run is tidied up"
+    assert not picture.parent.exists(), "pictures are kept as long as the session"
+
+
+def telling(server: str, folder: pathlib.Path) -> pathlib.Path:
+    """Puts a program that tells what happens beside the server, and returns the pipe it tells it through."""
+    beside = folder / "bin"
+    beside.mkdir()
+    shutil.copy2(server, beside / "pydslrep-lsp")
+    program = beside / "pydslrep"
+    program.write_text(TELLING, encoding="utf-8")
+    program.chmod(0o755)
+    os.mkfifo(beside / "told")
+    return beside / "told"
 
 
 def test_what_has_errors_does_not_run(session: Session) -> None:

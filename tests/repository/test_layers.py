@@ -53,7 +53,16 @@ ONLY_IN: dict[str, set[str]] = {
 }
 
 # Files, clocks, threads and sockets stay out of what is to run in a browser.
-PURE = ["syntax", "notation", "kinematics", "scene", "analysis", "config", "ide", "script"]
+PURE = [
+    "syntax",
+    "notation",
+    "kinematics",
+    "scene",
+    "analysis",
+    "config",
+    "ide",
+    "script",
+]
 IMPURE = re.compile(
     r"\bstd::(fs|net::(Tcp|Udp)|thread|process|time::(Instant|SystemTime)|env)\b"
 )

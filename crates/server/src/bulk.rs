@@ -5,12 +5,11 @@
 //! takes several times as long as all the rest.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 
 use futures::FutureExt;
 use futures::future::BoxFuture;
-use rustc_hash::FxHashMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use tower_lsp::jsonrpc::{ErrorCode, Id, Request};
@@ -37,31 +36,6 @@ pub(crate) enum Bulk {
     Answered,
     /// It will be answered by this.
     Later(BoxFuture<'static, ()>),
-}
-
-/// Requests that are being worked on, by their ids; the flag takes one back.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Running(Arc<Mutex<FxHashMap<Id, Arc<AtomicBool>>>>);
-
-impl Running {
-    fn add(&self, id: Id) -> Arc<AtomicBool> {
-        let flag = Arc::new(AtomicBool::new(false));
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(id, Arc::clone(&flag));
-        flag
-    }
-
-    fn remove(&self, id: &Id) -> Option<Arc<AtomicBool>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).remove(id)
-    }
-
-    /// Takes a request back; false if it is not among these.
-    pub(crate) fn cancel(&self, id: &Id) -> bool {
-        let flag = self.0.lock().unwrap_or_else(PoisonError::into_inner).get(id).cloned();
-        flag.is_some_and(|flag| {
-            flag.store(true, Ordering::Relaxed);
-            true
-        })
-    }
 }
 
 impl Server {

@@ -1,16 +1,15 @@
 //! The documents: what the client shows, exactly as it sent it, and the files of the workspace besides.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 
-use pydslrep_analysis::FileId;
+use pydslrep_analysis::{FileId, Snapshot};
 use pydslrep_config::{FILE_NAME, Settings};
 use pydslrep_syntax::Span;
 use ropey::Rope;
 use rustc_hash::FxHashMap;
 use tower_lsp::ls_types::{Diagnostic, TextDocumentContentChangeEvent, Uri};
 
-use crate::handlers::semantic_tokens::SentTokens;
 use crate::positions::{self, Encoding};
 
 /// A document that is open in the client, or a file that matters to one of those.
@@ -37,6 +36,20 @@ pub(crate) struct Document {
     /// The semantic tokens the client has, if it takes changes of them.
     pub(crate) tokens: Option<SentTokens>,
 }
+
+/// What the client has of a document's semantic tokens.
+#[derive(Debug)]
+pub(crate) struct SentTokens {
+    /// The id they were sent under.
+    pub(crate) id: String,
+    /// The text they are of.
+    pub(crate) snapshot: Snapshot,
+    /// How many tokens each entity of it has.
+    pub(crate) counts: TokenCounts,
+}
+
+/// How many semantic tokens each entity of a text has; not there before the work is done.
+pub(crate) type TokenCounts = Arc<OnceLock<Vec<usize>>>;
 
 impl Document {
     /// A document that was just opened or found, not yet analysed.

@@ -15,6 +15,9 @@
 
 mod bulk;
 mod capabilities;
+#[cfg(feature = "process")]
+mod children;
+mod chosen;
 mod client;
 mod documents;
 #[cfg(feature = "process")]
@@ -30,9 +33,9 @@ mod parent;
 mod positions;
 #[cfg(feature = "process")]
 mod process;
+mod running;
 mod server;
 mod session;
-mod settings;
 mod state;
 mod work;
 mod workspace;

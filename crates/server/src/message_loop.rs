@@ -56,6 +56,7 @@ fn serve_with(
     })?;
     let mut session = start(outbox.clone(), runtime.handle().clone());
     let ending = read_all(&mut session, FrameReader::new(input));
+    session.leave();
     outbox.close();
     let _ = writer_finished.recv_timeout(LAST_WORDS);
     runtime.shutdown_background();

@@ -9,11 +9,11 @@ use rustix::process::{Pid, PidfdFlags, pidfd_open};
 
 use crate::log::log;
 
-/// Ends this process, with the exit code of an abrupt end, as soon as the client's has ended.
+/// Ends this process, with the exit code of an abrupt end, as soon as the client's has ended; tidies up before.
 ///
 /// Only a client that is an ancestor of this process is watched: across a container's border or a remote shell the
 /// same number belongs to someone else.
-pub(crate) fn leave_with(client: u32) {
+pub(crate) fn leave_with(client: u32, tidy_up: impl Fn() + Send + 'static) {
     if !is_ancestor(client) {
         return;
     }
@@ -23,6 +23,7 @@ pub(crate) fn leave_with(client: u32) {
         let mut ends = [PollFd::new(&process, PollFlags::IN)];
         while let Ok(0) | Err(rustix::io::Errno::INTR) = poll(&mut ends, None) {}
         log(format_args!("the client's process {client} has ended"));
+        tidy_up();
         std::process::exit(1);
     };
     // Without the thread there is still the end of the input.

@@ -1,6 +1,7 @@
 //! The whole surface of the server, one entry per message of the protocol; those about whole files are in
 //! [`bulk`](crate::bulk).
 
+mod indexing;
 #[cfg(feature = "process")]
 mod run;
 
@@ -13,12 +14,13 @@ use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::*;
 use tower_lsp::{Client, LanguageServer, NotCancellable, OngoingProgress, Unbounded};
 
-use crate::bulk::Running;
 use crate::capabilities;
+#[cfg(feature = "process")]
+use crate::children::Children;
+use crate::chosen::ChosenEnvironment;
 use crate::client::ClientFeatures;
 #[cfg(feature = "process")]
 use crate::handlers::runs;
-use crate::handlers::scripts::ScriptOf;
 use crate::handlers::{
     self, call_hierarchy, code_actions, code_lenses, completion, diagnostics, document_links,
     file_operations, formatting, hover, inlay_hints, navigation, planned_path, references, rename, scripts,
@@ -26,6 +28,7 @@ use crate::handlers::{
 };
 use crate::log::log;
 use crate::message::Outbox;
+use crate::running::Running;
 use crate::state::State;
 use crate::workspace;
 
@@ -40,18 +43,34 @@ pub(crate) struct Server {
     pub(crate) outbox: Outbox,
     /// Requests about whole files that are not answered yet.
     pub(crate) running: Running,
+    /// What this session has started; apart from the state, so that it can be ended at any moment.
+    #[cfg(feature = "process")]
+    children: Arc<Mutex<Children>>,
 }
 
 impl Server {
     /// A session that talks to `client`; notifications of ours go to `outbox`, in order with the answers.
     pub(crate) fn new(client: Client, outbox: Outbox) -> Self {
-        Self { state: Arc::default(), client, outbox, running: Running::default() }
+        Self {
+            state: Arc::default(),
+            client,
+            outbox,
+            running: Running::default(),
+            #[cfg(feature = "process")]
+            children: Arc::default(),
+        }
     }
 
     /// The state, for as long as one handler runs. Never keep it across an `.await`.
     pub(crate) fn state(&self) -> MutexGuard<'_, State> {
         // A handler that panicked has left it locked in name only; `recover` has mended what it may have broken.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The child processes, for as long as one of them is looked at.
+    #[cfg(feature = "process")]
+    pub(crate) fn children(&self) -> MutexGuard<'_, Children> {
+        self.children.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -71,7 +90,8 @@ impl LanguageServer for Server {
         drop(state);
         #[cfg(all(target_os = "linux", feature = "process"))]
         if let Some(client) = params.process_id {
-            crate::parent::leave_with(client);
+            let server = self.clone();
+            crate::parent::leave_with(client, move || server.leave());
         }
         Ok(result)
     }
@@ -91,10 +111,7 @@ impl LanguageServer for Server {
     }
 
     async fn shutdown(&self) -> Result<()> {
-        #[cfg(feature = "process")]
-        for (_, running) in &self.state().runs {
-            running.interrupt();
-        }
+        self.leave();
         Ok(())
     }
 
@@ -361,7 +378,7 @@ impl Server {
         let progress = self.begin("Looking for programs").await;
         let (done, found) = oneshot::channel();
         let server = self.clone();
-        let work = move || done.send(handlers::workspace::index(&server, &folders));
+        let work = move || done.send(indexing::index(&server, &folders));
         let started = thread::Builder::new().name("workspace".to_owned()).spawn(work);
         let summary = match started {
             Ok(_) => found.await.unwrap_or_default(),
@@ -375,7 +392,7 @@ impl Server {
 
     /// A request of ours: see [`planned_path`].
     #[allow(clippy::unused_async, reason = "what the router takes")]
-    pub(crate) async fn planned_path(&self, which: ScriptOf) -> Result<serde_json::Value> {
+    pub(crate) async fn planned_path(&self, which: ChosenEnvironment) -> Result<serde_json::Value> {
         planned_path::planned_path(&mut self.state(), &which)
     }
 
@@ -389,11 +406,7 @@ impl Server {
     #[allow(clippy::unused_async, reason = "what the router takes")]
     pub(crate) async fn cancel_progress(&self, params: WorkDoneProgressCancelParams) {
         #[cfg(feature = "process")]
-        for (token, running) in &self.state().runs {
-            if *token == params.token {
-                running.interrupt();
-            }
-        }
+        self.children().interrupt(&params.token);
         #[cfg(not(feature = "process"))]
         drop(params);
     }
@@ -436,6 +449,12 @@ impl Server {
         if diagnostics::publish(&mut state, &self.outbox) {
             planned_path::announce(&mut state, &self.outbox);
         }
+    }
+
+    /// The session is over, in whatever way.
+    pub(crate) fn leave(&self) {
+        #[cfg(feature = "process")]
+        self.children().leave();
     }
 
     /// A handler panicked and may have left the analysis half changed: it is made anew from the documents.

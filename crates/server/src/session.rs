@@ -120,6 +120,11 @@ impl Session {
         }
     }
 
+    /// To be called when the session is over, in whatever way: ends what it has started.
+    pub fn leave(&self) {
+        self.server.leave();
+    }
+
     /// Runs a handler up to its first `.await`; hands over what remains.
     fn call(&mut self, request: Request) {
         if request.method() == "$/cancelRequest" && self.cancels_bulk(&request) {

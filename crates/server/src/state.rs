@@ -1,5 +1,7 @@
 //! What the server knows between two messages.
 
+mod settings;
+
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
@@ -9,20 +11,16 @@ use pydslrep_ide::FilePosition;
 use pydslrep_syntax::Span;
 use ropey::Rope;
 use rustc_hash::FxHashSet;
-#[cfg(feature = "process")]
-use tower_lsp::ls_types::ProgressToken;
 use tower_lsp::ls_types::{
     DidChangeTextDocumentParams, Location, Position, Range, TextDocumentItem, TextDocumentPositionParams,
     TraceValue, Uri,
 };
 
+use self::settings::SettingsStore;
+use crate::chosen::Watched;
 use crate::client::ClientFeatures;
 use crate::documents::{Document, Documents, key};
-use crate::handlers::planned_path::Watched;
-#[cfg(feature = "process")]
-use crate::handlers::runs::Running;
 use crate::positions::{Encoding, to_offset, to_range, to_span};
-use crate::settings::SettingsStore;
 use crate::work::Work;
 
 /// Documents, their analysis, and what the client can do.
@@ -56,12 +54,6 @@ pub(crate) struct State {
     pub(crate) told: FxHashSet<String>,
     /// Planned paths that the client has.
     pub(crate) watched: Vec<Watched>,
-    /// Child processes that can be cancelled, by the names of their progress.
-    #[cfg(feature = "process")]
-    pub(crate) runs: Vec<(ProgressToken, Running)>,
-    /// How many there were.
-    #[cfg(feature = "process")]
-    pub(crate) run_count: u64,
 }
 
 /// Documents whose diagnostics have to be told again.

@@ -15,9 +15,10 @@ use tower_lsp::ls_types::{
 };
 
 use self::rewriting::FixAllOf;
+use crate::chosen::ChosenEnvironment;
 use crate::documents::Document;
 use crate::handlers::diagnostics;
-use crate::handlers::scripts::{self, ScriptOf};
+use crate::handlers::scripts;
 use crate::state::State;
 
 /// The kind of the action that generates a script; editors may run it on save.
@@ -160,7 +161,7 @@ fn script_action(state: &State, uri: &Uri, id: EntityId, name: &str) -> Option<C
         Err(reason) => return disabled(state, name, reason),
     };
     let title = format!("Generate script {}", script.file_name());
-    let which = ScriptOf { uri: uri.clone(), environment: name.to_owned() };
+    let which = ChosenEnvironment { uri: uri.clone(), environment: name.to_owned() };
     let argument = serde_json::to_value(&which).ok()?;
     let client = &state.client;
     if !client.action_literals {
@@ -197,7 +198,7 @@ pub(crate) fn resolve(state: &State, action: CodeAction) -> Result<CodeAction> {
         let edit = Some(workspace_edit(state, &rewriting::edits(state, &which)));
         return Ok(CodeAction { edit, ..action });
     }
-    let which: ScriptOf = serde_json::from_value(data.clone())
+    let which: ChosenEnvironment = serde_json::from_value(data.clone())
         .map_err(|error| Error::invalid_params(format!("not an action of this server: {error}")))?;
     let script = scripts::generate(state, &which)?;
     Ok(CodeAction { edit: Some(scripts::edit(&script)), ..action })

@@ -7,15 +7,15 @@ use serde::{Deserialize, Serialize};
 use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::{CodeLens, CodeLensParams, Command, Location, Range, Uri};
 
+use crate::chosen::ChosenEnvironment;
 use crate::client::SHOW_REFERENCES;
 use crate::handlers::code_actions::GENERATE_SCRIPT;
 #[cfg(feature = "process")]
 use crate::handlers::runs;
-use crate::handlers::scripts::ScriptOf;
 use crate::positions::LineTable;
 use crate::state::State;
 
-/// What can be done with an environment, with the words on it. Each command takes what [`ScriptOf`] holds.
+/// What can be done with an environment, with the words on it. Each command takes what [`ChosenEnvironment`] holds.
 const OF_ENVIRONMENTS: &[(&str, &str)] = &[
     ("Generate script", GENERATE_SCRIPT),
     #[cfg(feature = "process")]
@@ -53,7 +53,7 @@ pub(crate) fn code_lenses(state: &State, params: &CodeLensParams) -> Option<Vec<
 }
 
 fn of_environment(uri: &Uri, name: &str, range: Range) -> Vec<CodeLens> {
-    let argument = serde_json::to_value(ScriptOf { uri: uri.clone(), environment: name.to_owned() });
+    let argument = serde_json::to_value(ChosenEnvironment { uri: uri.clone(), environment: name.to_owned() });
     let arguments = argument.ok().map(|argument| vec![argument]);
     OF_ENVIRONMENTS
         .iter()

@@ -6,7 +6,8 @@ use serde::Serialize;
 use serde_json::Value;
 use tower_lsp::jsonrpc::Result;
 
-use crate::handlers::scripts::{ScriptOf, environment, failure};
+use crate::chosen::{ChosenEnvironment, Watched};
+use crate::handlers::scripts::{environment, failure};
 use crate::message::Outbox;
 use crate::state::State;
 
@@ -15,13 +16,6 @@ pub(crate) const PLANNED_PATH: &str = "pydslrep/plannedPath";
 
 /// Name of the notification.
 const PLANNED_PATH_CHANGED: &str = "pydslrep/plannedPathChanged";
-
-/// A path the client has, and how it looked then; `None` where there was none.
-#[derive(Debug)]
-pub(crate) struct Watched {
-    which: ScriptOf,
-    path: Option<Value>,
-}
 
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
@@ -56,14 +50,14 @@ struct Action {
 }
 
 /// The planned path of an environment. From now on the client is told when it changes.
-pub(crate) fn planned_path(state: &mut State, which: &ScriptOf) -> Result<Value> {
+pub(crate) fn planned_path(state: &mut State, which: &ChosenEnvironment) -> Result<Value> {
     let path = plan(state, which);
     state.watched.retain(|watched| watched.which != *which);
     state.watched.push(Watched { which: which.clone(), path: path.as_ref().ok().cloned() });
     path
 }
 
-fn plan(state: &State, which: &ScriptOf) -> Result<Value> {
+fn plan(state: &State, which: &ChosenEnvironment) -> Result<Value> {
     let path = ide::planned_path(&state.database, environment(state, which)?).map_err(failure)?;
     serde_json::to_value(convert(path)).map_err(|error| failure(error.to_string()))
 }

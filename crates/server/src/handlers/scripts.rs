@@ -6,7 +6,6 @@ use std::str::FromStr;
 
 use pydslrep_analysis::{self as analysis, EntityId};
 use pydslrep_script::Target;
-use serde::{Deserialize, Serialize};
 use tower_lsp::jsonrpc::{self, Error, ErrorCode};
 use tower_lsp::ls_types::{
     CreateFile, CreateFileOptions, DocumentChangeOperation, DocumentChanges, ExecuteCommandParams,
@@ -14,20 +13,12 @@ use tower_lsp::ls_types::{
     ShowDocumentParams, ShowMessageParams, TextDocumentEdit, TextEdit, Uri, WorkspaceEdit,
 };
 
+use crate::chosen::ChosenEnvironment;
 use crate::message::Outbox;
 use crate::state::State;
 
 /// A line behind the last of any script: the protocol clamps it to the document's end.
 const BEHIND_THE_END: u32 = 1 << 30;
-
-/// Which script is meant: what an action carries until it is chosen, and the arguments of the command.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct ScriptOf {
-    /// The program.
-    pub(crate) uri: Uri,
-    /// The environment in it.
-    pub(crate) environment: String,
-}
 
 /// A script, ready to be put in its place.
 pub(crate) struct Script {
@@ -49,7 +40,7 @@ impl Script {
 /// # Errors
 ///
 /// If the document is not open, has no place for a script, or the environment is missing or has errors.
-pub(crate) fn generate(state: &State, which: &ScriptOf) -> jsonrpc::Result<Script> {
+pub(crate) fn generate(state: &State, which: &ChosenEnvironment) -> jsonrpc::Result<Script> {
     let id = environment(state, which)?;
     let program = state.document(&which.uri).map_or(&which.uri, |document| &document.uri);
     of_environment(state, program, id).map_err(failure)
@@ -60,7 +51,7 @@ pub(crate) fn generate(state: &State, which: &ScriptOf) -> jsonrpc::Result<Scrip
 /// # Errors
 ///
 /// If the document is not open, or has no such environment.
-pub(crate) fn environment(state: &State, which: &ScriptOf) -> jsonrpc::Result<EntityId> {
+pub(crate) fn environment(state: &State, which: &ChosenEnvironment) -> jsonrpc::Result<EntityId> {
     let (_, file) = state
         .analysed(&which.uri)
         .ok_or_else(|| failure(format!("`{}` is not open in the editor", which.uri.as_str())))?;
@@ -131,7 +122,7 @@ pub(crate) fn edit(script: &Script) -> WorkspaceEdit {
 /// # Errors
 ///
 /// If its arguments are others than they should be.
-pub(crate) fn which(params: &ExecuteCommandParams) -> jsonrpc::Result<ScriptOf> {
+pub(crate) fn which(params: &ExecuteCommandParams) -> jsonrpc::Result<ChosenEnvironment> {
     let which = match params.arguments.as_slice() {
         [argument] => serde_json::from_value(argument.clone()).ok(),
         _ => None,

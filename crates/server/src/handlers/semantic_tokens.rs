@@ -1,6 +1,6 @@
 //! `textDocument/semanticTokens`: the colours that only the meaning of a name can tell.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use pydslrep_analysis::Snapshot;
 use pydslrep_ide as ide;
@@ -11,23 +11,10 @@ use tower_lsp::ls_types::{
     SemanticTokensParams, SemanticTokensRangeParams, Uri,
 };
 
-use crate::documents::key;
+use crate::documents::{SentTokens, TokenCounts, key};
 use crate::positions::{Encoding, LineTable};
 use crate::state::State;
 use crate::work::Work;
-
-/// What the client has of a document's tokens.
-#[derive(Debug)]
-pub(crate) struct SentTokens {
-    /// The id they were sent under.
-    id: String,
-    /// The text they are of.
-    snapshot: Snapshot,
-    /// How many tokens each entity of it has; not there before the work is done.
-    counts: Counts,
-}
-
-type Counts = Arc<OnceLock<Vec<usize>>>;
 
 /// The tokens of a whole document.
 pub(crate) fn full(state: &mut State, params: &SemanticTokensParams) -> Option<Work<SemanticTokens>> {
@@ -58,8 +45,8 @@ pub(crate) fn delta(
 }
 
 /// Keeps what the client is about to get, if it will want to know what changed since.
-fn remember(state: &mut State, uri: &Uri) -> (Option<String>, Counts) {
-    let counts = Counts::default();
+fn remember(state: &mut State, uri: &Uri) -> (Option<String>, TokenCounts) {
+    let counts = TokenCounts::default();
     if !state.client.token_deltas {
         return (None, counts);
     }
@@ -76,7 +63,7 @@ fn all(
     snapshot: &Snapshot,
     encoding: Encoding,
     result_id: Option<String>,
-    counts: &Counts,
+    counts: &TokenCounts,
 ) -> SemanticTokens {
     let (mut tokens, mut lengths) = (Vec::new(), Vec::with_capacity(snapshot.len()));
     for entity in snapshot.entities() {
@@ -97,7 +84,7 @@ fn change(
     now: &Snapshot,
     encoding: Encoding,
     result_id: Option<String>,
-    counts: &Counts,
+    counts: &TokenCounts,
 ) -> SemanticTokensDelta {
     let (head, mut tail) = now.unchanged_ends(before);
     while tail > 0 && before_counts[before.len() - tail] == 0 {

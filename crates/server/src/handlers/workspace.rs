@@ -1,7 +1,5 @@
 //! What happens around the documents: folders, files on the disk, settings.
 
-use std::path::Path;
-
 use pydslrep_config::{FILE_NAME, SECTION};
 use pydslrep_files::EXTENSION;
 use serde_json::Value;
@@ -11,11 +9,9 @@ use tower_lsp::ls_types::{
     ShowMessageParams,
 };
 
-use crate::log::log;
 use crate::message::Outbox;
-use crate::server::Server;
 use crate::state::State;
-use crate::workspace::{MOST_ENTRIES, MOST_PROGRAMS, folders};
+use crate::workspace::folders;
 
 /// The section of the client's settings that is ours.
 pub(crate) fn wanted_settings() -> Vec<ConfigurationItem> {
@@ -70,39 +66,4 @@ pub(crate) fn folders_changed(state: &mut State, params: &DidChangeWorkspaceFold
     now.extend(added.iter().cloned());
     state.set_folders(now);
     added
-}
-
-/// Takes in all programs of folders; says so in words. To be run beside the message loop: each file is a step of its
-/// own, between which messages are handled.
-pub(crate) fn index(server: &Server, folders: &[String]) -> String {
-    let (mut programs, mut left_out) = (0, false);
-    for folder in folders {
-        let found = pydslrep_files::find(Path::new(folder), MOST_ENTRIES);
-        left_out |= !found.complete;
-        for failure in found.failures {
-            log(format_args!("cannot look into {failure}"));
-        }
-        // A folder in another may be left out there.
-        let is_open = server.state().folders.contains(folder);
-        for path in found.programs {
-            if !is_open && !server.state().is_part_of_workspace(&path.to_string_lossy()) {
-                continue;
-            }
-            if programs == MOST_PROGRAMS {
-                left_out = true;
-                break;
-            }
-            match pydslrep_files::read(&path) {
-                Ok(text) => {
-                    server.state().add_found(&path, &text);
-                    programs += 1;
-                }
-                Err(unread) => log(format_args!("cannot read {}: {unread}", path.display())),
-            }
-        }
-    }
-    server.settle();
-    let so_far =
-        if left_out { "; the workspace is large, and the rest is read when it is opened" } else { "" };
-    format!("{programs} programs{so_far}")
 }

@@ -10,6 +10,7 @@ use tower_lsp::ls_types::{
 };
 
 use super::Server;
+use crate::children::{Leash, News};
 use crate::handlers::{runs, scripts};
 
 /// Of what a run that failed has said, so many lines are told.
@@ -20,13 +21,12 @@ impl Server {
     pub(super) async fn run(&self, params: ExecuteCommandParams) -> Result<LSPAny> {
         let which = scripts::which(&params)?;
         let job = runs::prepare(&self.state(), &which, &params.command)?;
-        let picture = job.picture().to_owned();
-        let (running, mut news) = job.start()?;
-        let _leash = runs::Leash(running.clone());
+        let (running, mut news, picture) = job.start(&mut self.children())?;
+        let _leash = Leash(running.clone());
         let token = self.run_token(params.work_done_progress_params.work_done_token).await;
         let progress = match &token {
             Some(token) => {
-                self.state().runs.push((token.clone(), running));
+                self.children().name(&running, token);
                 let title = format!(
                     "{} {}",
                     if params.command == runs::RUN { "Running" } else { "Planning" },
@@ -40,8 +40,8 @@ impl Server {
         let mut ended = (None, String::new());
         while let Some(news) = news.next().await {
             match news {
-                runs::News::Ended(code, printed) => ended = (code, printed),
-                runs::News::Line(line) => {
+                News::Ended(code, printed) => ended = (code, printed),
+                News::Line(line) => {
                     if let Some(progress) = &progress {
                         progress.report_with_message(line.clone(), None).await;
                     }
@@ -52,7 +52,7 @@ impl Server {
                 }
             }
         }
-        self.state().runs.retain(|(other, _)| Some(other) != token.as_ref());
+        self.children().remove(&running);
         if let Some(progress) = progress {
             progress.finish().await;
         }
@@ -85,12 +85,7 @@ impl Server {
         if asked.is_some() || !self.state().client.progress {
             return asked;
         }
-        let number = {
-            let mut state = self.state();
-            state.run_count += 1;
-            state.run_count
-        };
-        let token = ProgressToken::String(format!("pydslrep run {number}"));
+        let token = ProgressToken::String(format!("pydslrep run {}", self.children().count()));
         let params = WorkDoneProgressCreateParams { token: token.clone() };
         self.client.send_request::<request::WorkDoneProgressCreate>(params).await.ok()?;
         Some(token)

@@ -10,8 +10,8 @@ use serde_json::Value;
 
 use tower_lsp::ls_types::Uri;
 
+use super::State;
 use crate::documents::key;
-use crate::state::State;
 
 /// What is set, and where.
 #[derive(Debug, Default)]

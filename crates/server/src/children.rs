@@ -1,0 +1,197 @@
+//! Child processes of a session: what they say, how they are asked to end, and what goes with them.
+//!
+//! None outlives its session, however that ends; neither do the pictures they draw.
+
+use std::fs;
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdout, Command, Stdio};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+
+use futures::channel::mpsc::{UnboundedReceiver, UnboundedSender, unbounded};
+use tempfile::TempDir;
+use tower_lsp::ls_types::ProgressToken;
+
+/// The child processes of a session.
+#[derive(Debug, Default)]
+pub(crate) struct Children {
+    running: Vec<(Option<ProgressToken>, Running)>,
+    /// How many there were.
+    count: u64,
+    /// Where they draw; goes with the session.
+    pictures: Option<TempDir>,
+}
+
+impl Children {
+    /// A place for a picture.
+    pub(crate) fn picture(&mut self, name: &str) -> io::Result<PathBuf> {
+        let folder = match self.pictures.take() {
+            Some(folder) => folder,
+            None => tempfile::Builder::new().prefix("pydslrep-pictures-").tempdir()?,
+        };
+        let path = folder.path().join(format!("{name}-{}.svg", self.count + 1));
+        self.pictures = Some(folder);
+        Ok(path)
+    }
+
+    /// Starts a child that uses a folder, which goes with it; what it says comes out of the receiver.
+    pub(crate) fn start(
+        &mut self,
+        command: &mut Command,
+        folder: TempDir,
+    ) -> io::Result<(Running, UnboundedReceiver<News>)> {
+        let started = Running::start(command, folder)?;
+        self.count += 1;
+        // A request that was taken back does not say that its child has ended.
+        self.running.retain(|(_, other)| !other.has_ended());
+        self.running.push((None, started.0.clone()));
+        Ok(started)
+    }
+
+    /// How many were started so far.
+    pub(crate) fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// Under which name the client may take a child back.
+    pub(crate) fn name(&mut self, running: &Running, token: &ProgressToken) {
+        for (name, _) in self.running.iter_mut().filter(|(_, other)| other.is(running)) {
+            *name = Some(token.clone());
+        }
+    }
+
+    /// Lets go of a child that has ended.
+    pub(crate) fn remove(&mut self, running: &Running) {
+        self.running.retain(|(_, other)| !other.is(running));
+    }
+
+    /// Asks a child to end.
+    pub(crate) fn interrupt(&self, token: &ProgressToken) {
+        for (_, running) in self.running.iter().filter(|(name, _)| name.as_ref() == Some(token)) {
+            running.interrupt();
+        }
+    }
+
+    /// The session is over: asks all children to end, and tidies up what would be left behind.
+    pub(crate) fn leave(&mut self) {
+        for (_, running) in self.running.drain(..) {
+            running.interrupt();
+            // Whoever follows the child may not get to it.
+            let _ = fs::remove_dir_all(&running.folder);
+        }
+        self.pictures = None;
+    }
+}
+
+/// A child process that may be asked to end.
+#[derive(Debug, Clone)]
+pub(crate) struct Running {
+    child: Arc<Mutex<Child>>,
+    folder: Arc<Path>,
+}
+
+/// What a child process has to say.
+#[derive(Debug)]
+pub(crate) enum News {
+    /// A line on its way.
+    Line(String),
+    /// It ended: its exit code, if it has one, and all it printed on standard output.
+    Ended(Option<i32>, String),
+}
+
+/// Interrupts a child when it is let go of, which does nothing to one that has ended: whoever waited may be cancelled.
+#[derive(Debug)]
+pub(crate) struct Leash(pub(crate) Running);
+
+impl Drop for Leash {
+    fn drop(&mut self) {
+        self.0.interrupt();
+    }
+}
+
+impl Running {
+    fn start(command: &mut Command, folder: TempDir) -> io::Result<(Self, UnboundedReceiver<News>)> {
+        let piped = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = piped.spawn()?;
+        let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
+        let running = Self { child: Arc::new(Mutex::new(child)), folder: folder.path().into() };
+        let (sender, news) = unbounded();
+        let followed = running.clone();
+        let follow = move || {
+            follow(&followed, stdout, stderr, &sender);
+            drop(folder);
+        };
+        thread::Builder::new().name("run".to_owned()).spawn(follow)?;
+        Ok((running, news))
+    }
+
+    fn is(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.child, &other.child)
+    }
+
+    fn has_ended(&self) -> bool {
+        let mut child = self.child.lock().unwrap_or_else(PoisonError::into_inner);
+        !matches!(child.try_wait(), Ok(None))
+    }
+
+    /// Asks it to end, as Ctrl-C does.
+    pub(crate) fn interrupt(&self) {
+        let mut child = self.child.lock().unwrap_or_else(PoisonError::into_inner);
+        if matches!(child.try_wait(), Ok(None)) {
+            interrupt(&mut child);
+        }
+    }
+}
+
+/// Passes on what a child says, and its end.
+fn follow(
+    child: &Running,
+    stdout: Option<ChildStdout>,
+    stderr: Option<impl Read>,
+    sender: &UnboundedSender<News>,
+) {
+    let printed = thread::spawn(move || {
+        let mut printed = Vec::new();
+        // What was printed up to a failure is still worth showing.
+        let _ = stdout.map(|mut stdout| stdout.read_to_end(&mut printed));
+        String::from_utf8_lossy(&printed).into_owned()
+    });
+    let mut lines = stderr.map(BufReader::new);
+    let mut line = Vec::new();
+    while lines.as_mut().is_some_and(|lines| lines.read_until(b'\n', &mut line).is_ok_and(|read| read > 0)) {
+        let _ = sender.unbounded_send(News::Line(String::from_utf8_lossy(&line).trim_end().to_owned()));
+        line.clear();
+    }
+    let printed = printed.join().unwrap_or_default();
+    await_end(child);
+    let status = child.child.lock().unwrap_or_else(PoisonError::into_inner).wait();
+    let _ = sender.unbounded_send(News::Ended(status.ok().and_then(|status| status.code()), printed));
+}
+
+/// Waits without the lock, which whoever wants to interrupt the child needs; its number stays its own until the one who
+/// has the lock takes note of its end.
+#[cfg(unix)]
+fn await_end(child: &Running) {
+    use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};
+
+    let pid = Pid::from_child(&child.child.lock().unwrap_or_else(PoisonError::into_inner));
+    let wait = || waitid(WaitId::Pid(pid), WaitIdOptions::EXITED | WaitIdOptions::NOWAIT);
+    while wait().is_err_and(|error| error == rustix::io::Errno::INTR) {}
+}
+
+/// Its pipes are closed: it is about to end, and nobody waits long for the lock.
+#[cfg(not(unix))]
+fn await_end(_: &Running) {}
+
+#[cfg(unix)]
+fn interrupt(child: &mut Child) {
+    let pid = rustix::process::Pid::from_child(child);
+    // It may have ended by itself meanwhile.
+    let _ = rustix::process::kill_process(pid, rustix::process::Signal::INT);
+}
+
+#[cfg(not(unix))]
+fn interrupt(child: &mut Child) {
+    let _ = child.kill();
+}
