@@ -4,7 +4,7 @@ use std::fmt;
 
 use nalgebra::{DVector, MatrixXx3, Vector3};
 
-use crate::{Drive, Twist, motion};
+use crate::{Drive, Twist};
 
 /// How far apart a robot's wheels stand.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,7 +69,8 @@ impl fmt::Display for ModelError {
 impl std::error::Error for ModelError {}
 
 impl Model {
-    /// The model of a robot with these wheel radii (metres, in the order of [`Drive`]) and geometry.
+    /// The ideal model of a robot with these wheel radii (metres, in the order of [`Drive`]) and geometry: no wheel
+    /// slips or scrubs.
     ///
     /// # Errors
     /// When the number of radii does not fit the layout or a length is not above zero.
@@ -84,7 +85,7 @@ impl Model {
         if drive != Drive::TwoWheel {
             require_positive("wheelbase", geometry.wheelbase)?;
         }
-        let rim_per_twist = rim_per_twist(drive, geometry, motion::SCRUB_FACTOR);
+        let rim_per_twist = rim_per_twist(drive, geometry, 1.0);
         Ok(Self { drive, geometry, radii: radii.to_vec(), rim_per_twist })
     }
 

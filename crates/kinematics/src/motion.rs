@@ -10,6 +10,3 @@ pub const RIM_SPEED: f64 = 0.09;
 
 /// How fast the rim speed of a wheel may change, in metres per second squared.
 pub const RIM_ACCELERATION: f64 = 0.5;
-
-/// Effective over geometric track of a skid-steer robot; its wheels scrub in turns.
-pub const SCRUB_FACTOR: f64 = 1.0;

@@ -42,6 +42,15 @@ pub fn body(drive: Drive) -> Body {
     }
 }
 
+/// What wheels hold across the direction they drive in, as a share of what they hold along it: tyres of rubber as much,
+/// the rollers of mecanum wheels next to nothing.
+pub fn grip(drive: Drive) -> f64 {
+    match drive {
+        Drive::TwoWheel | Drive::FourWheel => 1.0,
+        Drive::FourMecanum => 0.05,
+    }
+}
+
 /// How far a sensor of this kind sees, metres.
 pub fn range(kind: SensorKind) -> f64 {
     match kind {

@@ -62,12 +62,13 @@ impl Default for Scene {
 }
 
 impl Scene {
-    /// An empty floor with each robot at its default start ([`defaults::start`]).
+    /// An empty floor with each robot at its default start ([`defaults::start`]). Where nobody said where robots stand,
+    /// nobody meant them to be in each other's way: they are not stopped by each other.
     pub fn empty_floor(mut robots: Vec<Robot>) -> Self {
         for (index, robot) in robots.iter_mut().enumerate() {
             robot.start = defaults::start(index);
         }
-        Self { robots, ..Self::default() }
+        Self { robots, collisions: false, ..Self::default() }
     }
 
     /// Robots that touch something where they start: each with the first obstacle or earlier robot that it touches.

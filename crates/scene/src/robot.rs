@@ -1,6 +1,6 @@
 //! One robot as it stands in the scene.
 
-use pydslrep_kinematics::{Drive, Geometry, Model, ModelError, Pose};
+use pydslrep_kinematics::{Drive, Geometry, Model, ModelError, Pose, Traction, scrub_factor};
 
 use crate::{Mount, defaults, mounts_by_name};
 
@@ -21,6 +21,9 @@ pub struct Robot {
     pub body: Body,
     /// Distance between wheels; their middle is the body's centre.
     pub geometry: Geometry,
+    /// What wheels hold across the direction they drive in, as a share of what they hold along it; see
+    /// [`pydslrep_kinematics::Traction`].
+    pub grip: f64,
     /// How fast the motors can change the wheels' rim speed, metres per second squared.
     pub motor_acceleration: f64,
     /// The highest rim speed that the motors can give a wheel, metres per second; infinite for no limit.
@@ -106,18 +109,25 @@ impl Robot {
             start: Pose::default(),
             body,
             geometry: defaults::GEOMETRY,
+            grip: defaults::grip(drive),
             motor_acceleration: defaults::MOTOR_ACCELERATION,
             motor_speed: f64::INFINITY,
         }
     }
 
-    /// The robot's kinematic model.
+    /// The robot's kinematic model, with the wider track that scrubbing wheels make of a skid-steered one.
     ///
     /// # Errors
     /// When wheels and layout do not fit or a length is not above zero.
     pub fn model(&self) -> Result<Model, ModelError> {
         let radii: Vec<f64> = self.wheels.iter().map(|wheel| wheel.radius).collect();
-        Model::new(self.drive, &radii, self.geometry)
+        let model = Model::new(self.drive, &radii, self.geometry)?;
+        model.with_scrub_factor(scrub_factor(self.drive, self.geometry, self.grip))
+    }
+
+    /// How it moves when its wheels turn.
+    pub fn traction(&self) -> Traction {
+        Traction::new(self.drive, self.geometry, self.grip)
     }
 }
 

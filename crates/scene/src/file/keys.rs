@@ -226,6 +226,15 @@ pub const TABLES: [Table; 8] = [
             key("wheelbase", Values::AboveZero, "How far its front and rear wheels are apart.")
                 .default("`0.25`")
                 .example("0.2"),
+            key(
+                "grip",
+                Values::Share,
+                "What wheels hold across the direction they drive in, as a share of what they hold along it. Four wheels \
+                 with grip scrub in turns: the robot turns less than they do. Mecanum wheels with grip, whose rollers \
+                 drag, lose speed sideways.",
+            )
+            .default("`1`, of mecanum wheels `0.05`")
+            .example("0.5"),
             key("rim-speed", Values::AboveZero, "The most its motors can do, at the wheels' rims, per second.")
                 .default("without end")
                 .example("0.4"),

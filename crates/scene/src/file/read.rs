@@ -10,8 +10,9 @@ use crate::{Body, Noise, Obstacle, Robot, Scene, Shape, Thing, defaults, mounts_
 const FURTHEST: f64 = 1e6;
 
 /// Reads a scene file for robots on an empty floor. What is fine holds, whatever else is not; of a text that is no
-/// TOML, nothing does. Problems are in the order of the text.
+/// TOML, nothing does. Problems are in the order of the text. With a scene, things are in each other's way.
 pub fn read(text: &str, floor: Scene) -> (Scene, Vec<Problem>) {
+    let floor = Scene { collisions: true, ..floor };
     let mut reader = Reader { scene: floor, problems: Vec::new(), starts: Vec::new() };
     match parse(text, "key") {
         Err(problem) => return (reader.scene, vec![problem]),
@@ -201,6 +202,7 @@ impl Reader {
         robot.start = fields.pose("start").unwrap_or(robot.start);
         robot.geometry.track = fields.number("track").unwrap_or(robot.geometry.track);
         robot.geometry.wheelbase = fields.number("wheelbase").unwrap_or(robot.geometry.wheelbase);
+        robot.grip = fields.number("grip").unwrap_or(robot.grip);
         robot.motor_speed = fields.number("rim-speed").unwrap_or(robot.motor_speed);
         robot.motor_acceleration = fields.number("rim-acceleration").unwrap_or(robot.motor_acceleration);
         if let Some(body) = fields.body("body") {

@@ -1,0 +1,144 @@
+//! What wheels that are dragged over the floor make of a robot.
+
+use nalgebra::{DVector, Matrix3, Matrix3xX, Vector2, Vector3};
+
+use crate::{Drive, Geometry, Twist};
+
+/// How a robot moves when its wheels turn, with all that they are dragged across the floor. Where [`crate::Model`] says
+/// how a robot should move, this is about how it does.
+///
+/// Each wheel touches the floor in a point. What that point slips over the floor is resisted along the wheel and, by a
+/// share of it, across: the grip, 1 for a rubber tyre. Mecanum wheels resist along their rollers' axes and, as far as
+/// rollers do not turn freely, across them. The robot moves so that the least is lost, which with resistance in
+/// proportion to slip is a problem of least squares: minimise Σ (sₐ² + grip · s₀²) over the wheels. A skid-steered robot
+/// then turns less than its wheels do, by 1 + grip · (wheelbase/track)²; that real ones do is described in Mandow et al.,
+/// "Experimental kinematics for wheeled skid-steer mobile robots", 2007.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Traction {
+    /// vx, vy, ω (rows) for a unit of each wheel's rim speed (columns).
+    twist_per_rim: Matrix3xX<f64>,
+}
+
+impl Traction {
+    /// The traction of a robot whose wheels have this grip across the direction they drive in, as a share of that along
+    /// it: from 0 for none, which makes it the ideal model, to 1.
+    pub fn new(drive: Drive, geometry: Geometry, grip: f64) -> Self {
+        let positions = geometry.wheel_positions(drive);
+        let mut normal = Matrix3::zeros();
+        let mut per_rim = Matrix3xX::zeros(positions.len());
+        for (wheel, &(x, y)) in positions.iter().enumerate() {
+            let along = direction_of_force(drive, wheel);
+            let across = Vector2::new(-along.y, along.x);
+            for (direction, weight) in [(along, 1.0), (across, grip)] {
+                // The speed of the point of contact in this direction is this times the twist.
+                let speed = Vector3::new(direction.x, direction.y, direction.y * x - direction.x * y);
+                normal += weight * speed * speed.transpose();
+                let mut column = per_rim.column_mut(wheel);
+                column += weight * direction.x * speed;
+            }
+        }
+        // Without grip nothing keeps most robots from sideways motion, and nothing causes it: that is 0.
+        let inverse = normal.pseudo_inverse(1e-12).unwrap_or_default();
+        Self { twist_per_rim: inverse * per_rim }
+    }
+
+    /// The twist for rim speeds in m/s, in the order of [`Drive`]; missing ones count as 0.
+    pub fn twist(&self, rims: &[f64]) -> Twist {
+        let rims = DVector::from_fn(self.twist_per_rim.ncols(), |wheel, _| *rims.get(wheel).unwrap_or(&0.0));
+        let twist = &self.twist_per_rim * rims;
+        Twist { vx: twist.x, vy: twist.y, omega: twist.z }
+    }
+}
+
+/// How much wider a skid-steered robot seems when it turns; 1 for others, whose wheels follow.
+pub fn scrub_factor(drive: Drive, geometry: Geometry, grip: f64) -> f64 {
+    match drive {
+        Drive::FourWheel => 1.0 + grip * (geometry.wheelbase / geometry.track).powi(2),
+        Drive::TwoWheel | Drive::FourMecanum => 1.0,
+    }
+}
+
+/// The direction in which a wheel pushes the robot: along it, or along the axis of a mecanum wheel's rollers, which form
+/// an X seen from above.
+fn direction_of_force(drive: Drive, wheel: usize) -> Vector2<f64> {
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    match (drive, wheel) {
+        (Drive::FourMecanum, 0 | 3) => Vector2::new(half, -half),
+        (Drive::FourMecanum, _) => Vector2::new(half, half),
+        _ => Vector2::new(1.0, 0.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::Model;
+
+    const GEOMETRY: Geometry = Geometry { track: 0.30, wheelbase: 0.25 };
+    const DRIVES: [Drive; 3] = [Drive::TwoWheel, Drive::FourWheel, Drive::FourMecanum];
+
+    fn close(a: Twist, b: Twist, tolerance: f64) -> bool {
+        [a.vx - b.vx, a.vy - b.vy, a.omega - b.omega].iter().all(|off| off.abs() <= tolerance)
+    }
+
+    #[test]
+    fn a_skid_steered_robot_turns_less_than_its_wheels() {
+        let turn =
+            |grip| Traction::new(Drive::FourWheel, GEOMETRY, grip).twist(&[-0.15, -0.15, 0.15, 0.15]).omega;
+        assert!((turn(0.0) - 1.0).abs() < 1e-12);
+        for grip in [0.3, 1.0] {
+            let factor = scrub_factor(Drive::FourWheel, GEOMETRY, grip);
+            assert!((turn(grip) - 1.0 / factor).abs() < 1e-12, "{}", turn(grip));
+        }
+        assert!((scrub_factor(Drive::FourWheel, GEOMETRY, 1.0) - 1.694).abs() < 1e-3);
+    }
+
+    #[test]
+    fn rollers_that_drag_cost_sideways_motion() {
+        let sideways =
+            |grip| Traction::new(Drive::FourMecanum, GEOMETRY, grip).twist(&[-0.1, 0.1, 0.1, -0.1]);
+        assert!((sideways(0.0).vy - 0.1).abs() < 1e-12);
+        assert!((sideways(0.05).vy - 0.1 * 0.95 / 1.05).abs() < 1e-12);
+        let ahead = Traction::new(Drive::FourMecanum, GEOMETRY, 0.05).twist(&[0.1; 4]);
+        assert!(
+            close(ahead, Twist { vx: 0.1, ..Twist::default() }, 1e-12),
+            "no roller turns, straight on: {ahead:?}"
+        );
+    }
+
+    #[test]
+    fn two_wheels_on_an_axle_do_not_scrub() {
+        for grip in [0.0, 1.0] {
+            let twist = Traction::new(Drive::TwoWheel, GEOMETRY, grip).twist(&[0.1, 0.2]);
+            assert!(close(twist, Twist { vx: 0.15, vy: 0.0, omega: 0.1 / 0.30 }, 1e-12), "{twist:?}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn without_grip_it_is_the_ideal_model(
+            drive in prop::sample::select(DRIVES.to_vec()),
+            rates in prop::collection::vec(-5.0..5.0, 4), track in 0.1..1.0, wheelbase in 0.1..1.0,
+        ) {
+            let geometry = Geometry { track, wheelbase };
+            let rates = &rates[..drive.wheel_count()];
+            let model = Model::new(drive, &[1.0; 4][..drive.wheel_count()], geometry).unwrap();
+            let twist = Traction::new(drive, geometry, 0.0).twist(rates);
+            prop_assert!(close(twist, model.forward(rates), 1e-9), "{:?}", twist);
+        }
+
+        #[test]
+        fn nothing_is_gained_by_slipping(
+            drive in prop::sample::select(DRIVES.to_vec()),
+            rims in prop::collection::vec(-1.0..1.0, 4), grip in 0.0..1.0,
+        ) {
+            let rims = &rims[..drive.wheel_count()];
+            let twist = Traction::new(drive, GEOMETRY, grip).twist(rims);
+            let most = rims.iter().fold(0.0, |most: f64, rim| most.max(rim.abs()));
+            prop_assert!(twist.vx.abs() <= most + 1e-12 && twist.vy.abs() <= most + 1e-12);
+            prop_assert!(twist.omega.abs() <= most / 0.15 + 1e-9);
+        }
+    }
+}
