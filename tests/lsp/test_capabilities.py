@@ -172,7 +172,7 @@ async def fixes_mend(s: Session) -> None:
     params = types.CodeActionParams(s.document, s.span("wheeel"), context)
     found = await s.client.text_document_code_action_async(params)
     fix = only(found, types.CodeAction)
-    assert fix.title == "declare the wheel `wheeel`"
+    assert fix.title == "Declare the wheel `wheeel`"
     assert fix.edit
     change = only(fix.edit.document_changes, types.TextDocumentEdit)
     edits = [edit for edit in change.edits if isinstance(edit, types.TextEdit)]

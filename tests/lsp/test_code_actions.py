@@ -49,33 +49,33 @@ async def offered(
         (
             "quickfix",
             "move 0",
-            "fix all `zero-distance` problems",
+            "Fix all `zero-distance` problems",
             "  move 0 meters\n",
             "",
         ),
         (
             "source.fixAll",
             "wheel",
-            "fix all that leaves nothing to decide",
+            "Fix all that leaves nothing to decide",
             "turn left 0",
             "",
         ),
-        ("refactor.rewrite", "move 1", "convert to centimeters", "", "move 100 cent"),
+        ("refactor.rewrite", "move 1", "Convert to centimeters", "", "move 100 cent"),
         (
             "refactor.inline",
             "move 1",
-            "leave out the default speed of 9.0 cm/s",
+            "Leave out the default speed of 9.0 cm/s",
             " at 9.0",
             "",
         ),
         (
             "refactor.extract",
             "move 1 meters at 9.0\n  turn",
-            "extract into the new movement `tour_2`",
+            "Extract into the new movement `tour_2`",
             "",
             "{ tour tour_2 tour_3 } moves",
         ),
-        ("refactor", "robot rover", "add `type tw`", "", "robot rover type tw with"),
+        ("refactor", "robot rover", "Add `type tw`", "", "robot rover type tw with"),
     ],
 )
 async def test_one_of_each_kind(
@@ -112,7 +112,7 @@ async def test_what_cannot_be_done_says_why(
         for action in await offered(client, editor, uri, "movement", "refactor")
         if action.disabled
     ]
-    assert action.title == "make `tour` parallel"
+    assert action.title == "Make `tour` parallel"
     assert action.disabled
     assert "no environment lists it" in action.disabled.reason
 

@@ -215,7 +215,7 @@ def test_settings_files_are_completed_explained_and_mended(
         "end": {"line": 1, "character": 3},
     }
     (fix,) = ask("textDocument/codeAction", range=slip, context={"diagnostics": []})
-    assert fix["title"] == "change to `severity`"
+    assert fix["title"] == "Change to `severity`"
     assert fix["diagnostics"][0]["code"] == "unknown-key"
     ((edit,),) = fix["edit"]["changes"].values()
     assert edit["newText"] == "severity"

@@ -54,6 +54,12 @@ pub(crate) fn code_actions(state: &State, params: &CodeActionParams) -> Option<C
     Some(actions)
 }
 
+/// A title as editors write them: the parts below speak in the middle of a sentence, as a terminal does.
+fn sentence(title: &str) -> String {
+    let mut characters = title.chars();
+    characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
+}
+
 /// Kinds are paths: `source` covers `source.generateScript`, and the empty kind covers everything.
 fn covers(wish: &CodeActionKind, kind: &CodeActionKind) -> bool {
     let rest = kind.as_str().strip_prefix(wish.as_str());
@@ -71,7 +77,7 @@ fn quick_fixes(
     let fixes = ide::quick_fixes(&state.database, file, range).into_iter().filter_map(|found| {
         let shown = diagnostics::convert(state, document, &found.diagnostic)?;
         Some(CodeActionOrCommand::CodeAction(CodeAction {
-            title: found.fix.title,
+            title: sentence(&found.fix.title),
             kind: Some(CodeActionKind::QUICKFIX),
             diagnostics: Some(vec![as_the_client_has_it(&params.context.diagnostics, shown)]),
             edit: Some(workspace_edit(state, &found.fix.edits)),
@@ -94,7 +100,7 @@ fn settings_fixes(
         let edit = TextEdit::new(state.range(document, fix.span), fix.text);
         let shown = diagnostics::convert_settings(state, document, fix.problem);
         CodeAction {
-            title: fix.title,
+            title: sentence(&fix.title),
             kind: Some(CodeActionKind::QUICKFIX),
             diagnostics: Some(vec![as_the_client_has_it(&params.context.diagnostics, shown)]),
             edit: Some(edit_of_documents(state, [(document, vec![edit])])),

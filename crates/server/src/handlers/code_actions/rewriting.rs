@@ -7,7 +7,7 @@ use tower_lsp::ls_types::{
     CodeAction, CodeActionDisabled, CodeActionKind, CodeActionOrCommand, CodeActionParams, Uri,
 };
 
-use super::workspace_edit;
+use super::{sentence, workspace_edit};
 use crate::documents::Document;
 use crate::state::State;
 
@@ -35,7 +35,7 @@ pub(super) fn refactorings(
         if !wanted(&kind) {
             return None;
         }
-        let action = CodeAction { title: offer.title, kind: Some(kind), ..CodeAction::default() };
+        let action = CodeAction { title: sentence(&offer.title), kind: Some(kind), ..CodeAction::default() };
         Some(match offer.edits {
             Ok(edits) => CodeAction { edit: Some(workspace_edit(state, &edits)), ..action },
             Err(reason) if state.client.disabled_actions => {
@@ -67,7 +67,7 @@ pub(super) fn fix_all_of_a_code(
     shown.retain(|problem| problem.span.start <= range.end && range.start <= problem.span.end);
     let codes = ide::codes_to_fix_all(&state.database, file, &shown).into_iter();
     let action = |code: &str| {
-        let title = format!("fix all `{code}` problems");
+        let title = format!("Fix all `{code}` problems");
         offer(state, document, title, CodeActionKind::QUICKFIX, Some(code))
     };
     codes.map(action).collect()
@@ -76,7 +76,7 @@ pub(super) fn fix_all_of_a_code(
 /// `source.fixAll`, where there is anything to fix.
 pub(super) fn fix_all(state: &State, document: &Document, file: FileId) -> Option<CodeActionOrCommand> {
     let any = shown(&state.database, document, file).iter().any(ide::is_safely_fixed);
-    let title = "fix all that leaves nothing to decide".to_owned();
+    let title = "Fix all that leaves nothing to decide".to_owned();
     any.then(|| offer(state, document, title, CodeActionKind::SOURCE_FIX_ALL, None))
 }
 
