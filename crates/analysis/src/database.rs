@@ -19,8 +19,9 @@ use smol_str::SmolStr;
 
 use self::imports::Imports;
 use crate::diagnostics::{self, Problem};
-use crate::file::{File, Piece};
+use crate::file::File;
 use crate::names::Names;
+use crate::pieces::Piece;
 use crate::{Diagnostic, Target};
 
 /// A file of the database; the same for the same path, also after closing and opening it again.
@@ -177,7 +178,7 @@ impl Database {
     /// The entity that holds an offset: at a boundary the one behind it, at the end of the text the last one.
     pub fn entity_at(&self, file: FileId, offset: u32) -> Option<EntityRef<'_>> {
         let open = self.get(file)?;
-        let (index, start) = open.piece_at(offset);
+        let (index, start) = open.pieces.at(offset);
         let piece = open.pieces.get(index)?;
         let data = self.data(piece.entity)?;
         Some(EntityRef {
@@ -201,9 +202,10 @@ impl Database {
     pub fn entity(&self, id: EntityId) -> Option<EntityRef<'_>> {
         let data = self.data(id)?;
         let open = self.get(data.file)?;
-        let index = open.pieces.iter().position(|piece| piece.entity == id)?;
-        let start = open.start_of(index);
-        let span = Span::new(start, start + open.pieces[index].len);
+        let index = open.pieces.partition_point(|piece| self.order(piece.entity) < data.order);
+        let piece = open.pieces.get(index).filter(|piece| piece.entity == id)?;
+        let start = open.pieces.start_of(index);
+        let span = Span::new(start, start + piece.len);
         Some(EntityRef { id, file: data.file, span, parse: &data.parse })
     }
 
@@ -217,7 +219,7 @@ impl Database {
 
     /// The piece that holds an offset, and where it starts.
     pub(crate) fn piece_at(&self, file: FileId, offset: u32) -> (usize, u32) {
-        self.get(file).map_or((0, 0), |file| file.piece_at(offset))
+        self.get(file).map_or((0, 0), |file| file.pieces.at(offset))
     }
 
     pub(crate) fn pieces(&self, file: FileId) -> &[Piece] {
@@ -325,26 +327,12 @@ impl Database {
             .is_some_and(|(token, _)| *token == Token::UnterminatedComment)
     }
 
-    /// The entities of a file that have problems, with where they start, in the order of the text. The pieces are only
-    /// walked where there are any.
-    pub(crate) fn troubled(&self, file: FileId) -> Vec<(EntityId, u32)> {
-        let mut troubled: Vec<EntityId> = self.troubled.get(&file).into_iter().flatten().copied().collect();
-        troubled.sort_unstable_by_key(|id| self.order(*id));
-        let mut wanted = troubled.into_iter().peekable();
-        let mut start = 0;
-        let mut found = Vec::with_capacity(wanted.len());
-        for piece in self.get(file).map_or(&[][..], |file| &file.pieces) {
-            match wanted.peek() {
-                None => break,
-                Some(id) if *id == piece.entity => {
-                    found.push((piece.entity, start));
-                    wanted.next();
-                }
-                Some(_) => {}
-            }
-            start += piece.len;
-        }
-        found
+    /// The entities of a file that have problems, in the order of the text.
+    pub(crate) fn troubled(&self, file: FileId) -> Vec<EntityRef<'_>> {
+        let troubled = self.troubled.get(&file).into_iter().flatten();
+        let mut troubled: Vec<EntityRef<'_>> = troubled.filter_map(|id| self.entity(*id)).collect();
+        troubled.sort_unstable_by_key(|entity| entity.span.start);
+        troubled
     }
 
     pub(crate) fn problems(&self, id: EntityId) -> &[Problem] {

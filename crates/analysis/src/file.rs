@@ -2,25 +2,18 @@
 
 use std::ops::Range;
 
-use pydslrep_syntax::{Parse, Span, Token, cut, lex, parse};
+use pydslrep_syntax::{Parse, Span, Token, cut, lex, parse, parse_cut};
 use ropey::Rope;
 
 use crate::EntityId;
+use crate::pieces::Pieces;
 
 /// One document.
 #[derive(Debug, Clone)]
 pub(crate) struct File {
     pub(crate) path: String,
     pub(crate) text: Rope,
-    /// In the order of the text; their lengths add up to the text's.
-    pub(crate) pieces: Vec<Piece>,
-}
-
-/// Where an entity is in its file, without its absolute position: that would change with every edit before it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Piece {
-    pub(crate) entity: EntityId,
-    pub(crate) len: u32,
+    pub(crate) pieces: Pieces,
 }
 
 /// The pieces an edit replaces, and what replaces them.
@@ -49,24 +42,6 @@ impl File {
         }
     }
 
-    /// The piece that holds `offset` (the last one at the end of the text) and where it starts.
-    pub(crate) fn piece_at(&self, offset: u32) -> (usize, u32) {
-        let mut start = 0;
-        for (index, piece) in self.pieces.iter().enumerate() {
-            if offset < start + piece.len {
-                return (index, start);
-            }
-            start += piece.len;
-        }
-        let last = self.pieces.len().saturating_sub(1);
-        (last, start - self.pieces.last().map_or(0, |piece| piece.len))
-    }
-
-    /// Where the piece at `index` starts.
-    pub(crate) fn start_of(&self, index: usize) -> u32 {
-        self.pieces[..index].iter().map(|piece| piece.len).sum()
-    }
-
     /// Replaces `span` by `text` and reads again what the edit may have changed. The caller puts the new pieces in
     /// place. `lexemes_of` gives the tokens of a piece as they were.
     pub(crate) fn edit<'a>(
@@ -76,8 +51,8 @@ impl File {
         lexemes_of: impl Fn(EntityId) -> &'a [(Token, Span)],
     ) -> Window {
         let (first, first_start) = self.window_start(span.start, lexemes_of);
-        let (touched, touched_start) = self.piece_at(span.end);
-        let before = self.piece_at(span.start).0 - first;
+        let (touched, touched_start) = self.pieces.at(span.end);
+        let before = self.pieces.at(span.start).0 - first;
         let untouched = |window: &Range<usize>| (before, window.end - touched - 1);
         let old_len = Span::of_rope(&self.text).len();
         self.replace(span, text);
@@ -122,8 +97,12 @@ impl File {
         let text = self.slice(Span::new(start, shift(end_offset + ahead, grown)));
         let lexemes = lex(&text);
         *relexed += lexemes.len();
-        let holds = cut(&lexemes).into_iter().any(|index| lexemes[index].1.start + start == boundary);
-        holds.then(|| parse(Span::new(0, boundary - start).text(&text)))
+        let starts = cut(&lexemes);
+        let last = starts.iter().position(|&index| lexemes[index].1.start + start == boundary)?;
+        let mut parses = Vec::with_capacity(last + 1);
+        let text = Span::new(0, boundary - start).text(&text);
+        parse_cut(text, &lexemes[..starts[last]], &starts[..last], |span, parse| parses.push((span, parse)));
+        Some(parses)
     }
 
     /// The first piece to read again. Whether a piece begins where it does depends on its first token, the one behind
@@ -133,7 +112,7 @@ impl File {
         offset: u32,
         lexemes_of: impl Fn(EntityId) -> &'a [(Token, Span)],
     ) -> (usize, u32) {
-        let (mut index, mut start) = self.piece_at(offset);
+        let (mut index, mut start) = self.pieces.at(offset);
         let mut untouched = 0;
         loop {
             let before = |(token, span): &&(Token, Span)| !token.is_comment() && span.end + start < offset;

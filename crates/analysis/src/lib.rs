@@ -15,6 +15,7 @@ mod file;
 mod fixing;
 mod names;
 pub mod path;
+mod pieces;
 mod plan;
 mod resolve;
 mod script_name;

@@ -1,7 +1,12 @@
 //! What the scripts of a program's environments are called.
 
-/// Modules of Python 3.10 to 3.14, one per line.
-const STANDARD_MODULES: &str = include_str!("standard_modules.txt");
+use std::sync::LazyLock;
+
+use rustc_hash::FxHashSet;
+
+/// Modules of Python 3.10 to 3.14.
+static STANDARD_MODULES: LazyLock<FxHashSet<&str>> =
+    LazyLock::new(|| include_str!("standard_modules.txt").lines().collect());
 
 /// Modules that the script's client imports, or looks for, beside the standard ones.
 const CLIENT_MODULES: [&str; 6] =
@@ -71,7 +76,7 @@ fn free(name: &str, taken: &[(String, usize)]) -> String {
 
 /// Why a script cannot be called like an environment of this name, whatever other environments there are.
 pub(crate) fn obstacle(name: &str) -> Option<Obstacle> {
-    if STANDARD_MODULES.lines().any(|module| module == name) {
+    if STANDARD_MODULES.contains(name) {
         Some(Obstacle::StandardModule)
     } else if CLIENT_MODULES.contains(&name) {
         Some(Obstacle::ClientModule)

@@ -45,7 +45,7 @@ impl Database {
             at += piece.len;
             begins <= end
         });
-        let keep = |piece: &crate::file::Piece| {
+        let keep = |piece: &crate::pieces::Piece| {
             let parse = Arc::clone(self.shared_parse(piece.entity)?);
             Some(Kept { entity: piece.entity, len: piece.len, parse })
         };

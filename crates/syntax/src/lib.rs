@@ -21,7 +21,7 @@ pub use cut::cut;
 pub use error::{Expected, Found, SyntaxError, SyntaxErrorKind};
 pub use format::{TextEdit, apply_edits, format, format_edits};
 pub use lexer::{Lexeme, lex};
-pub use parser::{Parse, expected_after, parse, parse_each};
+pub use parser::{Parse, expected_after, parse, parse_cut, parse_each};
 pub use span::Span;
 pub use spelling::{closest, closest_of_any_order, is_similar};
 pub use token::{EntityKind, KEYWORDS, Token, TokenSet, as_written};

@@ -6,31 +6,59 @@ pub fn is_similar(written: &str, meant: &str) -> bool {
     slip(written, meant).is_some()
 }
 
+/// How far apart two words are: first whether in more than case, then by how many edits.
+type Distance = (bool, usize);
+
 /// How far apart the two are, if one may be a slip for the other: the less, the nearer.
-fn slip(written: &str, meant: &str) -> Option<(bool, usize)> {
-    if written == meant {
+fn slip(written: &str, meant: &str) -> Option<Distance> {
+    slip_within(written, meant, (true, usize::MAX))
+}
+
+/// As [`slip`], if they are not farther apart than `bound`. Nearly all of many names are told apart by their lengths and
+/// ends alone.
+fn slip_within(written: &str, meant: &str, bound: Distance) -> Option<Distance> {
+    let (one, other) = differing(written, meant);
+    if one.is_empty() && other.is_empty() {
         return None;
     }
-    let only_case = written.eq_ignore_ascii_case(meant);
+    let only_case = one.eq_ignore_ascii_case(other);
+    // In bytes there are not fewer than in characters, so this turns away too few rather than too many.
+    let most = (written.len().max(meant.len()) / 3).max(1);
+    if !only_case && (!bound.0 || at_least(one, other) > most.min(bound.1)) {
+        return None;
+    }
     let longest = written.chars().count().max(meant.chars().count());
     let most = (longest / 3).max(usize::from(is_swap(written, meant)));
-    let (one, other) = differing(written, meant);
-    // At least so many letters more must be inserted; most of many names are told apart by that.
-    if !only_case && one.len().abs_diff(other.len()) > most && written.is_ascii() && meant.is_ascii() {
-        return None;
-    }
     let distance = strsim::osa_distance(one, other);
-    (only_case || distance <= most).then_some((!only_case, distance))
+    let found = (!only_case, distance);
+    ((only_case || distance <= most) && found <= bound).then_some(found)
+}
+
+/// A number of edits that it takes at least to make one of the other, which differs from it at both ends.
+fn at_least(one: &str, other: &str) -> usize {
+    let (longer, shorter) = (one.len().max(other.len()), one.len().min(other.len()));
+    match (longer, shorter) {
+        _ if !one.is_ascii() || !other.is_ascii() => 1,
+        (_, 0) => longer,
+        // Another letter, or two that change places.
+        (1, 1) | (2, 2) => 1,
+        _ => (longer - shorter).max(2),
+    }
 }
 
 /// What is left of two words without what they have in common at the start and at the end, which changes nothing about
 /// their distance.
 fn differing<'a>(one: &'a str, other: &'a str) -> (&'a str, &'a str) {
-    let same = |(a, b): &(char, char)| a == b;
-    let head: usize = one.chars().zip(other.chars()).take_while(same).map(|(a, _)| a.len_utf8()).sum();
+    let same = |(a, b): &(u8, u8)| a == b;
+    let mut head = one.bytes().zip(other.bytes()).take_while(same).count();
+    while !one.is_char_boundary(head) || !other.is_char_boundary(head) {
+        head -= 1;
+    }
     let (one, other) = (&one[head..], &other[head..]);
-    let tail: usize =
-        one.chars().rev().zip(other.chars().rev()).take_while(same).map(|(a, _)| a.len_utf8()).sum();
+    let mut tail = one.bytes().rev().zip(other.bytes().rev()).take_while(same).count();
+    while !one.is_char_boundary(one.len() - tail) || !other.is_char_boundary(other.len() - tail) {
+        tail -= 1;
+    }
     (&one[..one.len() - tail], &other[..other.len() - tail])
 }
 
@@ -50,8 +78,15 @@ pub fn closest_of_any_order<'a>(
     written: &str,
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> Option<&'a str> {
-    let near = candidates.into_iter().filter_map(|candidate| Some((slip(written, candidate)?, candidate)));
-    near.min().map(|(_, candidate)| candidate)
+    let mut nearest: Option<(Distance, &str)> = None;
+    for candidate in candidates {
+        let bound = nearest.map_or((true, usize::MAX), |(distance, _)| distance);
+        if let Some(distance) = slip_within(written, candidate, bound) {
+            let found = (distance, candidate);
+            nearest = Some(nearest.map_or(found, |nearest| nearest.min(found)));
+        }
+    }
+    nearest.map(|(_, candidate)| candidate)
 }
 
 #[cfg(test)]
@@ -86,6 +121,17 @@ mod tests {
             let most = (longest / 3).max(usize::from(is_swap(&one, &other)));
             let similar = one != other && (one.eq_ignore_ascii_case(&other) || distance <= most);
             proptest::prop_assert_eq!(is_similar(&one, &other), similar);
+        }
+
+        #[test]
+        fn what_was_found_only_hides_what_is_farther(
+            written in "[abA_é]{0,7}",
+            candidates in proptest::collection::vec("[abA_é]{0,7}", 0..20),
+        ) {
+            let all = candidates.iter().filter_map(|word| Some((slip(&written, word)?, word.as_str())));
+            let nearest = all.min().map(|(_, word)| word);
+            let found = closest_of_any_order(&written, candidates.iter().map(String::as_str));
+            proptest::prop_assert_eq!(found, nearest);
         }
     }
 }

@@ -1,18 +1,21 @@
 //! How the database changes: what an edit replaces, and whose answers it makes doubtful.
 
+use std::hash::Hash;
 use std::ops::Range;
 use std::sync::Arc;
 
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Lexeme, Parse, Span, parse_each};
 use ropey::Rope;
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
+use smol_str::SmolStr;
 
 use super::{Database, EditCounts, EntityData, EntityId, FileId};
 use crate::Target;
 use crate::diagnostics;
-use crate::file::{File, OfRope, Piece, Window};
+use crate::file::{File, OfRope, Window};
 use crate::names::Key;
+use crate::pieces::{Piece, Pieces};
 
 /// The space between the orders of two neighbours in a fresh file.
 const ORDER_STEP: u64 = 1 << 32;
@@ -23,7 +26,7 @@ impl Database {
         let file = self.file_for(path);
         self.forget(file);
         self.files[file.0 as usize] =
-            Some(File { path: path.to_owned(), text: Rope::from_str(text), pieces: Vec::new() });
+            Some(File { path: path.to_owned(), text: Rope::from_str(text), pieces: Pieces::default() });
         let before = self.imports(file).to_vec();
         let (mut pieces, mut relexed) = (Vec::new(), 0);
         parse_each(text, |span, parse| {
@@ -83,14 +86,14 @@ impl Database {
     /// Removes all entities of a file.
     fn forget(&mut self, file: FileId) {
         let pieces = self.files[file.0 as usize].as_mut().map(|file| std::mem::take(&mut file.pieces));
-        for piece in pieces.unwrap_or_default() {
+        for piece in pieces.unwrap_or_default().iter() {
             self.remove(piece.entity);
         }
     }
 
     fn set_pieces(&mut self, file: FileId, pieces: Vec<Piece>) {
         if let Some(open) = self.files[file.0 as usize].as_mut() {
-            open.pieces = pieces;
+            open.pieces = pieces.into();
         }
     }
 
@@ -111,7 +114,7 @@ impl Database {
         };
         let ids: Vec<EntityId> = new.iter().map(|piece| piece.entity).collect();
         if let Some(open) = self.files[file.0 as usize].as_mut() {
-            open.pieces.splice(replaced, new);
+            open.pieces.replace(replaced, new);
         }
         let has_environments = self.count(file, EntityKind::Environment) > 0;
         if had_imports || self.any_import(&ids) {
@@ -155,10 +158,12 @@ impl Database {
         let Some(file) = self.file_of(id) else { return Piece { entity: id, len: span.len() } };
         self.unregister(id, file);
         if let Some(data) = self.entities[id.0 as usize].as_mut() {
-            doubtful.uses.extend(changed_uses(file, &data.parse, &parse));
+            doubtful.uses.extend(only_in_one(used_keys(file, &data.parse), used_keys(file, &parse)));
+            let (before, after) = (data.parse.skipped_names.iter(), parse.skipped_names.iter());
+            doubtful.keys.extend(hidden_keys(file, only_in_one(before, after)));
             if !looks_alike(&data.parse, &parse) {
-                doubtful.keys.extend(visible_keys(file, &data.parse));
-                doubtful.keys.extend(visible_keys(file, &parse));
+                doubtful.keys.extend(defined_key(file, &data.parse));
+                doubtful.keys.extend(defined_key(file, &parse));
             }
             data.parse = Arc::new(parse);
         }
@@ -288,11 +293,8 @@ impl Database {
     }
 
     pub(super) fn validate_file(&mut self, file: FileId) {
-        // Walked once with their places: to look up the place of each would make a long file's opening quadratic.
-        let entities: Vec<(EntityId, Span)> =
-            self.entities(file).map(|entity| (entity.id, entity.span)).collect();
-        for (id, span) in entities {
-            self.validate(id, Some(span));
+        for index in 0..self.pieces(file).len() {
+            self.validate(self.pieces(file)[index].entity);
         }
     }
 
@@ -335,7 +337,7 @@ impl Database {
             doubtful.entities.extend(self.names.used(key));
         }
         for id in doubtful.entities {
-            self.validate(id, None);
+            self.validate(id);
         }
     }
 
@@ -350,9 +352,9 @@ impl Database {
         ids
     }
 
-    fn validate(&mut self, id: EntityId, span: Option<Span>) {
+    fn validate(&mut self, id: EntityId) {
         let Some(file) = self.file_of(id) else { return };
-        let problems = diagnostics::in_entity(self, id, span);
+        let problems = diagnostics::in_entity(self, id);
         self.set_troubled(id, file, !problems.is_empty());
         self.touched.insert(file);
         self.last_edit.revalidated += 1;
@@ -395,26 +397,34 @@ fn used_keys(file: FileId, parse: &Parse) -> impl Iterator<Item = Key> {
     references.into_iter().map(move |(kind, name)| (file, kind, name.text.clone()))
 }
 
-/// The names that one version of an entity uses and the other does not, or otherwise.
-fn changed_uses(file: FileId, before: &Parse, after: &Parse) -> Vec<Key> {
-    let (before, after): (Vec<Key>, Vec<Key>) =
-        (used_keys(file, before).collect(), used_keys(file, after).collect());
-    if before == after { Vec::new() } else { [before, after].concat() }
+/// What one of two lists has and the other has not, or less often.
+fn only_in_one<T: Eq + Hash>(
+    before: impl Iterator<Item = T>,
+    after: impl Iterator<Item = T>,
+) -> impl Iterator<Item = T> {
+    let mut more: FxHashMap<T, i32> = FxHashMap::default();
+    for item in before {
+        *more.entry(item).or_default() += 1;
+    }
+    for item in after {
+        *more.entry(item).or_default() -= 1;
+    }
+    more.into_iter().filter(|(_, more)| *more != 0).map(|(item, _)| item)
 }
 
 /// The names whose meaning depends on an entity: the one it declares, and those that may be hidden in skipped text.
-fn visible_keys(file: FileId, parse: &Parse) -> Vec<Key> {
-    let skipped = parse.skipped_names.iter();
-    let hidden = skipped.flat_map(|name| EntityKind::ALL.map(|kind| (file, kind, name.clone())));
-    hidden.chain(defined_key(file, parse)).collect()
+fn visible_keys(file: FileId, parse: &Parse) -> impl Iterator<Item = Key> {
+    hidden_keys(file, parse.skipped_names.iter()).chain(defined_key(file, parse))
+}
+
+/// What names in skipped text may declare.
+fn hidden_keys<'a>(file: FileId, names: impl Iterator<Item = &'a SmolStr>) -> impl Iterator<Item = Key> {
+    names.flat_map(move |name| EntityKind::ALL.map(|kind| (file, kind, name.clone())))
 }
 
 /// Whether two versions of an entity look the same to all others. Places count as looks, because others point at
 /// them; what stands inside a movement's braces does not.
 fn looks_alike(before: &Parse, after: &Parse) -> bool {
-    if before.skipped_names != after.skipped_names {
-        return false;
-    }
     match (&before.entity, &after.entity) {
         (Some(Entity::Movement(before)), Some(Entity::Movement(after))) => {
             (&before.parallel, &before.name, &before.robot) == (&after.parallel, &after.name, &after.robot)

@@ -45,7 +45,7 @@ impl Database {
 
     /// Where a file declares a name, in the order of the text.
     pub fn declarations(&self, file: FileId, kind: EntityKind, name: &SmolStr) -> Vec<Span> {
-        let declaring = self.located(file, self.definitions(file, kind, name));
+        let declaring = self.located(self.definitions(file, kind, name));
         let place = |entity: EntityRef<'_>| {
             Some(entity.parse.entity.as_ref()?.name()?.span.shifted(entity.span.start))
         };
@@ -54,7 +54,7 @@ impl Database {
 
     /// Where a file uses a name, whatever it means there, in the order of the text.
     pub fn uses(&self, file: FileId, kind: EntityKind, name: &SmolStr) -> Vec<Span> {
-        let users = self.located(file, self.users(file, kind, name));
+        let users = self.located(self.users(file, kind, name));
         let places = |entity: EntityRef<'_>| {
             let references = entity.parse.entity.as_ref().map(|tree| tree.references()).unwrap_or_default();
             let same = references.into_iter().filter(|(other, found)| *other == kind && found.text == *name);
@@ -91,38 +91,23 @@ impl Database {
     fn open_comment(&self, file: FileId) -> Option<Span> {
         let open = self.get(file)?;
         let (token, span) = *self.data(open.pieces.last()?.entity)?.parse.lexemes.last()?;
-        (token == Token::UnterminatedComment).then(|| span.shifted(open.start_of(open.pieces.len() - 1)))
+        (token == Token::UnterminatedComment)
+            .then(|| span.shifted(open.pieces.start_of(open.pieces.len() - 1)))
     }
 
     /// The import statements of a file with the paths that they lead to, in the order of the text.
     pub fn import_statements(&self, file: FileId) -> Vec<(EntityRef<'_>, String)> {
         let statements = self.imports.get(&file).map_or(&[][..], |imports| &imports.entities);
-        let located = self.located(file, statements).into_iter();
+        let located = self.located(statements).into_iter();
         located.filter_map(|entity| Some((entity, self.import_path(entity.id)?))).collect()
     }
 
-    /// Entities of one file with their places, each once, in the order of the text, found in one walk.
-    fn located(&self, file: FileId, ids: &[EntityId]) -> Vec<EntityRef<'_>> {
+    /// Entities with their places, each once, in the order of the text.
+    fn located(&self, ids: &[EntityId]) -> Vec<EntityRef<'_>> {
         let mut wanted = ids.to_vec();
         wanted.sort_unstable_by_key(|id| self.order(*id));
         wanted.dedup();
-        let mut wanted = wanted.into_iter().peekable();
-        let pieces = self.get(file).map_or(&[][..], |file| &file.pieces);
-        let mut found = Vec::new();
-        let mut start = 0;
-        for piece in pieces {
-            if wanted.peek().is_none() {
-                break;
-            }
-            let span = Span::new(start, start + piece.len);
-            if let Some(id) = wanted.next_if_eq(&piece.entity)
-                && let Some(data) = self.data(id)
-            {
-                found.push(EntityRef { id, file, span, parse: &data.parse });
-            }
-            start = span.end;
-        }
-        found
+        wanted.into_iter().filter_map(|id| self.entity(id)).collect()
     }
 }
 

@@ -147,7 +147,6 @@ pub(super) struct Context<'a> {
     pub(super) database: &'a Database,
     pub(super) file: FileId,
     pub(super) id: EntityId,
-    span: Option<Span>,
     /// `None` for what stands before the first entity.
     pub(super) tree: Option<&'a Entity>,
     pub(super) errors: &'a [SyntaxError],
@@ -155,15 +154,13 @@ pub(super) struct Context<'a> {
 }
 
 impl<'a> Context<'a> {
-    /// `span` is where the entity stands, if that is known; else it is looked up when it is needed.
-    pub(super) fn new(database: &'a Database, id: EntityId, span: Option<Span>) -> Option<Self> {
+    pub(super) fn new(database: &'a Database, id: EntityId) -> Option<Self> {
         let parse = database.parse(id)?;
         let file = database.file_of(id)?;
         Some(Self {
             database,
             file,
             id,
-            span,
             tree: parse.entity.as_ref(),
             errors: &parse.errors,
             lexemes: &parse.lexemes,
@@ -221,7 +218,7 @@ impl<'a> Context<'a> {
 
     /// Where the entity stands in its file.
     fn place(&self) -> Option<Span> {
-        self.span.or_else(|| self.database.entity(self.id).map(|entity| entity.span))
+        self.database.entity(self.id).map(|entity| entity.span)
     }
 
     /// A replacement of text in this entity.

@@ -46,7 +46,6 @@ mod zero_distance;
 mod testing;
 
 use pydslrep_syntax::Span;
-use rustc_hash::FxHashMap;
 
 use self::consequences::Consequences;
 use self::context::{Brace, Context};
@@ -150,9 +149,9 @@ pub fn rule(code: &str) -> Option<&'static Rule> {
 }
 
 /// The problems of one entity, in the order of the text.
-pub(crate) fn in_entity(database: &Database, id: EntityId, span: Option<Span>) -> Vec<Problem> {
+pub(crate) fn in_entity(database: &Database, id: EntityId) -> Vec<Problem> {
     let mut problems = Vec::new();
-    if let Some(context) = Context::new(database, id, span) {
+    if let Some(context) = Context::new(database, id) {
         for rule in CATALOGUE {
             (rule.check)(&context, &mut problems);
         }
@@ -164,13 +163,14 @@ pub(crate) fn in_entity(database: &Database, id: EntityId, span: Option<Span>) -
 /// The problems of a file with absolute places.
 pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
     let troubled = database.troubled(file);
-    let ids: Vec<EntityId> = troubled.iter().map(|(id, _)| *id).collect();
+    let ids: Vec<EntityId> = troubled.iter().map(|entity| entity.id).collect();
     let problems: Vec<(u32, &Problem)> = troubled
         .into_iter()
-        .flat_map(|(id, start)| database.problems(id).iter().map(move |problem| (start, problem)))
+        .flat_map(|entity| {
+            database.problems(entity.id).iter().map(move |problem| (entity.span.start, problem))
+        })
         .collect();
     let consequences = Consequences::new(database, file, &ids, &problems);
-    let mut places = Places { database, starts: FxHashMap::default(), searches: 0 };
     let mut diagnostics: Vec<Diagnostic> = Vec::new();
     let mut open = None;
     for (start, problem) in problems.into_iter().filter(|(_, problem)| !consequences.include(problem)) {
@@ -183,7 +183,7 @@ pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
             }
             _ => {}
         }
-        diagnostics.push(places.diagnostic(file, start, problem));
+        diagnostics.push(located(database, file, start, problem));
     }
     diagnostics.extend(no_environment::in_file(database, file));
     diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);
@@ -192,18 +192,14 @@ pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
 
 /// The problems of some entities, wherever they are, with absolute places.
 pub(crate) fn of_entities(database: &Database, ids: &[EntityId]) -> Vec<Diagnostic> {
-    let mut places = Places { database, starts: FxHashMap::default(), searches: 0 };
     let mut diagnostics = Vec::new();
     for entity in ids.iter().filter_map(|id| database.entity(*id)) {
         for problem in database.problems(entity.id) {
-            diagnostics.push(places.diagnostic(entity.file, entity.span.start, problem));
+            diagnostics.push(located(database, entity.file, entity.span.start, problem));
         }
     }
     diagnostics
 }
-
-/// So many entities are looked for one by one; from then on it is quicker to walk their whole file.
-const MOST_SEARCHES: usize = 16;
 
 /// What to remove so that the lines around it stay as they are: where something else stands before it on its line, the
 /// end of that line is not part of it, but the space between the two is.
@@ -247,58 +243,35 @@ fn kept_apart(database: &Database, file: FileId, span: Span, text: &str) -> Stri
     format!("{left}{text}{right}")
 }
 
-/// Finds where other entities start; files are walked only where a problem points at another entity.
-struct Places<'a> {
-    database: &'a Database,
-    starts: FxHashMap<EntityId, u32>,
-    searches: usize,
+fn located(database: &Database, file: FileId, start: u32, problem: &Problem) -> Diagnostic {
+    let related = problem.related.iter().filter_map(|related| {
+        let (file, span) = absolute(database, related.entity, related.span)?;
+        Some(Related { file, span, message: related.message.clone() })
+    });
+    Diagnostic {
+        rule: problem.rule,
+        severity: problem.severity,
+        file,
+        span: problem.span.shifted(start),
+        message: problem.message.clone(),
+        help: problem.help.clone(),
+        note: problem.note.clone(),
+        related: related.collect(),
+        fixes: problem.fixes.iter().filter_map(|fix| located_fix(database, fix)).collect(),
+    }
 }
 
-impl Places<'_> {
-    fn diagnostic(&mut self, file: FileId, start: u32, problem: &Problem) -> Diagnostic {
-        let related = problem.related.iter().filter_map(|related| {
-            let (file, span) = self.absolute(related.entity, related.span)?;
-            Some(Related { file, span, message: related.message.clone() })
-        });
-        let related = related.collect();
-        let fixes = problem.fixes.iter().filter_map(|fix| self.fix(fix)).collect();
-        Diagnostic {
-            rule: problem.rule,
-            severity: problem.severity,
-            file,
-            span: problem.span.shifted(start),
-            message: problem.message.clone(),
-            help: problem.help.clone(),
-            note: problem.note.clone(),
-            related,
-            fixes,
-        }
-    }
+fn located_fix(database: &Database, fix: &ProblemFix) -> Option<Fix> {
+    let edits = fix.edits.iter().map(|edit| {
+        let (file, span) = absolute(database, edit.entity, edit.span)?;
+        let span = if edit.text.is_empty() { tidy_removal(database, file, span) } else { span };
+        let text = kept_apart(database, file, span, &edit.text);
+        Some(Edit { file, span, text: text.replace('\n', database.line_ending(file)) })
+    });
+    Some(Fix { title: fix.title.clone(), safe: fix.safe, edits: edits.collect::<Option<_>>()? })
+}
 
-    fn fix(&mut self, fix: &ProblemFix) -> Option<Fix> {
-        let edits = fix.edits.iter().map(|edit| {
-            let (file, span) = self.absolute(edit.entity, edit.span)?;
-            let span = if edit.text.is_empty() { tidy_removal(self.database, file, span) } else { span };
-            let text = kept_apart(self.database, file, span, &edit.text);
-            Some(Edit { file, span, text: text.replace('\n', self.database.line_ending(file)) })
-        });
-        Some(Fix { title: fix.title.clone(), safe: fix.safe, edits: edits.collect::<Option<_>>()? })
-    }
-
-    fn absolute(&mut self, id: EntityId, span: Span) -> Option<(FileId, Span)> {
-        let file = self.database.file_of(id)?;
-        if !self.starts.contains_key(&id) {
-            self.search(id, file);
-        }
-        Some((file, span.shifted(*self.starts.get(&id)?)))
-    }
-
-    fn search(&mut self, id: EntityId, file: FileId) {
-        self.searches += 1;
-        if self.searches > MOST_SEARCHES {
-            self.starts.extend(self.database.entities(file).map(|entity| (entity.id, entity.span.start)));
-        } else if let Some(entity) = self.database.entity(id) {
-            self.starts.insert(id, entity.span.start);
-        }
-    }
+fn absolute(database: &Database, id: EntityId, span: Span) -> Option<(FileId, Span)> {
+    let entity = database.entity(id)?;
+    Some((entity.file, span.shifted(entity.span.start)))
 }

@@ -52,10 +52,14 @@ pub fn parse(text: &str) -> Vec<(Span, Parse)> {
 }
 
 /// As [`parse`], handing over one piece after the other.
-pub fn parse_each(text: &str, mut emit: impl FnMut(Span, Parse)) {
+pub fn parse_each(text: &str, emit: impl FnMut(Span, Parse)) {
     let lexemes = lex(text);
+    parse_cut(text, &lexemes, &cut(&lexemes), emit);
+}
+
+/// As [`parse_each`], of a text that is lexed and cut already.
+pub fn parse_cut(text: &str, lexemes: &[Lexeme], starts: &[usize], mut emit: impl FnMut(Span, Parse)) {
     let end = Span::of(text).end;
-    let starts = cut(&lexemes);
     let mut pieces = Vec::with_capacity(starts.len() + 1);
     let first_start = starts.first().map_or(end, |&index| lexemes[index].1.start);
     if first_start > 0 || starts.is_empty() {
