@@ -195,6 +195,124 @@ local function reading()
   }, function() return colour('robot_1') end)
 end
 
+local function beside_the_program()
+  write('square.pyr', MENDED)
+  open('square.pyr')
+  vim.lsp.inlay_hint.enable(true, { bufnr = 0 })
+  local function hints()
+    local found = {}
+    for _, hint in ipairs(vim.lsp.inlay_hint.get({ bufnr = 0 })) do
+      found[hint.inlay_hint.position.line + 1] = hint.inlay_hint.label
+    end
+    return found
+  end
+  go_to('move 4')
+  local line = vim.api.nvim_win_get_cursor(0)[1]
+  local function ends() return (hints()[line] or ''):match('→ %(4 m, 0 m, 0°%)$') end
+  check('behind an action stands the pose it ends at', wait(ends), hints())
+  vim.lsp.inlay_hint.enable(false, { bufnr = 0 })
+
+  if vim.lsp.codelens.enable then
+    vim.lsp.codelens.enable(true, { bufnr = 0 })
+    local function titles()
+      local found = {}
+      for _, item in ipairs(vim.lsp.codelens.get({ bufnr = 0 })) do
+        local lens = item.lens
+        table.insert(found, lens.command and lens.command.title or '?')
+      end
+      return table.concat(found, ', ')
+    end
+    local wanted = 'Generate script, Run, Preview'
+    check('above an environment stands what can be done', wait(function() return titles():find(wanted) end), titles())
+    check('above a wheel how often it is used', wait(function() return titles():find('1 reference') end), titles())
+    vim.lsp.codelens.enable(false, { bufnr = 0 })
+  end
+
+  vim.wo.foldmethod, vim.wo.foldexpr, vim.wo.foldlevel = 'expr', 'v:lua.vim.lsp.foldexpr()', 0
+  go_to('movement')
+  local first = vim.api.nvim_win_get_cursor(0)[1]
+  wait(function() return vim.fn.foldlevel(first + 2) > 0 end)
+  local function folded() vim.cmd('normal! zM') return vim.fn.foldclosed(first + 2) end
+  becomes('a movement can be folded away', first, folded)
+  vim.wo.foldmethod, vim.wo.foldlevel = 'manual', 99
+  vim.cmd('normal! zE')
+end
+
+local function while_typing()
+  write('typed.pyr', MENDED)
+  open('typed.pyr')
+  go_to('turn right')
+  vim.api.nvim_input('Omove <C-s>')
+  local function signature()
+    for _, window in ipairs(vim.api.nvim_list_wins()) do
+      if vim.api.nvim_win_get_config(window).relative ~= '' then
+        local lines = text(vim.api.nvim_win_get_buf(window))
+        return lines:find('move DISTANCE meters | centimeters [at SPEED]', 1, true) and window
+      end
+    end
+  end
+  check('the shape of a statement is shown while it is typed', wait(signature))
+  vim.api.nvim_input('<Esc>')
+  open('typed.pyr')
+  if not vim.lsp.on_type_formatting then return end
+  vim.lsp.on_type_formatting.enable()
+  go_to('environment')
+  vim.api.nvim_input('Omovement   m_2 of    robot_1 { turn   left }')
+  becomes('a closing brace brings a movement into its layout', true, function()
+    return text():find('movement m_2 of robot_1 {\n  turn left\n}', 1, true) ~= nil
+  end)
+  vim.api.nvim_input('<Esc>')
+  vim.lsp.on_type_formatting.enable(false)
+end
+
+local function rewriting()
+  write('rewritten.pyr', MENDED)
+  open('rewritten.pyr')
+  go_to('move 4')
+  local titles = act('Convert to centimeters')
+  check('refactorings are offered', titles and vim.tbl_contains(titles, 'Convert to centimeters'), titles)
+  becomes('and done', true, function() return text():find('move 400', 1, true) ~= nil end)
+end
+
+local function files_that_move()
+  write('parts.pyr', 'wheel a with radius 4.5\nwheel b with radius 4.5\n')
+  write('main.pyr', 'import "parts.pyr"\nrobot r type tw with port 1 has { a b } wheels\n')
+  open('main.pyr')
+  becomes('an import is found', {}, errors)
+  local old, new = vim.uri_from_fname(vim.fn.fnamemodify('parts.pyr', ':p')), nil
+  new = old:gsub('parts%.pyr$', 'lib/parts.pyr')
+  local moved = { files = { { oldUri = old, newUri = new } } }
+  -- What file trees in Neovim do; it has no command of its own for it.
+  local answer = client():request_sync('workspace/willRenameFiles', moved, 10000, 0)
+  vim.lsp.util.apply_workspace_edit(answer.result, client().offset_encoding)
+  becomes('an import follows its file', 'import "lib/parts.pyr"', function() return vim.fn.getline(1) end)
+  vim.fn.mkdir('lib')
+  vim.uv.fs_rename('parts.pyr', 'lib/parts.pyr')
+  client():notify('workspace/didRenameFiles', moved)
+  becomes('and leads there', {}, errors)
+  vim.cmd.write()
+end
+
+local function settings_file()
+  write('pydslrep.toml', '[sevrity]\nwheel-count = "off"\n')
+  open('pydslrep.toml')
+  local function codes()
+    return vim.tbl_map(function(found) return found.code end, vim.diagnostic.get(0))
+  end
+  becomes('a slip in a settings file is underlined', { 'unknown-key' }, codes)
+  go_to('sevrity')
+  act('severity')
+  becomes('and mended', '[severity]', function() return vim.fn.getline(1) end)
+  becomes('and the underlining goes, too', {}, codes)
+  vim.cmd('bwipeout!')
+  vim.uv.fs_unlink('pydslrep.toml')
+  write('other.toml', 'x = 1\n')
+  vim.cmd.edit('other.toml')
+  sleep(100)
+  check('other TOML is nobody\'s business', not client())
+  vim.cmd('bwipeout!')
+end
+
 local function quick_fix()
   open('typo.pyr')
   becomes('reloaded as it was, the typo is still underlined', unknown(), errors)
@@ -287,7 +405,8 @@ end
 
 routine = coroutine.create(function()
   for _, part in ipairs({
-    diagnostics, no_script_of_a_broken_program, completion, reading, quick_fix, script, other_texts, life,
+    diagnostics, no_script_of_a_broken_program, completion, reading, beside_the_program, while_typing,
+    rewriting, files_that_move, settings_file, quick_fix, script, other_texts, life,
   }) do
     local fine, why = xpcall(part, debug.traceback)
     if not fine then
