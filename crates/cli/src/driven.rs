@@ -5,7 +5,7 @@ use std::io::{self, BufRead, BufReader};
 use std::path::Path;
 
 use pydslrep_kinematics::Pose;
-use pydslrep_simulator::TraceRecord;
+use pydslrep_simulator::{Sightings, TraceRecord};
 use serde::Deserialize;
 
 /// Poses nearer than this to the last one kept are left out, metres and radians.
@@ -17,6 +17,8 @@ pub(crate) struct Driven {
     robots: Vec<DrivenPath>,
     /// Simulation time of the last record, seconds.
     pub(crate) time: f64,
+    /// What the embedded simulator's sensors saw.
+    pub(crate) seen: Sightings,
 }
 
 /// The path of a robot.
@@ -41,7 +43,7 @@ impl Driven {
     /// No path yet.
     pub(crate) fn new<'a>(robots: impl Iterator<Item = &'a str>) -> Self {
         let robots = robots.map(|robot| DrivenPath { robot: robot.to_owned(), kept: Vec::new(), last: None });
-        Self { robots: robots.collect(), time: 0.0 }
+        Self { robots: robots.collect(), time: 0.0, seen: Sightings::default() }
     }
 
     /// Goes on with what the simulator recorded.

@@ -93,6 +93,7 @@ pub(crate) async fn drive(
     };
     if let Some(simulator) = simulator {
         driven.extend(&simulator.take_trace());
+        driven.seen = simulator.sightings();
     }
     Ok(ending)
 }

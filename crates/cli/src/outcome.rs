@@ -7,7 +7,7 @@ use pydslrep_kinematics::Pose;
 use pydslrep_simulator::picture::Route;
 
 use crate::commands::plan::{Planned, fixed, heading};
-use crate::driven::Driven;
+use crate::driven::{Driven, DrivenPath};
 use crate::output;
 
 /// A finished run.
@@ -63,8 +63,12 @@ impl Outcome<'_> {
 
     /// What to draw.
     pub(crate) fn routes(&self) -> Vec<Route> {
-        let routes = self.planned.routes().into_iter().zip(self.driven.paths());
-        routes.map(|(route, path)| Route { driven: path.poses(), ..route }).collect()
+        let routes = self.planned.routes().into_iter().zip(self.driven.paths()).enumerate();
+        let route = |(index, (route, path)): (usize, (Route, &DrivenPath))| {
+            let seen = self.driven.seen.of(index);
+            Route { driven: path.poses(), seen, ..route }
+        };
+        routes.map(route).collect()
     }
 
     fn times(&self) -> String {

@@ -26,8 +26,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             Pose::new(pose.x + off, pose.y - off / 2.0, pose.theta + off)
         };
         let driven = (0..).zip(&planned).map(drift).collect();
-        routes.push(Route { name: robot.name, body: robot.body, planned, unknown_after: false, driven });
+        routes.push(Route {
+            name: robot.name,
+            body: robot.body,
+            planned,
+            unknown_after: false,
+            driven,
+            seen: vec![],
+        });
     }
-    println!("{}", draw("area_1: planned and driven paths", &routes));
+    println!("{}", draw("area_1: planned and driven paths", &routes, &[]));
     Ok(())
 }

@@ -85,6 +85,7 @@ impl Planned {
             planned: path.sample(POINTS_PER_LEG),
             unknown_after: path.unknown_after.is_some(),
             driven: Vec::new(),
+            seen: Vec::new(),
         });
         routes.collect()
     }
@@ -131,7 +132,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     output::print(&if arguments.json { json(&plans)? } else { plans.iter().map(table).collect() })?;
     if let (Some(path), Some(planned)) = (&arguments.picture, plans.first()) {
         let title = format!("{}: planned path", planned.environment.name);
-        let drawing = picture::draw(&title, &planned.routes());
+        let drawing = picture::draw(&title, &planned.routes(), &planned.scene.obstacles);
         fs::write(path, drawing).map_err(|error| Failure::unwritten(path, &error))?;
         output::say(&format!("Picture: {}\n", path.display()));
     }

@@ -219,7 +219,7 @@ impl Run<'_> {
         output::print(&outcome.table())?;
         if let Some(path) = &self.arguments.picture {
             let title = format!("{}: planned and driven path", self.planned.environment.name);
-            let drawing = picture::draw(&title, &outcome.routes());
+            let drawing = picture::draw(&title, &outcome.routes(), &self.planned.scene.obstacles);
             fs::write(path, drawing).map_err(|error| Failure::unwritten(path, &error))?;
         }
         for (what, path) in [("picture", &self.arguments.picture), ("trace", &self.arguments.trace)] {

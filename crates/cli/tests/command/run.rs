@@ -55,7 +55,7 @@ fn the_articles_programs_end_where_they_should() {
 
 #[test]
 fn every_example_ends_where_it_is_planned() {
-    for (name, robots) in [("square", 1), ("mecanum", 1), ("convoy", 4), ("patrol", 1)] {
+    for (name, robots) in [("square", 1), ("mecanum", 1), ("convoy", 4), ("patrol", 1), ("crossing", 4)] {
         let program = repository(&format!("examples/{name}.pyr"));
         let plan: Value = serde_json::from_str(&Place::new().run(&["plan", "--json", &program]).out).unwrap();
         let ends = ends(&program);
@@ -124,4 +124,56 @@ fn a_missing_python_is_explained() {
     assert_eq!(done.code, Some(2));
     assert!(done.err.contains("no Python at ./no/python"), "{}", done.err);
     assert!(done.err.contains("install Python 3.10 or later"), "{}", done.err);
+}
+
+const SCOUT: &str = "\
+wheel wheelL with radius 4.5 wheel wheelR with radius 4.5 sensor fSensor
+robot scout with port 19997 has { wheelL wheelR } wheels with sensors { fSensor }
+movement ahead of scout { move 2 meters at 20 }
+movement around of scout { turn left until { fSensor } }
+environment wall has { scout } robots with { ahead } moves
+environment cage has { scout } robots with { around } moves";
+
+#[test]
+fn a_robot_turns_until_its_way_is_free() {
+    let place = Place::new();
+    let done = run(&place, &[&repository("examples/horseshoe.pyr"), "--picture", "u.svg"]);
+    assert_eq!(done.code, Some(0), "{}", done.err);
+    let picture = place.read("u.svg");
+    assert!(picture.contains("obstacle") && picture.contains("seen by a sensor"), "{picture}");
+}
+
+#[test]
+fn a_blocked_robot_fails_its_action() {
+    let place = Place::with("x.pyr", SCOUT);
+    place.write("wall.scene.toml", "[[wall]]\nfrom = [1, -1]\nto = [1, 1]\n");
+    let done = run(&place, &["x.pyr", "--environment", "wall", "--no-progress"]);
+    assert_eq!(done.code, Some(1), "{}", done.err);
+    let message = "action 1: move 2 m: came no nearer to its goal for 5 s, 1.201 m before it; something may be in its way";
+    assert!(done.err.contains(message), "{}", done.err);
+    assert!(done.out.contains("stopped   0.799   0.000"), "{}", done.out);
+}
+
+#[test]
+fn sensors_that_are_never_free_fail_their_action() {
+    let place = Place::with("x.pyr", SCOUT);
+    place.write("hut.toml", "[world]\nsize = [1, 1]\n");
+    let done = run(&place, &["x.pyr", "--environment", "cage", "--scene", "hut.toml", "--no-progress"]);
+    assert_eq!(done.code, Some(1), "{}", done.err);
+    assert!(done.err.contains("after a full turn fSensor still detect something"), "{}", done.err);
+}
+
+#[test]
+fn the_same_seed_is_the_same_run() {
+    let place = Place::with("x.pyr", SCOUT);
+    place.write("wall.scene.toml", "[noise]\n");
+    let trace = |seed: &str| {
+        let done =
+            run(&place, &["x.pyr", "--environment", "wall", "--seed", seed, "--trace", "t", "--no-progress"]);
+        assert_eq!(done.code, Some(0), "{}", done.err);
+        place.read("t")
+    };
+    let first = trace("1");
+    assert_eq!(first, trace("1"));
+    assert_ne!(first, trace("2"));
 }

@@ -14,7 +14,7 @@ use tokio::time::sleep;
 
 use super::connection::listen;
 use super::exchange::Exchange;
-use crate::{Session, TraceRecord, World, WorldError};
+use crate::{Session, Sightings, TraceRecord, World, WorldError};
 
 /// How often the clock looks at the time, whether it runs by itself or somebody steps it.
 const CLOCK_PERIOD: Duration = Duration::from_millis(2);
@@ -174,6 +174,11 @@ impl Simulator {
             let world = session.world();
             (0..world.scene().robots.len()).map(|robot| world.pose(robot)).collect()
         })
+    }
+
+    /// What sensors were read to see since the start.
+    pub fn sightings(&self) -> Sightings {
+        self.exchange.with_session(|session| session.sightings().clone())
     }
 
     /// What was recorded since the start or since the last time this was called: every robot at the start of a

@@ -1,10 +1,14 @@
 //! What the lines mean, and where each robot ended.
 
 use pydslrep_kinematics::{Pose, angle_between, heading_degrees};
-use svg::node::element::{Group, Rectangle};
+use pydslrep_scene::Obstacle;
+use svg::node::element::{Circle, Group, Rectangle};
 
 use super::view::is_finite;
-use super::{DRIVEN_OPACITY, DRIVEN_WIDTH, END_FILL, INK, QUIET, Route, colour, line, pixels, shorten, text};
+use super::{
+    DRIVEN_OPACITY, DRIVEN_WIDTH, END_FILL, INK, OBSTACLE, OBSTACLE_EDGE, QUIET, Route, SIGHTING, colour,
+    line, pixels, shorten, text,
+};
 
 /// Pixels.
 pub(super) const WIDTH: f64 = 252.0;
@@ -17,18 +21,20 @@ const KEY_LINE: f64 = 22.0;
 const ENTRY_HEIGHT: f64 = 66.0;
 const LONGEST_NAME: usize = 24;
 
-pub(super) fn height(routes: &[Route]) -> f64 {
-    routes.iter().map(|_| ENTRY_HEIGHT).sum::<f64>() + KEY_HEIGHT
+pub(super) fn height(routes: &[Route], obstacles: &[Obstacle]) -> f64 {
+    routes.iter().map(|_| ENTRY_HEIGHT).sum::<f64>()
+        + KEY_HEIGHT
+        + 2.0 * KEY_LINE * f64::from(u8::from(!obstacles.is_empty()))
 }
 
-pub(super) fn draw(routes: &[Route], left: f64, top: f64) -> Group {
+pub(super) fn draw(routes: &[Route], obstacles: &[Obstacle], left: f64, top: f64) -> Group {
     let mut group = Group::new();
     let mut y = top;
     for (index, route) in routes.iter().enumerate() {
         group = group.add(entry(route, colour(index), left, y));
         y += ENTRY_HEIGHT;
     }
-    group.add(key(routes, left, y))
+    group.add(key(routes, obstacles, left, y))
 }
 
 fn entry(route: &Route, colour: &str, left: f64, top: f64) -> Group {
@@ -47,7 +53,7 @@ fn entry(route: &Route, colour: &str, left: f64, top: f64) -> Group {
 }
 
 /// What the lines and bodies mean; only what is in the picture.
-fn key(routes: &[Route], left: f64, top: f64) -> Group {
+fn key(routes: &[Route], obstacles: &[Obstacle], left: f64, top: f64) -> Group {
     let mut samples: Vec<(&str, Box<dyn svg::Node>)> = Vec::new();
     let stroke = |width: f64| line((0.0, 0.0), (36.0, 0.0), QUIET).set("stroke-width", width);
     let outline = |fill: f64, stroke: f64| {
@@ -64,6 +70,15 @@ fn key(routes: &[Route], left: f64, top: f64) -> Group {
     if !routes.is_empty() {
         samples.push(("at the start", Box::new(outline(0.0, 1.2))));
         samples.push(("at the end", Box::new(outline(END_FILL, 2.0))));
+    }
+    if !obstacles.is_empty() {
+        let place = Rectangle::new().set("x", 11).set("y", -7).set("width", 14).set("height", 14);
+        let place = place.set("fill", OBSTACLE).set("stroke", OBSTACLE_EDGE);
+        samples.push(("obstacle", Box::new(place)));
+    }
+    if routes.iter().any(|route| !route.seen.is_empty()) {
+        let dot = Circle::new().set("cx", 18).set("r", SIGHTING).set("fill", QUIET);
+        samples.push(("seen by a sensor", Box::new(dot)));
     }
     let mut group = Group::new();
     let mut y = top + 12.0;
@@ -122,7 +137,14 @@ mod tests {
         let body = Body { length: 0.3, width: 0.3 };
         let turned = Pose::new(-1.0, 0.003, std::f64::consts::PI - 0.01);
         let planned = vec![Pose::new(-1.0, 0.0, -std::f64::consts::PI + 0.01)];
-        let mut route = Route { name: "r".into(), body, planned, unknown_after: false, driven: vec![turned] };
+        let mut route = Route {
+            name: "r".into(),
+            body,
+            planned,
+            unknown_after: false,
+            driven: vec![turned],
+            seen: vec![],
+        };
         assert_eq!(error_text(&route), "3.0 mm, 1.15° off the plan");
         assert_eq!(end_text(&route), "ends at (−1.000, 0.003) m, 179.4°");
         route.unknown_after = true;

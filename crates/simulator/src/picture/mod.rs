@@ -6,7 +6,7 @@ mod legend;
 mod view;
 
 use pydslrep_kinematics::Pose;
-use pydslrep_scene::Body;
+use pydslrep_scene::{Body, Obstacle};
 use svg::Document;
 use svg::node::element::{Circle, Group, Line, Polygon, Polyline, Rectangle, Text};
 
@@ -19,6 +19,8 @@ const INK: &str = "#24292f";
 const QUIET: &str = "#6e7781";
 const GRID: &str = "#e4e8ec";
 const AXIS: &str = "#c3cad1";
+const OBSTACLE: &str = "#d4dae1";
+const OBSTACLE_EDGE: &str = "#8c959f";
 const FONT: &str = "'Helvetica Neue', Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 
 /// Room for title, tick labels and legend about the floor, pixels.
@@ -37,6 +39,12 @@ const END_FILL: f64 = 0.22;
 const DRIVEN_WIDTH: f64 = 5.0;
 const DRIVEN_OPACITY: f64 = 0.6;
 
+/// The radius of a point that a sensor saw, pixels.
+const SIGHTING: f64 = 2.2;
+
+/// A circle is drawn with so many corners.
+const CIRCLE_SIDES: u32 = 48;
+
 /// How wide a letter of the title is at most, pixels.
 const TITLE_LETTER: f64 = 12.0;
 
@@ -53,15 +61,17 @@ pub struct Route {
     pub unknown_after: bool,
     /// The driven poses in order; empty when nothing was driven.
     pub driven: Vec<Pose>,
+    /// Points on the floor that the robot's sensors saw.
+    pub seen: Vec<(f64, f64)>,
 }
 
-/// Draws the routes on the floor: planned dashed, driven solid, bodies at start and end, a grid in metres, and a
-/// legend with the end of each route and how far it is off the plan.
-pub fn draw(title: &str, routes: &[Route]) -> String {
-    let view = View::of(routes, LEFT, TOP);
+/// Draws the routes on the floor among its obstacles: planned dashed, driven solid, bodies at start and end, what sensors
+/// saw, a grid in metres, and a legend with the end of each route and how far it is off the plan.
+pub fn draw(title: &str, routes: &[Route], obstacles: &[Obstacle]) -> String {
+    let view = View::of(routes, obstacles, LEFT, TOP);
     let legend_left = view.left + view.width + RIGHT;
     let width = legend_left + legend::WIDTH + RIGHT;
-    let height = TOP + view.height.max(legend::height(routes)) + BOTTOM;
+    let height = TOP + view.height.max(legend::height(routes, obstacles)) + BOTTOM;
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a width in pixels
     let title = shorten(title, ((width - LEFT - RIGHT) / TITLE_LETTER) as usize);
     let paper = Rectangle::new().set("width", "100%").set("height", "100%").set("fill", "#ffffff");
@@ -72,14 +82,18 @@ pub fn draw(title: &str, routes: &[Route]) -> String {
         .set("font-family", FONT)
         .add(paper)
         .add(text(&title, LEFT, 32.0, 18).set("font-weight", "bold"))
-        .add(floor(&view));
+        .add(floor(&view))
+        .add(things(&view, obstacles));
     for (index, route) in routes.iter().enumerate() {
         document = document.add(lines(&view, route, colour(index)));
     }
     for (index, route) in routes.iter().enumerate() {
         document = document.add(bodies(&view, route, colour(index)));
     }
-    document.add(legend::draw(routes, legend_left, TOP)).to_string()
+    for (index, route) in routes.iter().enumerate() {
+        document = document.add(sightings(&view, route, colour(index)));
+    }
+    document.add(legend::draw(routes, obstacles, legend_left, TOP)).to_string()
 }
 
 fn colour(index: usize) -> &'static str {
@@ -155,6 +169,39 @@ fn tick_label(tick: f64, step: f64) -> String {
     let decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
     let label = format!("{:.decimals$}", tick.abs());
     if tick < 0.0 { format!("−{label}") } else { label }
+}
+
+/// The outlines of obstacles.
+fn things(view: &View, obstacles: &[Obstacle]) -> Group {
+    if obstacles.is_empty() {
+        return Group::new();
+    }
+    let shape = |obstacle: &Obstacle| {
+        let outline = obstacle.outline(CIRCLE_SIDES);
+        let points: Vec<_> = outline.iter().map(|&(x, y)| view.place(x, y)).collect();
+        Polygon::new().set("points", list(&points))
+    };
+    let look = Group::new()
+        .set("fill", OBSTACLE)
+        .set("stroke", OBSTACLE_EDGE)
+        .set("stroke-width", 1)
+        .set("stroke-linejoin", "round");
+    obstacles.iter().fold(look, |group, obstacle| group.add(shape(obstacle)))
+}
+
+/// Points that a robot's sensors saw.
+fn sightings(view: &View, route: &Route, colour: &str) -> Group {
+    let mut drawn = std::collections::BTreeSet::new();
+    let mut group = Group::new().set("fill", colour).set("stroke", "#ffffff").set("stroke-width", 0.5);
+    for &(x, y) in &route.seen {
+        let (x, y) = view.place(x, y);
+        #[allow(clippy::cast_possible_truncation)] // pixels
+        if drawn.insert(((x / SIGHTING).round() as i64, (y / SIGHTING).round() as i64)) {
+            let dot = Circle::new().set("cx", pixels(x)).set("cy", pixels(y)).set("r", SIGHTING);
+            group = group.add(dot);
+        }
+    }
+    group
 }
 
 /// The driven line in the robot's colour, and on it the planned one, dashed.
@@ -240,32 +287,32 @@ mod tests {
         let side = [Action::Move { distance: 1.0, speed: 0.09 }, turn];
         let planned = plan_movement(&model, Pose::default(), &side.repeat(3)).sample(50);
         let driven = planned.iter().map(|pose| Pose { x: pose.x + 0.002, ..*pose }).collect();
-        Route { name: "robot_1".to_owned(), body: BODY, planned, unknown_after: false, driven }
+        Route { name: "robot_1".to_owned(), body: BODY, planned, unknown_after: false, driven, seen: vec![] }
     }
 
     #[test]
     fn a_route_with_its_error() {
-        let picture = draw("area_1", &[square()]);
+        let picture = draw("area_1", &[square()], &[]);
         for part in
             ["<svg", "area_1", "robot_1", "2.0 mm", "stroke-dasharray", "x in m", "\n0.0\n", "\n−0.2\n"]
         {
             assert!(picture.contains(part), "no {part} in {picture}");
         }
-        assert_eq!(picture, draw("area_1", &[square()]), "the same picture each time");
+        assert_eq!(picture, draw("area_1", &[square()], &[]), "the same picture each time");
     }
 
     #[test]
     fn lines_have_no_more_points_than_can_be_seen() {
         let mut route = square();
         route.driven = (0..100_000).map(|i| Pose::new(f64::from(i) * 1e-5, 0.0, 0.0)).collect();
-        assert!(draw("fine", &[route]).len() < 40_000);
+        assert!(draw("fine", &[route], &[]).len() < 40_000);
     }
 
     #[test]
     fn names_cannot_break_out_of_the_picture() {
         let mut route = square();
         route.name = "</text><script>\u{1}".to_owned();
-        let picture = draw("a & b", &[route]);
+        let picture = draw("a & b", &[route], &[]);
         assert!(!picture.contains("<script") && !picture.contains('\u{1}') && picture.contains("a &amp; b"));
     }
 
@@ -278,7 +325,7 @@ mod tests {
         let far = Route { planned: vec![Pose::new(-1e12, 1e12, 0.0), Pose::default()], ..square() };
         let empty = Route { planned: vec![], driven: vec![], ..square() };
         for routes in [vec![], vec![route], vec![still], vec![far], vec![empty]] {
-            let picture = draw("strange", &routes);
+            let picture = draw("strange", &routes, &[]);
             assert!(
                 picture.contains("</svg>") && !picture.contains("NaN") && !picture.contains("inf"),
                 "{picture}"
@@ -287,11 +334,26 @@ mod tests {
     }
 
     #[test]
+    fn obstacles_and_what_is_seen_of_them() {
+        let wall = Obstacle::wall("w", (3.0, -1.0), (3.0, 1.0), 0.1);
+        let route = Route { seen: vec![(2.95, 0.0), (2.95, 0.0001), (2.95, 0.5)], ..square() };
+        let with = draw("w", &[route.clone()], std::slice::from_ref(&wall));
+        let without = draw("w", &[Route { seen: vec![], ..route }], &[]);
+        let dots = |picture: &str| picture.matches("<circle").count();
+        // Two points that can be told apart, and one in the legend.
+        assert_eq!(dots(&with), dots(&without) + 3);
+        assert!(with.contains(OBSTACLE) && with.contains("obstacle") && with.contains("seen by a sensor"));
+        assert!(!without.contains(OBSTACLE) && !without.contains("obstacle"));
+        let view = View::of(&[square()], &[wall], 0.0, 0.0);
+        assert!(view.place(3.05, 0.0).0 < view.width, "all of it is in the picture");
+    }
+
+    #[test]
     fn ticks_are_round_numbers() {
         let labels: Vec<String> =
             [(0.1, 0.1), (-0.5, 0.5), (2.0, 1.0), (-20.0, 20.0)].map(|(t, s)| tick_label(t, s)).into();
         assert_eq!(labels, ["0.1", "−0.5", "2", "−20"]);
-        let ticks = View::of(&[square()], 0.0, 0.0).x_ticks();
+        let ticks = View::of(&[square()], &[], 0.0, 0.0).x_ticks();
         assert!(ticks.len() >= 5 && ticks.len() < 20 && ticks.contains(&0.0), "{ticks:?}");
     }
 }

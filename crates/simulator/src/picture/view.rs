@@ -1,6 +1,7 @@
 //! From metres on the floor to pixels in the picture.
 
 use pydslrep_kinematics::Pose;
+use pydslrep_scene::Obstacle;
 
 use super::Route;
 
@@ -35,8 +36,8 @@ pub(super) struct View {
 }
 
 impl View {
-    /// A view that holds all paths with the robots' bodies, its upper left corner at (`left`, `top`).
-    pub(super) fn of(routes: &[Route], left: f64, top: f64) -> Self {
+    /// A view that holds all paths with the robots' bodies and all obstacles, its upper left corner at (`left`, `top`).
+    pub(super) fn of(routes: &[Route], obstacles: &[Obstacle], left: f64, top: f64) -> Self {
         let (mut x, mut y) = (Span::EMPTY, Span::EMPTY);
         for route in routes {
             let reach = route.body.length.hypot(route.body.width) / 2.0;
@@ -44,6 +45,11 @@ impl View {
                 x.include(pose.x, reach);
                 y.include(pose.y, reach);
             }
+        }
+        // The corners of what is drawn as a circle are on it at its four ends.
+        for (corner_x, corner_y) in obstacles.iter().flat_map(|obstacle| obstacle.outline(4)) {
+            x.include(corner_x, 0.0);
+            y.include(corner_y, 0.0);
         }
         let (mut x, mut y) = (x.at_least(LEAST_SPAN / 2.0), y.at_least(LEAST_SPAN / 2.0));
         let longer = x.length().max(y.length()).max(LEAST_SPAN);

@@ -8,7 +8,7 @@ use nalgebra::{Isometry3, Point3, Vector3};
 use super::arguments::{self, Arguments, Outcome};
 use super::info;
 use super::objects::{Handle, Kind, Objects};
-use crate::World;
+use crate::{Sightings, World};
 
 /// What calls work on.
 pub(super) struct Bench<'a> {
@@ -19,6 +19,7 @@ pub(super) struct Bench<'a> {
     pub(super) drivers: &'a mut Drivers,
     /// Who calls.
     pub(super) connection: u64,
+    pub(super) seen: &'a mut Sightings,
 }
 
 /// Which connection asked each wheel for its rate last, by robot and wheel.
@@ -265,7 +266,7 @@ impl Bench<'_> {
     }
 
     /// State, distance, point, handle of what was detected, its normal.
-    fn read_proximity_sensor(&self, arguments: &Arguments) -> Outcome {
+    fn read_proximity_sensor(&mut self, arguments: &Arguments) -> Outcome {
         let handle = self.sensor(arguments)?;
         let nothing = || arguments::list([0.0; 3]);
         let Some(seen) = self.detected(handle) else {
@@ -277,7 +278,7 @@ impl Bench<'_> {
     }
 
     /// What a proximity sensor detects since the first step.
-    pub(super) fn detected(&self, handle: Handle) -> Option<Detected> {
+    pub(super) fn detected(&mut self, handle: Handle) -> Option<Detected> {
         let Kind::Sensor { robot, sensor } = self.objects.get(handle)?.kind else { return None };
         if !self.has_handled_sensors() {
             return None;
@@ -287,6 +288,7 @@ impl Bench<'_> {
         // What is on the floor is as high as the sensor.
         let point = Point3::new(seen.point.0, seen.point.1, frame.translation.z);
         let way = frame.inverse_transform_point(&point).coords;
+        self.seen.add(robot, seen.point);
         Some(Detected {
             distance: seen.distance,
             // Where it would be at the distance that was measured.

@@ -10,7 +10,7 @@ use super::calls::{self, Bench, Drivers};
 use super::info;
 use super::legacy;
 use super::objects::Objects;
-use crate::{TraceRecord, World};
+use crate::{Sightings, TraceRecord, World};
 
 /// Requests nest their arguments two or three levels deep; more is an attack on the stack.
 const NESTING: usize = 32;
@@ -50,6 +50,7 @@ pub struct Session {
     pub(super) legacy: BTreeMap<u64, legacy::Client>,
     pub(super) drivers: Drivers,
     trace: Option<Vec<TraceRecord>>,
+    seen: Sightings,
     /// Steps that clients may still have taken; `None` is any number.
     allowance: Option<u32>,
 }
@@ -101,6 +102,7 @@ impl Session {
             legacy: BTreeMap::new(),
             drivers: Drivers::new(),
             trace: None,
+            seen: Sightings::default(),
             allowance: None,
         }
     }
@@ -131,6 +133,11 @@ impl Session {
     /// What was recorded since the last time this was asked.
     pub fn take_trace(&mut self) -> Vec<TraceRecord> {
         self.trace.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+
+    /// What sensors were read to see.
+    pub fn sightings(&self) -> &Sightings {
+        &self.seen
     }
 
     /// The world as it is now.
@@ -247,15 +254,25 @@ impl Session {
             }
             "sim.getSimulationState" => Ok(vec![self.state_number().into()]),
             function => {
-                let started = self.state != State::Stopped;
-                let (world, objects, drivers) = (&mut self.world, &self.objects, &mut self.drivers);
-                let mut bench = Bench { world, objects, started, drivers, connection };
+                let mut bench = self.bench(connection);
                 let name = function.strip_prefix("sim.").unwrap_or_default();
                 calls::call(&mut bench, name, &arguments)
                     .unwrap_or_else(|| Err(Failure(format!("No such function: {function}"))))
             }
         };
         Reply::Now(outcome)
+    }
+
+    /// What a call of a connection works on.
+    pub(super) fn bench(&mut self, connection: u64) -> Bench<'_> {
+        Bench {
+            world: &mut self.world,
+            objects: &self.objects,
+            started: self.state != State::Stopped,
+            drivers: &mut self.drivers,
+            connection,
+            seen: &mut self.seen,
+        }
     }
 
     fn see_client(&mut self, connection: u64, now: Duration, request: &Request) -> Result<(), Failure> {

@@ -69,7 +69,7 @@ fn set_target_velocity(bench: &mut Bench, handle: Handle, rate: f64) -> Option<O
 }
 
 /// State, point in the sensor's frame, handle of what was detected, its normal.
-fn read_proximity_sensor(bench: &Bench, handle: Handle) -> Option<Outcome> {
+fn read_proximity_sensor(bench: &mut Bench, handle: Handle) -> Option<Outcome> {
     let Kind::Sensor { .. } = bench.objects.get(handle)?.kind else { return None };
     let mut payload = vec![0; 29];
     payload[13..17].copy_from_slice(&(-1_i32).to_le_bytes());

@@ -9,7 +9,6 @@ mod message;
 
 use std::time::Duration;
 
-use super::calls::Bench;
 use super::session::{Answer, Session, State};
 use message::{Command, Message, Name, Outcome, Reply, mode};
 
@@ -195,11 +194,7 @@ impl Session {
                 }
                 _ => Outcome::failure(),
             },
-            _ => {
-                let started = self.state != State::Stopped;
-                let (world, objects, drivers) = (&mut self.world, &self.objects, &mut self.drivers);
-                commands::execute(&mut Bench { world, objects, started, drivers, connection }, name, payload)
-            }
+            _ => commands::execute(&mut self.bench(connection), name, payload),
         }
     }
 
