@@ -337,7 +337,7 @@ mod tests {
     fn obstacles_and_what_is_seen_of_them() {
         let wall = Obstacle::wall("w", (3.0, -1.0), (3.0, 1.0), 0.1);
         let route = Route { seen: vec![(2.95, 0.0), (2.95, 0.0001), (2.95, 0.5)], ..square() };
-        let with = draw("w", &[route.clone()], std::slice::from_ref(&wall));
+        let with = draw("w", std::slice::from_ref(&route), std::slice::from_ref(&wall));
         let without = draw("w", &[Route { seen: vec![], ..route }], &[]);
         let dots = |picture: &str| picture.matches("<circle").count();
         // Two points that can be told apart, and one in the legend.
