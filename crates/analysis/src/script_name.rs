@@ -8,9 +8,20 @@ use rustc_hash::FxHashSet;
 static STANDARD_MODULES: LazyLock<FxHashSet<&str>> =
     LazyLock::new(|| include_str!("standard_modules.txt").lines().collect());
 
-/// Modules that the script's client imports, or looks for, beside the standard ones.
-const CLIENT_MODULES: [&str; 6] =
-    ["cbor", "cbor2", "cffi", "coppeliasim_zmqremoteapi_client", "numpy", "zmq"];
+/// Modules that the clients of scripts import, or look for, beside the standard ones. Those of all targets count: a
+/// script would hide them from others in its folder, too.
+const CLIENT_MODULES: [&str; 10] = [
+    "cbor",
+    "cbor2",
+    "cffi",
+    "coppeliasim_zmqremoteapi_client",
+    "numpy",
+    "sim",
+    "simConst",
+    "vrep",
+    "vrepConst",
+    "zmq",
+];
 
 /// What a script is called.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -116,6 +127,8 @@ mod tests {
             ("annotationlib", Obstacle::StandardModule),
             ("zmq", Obstacle::ClientModule),
             ("cbor2", Obstacle::ClientModule),
+            ("sim", Obstacle::ClientModule),
+            ("vrep", Obstacle::ClientModule),
             ("con", Obstacle::ReservedOnWindows),
             ("NUL", Obstacle::ReservedOnWindows),
             ("Com7", Obstacle::ReservedOnWindows),

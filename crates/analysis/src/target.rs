@@ -26,7 +26,7 @@ impl Target {
     pub const fn summary(self) -> &'static str {
         match self {
             Self::CoppeliaSim => "CoppeliaSim 4.6 or later, by its ZeroMQ remote API",
-            Self::VRep => "V-REP 3, by its legacy remote API; its scripts cannot be generated yet",
+            Self::VRep => "V-REP 3, by its legacy remote API: each robot has a port of its own",
         }
     }
 

@@ -43,6 +43,8 @@ pub(crate) enum Ending {
 /// What to start.
 pub(crate) struct Script {
     pub(crate) python: PathBuf,
+    /// Whether Python may only use what is installed for it, not what is beside the script or in the environment.
+    pub(crate) isolated: bool,
     /// The script and its arguments.
     pub(crate) arguments: Vec<std::ffi::OsString>,
 }
@@ -151,8 +153,11 @@ impl Running {
         let failure =
             |reason: &str| Failure::new(format!("cannot start {}: {reason}", script.python.display()));
         let mut command = Command::new(&script.python);
-        // Isolated: nothing beside the script or in the environment can take the place of a module.
-        command.args(["-I", "-X", "utf8"]).args(&script.arguments);
+        if script.isolated {
+            // Nothing can take the place of a module.
+            command.arg("-I");
+        }
+        command.args(["-X", "utf8"]).args(&script.arguments);
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).kill_on_drop(true);
         // Ctrl-C reaches the script once, from here.
         #[cfg(unix)]

@@ -12,9 +12,10 @@
 //! * [`lines`]: how much people and the generator write.
 //! * [`watch`]: when to look again.
 //! * [`commands`]: one file per command.
-//! * [`python`], [`driver`], [`progress`], [`driven`], [`outcome`]: a run, from an interpreter to its result.
+//! * [`python`], [`client`], [`driver`], [`progress`], [`driven`], [`outcome`]: a run, from an interpreter to its result.
 
 mod arguments;
+mod client;
 mod commands;
 mod driven;
 mod driver;
@@ -37,6 +38,7 @@ mod sarif;
 mod scenes;
 mod severities;
 mod sources;
+mod target;
 mod watch;
 
 use std::process::ExitCode;

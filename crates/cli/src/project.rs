@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use annotate_snippets::{AnnotationKind, Group, Level, Snippet};
 use pydslrep_analysis::FileId;
-use pydslrep_config::{Config, FILE_NAME, Problem, Settings, Target};
+use pydslrep_config::{Config, FILE_NAME, Problem, Settings};
 use pydslrep_files::{project_folder, without_mark};
 
 use crate::failure::Failure;
@@ -78,19 +78,6 @@ impl Project {
     pub(crate) fn output(&self) -> Option<PathBuf> {
         let folder = self.file.as_ref()?.parent()?;
         Some(near(&folder.join(self.settings.output.as_ref()?)))
-    }
-
-    /// The simulator that scripts are for.
-    ///
-    /// # Errors
-    /// When there are no scripts for it yet.
-    pub(crate) fn target(&self) -> Result<pydslrep_script::Target, Failure> {
-        match self.settings.target {
-            Target::CoppeliaSim => Ok(pydslrep_script::Target::CoppeliaSim),
-            Target::VRep => Err(Failure::new("scripts for `vrep` cannot be generated yet").help(format!(
-                "choose `coppeliasim`, V-REP's successor, by --target or in {FILE_NAME}: it is the default"
-            ))),
-        }
     }
 }
 

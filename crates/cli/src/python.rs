@@ -1,4 +1,5 @@
-//! A Python that can run scripts: a private virtual environment with what they need, made on first use.
+//! A Python that can run scripts: a private virtual environment with what they need, made on first use; for scripts that
+//! need nothing, the user's own.
 
 use std::env;
 use std::ffi::OsStr;
@@ -49,7 +50,7 @@ struct Interpreter {
 /// # Errors
 /// When there is no suitable Python, or the environment cannot be made.
 pub(crate) async fn prepare(chosen: Option<&Path>, quiet: bool) -> Result<PathBuf, Failure> {
-    let base = interpreter(chosen).await?;
+    let base = find(chosen).await?;
     let cache = cache()?;
     let home = cache.join(name(&base));
     if works(&home) {
@@ -70,7 +71,15 @@ fn spinner() -> ProgressBar {
     bar
 }
 
-async fn interpreter(chosen: Option<&Path>) -> Result<Interpreter, Failure> {
+/// The interpreter itself, for scripts that need nothing from PyPI.
+///
+/// # Errors
+/// When there is no suitable one.
+pub(crate) async fn interpreter(chosen: Option<&Path>) -> Result<PathBuf, Failure> {
+    Ok(find(chosen).await?.path)
+}
+
+async fn find(chosen: Option<&Path>) -> Result<Interpreter, Failure> {
     let Some(chosen) = chosen else {
         let mut found = Err(Failure::new("there is no Python on this machine's PATH").help(INSTALL_PYTHON));
         for name in ["python3", "python"] {

@@ -16,8 +16,12 @@ use pydslrep_script::{Target, file_name, generate};
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = env::args().nth(1).ok_or("usage: variants FOLDER")?;
     for environment in variants() {
-        let script = generate(&environment, Target::CoppeliaSim)?;
-        fs::write(Path::new(&folder).join(file_name(&environment)), script)?;
+        for target in Target::ALL {
+            let script = generate(&environment, target)?;
+            // Both are in one folder, where each needs a name of its own.
+            let name = format!("{}_{}", target.word(), file_name(&environment));
+            fs::write(Path::new(&folder).join(name), script)?;
+        }
     }
     Ok(())
 }

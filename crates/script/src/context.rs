@@ -6,7 +6,7 @@ use pydslrep_analysis::environment::{Action, ActionKind, Environment, Movement, 
 use pydslrep_kinematics::{Drive, motion::RIM_SPEED};
 use serde::Serialize;
 
-use crate::ScriptError;
+use crate::{ScriptError, Target};
 
 /// Longer names would break lines that everything else leaves whole.
 const LONGEST_NAME_IN_IDENTIFIER: usize = 40;
@@ -16,6 +16,9 @@ const LONGEST_NAME_IN_IDENTIFIER: usize = 40;
 #[allow(clippy::struct_excessive_bools, reason = "each answers a question of the template")]
 pub(crate) struct Script {
     name: String,
+    simulator: &'static str,
+    /// Whether the target is V-REP.
+    vrep: bool,
     host: String,
     /// The classes of all drives in use, each once.
     drives: Vec<&'static str>,
@@ -81,7 +84,7 @@ enum Call {
 
 impl Script {
     /// The environment's data; an error where scripts cannot do some action yet.
-    pub(crate) fn new(environment: &Environment) -> Result<Self, ScriptError> {
+    pub(crate) fn new(environment: &Environment, target: Target) -> Result<Self, ScriptError> {
         // Without robots there is still a class that says what a robot's drive would be.
         let has = |drive| match environment.robots.as_slice() {
             [] => drive == Drive::TwoWheel,
@@ -98,6 +101,11 @@ impl Script {
             .collect();
         Ok(Self {
             name: plain(&environment.name),
+            simulator: match target {
+                Target::CoppeliaSim => "CoppeliaSim",
+                Target::VRep => "V-REP",
+            },
+            vrep: target == Target::VRep,
             host: environment.host.unwrap_or(Ipv4Addr::LOCALHOST).to_string(),
             drives: drives.into_iter().filter(|&drive| has(drive)).map(class).collect(),
             two_wheel,

@@ -9,7 +9,7 @@ use crate::{ScriptError, context::Script};
 const TEMPLATE: &str = "environment.py.j2";
 
 /// Every source by the name that `include` knows it by.
-const SOURCES: [(&str, &str); 15] = [
+const SOURCES: [(&str, &str); 17] = [
     (TEMPLATE, include_str!("../templates/environment.py.j2")),
     ("approach.py", include_str!("../python/pydslrep_parts/approach.py")),
     ("command.py", include_str!("../python/pydslrep_parts/command.py")),
@@ -19,12 +19,14 @@ const SOURCES: [(&str, &str); 15] = [
     ("drive_two_wheel.py", include_str!("../python/pydslrep_parts/drive_two_wheel.py")),
     ("errors.py", include_str!("../python/pydslrep_parts/errors.py")),
     ("fleet.py", include_str!("../python/pydslrep_parts/fleet.py")),
+    ("model.py", include_str!("../python/pydslrep_parts/model.py")),
     ("movement.py", include_str!("../python/pydslrep_parts/movement.py")),
     ("pose.py", include_str!("../python/pydslrep_parts/pose.py")),
     ("robot.py", include_str!("../python/pydslrep_parts/robot.py")),
     ("settings.py", include_str!("../python/pydslrep_parts/settings.py")),
     ("steering.py", include_str!("../python/pydslrep_parts/steering.py")),
     ("trace_file.py", include_str!("../python/pydslrep_parts/trace_file.py")),
+    ("vrep.py", include_str!("../python/pydslrep_parts/vrep.py")),
 ];
 
 /// The text of a script.

@@ -19,6 +19,10 @@ fn script(environment: &Environment) -> String {
     generate(environment, Target::CoppeliaSim).expect("a script")
 }
 
+fn vrep_script(environment: &Environment) -> String {
+    generate(environment, Target::VRep).expect("a script")
+}
+
 /// The program's own part of a script: what follows `# The robots of the program`, without the shared parts.
 fn own_lines(script: &str) -> String {
     let after = |start: &str| script.split_once(start).expect(start).1;
@@ -41,6 +45,33 @@ fn turning_until_sensors_are_free() {
 #[test]
 fn four_robots_in_parallel() {
     expect_file!["../snapshots/factory.py"].assert_eq(&script(&four_robots()));
+}
+
+#[test]
+fn the_same_for_vrep() {
+    expect_file!["../snapshots/area_1_vrep.py"].assert_eq(&vrep_script(&area_1(Drive::TwoWheel)));
+    expect_file!["../snapshots/sensors_vrep.py"].assert_eq(&vrep_script(&sensors()));
+}
+
+#[test]
+fn targets_differ_in_the_contact_with_the_simulator_only() {
+    let [coppeliasim, vrep] = [script(&four_robots()), vrep_script(&four_robots())];
+    for word in ["zmq", "RemoteAPIClient", "coppeliasim_zmqremoteapi_client"] {
+        assert!(coppeliasim.contains(word) && !vrep.contains(word), "{word}");
+    }
+    assert!(vrep.contains("simxStart") && !coppeliasim.contains("simx"));
+    // The contact stands between these two classes.
+    let around = |script: &str| {
+        let (before, rest) = script.split_once("class Mounting:").expect("Mounting");
+        let (_, after) = rest.split_once("class Robot:").expect("Robot");
+        let before = before.split_once("from pathlib").expect("imports").1;
+        let before = before.replace("\nimport zmq\n", "").replace(
+            "from coppeliasim_zmqremoteapi_client import RemoteAPIClient  # type: ignore[import-untyped]\n",
+            "",
+        );
+        (before, after.replace("# Where V-REP runs.", "# Where CoppeliaSim runs."))
+    };
+    assert_eq!(around(&vrep), around(&coppeliasim));
 }
 
 #[test]

@@ -81,7 +81,7 @@ fn problem(
     let why = match obstacle {
         Obstacle::StandardModule => format!("a script `{text}.py` would hide Python's own module `{text}`"),
         Obstacle::ClientModule => {
-            format!("a script `{text}.py` would hide the module `{text}`, which it needs")
+            format!("a script `{text}.py` would hide the module `{text}`, which scripts need")
         }
         Obstacle::ReservedOnWindows => format!("Windows has no files called `{text}.py`"),
         Obstacle::SameButForCase(_) => {
@@ -129,7 +129,7 @@ mod tests {
         check(
             &program(&["zmq"]),
             &expect![[r#"
-            warning[script-name] 4:13 "zmq" a script `zmq.py` would hide the module `zmq`, which it needs, so the script is called `zmq_env.py`
+            warning[script-name] 4:13 "zmq" a script `zmq.py` would hide the module `zmq`, which scripts need, so the script is called `zmq_env.py`
               help: give the environment another name
               suggestion: rename the environment to `zmq_env` -> environment zmq_env has { r } robots
         "#]],

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use pydslrep_analysis::FileId;
 use pydslrep_config::{Config, Target};
 use pydslrep_script::{file_name, generate, may_replace};
@@ -13,6 +12,7 @@ use pydslrep_script::{file_name, generate, may_replace};
 use crate::failure::Failure;
 use crate::project::{Project, Projects};
 use crate::sources::Sources;
+use crate::target::target_parser;
 use crate::{lines, output, program};
 
 const EXAMPLES: &str = "\
@@ -20,6 +20,7 @@ Examples:
   pydslrep build patrol.pyr                     writes a script per environment beside it
   pydslrep build rooms/ -o scripts              all programs of a folder
   pydslrep build patrol.pyr --environment hall --stdout | less
+  pydslrep build patrol.pyr --target vrep       for V-REP's legacy remote API
 
 The nearest pydslrep.toml above a program sets the folder and the target for good:
   output = \"scripts\"
@@ -35,7 +36,7 @@ pub(crate) struct Arguments {
     /// The folder to write to; made if it is not there [default: that of pydslrep.toml, else beside each program]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// The simulator that the scripts are for
+    /// The simulator that the scripts are for [default: that of pydslrep.toml, else coppeliasim]
     #[arg(long, value_name = "TARGET", value_parser = target_parser())]
     target: Option<Target>,
     /// Only the environment of this name
@@ -44,13 +45,6 @@ pub(crate) struct Arguments {
     /// Print the script instead of writing a file
     #[arg(long, conflicts_with = "output")]
     stdout: bool,
-}
-
-/// Simulators as they are called in settings.
-fn target_parser() -> impl TypedValueParser<Value = Target> {
-    let word = |target: Target| PossibleValue::new(target.word()).help(target.summary());
-    PossibleValuesParser::new(Target::ALL.map(word))
-        .try_map(|word| Target::from_word(&word).ok_or("no target"))
 }
 
 /// A script and where it goes.
@@ -80,14 +74,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         }
         found |= !ids.is_empty();
         let project = projects.of(file);
-        let target = project.target()?;
         let prepared = program::prepare(&sources, project, file, &ids);
         has_errors |= prepared.has_errors;
         if ids.is_empty() {
             output::say(&format!("{} has no environment: nothing to generate\n", sources.shown(file)));
         }
         for environment in &prepared.environments {
-            let text = match generate(environment, target) {
+            let text = match generate(environment, project.settings.target) {
                 Ok(text) => text,
                 Err(error) => {
                     output::error(&error.to_string(), None);

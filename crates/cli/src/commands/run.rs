@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Args;
-use pydslrep_config::Config;
+use pydslrep_config::{Config, Target};
 use pydslrep_script::{file_name, generate};
 use pydslrep_simulator::{Options, Simulator, picture};
 use tempfile::TempDir;
@@ -21,7 +21,8 @@ use crate::outcome::Outcome;
 use crate::progress::Progress;
 use crate::project::Projects;
 use crate::sources::Sources;
-use crate::{output, program, python, scenes};
+use crate::target::target_parser;
+use crate::{client, output, program, python, scenes};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -30,9 +31,12 @@ Examples:
   pydslrep run patrol.pyr --scene hall.scene.toml  among what stands in a hall
   pydslrep run patrol.pyr --host 127.0.0.1 --port 23000
                                                    in a CoppeliaSim that runs there
+  pydslrep run patrol.pyr --target vrep            by V-REP's legacy remote API
 
 The first run makes a virtual environment for Python in the user's cache folder and installs
-the client of CoppeliaSim's remote API into it, which needs Python 3.10 or later and network.";
+the client of CoppeliaSim's remote API into it, which needs Python 3.10 or later and network.
+With --target vrep the user's own Python runs the script, with V-REP's client (sim.py or vrep.py
+and its library) from beside the program or from Python's path.";
 
 /// Drive a program: check it, generate its script, and run that in the embedded simulator
 #[derive(Debug, Args)]
@@ -49,6 +53,9 @@ pub(crate) struct Arguments {
     /// What the noise of the scene is made from: the same number, the same run
     #[arg(long, value_name = "N", conflicts_with = "host")]
     seed: Option<u64>,
+    /// The simulator that the script is for [default: that of pydslrep.toml, else coppeliasim]
+    #[arg(long, value_name = "TARGET", value_parser = target_parser())]
+    target: Option<Target>,
     /// Draw planned and driven path into a file, as SVG
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
@@ -84,8 +91,9 @@ fn above_zero(text: &str) -> Result<f64, String> {
 /// When anything outside of the program fails.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let (mut sources, file) = Sources::open_one(&arguments.program)?;
-    let projects = Projects::open(&mut sources, &[file], &Config::default())?;
-    let target = projects.of(file).target()?;
+    let options = Config { target: arguments.target, ..Config::default() };
+    let projects = Projects::open(&mut sources, &[file], &options)?;
+    let target = projects.of(file).settings.target;
     let id = program::environment(&sources, file, arguments.environment.as_deref())?;
     let Some(environment) = program::prepare(&sources, projects.of(file), file, &[id]).environments.pop()
     else {
@@ -101,7 +109,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     };
     let mut scene = scenes::scene(&environment, sources.place(file), arguments.scene.as_deref())?;
     scene.seed = arguments.seed.unwrap_or(scene.seed);
-    let run = Run { arguments, planned: Planned::new(environment, scene)? };
+    let run = Run { arguments, target, planned: Planned::new(environment, scene)? };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let code = runtime.map_err(|error| unstarted(&error))?.block_on(run.drive(&name, &text))?;
     Ok(ExitCode::from(code))
@@ -113,6 +121,7 @@ fn unstarted(error: &dyn std::fmt::Display) -> Failure {
 
 struct Run<'a> {
     arguments: &'a Arguments,
+    target: Target,
     planned: Planned,
 }
 
@@ -120,17 +129,23 @@ impl Run<'_> {
     async fn drive(mut self, name: &str, text: &str) -> Result<u8, Failure> {
         let mut interrupts = Interrupts::listen().map_err(|error| unstarted(&error))?;
         let python = tokio::select! {
-            python = python::prepare(self.arguments.python.as_deref(), self.arguments.no_progress) => python?,
+            python = self.python() => python?,
             () = interrupts.next() => return Ok(interrupt::EXIT_CODE),
         };
-        let simulator = if self.arguments.host.is_none() { Some(self.simulator()?) } else { None };
         let folder =
             tempfile::Builder::new().prefix("pydslrep-").tempdir().map_err(|error| unstarted(&error))?;
+        if self.target == Target::VRep {
+            client::prepare(&python, &self.arguments.program, folder.path()).await?;
+        }
+        let simulator = if self.arguments.host.is_none() { Some(self.simulator()?) } else { None };
         let path = folder.path().join(name);
         fs::write(&path, text).map_err(|error| Failure::unwritten(&path, &error))?;
         let trace = self.trace(&folder)?;
-        let script =
-            Script { python, arguments: self.script_arguments(&path, trace.as_deref(), simulator.as_ref()) };
+        let script = Script {
+            python,
+            isolated: self.target == Target::CoppeliaSim,
+            arguments: self.script_arguments(&path, trace.as_deref(), simulator.as_ref()),
+        };
         let mut driven = Driven::new(self.planned.environment.robots.iter().map(|robot| robot.name.as_str()));
         let mut progress = Progress::new(&self.planned, self.arguments.no_progress);
         let begin = Instant::now();
@@ -146,9 +161,28 @@ impl Run<'_> {
         self.report(ending?, &driven, wall)
     }
 
+    async fn python(&self) -> Result<PathBuf, Failure> {
+        let chosen = self.arguments.python.as_deref();
+        match self.target {
+            Target::CoppeliaSim => python::prepare(chosen, self.arguments.no_progress).await,
+            Target::VRep => python::interpreter(chosen).await,
+        }
+    }
+
+    /// The port of each robot; any for those whose port an earlier one has, where each needs one of its own.
+    fn ports(&self) -> Vec<u16> {
+        let robots = &self.planned.environment.robots;
+        let is_taken = |index: usize, port| robots[..index].iter().any(|robot| robot.port == port);
+        let ports = robots.iter().enumerate().map(|(index, robot)| match self.target {
+            Target::VRep if is_taken(index, robot.port) => 0,
+            _ => robot.port,
+        });
+        ports.collect()
+    }
+
     fn simulator(&self) -> Result<Simulator, Failure> {
         let options = Options {
-            ports: self.planned.environment.robots.iter().map(|robot| robot.port).collect(),
+            ports: self.ports(),
             any_port_if_taken: true,
             speed: self.arguments.speed.unwrap_or(1.0),
             paced: self.arguments.speed.is_some(),

@@ -37,7 +37,7 @@ mod tests {
             The simulator that scripts are for.
 
             * `"coppeliasim"`: CoppeliaSim 4.6 or later, by its ZeroMQ remote API
-            * `"vrep"`: V-REP 3, by its legacy remote API; its scripts cannot be generated yet
+            * `"vrep"`: V-REP 3, by its legacy remote API: each robot has a port of its own
 
             Default: `"coppeliasim"`
         "#]],

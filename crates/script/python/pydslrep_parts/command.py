@@ -8,9 +8,10 @@ from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from pathlib import Path
 
-from .coppeliasim import RobotModel
+from .coppeliasim import PORT_HELP, REALTIME_HELP, SIMULATOR
 from .errors import MovementError, SetupError, SimulatorError
 from .fleet import Fleet
+from .model import RobotModel
 from .trace_file import Trace
 
 #: endif
@@ -32,7 +33,7 @@ def parse_arguments(
         description=description, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument(
-        "--host", default=host, help="where CoppeliaSim runs (%(default)s)"
+        "--host", default=host, help=f"where {SIMULATOR} runs (%(default)s)"
     )
     parser.add_argument(
         "--port",
@@ -40,7 +41,7 @@ def parse_arguments(
         default=[],
         type=parse_port,
         metavar="[ROBOT=]PORT",
-        help="port of the ZeroMQ remote API, for all robots or for one; may be repeated",
+        help=PORT_HELP,
     )
     parser.add_argument(
         "--trace",
@@ -48,9 +49,7 @@ def parse_arguments(
         metavar="FILE",
         help="write every step to a file, as JSON lines",
     )
-    parser.add_argument(
-        "--realtime", action="store_true", help="run no faster than the robots would"
-    )
+    parser.add_argument("--realtime", action="store_true", help=REALTIME_HELP)
     options = parser.parse_args()
     options.ports = {model.name: model.port for model in models}
     for robot, port in sorted(options.port, key=lambda choice: choice[0] is not None):

@@ -3,37 +3,23 @@
 
 import math
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import zmq
 from coppeliasim_zmqremoteapi_client import RemoteAPIClient  # type: ignore[import-untyped]
 
-from .drive import Drive
 from .errors import SetupError, SimulatorError
+from .model import Mounting, RobotModel
 from .pose import Pose
 from .settings import CONNECT_TIMEOUT, REPLY_TIMEOUT, STOP_TIMEOUT
 
 #: endif
 
 
-def dot(a: Sequence[float], b: Sequence[float]) -> float:
-    """The scalar product."""
-    return sum(p * q for p, q in zip(a, b, strict=True))
-
-
-@dataclass(frozen=True)
-class RobotModel:
-    """What the program says of a robot; the scene tells the rest."""
-
-    name: str
-    port: int
-    drive: type[Drive]
-    wheels: Mapping[str, float]  # radius in metres by the joint's name
-    #: if until
-    sensors: Sequence[str] = ()
-    #: endif
+SIMULATOR = "CoppeliaSim"
+PORT_HELP = "port of the ZeroMQ remote API, for all robots or for one; may be repeated"
+REALTIME_HELP = "run no faster than the robots would"
 
 
 class LimitedSocket:
@@ -74,8 +60,8 @@ class LimitedSocket:
         self._socket.close(linger)
 
 
-class SimulatedRobot:
-    """A robot in CoppeliaSim: everything a script needs of it goes through this class.
+class Body:
+    """A robot's body in CoppeliaSim: all contact with it goes through this class.
 
     For a physical robot write a class with the same public methods and attributes: `pose`
     from its odometry or a camera, `set_wheel_rates` to its motors, and `advance` to wait for
@@ -104,20 +90,14 @@ class SimulatedRobot:
 
     def pose(self) -> Pose:
         """Where the middle of the wheels is, and the robot's heading."""
-        body = self._ask(self._sim.getObjectMatrix, self._body)
-        x, y = self._center
-        return Pose(
-            body[0] * x + body[1] * y + body[3],
-            body[4] * x + body[5] * y + body[7],
-            math.atan2(body[4], body[0]),
-        )
+        return self._mounting.pose(self._matrix(self._body))
 
     def set_wheel_rates(self, rates: Sequence[float]) -> None:
         """Sets how fast the wheels turn, in rad/s, forward where positive."""
         for index, rate in enumerate(rates):
             # Changes that nobody could see are not worth a call, but rest is rest.
             if abs(rate - self._rates[index]) > (1e-4 if rate else 0.0):
-                velocity = rate * self._senses[index]
+                velocity = rate * self._mounting.senses[index]
                 joint = self._joints[index]
                 self._ask(self._sim.setJointTargetVelocity, joint, velocity)
                 self._rates[index] = rate
@@ -235,7 +215,10 @@ class SimulatedRobot:
                 + ", no ".join(self._missing)
             )
         self.time_step: float = self._ask(self._sim.getSimulationTimeStep)
-        self._measure()
+        joints = [self._matrix(joint) for joint in self._joints]
+        self._mounting = Mounting(self.model, self._matrix(self._body), joints)
+        self.drive = self._mounting.drive
+        self._rates = [math.inf] * len(joints)  # unknown, so the first is always set
 
     def _find_parts(self, what: str, kind: int, names: Iterable[str]) -> list[int]:
         def fits(found: int) -> bool:
@@ -270,28 +253,10 @@ class SimulatedRobot:
         handle: int = self._ask(self._sim.getObject, path, options)
         return handle
 
-    def _measure(self) -> None:
-        """Reads from the scene where the wheels are and which way round their joints turn."""
-        body = self._ask(self._sim.getObjectMatrix, self._body)
-        x_axis, y_axis = (body[0], body[4], body[8]), (body[1], body[5], body[9])
-        mounts, self._senses = [], []
-        for joint in self._joints:
-            matrix = self._ask(self._sim.getObjectMatrix, joint)
-            arm = [matrix[i] - body[i] for i in (3, 7, 11)]
-            mounts.append((dot(x_axis, arm), dot(y_axis, arm)))
-            # A joint turns about its z axis: towards the body's left, it rolls forward.
-            axis = (matrix[2], matrix[6], matrix[10])
-            self._senses.append(math.copysign(1.0, dot(y_axis, axis)))
-        self._center = tuple(
-            sum(side) / len(mounts) for side in zip(*mounts, strict=True)
-        )
-        try:
-            self.drive = self.model.drive(mounts, list(self.model.wheels.values()))
-        except SetupError as error:
-            raise SetupError(f"robot {self.model.name}: {error}") from None
-        self._rates = [math.inf] * len(
-            self._joints
-        )  # unknown, so the first is always set
+    def _matrix(self, handle: int) -> list[float]:
+        """Where an object is: rows of rotation and translation."""
+        matrix: list[float] = self._ask(self._sim.getObjectMatrix, handle)
+        return matrix
 
     def _ask(self, function: Callable[..., Any], *arguments: Any) -> Any:
         """Calls a function of the simulator; raises SimulatorError."""

@@ -6,8 +6,9 @@ from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import suppress
 from threading import Event, Lock
 
-from .coppeliasim import RobotModel, SimulatedRobot
+from .coppeliasim import Body
 from .errors import MovementCancelledError, SimulatorError
+from .model import RobotModel
 from .movement import Movement
 from .robot import Robot
 from .trace_file import Trace
@@ -29,7 +30,7 @@ class Fleet:
 
     def connect(self, model: RobotModel, host: str, port: int, realtime: bool) -> None:
         """Adds a robot; raises SetupError."""
-        robot = Robot(SimulatedRobot(model, host, port, realtime), self._trace)
+        robot = Robot(Body(model, host, port, realtime), self._trace)
         #: if parallel
         robot.cancelled = self._cancelled
         #: endif

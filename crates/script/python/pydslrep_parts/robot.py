@@ -7,7 +7,7 @@ from threading import Event
 from typing import Literal
 
 from .approach import Approach
-from .coppeliasim import SimulatedRobot
+from .coppeliasim import Body
 from .errors import MovementCancelledError, MovementError
 from .pose import Pose, wrap_angle
 from .settings import RIM_SPEED, STALL_TIME
@@ -22,7 +22,7 @@ class Robot:
     Every action starts where the last one should have ended, so errors do not add up.
     """
 
-    def __init__(self, body: SimulatedRobot, trace: Trace) -> None:
+    def __init__(self, body: Body, trace: Trace) -> None:
         self.body = body
         self._trace = trace
         self._planned: Pose | None = None

@@ -14,12 +14,12 @@ from fake_simulator import (
     two_wheel_joints,
 )
 from pydslrep_parts import coppeliasim
-from pydslrep_parts.coppeliasim import RobotModel
 from pydslrep_parts.drive import Drive
 from pydslrep_parts.drive_four_mecanum import FourMecanumDrive
 from pydslrep_parts.drive_four_wheel import FourWheelDrive
 from pydslrep_parts.drive_two_wheel import TwoWheelDrive
 from pydslrep_parts.fleet import Fleet
+from pydslrep_parts.model import RobotModel
 from pydslrep_parts.movement import Movement
 from pydslrep_parts.robot import Robot
 from pydslrep_parts.trace_file import Trace

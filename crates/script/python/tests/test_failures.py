@@ -9,7 +9,7 @@ import zmq
 from driving import connected, drive_alone, joints, model
 from fake_simulator import FakeRobot, FakeWorld
 from pydslrep_parts import coppeliasim
-from pydslrep_parts.coppeliasim import SimulatedRobot
+from pydslrep_parts.coppeliasim import Body
 from pydslrep_parts.errors import MovementError, SetupError
 from pydslrep_parts.movement import Movement
 from pydslrep_parts.robot import Robot
@@ -194,7 +194,7 @@ def fixture_server(request: pytest.FixtureRequest) -> Iterator[Replies]:
 def connect(port: int) -> None:
     """Tries to connect with the client's real class."""
     robot = model(FakeRobot("r", joints("two-wheel")), "two-wheel")
-    SimulatedRobot(robot, "127.0.0.1", port, realtime=False)
+    Body(robot, "127.0.0.1", port, realtime=False)
 
 
 @pytest.mark.usefixtures("short_wait")

@@ -8,7 +8,7 @@ import pytest
 from driving import connected, errors, joints, model
 from fake_simulator import FakeRobot, FakeWorld
 from pydslrep_parts import coppeliasim
-from pydslrep_parts.coppeliasim import SimulatedRobot
+from pydslrep_parts.coppeliasim import Body
 from pydslrep_parts.errors import MovementError
 from pydslrep_parts.fleet import Fleet
 from pydslrep_parts.movement import Movement, movement
@@ -120,14 +120,14 @@ def test_one_failure_stops_all(monkeypatch: pytest.MonkeyPatch) -> None:
     failing = world.robots["c"]
     failing.wall = 0.2
     standing = []
-    release_time = SimulatedRobot.release_time
+    release_time = Body.release_time
 
-    def watch(body: SimulatedRobot) -> None:
+    def watch(body: Body) -> None:
         if body.model.name == failing.name and body._holds_time:
             standing.append(all(joint.target == 0.0 for joint in failing.joints))
         release_time(body)
 
-    monkeypatch.setattr(SimulatedRobot, "release_time", watch)
+    monkeypatch.setattr(Body, "release_time", watch)
     with (
         pytest.raises(
             MovementError, match="robot c, movement c_moves, action 1: move 5 m"

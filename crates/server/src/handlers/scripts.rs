@@ -4,8 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use pydslrep_analysis::{self as analysis, EntityId};
-use pydslrep_script::Target;
+use pydslrep_analysis::EntityId;
 use tower_lsp::jsonrpc::{self, Error, ErrorCode};
 use tower_lsp::ls_types::{
     CreateFile, CreateFileOptions, DocumentChangeOperation, DocumentChanges, ExecuteCommandParams,
@@ -66,10 +65,7 @@ pub(crate) fn environment(state: &State, which: &ChosenEnvironment) -> jsonrpc::
 /// Generates the script of an environment; the error says why there is none.
 pub(crate) fn of_environment(state: &State, program: &Uri, id: EntityId) -> Result<Script, String> {
     let environment = state.database.environment(id).map_err(|blocked| blocked.reason())?;
-    let target = match state.document(program).map(|document| document.settings.target) {
-        Some(analysis::Target::VRep) => return Err(NO_VREP.to_owned()),
-        Some(analysis::Target::CoppeliaSim) | None => Target::CoppeliaSim,
-    };
+    let target = state.document(program).map(|document| document.settings.target).unwrap_or_default();
     let file_name = pydslrep_script::file_name(&environment);
     let uri = match state.output_folder(program) {
         Some(folder) => Uri::from_file_path(folder.join(file_name)),
@@ -82,9 +78,6 @@ pub(crate) fn of_environment(state: &State, program: &Uri, id: EntityId) -> Resu
 
 /// Why a document that was never saved has no script.
 const NO_PLACE: &str = "save the program first: its script goes into the same folder";
-
-const NO_VREP: &str =
-    "scripts for `vrep` cannot be generated yet: set `target` to `coppeliasim`, V-REP's successor";
 
 /// Where the script of a program goes, if nothing else is set: into the same folder. `None` if the program is in none.
 fn address(program: &Uri, file_name: &str) -> Option<Uri> {

@@ -110,9 +110,10 @@ fn script_name(program: &Program, entity: &Entity, findings: &mut Vec<Finding>) 
     }
 }
 
-/// Modules of Python 3.11 and those that the client of the remote API needs.
+/// Modules of Python 3.11 and those that the clients of both remote APIs are or need.
 fn is_module(name: &str) -> bool {
-    const CLIENT: [&str; 4] = ["coppeliasim_zmqremoteapi_client", "zmq", "cbor", "cbor2"];
+    const CLIENT: [&str; 8] =
+        ["coppeliasim_zmqremoteapi_client", "zmq", "cbor", "cbor2", "sim", "simConst", "vrep", "vrepConst"];
     include_str!("../../standard_modules.txt").split_whitespace().chain(CLIENT).any(|module| module == name)
 }
 

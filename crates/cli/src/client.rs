@@ -1,0 +1,65 @@
+//! V-REP's client for Python, which no package registry has: where it is, so that a script finds it.
+
+use std::fs;
+use std::path::Path;
+use std::process::Stdio;
+use std::time::Duration;
+
+use tokio::process::Command;
+use tokio::time::timeout;
+
+use crate::failure::Failure;
+
+/// The client is one of these and what it needs.
+const CLIENTS: [&str; 2] = ["sim.py", "vrep.py"];
+const PARTS: [&str; 5] = ["simConst.py", "vrepConst.py", "remoteApi.so", "remoteApi.dylib", "remoteApi.dll"];
+
+/// Ends well where Python itself finds one; `-c` alone would also look into the current folder, where a script does not.
+const QUESTION: &str = "import sys; sys.path.pop(0); from importlib.util import find_spec; \
+    sys.exit(not any(map(find_spec, ('sim', 'vrep'))))";
+
+const ASK_LIMIT: Duration = Duration::from_secs(30);
+
+/// Where V-REP and its successor have the files.
+const SOURCES: &str = "in CoppeliaSim's folder programming/legacyRemoteApi/remoteApiBindings (before 4.3: \
+    programming/remoteApiBindings) they are in python/python and, by system, in lib/lib; in V-REP 3 the first two are \
+    called vrep.py and vrepConst.py";
+
+/// Sees to it that a script in a folder finds the client: the one beside the program is copied there, else Python must
+/// have one on its path.
+///
+/// # Errors
+/// When there is none, with what to copy from where.
+pub(crate) async fn prepare(python: &Path, program: &Path, folder: &Path) -> Result<(), Failure> {
+    let home = program.parent().unwrap_or(Path::new(""));
+    if CLIENTS.iter().any(|name| home.join(name).is_file()) {
+        for name in CLIENTS.iter().chain(&PARTS) {
+            let (from, to) = (home.join(name), folder.join(name));
+            if from.is_file() {
+                fs::copy(&from, &to).map_err(|error| Failure::unwritten(&to, &error))?;
+            }
+        }
+        return Ok(());
+    }
+    if has_one(python).await {
+        return Ok(());
+    }
+    let library = if cfg!(windows) {
+        "remoteApi.dll"
+    } else if cfg!(target_os = "macos") {
+        "remoteApi.dylib"
+    } else {
+        "remoteApi.so"
+    };
+    let missing = "V-REP's client for Python is neither beside the program nor on Python's path";
+    Err(Failure::new(missing)
+        .help(format!("copy sim.py, simConst.py and {library} to the program's folder: {SOURCES}")))
+}
+
+async fn has_one(python: &Path) -> bool {
+    let mut command = Command::new(python);
+    command.args(["-c", QUESTION]).kill_on_drop(true);
+    command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    let status = timeout(ASK_LIMIT, command.status()).await;
+    status.ok().and_then(Result::ok).is_some_and(|status| status.success())
+}

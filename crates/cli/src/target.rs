@@ -1,0 +1,11 @@
+//! The simulator that scripts are for, as an option of commands.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use pydslrep_config::Target;
+
+/// Simulators as they are called in settings.
+pub(crate) fn target_parser() -> impl TypedValueParser<Value = Target> {
+    let word = |target: Target| PossibleValue::new(target.word()).help(target.summary());
+    PossibleValuesParser::new(Target::ALL.map(word))
+        .try_map(|word| Target::from_word(&word).ok_or("no target"))
+}
