@@ -3,7 +3,7 @@
 use clap::builder::styling::{AnsiColor, Effects, Styles};
 use clap::{Parser, Subcommand, ValueEnum};
 
-use crate::commands::{build, check, completions, explain, fmt, lsp, new, plan, run, stats};
+use crate::commands::{build, check, completions, explain, fmt, lsp, new, plan, run, sim, stats};
 
 /// Cargo's own colours.
 const STYLES: Styles = Styles::styled()
@@ -22,7 +22,7 @@ Examples:
 Exit codes: 0 fine, 1 errors in the program or a movement that failed, 2 wrong use or
 an outside failure (file, port, missing Python), 130 interrupted.";
 
-/// Programs for mobile robots: checked, planned, turned into Python scripts for the simulator CoppeliaSim, and driven.
+/// Programs for mobile robots: checked, planned, turned into Python scripts for the simulators CoppeliaSim and V-REP, and driven.
 #[derive(Debug, Parser)]
 #[command(name = "pydslrep", version, styles = STYLES, after_help = EXAMPLES, propagate_version = true)]
 #[command(max_term_width = 100)]
@@ -47,6 +47,7 @@ pub(crate) enum Command {
     Check(check::Arguments),
     Build(build::Arguments),
     Run(run::Arguments),
+    Sim(sim::Arguments),
     Plan(plan::Arguments),
     Fmt(fmt::Arguments),
     Explain(explain::Arguments),

@@ -5,14 +5,11 @@ use std::path::Path;
 use std::process::Stdio;
 use std::time::Duration;
 
+use pydslrep_script::{VREP_CLIENT_PARTS, VREP_CLIENTS};
 use tokio::process::Command;
 use tokio::time::timeout;
 
 use crate::failure::Failure;
-
-/// The client is one of these and what it needs.
-const CLIENTS: [&str; 2] = ["sim.py", "vrep.py"];
-const PARTS: [&str; 5] = ["simConst.py", "vrepConst.py", "remoteApi.so", "remoteApi.dylib", "remoteApi.dll"];
 
 /// Ends well where Python itself finds one; `-c` alone would also look into the current folder, where a script does not.
 const QUESTION: &str = "import sys; sys.path.pop(0); from importlib.util import find_spec; \
@@ -25,15 +22,14 @@ const SOURCES: &str = "in CoppeliaSim's folder programming/legacyRemoteApi/remot
     programming/remoteApiBindings) they are in python/python and, by system, in lib/lib; in V-REP 3 the first two are \
     called vrep.py and vrepConst.py";
 
-/// Sees to it that a script in a folder finds the client: the one beside the program is copied there, else Python must
-/// have one on its path.
+/// Sees to it that a script in `folder` finds the client: the one in `home`, beside the program, is copied there, else
+/// Python must have one on its path.
 ///
 /// # Errors
 /// When there is none, with what to copy from where.
-pub(crate) async fn prepare(python: &Path, program: &Path, folder: &Path) -> Result<(), Failure> {
-    let home = program.parent().unwrap_or(Path::new(""));
-    if CLIENTS.iter().any(|name| home.join(name).is_file()) {
-        for name in CLIENTS.iter().chain(&PARTS) {
+pub(crate) async fn prepare(python: &Path, home: &Path, folder: &Path) -> Result<(), Failure> {
+    if VREP_CLIENTS.iter().any(|name| home.join(name).is_file()) {
+        for name in VREP_CLIENTS.iter().chain(&VREP_CLIENT_PARTS) {
             let (from, to) = (home.join(name), folder.join(name));
             if from.is_file() {
                 fs::copy(&from, &to).map_err(|error| Failure::unwritten(&to, &error))?;

@@ -9,4 +9,5 @@ pub(crate) mod lsp;
 pub(crate) mod new;
 pub(crate) mod plan;
 pub(crate) mod run;
+pub(crate) mod sim;
 pub(crate) mod stats;

@@ -80,7 +80,7 @@ pub(crate) struct Arguments {
 }
 
 /// A factor from the command line.
-fn above_zero(text: &str) -> Result<f64, String> {
+pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
     let speed = text.parse().ok().filter(|speed: &f64| speed.is_finite() && *speed > 0.0);
     speed.ok_or_else(|| "a number above zero is expected, such as 1 or 2.5".to_owned())
 }
@@ -109,7 +109,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     };
     let mut scene = scenes::scene(&environment, sources.place(file), arguments.scene.as_deref())?;
     scene.seed = arguments.seed.unwrap_or(scene.seed);
-    let run = Run { arguments, target, planned: Planned::new(environment, scene)? };
+    let home = sources.place(file).and_then(Path::parent).unwrap_or(Path::new("")).to_owned();
+    let run = Run { arguments, target, home, planned: Planned::new(environment, scene)? };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let code = runtime.map_err(|error| unstarted(&error))?.block_on(run.drive(&name, &text))?;
     Ok(ExitCode::from(code))
@@ -122,6 +123,8 @@ fn unstarted(error: &dyn std::fmt::Display) -> Failure {
 struct Run<'a> {
     arguments: &'a Arguments,
     target: Target,
+    /// The program's folder.
+    home: PathBuf,
     planned: Planned,
 }
 
@@ -135,7 +138,7 @@ impl Run<'_> {
         let folder =
             tempfile::Builder::new().prefix("pydslrep-").tempdir().map_err(|error| unstarted(&error))?;
         if self.target == Target::VRep {
-            client::prepare(&python, &self.arguments.program, folder.path()).await?;
+            client::prepare(&python, &self.home, folder.path()).await?;
         }
         let simulator = if self.arguments.host.is_none() { Some(self.simulator()?) } else { None };
         let path = folder.path().join(name);

@@ -99,8 +99,8 @@ fn standard_input_has_no_place() {
 }
 
 #[test]
-fn the_old_simulator_has_to_wait() {
-    let done = Place::new().run(&["build", "--target", "vrep", &paper("table2_two_wheels")]);
-    assert_eq!(done.code, Some(2));
-    assert!(done.err.contains("`vrep` cannot be generated yet"), "{}", done.err);
+fn a_script_is_for_one_simulator() {
+    let done = Place::new().run(&["build", "--target", "vrep", "--stdout", &paper("table2_two_wheels")]);
+    assert_eq!((done.code, done.err.as_str()), (Some(0), ""));
+    assert!(done.out.contains("simxStart") && !done.out.contains("zmq"));
 }

@@ -3,7 +3,7 @@
 use expect_test::expect;
 use serde_json::Value;
 
-use crate::process::{Place, paper};
+use crate::process::{Done, Place, paper};
 
 /// A program with a hint, a warning and an error, which no script depends on.
 const PROBLEMS: &str = "wheel l with radius 4\nwheel r with radius 4\nwheel x with radius 0\n\
@@ -128,23 +128,35 @@ fn scripts_go_where_it_says() {
 }
 
 #[test]
-fn a_target_without_scripts_is_told() {
+fn scripts_are_for_the_target_that_it_says() {
     let place = Place::with("x.pyr", fine("yard"));
-    let told = |place: &Place, arguments: &[&str]| {
-        let done = place.run(arguments);
-        assert!(done.err.contains("scripts for `vrep` cannot be generated yet"), "{}", done.err);
-        assert_eq!(done.code, Some(2));
+    let is_for_vrep = |options: &[&str]| {
+        assert_eq!(place.run(&[&["build"], options].concat()).code, Some(0));
+        place.read("yard.py").contains("in V-REP.")
     };
-    told(&place, &["build", "--target", "vrep"]);
+    assert!(!is_for_vrep(&[]) && is_for_vrep(&["--target", "vrep"]));
     place.write("pydslrep.toml", "target = \"vrep\"\n");
-    told(&place, &["build"]);
-    told(&place, &["run", "x.pyr"]);
-    assert_eq!(place.run(&["check"]).code, Some(0));
-    assert!(!place.path("yard.py").exists());
-    assert_eq!(place.run(&["build", "--target", "coppeliasim"]).code, Some(0));
+    assert!(is_for_vrep(&[]) && !is_for_vrep(&["--target", "coppeliasim"]));
     let done = place.run(&["build", "--target", "v-rep"]);
     assert_eq!(done.code, Some(2));
     assert!(done.err.contains("coppeliasim, vrep"), "{}", done.err);
+}
+
+#[test]
+fn a_missing_client_of_vrep_is_explained() {
+    let place = Place::with("x.pyr", fine("yard"));
+    place.write("pydslrep.toml", "target = \"vrep\"\n");
+    // Only a script's own folder and Python's path count.
+    place.write("elsewhere/sim.py", "");
+    let done: Done = place.command(&["run", "x.pyr"]).env_remove("PYTHONPATH").output().unwrap().into();
+    assert_eq!(done.code, Some(2));
+    assert!(done.err.contains("neither beside the program nor on Python's path"), "{}", done.err);
+    assert!(done.err.contains("copy sim.py, simConst.py and remoteApi"), "{}", done.err);
+    // Whatever is called so is found, and the script says what is wrong with it.
+    place.write("sim.py", "raise NameError('no library')");
+    let done: Done = place.command(&["run", "x.pyr"]).env_remove("PYTHONPATH").output().unwrap().into();
+    assert_eq!(done.code, Some(2));
+    assert!(done.err.contains("error: sim.py cannot be loaded: no library."), "{}", done.err);
 }
 
 #[test]

@@ -10,8 +10,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use futures::channel::mpsc::UnboundedReceiver;
-use pydslrep_analysis::FileId;
+use pydslrep_analysis::{FileId, Target};
 use pydslrep_files::FILE_NAME;
+use pydslrep_script::{VREP_CLIENT_PARTS, VREP_CLIENTS};
 use tempfile::TempDir;
 use tower_lsp::jsonrpc::{Error, ErrorCode, Result};
 
@@ -85,9 +86,25 @@ fn write_programs(state: &State, which: &ChosenEnvironment, folder: &Path) -> Re
         write(&place(path), text)?;
     }
     // Imports may go as far up as this file stands.
-    let target = document.settings.target.word();
-    write(&folder.join(FILE_NAME), &format!("target = \"{target}\"\n"))?;
-    Ok(place(own))
+    let target = document.settings.target;
+    write(&folder.join(FILE_NAME), &format!("target = \"{}\"\n", target.word()))?;
+    let program = place(own);
+    if target == Target::VRep && own.starts_with('/') {
+        copy_client(Path::new(own), &program)?;
+    }
+    Ok(program)
+}
+
+/// Copies V-REP's client from beside the program, if it is there, to beside what is run.
+fn copy_client(program: &Path, copy: &Path) -> Result<()> {
+    for name in VREP_CLIENTS.iter().chain(&VREP_CLIENT_PARTS) {
+        let (from, to) = (program.with_file_name(name), copy.with_file_name(name));
+        if from.is_file() {
+            let unwritten = |error| failure(format!("cannot write {}: {error}", to.display()));
+            fs::copy(&from, &to).map_err(unwritten)?;
+        }
+    }
+    Ok(())
 }
 
 fn write(path: &Path, text: &str) -> Result<()> {

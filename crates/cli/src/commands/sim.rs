@@ -1,0 +1,131 @@
+//! `pydslrep sim`: the embedded simulator alone, for scripts that are started by hand.
+
+use std::fs::File;
+use std::io::{BufWriter, Write as _};
+use std::net::{IpAddr, Ipv4Addr};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+
+use clap::Args;
+use pydslrep_config::Config;
+use pydslrep_simulator::{Options, Simulator, TraceRecord};
+use tokio::time::{MissedTickBehavior, interval};
+
+use crate::failure::Failure;
+use crate::interrupt::{self, Interrupts};
+use crate::project::Projects;
+use crate::sources::Sources;
+use crate::{output, program, scenes};
+
+const EXAMPLES: &str = "\
+Examples:
+  pydslrep sim patrol.pyr                          serves the port of each robot, until Ctrl-C
+  python yard.py                                   beside it: the script that build has written
+  pydslrep sim patrol.pyr --trace driven.jsonl     writes where the robots are, step by step
+
+Scripts of both targets can drive at the same time: what a client says first tells which remote
+API it speaks. Time passes as scripts step it, and by itself while none does. A script that is
+gone leaves its wheels at rest.";
+
+/// How often what happened is written to the trace.
+const WRITE_PERIOD: Duration = Duration::from_millis(50);
+
+/// Start the embedded simulator alone, for scripts of your own
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Arguments {
+    /// A program, or `-` for standard input
+    program: PathBuf,
+    /// The environment to simulate; needed where there are several
+    #[arg(long, value_name = "NAME")]
+    environment: Option<String>,
+    /// The scene to drive in [default: ENVIRONMENT.scene.toml beside the program, if it is there]
+    #[arg(long, value_name = "FILE")]
+    scene: Option<PathBuf>,
+    /// What the noise of the scene is made from: the same number, the same run
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Where to listen; the default is for programs on this machine only
+    #[arg(long, value_name = "ADDRESS", default_value_t = Ipv4Addr::LOCALHOST.into())]
+    listen: IpAddr,
+    /// Simulated seconds per second while no script steps the time
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = super::run::above_zero)]
+    speed: f64,
+    /// Write every step into a file, as JSON lines
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// When anything outside of the program fails.
+pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let (mut sources, file) = Sources::open_one(&arguments.program)?;
+    let projects = Projects::open(&mut sources, &[file], &Config::default())?;
+    let id = program::environment(&sources, file, arguments.environment.as_deref())?;
+    let Some(environment) = program::prepare(&sources, projects.of(file), file, &[id]).environments.pop()
+    else {
+        return Ok(ExitCode::FAILURE);
+    };
+    let mut scene = scenes::scene(&environment, sources.place(file), arguments.scene.as_deref())?;
+    scene.seed = arguments.seed.unwrap_or(scene.seed);
+    let mut trace = arguments.trace.as_deref().map(Trace::create).transpose()?;
+    let options = Options {
+        address: arguments.listen,
+        ports: environment.robots.iter().map(|robot| robot.port).collect(),
+        speed: arguments.speed,
+        trace: trace.is_some(),
+        ..Options::default()
+    };
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    runtime.map_err(|error| unstarted(&error))?.block_on(async {
+        let mut interrupts = Interrupts::listen().map_err(|error| unstarted(&error))?;
+        let simulator = Simulator::start(scene, &options).map_err(|error| Failure::new(error.to_string()))?;
+        let mut places = output::table(["robot", "address", "port"]);
+        for robot in &environment.robots {
+            places.add_row([robot.name.clone(), arguments.listen.to_string(), robot.port.to_string()]);
+        }
+        output::print(&format!("{}\n", places.trim_fmt()))?;
+        let mut writes = interval(WRITE_PERIOD);
+        writes.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        loop {
+            tokio::select! {
+                () = interrupts.next() => break,
+                _ = writes.tick(), if trace.is_some() => if let Some(trace) = &mut trace {
+                    trace.write(&simulator.take_trace())?;
+                },
+            }
+        }
+        let rest = simulator.stop();
+        trace.map_or(Ok(()), |mut trace| trace.write(&rest))
+    })?;
+    Ok(ExitCode::from(interrupt::EXIT_CODE))
+}
+
+fn unstarted(error: &dyn std::fmt::Display) -> Failure {
+    Failure::new(format!("cannot start the simulator: {error}"))
+}
+
+struct Trace<'a> {
+    path: &'a Path,
+    file: BufWriter<File>,
+}
+
+impl<'a> Trace<'a> {
+    fn create(path: &'a Path) -> Result<Self, Failure> {
+        let file = File::create(path).map_err(|error| Failure::unwritten(path, &error))?;
+        Ok(Self { path, file: BufWriter::new(file) })
+    }
+
+    fn write(&mut self, records: &[TraceRecord]) -> Result<(), Failure> {
+        for record in records {
+            let written = serde_json::to_writer(&mut self.file, record).map_err(std::io::Error::from);
+            written
+                .and_then(|()| self.file.write_all(b"\n"))
+                .map_err(|error| Failure::unwritten(self.path, &error))?;
+        }
+        self.file.flush().map_err(|error| Failure::unwritten(self.path, &error))
+    }
+}
