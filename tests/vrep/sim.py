@@ -7,6 +7,7 @@ are filed in an inbox by what was asked, and every function takes an operation m
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import socket
 import struct
@@ -67,7 +68,7 @@ class _Connection:
 
     def run(self) -> None:
         """Exchanges messages until the connection ends."""
-        try:
+        with contextlib.suppress(OSError):
             while not self.closing:
                 with self.changed:
                     self.changed.wait_for(self._has_news, self.cycle)
@@ -76,8 +77,6 @@ class _Connection:
                         self.outbox.clear()
                     self.busy = True
                 self._exchange(commands)
-        except OSError:
-            pass
         with self.changed:
             self.lost = True
             self.changed.notify_all()
@@ -186,10 +185,8 @@ def simxFinish(number: int) -> None:
         )
         connection.closing = True
         connection.changed.notify_all()
-    try:
+    with contextlib.suppress(OSError):  # where the other side was faster
         connection.line.shutdown(socket.SHUT_RDWR)
-    except OSError:
-        pass  # the other side was faster
     connection.line.close()
 
 
