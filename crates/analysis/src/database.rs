@@ -175,6 +175,20 @@ impl Database {
             })
     }
 
+    /// The entities of a file from the one that holds an offset on, in the order of the text.
+    pub fn entities_from(&self, file: FileId, offset: u32) -> impl Iterator<Item = EntityRef<'_>> {
+        let (index, start) = self.piece_at(file, offset);
+        let pieces = self.pieces(file).get(index..).unwrap_or_default();
+        let located = pieces.iter().scan(start, move |start, piece| {
+            let span = Span::new(*start, *start + piece.len);
+            *start = span.end;
+            Some((piece.entity, span))
+        });
+        located.filter_map(|(id, span)| {
+            self.data(id).map(|data| EntityRef { id, file: data.file, span, parse: &data.parse })
+        })
+    }
+
     /// The entity that holds an offset: at a boundary the one behind it, at the end of the text the last one.
     pub fn entity_at(&self, file: FileId, offset: u32) -> Option<EntityRef<'_>> {
         let open = self.get(file)?;

@@ -27,7 +27,7 @@ pub use database::{Absence, Database, EditCounts, EntityId, EntityRef, FileId, P
 pub use diagnostic::{Diagnostic, Edit, Fix, Related, Severity};
 pub use fixing::Fixing;
 pub use plan::{plan, plan_movement, scene};
-pub use resolve::Blocked;
+pub use resolve::{Blocked, MadeOf};
 pub use snapshot::Snapshot;
 pub use target::Target;
 pub use trial::Trial;

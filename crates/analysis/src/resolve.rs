@@ -1,9 +1,11 @@
 //! From an environment's declaration to everything it runs, with every name resolved.
 
+use std::sync::Arc;
+
 use pydslrep_kinematics::{Drive, motion};
 use pydslrep_scene::SensorKind;
 use pydslrep_syntax::ast::{self, ActionKind as Statement, DriveWord, Entity, Name, TurnExtent};
-use pydslrep_syntax::{EntityKind, Span, Token};
+use pydslrep_syntax::{EntityKind, Parse, Span, Token};
 
 use crate::environment::{Action, ActionKind, Environment, Movement, Robot, Sensor, Source, Wheel};
 use crate::script_name::script_names;
@@ -27,6 +29,21 @@ impl Blocked {
         };
         let first = self.errors.first().map_or("it is not complete", |error| &error.message);
         format!("`{}` has errors: {first}{more}", self.environment)
+    }
+}
+
+/// All that an environment is made of, itself included. As long as two of them are equal, so is what follows from the
+/// environment: its script, and its path on a given floor.
+#[derive(Debug, Clone)]
+pub struct MadeOf {
+    parts: Vec<(EntityId, Arc<Parse>)>,
+}
+
+impl PartialEq for MadeOf {
+    /// What was read again counts as changed.
+    fn eq(&self, other: &Self) -> bool {
+        self.parts.len() == other.parts.len()
+            && self.parts.iter().zip(&other.parts).all(|(a, b)| a.0 == b.0 && Arc::ptr_eq(&a.1, &b.1))
     }
 }
 
@@ -64,6 +81,17 @@ impl Database {
                 Err(Blocked { environment: name, errors })
             }
         }
+    }
+
+    /// What an environment is made of now, to be compared with what it is made of later; `None` where it has errors.
+    pub fn made_of(&self, id: EntityId) -> Option<MadeOf> {
+        let reached = Parts { database: self, file: self.file_of(id) }.reached_from(id);
+        let problems = reached.iter().flat_map(|id| self.problems(*id));
+        if problems.into_iter().any(|problem| problem.severity == Severity::Error) {
+            return None;
+        }
+        let parse = |id: EntityId| Some((id, Arc::clone(self.shared_parse(id)?)));
+        Some(MadeOf { parts: reached.into_iter().map(parse).collect::<Option<_>>()? })
     }
 
     /// A robot with all its parts; `None` where one is missing or broken.
@@ -386,5 +414,28 @@ environment e with ip here has { ^left q q } robots with { m n o m } moves";
     fn a_declaration_hidden_by_a_mistake_blocks_it() {
         let program = "weel a with radius 4 wheel b with radius 4 robot r with port 1 has { a b } wheels environment e has { r } robots";
         assert_eq!(only(program).unwrap_err().errors[0].code(), "syntax-error");
+    }
+
+    #[test]
+    fn only_what_an_environment_uses_changes_it() {
+        let mut database = Database::new();
+        let program = "sensor far wheel a with radius 4 robot r with port 1 has { a b } wheels\n\
+                       movement m of r { move 1 meters at 18 } environment e has { r } robots with { m } moves\n\
+                       wheel b with radius 4";
+        let file = database.open("test.pyr", program);
+        let id = database.environments(file)[0].0;
+        let made_of = |database: &Database| database.made_of(id);
+        let before = made_of(&database);
+        assert!(before.is_some());
+        database.edit(file, Span::at(7), "very_");
+        assert_eq!(made_of(&database), before, "nobody uses this sensor");
+        database.edit(file, Span::at(0), "\n\nsensor new robot x has { } ");
+        assert_eq!(made_of(&database), before, "nor that one, and what is wrong with a robot is its own");
+        let text = database.text(file).unwrap().to_string();
+        let speed = u32::try_from(text.find("at 18").unwrap()).unwrap() + 3;
+        database.edit(file, Span::new(speed, speed + 2), "19");
+        assert_ne!(made_of(&database), before);
+        database.edit(file, Span::new(speed, speed + 2), "0");
+        assert_eq!(made_of(&database), None, "no speed");
     }
 }

@@ -49,8 +49,7 @@ pub fn inlay_hints(
     options: InlayHintOptions,
 ) -> Vec<InlayHint> {
     database
-        .entities(file)
-        .skip_while(|entity| entity.span.end < range.start)
+        .entities_from(file, range.start.saturating_sub(1))
         .take_while(|entity| entity.span.start <= range.end)
         .flat_map(|entity| of_movement(database, &entity, range, options).unwrap_or_default())
         .collect()

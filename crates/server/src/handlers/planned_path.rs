@@ -1,6 +1,7 @@
 //! `pydslrep/plannedPath`, a request of our own, and `pydslrep/plannedPathChanged`, the notification that goes with it.
 //! Both are described in `docs/protocol.md`.
 
+use pydslrep_analysis::MadeOf;
 use pydslrep_ide as ide;
 use serde::Serialize;
 use serde_json::Value;
@@ -53,7 +54,8 @@ struct Action {
 pub(crate) fn planned_path(state: &mut State, which: &ChosenEnvironment) -> Result<Value> {
     let path = plan(state, which);
     state.watched.retain(|watched| watched.which != *which);
-    state.watched.push(Watched { which: which.clone(), path: path.as_ref().ok().cloned() });
+    let made_of = made_of(state, which);
+    state.watched.push(Watched { which: which.clone(), made_of, path: path.as_ref().ok().cloned() });
     path
 }
 
@@ -62,11 +64,19 @@ fn plan(state: &State, which: &ChosenEnvironment) -> Result<Value> {
     serde_json::to_value(convert(path)).map_err(|error| failure(error.to_string()))
 }
 
+fn made_of(state: &State, which: &ChosenEnvironment) -> Option<MadeOf> {
+    state.database.made_of(environment(state, which).ok()?)
+}
+
 /// Tells the client which of the paths that it has are no longer right, each once; it asks again if it still wants them.
 pub(crate) fn announce(state: &mut State, outbox: &Outbox) {
     let watched = std::mem::take(&mut state.watched);
-    for watched in watched {
-        if plan(state, &watched.which).ok() == watched.path {
+    for mut watched in watched {
+        let made_of = made_of(state, &watched.which);
+        // Most of what is typed is none of its business: then nothing is planned again.
+        let is_the_same = made_of.is_some() && made_of == watched.made_of;
+        if is_the_same || plan(state, &watched.which).ok() == watched.path {
+            watched.made_of = made_of;
             state.watched.push(watched);
         } else {
             outbox.notify(PLANNED_PATH_CHANGED, &watched.which);

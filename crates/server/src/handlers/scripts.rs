@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use pydslrep_analysis::EntityId;
+use pydslrep_syntax::EntityKind;
 use tower_lsp::jsonrpc::{self, Error, ErrorCode};
 use tower_lsp::ls_types::{
     CreateFile, CreateFileOptions, DocumentChangeOperation, DocumentChanges, ExecuteCommandParams,
@@ -54,12 +55,10 @@ pub(crate) fn environment(state: &State, which: &ChosenEnvironment) -> jsonrpc::
     let (_, file) = state
         .analysed(&which.uri)
         .ok_or_else(|| failure(format!("`{}` is not open in the editor", which.uri.as_str())))?;
-    let declared = state.database.environments(file);
-    let (id, _) = declared
-        .iter()
-        .find(|(_, name)| name.text == which.environment)
-        .ok_or_else(|| failure(format!("there is no environment `{}`", which.environment)))?;
-    Ok(*id)
+    let name = which.environment.as_str().into();
+    let declared = state.database.definitions(file, EntityKind::Environment, &name);
+    let first = declared.first().copied();
+    first.ok_or_else(|| failure(format!("there is no environment `{}`", which.environment)))
 }
 
 /// Generates the script of an environment; the error says why there is none.
