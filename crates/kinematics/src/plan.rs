@@ -121,6 +121,12 @@ impl Leg {
         Some(self.start? + self.duration)
     }
 
+    /// The highest speed that any point within `reach` metres of the robot's middle may have, metres per second.
+    pub fn top_speed(&self, reach: f64) -> f64 {
+        let Twist { vx, vy, omega } = self.twist_per_rim;
+        (vx.hypot(vy) + omega.abs() * reach) * self.profile.peak()
+    }
+
     /// The pose `seconds` after the leg's start.
     pub fn pose_at(&self, seconds: f64) -> Pose {
         if seconds >= self.duration {

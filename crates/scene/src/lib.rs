@@ -4,8 +4,10 @@
 //! where files are. Units: metres and radians; x forward, y left, θ counter-clockwise.
 //!
 //! * [`Scene`] is the value. [`read`] makes one from a scene file; [`TABLES`] is the one list of what can stand in it.
-//! * [`Space`] answers how far things are from each other and what a sensor sees.
+//! * [`Space`] answers how far things are from each other and what a sensor sees; [`collisions`] where planned paths meet
+//!   something.
 
+mod collision;
 pub mod defaults;
 mod file;
 mod mount;
@@ -13,6 +15,7 @@ mod obstacle;
 mod robot;
 mod space;
 
+pub use collision::{Collision, collisions};
 pub use file::{ENDING, Key, Sort, TABLES, Table, Values, json_schema, manual, read};
 pub use mount::{Mount, mounts_by_name};
 pub use obstacle::{Obstacle, Shape};

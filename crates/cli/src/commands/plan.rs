@@ -7,8 +7,8 @@ use std::process::ExitCode;
 use clap::Args;
 use pydslrep_analysis::environment::{Environment, Movement};
 use pydslrep_config::Config;
-use pydslrep_kinematics::{ActionIndex, Leg, Plan, heading_degrees};
-use pydslrep_scene::Scene;
+use pydslrep_kinematics::{ActionIndex, Leg, Plan, Pose, heading_degrees};
+use pydslrep_scene::{Collision, Scene, Thing, collisions};
 use pydslrep_simulator::picture::{self, Route};
 use serde::Serialize;
 
@@ -153,8 +153,7 @@ fn table(planned: &Planned) -> String {
     ]);
     for (robot, path) in planned.scene.robots.iter().zip(&planned.plan.robots) {
         let start = path.start;
-        let pose =
-            |pose: pydslrep_kinematics::Pose| [fixed(pose.x, 3), fixed(pose.y, 3), heading(pose.theta)];
+        let pose = |pose: Pose| [fixed(pose.x, 3), fixed(pose.y, 3), heading(pose.theta)];
         let [x, y, heading] = pose(start);
         let blank = String::new;
         table.add_row([
@@ -205,7 +204,36 @@ fn table(planned: &Planned) -> String {
         Some(seconds) => format!("{} s", fixed(seconds, 2)),
         None => "as long as the world makes it: what is marked ? depends on what the robot meets".to_owned(),
     };
-    format!("{}: {duration}\n\n{}\n\n", planned.environment.name, table.trim_fmt())
+    let met: String = collisions(&planned.scene, &planned.plan)
+        .iter()
+        .map(|collision| meeting(planned, collision) + "\n")
+        .collect();
+    let met = if met.is_empty() { met } else { met + "\n" };
+    format!("{}: {duration}\n\n{}\n\n{met}", planned.environment.name, table.trim_fmt())
+}
+
+/// What a robot would run into, in words.
+fn meeting(planned: &Planned, collision: &Collision) -> String {
+    let (movement, action) = planned.words(collision.action);
+    let time = collision.time.map_or_else(String::new, |time| format!(" after {} s", fixed(time, 2)));
+    let (x, y) = (fixed(collision.pose.x, 3), fixed(collision.pose.y, 3));
+    let doing = collision.other_action.map_or_else(String::new, |index| {
+        let (movement, action) = planned.words(index);
+        format!(" (`{action}` of `{movement}`)")
+    });
+    format!(
+        "{} runs into `{}`{doing}{time}: `{action}` of `{movement}`, at x {x} m, y {y} m",
+        thing(&planned.scene, Thing::Robot(collision.robot)),
+        thing(&planned.scene, collision.with),
+    )
+}
+
+/// What an obstacle or a robot is called.
+fn thing(scene: &Scene, thing: Thing) -> &str {
+    match thing {
+        Thing::Obstacle(index) => scene.obstacles.get(index).map_or("", |obstacle| &obstacle.name),
+        Thing::Robot(index) => scene.robots.get(index).map_or("", |robot| &robot.name),
+    }
 }
 
 fn time(seconds: Option<f64>) -> String {
@@ -232,6 +260,28 @@ struct JsonPlan<'a> {
     robots: Vec<JsonRobot<'a>>,
     /// Seconds.
     duration: Option<f64>,
+    collisions: Vec<JsonCollision<'a>>,
+}
+
+/// Where a robot would run into something: seconds, metres, radians.
+#[derive(Serialize)]
+struct JsonCollision<'a> {
+    robot: &'a str,
+    #[serde(flatten)]
+    action: JsonAction<'a>,
+    t: Option<f64>,
+    x: f64,
+    y: f64,
+    theta: f64,
+    with: JsonThing<'a>,
+}
+
+/// What a robot would run into.
+#[derive(Serialize)]
+#[serde(rename_all = "snake_case")]
+enum JsonThing<'a> {
+    Obstacle(&'a str),
+    Robot(&'a str),
 }
 
 #[derive(Serialize)]
@@ -279,7 +329,23 @@ fn json_plan(planned: &Planned) -> JsonPlan<'_> {
         environment: &planned.environment.name,
         robots: robots.collect(),
         duration: planned.plan.duration,
+        collisions: collisions(&planned.scene, &planned.plan)
+            .iter()
+            .map(|collision| json_collision(planned, collision))
+            .collect(),
     }
+}
+
+fn json_collision<'a>(planned: &'a Planned, collision: &Collision) -> JsonCollision<'a> {
+    let name = thing(&planned.scene, collision.with);
+    let with = match collision.with {
+        Thing::Obstacle(_) => JsonThing::Obstacle(name),
+        Thing::Robot(_) => JsonThing::Robot(name),
+    };
+    let Pose { x, y, theta } = collision.pose;
+    let action = json_action(planned, collision.action);
+    let robot = thing(&planned.scene, Thing::Robot(collision.robot));
+    JsonCollision { robot, action, t: collision.time, x, y, theta, with }
 }
 
 fn json_pose<'a>(planned: &'a Planned, leg: &Leg) -> JsonPose<'a> {

@@ -102,6 +102,40 @@ fn a_scene_beside_the_program_says_where_robots_start() {
 }
 
 #[test]
+fn what_is_in_the_way_is_told() {
+    let place = Place::with("x.pyr", TWO_ROBOTS);
+    place.write(
+        "hall.scene.toml",
+        "[[box]]\nname = \"crate\"\nat = [0.8, 0]\nsize = [0.4, 0.4]\n[robots.second]\nstart = [1.1, -0.36, 30]\n",
+    );
+    let done = place.run(&["plan", "x.pyr"]);
+    expect![[r#"
+        hall: 14.09 s
+
+         robot    movement   action          from s    to s     x m      y m   heading °   wheels rad/s
+        ────────────────────────────────────────────────────────────────────────────────────────────────
+         first               start                            0.000    0.000         0.0
+                  m          move 1 meters     0.00   11.29   1.000    0.000         0.0    2.00  2.00
+         second              start                            1.100   -0.360        30.0
+                  n          turn left        11.29   14.09   1.100   -0.360       120.0   -2.00  2.00
+
+        first runs into `crate` after 5.08 s: `move 1 meters` of `m`, at x 0.450 m, y 0.000 m
+        second runs into `first` after 11.53 s: `turn left` of `n`, at x 1.100 m, y -0.360 m
+        second runs into `crate` after 12.51 s: `turn left` of `n`, at x 1.100 m, y -0.360 m
+
+    "#]]
+    .assert_eq(&done.out);
+    let json = place.run(&["plan", "--json", "x.pyr"]);
+    let plans: Value = serde_json::from_str(&json.out).unwrap();
+    let met = &plans[0]["collisions"];
+    assert_eq!(met.as_array().unwrap().len(), 2, "{met}");
+    assert_eq!((&met[0]["robot"], &met[0]["with"]), (&json!("first"), &json!({"obstacle": "crate"})));
+    assert_eq!((&met[0]["movement"], &met[0]["run"], &met[0]["action"]), (&json!("m"), &json!(1), &json!(1)));
+    assert!((met[0]["x"].as_f64().unwrap() - 0.449).abs() < 0.002, "{met}");
+    assert_eq!((&met[1]["robot"], &met[1]["with"]), (&json!("second"), &json!({"robot": "first"})));
+}
+
+#[test]
 fn a_scene_with_a_mistake_is_not_driven() {
     let place = Place::with("x.pyr", TWO_ROBOTS);
     place.write("hall.scene.toml", "[robots.frist]\n\n[robots.first.sensors.eye]\nrnage = 2\n");

@@ -1,0 +1,261 @@
+//! Where planned paths meet something.
+
+use pydslrep_kinematics::{ActionIndex, Leg, Plan, Pose, RobotPath};
+
+use crate::{Body, Scene, Space, Thing, distance_between};
+
+/// Bodies this near to each other meet, metres: that near, contact stops robots.
+const TOUCH: f64 = 0.001;
+
+/// So many distances are looked at for one robot, or two, at most; what would come behind is not found. A long way takes
+/// some for each metre, and more only along something that it nearly touches.
+const MOST_LOOKS: u32 = 20_000;
+
+/// A robot that would run into something.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Collision {
+    /// Its index in the scene.
+    pub robot: usize,
+    /// What it is doing.
+    pub action: ActionIndex,
+    /// Seconds since the start of the run; `None` when some earlier action takes an unknown time.
+    pub time: Option<f64>,
+    /// Where it is.
+    pub pose: Pose,
+    /// What it meets.
+    pub with: Thing,
+    /// What the robot that it meets is doing; `None` where that stands, or is no robot.
+    pub other_action: Option<ActionIndex>,
+}
+
+/// Where the robots of a plan would run into obstacles or each other: for each robot the first obstacle on its way, and
+/// for each two robots the first time they meet. What follows from the first is not told. In the order of robots; nothing
+/// where the scene stops nobody.
+pub fn collisions(scene: &Scene, plan: &Plan) -> Vec<Collision> {
+    if !scene.collisions {
+        return Vec::new();
+    }
+    let space = Space::of(scene);
+    let robots: Vec<(Body, &RobotPath)> =
+        scene.robots.iter().zip(&plan.robots).map(|(robot, path)| (robot.body, path)).collect();
+    let mut found = Vec::new();
+    for (index, &(body, path)) in robots.iter().enumerate() {
+        found.extend(with_obstacle(&space, index, body, path));
+        let others = robots.iter().enumerate().skip(index + 1);
+        found.extend(others.filter_map(|(other, &at)| of_two((index, body, path), (other, at.0, at.1))));
+    }
+    found
+}
+
+/// The radius of a circle that holds a body.
+fn reach(body: Body) -> f64 {
+    body.length.hypot(body.width) / 2.0
+}
+
+/// The first obstacle on a robot's way. It cannot meet anything before it has gone as far as the nearest thing is away,
+/// so that is how far each look may go; however thin something is, it is not missed.
+fn with_obstacle(space: &Space, robot: usize, body: Body, path: &RobotPath) -> Option<Collision> {
+    let mut looks = 0;
+    for leg in &path.legs {
+        let speed = leg.top_speed(reach(body));
+        let mut seconds = 0.0;
+        while seconds < leg.duration && looks < MOST_LOOKS {
+            looks += 1;
+            let pose = leg.pose_at(seconds);
+            let left = speed * (leg.duration - seconds);
+            let Some(near) = space.nearest(body, pose, left + TOUCH) else { break };
+            if near.distance < TOUCH {
+                let (with, time) = (Thing::Obstacle(near.obstacle), leg.start.map(|start| start + seconds));
+                return Some(Collision { robot, action: leg.index, time, pose, with, other_action: None });
+            }
+            seconds += step(near.distance, speed);
+        }
+    }
+    None
+}
+
+/// The time that may pass before things at this distance can touch, and a little more so that it comes to an end.
+fn step(distance: f64, speed: f64) -> f64 {
+    (distance - TOUCH / 2.0) / speed
+}
+
+/// When two robots meet first, as far as it is known when they are where.
+fn of_two(a: (usize, Body, &RobotPath), b: (usize, Body, &RobotPath)) -> Option<Collision> {
+    let (first, second) = (Timetable::of(a.2), Timetable::of(b.2));
+    let horizon = first.known_until.min(second.known_until).min(first.end().max(second.end()));
+    let mut time = 0.0;
+    for _ in 0..MOST_LOOKS {
+        if time >= horizon {
+            return None;
+        }
+        let (one, two) = (first.at(time), second.at(time));
+        let speed = one.speed(a.1) + two.speed(b.1);
+        let change = one.until.min(two.until);
+        if speed <= 0.0 {
+            time = change;
+            continue;
+        }
+        let distance = distance_between((a.1, one.pose), (b.1, two.pose));
+        if distance < TOUCH {
+            // One of them moves; it is the one that meets the other.
+            let index = |moment: &Moment<'_>| moment.leg.map(|leg| leg.index);
+            let (robot, other, me, you) =
+                if one.leg.is_some() { (a.0, b.0, one, two) } else { (b.0, a.0, two, one) };
+            let (action, with) = (index(&me)?, Thing::Robot(other));
+            return Some(Collision {
+                robot,
+                action,
+                time: Some(time),
+                pose: me.pose,
+                with,
+                other_action: index(&you),
+            });
+        }
+        time = (time + step(distance, speed)).min(change);
+    }
+    None
+}
+
+/// When a robot is where.
+struct Timetable<'a> {
+    start: Pose,
+    /// With the times at which they start.
+    legs: Vec<(f64, &'a Leg)>,
+    known_until: f64,
+}
+
+/// A robot at some time.
+struct Moment<'a> {
+    pose: Pose,
+    leg: Option<&'a Leg>,
+    /// When it begins to do something else.
+    until: f64,
+}
+
+impl<'a> Timetable<'a> {
+    fn of(path: &'a RobotPath) -> Self {
+        let timed = path.legs.iter().map_while(|leg| Some((leg.start?, leg)));
+        let legs: Vec<(f64, &Leg)> = timed.collect();
+        let is_whole = legs.len() == path.legs.len() && path.unknown_after.is_none();
+        let end = legs.last().map_or(0.0, |(start, leg)| start + leg.duration);
+        Self { start: path.start, legs, known_until: if is_whole { f64::INFINITY } else { end } }
+    }
+
+    fn end(&self) -> f64 {
+        self.legs.last().map_or(0.0, |(start, leg)| start + leg.duration)
+    }
+
+    fn at(&self, time: f64) -> Moment<'a> {
+        let begun = self.legs.partition_point(|(start, _)| *start <= time);
+        let next = self.legs.get(begun).map_or(f64::INFINITY, |(start, _)| *start);
+        match begun.checked_sub(1).map(|last| self.legs[last]) {
+            None => Moment { pose: self.start, leg: None, until: next },
+            Some((start, leg)) if time < start + leg.duration => {
+                Moment { pose: leg.pose_at(time - start), leg: Some(leg), until: start + leg.duration }
+            }
+            Some((_, leg)) => Moment { pose: leg.to, leg: None, until: next },
+        }
+    }
+}
+
+impl Moment<'_> {
+    fn speed(&self, body: Body) -> f64 {
+        self.leg.map_or(0.0, |leg| leg.top_speed(reach(body)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use pydslrep_kinematics::{Action, Drive, RobotPlan, Run, plan};
+
+    use super::*;
+    use crate::{Obstacle, Robot, Wheel};
+
+    const AHEAD: Action = Action::Move { distance: 2.0, speed: 0.1 };
+    const LEFT: Action = Action::Turn { angle: FRAC_PI_2 };
+
+    fn scene(starts: &[Pose], obstacles: Vec<Obstacle>) -> Scene {
+        let robot = |(index, start): (usize, &Pose)| {
+            let wheels = vec![Wheel::new("l", 0.05), Wheel::new("r", 0.05)];
+            Robot { start: *start, ..Robot::new(format!("r{index}"), Drive::TwoWheel, wheels, vec![]) }
+        };
+        Scene { robots: starts.iter().enumerate().map(robot).collect(), obstacles, ..Scene::default() }
+    }
+
+    /// Groups of runs: each a robot with its actions.
+    fn found(scene: &Scene, schedule: &[&[(usize, &[Action])]]) -> Vec<Collision> {
+        let robots: Vec<_> = scene
+            .robots
+            .iter()
+            .map(|robot| RobotPlan { model: robot.model().unwrap(), start: robot.start })
+            .collect();
+        let group = |group: &&[(usize, &[Action])]| {
+            group.iter().map(|&(robot, actions)| Run { robot, actions: actions.to_vec() }).collect()
+        };
+        let schedule: Vec<Vec<Run>> = schedule.iter().map(group).collect();
+        collisions(scene, &plan(&robots, &schedule).unwrap())
+    }
+
+    #[test]
+    fn a_wall_is_met_when_and_where_the_body_touches_it() {
+        let wall = Obstacle::wall("w", (-1.0, 1.2), (1.0, 1.2), 1e-6);
+        let scene = scene(&[Pose::default()], vec![wall]);
+        let met = found(&scene, &[&[(0, &[AHEAD, LEFT])], &[(0, &[AHEAD])]]);
+        assert_eq!(met, [], "it passes beside the wall's end");
+        let scene = Scene {
+            robots: scene.robots,
+            obstacles: vec![Obstacle::wall("w", (1.0, 1.2), (3.0, 1.2), 1e-6)],
+            ..Scene::default()
+        };
+        let met = found(&scene, &[&[(0, &[AHEAD, LEFT])], &[(0, &[AHEAD, AHEAD])]]);
+        let [met] = met.as_slice() else { panic!("{met:?}") };
+        assert_eq!((met.robot, met.with), (0, Thing::Obstacle(0)));
+        assert_eq!(met.action, ActionIndex { group: 1, run: 0, action: 0 });
+        assert!((met.pose.y - 1.05).abs() < 0.001 && (met.pose.x - 2.0).abs() < 1e-9, "{met:?}");
+        let before = 2.0 / 0.1 + 0.2 + FRAC_PI_2 * 0.15 / 0.09 + 0.18;
+        let after = 1.05 / 0.1 + 0.1;
+        assert!(met.time.is_some_and(|time| (time - before - after).abs() < 0.02), "{met:?}");
+    }
+
+    #[test]
+    fn a_corner_that_turns_into_something_meets_it() {
+        let mut scene = scene(&[Pose::default()], vec![Obstacle::wall("w", (-1.0, 0.21), (1.0, 0.21), 0.1)]);
+        scene.robots[0].body = Body { length: 0.5, width: 0.3 };
+        let met = found(&scene, &[&[(0, &[LEFT])]]);
+        assert!(met.len() == 1 && met[0].pose.theta > 0.0 && met[0].pose.theta < 0.3, "{met:?}");
+        scene.collisions = false;
+        assert_eq!(found(&scene, &[&[(0, &[LEFT])]]), []);
+    }
+
+    #[test]
+    fn robots_meet_only_when_both_are_there() {
+        let scene = scene(&[Pose::new(-1.0, 0.0, 0.0), Pose::new(0.0, -1.0, FRAC_PI_2)], vec![]);
+        let met = found(&scene, &[&[(0, &[AHEAD]), (1, &[AHEAD])]]);
+        let [met] = met.as_slice() else { panic!("{met:?}") };
+        assert!(met.robot == 0 && met.with == Thing::Robot(1) && met.other_action.is_some());
+        let time = met.time.unwrap();
+        assert!((met.pose.x + 0.3).abs() < 0.002 && (time - 7.1).abs() < 0.05, "{met:?}");
+        assert_eq!(found(&scene, &[&[(0, &[AHEAD])], &[(1, &[AHEAD])]]), []);
+    }
+
+    #[test]
+    fn a_robot_that_stands_is_met_too() {
+        let scene = scene(&[Pose::new(1.0, 0.0, 0.0), Pose::default()], vec![]);
+        let met = found(&scene, &[&[(1, &[AHEAD])]]);
+        let [met] = met.as_slice() else { panic!("{met:?}") };
+        assert!(met.robot == 1 && met.with == Thing::Robot(0) && met.other_action.is_none(), "{met:?}");
+        assert!((met.pose.x - 0.7).abs() < 0.002, "{met:?}");
+    }
+
+    #[test]
+    fn what_is_not_known_is_not_told() {
+        let wall = Obstacle::wall("w", (1.0, -1.0), (1.0, 1.0), 0.1);
+        let scene = scene(&[Pose::default(), Pose::new(0.0, -1.0, FRAC_PI_2)], vec![wall]);
+        assert_eq!(found(&scene, &[&[(0, &[Action::Unknown, AHEAD])], &[(1, &[AHEAD])]]), []);
+        // Its own way is known, though not when.
+        let met = found(&scene, &[&[(1, &[Action::Unknown])], &[(0, &[AHEAD])]]);
+        assert!(met.len() == 1 && met[0].time.is_none(), "{met:?}");
+    }
+}
