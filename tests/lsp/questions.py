@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from typing import Any
+from urllib.parse import unquote, urlsplit
 
 NOTE = "/* 🤖 日本 e\u0301 */ "
 PARTS = "wheel far with radius 4.5\n"
@@ -141,6 +142,10 @@ def script(buffer: Buffer) -> dict[str, Any]:
 REQUESTS: dict[str, Callable[[Buffer], dict[str, Any]]] = {
     "textDocument/hover": lambda b: b.at("{ a"),
     "textDocument/completion": lambda b: b.at("{ far ", "wh"),
+    "completionItem/resolve": lambda b: {
+        "label": "b",
+        "data": {"home": unquote(urlsplit(b.uri).path), "kind": "wheel", "name": "b"},
+    },
     "textDocument/signatureHelp": lambda b: b.at(" meters"),
     "textDocument/definition": lambda b: b.at("{ a"),
     "textDocument/declaration": lambda b: b.at("{ a b"),

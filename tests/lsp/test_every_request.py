@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pathlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -26,6 +26,7 @@ CONTENT_MODIFIED = -32801
 
 # No column of theirs stands behind the comments.
 WITHOUT_COLUMNS = {
+    "completionItem/resolve",
     "textDocument/signatureHelp",
     "textDocument/documentLink",
     "textDocument/codeAction#script",
@@ -146,6 +147,37 @@ def test_places_are_the_same_in_every_encoding_and_line_ending(
     for name in REQUESTS.keys() - WITHOUT_COLUMNS:
         written = [repr(answers[encoding, "lf"][name]) for encoding in ENCODINGS]
         assert len(set(written)) == 3, f"{name} says nothing of columns"
+
+
+SETTINGS = 'inlay-hints = { "🤖 日本 e\u0301" = 1, pse = true }\n'
+
+
+def test_places_in_settings_are_the_same_in_every_encoding(
+    server: str, tmp_path: pathlib.Path
+) -> None:
+    asked: dict[str, Callable[[Buffer], dict[str, Any]]] = {
+        "textDocument/hover": lambda b: b.at("inlay-hi"),
+        "textDocument/completion": lambda b: b.at(", ps"),
+        "textDocument/codeAction": lambda b: {
+            "textDocument": b.document(),
+            "range": b.span("pse"),
+            "context": {"diagnostics": []},
+        },
+        "textDocument/diagnostic": lambda b: {"textDocument": b.document()},
+    }
+    uri = (tmp_path / "pydslrep.toml").as_uri()
+    places = []
+    for encoding in ENCODINGS:
+        buffer = Buffer(uri, SETTINGS, encoding)
+        with conversation(server, tmp_path, encoding) as talk:
+            talk.server.send(opened(buffer))
+            answers = {
+                name: talk.ask(name, make(buffer)) for name, make in asked.items()
+            }
+            places.append({n: comparable(a, buffer, n) for n, a in answers.items()})
+    assert places[0] == places[1] == places[2]
+    assert all(places[0].values())
+    assert "Change to `pose`" in str(places[0]["textDocument/codeAction"])
 
 
 def test_an_answer_is_about_the_change_sent_right_before_it(

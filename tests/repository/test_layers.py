@@ -123,6 +123,42 @@ def test_lower_crates_do_no_io(crate: str) -> None:
         )
 
 
+def modules(folder: Path) -> dict[str, str]:
+    """The files of a crate by their paths in it, without tests and comments."""
+    found = {}
+    for file in folder.rglob("*.rs"):
+        name = str(file.relative_to(folder).with_suffix(""))
+        if name != "lib" and not name.endswith("tests"):
+            text = without_tests(file.read_text(encoding="utf-8"))
+            found[name] = re.sub(r"//.*", "", text)
+    return found
+
+
+def imported(name: str, files: dict[str, str]) -> set[str]:
+    """The files that one of them imports by their paths in the crate."""
+    found = set()
+    for path, braces in re.findall(r"crate::([a-z_:]+)(?:\{([^}]*)\})?", files[name]):
+        for last in re.findall(r"\w+", braces) or [""]:
+            parts = [part for part in [*path.split("::"), last] if part]
+            heads = ["/".join(parts[:end]) for end in range(len(parts), 0, -1)]
+            found |= set([head for head in heads if head in files][:1])
+    return found - {name}
+
+
+def test_files_of_the_server_import_each_other_in_one_direction() -> None:
+    """Taken away as long as there is one that imports none of the rest, all must go. A file and those in the folder
+    of its name are one."""
+    files = modules(ROOT / "crates" / "server" / "src")
+    whole = {name: imported(name, files) for name in files}
+    while free := {
+        name
+        for name, needed in whole.items()
+        if not {n for n in needed & whole.keys() if not n.startswith(f"{name}/")}
+    }:
+        whole = {name: whole[name] for name in whole.keys() - free}
+    assert whole == {}, "these import each other in a circle"
+
+
 @pytest.mark.parametrize("crate", MAY_KNOW)
 def test_every_crate_says_what_it_must_never_know(crate: str) -> None:
     top = ROOT / "crates" / crate / "src" / ("main.rs" if crate == "cli" else "lib.rs")

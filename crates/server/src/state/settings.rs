@@ -53,6 +53,10 @@ impl State {
             self.apply_settings(&key);
         }
         self.stale.all = true;
+        // They may say where an environment stands.
+        for watched in &mut self.watched {
+            watched.made_of = None;
+        }
     }
 
     /// Sets for a program what is set for its folder.
