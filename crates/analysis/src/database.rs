@@ -5,10 +5,12 @@ mod change;
 mod counts;
 mod imports;
 mod references;
+mod scenes;
 
 pub use self::imports::Absence;
 pub use self::references::Place;
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use pydslrep_syntax::ast::Entity;
@@ -94,6 +96,8 @@ pub struct Database {
     absences: FxHashMap<FileId, FxHashMap<String, Absence>>,
     /// What scripts are made for, where it is not the usual target. Kept while a file is closed.
     targets: FxHashMap<FileId, Target>,
+    /// Scenes of environments by their names. Kept while a file is closed.
+    scenes: BTreeMap<FileId, Scenes>,
     /// Entities with problems.
     troubled: FxHashMap<FileId, FxHashSet<EntityId>>,
     /// Entities whose problems speak of all names there are ("did you mean …"), not only of those they use.
@@ -102,6 +106,9 @@ pub struct Database {
     /// The files whose diagnostics may have changed since they were last asked for.
     touched: FxHashSet<FileId>,
 }
+
+/// Texts of scene files by the names of environments.
+type Scenes = BTreeMap<String, Arc<str>>;
 
 /// How much the latest edit cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -313,6 +320,7 @@ impl Database {
     /// The files whose diagnostics, or places named in them, may have changed since this was last asked; in the order
     /// of opening. Also files that were closed.
     pub fn take_touched(&mut self) -> Vec<FileId> {
+        self.touch_in_scenes();
         let mut touched: Vec<FileId> = std::mem::take(&mut self.touched).into_iter().collect();
         touched.sort_unstable();
         touched

@@ -94,6 +94,16 @@ impl Database {
         Some(MadeOf { parts: reached.into_iter().map(parse).collect::<Option<_>>()? })
     }
 
+    /// An environment without errors, and the entities of its movements in its order.
+    pub(crate) fn resolved(&self, id: EntityId) -> Option<(Environment, Vec<EntityId>)> {
+        let parts = Parts { database: self, file: self.file_of(id) };
+        let errors = diagnostics::of_entities(self, &parts.reached_from(id));
+        if errors.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {
+            return None;
+        }
+        Some((parts.environment(id)?, parts.movements(id)?))
+    }
+
     /// A robot with all its parts; `None` where one is missing or broken.
     pub fn robot(&self, id: EntityId) -> Option<Robot> {
         Parts { database: self, file: self.file_of(id) }.robot(id)
@@ -190,6 +200,13 @@ impl<'a> Parts<'a> {
             schedule: self.schedule(&runs, &movement_ids),
             source: self.source(&self.database.entity(id)?, 0)?,
         })
+    }
+
+    /// The movements that an environment runs, each once, in the order of first listing.
+    fn movements(&self, id: EntityId) -> Option<Vec<EntityId>> {
+        let Entity::Environment(tree) = self.database.tree(id)? else { return None };
+        let listed = tree.movements.as_ref().map_or(&[][..], |list| &list.names);
+        self.resolve_all(id, EntityKind::Movement, listed).map(|runs| without_repeats(&runs))
     }
 
     fn script(&self, environment: &Name) -> Option<String> {

@@ -9,6 +9,7 @@ use pydslrep_files::{EXTENSION, Found, Unread, decode, find, import_bound, read,
 
 use crate::failure::Failure;
 use crate::output::count;
+use crate::scenes;
 
 /// What standard input is called on the command line and in what is printed.
 const STDIN: &str = "-";
@@ -39,6 +40,7 @@ impl Sources {
         files.sort_by(|a, b| sources.shown[a].cmp(&sources.shown[b]));
         files.dedup();
         sources.follow_imports(&files);
+        scenes::tell(&mut sources, &files);
         (sources, files, failures)
     }
 
@@ -69,10 +71,11 @@ impl Sources {
         self.places.get(&file).map(PathBuf::as_path)
     }
 
-    /// Everything that was read, and what imports could lead to: the paths of all of it.
+    /// Everything that was read, what imports could lead to, and where scenes could be: the paths of all of it.
     pub(crate) fn paths(&self) -> Vec<PathBuf> {
         let imports = self.places.keys().flat_map(|file| self.database.imports(*file)).map(PathBuf::from);
-        self.places.values().cloned().chain(imports).collect()
+        let scenes = self.places.keys().flat_map(|file| scenes::paths(self, *file)).map(|(_, path)| path);
+        self.places.values().cloned().chain(imports).chain(scenes).collect()
     }
 
     /// Everything that was read, in the order of the paths.

@@ -2,6 +2,8 @@
 //!
 //! The files in `docs/diagnostics` are written from here, and tests hold every page to what the checks do.
 
+use pydslrep_scene::ENDING;
+
 use super::{CATALOGUE, Rule};
 use crate::{Absence, Database, Diagnostic, Target};
 
@@ -12,7 +14,7 @@ pub struct Page {
     pub what: &'static str,
     /// Why that matters.
     pub why: &'static str,
-    /// The files that the two programs import: their names and texts.
+    /// The files that the two programs import, or their scenes: names and texts.
     pub imports: &'static [(&'static str, &'static str)],
     /// A program with this problem, once, and with no other.
     pub example: &'static str,
@@ -51,7 +53,8 @@ impl Rule {
             .collect();
         let mut files = String::new();
         for (name, text) in *imports {
-            files += &format!("`{name}`:\n\n{}\n", code(text));
+            let block = if name.ends_with(ENDING) { block("toml", text) } else { code(text) };
+            files += &format!("`{name}`:\n\n{block}\n");
         }
         if !files.is_empty() {
             files += "The program:\n\n";
@@ -90,10 +93,15 @@ pub fn index() -> String {
 /// the one with more rules.
 fn example_diagnostics(page: &Page, program: &str) -> Vec<Diagnostic> {
     let mut database = Database::new();
-    for (name, text) in page.imports {
-        database.open(name, text);
-    }
     let file = database.open("program.pyr", program);
+    for (name, text) in page.imports {
+        match name.strip_suffix(ENDING) {
+            Some(environment) => database.set_scene(file, environment, Some(text)),
+            None => {
+                database.open(name, text);
+            }
+        }
+    }
     database.set_target(file, Target::VRep);
     for path in database.imports(file).to_vec() {
         if database.file(&path).is_none() {
@@ -119,7 +127,11 @@ fn said(program: &str, diagnostic: &Diagnostic) -> String {
 }
 
 fn code(program: &str) -> String {
-    format!("```pydslrep\n{program}\n```\n")
+    block("pydslrep", program)
+}
+
+fn block(language: &str, text: &str) -> String {
+    format!("```{language}\n{text}\n```\n")
 }
 
 fn capitalised(word: &str) -> String {

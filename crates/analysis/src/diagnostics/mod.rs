@@ -23,6 +23,7 @@ mod movement_robot_missing;
 mod no_environment;
 mod number_out_of_range;
 mod parallel_conflict;
+mod planned_collision;
 mod repeated_robot;
 mod repeated_sensor;
 mod repeated_wheel;
@@ -102,7 +103,7 @@ impl Rule {
 }
 
 /// All rules, in the order of the language's contract.
-pub const CATALOGUE: [&Rule; 38] = [
+pub const CATALOGUE: [&Rule; 39] = [
     &syntax_error::RULE,
     &invalid_character::RULE,
     &unterminated_comment::RULE,
@@ -140,6 +141,7 @@ pub const CATALOGUE: [&Rule; 38] = [
     &single_parallel::RULE,
     &duplicate_port::RULE,
     &script_name::RULE,
+    &planned_collision::RULE,
     &no_environment::RULE,
 ];
 
@@ -186,6 +188,7 @@ pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
         diagnostics.push(located(database, file, start, problem));
     }
     diagnostics.extend(no_environment::in_file(database, file));
+    diagnostics.extend(planned_collision::in_file(database, file));
     diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);
     diagnostics
 }

@@ -122,6 +122,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         // A picture shows one environment, as a scene is of one; and where there is none, this says which there are.
         program::environment(&sources, file, arguments.environment.as_deref())?;
     }
+    for id in &ids {
+        scenes::tell_named(&mut sources, file, *id, arguments.scene.as_deref());
+    }
     let prepared = program::prepare(&sources, projects.of(file), file, &ids);
     let named = arguments.scene.as_deref();
     let planned = |environment: Environment| {

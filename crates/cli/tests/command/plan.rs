@@ -125,10 +125,15 @@ fn what_is_in_the_way_is_told() {
 
     "#]]
     .assert_eq(&done.out);
+    let checked = place.run(&["check", "x.pyr"]);
+    assert_eq!(checked.code, Some(0), "{}", checked.err);
+    let warning =
+        "warning[planned-collision]: `first` runs into `crate` here after 5.1 s, at x 0.45 m, y 0 m";
+    assert!(checked.out.contains(warning), "{}", checked.out);
     let json = place.run(&["plan", "--json", "x.pyr"]);
     let plans: Value = serde_json::from_str(&json.out).unwrap();
     let met = &plans[0]["collisions"];
-    assert_eq!(met.as_array().unwrap().len(), 2, "{met}");
+    assert_eq!(met.as_array().unwrap().len(), 3, "{met}");
     assert_eq!((&met[0]["robot"], &met[0]["with"]), (&json!("first"), &json!({"obstacle": "crate"})));
     assert_eq!((&met[0]["movement"], &met[0]["run"], &met[0]["action"]), (&json!("m"), &json!(1), &json!(1)));
     assert!((met[0]["x"].as_f64().unwrap() - 0.449).abs() < 0.002, "{met}");

@@ -1,0 +1,224 @@
+//! `planned-collision`: the planned path meets something.
+
+use pydslrep_kinematics::ActionIndex;
+use pydslrep_scene::{Collision, ENDING, Scene, Thing, collisions};
+use pydslrep_syntax::ast::Entity;
+
+use super::context::{Context, Problem};
+use super::{Page, Remedy, Rule};
+use crate::environment::Environment;
+use crate::{Database, Diagnostic, EntityId, FileId, Related, Severity, plan, scene};
+
+pub(super) static RULE: Rule = Rule {
+    code: "planned-collision",
+    severity: Severity::Warning,
+    summary: "the planned path meets an obstacle of the scene, or another robot",
+    tag: None,
+    remedy: Remedy::Never,
+    seeks_names: false,
+    page: PAGE,
+    check,
+};
+
+const PAGE: Page = Page {
+    what: "An environment has a scene file, and on its planned path a robot runs into what stands there, or into another \
+        robot that is there at the same time.",
+    why: "Contact stops a robot: the action would fail after five seconds without progress, and everything behind it would \
+        not happen. For each robot the first obstacle on its way is told, and for each two robots the first time they \
+        meet. What only the world decides, `turn … until` and `slam`, is not foreseen, nor is what comes after it.",
+    imports: &[("yard.scene.toml", "[[box]]\nname = \"crate\"\nat = [1.5, 0]\nsize = [0.4, 0.4]")],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover {
+  move 1 meters
+  move 1 meters
+  turn left
+}
+
+environment yard has { rover } robots with { trip } moves",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover {
+  move 1 meters
+  turn left
+}
+
+environment yard has { rover } robots with { trip } moves",
+};
+
+/// It takes a whole environment, see [`in_file`].
+fn check(_: &Context<'_>, _: &mut Vec<Problem>) {}
+
+/// The problems of the actions of a file, in any environment with a scene. Without scenes there is nothing to do.
+pub(super) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    for (home, name, text) in database.scenes() {
+        let sees = home == file || database.imported_files(home).any(|imported| imported == file);
+        let id =
+            database.environments(home).into_iter().find(|(_, other)| other.text == name).map(|(id, _)| id);
+        if let Some(id) = id.filter(|_| sees) {
+            found.extend(
+                of_environment(database, id, text).into_iter().filter(|problem| problem.file == file),
+            );
+        }
+    }
+    found
+}
+
+fn of_environment(database: &Database, id: EntityId, text: &str) -> Vec<Diagnostic> {
+    let Some((environment, movements)) = database.resolved(id) else { return Vec::new() };
+    let (scene, problems) = pydslrep_scene::read(text, scene(&environment));
+    // What is wrong with the scene comes first: what it means is not known.
+    let plan = plan(&environment, &scene).ok().filter(|_| problems.is_empty());
+    let met = plan.map_or_else(Vec::new, |plan| collisions(&scene, &plan));
+    let run = Run { database, environment: &environment, scene: &scene, movements: &movements };
+    met.iter().filter_map(|collision| run.problem(collision)).collect()
+}
+
+/// An environment in its scene.
+struct Run<'a> {
+    database: &'a Database,
+    environment: &'a Environment,
+    scene: &'a Scene,
+    /// As in the environment.
+    movements: &'a [EntityId],
+}
+
+impl Run<'_> {
+    fn problem(&self, collision: &Collision) -> Option<Diagnostic> {
+        let place = self.place(collision.action, String::new())?;
+        let robot = self.name(Thing::Robot(collision.robot));
+        let with = self.name(collision.with);
+        let when = collision.time.map_or_else(String::new, |time| format!(" after {time:.1} s"));
+        // Adding zero makes a rounded -0 a 0.
+        let centimetres = |metres: f64| (metres * 100.0).round() / 100.0 + 0.0;
+        let (x, y) = (centimetres(collision.pose.x), centimetres(collision.pose.y));
+        let other = collision.other_action;
+        let related = other.and_then(|action| self.place(action, format!("what `{with}` does then")));
+        let environment = &self.environment.name;
+        Some(Diagnostic {
+            rule: &RULE,
+            severity: RULE.severity,
+            file: place.file,
+            span: place.span,
+            message: format!("`{robot}` runs into `{with}` here{when}, at x {x} m, y {y} m"),
+            help: Some(format!("drive around it, or change `{environment}{ENDING}`")),
+            note: Some(format!("this is planned for the environment `{environment}` in its scene")),
+            related: related.into_iter().collect(),
+            fixes: Vec::new(),
+        })
+    }
+
+    fn name(&self, thing: Thing) -> &str {
+        match thing {
+            Thing::Robot(robot) => self.scene.robots.get(robot).map_or("", |robot| &robot.name),
+            Thing::Obstacle(obstacle) => {
+                self.scene.obstacles.get(obstacle).map_or("", |obstacle| &obstacle.name)
+            }
+        }
+    }
+
+    /// Where an action stands.
+    fn place(&self, index: ActionIndex, message: String) -> Option<Related> {
+        let movement = *self.environment.schedule.get(index.group)?.get(index.run)?;
+        let entity = self.database.entity(*self.movements.get(movement)?)?;
+        let Some(Entity::Movement(tree)) = &entity.parse.entity else { return None };
+        let span = tree.actions.get(index.action)?.span.shifted(entity.span.start);
+        Some(Related { file: entity.file, span, message })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::{Expect, expect};
+    use pydslrep_syntax::Span;
+
+    use crate::Database;
+
+    const PARTS: &str = "wheel a with radius 4 wheel b with radius 4\n\
+        robot r with port 1 has { a b } wheels robot q with port 2 has { a b } wheels\n";
+
+    fn said(database: &Database, path: &str) -> String {
+        let file = database.file(path).unwrap();
+        let mut out = String::new();
+        for found in database.diagnostics(file).iter().filter(|found| found.code() == "planned-collision") {
+            out += &format!("{}: {}\n", database.slice(file, found.span), found.message);
+            for related in &found.related {
+                out += &format!("  {}: {}\n", database.slice(related.file, related.span), related.message);
+            }
+        }
+        out
+    }
+
+    #[track_caller]
+    fn check(program: &str, scene: &str, expected: &Expect) {
+        let mut database = Database::new();
+        let file = database.open("test.pyr", &format!("{PARTS}{program}"));
+        assert_eq!(said(&database, "test.pyr"), "", "without a scene nothing is in the way");
+        database.set_scene(file, "e", Some(scene));
+        expected.assert_eq(&said(&database, "test.pyr"));
+        database.set_scene(file, "e", None);
+        assert_eq!(said(&database, "test.pyr"), "");
+    }
+
+    const CRATE: &str = "[[box]]\nname = \"crate\"\nat = [1, 0]\nsize = [0.4, 0.4]\n";
+
+    #[test]
+    fn an_obstacle_on_the_way() {
+        let program = "movement m of r { move 50 centimeters move 2 meters at 30 }\n\
+            environment e has { r } robots with { m } moves environment f has { r } robots with { m } moves";
+        check(
+            program,
+            CRATE,
+            &expect![[r#"
+            move 2 meters at 30: `r` runs into `crate` here after 6.5 s, at x 0.65 m, y 0 m
+        "#]],
+        );
+        check(program, "[[box]]\nat = [1, 2]\nsize = [0.4, 0.4]", &expect![[""]]);
+        check(program, "[[bxo]]", &expect![[""]]);
+    }
+
+    #[test]
+    fn robots_that_meet() {
+        let program = "parallel movement m of r { move 2 meters } parallel movement n of q { turn left move 2 meters }\n\
+            environment e has { r q } robots with { m n } moves";
+        check(
+            program,
+            "[robots.q]\nstart = [0.5, -0.4, 0]",
+            &expect![[r#"
+            move 2 meters: `r` runs into `q` here after 4.0 s, at x 0.35 m, y 0 m
+              move 2 meters: what `q` does then
+        "#]],
+        );
+        check(program, "[world]\ncollisions = false\n[robots.q]\nstart = [0.5, -0.4, 0]", &expect![[""]]);
+    }
+
+    #[test]
+    fn in_the_file_where_the_action_is_and_after_every_edit() {
+        let mut database = Database::new();
+        database.open("parts.pyr", &format!("{PARTS}movement m of r {{ move 2 meters }}"));
+        let main = "import \"parts.pyr\"\nenvironment e has { r } robots with { m } moves";
+        let file = database.open("main.pyr", main);
+        database.set_scene(file, "e", Some(CRATE));
+        assert_eq!(said(&database, "main.pyr"), "");
+        assert!(said(&database, "parts.pyr").starts_with("move 2 meters: `r` runs into `crate` here"));
+        database.take_touched();
+        // Nothing in the other file changes, but what there is to say of it does.
+        let parts = database.file("parts.pyr").unwrap();
+        let at = u32::try_from(main.find("m }").unwrap()).unwrap();
+        database.edit(file, Span::new(at, at + 1), "");
+        assert_eq!(database.take_touched(), [parts, file]);
+        assert_eq!(said(&database, "parts.pyr"), "");
+        database.edit(file, Span::at(at), "m");
+        assert!(said(&database, "parts.pyr").contains("crate"));
+        let radius = u32::try_from(PARTS.find("4 wheel b").unwrap()).unwrap();
+        database.edit(parts, Span::new(radius, radius + 1), "x");
+        assert_eq!(said(&database, "parts.pyr"), "", "what has errors is not planned");
+    }
+}
