@@ -103,6 +103,25 @@ fn hover(bencher: Bencher, lines: usize) {
     bencher.bench_local(|| ide::hover(&database, position));
 }
 
+/// The fixes of a misspelt name, two of which are tried out.
+#[divan::bench(args = LINES)]
+fn quick_fixes(bencher: Bencher, lines: usize) {
+    let text = program(lines);
+    let (mut database, file) = opened(&text);
+    let at = behind(&text, "until { front");
+    database.edit(file, Span::at(at), "x");
+    bencher.bench_local(|| ide::quick_fixes(&database, file, Span::at(at)).len());
+}
+
+#[divan::bench(args = LINES)]
+fn hints_of_a_screen(bencher: Bencher, lines: usize) {
+    let text = program(lines);
+    let (database, file) = opened(&text);
+    let at = behind(&text, "movement ");
+    let screen = Span::new(at, at + 2_000);
+    bencher.bench_local(|| ide::inlay_hints(&database, file, screen, ide::InlayHintOptions::default()).len());
+}
+
 #[divan::bench(args = LINES)]
 fn semantic_tokens(bencher: Bencher, lines: usize) {
     let (database, file) = opened(&program(lines));
