@@ -1,9 +1,10 @@
 //! Who declares a name, and who uses it.
 
-use std::hash::Hash;
+use std::collections::hash_map::Entry;
 
 use pydslrep_syntax::EntityKind;
 use rustc_hash::{FxHashMap, FxHashSet};
+use smallvec::SmallVec;
 use smol_str::SmolStr;
 
 use crate::{EntityId, FileId};
@@ -15,25 +16,36 @@ pub(crate) type Key = (FileId, EntityKind, SmolStr);
 /// looked up file by file.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Names {
-    defined: FxHashMap<Key, Vec<EntityId>>,
-    /// The names of `defined`, by file and kind.
+    known: FxHashMap<Key, Mentions>,
+    /// The names that are declared, by file and kind.
     by_kind: FxHashMap<(FileId, EntityKind), FxHashSet<SmolStr>>,
     /// The names of environments that are the same but for case, by how they are in lower case: their scripts would
     /// be the same file on some computers.
     folded: FxHashMap<(FileId, SmolStr), Vec<SmolStr>>,
-    used: FxHashMap<Key, Vec<EntityId>>,
     skipped: FxHashMap<(FileId, SmolStr), u32>,
+}
+
+/// Most names are declared once and used a few times; those need no memory of their own.
+type Entities = SmallVec<[EntityId; 4]>;
+
+/// Where a name occurs.
+#[derive(Debug, Clone, Default)]
+struct Mentions {
+    /// In the order of the text.
+    defined: Entities,
+    /// Each as often as it uses the name.
+    used: Entities,
 }
 
 impl Names {
     /// The entities that declare a name, in the order of the text.
     pub(crate) fn defined(&self, key: &Key) -> &[EntityId] {
-        self.defined.get(key).map_or(&[], Vec::as_slice)
+        self.known.get(key).map_or(&[], |mentions| &mentions.defined)
     }
 
     /// The entities that use a name, each as often as it does.
     pub(crate) fn used(&self, key: &Key) -> &[EntityId] {
-        self.used.get(key).map_or(&[], Vec::as_slice)
+        self.known.get(key).map_or(&[], |mentions| &mentions.used)
     }
 
     /// Every declared name of a kind in a file, in no order.
@@ -58,36 +70,54 @@ impl Names {
 
     /// Adds a declaration; `order` tells where in the file an entity stands.
     pub(crate) fn define(&mut self, key: Key, entity: EntityId, order: impl Fn(EntityId) -> u64) {
-        let is_new = self.by_kind.entry((key.0, key.1)).or_default().insert(key.2.clone());
-        if is_new && key.1 == EntityKind::Environment {
-            self.folded.entry((key.0, key.2.to_ascii_lowercase().into())).or_default().push(key.2.clone());
+        if self.defined(&key).is_empty() {
+            self.by_kind.entry((key.0, key.1)).or_default().insert(key.2.clone());
+            if key.1 == EntityKind::Environment {
+                self.folded.entry(folded(&key)).or_default().push(key.2.clone());
+            }
         }
-        let entities = self.defined.entry(key).or_default();
+        let entities = &mut self.known.entry(key).or_default().defined;
         let place = entities.partition_point(|other| order(*other) < order(entity));
         entities.insert(place, entity);
     }
 
     /// Removes a declaration.
     pub(crate) fn undefine(&mut self, key: &Key, entity: EntityId) {
-        remove(&mut self.defined, key, &entity);
-        if !self.defined.contains_key(key)
-            && let Some(names) = self.by_kind.get_mut(&(key.0, key.1))
-        {
+        self.remove(key, |mentions| remove(&mut mentions.defined, &entity));
+        if !self.defined(key).is_empty() {
+            return;
+        }
+        if let Some(names) = self.by_kind.get_mut(&(key.0, key.1)) {
             names.remove(&key.2);
-            if key.1 == EntityKind::Environment {
-                remove(&mut self.folded, &(key.0, key.2.to_ascii_lowercase().into()), &key.2);
+        }
+        if key.1 == EntityKind::Environment
+            && let Entry::Occupied(mut twins) = self.folded.entry(folded(key))
+        {
+            twins.get_mut().retain(|name| *name != key.2);
+            if twins.get().is_empty() {
+                twins.remove();
             }
         }
     }
 
     /// Adds a use.
     pub(crate) fn reference(&mut self, key: Key, entity: EntityId) {
-        self.used.entry(key).or_default().push(entity);
+        self.known.entry(key).or_default().used.push(entity);
     }
 
     /// Removes one use.
     pub(crate) fn unreference(&mut self, key: &Key, entity: EntityId) {
-        remove(&mut self.used, key, &entity);
+        self.remove(key, |mentions| remove(&mut mentions.used, &entity));
+    }
+
+    /// Changes where a name occurs, and forgets a name that occurs nowhere.
+    fn remove(&mut self, key: &Key, change: impl FnOnce(&mut Mentions)) {
+        if let Some(mentions) = self.known.get_mut(key) {
+            change(mentions);
+            if mentions.defined.is_empty() && mentions.used.is_empty() {
+                self.known.remove(key);
+            }
+        }
     }
 
     /// Adds a name in skipped text.
@@ -107,14 +137,14 @@ impl Names {
     }
 }
 
-/// Removes one value of a key, and the key with its last one.
-fn remove<K: Eq + Hash, V: Eq>(map: &mut FxHashMap<K, Vec<V>>, key: &K, value: &V) {
-    if let Some(values) = map.get_mut(key) {
-        if let Some(place) = values.iter().position(|other| other == value) {
-            values.remove(place);
-        }
-        if values.is_empty() {
-            map.remove(key);
-        }
+/// What the script of an environment of this name is called where small and capital letters are the same.
+fn folded(key: &Key) -> (FileId, SmolStr) {
+    (key.0, key.2.to_ascii_lowercase().into())
+}
+
+/// Removes an entity once.
+fn remove(entities: &mut Entities, entity: &EntityId) {
+    if let Some(place) = entities.iter().position(|other| other == entity) {
+        entities.remove(place);
     }
 }

@@ -3,6 +3,7 @@
 use pydslrep_analysis::{EntityRef, Snapshot};
 use pydslrep_syntax::ast::{Action, ActionKind, Entity, References};
 use pydslrep_syntax::{EntityKind, Span};
+use smol_str::{SmolStr, SmolStrBuilder};
 
 use crate::cursor::body;
 
@@ -10,9 +11,9 @@ use crate::cursor::body;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Symbol {
     /// Its name.
-    pub name: String,
+    pub name: SmolStr,
     /// What is worth knowing of it at a glance.
-    pub detail: String,
+    pub detail: SmolStr,
     /// What it is.
     pub kind: SymbolKind,
     /// The whole of it.
@@ -41,8 +42,8 @@ fn symbol(snapshot: &Snapshot, entity: &EntityRef<'_>) -> Option<Symbol> {
     let tree = entity.parse.entity.as_ref()?;
     let name = tree.name()?;
     Some(Symbol {
-        name: name.text.to_string(),
-        detail: detail(tree),
+        name: name.text.clone(),
+        detail: detail(tree).into(),
         kind: SymbolKind::Entity(tree.kind()?),
         full: body(entity),
         focus: name.span.shifted(entity.span.start),
@@ -95,17 +96,17 @@ fn children(snapshot: &Snapshot, entity: &EntityRef<'_>, tree: &Entity) -> Vec<S
     let child = |action: &Action| {
         let full = action.span.shifted(entity.span.start);
         let mut words = action.span.text(&text).split_whitespace();
-        let name = words.next().unwrap_or_default().to_owned();
-        let mut detail = String::with_capacity(action.span.len() as usize);
-        for word in words {
-            if !detail.is_empty() {
+        let name = words.next().unwrap_or_default().into();
+        let mut detail = SmolStrBuilder::new();
+        for (index, word) in words.enumerate() {
+            if index > 0 {
                 detail.push(' ');
             }
             detail.push_str(word);
         }
         Symbol {
             name,
-            detail,
+            detail: detail.finish(),
             kind: SymbolKind::Action,
             full,
             focus: Span::new(full.start, full.start + keyword_length(action)),

@@ -7,6 +7,10 @@ use std::process::ExitCode;
 
 use crate::message_loop::serve;
 
+/// What the system lets any process ask for.
+#[cfg(target_os = "linux")]
+const PIPE_SIZE: usize = 1 << 20;
+
 /// Serves one client on standard input and output; the exit code is the protocol's: success only after `shutdown`
 /// and `exit`.
 ///
@@ -37,6 +41,12 @@ fn stdio() -> io::Result<(File, File)> {
     use std::os::fd::AsFd;
     let input = io::stdin().as_fd().try_clone_to_owned()?;
     let output = io::stdout().as_fd().try_clone_to_owned()?;
+    #[cfg(target_os = "linux")]
+    for pipe in [&input, &output] {
+        // A text or an outline of megabytes passes in a few pieces instead of hundreds, with a change from one process
+        // to the other for each. Where it is no pipe, or more than may be asked for, it stays as it is.
+        let _ = rustix::pipe::fcntl_setpipe_size(pipe, PIPE_SIZE);
+    }
     Ok((input.into(), output.into()))
 }
 

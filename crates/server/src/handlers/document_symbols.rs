@@ -2,20 +2,16 @@
 
 use pydslrep_ide as ide;
 use pydslrep_syntax::EntityKind;
-use tower_lsp::ls_types::{
-    DocumentSymbol, DocumentSymbolParams, DocumentSymbolResponse, Location, SymbolInformation, SymbolKind,
-    Uri,
-};
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+use tower_lsp::ls_types::{DocumentSymbolParams, Location, SymbolInformation, SymbolKind, Uri};
 
 use crate::positions::LineTable;
 use crate::state::State;
 use crate::work::Work;
 
 /// The outline of a document.
-pub(crate) fn document_symbols(
-    state: &mut State,
-    params: &DocumentSymbolParams,
-) -> Option<Work<DocumentSymbolResponse>> {
+pub(crate) fn document_symbols(state: &mut State, params: &DocumentSymbolParams) -> Option<Work<Outline>> {
     let as_tree = state.client.symbol_tree;
     state.work(&params.text_document.uri, |document, encoding| {
         let uri = document.uri.clone();
@@ -23,28 +19,63 @@ pub(crate) fn document_symbols(
             let symbols = ide::document_symbols(snapshot);
             let table = LineTable::new(snapshot.text(), encoding);
             if as_tree {
-                let tree = symbols.into_iter().map(|symbol| convert(&table, symbol)).collect();
-                return DocumentSymbolResponse::Nested(tree);
+                return Outline::Tree(table, symbols);
             }
             let mut flat = Vec::new();
             flatten(&table, &uri, symbols, None, &mut flat);
-            DocumentSymbolResponse::Flat(flat)
+            Outline::List(flat)
         })
     })
 }
 
-#[expect(deprecated, reason = "the field must be filled even where it is not used")]
-fn convert(table: &LineTable, symbol: ide::Symbol) -> DocumentSymbol {
-    let children: Vec<_> = symbol.children.into_iter().map(|child| convert(table, child)).collect();
-    DocumentSymbol {
-        name: symbol.name,
-        detail: Some(symbol.detail).filter(|detail| !detail.is_empty()),
-        kind: kind(symbol.kind),
-        tags: None,
-        deprecated: None,
-        range: table.range(symbol.full),
-        selection_range: table.range(symbol.focus),
-        children: (!children.is_empty()).then_some(children),
+/// An answer: a tree, or for clients that know nothing else a list.
+pub(crate) enum Outline {
+    /// As it is, to be converted symbol by symbol when it is written: a long file's may be megabytes.
+    Tree(LineTable, Vec<ide::Symbol>),
+    List(Vec<SymbolInformation>),
+}
+
+impl Serialize for Outline {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Tree(table, symbols) => Branches { table, symbols }.serialize(serializer),
+            Self::List(list) => list.serialize(serializer),
+        }
+    }
+}
+
+struct Branches<'a> {
+    table: &'a LineTable,
+    symbols: &'a [ide::Symbol],
+}
+
+impl Serialize for Branches<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.symbols.iter().map(|symbol| Branch { table: self.table, symbol }))
+    }
+}
+
+/// The protocol's `DocumentSymbol`.
+struct Branch<'a> {
+    table: &'a LineTable,
+    symbol: &'a ide::Symbol,
+}
+
+impl Serialize for Branch<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self { table, symbol } = self;
+        let mut fields = serializer.serialize_map(None)?;
+        fields.serialize_entry("name", symbol.name.as_str())?;
+        if !symbol.detail.is_empty() {
+            fields.serialize_entry("detail", symbol.detail.as_str())?;
+        }
+        fields.serialize_entry("kind", &kind(symbol.kind))?;
+        fields.serialize_entry("range", &table.range(symbol.full))?;
+        fields.serialize_entry("selectionRange", &table.range(symbol.focus))?;
+        if !symbol.children.is_empty() {
+            fields.serialize_entry("children", &Branches { table, symbols: &symbol.children })?;
+        }
+        fields.end()
     }
 }
 
@@ -59,7 +90,7 @@ fn flatten(
 ) {
     for symbol in symbols {
         flat.push(SymbolInformation {
-            name: symbol.name.clone(),
+            name: symbol.name.to_string(),
             kind: kind(symbol.kind),
             tags: None,
             deprecated: None,

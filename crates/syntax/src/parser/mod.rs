@@ -113,17 +113,19 @@ fn must_not_close(text: &str, tokens: &[Lexeme]) -> bool {
 fn parse_batch(text: &str, bounds: &[(&[Lexeme], Span)], emit: &mut impl FnMut(Span, Parse)) {
     let relative: Vec<Box<[Lexeme]>> =
         bounds.iter().map(|(lexemes, span)| relocate(lexemes, span.start)).collect();
-    let significant: Vec<Vec<Lexeme>> = relative.iter().map(|lexemes| without_trivia(lexemes)).collect();
+    let without_trivia: Vec<Option<Vec<Lexeme>>> =
+        relative.iter().map(|lexemes| has_trivia(lexemes).then(|| without_trivia(lexemes))).collect();
     let mut parser = Parser::new();
     let trees: Vec<_> = bounds
         .iter()
-        .zip(&significant)
-        .map(|((_, span), tokens)| parser.run(span.text(text), tokens))
+        .zip(relative.iter().zip(&without_trivia))
+        .map(|((_, span), (all, some))| parser.run(span.text(text), some.as_deref().unwrap_or(all)))
         .collect();
     drop(parser);
-    let read = trees.into_iter().zip(relative);
-    for (((entity, faults), lexemes), ((_, span), tokens)) in read.zip(bounds.iter().zip(&significant)) {
+    let tokens = relative.into_iter().zip(&without_trivia);
+    for (((_, span), (lexemes, some)), (entity, faults)) in bounds.iter().zip(tokens).zip(trees) {
         let piece = span.text(text);
+        let tokens = some.as_deref().unwrap_or(&lexemes);
         let errors = tidy::tidy(piece, entity.as_ref().and_then(Entity::kind), tokens, &lexemes, &faults);
         let skipped_names = tidy::skipped_names(piece, tokens, &faults);
         emit(*span, Parse { entity, errors, lexemes, skipped_names });
@@ -134,8 +136,16 @@ fn relocate(lexemes: &[Lexeme], start: u32) -> Box<[Lexeme]> {
     lexemes.iter().map(|&(token, span)| (token, Span::new(span.start - start, span.end - start))).collect()
 }
 
+fn is_trivia((token, _): &Lexeme) -> bool {
+    token.is_comment() || *token == Token::Invalid
+}
+
+fn has_trivia(lexemes: &[Lexeme]) -> bool {
+    lexemes.iter().any(is_trivia)
+}
+
 fn without_trivia(lexemes: &[Lexeme]) -> Vec<Lexeme> {
-    lexemes.iter().filter(|(token, _)| !token.is_comment() && *token != Token::Invalid).copied().collect()
+    lexemes.iter().filter(|lexeme| !is_trivia(lexeme)).copied().collect()
 }
 
 /// The grammar's rules, each built when it is first needed: building one costs more than parsing an entity with it.
