@@ -83,7 +83,7 @@ impl Names {
 
     /// Removes a declaration.
     pub(crate) fn undefine(&mut self, key: &Key, entity: EntityId) {
-        self.remove(key, |mentions| remove(&mut mentions.defined, &entity));
+        self.remove(key, |mentions| remove(&mut mentions.defined, entity));
         if !self.defined(key).is_empty() {
             return;
         }
@@ -107,7 +107,7 @@ impl Names {
 
     /// Removes one use.
     pub(crate) fn unreference(&mut self, key: &Key, entity: EntityId) {
-        self.remove(key, |mentions| remove(&mut mentions.used, &entity));
+        self.remove(key, |mentions| remove(&mut mentions.used, entity));
     }
 
     /// Changes where a name occurs, and forgets a name that occurs nowhere.
@@ -143,8 +143,8 @@ fn folded(key: &Key) -> (FileId, SmolStr) {
 }
 
 /// Removes an entity once.
-fn remove(entities: &mut Entities, entity: &EntityId) {
-    if let Some(place) = entities.iter().position(|other| other == entity) {
+fn remove(entities: &mut Entities, entity: EntityId) {
+    if let Some(place) = entities.iter().position(|other| *other == entity) {
         entities.remove(place);
     }
 }
