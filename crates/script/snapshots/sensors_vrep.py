@@ -108,6 +108,16 @@ def steer(speed: float, offset: Pose, to_go: float) -> float:
     return 2.0 / reach * (speed * aim - abs(speed) * offset.theta)
 
 
+def speed_back(offset: Pose) -> float:
+    """The speed in m/s that leads a turning robot back on its spot.
+
+    `offset` is the robot's pose seen from the spot. Wheels that slip drive the robot away
+    from it; on the way around, every direction is ahead or behind for a while.
+    """
+    ahead = offset.x * math.cos(offset.theta) + offset.y * math.sin(offset.theta)
+    return max(-0.02, min(0.02, -2.0 * ahead))
+
+
 class TwoWheelDrive:
     """Two-wheel differential drive; the wheels are left, right."""
 
@@ -134,9 +144,9 @@ class TwoWheelDrive:
         """Wheel rates that drive along a line; `offset` is the pose seen from it."""
         return self.wheel_rates(speed, steer(speed, offset, to_go))
 
-    def turn_in_place(self, rim_speed: float, _offset: Pose) -> list[float]:
-        """Wheel rates that turn the robot, to the left where positive."""
-        return self.wheel_rates(0.0, rim_speed / self.turning_radius)
+    def turn_in_place(self, rim_speed: float, offset: Pose) -> list[float]:
+        """Wheel rates that turn the robot on the spot that `offset` is seen from."""
+        return self.wheel_rates(speed_back(offset), rim_speed / self.turning_radius)
 
 
 Drive = TwoWheelDrive

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from .errors import SetupError
 from .pose import Pose
-from .steering import steer
+from .steering import speed_back, steer
 
 #: endif
 
@@ -45,6 +45,6 @@ class FourWheelDrive:
         """Wheel rates that drive along a line; `offset` is the pose seen from it."""
         return self.wheel_rates(speed, steer(speed, offset, to_go))
 
-    def turn_in_place(self, rim_speed: float, _offset: Pose) -> list[float]:
-        """Wheel rates that turn the robot, to the left where positive."""
-        return self.wheel_rates(0.0, rim_speed / self.turning_radius)
+    def turn_in_place(self, rim_speed: float, offset: Pose) -> list[float]:
+        """Wheel rates that turn the robot on the spot that `offset` is seen from."""
+        return self.wheel_rates(speed_back(offset), rim_speed / self.turning_radius)

@@ -11,7 +11,7 @@ from pydslrep_parts.drive_four_wheel import FourWheelDrive
 from pydslrep_parts.drive_two_wheel import TwoWheelDrive
 from pydslrep_parts.errors import SetupError
 from pydslrep_parts.pose import Pose
-from pydslrep_parts.steering import steer
+from pydslrep_parts.steering import speed_back, steer
 
 CHANCE = random.Random(3)
 TWISTS = [tuple(CHANCE.uniform(-1.0, 1.0) for _ in range(3)) for _ in range(20)]
@@ -97,3 +97,11 @@ def test_at_the_end_of_a_line_only_the_heading_counts() -> None:
     assert steer(0.09, beside, 1.0) < -0.1
     assert steer(0.09, beside, 0.0) == 0.0
     assert steer(0.09, Pose(0.0, 0.05, 0.1), 0.0) < -0.1
+
+
+def test_a_turning_robot_goes_back_as_far_as_its_heading_allows() -> None:
+    assert speed_back(Pose(0.005, 0.0, 0.0)) == pytest.approx(-0.01)
+    assert speed_back(Pose(0.005, 0.0, math.pi)) == pytest.approx(0.01)
+    assert speed_back(Pose(0.0, 0.005, 0.0)) == pytest.approx(0.0)
+    assert speed_back(Pose(0.0, 0.005, math.pi / 2.0)) == pytest.approx(-0.01)
+    assert speed_back(Pose(1.0, 0.0, 0.0)) == -0.02
