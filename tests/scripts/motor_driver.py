@@ -1,0 +1,72 @@
+"""A pretended driver of a two-wheel robot's motors, for docs/physical-robot.md.
+
+It has a clock of its own in place of the machine's, and motors that get to their speed as real ones do. When the script
+ends it writes down where the robot really is. `MOTOR_DRIVER` holds what else is to happen: `stuck` or `missing`.
+"""
+
+import atexit
+import json
+import math
+import os
+import pathlib
+import time
+
+TRACK, RADIUS, SUBSTEP = 0.30, 0.045, 0.001
+DELAY = 0.03  # s that motors take for most of a change
+TROUBLE = os.environ.get("MOTOR_DRIVER")
+
+motors: list["Motor"] = []
+truth = {"x": 0.0, "y": 0.0, "theta": 0.0}
+now = 0.0
+
+
+class Motor:
+    """A motor with its encoder."""
+
+    def __init__(self, name: str) -> None:
+        if TROUBLE == "missing":
+            raise OSError(f"no motor {name} on the bus")
+        self.wanted = self.rate = self.rolled = 0.0
+        self.closed = False
+        motors.append(self)
+
+    def set_speed(self, rate: float) -> None:
+        self.wanted = rate
+
+    def angle(self) -> float:
+        return self.rolled
+
+    def close(self) -> None:
+        self.closed = True
+
+
+def distance(sensor: str) -> float:
+    """There is a wall ahead, as far as the robot has not turned by a third of a right angle."""
+    return 0.2 if abs(truth["theta"]) < math.pi / 6 else 3.0
+
+
+def sleep(seconds: float) -> None:
+    """Takes the place of waiting: the world goes on."""
+    global now
+    for _ in range(round(seconds / SUBSTEP)):
+        now += SUBSTEP
+        for motor in motors:
+            wanted = 0.0 if TROUBLE == "stuck" else motor.wanted
+            motor.rate += (wanted - motor.rate) * SUBSTEP / DELAY
+            motor.rolled += motor.rate * SUBSTEP
+        left, right = (motor.rate * RADIUS * SUBSTEP for motor in motors)
+        truth["theta"] += (right - left) / TRACK
+        truth["x"] += (left + right) / 2 * math.cos(truth["theta"])
+        truth["y"] += (left + right) / 2 * math.sin(truth["theta"])
+
+
+def write_down() -> None:
+    state = {"wanted": [motor.wanted for motor in motors]}
+    closed = all(motor.closed for motor in motors)
+    report = json.dumps({**truth, **state, "closed": closed})
+    pathlib.Path("truth.json").write_text(report, encoding="utf-8")
+
+
+time.sleep = sleep  # type: ignore[assignment]
+time.monotonic = lambda: now
+atexit.register(write_down)

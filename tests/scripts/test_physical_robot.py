@@ -1,0 +1,126 @@
+"""The class that docs/physical-robot.md shows drives a robot, put into a generated script as the page says."""
+
+from __future__ import annotations
+
+import ast
+import json
+import math
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import textwrap
+from typing import Any
+
+import pytest
+
+ROOT = pathlib.Path(__file__).parents[2]
+DRIVER = pathlib.Path(__file__).with_name("motor_driver.py")
+
+PROGRAM = """
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+sensor eye
+robot rover with port 23000 has { wheelL wheelR } wheels with sensors { eye }
+movement trip of rover { move 40 centimeters turn left until { eye } move 20 centimeters turn left 90 }
+environment yard has { rover } robots with { trip } moves
+"""
+
+
+def code_of_the_page() -> list[str]:
+    """What its steps have to put into a script."""
+    page = (ROOT / "docs" / "physical-robot.md").read_text(encoding="utf-8")
+    return [
+        textwrap.dedent(code)
+        for code in re.findall(r"^ *```python\n(.*?)^ *```$", page, re.M | re.S)
+    ]
+
+
+def ported(script: str) -> str:
+    """The script with the page's code in place of what the page names."""
+    imports, body = code_of_the_page()
+    lines = script.splitlines(keepends=True)
+    places: dict[str, tuple[int, int]] = {}
+    for node in ast.parse(script).body:
+        if isinstance(node, ast.Import):
+            name = node.names[0].name
+        elif isinstance(node, ast.ImportFrom):
+            name = str(node.module)
+        else:
+            name = str(getattr(node, "name", ""))
+        places[name] = (node.lineno - 1, node.end_lineno or 0)
+    replaced = {
+        "Body": body,
+        "LimitedSocket": "",
+        "coppeliasim_zmqremoteapi_client": "",
+        "zmq": imports,
+    }
+    for name, code in sorted(replaced.items(), key=lambda item: -places[item[0]][0]):
+        first, last = places[name]
+        lines[first:last] = [code]
+    return "".join(lines)
+
+
+@pytest.fixture(name="script")
+def fixture_script(command: str, tmp_path: pathlib.Path) -> pathlib.Path:
+    program = tmp_path / "program.pyr"
+    program.write_text(PROGRAM, encoding="utf-8")
+    subprocess.run([command, "build", str(program)], check=True, capture_output=True)
+    script = tmp_path / "yard.py"
+    script.write_text(ported(script.read_text(encoding="utf-8")), encoding="utf-8")
+    shutil.copy(DRIVER, tmp_path)
+    return script
+
+
+def drive(script: pathlib.Path, code: int, trouble: str = "") -> tuple[Any, str]:
+    """Where the robot really ended, and what the script complained about."""
+    done = subprocess.run(
+        [sys.executable, str(script)],
+        cwd=script.parent,
+        env={**os.environ, "MOTOR_DRIVER": trouble},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == code, done.stderr
+    truth = json.loads((script.parent / "truth.json").read_text(encoding="utf-8"))
+    assert not any(truth["wanted"])
+    return truth, done.stderr
+
+
+def test_the_robot_comes_to_its_goal(script: pathlib.Path) -> None:
+    truth, _ = drive(script, 0)
+    # It turns until it is free, and 20 cm on it turns by a right angle.
+    free = truth["theta"] - math.pi / 2
+    assert math.radians(30) < free < math.radians(40)
+    goal = (0.4 + 0.2 * math.cos(free), 0.2 * math.sin(free))
+    assert math.dist((truth["x"], truth["y"]), goal) < 0.005
+    assert truth["closed"]
+
+
+def test_a_blocked_wheel_is_told(script: pathlib.Path) -> None:
+    _, err = drive(script, 1, "stuck")
+    assert "a wheel may be blocked, or the motors without power" in err
+
+
+def test_missing_motors_are_told(script: pathlib.Path) -> None:
+    _, err = drive(script, 2, "missing")
+    assert err == "error: robot rover: no motor wheelL on the bus\n"
+
+
+def test_the_ported_script_pleases_its_tools(script: pathlib.Path) -> None:
+    for arguments in (
+        # Imports that are left over are for its reader to take out.
+        ["ruff", "check", "--ignore=F401", "--isolated", "--no-cache", script.name],
+        ["mypy", "--strict", "--config-file=", "--follow-imports=silent", script.name],
+    ):
+        done = subprocess.run(
+            [sys.executable, "-m", *arguments],
+            cwd=script.parent,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stdout

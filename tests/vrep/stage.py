@@ -1,0 +1,177 @@
+"""A running simulator and scripts for it, each a process of its own."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import pathlib
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import sim
+
+HERE = pathlib.Path(__file__).parent
+ROOT = HERE.parents[1]
+CLIENT = HERE / "sim.py"
+
+# Nothing here takes this long; what hangs fails instead.
+LIMIT = 60.0
+
+TARGETS = ("coppeliasim", "vrep")
+
+# Robot `other` is in the world only: its port is for who looks on.
+PROGRAM = """
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port {0} has {{ wheelL wheelR }} wheels
+robot other with port {1} has {{ wheelL wheelR }} wheels
+movement trip of rover {{ {actions} }}
+environment yard has {{ rover }} robots with {{ trip }} moves
+environment world has {{ rover other }} robots
+"""
+
+BLOCKING = sim.simx_opmode_blocking
+
+Pose = tuple[float, float, float]
+
+
+def free_ports(count: int) -> list[int]:
+    """Ports that nobody listened on a moment ago."""
+    with_sockets = [socket.create_server(("127.0.0.1", 0)) for _ in range(count)]
+    ports = [server.getsockname()[1] for server in with_sockets]
+    for server in with_sockets:
+        server.close()
+    return ports
+
+
+class Stage:
+    """A folder with a program, and what is built from it."""
+
+    def __init__(self, command: str, folder: pathlib.Path, program: str) -> None:
+        self.command, self.folder = command, folder
+        folder.mkdir(exist_ok=True)
+        self.program = folder / "program.pyr"
+        self.program.write_text(program, encoding="utf-8")
+
+    def build(self, target: str, environment: str = "yard") -> pathlib.Path:
+        """The script for a target, with V-REP's client beside it where it needs one."""
+        folder = self.folder / target
+        which = ["--environment", environment, "--target", target, "-o", str(folder)]
+        build = [self.command, "build", str(self.program), *which]
+        subprocess.run(build, check=True, stdout=subprocess.DEVNULL)
+        if target == "vrep":
+            shutil.copy(CLIENT, folder)
+        return folder / f"{environment}.py"
+
+    @contextmanager
+    def simulator(self, *options: str) -> Iterator[subprocess.Popen[str]]:
+        """The simulator of the program, ready."""
+        process = subprocess.Popen(
+            [self.command, "sim", self.program, "--environment", "world", *options],
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        try:
+            assert process.stdout is not None
+            assert "robot" in process.stdout.readline()
+            yield process
+        finally:
+            process.kill()
+            process.communicate()
+
+
+@contextmanager
+def onlooker(port: int) -> Iterator[int]:
+    """A client that drives nothing, and whose simulation scripts leave running."""
+    number = sim.simxStart("127.0.0.1", port, True, True, 5000, 5)
+    assert number >= 0
+    try:
+        assert sim.simxStartSimulation(number, BLOCKING) == 0
+        yield number
+    finally:
+        sim.simxFinish(number)
+
+
+def start(script: pathlib.Path, *options: str) -> subprocess.Popen[str]:
+    """A script that runs."""
+    return subprocess.Popen(
+        [sys.executable, script, *options],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        # So that what is beside the tests is not on its path.
+        cwd=script.parent,
+        env={key: value for key, value in os.environ.items() if key != "PYTHONPATH"},
+    )
+
+
+def finish(process: subprocess.Popen[str], code: int = 0) -> tuple[str, str]:
+    """What it said to its end, which must come with that exit code."""
+    try:
+        out, err = process.communicate(timeout=LIMIT)
+    finally:
+        process.kill()
+    assert process.returncode == code, err
+    return out, err
+
+
+def wait_for_motion(eye: int, script: subprocess.Popen[str]) -> int:
+    """Waits until the rover drives; its left wheel."""
+    left = handle(eye, "/rover/wheelL")
+    while wheel_rate(eye, left) < 0.5:
+        assert script.poll() is None, script.communicate()
+    return left
+
+
+def wait_for_rest(eye: int, wheel: int) -> None:
+    """Waits until a wheel stands, which it must within a second of simulation time."""
+    wheel_rate(eye, wheel)
+    begin = sim.simxGetLastCmdTime(eye)
+    deadline = time.monotonic() + LIMIT
+    while wheel_rate(eye, wheel) != 0.0:
+        assert sim.simxGetLastCmdTime(eye) <= begin + 1000, "drives on"
+        assert time.monotonic() < deadline, "no time passes"
+
+
+def handle(eye: int, name: str) -> int:
+    """The handle of an object."""
+    code, found = sim.simxGetObjectHandle(eye, name, BLOCKING)
+    assert code == 0
+    return found
+
+
+def wheel_rate(eye: int, wheel: int) -> float:
+    """How fast a wheel turns, rad/s."""
+    code, rate = sim.simxGetObjectFloatParameter(eye, wheel, 2012, BLOCKING)
+    assert code == 0
+    return rate
+
+
+def interrupt(process: subprocess.Popen[str]) -> None:
+    """As Ctrl-C does."""
+    process.send_signal(signal.SIGINT)
+
+
+def ends(trace: pathlib.Path) -> dict[str, Pose]:
+    """Where robots ended: metres and degrees."""
+    found: dict[str, Pose] = {}
+    for line in trace.read_text(encoding="utf-8").splitlines():
+        row = json.loads(line)
+        found[row["robot"]] = (row["x"], row["y"], math.degrees(row["theta"]))
+    return found
+
+
+def assert_near(
+    end: Pose, goal: Pose, metres: float = 0.005, degrees: float = 0.5
+) -> None:
+    """A pose must be as near to where it should be as actions end."""
+    off = math.dist(end[:2], goal[:2])
+    turned = abs(math.remainder(end[2] - goal[2], 360.0))
+    assert (off <= metres, turned <= degrees) == (True, True), f"{end}, not {goal}"

@@ -1,0 +1,126 @@
+"""What goes wrong between a script for V-REP and its simulator is told, and nothing hangs."""
+
+from __future__ import annotations
+
+import pathlib
+import socket
+
+import pytest
+import sim
+from stage import (
+    BLOCKING,
+    CLIENT,
+    PROGRAM,
+    Stage,
+    finish,
+    free_ports,
+    interrupt,
+    onlooker,
+    start,
+    wait_for_motion,
+    wait_for_rest,
+)
+
+
+@pytest.fixture(name="ports")
+def fixture_ports() -> list[int]:
+    return free_ports(2)
+
+
+@pytest.fixture(name="stage")
+def fixture_stage(command: str, tmp_path: pathlib.Path, ports: list[int]) -> Stage:
+    program = PROGRAM.format(*ports, actions="move 2 meters")
+    return Stage(command, tmp_path / "stage", program)
+
+
+def test_nobody_there(stage: Stage, ports: list[int]) -> None:
+    _, err = finish(start(stage.build("vrep")), 2)
+    assert f"robot rover: nobody answers at 127.0.0.1:{ports[0]}" in err
+    _, err = finish(start(stage.build("vrep"), "--host", "no.such.host.invalid"), 2)
+    assert "host no.such.host.invalid is not known" in err
+
+
+def test_a_port_that_another_client_has(stage: Stage, ports: list[int]) -> None:
+    script = stage.build("vrep")
+    with stage.simulator(), onlooker(ports[0]):
+        _, err = finish(start(script), 2)
+    assert f"robot rover: no answer from 127.0.0.1:{ports[0]}. The remote API" in err
+
+
+def test_all_names_that_were_tried(
+    command: str, stage: Stage, tmp_path: pathlib.Path, ports: list[int]
+) -> None:
+    text = stage.program.read_text(encoding="utf-8")
+    renamed = text.replace("rover", "rovers").replace("wheelL", "wheel_x")
+    script = Stage(command, tmp_path / "other", renamed).build("vrep")
+    with stage.simulator():
+        _, err = finish(start(script), 2)
+    assert err == (
+        f"error: robot rovers: the scene at 127.0.0.1:{ports[0]} has no robot rovers or "
+        "/rovers, no joint wheel_x_rovers or /rovers/wheel_x or wheel_x\n"
+    )
+
+
+def test_ctrl_c_stops_everything(stage: Stage, ports: list[int]) -> None:
+    script = stage.build("vrep")
+    with stage.simulator(), onlooker(ports[1]) as eye:
+        process = start(script)
+        left = wait_for_motion(eye, process)
+        interrupt(process)
+        _, err = finish(process, 130)
+        assert err == "interrupted\n"
+        wait_for_rest(eye, left)
+        _, state = sim.simxGetInMessageInfo(eye, sim.simx_headeroffset_server_state)
+        assert state & 1, "what others started goes on"
+
+
+def test_a_simulator_that_dies(stage: Stage, ports: list[int]) -> None:
+    script = stage.build("vrep")
+    with stage.simulator() as simulator, onlooker(ports[1]) as eye:
+        process = start(script)
+        wait_for_motion(eye, process)
+        simulator.kill()
+        _, err = finish(process, 1)
+    assert err == (
+        "error: robot rover, movement trip, action 1: move 2 m: "
+        f"lost 127.0.0.1:{ports[0]}\n"
+    )
+
+
+def test_a_simulation_that_somebody_stops(stage: Stage, ports: list[int]) -> None:
+    script = stage.build("vrep")
+    with stage.simulator(), onlooker(ports[1]) as eye:
+        process = start(script)
+        wait_for_motion(eye, process)
+        sim.simxStopSimulation(eye, BLOCKING)
+        _, err = finish(process, 1)
+    assert err.endswith("the simulation was stopped or paused\n"), err
+
+
+def test_somebody_who_never_answers(stage: Stage, ports: list[int]) -> None:
+    script = stage.build("vrep")
+    with socket.create_server(("127.0.0.1", ports[0])) as server:
+        process = start(script)
+        line, _ = server.accept()
+        _, err = finish(process, 2)
+        line.close()
+    assert f"no answer from 127.0.0.1:{ports[0]}" in err
+
+
+def test_the_client_explains_itself(stage: Stage) -> None:
+    script = stage.build("vrep")
+    client = script.with_name(CLIENT.name)
+    client.unlink()
+    _, err = finish(start(script), 2)
+    assert "there is neither a sim.py nor a vrep.py of it on Python's path" in err
+    assert f"to {script.parent}." in err
+    # Another module of that name is no client.
+    client.write_text("answer = 42\n", encoding="utf-8")
+    _, err = finish(start(script), 2)
+    assert "client for Python is missing" in err
+    client.write_text("import simConst\n", encoding="utf-8")
+    _, err = finish(start(script), 2)
+    assert err == "error: sim.py needs simConst.py beside it\n"
+    client.write_text("raise OSError('remoteApi.so: no such file')", encoding="utf-8")
+    _, err = finish(start(script), 2)
+    assert "error: sim.py cannot be loaded: remoteApi.so: no such file." in err

@@ -1,0 +1,159 @@
+"""Programs drive by V-REP's legacy remote API as they do by that of CoppeliaSim."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import shutil
+import subprocess
+from collections.abc import Sequence
+
+import pytest
+from stage import (
+    HERE,
+    PROGRAM,
+    ROOT,
+    Stage,
+    assert_near,
+    ends,
+    finish,
+    free_ports,
+    interrupt,
+    onlooker,
+    start,
+)
+
+PAPER = ROOT / "tests" / "paper"
+EXAMPLES = ROOT / "examples"
+
+
+def run(
+    command: str,
+    program: pathlib.Path,
+    trace: pathlib.Path,
+    target: str = "vrep",
+    options: Sequence[str] = (),
+) -> None:
+    done = subprocess.run(
+        [command, "run", program, "--target", target, "--trace", trace, *options],
+        env={**os.environ, "PYTHONPATH": str(HERE)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize(
+    ("program", "goal"),
+    [
+        (PAPER / "table2_two_wheels.pyr", (0.0, -4.0, 180.0)),
+        (PAPER / "table3_four_wheels.pyr", (0.0, -4.0, 180.0)),
+        (PAPER / "table4_holonomic.pyr", (0.0, -4.0, 180.0)),
+        # Nothing stands on this floor, so that its sensors are free.
+        (PAPER / "table6_sensors.pyr", (12.0, 0.0, 0.0)),
+        (ROOT / "tests/programs/table5_with_wheels.pyr", (3.182, 1.525, 90.0)),
+    ],
+    ids=lambda value: value.stem if isinstance(value, pathlib.Path) else "",
+)
+def test_the_articles_programs(
+    command: str,
+    tmp_path: pathlib.Path,
+    program: pathlib.Path,
+    goal: tuple[float, float, float],
+) -> None:
+    run(command, program, tmp_path / "trace")
+    assert_near(ends(tmp_path / "trace")["robot_1"], goal)
+
+
+@pytest.mark.parametrize("name", ["convoy", "horseshoe"])
+def test_both_targets_drive_alike(
+    command: str, tmp_path: pathlib.Path, name: str
+) -> None:
+    """Several robots at once, and turning until sensors are free."""
+    found = []
+    for target in ("vrep", "coppeliasim"):
+        run(command, EXAMPLES / f"{name}.pyr", tmp_path / target, target)
+        found.append(ends(tmp_path / target))
+    vrep, coppeliasim = found
+    assert vrep.keys() == coppeliasim.keys()
+    for robot, end in vrep.items():
+        assert_near(end, coppeliasim[robot], 0.001, 0.1)
+
+
+def test_a_run_can_be_repeated(command: str, tmp_path: pathlib.Path) -> None:
+    """Triggered steps come out the same, also where robots drive at the same time."""
+    traces = []
+    for trace in (tmp_path / "first", tmp_path / "second"):
+        run(command, EXAMPLES / "convoy.pyr", trace)
+        traces.append(trace.read_bytes())
+    assert traces[0] == traces[1]
+    assert traces[0].count(b"\n") > 1000
+
+
+def test_robots_may_share_a_port_in_the_program(
+    command: str, tmp_path: pathlib.Path
+) -> None:
+    program = PROGRAM.format(23000, 23000, actions="move 5 centimeters")
+    program = program.replace("yard has { rover }", "yard has { rover other }")
+    stage = Stage(command, tmp_path / "stage", program)
+    run(command, stage.program, tmp_path / "trace", options=["--environment", "yard"])
+    assert_near(ends(tmp_path / "trace")["rover"], (0.05, 0.0, 0.0))
+
+
+def test_time_may_pass_by_itself(command: str, tmp_path: pathlib.Path) -> None:
+    """Without triggers, what a robot is told comes late by some milliseconds of communication."""
+    ports = free_ports(2)
+    actions = "move 10 centimeters turn left 30 move 20 centimeters at 20"
+    stage = Stage(command, tmp_path / "stage", PROGRAM.format(*ports, actions=actions))
+    script = stage.build("vrep")
+    with stage.simulator():
+        finish(start(script, "--realtime", "--trace", str(tmp_path / "trace")))
+    # The loop is closed until an action has come to its goal: what is late costs time, not way.
+    assert_near(ends(tmp_path / "trace")["rover"], (0.2732, 0.1, 30.0))
+
+
+def test_scripts_of_both_targets_at_once(command: str, tmp_path: pathlib.Path) -> None:
+    *ports, spare = free_ports(5)
+    wheels = "wheel wheelL with radius 4.5 wheel wheelR with radius 4.5"
+    robots = "".join(
+        f"robot r{index} with port {port} has {{ wheelL wheelR }} wheels\n"
+        for index, port in enumerate((*ports, spare))
+    )
+    all_of_them = "environment world has { r0 r1 r2 r3 r4 } robots"
+    world = Stage(command, tmp_path / "world", f"{wheels}\n{robots}{all_of_them}")
+    scripts = []
+    for target, (first, second) in {"vrep": (0, 1), "coppeliasim": (2, 3)}.items():
+        program = f"""{wheels}\n{robots}
+            parallel movement a of r{first} {{ move 30 centimeters turn left 45 }}
+            parallel movement b of r{second} {{ turn right 90 move 20 centimeters }}
+            environment yard has {{ r{first} r{second} }} robots with {{ a b }} moves"""
+        scripts.append(Stage(command, tmp_path / target, program).build(target))
+    trace = tmp_path / "trace"
+    with world.simulator("--trace", str(trace)) as simulator, onlooker(spare):
+        running = [start(script) for script in scripts]
+        for process in running:
+            finish(process)
+        interrupt(simulator)
+        simulator.wait()
+    found = ends(trace)
+    for index in (0, 2):
+        assert_near(found[f"r{index}"], (0.3, -index, 45.0))
+        assert_near(found[f"r{index + 1}"], (0.0, -index - 1.2, -90.0))
+
+
+def test_the_client_is_found_beside_the_program(
+    command: str, tmp_path: pathlib.Path
+) -> None:
+    program = PROGRAM.format(23000, 23001, actions="move 5 centimeters")
+    stage = Stage(command, tmp_path / "stage", program)
+    # As V-REP 3 calls it.
+    shutil.copy(HERE / "sim.py", stage.folder / "vrep.py")
+    done = subprocess.run(
+        [command, "run", stage.program, "--environment", "yard", "--target", "vrep"],
+        env={key: value for key, value in os.environ.items() if key != "PYTHONPATH"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
