@@ -31,6 +31,9 @@ pub(crate) struct Problem {
     pub(crate) fixes: Vec<ProblemFix>,
 }
 
+/// What people write within a number or a name, such as `1'000`: what is left on either side of it is one word.
+pub(super) const WITHIN_WORDS: [char; 4] = ['\'', '’', '$', '@'];
+
 /// One half of a pair of braces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Brace {
@@ -269,7 +272,7 @@ impl<'a> Context<'a> {
         let between = span.start > 0
             && is_word(&self.text(Span::new(span.start - 1, span.start)))
             && is_word(&behind)
-            && !self.text(span).contains(['\'', '’', '$', '@']);
+            && !self.text(span).contains(WITHIN_WORDS);
         self.replace(Span::new(span.start, span.end + u32::from(first)), if between { " " } else { "" })
     }
 

@@ -49,7 +49,7 @@ mod testing;
 use pydslrep_syntax::Span;
 
 use self::consequences::Consequences;
-use self::context::{Brace, Context};
+use self::context::{Brace, Context, WITHIN_WORDS};
 pub(crate) use self::context::{Problem, ProblemFix};
 pub use self::manual::{Page, Remedy, index};
 use crate::{Database, Diagnostic, Edit, EntityId, FileId, Fix, Related, Severity};
@@ -238,6 +238,10 @@ fn kept_apart(database: &Database, file: FileId, span: Span, text: &str) -> Stri
     let behind = (1..=4).map(|ahead| beside(span.end, span.end + ahead)).find(|text| !text.is_empty());
     let runs_on = behind.is_some_and(|text| first(&text));
     let replaced = database.slice(file, span);
+    let joins = text == "_" || replaced.starts_with(WITHIN_WORDS);
+    if joins {
+        return text.to_owned();
+    }
     if text.is_empty() {
         return if runs_in && runs_on { " ".to_owned() } else { String::new() };
     }
