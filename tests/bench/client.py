@@ -1,0 +1,205 @@
+"""A client that measures: it stamps what arrives before it looks at it, and does its own work outside of the times."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import queue
+import subprocess
+import threading
+import time
+from typing import Any
+
+URI = "file:///bench/program.pyr"
+
+CAPABILITIES = {
+    "general": {"positionEncodings": ["utf-16"]},
+    "workspace": {"configuration": False},
+    "textDocument": {
+        "publishDiagnostics": {"versionSupport": True, "relatedInformation": True},
+        "diagnostic": {},
+        "completion": {"completionItem": {"snippetSupport": True}},
+        "documentSymbol": {"hierarchicalDocumentSymbolSupport": True},
+        "semanticTokens": {
+            "requests": {"full": True},
+            "formats": ["relative"],
+            "tokenTypes": ["type", "class", "variable", "function", "keyword"],
+            "tokenModifiers": [],
+        },
+        "foldingRange": {},
+        "formatting": {},
+        "hover": {},
+    },
+}
+
+LONGEST_WAIT = 120.0
+
+
+class Client:
+    """A running server."""
+
+    def __init__(self, command: list[str]) -> None:
+        self.began = time.perf_counter()
+        self.process = subprocess.Popen(
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            bufsize=0,
+        )
+        self.arrived: queue.SimpleQueue[tuple[float, bytes | None]] = (
+            queue.SimpleQueue()
+        )
+        threading.Thread(target=self._read, daemon=True).start()
+        self.published: list[tuple[dict[str, Any], float]] = []
+        self.ident = 0
+        self.version = 0
+        result, _ = self.ask("initialize", {"capabilities": CAPABILITIES})
+        self.capabilities: dict[str, Any] = result["capabilities"]
+        self.tell("initialized", {})
+
+    def __enter__(self) -> Client:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop()
+
+    def stop(self) -> None:
+        """Ends the process."""
+        self.process.kill()
+        self.process.wait()
+
+    def tell(self, method: str, params: object) -> float:
+        """Sends a notification; the time before its first byte left."""
+        return self._write({"method": method, "params": params})
+
+    def ask(self, method: str, params: object) -> tuple[Any, float]:
+        """An answer and the time at which all of it had arrived."""
+        ident, _ = self.send(method, params)
+        return self.answer(ident)
+
+    def send(self, method: str, params: object) -> tuple[int, float]:
+        """Sends a request without waiting; the time before its first byte left."""
+        self.ident += 1
+        message = {"id": self.ident, "method": method, "params": params}
+        return self.ident, self._write(message)
+
+    def answer(self, ident: int) -> tuple[Any, float]:
+        """The answer to a request, and when all of it had arrived."""
+        while True:
+            message, arrived = self._next()
+            if message.get("id") == ident and "method" not in message:
+                if "error" in message:
+                    raise RuntimeError(str(message["error"]))
+                return message["result"], arrived
+
+    def open(self, text: str) -> float:
+        """Opens the document; the time before its first byte left."""
+        self.version += 1
+        return self.tell(
+            "textDocument/didOpen",
+            {
+                "textDocument": {
+                    "uri": URI,
+                    "languageId": "pydslrep",
+                    "version": self.version,
+                    "text": text,
+                }
+            },
+        )
+
+    def close(self) -> None:
+        """Closes it."""
+        self.tell("textDocument/didClose", {"textDocument": {"uri": URI}})
+
+    def change(self, line: int, start: int, end: int, text: str) -> float:
+        """Replaces a part of a line; the time before its first byte left."""
+        self.version += 1
+        self.published.clear()
+        place = {
+            "start": {"line": line, "character": start},
+            "end": {"line": line, "character": end},
+        }
+        return self.tell(
+            "textDocument/didChange",
+            {
+                "textDocument": {"uri": URI, "version": self.version},
+                "contentChanges": [{"range": place, "text": text}],
+            },
+        )
+
+    def has(self, capability: str) -> bool:
+        """Whether the server announces it."""
+        return self.capabilities.get(capability) not in (None, False)
+
+    def settled(self, lines: list[int]) -> tuple[list[int], float]:
+        """The lines with errors in the latest version, and when this was known.
+
+        Servers that push without saying for which version are listened to until it is `lines`.
+        """
+        if self.has("diagnosticProvider"):
+            report, arrived = self.ask(
+                "textDocument/diagnostic", {"textDocument": {"uri": URI}}
+            )
+            return lines_of_errors(report["items"]), arrived
+        while True:
+            while self.published:
+                params, arrived = self.published.pop(0)
+                found = lines_of_errors(params["diagnostics"])
+                version = params.get("version")
+                if version == self.version or (version is None and found == lines):
+                    return found, arrived
+            self._next()
+
+    def peak_memory(self) -> float:
+        """MiB."""
+        status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text()
+        return int(status.split("VmHWM:")[1].split()[0]) / 1024
+
+    def _next(self) -> tuple[dict[str, Any], float]:
+        arrived, body = self.arrived.get(timeout=LONGEST_WAIT)
+        if body is None:
+            raise RuntimeError("the server has ended")
+        message: dict[str, Any] = json.loads(body)
+        if "id" in message and "method" in message:
+            self._write({"id": message["id"], "result": None})
+        if message.get("method") == "textDocument/publishDiagnostics":
+            self.published.append((message["params"], arrived))
+        return message, arrived
+
+    def _write(self, message: dict[str, object]) -> float:
+        body = json.dumps({"jsonrpc": "2.0", **message}).encode()
+        data = memoryview(b"Content-Length: %d\r\n\r\n" % len(body) + body)
+        assert self.process.stdin
+        started = time.perf_counter()
+        while data:
+            data = data[os.write(self.process.stdin.fileno(), data) :]
+        return started
+
+    def _read(self) -> None:
+        assert self.process.stdout
+        out = self.process.stdout.fileno()
+        buffer = bytearray()
+        while chunk := os.read(out, 1 << 20):
+            buffer += chunk
+            while (end := buffer.find(b"\r\n\r\n")) >= 0:
+                length = int(
+                    buffer[:end].lower().split(b"content-length:")[1].split()[0]
+                )
+                if len(buffer) < end + 4 + length:
+                    break
+                self.arrived.put(
+                    (time.perf_counter(), bytes(buffer[end + 4 : end + 4 + length]))
+                )
+                del buffer[: end + 4 + length]
+        self.arrived.put((time.perf_counter(), None))
+
+
+def lines_of_errors(diagnostics: list[dict[str, Any]]) -> list[int]:
+    """Where there are errors; a diagnostic without severity is one."""
+    return [
+        item["range"]["start"]["line"]
+        for item in diagnostics
+        if item.get("severity", 1) == 1
+    ]
