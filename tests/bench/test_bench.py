@@ -6,13 +6,19 @@ import pathlib
 import subprocess
 import sys
 
-from raw import SERVER
 
-
-def test_every_figure_can_be_taken() -> None:
+def test_every_figure_can_be_taken(command: str) -> None:
     bench = pathlib.Path(__file__).parent
     done = subprocess.run(
-        [sys.executable, str(bench), "--sizes", "100", "--samples", "2", SERVER],
+        [
+            sys.executable,
+            str(bench),
+            "--sizes",
+            "100",
+            "--samples",
+            "2",
+            f"{command} lsp",
+        ],
         capture_output=True,
         text=True,
         check=False,

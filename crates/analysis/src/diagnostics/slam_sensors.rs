@@ -5,7 +5,7 @@ use pydslrep_syntax::ast::{ActionKind, Entity, Name, Robot, SensorKind};
 
 use super::context::{Context, Problem};
 use super::{Page, Remedy, Rule};
-use crate::Severity;
+use crate::{Database, EntityId, FileId, Severity};
 
 pub(super) static RULE: Rule = Rule {
     code: "slam-sensors",
@@ -62,7 +62,7 @@ const NEEDED: usize = 5;
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
     let Some((id, robot)) = movement.robot.as_ref().and_then(|name| context.robot(name)) else { return };
-    let (Some(name), Some(count)) = (&robot.name, distance_sensors(context, robot)) else { return };
+    let (Some(name), Some(count)) = (&robot.name, distance_sensors(context, id, robot)) else { return };
     // More of them may be in what was not understood.
     if count >= NEEDED || !context.is_sound(id) {
         return;
@@ -89,19 +89,21 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 }
 
 /// How many distance sensors the robot has; `None` where one of its sensors is not known.
-fn distance_sensors(context: &Context<'_>, robot: &Robot) -> Option<usize> {
+fn distance_sensors(context: &Context<'_>, id: EntityId, robot: &Robot) -> Option<usize> {
+    // Its names mean what they do in its own file, which need not be the movement's.
+    let file = context.database.file_of(id)?;
     let names = robot.sensors.as_ref().map_or(&[][..], |list| &list.names);
     let mut counted: Vec<&str> = Vec::new();
     for name in names {
-        if sees_distance(context, name)? && !counted.contains(&name.text.as_str()) {
+        if sees_distance(context.database, file, name)? && !counted.contains(&name.text.as_str()) {
             counted.push(&name.text);
         }
     }
     Some(counted.len())
 }
 
-fn sees_distance(context: &Context<'_>, name: &Name) -> Option<bool> {
-    match context.database.tree(context.resolve(EntityKind::Sensor, name).entity()?)? {
+fn sees_distance(database: &Database, file: FileId, name: &Name) -> Option<bool> {
+    match database.tree(database.resolve(file, EntityKind::Sensor, &name.text).entity()?)? {
         Entity::Sensor(sensor) => Some(!matches!(sensor.kind, Some((SensorKind::Bumper, _)))),
         _ => None,
     }
@@ -124,6 +126,23 @@ mod tests {
         let file = database.open("a.pyr", &program);
         let codes: Vec<_> = database.diagnostics(file).iter().map(crate::Diagnostic::code).collect();
         assert_eq!(codes, ["syntax-error"]);
+    }
+
+    #[test]
+    fn sensors_are_those_of_the_robots_file() {
+        let mut database = crate::Database::new();
+        let robot = "import \"sensors.pyr\"\nwheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has { a b } wheels with sensors { s t u v w }";
+        database.open("robot.pyr", robot);
+        database.open("sensors.pyr", "sensor s sensor t sensor u sensor v sensor w");
+        let bumper = "sensor s : bumper\n";
+        let program = format!("import \"robot.pyr\"\n{bumper}movement m of r {{ slam }}");
+        let file = database.open("a.pyr", &program);
+        let codes = |database: &crate::Database| -> Vec<&str> {
+            database.diagnostics(file).iter().map(crate::Diagnostic::code).collect()
+        };
+        assert!(!codes(&database).contains(&"slam-sensors"));
+        database.open("sensors.pyr", "sensor s sensor t sensor u sensor v sensor w : bumper");
+        assert!(codes(&database).contains(&"slam-sensors"));
     }
 
     #[test]
