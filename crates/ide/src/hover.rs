@@ -182,6 +182,37 @@ mod tests {
     }
 
     #[test]
+    fn a_skid_steered_robot_tells_what_it_scrubs() {
+        check(
+            "wheel a with radius 5 robot c$0 type fw with port 1 has { a a a a } wheels",
+            &expect![[r#"
+            c
+            ---
+            ```pydslrep
+            robot c type fw with port 1 has { a a a a } wheels
+            ```
+            Four-wheel skid-steer drive (`fw`), port 1.
+
+            | wheel | position | radius |
+            |---|---|---|
+            | `a` | left front | 5 cm |
+            | `a` | left rear | 5 cm |
+            | `a` | right front | 5 cm |
+            | `a` | right rear | 5 cm |
+
+            Wheel rates in rad/s:
+            ```text
+            left front, left rear   = (v − ω d/2) / r
+            right front, right rear = (v + ω d/2) / r
+            ```
+            r = 0.05 m, d = 0.508 m (track 0.3 m, times 1.69 for what tyres scrub in turns) unless the scene says otherwise.
+
+            Nothing here uses it.
+        "#]],
+        );
+    }
+
+    #[test]
     fn an_action_tells_where_it_leads() {
         check(
             &format!("{PARTS}{}", REST.replace("turn left", "tu$0rn left")),

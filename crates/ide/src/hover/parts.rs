@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use pydslrep_analysis::environment::Robot;
 use pydslrep_analysis::{Database, EntityId, FileId};
-use pydslrep_kinematics::Drive;
+use pydslrep_kinematics::{Drive, scrub_factor};
 use pydslrep_scene::defaults;
 use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::{Entity, SensorKind};
@@ -89,7 +89,15 @@ fn equations(robot: &Robot) -> String {
             let sum = number(f64::midpoint(geometry.track, geometry.wheelbase), 3);
             format!("K = {sum} m (half of track {track} m and wheelbase {base} m)")
         }
-        Drive::TwoWheel | Drive::FourWheel => format!("d = {track} m"),
+        Drive::TwoWheel => format!("d = {track} m"),
+        Drive::FourWheel => {
+            let scrub = scrub_factor(robot.drive, geometry, defaults::grip(robot.drive));
+            let wide = number(scrub * geometry.track, 3);
+            format!(
+                "d = {wide} m (track {track} m, times {} for what tyres scrub in turns)",
+                number(scrub, 2)
+            )
+        }
     };
     format!(
         "\nWheel rates in rad/s:\n```text\n{}\n```\nr = {radius} m, {lengths} unless the scene says otherwise.\n",
