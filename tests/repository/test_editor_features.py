@@ -26,6 +26,7 @@ GROUPS: dict[str, dict[str, list[str]]] = {
             "textDocument/hover",
             "textDocument/codeAction",
         ],
+        "scenes": ["textDocument/publishDiagnostics"],
     },
     "Reading": {
         "hover": ["textDocument/hover"],

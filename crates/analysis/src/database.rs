@@ -20,6 +20,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use self::imports::Imports;
+use self::scenes::Scenes;
 use crate::diagnostics::{self, Problem};
 use crate::file::File;
 use crate::names::Names;
@@ -98,6 +99,8 @@ pub struct Database {
     targets: FxHashMap<FileId, Target>,
     /// Scenes of environments by their names. Kept while a file is closed.
     scenes: BTreeMap<FileId, Scenes>,
+    /// How many more declarations a name of an environment has than when this was last asked for; never none.
+    changed_environments: FxHashMap<(FileId, SmolStr), i32>,
     /// Entities with problems.
     troubled: FxHashMap<FileId, FxHashSet<EntityId>>,
     /// Entities whose problems speak of all names there are ("did you mean …"), not only of those they use.
@@ -106,9 +109,6 @@ pub struct Database {
     /// The files whose diagnostics may have changed since they were last asked for.
     touched: FxHashSet<FileId>,
 }
-
-/// Texts of scene files by the names of environments.
-type Scenes = BTreeMap<String, Arc<str>>;
 
 /// How much the latest edit cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -7,7 +7,11 @@ use crate::environment::{ActionKind, Environment, Movement, Robot};
 
 /// The environment's robots on an empty floor.
 pub fn scene(environment: &Environment) -> scenery::Scene {
-    scenery::Scene::empty_floor(environment.robots.iter().map(robot).collect())
+    floor(&environment.robots)
+}
+
+pub(crate) fn floor(robots: &[Robot]) -> scenery::Scene {
+    scenery::Scene::empty_floor(robots.iter().map(robot).collect())
 }
 
 fn robot(robot: &Robot) -> scenery::Robot {

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use pydslrep_kinematics::{Drive, motion};
-use pydslrep_scene::SensorKind;
+use pydslrep_scene::{Scene, SensorKind};
 use pydslrep_syntax::ast::{self, ActionKind as Statement, DriveWord, Entity, Name, TurnExtent};
 use pydslrep_syntax::{EntityKind, Parse, Span, Token};
 
 use crate::environment::{Action, ActionKind, Environment, Movement, Robot, Sensor, Source, Wheel};
 use crate::script_name::script_names;
-use crate::{Database, Diagnostic, EntityId, EntityRef, FileId, Severity, diagnostics};
+use crate::{Database, Diagnostic, EntityId, EntityRef, FileId, Severity, diagnostics, plan};
 
 /// Why an environment cannot run.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,17 +32,19 @@ impl Blocked {
     }
 }
 
-/// All that an environment is made of, itself included. As long as two of them are equal, so is what follows from the
-/// environment: its script, and its path on a given floor.
+/// All that an environment is made of, itself and its scene included. As long as two of them are equal, so is what follows
+/// from the environment: its script, its path, and what that meets.
 #[derive(Debug, Clone)]
 pub struct MadeOf {
     parts: Vec<(EntityId, Arc<Parse>)>,
+    scene: Option<Arc<str>>,
 }
 
 impl PartialEq for MadeOf {
     /// What was read again counts as changed.
     fn eq(&self, other: &Self) -> bool {
-        self.parts.len() == other.parts.len()
+        self.scene == other.scene
+            && self.parts.len() == other.parts.len()
             && self.parts.iter().zip(&other.parts).all(|(a, b)| a.0 == b.0 && Arc::ptr_eq(&a.1, &b.1))
     }
 }
@@ -91,7 +93,8 @@ impl Database {
             return None;
         }
         let parse = |id: EntityId| Some((id, Arc::clone(self.shared_parse(id)?)));
-        Some(MadeOf { parts: reached.into_iter().map(parse).collect::<Option<_>>()? })
+        let parts = reached.into_iter().map(parse).collect::<Option<_>>()?;
+        Some(MadeOf { parts, scene: self.scene_text(id).cloned() })
     }
 
     /// An environment without errors, and the entities of its movements in its order.
@@ -102,6 +105,17 @@ impl Database {
             return None;
         }
         Some((parts.environment(id)?, parts.movements(id)?))
+    }
+
+    /// The robots of an environment on an empty floor, whatever is wrong with its movements; `None` where a robot is
+    /// missing or broken.
+    pub fn floor(&self, id: EntityId) -> Option<Scene> {
+        let parts = Parts { database: self, file: self.file_of(id) };
+        let Entity::Environment(tree) = self.tree(id)? else { return None };
+        let robots = parts.resolve_all(id, EntityKind::Robot, &tree.robots.as_ref()?.names)?;
+        let robots =
+            without_repeats(&robots).into_iter().map(|id| parts.robot(id)).collect::<Option<Vec<_>>>()?;
+        Some(plan::floor(&robots))
     }
 
     /// A robot with all its parts; `None` where one is missing or broken.

@@ -9,6 +9,7 @@ mod search;
 use std::path::Path;
 
 pub use pydslrep_config::FILE_NAME;
+use pydslrep_scene::ENDING;
 pub use read::{MOST_BYTES, Unread, decode, read, without_mark};
 pub use search::{Found, belongs, find};
 
@@ -18,6 +19,11 @@ pub const EXTENSION: &str = "pyr";
 /// Whether a path is named like a program.
 pub fn is_program(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == EXTENSION)
+}
+
+/// Whether a path is named like a scene.
+pub fn is_scene(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(ENDING))
 }
 
 /// The nearest folder upwards from a file that holds a `pydslrep.toml`.

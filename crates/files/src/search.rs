@@ -4,20 +4,22 @@ use std::path::{Path, PathBuf};
 
 use ignore::WalkBuilder;
 
-use crate::is_program;
+use crate::{is_program, is_scene};
 
 /// What was found in a folder.
 #[derive(Debug, Default)]
 pub struct Found {
     /// The programs, by name.
     pub programs: Vec<PathBuf>,
+    /// The scenes, by name.
+    pub scenes: Vec<PathBuf>,
     /// Why some of the folders below could not be looked at; in words.
     pub failures: Vec<String>,
     /// Whether all of it was looked at.
     pub complete: bool,
 }
 
-/// All programs in a folder and the folders in it, except for what is hidden or what a `.gitignore` leaves out; looks
+/// All programs and scenes in a folder and the folders in it, except for what is hidden or what a `.gitignore` leaves out; looks
 /// at no more than `most` files and folders. Links to folders are not followed: they may lead in circles.
 pub fn find(folder: &Path, most: usize) -> Found {
     let walk =
@@ -31,7 +33,11 @@ pub fn find(folder: &Path, most: usize) -> Found {
         match entry {
             Ok(entry) if !entry.file_type().is_some_and(|sort| sort.is_dir()) => {
                 let path = entry.into_path();
-                found.programs.extend(is_program(&path).then_some(path));
+                if is_program(&path) {
+                    found.programs.push(path);
+                } else if is_scene(&path) {
+                    found.scenes.push(path);
+                }
             }
             Ok(_) => {}
             Err(error) => found.failures.push(error.to_string()),
@@ -40,14 +46,14 @@ pub fn find(folder: &Path, most: usize) -> Found {
     found
 }
 
-/// Whether a search in a folder would find a program; looks only at what lies on the way.
-pub fn belongs(folder: &Path, program: &Path) -> bool {
-    if !is_program(program) || !program.starts_with(folder) {
+/// Whether a search in a folder would find a program or a scene; looks only at what lies on the way.
+pub fn belongs(folder: &Path, file: &Path) -> bool {
+    if !(is_program(file) || is_scene(file)) || !file.starts_with(folder) {
         return false;
     }
-    let wanted = program.to_owned();
+    let wanted = file.to_owned();
     let mut way = walk(folder).filter_entry(move |entry| wanted.starts_with(entry.path())).build();
-    way.any(|entry| entry.is_ok_and(|entry| entry.path() == program))
+    way.any(|entry| entry.is_ok_and(|entry| entry.path() == file))
 }
 
 fn walk(folder: &Path) -> WalkBuilder {
@@ -87,12 +93,14 @@ mod tests {
 
     #[test]
     fn what_is_ignored_is_no_part_of_the_workspace() {
-        let folder = folder(&["target/x.pyr", "a.pyr", "old.pyr"]);
+        let folder = folder(&["target/x.pyr", "a.pyr", "old.pyr", "a.scene.toml", "old.scene.toml"]);
         fs::write(folder.path().join(".gitignore"), "/target/\nold*\n").unwrap();
         assert_eq!(names(&folder, 100), (vec!["a.pyr".to_owned()], true));
         let belongs = |name: &str| super::belongs(folder.path(), &folder.path().join(name));
-        assert!(belongs("a.pyr"));
-        for name in ["target/x.pyr", "old.pyr", "gone.pyr", "a.txt", "../a.pyr"] {
+        let scenes = find(folder.path(), 100).scenes;
+        assert_eq!(scenes, [folder.path().join("a.scene.toml")]);
+        assert!(belongs("a.pyr") && belongs("a.scene.toml"));
+        for name in ["target/x.pyr", "old.pyr", "old.scene.toml", "gone.pyr", "a.txt", "../a.pyr"] {
             assert!(!belongs(name), "{name}");
         }
     }

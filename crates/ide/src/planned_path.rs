@@ -1,10 +1,12 @@
 //! Planned paths: where each robot of an environment will be and when, for a preview beside the program.
 
 use pydslrep_analysis::environment::Environment;
-use pydslrep_analysis::{Blocked, Database, EntityId, plan, scene};
+use pydslrep_analysis::{Blocked, Database, EntityId, plan};
 use pydslrep_kinematics::{Leg, Pose, RobotPath};
+use pydslrep_notation::Problem;
+use pydslrep_scene::ENDING;
 
-/// The planned path of an environment on an empty floor.
+/// The planned path of an environment in its scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedPath {
     /// Its name.
@@ -54,10 +56,12 @@ const POSES_PER_ACTION: u32 = 8;
 /// The planned path of an environment; the error says why there is none.
 ///
 /// # Errors
-/// When the environment has errors, or a robot in it cannot drive.
+/// When the environment or its scene has errors, or a robot in it cannot drive.
 pub fn planned_path(database: &Database, environment: EntityId) -> Result<PlannedPath, String> {
-    let environment = database.environment(environment).map_err(|blocked: Blocked| blocked.reason())?;
-    let plan = plan(&environment, &scene(&environment)).map_err(|error| error.to_string())?;
+    let id = environment;
+    let environment = database.environment(id).map_err(|blocked: Blocked| blocked.reason())?;
+    let scene = database.scene(id, &environment).map_err(|problems| wrong_scene(&environment, &problems))?;
+    let plan = plan(&environment, &scene).map_err(|error| error.to_string())?;
     let robots = environment.robots.iter().zip(&plan.robots).map(|(robot, path)| PlannedRobot {
         name: robot.name.clone(),
         poses: poses(&environment, path),
@@ -67,6 +71,12 @@ pub fn planned_path(database: &Database, environment: EntityId) -> Result<Planne
     });
     let robots = robots.collect();
     Ok(PlannedPath { environment: environment.name, duration: plan.duration, robots })
+}
+
+/// Why nothing is planned in a scene, in words.
+fn wrong_scene(environment: &Environment, problems: &[Problem]) -> String {
+    let first = problems.first().map_or("it has mistakes", |problem| problem.message.as_str());
+    format!("`{}{ENDING}`: {first}", environment.name)
 }
 
 fn poses(environment: &Environment, path: &RobotPath) -> Vec<PlannedPose> {
@@ -125,5 +135,20 @@ mod tests {
         assert_eq!(last.action.as_ref().unwrap().text, "turn left");
         assert!(rover.poses.windows(2).all(|pair| pair[0].time < pair[1].time));
         assert_eq!(rover.unknown_after.as_ref().unwrap().index, 2);
+    }
+
+    #[test]
+    fn paths_start_where_the_scene_says() {
+        let mut database = Database::new();
+        let rest =
+            "movement m of rover { move 1 meters }\nenvironment e has { rover } robots with { m } moves";
+        let file = database.open("a.pyr", &format!("{PARTS}{rest}"));
+        let id = database.environments(file)[0].0;
+        database.set_scene(file, "e", Some("[robots.rover]\nstart = [1, 2, 90]"));
+        let end = planned_path(&database, id).unwrap().robots[0].poses.last().unwrap().pose;
+        assert!(end.distance(&Pose::new(1.0, 3.0, 0.0)) < 1e-9, "{end:?}");
+        database.set_scene(file, "e", Some("[robots.rovr]\nstart = [1, 2, 90]"));
+        let why = planned_path(&database, id).unwrap_err();
+        assert_eq!(why, "`e.scene.toml`: the environment has no robot `rovr`");
     }
 }

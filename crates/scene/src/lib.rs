@@ -16,7 +16,7 @@ mod robot;
 mod space;
 
 pub use collision::{Collision, collisions};
-pub use file::{ENDING, Key, Sort, TABLES, Table, Values, json_schema, manual, read};
+pub use file::{ENDING, Key, Sort, TABLES, Table, Values, json_schema, manual, problems, read};
 pub use mount::{Mount, mounts_by_name};
 pub use obstacle::{Obstacle, Shape};
 pub use robot::{Body, Robot, Sensor, SensorKind, Wheel};

@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use pydslrep_analysis::{FileId, Snapshot};
 use pydslrep_config::{FILE_NAME, Settings};
+use pydslrep_scene::ENDING;
 use pydslrep_syntax::Span;
 use ropey::Rope;
 use rustc_hash::FxHashMap;
@@ -73,9 +74,14 @@ impl Document {
         std::mem::take(&mut self.outdated).store(true, Ordering::Relaxed);
     }
 
-    /// Whether it is a program; else it holds settings.
+    /// Whether it is a program.
     pub(crate) fn is_program(&self) -> bool {
-        self.uri.as_str().rsplit('/').next() != Some(FILE_NAME)
+        self.sort() == Sort::Program
+    }
+
+    /// What sort of file it is.
+    pub(crate) fn sort(&self) -> Sort {
+        Sort::of(self.uri.as_str())
     }
 
     /// Applies one change; returns the bytes it replaces in the text before it, `None` if it replaces all of them.
@@ -94,6 +100,28 @@ impl Document {
         self.text.remove(start..end);
         self.text.insert(start, &change.text);
         Some(span)
+    }
+}
+
+/// What a document may be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Sort {
+    /// A program.
+    Program,
+    /// The settings of a folder, `pydslrep.toml`.
+    Settings,
+    /// What an environment stands in, `<environment>.scene.toml`.
+    Scene,
+}
+
+impl Sort {
+    /// That of a document, by its key or address.
+    pub(crate) fn of(name: &str) -> Self {
+        match name.rsplit('/').next().unwrap_or(name) {
+            FILE_NAME => Self::Settings,
+            name if name.ends_with(ENDING) => Self::Scene,
+            _ => Self::Program,
+        }
     }
 }
 

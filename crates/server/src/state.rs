@@ -1,5 +1,6 @@
 //! What the server knows between two messages.
 
+mod scenes;
 mod settings;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -16,10 +17,11 @@ use tower_lsp::ls_types::{
     TraceValue, Uri,
 };
 
+use self::scenes::SceneUsers;
 use self::settings::SettingsStore;
 use crate::chosen::Watched;
 use crate::client::ClientFeatures;
-use crate::documents::{Document, Documents, key};
+use crate::documents::{Document, Documents, Sort, key};
 use crate::positions::{Encoding, to_offset, to_range, to_span};
 use crate::work::Work;
 
@@ -34,6 +36,8 @@ pub(crate) struct State {
     pub(crate) documents: Documents,
     /// What is set.
     pub(crate) settings: SettingsStore,
+    /// Which programs want which scenes.
+    pub(crate) scenes: SceneUsers,
     /// The keys of the folders open in the client, each with `/` at its end.
     pub(crate) folders: Vec<String>,
     /// How many answers have been given a number so far.
@@ -79,13 +83,16 @@ impl State {
         document.opening = self.openings;
         self.stale.documents.insert(key.clone());
         let document = self.documents.entry(key.clone()).insert_entry(document).into_mut();
-        if !document.is_program() {
-            return self.reload_settings();
+        match document.sort() {
+            Sort::Settings => return self.reload_settings(),
+            Sort::Scene => return self.give_scene(&key),
+            Sort::Program => {}
         }
         document.file = Some(self.database.open(&key, &opened.text));
         self.apply_settings(&key);
         self.follow_changed_imports(&key);
         self.follow_imports_of(&key);
+        self.follow_scenes();
     }
 
     /// Makes the changes of one message; false if the document is not open.
@@ -99,9 +106,17 @@ impl State {
         // All of the document before any of the analysis: should that fail, the document is still right.
         let spans: Vec<Option<Span>> =
             params.content_changes.iter().map(|change| document.apply(change, encoding)).collect();
-        if !document.is_program() {
-            self.reload_settings();
-            return true;
+        match document.sort() {
+            Sort::Settings => {
+                self.reload_settings();
+                return true;
+            }
+            Sort::Scene => {
+                self.stale.documents.insert(key.clone());
+                self.give_scene(&key);
+                return true;
+            }
+            Sort::Program => {}
         }
         let Some(file) = document.file else { return true };
         for (change, span) in params.content_changes.iter().zip(spans) {
@@ -114,6 +129,7 @@ impl State {
             }
         }
         self.follow_changed_imports(&key);
+        self.follow_scenes();
         true
     }
 
@@ -123,13 +139,12 @@ impl State {
         let Some(document) = self.documents.get(&key).filter(|document| document.version.is_some()) else {
             return false;
         };
-        let is_program = document.is_program();
+        let sort = document.sort();
         self.stale.gone.push(uri.clone());
         self.remove(&key);
-        if is_program {
-            self.file_changed(uri);
-        } else {
-            self.reload_settings();
+        match sort {
+            Sort::Program | Sort::Scene => self.file_changed(uri),
+            Sort::Settings => self.reload_settings(),
         }
         true
     }
@@ -159,11 +174,13 @@ impl State {
             self.apply_settings(&key);
             self.follow_imports(&key);
         }
+        self.follow_scenes();
     }
 
     /// The key of the document that cannot be analysed, if one cannot.
     fn try_rebuild(&mut self, left_out: &FxHashSet<String>) -> Option<String> {
         self.database = Database::new();
+        self.scenes = SceneUsers::default();
         self.stale.all = true;
         for (key, document) in &mut self.documents {
             document.file = None;
@@ -211,9 +228,9 @@ impl State {
         Some(Place { document, file, offset: self.offset(document, at.position) })
     }
 
-    /// The settings file at an address, with its text.
-    pub(crate) fn settings_text(&self, uri: &Uri) -> Option<(&Document, String)> {
-        let document = self.document(uri).filter(|document| !document.is_program())?;
+    /// The file of settings or the scene at an address, with its text.
+    pub(crate) fn keyed_text(&self, uri: &Uri) -> Option<(&Document, String)> {
+        let document = self.document(uri).filter(|document| document.sort() == Sort::Settings)?;
         Some((document, document.text.to_string()))
     }
 

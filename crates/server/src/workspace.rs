@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use pydslrep_analysis::Absence;
-use pydslrep_files::{FILE_NAME, Unread, belongs, import_bound, without_mark};
+use pydslrep_files::{Unread, belongs, import_bound, without_mark};
 use ropey::Rope;
 use tower_lsp::ls_types::{InitializeParams, Uri};
 
-use crate::documents::{Document, key};
+use crate::documents::{Document, Sort, key};
 use crate::state::State;
 
 /// More programs than these are not looked at unless they are opened.
@@ -43,14 +43,17 @@ impl State {
         let key = key(&uri);
         if !self.documents.contains_key(&key) {
             self.insert_from_disk(key, uri, text);
+            self.follow_scenes();
         }
     }
 
     /// A file was created, changed or deleted, by whomever.
     pub(crate) fn file_changed(&mut self, uri: &Uri) {
         let key = key(uri);
-        if key.rsplit('/').next() == Some(FILE_NAME) {
-            return self.reload_settings();
+        match Sort::of(&key) {
+            Sort::Settings => return self.reload_settings(),
+            Sort::Scene => return self.scene_file_changed(&key, uri),
+            Sort::Program => {}
         }
         // What the client has open is as the client says.
         if self.documents.get(&key).is_none_or(|document| document.version.is_none()) {
@@ -62,6 +65,7 @@ impl State {
             }
         }
         self.follow_imports_of(&key);
+        self.follow_scenes();
     }
 
     /// Whether a search in the folders that are open in the client would find a program.
@@ -81,6 +85,7 @@ impl State {
         }
         self.forget_unwanted();
         self.reload_settings();
+        self.follow_scenes();
     }
 
     /// Reads what a document imports, where that has changed since it was last looked at.
@@ -153,7 +158,7 @@ impl State {
         Path::new(path).starts_with(import_bound(Path::new(importer)))
     }
 
-    fn insert_from_disk(&mut self, key: String, uri: Uri, text: &str) {
+    pub(crate) fn insert_from_disk(&mut self, key: String, uri: Uri, text: &str) {
         let text = without_mark(text);
         let mut document = Document::new(uri, Rope::from_str(text), None);
         if !document.is_program() {
@@ -168,7 +173,7 @@ impl State {
     }
 
     /// Forgets files that are neither open, nor in the workspace, nor imported by any that is there.
-    fn forget_unwanted(&mut self) {
+    pub(crate) fn forget_unwanted(&mut self) {
         loop {
             let is_imported = |key: &String, document: &Document| {
                 self.database.importing_files(key).into_iter().any(|importer| {
@@ -179,7 +184,8 @@ impl State {
             let is_wanted = |key: &String, document: &Document| {
                 document.version.is_some()
                     || self.is_in_workspace(key)
-                    || !document.is_program()
+                    || document.sort() == Sort::Settings
+                    || self.scenes.is_wanted(key)
                     || is_imported(key, document)
             };
             let unwanted = self.documents.iter().filter(|(key, document)| !is_wanted(key, document));

@@ -10,6 +10,7 @@ use ropey::Rope;
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
+use super::scenes::count_environment;
 use super::{Database, EditCounts, EntityData, EntityId, FileId};
 use crate::Target;
 use crate::diagnostics;
@@ -256,6 +257,7 @@ impl Database {
         }
         let order = |id: EntityId| entities[id.0 as usize].as_ref().map_or(0, |data| data.order);
         if let Some(key) = defined_key(file, &data.parse) {
+            count_environment(&mut self.changed_environments, &key, 1);
             self.names.define(key, id, order);
         }
         for key in used_keys(file, &data.parse) {
@@ -274,6 +276,7 @@ impl Database {
             *count -= 1;
         }
         if let Some(key) = defined_key(file, &data.parse) {
+            count_environment(&mut self.changed_environments, &key, -1);
             self.names.undefine(&key, id);
         }
         for key in used_keys(file, &data.parse) {

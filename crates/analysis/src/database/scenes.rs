@@ -1,42 +1,243 @@
 //! Scenes of environments: files beside programs, given by whoever can read them.
 
-use super::{Database, FileId};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use pydslrep_notation::Problem;
+use pydslrep_scene::Scene;
+use pydslrep_syntax::EntityKind;
+use pydslrep_syntax::ast::Entity;
+use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
+
+use super::{Database, EntityId, FileId};
+use crate::diagnostics::PlannedRun;
+use crate::environment::Environment;
+use crate::names::Key;
+use crate::{MadeOf, scene};
+
+/// Scenes by the names of environments.
+pub(super) type Scenes = BTreeMap<SmolStr, SceneFile>;
+
+/// The scene of an environment, and what was found out about it.
+#[derive(Debug, Clone)]
+pub(super) struct SceneFile {
+    text: Arc<str>,
+    /// What the environment was made of when its files were last touched for its sake.
+    touched_with: Option<MadeOf>,
+    /// How the environment drives in it. Clones share it: it says what it holds for.
+    run: Arc<Mutex<Option<Known>>>,
+}
+
+/// How an environment drives, with what it is then made of.
+type Known = (MadeOf, Option<Arc<PlannedRun>>);
 
 impl Database {
     /// Sets the text of the scene file of an environment by its name, or takes it away. Kept while a file is closed, and
     /// whether or not there is such an environment.
     pub fn set_scene(&mut self, file: FileId, environment: &str, text: Option<&str>) {
         let known = self.scenes.get(&file).and_then(|scenes| scenes.get(environment));
-        if known.map(AsRef::as_ref) == text {
+        if known.map(|known| known.text.as_ref()) == text {
             return;
         }
         let scenes = self.scenes.entry(file).or_default();
         match text {
-            Some(text) => scenes.insert(environment.to_owned(), text.into()),
+            Some(text) => {
+                let scene = SceneFile { text: text.into(), touched_with: None, run: Arc::default() };
+                scenes.insert(environment.into(), scene)
+            }
             None => scenes.remove(environment),
         };
-        // Also when it is the last one that goes.
-        self.touched.insert(file);
-        self.touch_in_scenes();
         self.scenes.retain(|_, scenes| !scenes.is_empty());
+        let seen = self.seen_from(file);
+        self.touched.extend(seen);
     }
 
     /// The scenes there are: of which file, of which environment, and their texts.
     pub fn scenes(&self) -> impl Iterator<Item = (FileId, &str, &str)> {
         self.scenes.iter().flat_map(|(file, scenes)| {
-            scenes.iter().map(|(name, text)| (*file, name.as_str(), text.as_ref()))
+            scenes.iter().map(|(name, scene)| (*file, name.as_str(), scene.text.as_ref()))
         })
+    }
+
+    /// The world that an environment drives in: what its scene file says, else an empty floor.
+    ///
+    /// # Errors
+    /// When something is wrong with the file: what it means is not known.
+    pub fn scene(&self, id: EntityId, environment: &Environment) -> Result<Scene, Vec<Problem>> {
+        let floor = scene(environment);
+        let Some(text) = self.scene_text(id) else { return Ok(floor) };
+        let (scene, problems) = pydslrep_scene::read(text, floor);
+        if problems.is_empty() { Ok(scene) } else { Err(problems) }
+    }
+
+    /// The environments whose names came or went since this was last asked: each by its file and name. Also those of
+    /// files that were closed.
+    pub fn take_changed_environments(&mut self) -> Vec<(FileId, SmolStr)> {
+        let changed = std::mem::take(&mut self.changed_environments);
+        let mut changed: Vec<(FileId, SmolStr)> = changed.into_keys().collect();
+        changed.sort_unstable();
+        changed
+    }
+
+    /// The text of an environment's scene file.
+    pub(crate) fn scene_text(&self, id: EntityId) -> Option<&Arc<str>> {
+        let Entity::Environment(tree) = self.tree(id)? else { return None };
+        let name = tree.name.as_ref()?.text.as_str();
+        self.scenes.get(&self.file_of(id)?)?.get(name).map(|scene| &scene.text)
+    }
+
+    /// How the environments with a scene drive whose actions may be in a file; worked out again only where one is made of
+    /// something else than before.
+    pub(crate) fn planned_runs(&self, file: FileId) -> Vec<Arc<PlannedRun>> {
+        let mut planned_runs = Vec::new();
+        for (home, scenes) in &self.scenes {
+            if *home != file && !self.imported_files(*home).any(|imported| imported == file) {
+                continue;
+            }
+            let found = scenes.iter().map(|(name, scene)| self.planned_run(*home, name, scene));
+            planned_runs.extend(found.flatten());
+        }
+        planned_runs
+    }
+
+    fn planned_run(&self, home: FileId, name: &SmolStr, scene: &SceneFile) -> Option<Arc<PlannedRun>> {
+        let id = self.environment_called(home, name)?;
+        let made_of = self.made_of(id)?;
+        let mut known = scene.run.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((of, run)) = known.as_ref()
+            && *of == made_of
+        {
+            return run.clone();
+        }
+        let run = PlannedRun::new(self, id).map(Arc::new);
+        *known = Some((made_of, run.clone()));
+        run
     }
 
     /// What a path meets depends on everything its environment sees.
     pub(super) fn touch_in_scenes(&mut self) {
-        let mut concerned = Vec::new();
-        for home in self.scenes.keys() {
-            let seen: Vec<FileId> = std::iter::once(*home).chain(self.imported_files(*home)).collect();
-            if seen.iter().any(|file| self.touched.contains(file)) {
-                concerned.extend(seen);
+        let mut concerned: Vec<FileId> = Vec::new();
+        let mut looked_at = Vec::new();
+        for (home, scenes) in &self.scenes {
+            let seen = self.seen_from(*home);
+            if !seen.iter().any(|file| self.touched.contains(file)) {
+                continue;
+            }
+            for (name, scene) in scenes {
+                let made_of = self.environment_called(*home, name).and_then(|id| self.made_of(id));
+                // Where something is met, other files may name a place that has moved.
+                if made_of != scene.touched_with || scene.meets_something() {
+                    concerned.extend(&seen);
+                }
+                looked_at.push((*home, name.clone(), made_of));
+            }
+        }
+        for (home, name, made_of) in looked_at {
+            if let Some(scene) = self.scenes.get_mut(&home).and_then(|scenes| scenes.get_mut(&name)) {
+                scene.touched_with = made_of;
             }
         }
         self.touched.extend(concerned);
+    }
+
+    fn environment_called(&self, home: FileId, name: &SmolStr) -> Option<EntityId> {
+        self.definitions(home, EntityKind::Environment, name).first().copied()
+    }
+
+    fn seen_from(&self, home: FileId) -> Vec<FileId> {
+        std::iter::once(home).chain(self.imported_files(home)).collect()
+    }
+}
+
+impl SceneFile {
+    /// Whether it is known that the path meets something.
+    fn meets_something(&self) -> bool {
+        let known = self.run.lock().unwrap_or_else(PoisonError::into_inner);
+        known.as_ref().and_then(|(_, run)| run.as_ref()).is_some_and(|run| run.meets_something())
+    }
+}
+
+/// Keeps account of environments that come (1) or go (-1) with a declaration of theirs.
+pub(super) fn count_environment(changed: &mut FxHashMap<(FileId, SmolStr), i32>, key: &Key, by: i32) {
+    let (file, EntityKind::Environment, name) = key else { return };
+    let entry = (*file, name.clone());
+    let more = changed.get(&entry).copied().unwrap_or(0) + by;
+    if more == 0 {
+        changed.remove(&entry);
+    } else {
+        changed.insert(entry, more);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use pydslrep_syntax::Span;
+
+    use super::*;
+
+    const PROGRAM: &str = "wheel a with radius 4 wheel b with radius 4 wheel c with radius 4\n\
+        robot r with port 1 has { a b } wheels movement m of r { move 2 meters }\n\
+        environment e has { r } robots with { m } moves";
+
+    fn replace(database: &mut Database, file: FileId, old: &str, new: &str) {
+        let text = database.text(file).unwrap().to_string();
+        let at = u32::try_from(text.find(old).unwrap()).unwrap();
+        database.edit(file, Span::new(at, at + u32::try_from(old.len()).unwrap()), new);
+    }
+
+    fn changed(database: &mut Database) -> Vec<String> {
+        database.take_changed_environments().into_iter().map(|(_, name)| name.to_string()).collect()
+    }
+
+    #[test]
+    fn a_run_is_planned_again_only_when_it_is_another_one() {
+        let mut database = Database::new();
+        let file = database.open("a.pyr", PROGRAM);
+        database.set_scene(file, "e", Some("[[box]]\nat = [1, 0]\nsize = [0.4, 0.4]"));
+        let run = |database: &Database| database.planned_runs(file).remove(0);
+        let first = run(&database);
+        replace(&mut database, file, "c with radius 4", "c with radius 45");
+        replace(&mut database, file, "c with", "c\n\nwith");
+        assert!(Arc::ptr_eq(&run(&database), &first), "nobody has this wheel");
+        replace(&mut database, file, "move 2", "move 3");
+        let second = run(&database);
+        assert!(!Arc::ptr_eq(&second, &first));
+        database.set_scene(file, "e", Some("[[box]]\nat = [1, 1]\nsize = [0.4, 0.4]"));
+        assert!(!Arc::ptr_eq(&run(&database), &second));
+        assert!(!run(&database).meets_something());
+    }
+
+    /// What is typed elsewhere in the program does not make the imported files doubtful.
+    #[test]
+    fn files_are_touched_where_what_is_met_may_change() {
+        let mut database = Database::new();
+        let parts = database.open("parts.pyr", PROGRAM.split("environment").next().unwrap());
+        let text = "import \"parts.pyr\" sensor s\nenvironment e has { r } robots with { m } moves";
+        let main = database.open("main.pyr", text);
+        database.set_scene(main, "e", Some("[[box]]\nat = [1, 1]\nsize = [0.4, 0.4]"));
+        database.take_touched();
+        replace(&mut database, main, "sensor s", "sensor t");
+        assert_eq!(database.take_touched(), [main]);
+        database.set_scene(main, "e", Some("[[box]]\nat = [1, 0]\nsize = [0.4, 0.4]"));
+        assert_eq!(database.take_touched(), [parts, main]);
+        replace(&mut database, main, "{ m }", "{ }");
+        assert_eq!(database.take_touched(), [parts, main]);
+    }
+
+    #[test]
+    fn environments_that_come_and_go_are_told() {
+        let mut database = Database::new();
+        let file = database.open("a.pyr", PROGRAM);
+        assert_eq!(changed(&mut database), ["e"]);
+        replace(&mut database, file, "{ m }", "{ m m }");
+        replace(&mut database, file, "move 2", "move 3");
+        assert_eq!(changed(&mut database), [""; 0]);
+        replace(&mut database, file, "environment e", "environment east");
+        assert_eq!(changed(&mut database), ["e", "east"]);
+        database.open("a.pyr", &PROGRAM.replace("environment e", "environment east"));
+        assert_eq!(changed(&mut database), [""; 0]);
+        database.close(file);
+        assert_eq!(changed(&mut database), ["east"]);
     }
 }

@@ -52,6 +52,7 @@ use self::consequences::Consequences;
 use self::context::{Brace, Context, WITHIN_WORDS};
 pub(crate) use self::context::{Problem, ProblemFix};
 pub use self::manual::{Page, Remedy, index};
+pub(crate) use self::planned_collision::PlannedRun;
 use crate::{Database, Diagnostic, Edit, EntityId, FileId, Fix, Related, Severity};
 
 /// A way to show text besides underlining it.

@@ -7,7 +7,7 @@ use pydslrep_syntax::ast::Entity;
 use super::context::{Context, Problem};
 use super::{Page, Remedy, Rule};
 use crate::environment::Environment;
-use crate::{Database, Diagnostic, EntityId, FileId, Related, Severity, plan, scene};
+use crate::{Database, Diagnostic, EntityId, FileId, Related, Severity, plan};
 
 pub(super) static RULE: Rule = Rule {
     code: "planned-collision",
@@ -57,51 +57,68 @@ fn check(_: &Context<'_>, _: &mut Vec<Problem>) {}
 
 /// The problems of the actions of a file, in any environment with a scene. Without scenes there is nothing to do.
 pub(super) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
-    let mut found = Vec::new();
-    for (home, name, text) in database.scenes() {
-        let sees = home == file || database.imported_files(home).any(|imported| imported == file);
-        let id =
-            database.environments(home).into_iter().find(|(_, other)| other.text == name).map(|(id, _)| id);
-        if let Some(id) = id.filter(|_| sees) {
-            found.extend(
-                of_environment(database, id, text).into_iter().filter(|problem| problem.file == file),
-            );
+    let runs = database.planned_runs(file);
+    let problems = runs.iter().flat_map(|run| {
+        let located = Located { database, run };
+        run.met.iter().filter_map(move |collision| located.problem(collision))
+    });
+    problems.filter(|problem| problem.file == file).collect()
+}
+
+/// How an environment drives in its scene; it names no places, so that it holds as long as the environment does.
+#[derive(Debug)]
+pub(crate) struct PlannedRun {
+    environment: Environment,
+    scene: Scene,
+    /// As in the environment.
+    movements: Vec<EntityId>,
+    met: Vec<Collision>,
+}
+
+impl PlannedRun {
+    /// `None` where the environment or the scene has errors: those come first.
+    pub(crate) fn new(database: &Database, id: EntityId) -> Option<Self> {
+        let (environment, movements) = database.resolved(id)?;
+        let scene = database.scene(id, &environment).ok()?;
+        let plan = plan(&environment, &scene).ok()?;
+        let met = collisions(&scene, &plan);
+        Some(Self { environment, scene, movements, met })
+    }
+
+    /// Whether a robot runs into anything.
+    pub(crate) fn meets_something(&self) -> bool {
+        !self.met.is_empty()
+    }
+
+    fn name(&self, thing: Thing) -> &str {
+        match thing {
+            Thing::Robot(robot) => self.scene.robots.get(robot).map_or("", |robot| &robot.name),
+            Thing::Obstacle(obstacle) => {
+                self.scene.obstacles.get(obstacle).map_or("", |obstacle| &obstacle.name)
+            }
         }
     }
-    found
 }
 
-fn of_environment(database: &Database, id: EntityId, text: &str) -> Vec<Diagnostic> {
-    let Some((environment, movements)) = database.resolved(id) else { return Vec::new() };
-    let (scene, problems) = pydslrep_scene::read(text, scene(&environment));
-    // What is wrong with the scene comes first: what it means is not known.
-    let plan = plan(&environment, &scene).ok().filter(|_| problems.is_empty());
-    let met = plan.map_or_else(Vec::new, |plan| collisions(&scene, &plan));
-    let run = Run { database, environment: &environment, scene: &scene, movements: &movements };
-    met.iter().filter_map(|collision| run.problem(collision)).collect()
-}
-
-/// An environment in its scene.
-struct Run<'a> {
+/// The same with the places as they are now.
+#[derive(Clone, Copy)]
+struct Located<'a> {
     database: &'a Database,
-    environment: &'a Environment,
-    scene: &'a Scene,
-    /// As in the environment.
-    movements: &'a [EntityId],
+    run: &'a PlannedRun,
 }
 
-impl Run<'_> {
+impl Located<'_> {
     fn problem(&self, collision: &Collision) -> Option<Diagnostic> {
         let place = self.place(collision.action, String::new())?;
-        let robot = self.name(Thing::Robot(collision.robot));
-        let with = self.name(collision.with);
+        let robot = self.run.name(Thing::Robot(collision.robot));
+        let with = self.run.name(collision.with);
         let when = collision.time.map_or_else(String::new, |time| format!(" after {time:.1} s"));
         // Adding zero makes a rounded -0 a 0.
         let centimetres = |metres: f64| (metres * 100.0).round() / 100.0 + 0.0;
         let (x, y) = (centimetres(collision.pose.x), centimetres(collision.pose.y));
         let other = collision.other_action;
         let related = other.and_then(|action| self.place(action, format!("what `{with}` does then")));
-        let environment = &self.environment.name;
+        let environment = &self.run.environment.name;
         Some(Diagnostic {
             rule: &RULE,
             severity: RULE.severity,
@@ -115,19 +132,10 @@ impl Run<'_> {
         })
     }
 
-    fn name(&self, thing: Thing) -> &str {
-        match thing {
-            Thing::Robot(robot) => self.scene.robots.get(robot).map_or("", |robot| &robot.name),
-            Thing::Obstacle(obstacle) => {
-                self.scene.obstacles.get(obstacle).map_or("", |obstacle| &obstacle.name)
-            }
-        }
-    }
-
     /// Where an action stands.
     fn place(&self, index: ActionIndex, message: String) -> Option<Related> {
-        let movement = *self.environment.schedule.get(index.group)?.get(index.run)?;
-        let entity = self.database.entity(*self.movements.get(movement)?)?;
+        let movement = *self.run.environment.schedule.get(index.group)?.get(index.run)?;
+        let entity = self.database.entity(*self.run.movements.get(movement)?)?;
         let Some(Entity::Movement(tree)) = &entity.parse.entity else { return None };
         let span = tree.actions.get(index.action)?.span.shifted(entity.span.start);
         Some(Related { file: entity.file, span, message })

@@ -97,7 +97,9 @@ pub(super) fn environment(database: &Database, id: EntityId) -> Option<String> {
         Ok(environment) => environment,
         Err(blocked) => return Some(format!("It cannot run yet: {}.", blocked.reason())),
     };
-    let plan = plan(&environment, &scene(&environment)).ok()?;
+    // While something is wrong with the scene, that is said there.
+    let scene = database.scene(id, &environment).unwrap_or_else(|_| scene(&environment));
+    let plan = plan(&environment, &scene).ok()?;
     let robots = names(environment.robots.iter().map(|robot| robot.name.as_str()));
     let total = plan.duration.map_or_else(|| "a time that cannot be planned".to_owned(), time);
     let mut text =

@@ -1,10 +1,10 @@
 //! From the text of a scene file to a scene.
 
-use pydslrep_kinematics::Pose;
+use pydslrep_kinematics::{Drive, Pose};
 use pydslrep_notation::{Entry, Node, Problem, ProblemKind, Span, Value, closest, did_you_mean, parse};
 
 use super::keys::{Key, Sort, TABLES, Table, Values, find};
-use crate::{Body, Noise, Obstacle, Robot, Scene, Shape, Thing, defaults, mounts_by_name, space};
+use crate::{Body, Noise, Obstacle, Robot, Scene, SensorKind, Shape, Thing, defaults, mounts_by_name, space};
 
 /// Nothing is further away or longer, metres: what is, was meant in another unit.
 const FURTHEST: f64 = 1e6;
@@ -22,6 +22,38 @@ pub fn read(text: &str, floor: Scene) -> (Scene, Vec<Problem>) {
     let Reader { scene, mut problems, .. } = reader;
     problems.sort_by_key(|problem| problem.span.map(|span| span.start));
     (scene, problems)
+}
+
+/// What is wrong with a scene file as long as the program is not known: every name is that of a robot or a sensor, and
+/// nobody knows where robots start.
+pub fn problems(text: &str) -> Vec<Problem> {
+    let entries = match parse(text, "key") {
+        Err(problem) => return vec![problem],
+        Ok(entries) => entries,
+    };
+    let robots = inside(&entries, "robots").iter().map(|robot| {
+        let Value::Table(own) = &robot.node.value else { return named(robot, &[]) };
+        named(robot, inside(own, "sensors"))
+    });
+    let scene = Scene { robots: robots.collect(), ..Scene::default() };
+    let mut reader = Reader { scene, problems: Vec::new(), starts: Vec::new() };
+    reader.all(&entries);
+    reader.problems.sort_by_key(|problem| problem.span.map(|span| span.start));
+    reader.problems
+}
+
+/// What is in a table of this name; nothing where there is none.
+fn inside<'a>(entries: &'a [Entry], name: &str) -> &'a [Entry] {
+    match entries.iter().find(|entry| entry.key == name).map(|entry| &entry.node.value) {
+        Some(Value::Table(inner)) => inner,
+        _ => &[],
+    }
+}
+
+/// A robot with the names that a file gives it and its sensors.
+fn named(robot: &Entry, sensors: &[Entry]) -> Robot {
+    let sensors = sensors.iter().map(|sensor| (sensor.key.clone(), SensorKind::Distance));
+    Robot::new(&robot.key, Drive::TwoWheel, Vec::new(), sensors.collect())
 }
 
 struct Reader {

@@ -32,7 +32,7 @@ pub(crate) fn code_actions(state: &State, params: &CodeActionParams) -> Option<C
     let wanted = |kind: &CodeActionKind| {
         params.context.only.as_ref().is_none_or(|only| only.iter().any(|wish| covers(wish, kind)))
     };
-    if let Some((document, text)) = state.settings_text(&params.text_document.uri) {
+    if let Some((document, text)) = state.keyed_text(&params.text_document.uri) {
         let is_wanted = wanted(&CodeActionKind::QUICKFIX) && state.client.action_literals;
         return Some(if is_wanted { settings_fixes(state, document, &text, params) } else { Vec::new() });
     }
@@ -98,7 +98,7 @@ fn settings_fixes(
     let found = ide::settings_fixes(text, state.span(document, params.range));
     let action = |fix: ide::SettingsFix| {
         let edit = TextEdit::new(state.range(document, fix.span), fix.text);
-        let shown = diagnostics::convert_settings(state, document, fix.problem);
+        let shown = diagnostics::convert_problem(state, document, fix.problem);
         CodeAction {
             title: sentence(&fix.title),
             kind: Some(CodeActionKind::QUICKFIX),

@@ -30,7 +30,7 @@ struct CompletionOf {
 /// What the grammar allows at a position, and which names make sense there; in a settings file, which settings.
 pub(crate) fn completion(state: &State, params: &CompletionParams) -> Option<CompletionResponse> {
     let at = &params.text_document_position;
-    if let Some((document, text)) = state.settings_text(&at.text_document.uri) {
+    if let Some((document, text)) = state.keyed_text(&at.text_document.uri) {
         let items = ide::settings_completions(&text, state.offset(document, at.position));
         return Some(list(state, document, items, false));
     }

@@ -8,6 +8,7 @@ use std::str::FromStr;
 use pydslrep_analysis as analysis;
 use pydslrep_analysis::diagnostics::Tag;
 use pydslrep_config::{Config, Problem};
+use pydslrep_ide as ide;
 use pydslrep_syntax::Span;
 use rustc_hash::FxHashMap;
 use tower_lsp::ls_types::{
@@ -19,7 +20,7 @@ use tower_lsp::ls_types::{
     WorkspaceDocumentDiagnosticReport, WorkspaceFullDocumentDiagnosticReport,
 };
 
-use crate::documents::{Document, key};
+use crate::documents::{Document, Sort, key};
 use crate::message::Outbox;
 use crate::state::State;
 
@@ -48,8 +49,10 @@ pub(crate) fn publish(state: &mut State, outbox: &Outbox) -> bool {
     let keys: BTreeSet<String> = if stale.all {
         state.documents.keys().cloned().collect()
     } else {
+        // What is wrong with a scene depends on the robots that stand in it.
+        let scenes: Vec<String> = touched.iter().flat_map(|file| state.scenes_of(*file)).collect();
         let touched = touched.into_iter().map(|file| state.database.path(file).to_owned());
-        touched.chain(stale.documents).collect()
+        touched.chain(scenes).chain(stale.documents).collect()
     };
     for key in keys {
         publish_changed(state, &key, outbox);
@@ -149,8 +152,17 @@ fn result_id(items: &[Diagnostic], opening: u64) -> String {
 
 /// All diagnostics of a document, as this client can show them.
 pub(crate) fn of_document(state: &State, document: &Document) -> Vec<Diagnostic> {
-    if !document.is_program() {
-        return of_settings(state, document);
+    match document.sort() {
+        Sort::Settings => {
+            let (_, problems) = Config::from_toml(&document.text.to_string());
+            return of_keys(state, document, problems);
+        }
+        Sort::Scene => {
+            let environment = state.environment_in(&key(&document.uri));
+            let text = document.text.to_string();
+            return of_keys(state, document, ide::scene_problems(&state.database, environment, &text));
+        }
+        Sort::Program => {}
     }
     let Some(file) = document.file else { return Vec::new() };
     let found = state.database.diagnostics(file);
@@ -183,14 +195,13 @@ pub(crate) fn convert(
     })
 }
 
-/// What is wrong with a `pydslrep.toml`.
-fn of_settings(state: &State, document: &Document) -> Vec<Diagnostic> {
-    let (_, problems) = Config::from_toml(&document.text.to_string());
-    problems.into_iter().map(|problem| convert_settings(state, document, problem)).collect()
+/// What is wrong with a `pydslrep.toml` or a scene.
+fn of_keys(state: &State, document: &Document, problems: Vec<Problem>) -> Vec<Diagnostic> {
+    problems.into_iter().map(|problem| convert_problem(state, document, problem)).collect()
 }
 
-/// One problem of a `pydslrep.toml`.
-pub(crate) fn convert_settings(state: &State, document: &Document, problem: Problem) -> Diagnostic {
+/// One problem of a `pydslrep.toml` or a scene.
+pub(crate) fn convert_problem(state: &State, document: &Document, problem: Problem) -> Diagnostic {
     Diagnostic {
         range: state.range(document, problem.span.unwrap_or(Span::at(0))),
         severity: Some(DiagnosticSeverity::ERROR),

@@ -9,6 +9,7 @@ use std::str::FromStr;
 use pydslrep_config::FILE_NAME;
 use pydslrep_files::EXTENSION;
 use pydslrep_ide as ide;
+use pydslrep_scene::ENDING;
 use tower_lsp::ls_types::{
     FileOperationFilter, FileOperationPattern, FileOperationPatternKind, FileOperationRegistrationOptions,
     RenameFilesParams, Uri, WorkspaceEdit, WorkspaceFileOperationsServerCapabilities,
@@ -19,7 +20,7 @@ use crate::handlers::code_actions;
 use crate::state::State;
 use crate::workspace::folders;
 
-/// The operations that matter to programs: on themselves, on folders, which may hold some, and on settings.
+/// The operations that matter to programs: on themselves, on folders, which may hold some, on settings and on scenes.
 pub(crate) fn capabilities() -> WorkspaceFileOperationsServerCapabilities {
     let filter = |glob: String, kind: FileOperationPatternKind| FileOperationFilter {
         scheme: Some("file".to_owned()),
@@ -27,8 +28,11 @@ pub(crate) fn capabilities() -> WorkspaceFileOperationsServerCapabilities {
     };
     let programs = filter(format!("**/*.{EXTENSION}"), FileOperationPatternKind::File);
     let settings = filter(format!("**/{FILE_NAME}"), FileOperationPatternKind::File);
+    let scenes = filter(format!("**/*{ENDING}"), FileOperationPatternKind::File);
     let folders = filter("**".to_owned(), FileOperationPatternKind::Folder);
-    let all = FileOperationRegistrationOptions { filters: vec![programs.clone(), settings, folders.clone()] };
+    let all = FileOperationRegistrationOptions {
+        filters: vec![programs.clone(), settings, scenes, folders.clone()],
+    };
     WorkspaceFileOperationsServerCapabilities {
         will_rename: Some(FileOperationRegistrationOptions { filters: vec![programs, folders] }),
         did_rename: Some(all.clone()),

@@ -41,7 +41,7 @@ pub(crate) fn kinematics(state: &State, params: &ExecuteCommandParams) -> Result
 /// What is known about the thing at a position.
 pub(crate) fn hover(state: &State, params: &HoverParams) -> Option<Hover> {
     let at = &params.text_document_position_params;
-    let (document, found) = if let Some((document, text)) = state.settings_text(&at.text_document.uri) {
+    let (document, found) = if let Some((document, text)) = state.keyed_text(&at.text_document.uri) {
         (document, ide::settings_hover(&text, state.offset(document, at.position))?)
     } else {
         let place = state.place(at)?;

@@ -12,6 +12,7 @@ use std::process::Command;
 use futures::channel::mpsc::UnboundedReceiver;
 use pydslrep_analysis::{FileId, Target};
 use pydslrep_files::FILE_NAME;
+use pydslrep_scene::ENDING;
 use pydslrep_script::{VREP_CLIENT_PARTS, VREP_CLIENTS};
 use tempfile::TempDir;
 use tower_lsp::jsonrpc::{Error, ErrorCode, Result};
@@ -84,6 +85,11 @@ fn write_programs(state: &State, which: &ChosenEnvironment, folder: &Path) -> Re
     };
     for (path, text) in &files {
         write(&place(path), text)?;
+    }
+    // A program that is in no folder has no scene.
+    let mut scenes = database.scenes();
+    if let Some((.., text)) = scenes.find(|(home, name, _)| *home == file && *name == which.environment) {
+        write(&place(own).with_file_name(format!("{}{ENDING}", which.environment)), text)?;
     }
     // Imports may go as far up as this file stands.
     let target = document.settings.target;

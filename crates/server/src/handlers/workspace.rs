@@ -2,6 +2,7 @@
 
 use pydslrep_config::{FILE_NAME, SECTION};
 use pydslrep_files::EXTENSION;
+use pydslrep_scene::ENDING;
 use serde_json::Value;
 use tower_lsp::ls_types::{
     ConfigurationItem, DidChangeWatchedFilesParams, DidChangeWatchedFilesRegistrationOptions,
@@ -32,7 +33,8 @@ pub(crate) fn registrations(state: &State) -> Vec<Registration> {
     let mut wanted = Vec::new();
     if state.client.watched_files {
         let watch = |glob: String| FileSystemWatcher { glob_pattern: GlobPattern::String(glob), kind: None };
-        let watchers = vec![watch(format!("**/*.{EXTENSION}")), watch(format!("**/{FILE_NAME}"))];
+        let globs = [format!("**/*.{EXTENSION}"), format!("**/{FILE_NAME}"), format!("**/*{ENDING}")];
+        let watchers = globs.map(watch).to_vec();
         let options = DidChangeWatchedFilesRegistrationOptions { watchers };
         wanted.push(Registration {
             id: "files".to_owned(),

@@ -18,7 +18,8 @@ pub(super) fn index(server: &Server, folders: &[String]) -> String {
         }
         // A folder in another may be left out there.
         let is_open = server.state().folders.contains(folder);
-        for path in found.programs {
+        // Programs first: where the workspace is large, scenes without one wait until they are opened.
+        for path in found.programs.into_iter().chain(found.scenes) {
             if !is_open && !server.state().is_part_of_workspace(&path.to_string_lossy()) {
                 continue;
             }
@@ -29,7 +30,7 @@ pub(super) fn index(server: &Server, folders: &[String]) -> String {
             match pydslrep_files::read(&path) {
                 Ok(text) => {
                     server.state().add_found(&path, &text);
-                    programs += 1;
+                    programs += usize::from(pydslrep_files::is_program(&path));
                 }
                 Err(unread) => log(format_args!("cannot read {}: {unread}", path.display())),
             }

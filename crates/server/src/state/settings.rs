@@ -11,7 +11,7 @@ use serde_json::Value;
 use tower_lsp::ls_types::Uri;
 
 use super::State;
-use crate::documents::key;
+use crate::documents::{Sort, key};
 
 /// What is set, and where.
 #[derive(Debug, Default)]
@@ -41,7 +41,7 @@ impl State {
         self.settings = SettingsStore { client, ..SettingsStore::default() };
         let read = self.documents.iter();
         let read: Vec<String> = read
-            .filter(|(_, document)| !document.is_program() && document.version.is_none())
+            .filter(|(_, document)| document.sort() == Sort::Settings && document.version.is_none())
             .map(|(key, _)| key.clone())
             .collect();
         for key in read {
