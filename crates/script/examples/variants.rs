@@ -6,7 +6,7 @@ mod common;
 use std::{env, error::Error, fs, path::Path};
 
 use common::{
-    area_1, environment, four_robots, move_at, move_by, movement, robot, sensors, turn, turn_until,
+    area_1, environment, four_robots, move_at, move_by, movement, robot, sensors, slam, turn, turn_until,
     with_sensors,
 };
 use pydslrep_analysis::environment::{Action, Environment, Source};
@@ -37,6 +37,8 @@ fn variants() -> Vec<Environment> {
         named("four_wheel", area_1(Drive::FourWheel)),
         named("four_mecanum", area_1(Drive::FourMecanum)),
         sensors(),
+        slam(),
+        slam_and_more(),
         four_robots(),
         named("math", area_1(Drive::TwoWheel)),
         environment("nothing", vec![], vec![], vec![]),
@@ -65,6 +67,22 @@ fn numbers() -> Environment {
         vec![movement("m", 0, actions)],
         vec![vec![0]],
     )
+}
+
+/// Two robots that explore at the same time, one of which also turns until it sees nothing.
+fn slam_and_more() -> Environment {
+    let mut environment = slam();
+    environment.name = "slam_and_more".to_owned();
+    environment.script = environment.name.clone();
+    let other = with_sensors(robot("r", Drive::TwoWheel, 1), &["a", "b", "c", "d", "e"]);
+    environment.robots.push(other);
+    let mut explore = environment.movements[0].clone();
+    explore.robot = 1;
+    explore.name = "mov_2".to_owned();
+    explore.actions.push(turn_until(&[0], "a", 9));
+    environment.movements.push(explore);
+    environment.schedule = vec![vec![0, 1]];
+    environment
 }
 
 /// Actions from another file, whose name is not plain.

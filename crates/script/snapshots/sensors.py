@@ -819,7 +819,9 @@ def parse_port(text: str) -> tuple[str | None, int]:
 
 
 def parse_arguments(
-    description: str | None, host: str, models: Sequence[RobotModel]
+    description: str | None,
+    host: str,
+    models: Sequence[RobotModel],
 ) -> argparse.Namespace:
     """Reads the command line; `ports` of the result has the port of every robot."""
     parser = argparse.ArgumentParser(
@@ -861,7 +863,11 @@ def main(
     drive: Callable[[Fleet], None],
 ) -> int:
     """Runs an environment; the result is the exit code."""
-    options = parse_arguments(description, host, models)
+    options = parse_arguments(
+        description,
+        host,
+        models,
+    )
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         trace_file = (

@@ -2,7 +2,7 @@
 
 use std::{collections::HashSet, net::Ipv4Addr};
 
-use pydslrep_analysis::environment::{Action, ActionKind, Environment, Movement, Robot, Source};
+use pydslrep_analysis::environment::{Action, ActionKind, Environment, Movement, Robot, SensorKind, Source};
 use pydslrep_kinematics::{Drive, motion::RIM_SPEED};
 use serde::Serialize;
 
@@ -29,6 +29,8 @@ pub(crate) struct Script {
     parallel: bool,
     /// Whether some action looks at sensors.
     until: bool,
+    /// Whether some robot explores.
+    slam: bool,
     /// Always false: the parts of a script do not stand alone.
     standalone: bool,
     robots: Vec<RobotModel>,
@@ -46,6 +48,8 @@ struct RobotModel {
     /// Only those that some action looks at.
     // Written as a list: the formatter leaves its lines alone also where there is only one.
     sensors: Vec<String>,
+    /// Those that it explores with.
+    eyes: Vec<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -80,10 +84,12 @@ enum Call {
     Turn { degrees: String },
     /// A side, and the sensors' names.
     Until { side: &'static str, sensors: Vec<String> },
+    /// Nothing more to say.
+    Slam,
 }
 
 impl Script {
-    /// The environment's data; an error where scripts cannot do some action yet.
+    /// The environment's data; an error where a robot lists a wheel twice.
     pub(crate) fn new(environment: &Environment, target: Target) -> Result<Self, ScriptError> {
         // Without robots there is still a class that says what a robot's drive would be.
         let has = |drive| match environment.robots.as_slice() {
@@ -113,6 +119,7 @@ impl Script {
             four_mecanum,
             parallel: environment.schedule.iter().any(|group| group.len() > 1),
             until: movements.iter().flat_map(|movement| &movement.actions).any(looks_at_sensors),
+            slam: movements.iter().any(explores),
             standalone: false,
             robots: environment
                 .robots
@@ -124,7 +131,7 @@ impl Script {
                 .iter()
                 .zip(&functions)
                 .map(|(m, function)| movement_function(m, function, &environment.robots[m.robot]))
-                .collect::<Result<_, _>>()?,
+                .collect(),
             schedule: environment
                 .schedule
                 .iter()
@@ -160,6 +167,10 @@ fn looks_at_sensors(action: &Action) -> bool {
     matches!(action.kind, ActionKind::TurnUntil { .. })
 }
 
+fn explores(movement: &Movement) -> bool {
+    movement.actions.iter().any(|action| action.kind == ActionKind::Slam)
+}
+
 fn robot(index: usize, robot: &Robot, movements: &[Movement]) -> Result<RobotModel, ScriptError> {
     let mut names = HashSet::new();
     if let Some(repeated) = robot.wheels.iter().find(|wheel| !names.insert(&wheel.name)) {
@@ -175,6 +186,7 @@ fn robot(index: usize, robot: &Robot, movements: &[Movement]) -> Result<RobotMod
             .map(|wheel| WheelModel { name: wheel.name.clone(), radius: float(wheel.radius) })
             .collect(),
         sensors: sensors_looked_at(index, robot, movements),
+        eyes: eyes(index, robot, movements),
     })
 }
 
@@ -187,33 +199,35 @@ fn sensors_looked_at(index: usize, robot: &Robot, movements: &[Movement]) -> Vec
             }
         }
     }
-    let sensors = robot.sensors.iter().zip(looked_at).filter(|(_, looked_at)| *looked_at);
+    let eyes = eyes(index, robot, movements);
+    let sensors = robot
+        .sensors
+        .iter()
+        .zip(looked_at)
+        .filter(|(sensor, looked_at)| *looked_at || eyes.contains(&sensor.name));
     sensors.map(|(sensor, _)| sensor.name.clone()).collect()
 }
 
-fn movement_function(
-    movement: &Movement,
-    function: &str,
-    robot: &Robot,
-) -> Result<MovementFunction, ScriptError> {
-    Ok(MovementFunction {
+/// The sensors that a robot explores with, if it does.
+fn eyes(index: usize, robot: &Robot, movements: &[Movement]) -> Vec<String> {
+    if !movements.iter().any(|movement| movement.robot == index && explores(movement)) {
+        return Vec::new();
+    }
+    let distances = robot.sensors.iter().filter(|sensor| sensor.kind == SensorKind::Distance);
+    distances.map(|sensor| sensor.name.clone()).collect()
+}
+
+fn movement_function(movement: &Movement, function: &str, robot: &Robot) -> MovementFunction {
+    MovementFunction {
         function: function.to_owned(),
         name: movement.name.clone(),
         robot: robot.name.clone(),
         comment: place(&movement.source),
-        actions: movement
-            .actions
-            .iter()
-            .map(|action| commented_action(action, movement, robot))
-            .collect::<Result<_, _>>()?,
-    })
+        actions: movement.actions.iter().map(|action| commented_action(action, robot)).collect(),
+    }
 }
 
-fn commented_action(
-    action: &Action,
-    movement: &Movement,
-    robot: &Robot,
-) -> Result<CommentedAction, ScriptError> {
+fn commented_action(action: &Action, robot: &Robot) -> CommentedAction {
     let call = match &action.kind {
         ActionKind::Move { distance, speed } => Call::Move {
             distance: float(*distance),
@@ -225,16 +239,9 @@ fn commented_action(
             side: if *left { "left" } else { "right" },
             sensors: sensors.iter().map(|&sensor| robot.sensors[sensor].name.clone()).collect(),
         },
-        ActionKind::Slam => {
-            return Err(ScriptError::UnsupportedAction {
-                action: action.text.clone(),
-                movement: movement.name.clone(),
-                file: action.source.file.clone(),
-                line: action.source.line,
-            });
-        }
+        ActionKind::Slam => Call::Slam,
     };
-    Ok(CommentedAction { call, comment: format!("{}: {}", place(&action.source), comment(&action.text)) })
+    CommentedAction { call, comment: format!("{}: {}", place(&action.source), comment(&action.text)) }
 }
 
 /// A place in the program, for a comment.

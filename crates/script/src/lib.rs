@@ -40,17 +40,6 @@ pub fn may_replace(content: &[u8]) -> bool {
 /// Why there is no script for an environment.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ScriptError {
-    /// A movement contains an action that scripts cannot do yet.
-    UnsupportedAction {
-        /// The action as the program writes it.
-        action: String,
-        /// The movement's name.
-        movement: String,
-        /// The file, where it is another one than the environment's.
-        file: Option<String>,
-        /// 1-based.
-        line: u32,
-    },
     /// A robot lists one wheel more than once, so it has no joint of its own for each.
     RepeatedWheel {
         /// The robot's name.
@@ -65,13 +54,6 @@ pub enum ScriptError {
 impl fmt::Display for ScriptError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::UnsupportedAction { action, movement, file, line } => {
-                write!(f, "`{action}` of movement `{movement}` (")?;
-                if let Some(file) = file {
-                    write!(f, "{file}, ")?;
-                }
-                write!(f, "line {line}) is not supported in scripts yet: remove it or leave the movement out")
-            }
             Self::RepeatedWheel { robot, wheel } => {
                 write!(
                     f,
@@ -91,7 +73,7 @@ impl std::error::Error for ScriptError {}
 ///
 /// # Errors
 ///
-/// When a movement contains `slam`, which scripts cannot do yet, or a robot lists a wheel twice.
+/// When a robot lists a wheel twice.
 pub fn generate(environment: &Environment, target: Target) -> Result<String, ScriptError> {
     render::script(&context::Script::new(environment, target)?)
 }

@@ -9,7 +9,7 @@ use crate::{ScriptError, context::Script};
 const TEMPLATE: &str = "environment.py.j2";
 
 /// Every source by the name that `include` knows it by.
-const SOURCES: [(&str, &str); 17] = [
+const SOURCES: [(&str, &str); 22] = [
     (TEMPLATE, include_str!("../templates/environment.py.j2")),
     ("approach.py", include_str!("../python/pydslrep_parts/approach.py")),
     ("command.py", include_str!("../python/pydslrep_parts/command.py")),
@@ -18,13 +18,18 @@ const SOURCES: [(&str, &str); 17] = [
     ("drive_four_wheel.py", include_str!("../python/pydslrep_parts/drive_four_wheel.py")),
     ("drive_two_wheel.py", include_str!("../python/pydslrep_parts/drive_two_wheel.py")),
     ("errors.py", include_str!("../python/pydslrep_parts/errors.py")),
+    ("explorer.py", include_str!("../python/pydslrep_parts/explorer.py")),
     ("fleet.py", include_str!("../python/pydslrep_parts/fleet.py")),
+    ("floor.py", include_str!("../python/pydslrep_parts/floor.py")),
     ("model.py", include_str!("../python/pydslrep_parts/model.py")),
     ("movement.py", include_str!("../python/pydslrep_parts/movement.py")),
     ("pose.py", include_str!("../python/pydslrep_parts/pose.py")),
     ("robot.py", include_str!("../python/pydslrep_parts/robot.py")),
     ("settings.py", include_str!("../python/pydslrep_parts/settings.py")),
     ("steering.py", include_str!("../python/pydslrep_parts/steering.py")),
+    ("survey.py", include_str!("../python/pydslrep_parts/survey.py")),
+    ("surveyor.py", include_str!("../python/pydslrep_parts/surveyor.py")),
+    ("topology.py", include_str!("../python/pydslrep_parts/topology.py")),
     ("trace_file.py", include_str!("../python/pydslrep_parts/trace_file.py")),
     ("vrep.py", include_str!("../python/pydslrep_parts/vrep.py")),
 ];

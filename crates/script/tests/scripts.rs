@@ -9,11 +9,13 @@ mod common;
 
 use std::net::Ipv4Addr;
 
-use common::{area_1, environment, four_robots, line, move_by, movement, robot, sensors, turn};
+use common::{
+    area_1, environment, four_robots, move_by, movement, robot, sensors, slam, turn, with_sensors,
+};
 use expect_test::{expect, expect_file};
-use pydslrep_analysis::environment::{Action, ActionKind, Environment, Source};
+use pydslrep_analysis::environment::{Action, Environment, Sensor, SensorKind, Source};
 use pydslrep_kinematics::Drive;
-use pydslrep_script::{REQUIREMENTS, ScriptError, Target, file_name, generate, may_replace};
+use pydslrep_script::{REQUIREMENTS, Target, file_name, generate, may_replace};
 
 fn script(environment: &Environment) -> String {
     generate(environment, Target::CoppeliaSim).expect("a script")
@@ -40,6 +42,11 @@ fn two_wheels() {
 #[test]
 fn turning_until_sensors_are_free() {
     expect_file!["../snapshots/sensors.py"].assert_eq(&script(&sensors()));
+}
+
+#[test]
+fn exploring() {
+    expect_file!["../snapshots/rooms.py"].assert_eq(&script(&slam()));
 }
 
 #[test]
@@ -279,14 +286,21 @@ fn empty_environments_and_movements_are_programs() {
 }
 
 #[test]
-fn slam_is_not_supported_yet() {
-    let slam = Action { kind: ActionKind::Slam, text: "slam".to_owned(), source: line(14) };
-    let mut environment = area_1(Drive::TwoWheel);
-    environment.movements[0].actions.push(slam);
-    let error = generate(&environment, Target::CoppeliaSim).expect_err("no script");
-    assert!(matches!(error, ScriptError::UnsupportedAction { line: 14, .. }), "{error:?}");
-    expect!["`slam` of movement `mov_1` (line 14) is not supported in scripts yet: remove it or leave the movement out"]
-        .assert_eq(&error.to_string());
+fn only_exploring_robots_have_eyes_and_bumpers_are_none() {
+    let mut environment = slam();
+    environment.robots[0].sensors.push(Sensor { name: "bumper".to_owned(), kind: SensorKind::Bumper });
+    let idle = with_sensors(robot("idle", Drive::TwoWheel, 19998), &["fSensor"]);
+    environment.robots.push(idle);
+    let text = script(&environment);
+    assert!(!text.contains("bumper"));
+    assert_eq!(
+        (text.matches("\n        eyes=[\n").count(), text.matches("\n        sensors=[\n").count()),
+        (1, 1)
+    );
+    let without = script(&sensors());
+    for word in ["slam", "Explorer", "heapq", "eyes", "importlib"] {
+        assert!(text.contains(word) && !without.contains(word), "{word}");
+    }
 }
 
 #[test]

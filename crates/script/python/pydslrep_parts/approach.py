@@ -42,7 +42,7 @@ class Approach:
             return self._closing_rate * distance
         return math.sqrt(2.0 * deceleration * (distance - linear / 2.0))
 
-    #: if until
+    #: if until or slam
     def slowed_down(self) -> float:
         """The rim speed for the next step where the robot shall come to rest."""
         change = RIM_ACCELERATION * self.time_step

@@ -12,6 +12,7 @@ from .coppeliasim import PORT_HELP, REALTIME_HELP, SIMULATOR
 from .errors import MovementError, SetupError, SimulatorError
 from .fleet import Fleet
 from .model import RobotModel
+from .survey import Survey, add_survey_options
 from .trace_file import Trace
 
 #: endif
@@ -26,7 +27,12 @@ def parse_port(text: str) -> tuple[str | None, int]:
 
 
 def parse_arguments(
-    description: str | None, host: str, models: Sequence[RobotModel]
+    description: str | None,
+    host: str,
+    models: Sequence[RobotModel],
+    #: if slam
+    environment: str = "environment",
+    #: endif
 ) -> argparse.Namespace:
     """Reads the command line; `ports` of the result has the port of every robot."""
     parser = argparse.ArgumentParser(
@@ -50,6 +56,9 @@ def parse_arguments(
         help="write every step to a file, as JSON lines",
     )
     parser.add_argument("--realtime", action="store_true", help=REALTIME_HELP)
+    #: if slam
+    add_survey_options(parser, environment)
+    #: endif
     options = parser.parse_args()
     options.ports = {model.name: model.port for model in models}
     for robot, port in sorted(options.port, key=lambda choice: choice[0] is not None):
@@ -66,9 +75,19 @@ def main(
     host: str,
     models: Sequence[RobotModel],
     drive: Callable[[Fleet], None],
+    #: if slam
+    environment: str = "environment",
+    #: endif
 ) -> int:
     """Runs an environment; the result is the exit code."""
-    options = parse_arguments(description, host, models)
+    options = parse_arguments(
+        description,
+        host,
+        models,
+        #: if slam
+        environment,
+        #: endif
+    )
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         trace_file = (
@@ -76,6 +95,9 @@ def main(
         )
         with trace_file or nullcontext():
             fleet = Fleet(Trace(trace_file))
+            #: if slam
+            fleet.survey = Survey(environment, options)
+            #: endif
             try:
                 for model in models:
                     port = options.ports[model.name]

@@ -10,7 +10,7 @@ import zmq
 from coppeliasim_zmqremoteapi_client import RemoteAPIClient  # type: ignore[import-untyped]
 
 from .errors import SetupError, SimulatorError
-from .model import Mounting, RobotModel
+from .model import Eye, Mounting, RobotModel
 from .pose import Pose
 from .settings import CONNECT_TIMEOUT, REPLY_TIMEOUT, STOP_TIMEOUT
 
@@ -113,6 +113,34 @@ class Body:
         return bool(state > 0)
 
     #: endif
+    #: if slam
+    def distance(self, sensor: str) -> float | None:
+        """How far off what a proximity sensor sees is, in metres; None where it sees nothing."""
+        handle = self._sensors[sensor]
+        state, distance, *_ = self._ask(self._sim.readProximitySensor, handle)
+        if state < 0:
+            # Nobody has handled it yet: its scene leaves that to scripts like this one.
+            state, distance, *_ = self._ask(self._sim.handleProximitySensor, handle)
+        return float(distance) if state > 0 else None
+
+    def eye(self, sensor: str) -> Eye:
+        """Where a proximity sensor is mounted, and what is known of how far it sees."""
+        handle = self._sensors[sensor]
+        mount = self._mounting.mount(self._matrix(self._body), self._matrix(handle))
+        reach = self._property("getFloatProperty", handle, "volume_range")
+        angles = self._property("getFloatArrayProperty", handle, "volume_angle")
+        return Eye(mount, reach, angles[0] if angles else None)
+
+    def _property(self, function: str, handle: int, name: str) -> Any:
+        """A property of an object; None in versions that cannot tell."""
+        try:
+            return self._ask(getattr(self._sim, function), handle, name)
+        except (AttributeError, SimulatorError):
+            if self._in_call:
+                raise  # it is not the property that is missing
+            return None
+
+    #: endif
     def advance(self) -> None:
         """Lets one step of simulation time pass."""
         self._ask(self._sim.step)
@@ -205,7 +233,7 @@ class Body:
             "robot", lambda kind: kind not in (joint, sensor), f"/{name}"
         )
         self._joints = self._find_parts("joint", joint, self.model.wheels)
-        #: if until
+        #: if until or slam
         sensors = self._find_parts("proximity sensor", sensor, self.model.sensors)
         self._sensors = dict(zip(self.model.sensors, sensors, strict=True))
         #: endif

@@ -11,6 +11,7 @@ from .errors import MovementCancelledError, SimulatorError
 from .model import RobotModel
 from .movement import Movement
 from .robot import Robot
+from .survey import Survey
 from .trace_file import Trace
 
 #: endif
@@ -22,6 +23,9 @@ class Fleet:
     def __init__(self, trace: Trace) -> None:
         self._trace = trace
         self._robots: dict[str, Robot] = {}
+        #: if slam
+        self.survey: Survey | None = None
+        #: endif
         #: if parallel
         self._cancelled = Event()
         self._lock = Lock()
@@ -33,6 +37,9 @@ class Fleet:
         robot = Robot(Body(model, host, port, realtime), self._trace)
         #: if parallel
         robot.cancelled = self._cancelled
+        #: endif
+        #: if slam
+        robot.survey = self.survey
         #: endif
         self._robots[model.name] = robot
 

@@ -25,11 +25,25 @@ class RobotModel:
     port: int
     drive: type[Drive]
     wheels: Mapping[str, float]  # radius in metres by the joint's name
-    #: if until
+    #: if until or slam
     sensors: Sequence[str] = ()
+    #: endif
+    #: if slam
+    eyes: Sequence[str] = ()  # the sensors that it explores with
     #: endif
 
 
+#: if slam
+@dataclass(frozen=True)
+class Eye:
+    """What is known of a proximity sensor: its mount, and what the simulator tells."""
+
+    mount: Pose  # on the robot, looking along its heading
+    range: float | None = None  # m
+    cone: float | None = None  # radians
+
+
+#: endif
 class Mounting:
     """Where a robot's wheels are on its body, and which way round their joints turn.
 
@@ -59,6 +73,13 @@ class Mounting:
         except SetupError as error:
             raise SetupError(f"robot {model.name}: {error}") from None
 
+    #: if slam
+    def mount(self, body: Sequence[float], sensor: Sequence[float]) -> Pose:
+        """Where a sensor is, and where its z axis points, as seen from the wheels' middle."""
+        looking = math.atan2(sensor[6], sensor[2])
+        return Pose(sensor[3], sensor[7], looking).seen_from(self.pose(body))
+
+    #: endif
     def pose(self, body: Sequence[float]) -> Pose:
         """Where the middle of the wheels is, and the robot's heading."""
         x, y = self._center

@@ -35,6 +35,17 @@ class Pose:
         """The pose after turning in place, to the left where positive."""
         return Pose(self.x, self.y, wrap_angle(self.theta + angle))
 
+    #: if slam
+    def placed_on(self, body: "Pose") -> "Pose":
+        """The pose of what is mounted here on a body, in the frame of that body's pose."""
+        cos, sin = math.cos(body.theta), math.sin(body.theta)
+        return Pose(
+            body.x + cos * self.x - sin * self.y,
+            body.y + sin * self.x + cos * self.y,
+            wrap_angle(body.theta + self.theta),
+        )
+
+    #: endif
     def seen_from(self, origin: "Pose") -> "Pose":
         """The same pose in the frame of `origin`: x ahead of it, y to its left."""
         dx, dy = self.x - origin.x, self.y - origin.y

@@ -2,7 +2,7 @@
 """How robots carry out their actions."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from threading import Event
 from typing import Literal
 
@@ -11,6 +11,8 @@ from .coppeliasim import Body
 from .errors import MovementCancelledError, MovementError
 from .pose import Pose, wrap_angle
 from .settings import RIM_SPEED, STALL_TIME
+from .survey import Survey
+from .surveyor import survey_with
 from .trace_file import Trace
 
 #: endif
@@ -31,6 +33,10 @@ class Robot:
         self._actions = 0
         #: if parallel
         self.cancelled = Event()
+        #: endif
+        #: if slam
+        self.survey: Survey | None = None
+        self._watch: Callable[[Pose], object] | None = None
         #: endif
 
     def move(self, distance: float, speed: float = RIM_SPEED) -> None:
@@ -85,6 +91,49 @@ class Robot:
         self._report(here)
 
     #: endif
+    #: if slam
+    def slam(self) -> None:
+        """Explores a closed area and makes a map of it."""
+        self._begin("slam")
+        # Before the first step, sensors are blind.
+        self._planned = self._step(self._standstill())
+        if self.survey is not None:
+            survey_with(self, self.survey)
+        self._report(self.pose())
+
+    def pose(self) -> Pose:
+        """Where the robot is."""
+        return self.body.pose()
+
+    def rotate(self, angle: float, heed: Callable[[Pose], object]) -> None:
+        """Turns in place, to the left where positive, and shows every pose on the way."""
+        self._watch = heed
+        try:
+            self._rotate(self.pose(), angle)
+        finally:
+            self._watch = None
+
+    def drive_to(self, goal: Pose, is_enough: Callable[[Pose], bool]) -> None:
+        """Drives to a goal ahead or behind, and no further than is enough."""
+        here = self.pose()
+        approach = Approach(RIM_SPEED, self.body.time_step)
+        is_stopping = False
+        while True:
+            offset = here.seen_from(goal)
+            to_go = -offset.x
+            if approach.arrived(to_go) or (is_stopping and approach.speed == 0.0):
+                break
+            self._check_progress(approach, to_go)
+            is_stopping = is_stopping or is_enough(here)
+            rim_speed = (
+                approach.slowed_down() if is_stopping else approach.next_speed(to_go)
+            )
+            here = self._step(self.body.drive.follow_line(rim_speed, offset, to_go))
+        here = self._come_to_rest(here)
+        self._planned = goal.ahead(here.seen_from(goal).x) if is_stopping else goal
+        self._rotate(here, 0.0)
+
+    #: endif
     def begin(self, movement: str) -> None:
         """Says which movement the next actions belong to."""
         self._movement, self._action, self._actions = movement, "start", 0
@@ -118,6 +167,10 @@ class Robot:
             offset, before = here.seen_from(goal), here
             here = self._step(drive.turn_in_place(rim_speed, offset))
             turned += wrap_angle(here.theta - before.theta)
+            #: if slam
+            if self._watch is not None:
+                self._watch(here)
+            #: endif
         self._planned = goal
         return self._come_to_rest(here)
 

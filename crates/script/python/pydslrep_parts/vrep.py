@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from .errors import SetupError, SimulatorError
-from .model import Mounting, RobotModel
+from .model import Eye, Mounting, RobotModel
 from .pose import Pose
 from .settings import CONNECT_TIMEOUT, REPLY_TIMEOUT, STOP_TIMEOUT
 
@@ -148,6 +148,23 @@ class Body:
         return bool(self._ask(read, self._sensors[sensor], mode))
 
     #: endif
+    #: if slam
+    def distance(self, sensor: str) -> float | None:
+        """How far off what a proximity sensor sees is, in metres; None where it sees nothing."""
+        client, handle = self._client, self._sensors[sensor]
+        code, state, point, _, _ = client.simxReadProximitySensor(
+            self._id, handle, client.simx_opmode_buffer
+        )
+        self._check(code, "simxReadProximitySensor")
+        return math.hypot(*point) if state else None
+
+    def eye(self, sensor: str) -> Eye:
+        """Where a proximity sensor is mounted; the remote API cannot tell how far it sees."""
+        wait = self._client.simx_opmode_blocking
+        seen = self._matrix(self._sensors[sensor], wait)
+        return Eye(self._mounting.mount(self._look(), seen))
+
+    #: endif
     def advance(self) -> None:
         """Lets one step of simulation time pass."""
         before = self._milliseconds
@@ -264,7 +281,7 @@ class Body:
             "robot", lambda found: found not in (*joints, *sensors), name, f"/{name}"
         )
         self._joints = self._find_parts("joint", joints, self.model.wheels)
-        #: if until
+        #: if until or slam
         found = self._find_parts("proximity sensor", sensors, self.model.sensors)
         self._sensors = dict(zip(self.model.sensors, found, strict=True))
         #: endif
@@ -285,7 +302,7 @@ class Body:
         """From now on every message brings what changes all the time."""
         client, stream = self._client, self._client.simx_opmode_streaming
         self._matrix(self._body, stream, may=NO_VALUE)
-        #: if until
+        #: if until or slam
         for sensor in self._sensors.values():
             # Before the first step, sensors are blind.
             may = NO_VALUE | REMOTE_ERROR

@@ -113,6 +113,14 @@ pub(crate) fn sensors() -> Environment {
     environment("sensors", vec![robot], vec![movement("mov_1", 0, actions)], vec![vec![0]])
 }
 
+/// Table 7: explores.
+pub(crate) fn slam() -> Environment {
+    let names = ["fSensor0", "fSensor1", "fSensor2", "lSensor", "rSensor"];
+    let robot = with_sensors(robot("robot_1", Drive::TwoWheel, 19999), &names);
+    let explore = Action { kind: ActionKind::Slam, text: "slam".to_owned(), source: line(14) };
+    environment("rooms", vec![robot], vec![movement("mov_1", 0, vec![explore])], vec![vec![0]])
+}
+
 /// Four robots of all kinds that drive at the same time, and then one alone.
 pub(crate) fn four_robots() -> Environment {
     let robots = vec![

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use ciborium::Value;
 use nalgebra::{Isometry3, Point3, Vector3};
+use pydslrep_scene::Mount;
 
 use super::arguments::{self, Arguments, Outcome};
 use super::info;
@@ -70,6 +71,8 @@ pub(super) fn call(bench: &mut Bench, function: &str, arguments: &Arguments) -> 
         "getObjectInt32Param" => bench.get_object_int_param(arguments),
         "setObjectInt32Param" => bench.set_object_int_param(arguments),
         "getObjectFloatParam" => bench.get_object_float_param(arguments),
+        "getFloatProperty" => bench.get_float_property(arguments),
+        "getFloatArrayProperty" => bench.get_float_array_property(arguments),
         "readProximitySensor" => bench.read_proximity_sensor(arguments),
         "handleProximitySensor" => bench.handle_proximity_sensor(arguments),
         "getInt32Param" => parameter(arguments, info::PARAM_PROGRAM_VERSION, info::PROGRAM_VERSION.into()),
@@ -256,6 +259,31 @@ impl Bench<'_> {
             return Err(arguments.failure(316, "invalid parameter."));
         }
         Ok(vec![rate.into()])
+    }
+
+    /// How far a proximity sensor sees.
+    fn get_float_property(&self, arguments: &Arguments) -> Outcome {
+        let mount = self.mount(arguments)?;
+        match arguments.text(1)? {
+            "volume_range" => Ok(vec![mount.range.into()]),
+            _ => Err(arguments.failure(316, "unknown property.")),
+        }
+    }
+
+    /// The opening angle of a proximity sensor's cone, and that of the gap in it.
+    fn get_float_array_property(&self, arguments: &Arguments) -> Outcome {
+        let mount = self.mount(arguments)?;
+        match arguments.text(1)? {
+            "volume_angle" => Ok(vec![arguments::list([mount.cone, 0.0])]),
+            _ => Err(arguments.failure(316, "unknown property.")),
+        }
+    }
+
+    fn mount(&self, arguments: &Arguments) -> Result<Mount, arguments::Failure> {
+        let unknown = || arguments.failure(316, "unknown property.");
+        let Kind::Sensor { robot, sensor } = self.object(arguments)?.1 else { return Err(unknown()) };
+        let robot = self.world.scene().robots.get(robot).ok_or_else(unknown)?;
+        robot.sensors.get(sensor).map(|sensor| sensor.mount).ok_or_else(unknown)
     }
 
     fn sensor(&self, arguments: &Arguments) -> Result<Handle, arguments::Failure> {

@@ -53,7 +53,9 @@ pub(super) const PROGRAM_VERSION: i64 = 40600;
 pub(super) const FUNCTIONS: &[&str] = &[
     "addLog",
     "getBoolParam",
+    "getFloatArrayProperty",
     "getFloatParam",
+    "getFloatProperty",
     "getInt32Param",
     "getJointMode",
     "getJointPosition",

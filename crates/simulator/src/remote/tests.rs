@@ -551,6 +551,10 @@ fn a_sensor_tells_what_it_sees_in_its_own_frame() {
     assert_eq!(lab.call("a", "sim.getObjectType", cbor!([wall]).unwrap()), [Value::from(0)]);
     let still = lab.call("a", "sim.getObjectVelocity", cbor!([wall]).unwrap());
     assert_eq!(vector(&still[0]), [0.0; 3]);
+    let range = cbor!([sensor, "volume_range"]).unwrap();
+    assert_near(&[lab.number("a", "sim.getFloatProperty", range)], &[1.0]);
+    let angles = lab.call("a", "sim.getFloatArrayProperty", cbor!([sensor, "volume_angle"]).unwrap());
+    assert_near(&vector(&angles[0]), &[20f64.to_radians(), 0.0]);
     let other = lab.object("/robot_2/fSensor");
     let seen = lab.call("a", "sim.readProximitySensor", cbor!([other]).unwrap());
     assert_eq!((&seen[0], &seen[3]), (&Value::from(0), &Value::from(-1)), "the other robot looks past it");

@@ -1,0 +1,187 @@
+"""A robot without wheels or time in closed rooms: it is where it should be at once, and sees what is on the way."""
+
+import math
+from collections.abc import Callable
+
+from pydslrep_parts.floor import Floor, Place, Reading
+from pydslrep_parts.pose import Pose, wrap_angle
+from rooms import (
+    Pillar,
+    Rooms,
+    distance_to_polygon,
+    distance_to_segment,
+    nearest_on_segment,
+)
+
+HALF = 0.15  # m, of the square body
+RADIUS = math.hypot(HALF, HALF)
+
+# By name: x, y and bearing on the body, as the simulator places five sensors.
+MOUNTS = [
+    Pose(0.0, HALF, math.pi / 2.0),
+    Pose(HALF, HALF, math.pi / 4.0),
+    Pose(HALF, 0.0, 0.0),
+    Pose(HALF, -HALF, -math.pi / 4.0),
+    Pose(0.0, -HALF, -math.pi / 2.0),
+]
+
+
+def on(pose: Pose, mount: Pose) -> Pose:
+    """A mount's pose in the world."""
+    cos, sin = math.cos(pose.theta), math.sin(pose.theta)
+    return Pose(
+        pose.x + cos * mount.x - sin * mount.y,
+        pose.y + sin * mount.x + cos * mount.y,
+        wrap_angle(pose.theta + mount.theta),
+    )
+
+
+class GhostRover:
+    """Keeps the way it has gone, and whether it touched something."""
+
+    STEP = 0.03  # m
+    TURN = math.radians(5.0)
+
+    def __init__(
+        self,
+        rooms: Rooms,
+        floor: Floor,
+        reach: float = 1.0,
+        cone: float = math.radians(20.0),
+    ) -> None:
+        self.rooms, self.floor, self.reach, self.cone = rooms, floor, reach, cone
+        self.here = Pose(*rooms.start, 0.0)
+        self.touched: list[Pose] = []
+        self.driven = self.turned = 0.0
+        self.segments = rooms.segments()
+        self.surprises: list[Pillar] = []  # that no sensor sees from afar
+        self.look()
+
+    def pose(self) -> Pose:
+        return self.here
+
+    def turn_by(self, angle: float) -> None:
+        count = max(1, math.ceil(abs(angle) / self.TURN))
+        for _ in range(count):
+            self.here = self.here.turned(angle / count)
+            self.look()
+        self.turned += abs(angle)
+
+    def drive_to(self, goal: Place, is_enough: Callable[[], bool]) -> bool:
+        dx, dy = goal[0] - self.here.x, goal[1] - self.here.y
+        self.turn_by(wrap_angle(math.atan2(dy, dx) - self.here.theta))
+        length = math.hypot(dx, dy)
+        count = max(1, math.ceil(length / self.STEP))
+        for index in range(count):
+            near = [s.at for s in self.surprises if self.is_near_ahead(s)]
+            if near:
+                self.floor.block(*near[0])
+                return False
+            self.here = self.here.ahead(length / count)
+            self.driven += length / count
+            self.look()
+            if index % 5 == 0 and is_enough():
+                break
+        return True
+
+    def is_near_ahead(self, surprise: Pillar) -> bool:
+        seen = Pose(*surprise.at, 0.0).seen_from(self.here)
+        reach = RADIUS + surprise.radius
+        return 0.0 < seen.x < reach + 0.05 and abs(seen.y) < reach
+
+    def retreat_to(self, goal: Place) -> None:
+        self.here = Pose(*goal, self.here.theta)
+
+    def look(self) -> None:
+        if not self.is_clear():
+            self.touched.append(self.here)
+        for mount in MOUNTS:
+            eye = on(self.here, mount)
+            away = self.distance(eye)
+            self.floor.see(
+                Reading(eye, self.cone, min(away, self.reach), away < self.reach)
+            )
+
+    def is_clear(self) -> bool:
+        corners = [
+            on(self.here, Pose(x, y, 0.0))
+            for x, y in ((HALF, HALF), (-HALF, HALF), (-HALF, -HALF), (HALF, -HALF))
+        ]
+        body = [(corner.x, corner.y) for corner in corners]
+        near = [
+            s
+            for s in self.segments
+            if distance_to_segment((self.here.x, self.here.y), *s) < RADIUS
+        ]
+        return (
+            all(self.rooms.free(corner) for corner in body)
+            and all(
+                max(abs(p.x), abs(p.y)) >= HALF - 1e-9
+                for start, end in near
+                for place in (start, end)
+                if (p := Pose(*place, 0.0).seen_from(self.here))
+            )
+            and all(
+                distance_to_polygon(pillar.at, body) >= pillar.radius
+                for pillar in self.rooms.pillars
+            )
+        )
+
+    def distance(self, eye: Pose) -> float:
+        """To the nearest point in the cone."""
+        best = math.inf
+        place, half = (eye.x, eye.y), self.cone / 2.0
+
+        def consider(point: Place) -> None:
+            nonlocal best
+            away = math.dist(place, point)
+            if away < best:
+                bearing = math.atan2(point[1] - eye.y, point[0] - eye.x)
+                if abs(wrap_angle(bearing - eye.theta)) <= half + 1e-9:
+                    best = away
+
+        rays = [
+            (math.cos(eye.theta + side * half), math.sin(eye.theta + side * half))
+            for side in (-1.0, 1.0)
+        ]
+        for start, end in self.segments:
+            if (
+                max(start[0], end[0]) < eye.x - self.reach
+                or min(start[0], end[0]) > eye.x + self.reach
+                or max(start[1], end[1]) < eye.y - self.reach
+                or min(start[1], end[1]) > eye.y + self.reach
+            ):
+                continue
+            nearest = nearest_on_segment(place, start, end)
+            if math.dist(place, nearest) > self.reach:
+                continue
+            consider(nearest)
+            for ray in rays:
+                dx, dy = end[0] - start[0], end[1] - start[1]
+                cross = ray[0] * dy - ray[1] * dx
+                if abs(cross) < 1e-12:
+                    continue
+                wx, wy = start[0] - eye.x, start[1] - eye.y
+                along, part = (
+                    (wx * dy - wy * dx) / cross,
+                    (wx * ray[1] - wy * ray[0]) / cross,
+                )
+                if along > 0.0 and 0.0 <= part <= 1.0:
+                    best = min(best, along)
+        for pillar in self.rooms.pillars:
+            away = math.dist(place, pillar.at)
+            if away - pillar.radius > self.reach:
+                continue
+            consider(
+                (
+                    pillar.at[0] + (eye.x - pillar.at[0]) * pillar.radius / away,
+                    pillar.at[1] + (eye.y - pillar.at[1]) * pillar.radius / away,
+                )
+            )
+            for ray in rays:
+                wx, wy = pillar.at[0] - eye.x, pillar.at[1] - eye.y
+                along = wx * ray[0] + wy * ray[1]
+                square = pillar.radius**2 - (wx * wx + wy * wy - along * along)
+                if square >= 0.0 and along > 0.0:
+                    best = min(best, along - math.sqrt(square))
+        return best

@@ -1,0 +1,301 @@
+"""Closed worlds of rooms, corridors, pillars and loops, made from a seed, and what stands in them."""
+
+import math
+import random
+from dataclasses import dataclass, field
+from functools import cached_property
+
+Place = tuple[float, float]
+THICKNESS = 0.1  # m, of walls
+
+
+@dataclass
+class Wall:
+    """As a scene file has it: a line with a thickness."""
+
+    start: Place
+    end: Place
+
+    @cached_property
+    def corners(self) -> list[Place]:
+        (x1, y1), (x2, y2) = self.start, self.end
+        length = math.dist(self.start, self.end)
+        ux, uy = (x2 - x1) / length, (y2 - y1) / length
+        h = THICKNESS / 2.0
+        return [
+            (x1 + h * uy, y1 - h * ux),
+            (x2 + h * uy, y2 - h * ux),
+            (x2 - h * uy, y2 + h * ux),
+            (x1 - h * uy, y1 + h * ux),
+        ]
+
+    def is_about(self, place: Place, margin: float) -> bool:
+        margin += THICKNESS
+        return all(
+            min(a, b) - margin <= value <= max(a, b) + margin
+            for a, b, value in zip(self.start, self.end, place, strict=True)
+        )
+
+
+@dataclass(frozen=True)
+class Pillar:
+    """A cylinder."""
+
+    at: Place
+    radius: float
+
+
+@dataclass
+class Rooms:
+    """A closed rectangle with its lower left corner at the origin."""
+
+    width: float
+    height: float
+    start: Place = (0.6, 0.6)
+    walls: list[Wall] = field(default_factory=list)
+    pillars: list[Pillar] = field(default_factory=list)
+
+    def scene(self, robot: str, noise: str = "") -> str:
+        """The same as a scene file."""
+        lines = [
+            noise,
+            "[world]",
+            f"size = [{self.width:.3f}, {self.height:.3f}]",
+            "corner = [0, 0]",
+        ]
+        for wall in self.walls:
+            (x1, y1), (x2, y2) = wall.start, wall.end
+            lines += [
+                "[[wall]]",
+                f"from = [{x1:.3f}, {y1:.3f}]",
+                f"to = [{x2:.3f}, {y2:.3f}]",
+            ]
+        for pillar in self.pillars:
+            x, y = pillar.at
+            lines += [
+                "[[cylinder]]",
+                f"at = [{x:.3f}, {y:.3f}]",
+                f"radius = {pillar.radius:.3f}",
+            ]
+        x, y = self.start
+        lines += [f"[robots.{robot}]", f"start = [{x:.3f}, {y:.3f}, 0]"]
+        return "\n".join(lines) + "\n"
+
+    def free(self, place: Place, clearance: float = 0.0) -> bool:
+        """Whether a disc of that radius touches nothing."""
+        x, y = place
+        inside = (
+            clearance <= x <= self.width - clearance
+            and clearance <= y <= self.height - clearance
+        )
+        return (
+            inside
+            and all(
+                math.dist(place, pillar.at) >= pillar.radius + clearance
+                for pillar in self.pillars
+            )
+            and all(
+                distance_to_polygon(place, wall.corners) >= clearance
+                and not is_inside(place, wall.corners)
+                for wall in self.walls
+                if wall.is_about(place, clearance)
+            )
+        )
+
+    def is_at_wall(self, place: Place) -> bool:
+        """Whether a wall could end here, and not in a door."""
+        x, y = place
+        return min(x, y, self.width - x, self.height - y) < 0.01 or any(
+            distance_to_segment(place, wall.start, wall.end) < 0.01
+            and min(math.dist(place, wall.start), math.dist(place, wall.end)) > 0.1
+            for wall in self.walls
+        )
+
+    def segments(self) -> list[tuple[Place, Place]]:
+        """The outlines of everything straight."""
+        corners = [
+            (0.0, 0.0),
+            (self.width, 0.0),
+            (self.width, self.height),
+            (0.0, self.height),
+        ]
+        outlines = [corners, *(wall.corners for wall in self.walls)]
+        return [
+            (a, b)
+            for outline in outlines
+            for a, b in zip(outline, outline[1:] + outline[:1], strict=True)
+        ]
+
+    def is_straight(self, a: Place, b: Place) -> bool:
+        """Whether nothing stands on the line between two places."""
+        return not any(
+            crosses(a, b, start, end) for start, end in self.segments()
+        ) and all(
+            distance_to_segment(pillar.at, a, b) > pillar.radius
+            for pillar in self.pillars
+        )
+
+    def floor(self, grain: float) -> list[Place]:
+        """Points of all the floor that hangs together with the start."""
+
+        def at(cell: tuple[int, int]) -> Place:
+            return (cell[0] + 0.5) * grain, (cell[1] + 0.5) * grain
+
+        first = (int(self.start[0] / grain), int(self.start[1] / grain))
+        found, queue = {first}, [first]
+        while queue:
+            column, row = queue.pop()
+            for right, up in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+                cell = (column + right, row + up)
+                if cell not in found and self.free(at(cell)):
+                    found.add(cell)
+                    queue.append(cell)
+        return [at(cell) for cell in sorted(found)]
+
+    def coverage(self, nodes: list[Place], reach: float, grain: float = 0.1) -> float:
+        """The share of the floor that is within reach of a node, and in its line of sight."""
+        floor, segments = self.floor(grain), self.segments()
+
+        def sees(node: Place, place: Place) -> bool:
+            return not any(
+                crosses(node, place, start, end) for start, end in segments
+            ) and all(
+                distance_to_segment(pillar.at, node, place) > pillar.radius
+                for pillar in self.pillars
+            )
+
+        seen = sum(
+            any(
+                math.dist(place, node) <= reach and sees(node, place)
+                for node in sorted(nodes, key=lambda node: math.dist(place, node))
+            )
+            for place in floor
+        )
+        return seen / len(floor)
+
+
+def distance_to_segment(p: Place, a: Place, b: Place) -> float:
+    return math.dist(p, nearest_on_segment(p, a, b))
+
+
+def nearest_on_segment(p: Place, a: Place, b: Place) -> Place:
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    square = dx * dx + dy * dy
+    t = ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / square if square else 0.0
+    t = max(0.0, min(1.0, t))
+    return a[0] + t * dx, a[1] + t * dy
+
+
+def distance_to_polygon(p: Place, corners: list[Place]) -> float:
+    return min(
+        distance_to_segment(p, a, b)
+        for a, b in zip(corners, corners[1:] + corners[:1], strict=True)
+    )
+
+
+def is_inside(p: Place, corners: list[Place]) -> bool:
+    """For convex outlines that go round counter-clockwise."""
+    return all(
+        (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) > 0.0
+        for a, b in zip(corners, corners[1:] + corners[:1], strict=True)
+    )
+
+
+def crosses(a: Place, b: Place, c: Place, d: Place) -> bool:
+    def side(p: Place, q: Place, r: Place) -> float:
+        return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
+
+    return side(a, b, c) * side(a, b, d) < 0.0 and side(c, d, a) * side(c, d, b) < 0.0
+
+
+def generate(seed: int) -> Rooms:
+    """30 to 80 m²: rooms by dividing, each wall with a door and some with two, a dead end, and pillars."""
+    dice = random.Random(seed)
+    area = dice.uniform(30.0, 80.0)
+    ratio = dice.uniform(0.7, 1.4)
+    rooms = Rooms(math.sqrt(area * ratio), math.sqrt(area / ratio))
+    leaves: list[tuple[float, float, float, float]] = []
+    divide(rooms, dice, (0.0, 0.0, rooms.width, rooms.height), leaves, 0)
+    for left, low, right, high in leaves:
+        if min(right - left, high - low) < 2.2:
+            continue
+        for _ in range(dice.choice([0, 1, 1, 2])):
+            radius = dice.uniform(0.08, 0.3)
+            at = (
+                dice.uniform(left + 0.2, right - 0.2),
+                dice.uniform(low + 0.2, high - 0.2),
+            )
+            # Neither in a door nor in a passage.
+            if rooms.free(at, radius + 0.75):
+                rooms.pillars.append(Pillar(at, radius))
+        if dice.random() < 0.5 and right - left > 2.6 and high - low > 2.6:
+            # A dead end: a bay behind a wall that ends in the room.
+            depth = low + dice.uniform(0.9, 1.2)
+            wall = Wall((left, depth), (left + 0.6 * (right - left), depth))
+            middle = ((wall.start[0] + wall.end[0]) / 2.0, depth)
+            if all(
+                distance_to_segment(pillar.at, wall.start, wall.end)
+                > pillar.radius + 0.75
+                for pillar in rooms.pillars
+            ) and rooms.free(middle, 0.4):
+                rooms.walls.append(wall)
+    while not rooms.free(rooms.start, 0.35):
+        rooms.start = (
+            dice.uniform(0.5, rooms.width - 0.5),
+            dice.uniform(0.5, rooms.height - 0.5),
+        )
+    return rooms
+
+
+def divide(
+    rooms: Rooms,
+    dice: random.Random,
+    box: tuple[float, float, float, float],
+    leaves: list[tuple[float, float, float, float]],
+    depth: int,
+) -> None:
+    left, low, right, high = box
+    width, height = right - left, high - low
+    if max(width, height) < 3.4 or (depth > 2 and dice.random() < 0.3):
+        leaves.append(box)
+        return
+    is_upright = width > height
+    length = width if is_upright else height
+    for _ in range(20):
+        # Now and then a corridor is cut off.
+        is_corridor = depth < 2 and dice.random() < 0.4
+        at = dice.uniform(1.1, 1.3) if is_corridor else length * dice.uniform(0.4, 0.6)
+        ends = (
+            [(left + at, low), (left + at, high)]
+            if is_upright
+            else [(left, low + at), (right, low + at)]
+        )
+        if all(rooms.is_at_wall(end) for end in ends):
+            break
+    else:
+        leaves.append(box)
+        return
+    across = height if is_upright else width
+    doors = [dice.uniform(0.15, 0.85)]
+    if across > 4.0 and dice.random() < 0.7:
+        doors = [dice.uniform(0.12, 0.35), dice.uniform(0.65, 0.88)]
+    pieces, begin = [], 0.0
+    for door in doors:
+        half = dice.uniform(0.4, 0.6)
+        middle = max(half + 0.1, min(across - half - 0.1, door * across))
+        pieces.append((begin, middle - half))
+        begin = middle + half
+    pieces.append((begin, across))
+    for start, end in pieces:
+        if end - start < 0.02:
+            continue
+        if is_upright:
+            rooms.walls.append(Wall((left + at, low + start), (left + at, low + end)))
+        else:
+            rooms.walls.append(Wall((left + start, low + at), (left + end, low + at)))
+    if is_upright:
+        divide(rooms, dice, (left, low, left + at, high), leaves, depth + 1)
+        divide(rooms, dice, (left + at, low, right, high), leaves, depth + 1)
+    else:
+        divide(rooms, dice, (left, low, right, low + at), leaves, depth + 1)
+        divide(rooms, dice, (left, low + at, right, high), leaves, depth + 1)

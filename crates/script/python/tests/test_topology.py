@@ -1,0 +1,51 @@
+import itertools
+
+import pytest
+from pydslrep_parts.topology import Exit, TopologicalMap
+
+
+def ring() -> TopologicalMap:
+    """Four corners of a square of 1 m, the way from the last to the first being open."""
+    found = TopologicalMap()
+    corners = [found.add(x, y) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    for a, b in itertools.pairwise(corners):
+        found.connect(a, b)
+    return found
+
+
+def test_the_shortest_way_goes_by_edges() -> None:
+    found = ring()
+    first, *_, last = found.nodes
+    assert found.distances(first) == {0: 0.0, 1: 1.0, 2: 2.0, 3: 3.0}
+    assert [node.number for node in found.path(first, last)] == [1, 2, 3]
+    assert found.path(first, first) == []
+    found.connect(last, first)
+    assert [node.number for node in found.path(first, last)] == [3]
+
+
+def test_a_blocked_edge_stays_in_the_map_but_is_no_way() -> None:
+    found = ring()
+    found.block(found.nodes[1], found.nodes[2])
+    assert found.distances(found.nodes[0]) == {0: 0.0, 1: 1.0}
+    assert len(list(found.edges())) == 3
+    with pytest.raises(KeyError):
+        found.path(found.nodes[0], found.nodes[3])
+
+
+def test_the_nearest_nodes_come_first() -> None:
+    found = ring()
+    assert [node.number for node in found.near((0.9, 0.3), 1.0)] == [1, 2, 0]
+    assert found.near((5.0, 5.0), 1.0) == []
+
+
+def test_as_json() -> None:
+    found = ring()
+    found.nodes[0].exits.append(Exit(-1.5707963, 1))
+    data = found.as_json()
+    assert data["nodes"][0] == {
+        "id": 0,
+        "x": 0.0,
+        "y": 0.0,
+        "exits": [{"bearing": -90.0, "to": 1}],
+    }
+    assert data["edges"][0] == {"from": 0, "to": 1, "length": 1.0}
