@@ -5,6 +5,7 @@ use std::io::{self, BufRead, BufReader};
 use std::path::Path;
 
 use pydslrep_kinematics::Pose;
+use pydslrep_simulator::picture::Map;
 use pydslrep_simulator::{Sightings, TraceRecord};
 use serde::Deserialize;
 
@@ -19,6 +20,8 @@ pub(crate) struct Driven {
     pub(crate) time: f64,
     /// What the embedded simulator's sensors saw.
     pub(crate) seen: Sightings,
+    /// What each robot found on exploring; empty where none does.
+    pub(crate) maps: Vec<Map>,
 }
 
 /// The path of a robot.
@@ -43,7 +46,7 @@ impl Driven {
     /// No path yet.
     pub(crate) fn new<'a>(robots: impl Iterator<Item = &'a str>) -> Self {
         let robots = robots.map(|robot| DrivenPath { robot: robot.to_owned(), kept: Vec::new(), last: None });
-        Self { robots: robots.collect(), time: 0.0, seen: Sightings::default() }
+        Self { robots: robots.collect(), time: 0.0, seen: Sightings::default(), maps: Vec::new() }
     }
 
     /// Goes on with what the simulator recorded.

@@ -38,6 +38,7 @@ mod sarif;
 mod scenes;
 mod severities;
 mod sources;
+mod survey;
 mod target;
 mod watch;
 

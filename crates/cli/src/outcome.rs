@@ -66,7 +66,8 @@ impl Outcome<'_> {
         let routes = self.planned.routes().into_iter().zip(self.driven.paths()).enumerate();
         let route = |(index, (route, path)): (usize, (Route, &DrivenPath))| {
             let seen = self.driven.seen.of(index);
-            Route { driven: path.poses(), seen, ..route }
+            let map = self.driven.maps.get(index).cloned().unwrap_or_default();
+            Route { driven: path.poses(), seen, map, ..route }
         };
         routes.map(route).collect()
     }

@@ -72,13 +72,13 @@ fn numbers() -> Environment {
 /// Two robots that explore at the same time, one of which also turns until it sees nothing.
 fn slam_and_more() -> Environment {
     let mut environment = slam();
-    environment.name = "slam_and_more".to_owned();
-    environment.script = environment.name.clone();
+    "slam_and_more".clone_into(&mut environment.name);
+    environment.script.clone_from(&environment.name);
     let other = with_sensors(robot("r", Drive::TwoWheel, 1), &["a", "b", "c", "d", "e"]);
     environment.robots.push(other);
     let mut explore = environment.movements[0].clone();
     explore.robot = 1;
-    explore.name = "mov_2".to_owned();
+    "mov_2".clone_into(&mut explore.name);
     explore.actions.push(turn_until(&[0], "a", 9));
     environment.movements.push(explore);
     environment.schedule = vec![vec![0, 1]];

@@ -9,9 +9,7 @@ mod common;
 
 use std::net::Ipv4Addr;
 
-use common::{
-    area_1, environment, four_robots, move_by, movement, robot, sensors, slam, turn, with_sensors,
-};
+use common::{area_1, environment, four_robots, move_by, movement, robot, sensors, slam, turn, with_sensors};
 use expect_test::{expect, expect_file};
 use pydslrep_analysis::environment::{Action, Environment, Sensor, SensorKind, Source};
 use pydslrep_kinematics::Drive;

@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use pydslrep_kinematics::{Action, Drive, Pose, plan_movement};
 use pydslrep_scene::{Robot, Scene, Wheel};
-use pydslrep_simulator::picture::{Route, draw};
+use pydslrep_simulator::picture::{Map, Route, draw};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let count: u32 = std::env::args().nth(1).map_or(Ok(1), |count| count.parse())?;
@@ -33,6 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             unknown_after: false,
             driven,
             seen: vec![],
+            map: Map::default(),
         });
     }
     println!("{}", draw("area_1: planned and driven paths", &routes, &[]));

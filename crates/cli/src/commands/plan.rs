@@ -9,7 +9,7 @@ use pydslrep_analysis::environment::{Environment, Movement};
 use pydslrep_config::Config;
 use pydslrep_kinematics::{ActionIndex, Leg, Plan, Pose, heading_degrees};
 use pydslrep_scene::{Collision, Scene, Thing, collisions};
-use pydslrep_simulator::picture::{self, Route};
+use pydslrep_simulator::picture::{self, Map, Route};
 use serde::Serialize;
 
 use crate::driven::Driven;
@@ -86,6 +86,7 @@ impl Planned {
             unknown_after: path.unknown_after.is_some(),
             driven: Vec::new(),
             seen: Vec::new(),
+            map: Map::default(),
         });
         routes.collect()
     }

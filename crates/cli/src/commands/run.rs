@@ -9,7 +9,8 @@ use std::time::Instant;
 use clap::Args;
 use pydslrep_config::{Config, Target};
 use pydslrep_script::{file_name, generate};
-use pydslrep_simulator::{Options, Simulator, picture};
+use pydslrep_simulator::picture::{self, Map};
+use pydslrep_simulator::{Options, Simulator};
 use tempfile::TempDir;
 
 use super::plan::Planned;
@@ -22,7 +23,7 @@ use crate::progress::Progress;
 use crate::project::Projects;
 use crate::sources::Sources;
 use crate::target::target_parser;
-use crate::{client, output, program, python, scenes};
+use crate::{client, output, program, python, scenes, survey};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -62,6 +63,12 @@ pub(crate) struct Arguments {
     /// Write every step into a file, as JSON lines
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
+    /// Write the map of robots that explore into a file, as JSON [default: ENVIRONMENT_map.json]
+    #[arg(long, value_name = "FILE")]
+    map: Option<PathBuf>,
+    /// Explore by how the wheels turn, without asking the simulator where the robot is
+    #[arg(long)]
+    odometry: bool,
     /// Simulated seconds per second, so that the run can be watched [default: as fast as it goes]
     #[arg(long, value_name = "X", value_parser = above_zero, conflicts_with = "host")]
     speed: Option<f64>,
@@ -145,10 +152,11 @@ impl Run<'_> {
         let path = folder.path().join(name);
         fs::write(&path, text).map_err(|error| Failure::unwritten(&path, &error))?;
         let trace = self.trace(&folder)?;
+        let map = folder.path().join("map.json");
         let script = Script {
             python,
             isolated: self.target == Target::CoppeliaSim,
-            arguments: self.script_arguments(&path, trace.as_deref(), simulator.as_ref()),
+            arguments: self.script_arguments(&path, &map, trace.as_deref(), simulator.as_ref()),
         };
         let mut driven = Driven::new(self.planned.environment.robots.iter().map(|robot| robot.name.as_str()));
         let mut progress = Progress::new(&self.planned, self.arguments.no_progress);
@@ -162,6 +170,7 @@ impl Run<'_> {
             let _ = driven.read(trace);
             self.planned.start_from(&driven)?;
         }
+        driven.maps = self.keep_map(&map)?;
         self.report(ending?, &driven, wall)
     }
 
@@ -212,6 +221,7 @@ impl Run<'_> {
     fn script_arguments(
         &self,
         path: &Path,
+        map: &Path,
         trace: Option<&Path>,
         simulator: Option<&Simulator>,
     ) -> Vec<OsString> {
@@ -233,7 +243,36 @@ impl Run<'_> {
         if let Some(trace) = trace {
             all.extend(["--trace".into(), trace.into()]);
         }
+        if survey::explores(&self.planned.environment) {
+            all.extend(["--map".into(), map.into()]);
+            all.extend(self.arguments.odometry.then(|| "--odometry".into()));
+            if simulator.is_some() {
+                all.extend(survey::arguments(&self.planned.scene));
+            }
+        }
         all
+    }
+
+    /// Where the map of robots that explore goes.
+    fn map_file(&self) -> PathBuf {
+        let default = || survey::default_file(&self.planned.environment);
+        self.arguments.map.clone().unwrap_or_else(default)
+    }
+
+    /// Puts the map that the script left where it belongs, if there is one, and reads it.
+    fn keep_map(&self, map: &Path) -> Result<Vec<Map>, Failure> {
+        if !map.exists() {
+            return Ok(Vec::new());
+        }
+        let file = self.map_file();
+        fs::copy(map, &file).map_err(|error| Failure::unwritten(&file, &error))?;
+        let picture = map.with_extension("png");
+        if picture.exists() {
+            let file = file.with_extension("png");
+            fs::copy(&picture, &file).map_err(|error| Failure::unwritten(&file, &error))?;
+        }
+        let robots = &self.planned.environment.robots;
+        robots.iter().map(|robot| survey::read(map, &robot.name)).collect()
     }
 
     fn report(&self, ending: Ending, driven: &Driven, wall: std::time::Duration) -> Result<u8, Failure> {
@@ -260,7 +299,9 @@ impl Run<'_> {
             let drawing = picture::draw(&title, &outcome.routes(), &self.planned.scene.obstacles);
             fs::write(path, drawing).map_err(|error| Failure::unwritten(path, &error))?;
         }
-        for (what, path) in [("picture", &self.arguments.picture), ("trace", &self.arguments.trace)] {
+        let map = (!driven.maps.is_empty()).then(|| self.map_file());
+        let written = [("picture", &self.arguments.picture), ("trace", &self.arguments.trace), ("map", &map)];
+        for (what, path) in written {
             if let Some(path) = path {
                 output::say(&format!("{what}: {}\n", path.display()));
             }

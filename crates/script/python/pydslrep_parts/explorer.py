@@ -159,15 +159,31 @@ class Explorer:
             raise NoEndError
         node = self.map.add(here.x, here.y)
         self._floor.stand(here.x, here.y)
-        if any(
-            self._floor.is_undecided(node.place, self._end(node, bearing))
-            for bearing in self._bearings()
-        ):
-            self._rover.turn_by(self._blind)
-            self._floor.stand(here.x, here.y)
+        self._look_around(node)
         for near in self.map.near(node.place, 4.0 * self._step):
             self._find_exits(near)
         return node
+
+    def _look_around(self, node: Node) -> None:
+        """Turns until all about a node was seen, to the side where less is missing."""
+        turned, side = 0.0, 1.0
+        while turned < self._blind and (missing := self._undecided(node)):
+            if turned == 0.0:
+                heading = self._rover.pose().theta
+                left = sum(wrap_angle(bearing - heading) > 0.0 for bearing in missing)
+                side = 1.0 if 2 * left >= len(missing) else -1.0
+            angle = min(self._blind - turned, math.pi / 6.0)
+            self._rover.turn_by(side * angle)
+            turned += angle
+        self._floor.stand(node.x, node.y)
+
+    def _undecided(self, node: Node) -> list[float]:
+        """The directions in which nobody has looked yet."""
+        return [
+            bearing
+            for bearing in self._bearings()
+            if self._floor.is_undecided(node.place, self._end(node, bearing))
+        ]
 
     def _find_exits(self, node: Node) -> None:
         """Sees which directions are open by now; what is known of exits stays."""

@@ -8,8 +8,6 @@ from pydslrep_parts.pose import Pose, wrap_angle
 from rooms import (
     Pillar,
     Rooms,
-    distance_to_polygon,
-    distance_to_segment,
     nearest_on_segment,
 )
 
@@ -93,7 +91,7 @@ class GhostRover:
         self.here = Pose(*goal, self.here.theta)
 
     def look(self) -> None:
-        if not self.is_clear():
+        if not self.rooms.holds(self.here.x, self.here.y, self.here.theta, HALF):
             self.touched.append(self.here)
         for mount in MOUNTS:
             eye = on(self.here, mount)
@@ -101,31 +99,6 @@ class GhostRover:
             self.floor.see(
                 Reading(eye, self.cone, min(away, self.reach), away < self.reach)
             )
-
-    def is_clear(self) -> bool:
-        corners = [
-            on(self.here, Pose(x, y, 0.0))
-            for x, y in ((HALF, HALF), (-HALF, HALF), (-HALF, -HALF), (HALF, -HALF))
-        ]
-        body = [(corner.x, corner.y) for corner in corners]
-        near = [
-            s
-            for s in self.segments
-            if distance_to_segment((self.here.x, self.here.y), *s) < RADIUS
-        ]
-        return (
-            all(self.rooms.free(corner) for corner in body)
-            and all(
-                max(abs(p.x), abs(p.y)) >= HALF - 1e-9
-                for start, end in near
-                for place in (start, end)
-                if (p := Pose(*place, 0.0).seen_from(self.here))
-            )
-            and all(
-                distance_to_polygon(pillar.at, body) >= pillar.radius
-                for pillar in self.rooms.pillars
-            )
-        )
 
     def distance(self, eye: Pose) -> float:
         """To the nearest point in the cone."""

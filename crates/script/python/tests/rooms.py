@@ -102,6 +102,35 @@ class Rooms:
             )
         )
 
+    def holds(self, x: float, y: float, theta: float, half: float) -> bool:
+        """Whether a square body of that half width touches nothing."""
+        cos, sin = math.cos(theta), math.sin(theta)
+
+        def on_body(place: Place) -> Place:
+            dx, dy = place[0] - x, place[1] - y
+            return cos * dx + sin * dy, cos * dy - sin * dx
+
+        corners = [
+            (x + cos * a - sin * b, y + sin * a + cos * b)
+            for a, b in ((half, half), (-half, half), (-half, -half), (half, -half))
+        ]
+        reach = 2.0 * half
+        ends = (
+            corner
+            for wall in self.walls
+            if wall.is_about((x, y), reach)
+            for corner in wall.corners
+        )
+        return (
+            all(self.free(corner) for corner in corners)
+            and all(max(map(abs, on_body(end))) >= half for end in ends)
+            and all(
+                distance_to_polygon(pillar.at, corners) >= pillar.radius
+                for pillar in self.pillars
+                if math.dist(pillar.at, (x, y)) < reach + pillar.radius
+            )
+        )
+
     def is_at_wall(self, place: Place) -> bool:
         """Whether a wall could end here, and not in a door."""
         x, y = place

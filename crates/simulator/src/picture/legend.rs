@@ -6,8 +6,8 @@ use svg::node::element::{Circle, Group, Rectangle};
 
 use super::view::is_finite;
 use super::{
-    DRIVEN_OPACITY, DRIVEN_WIDTH, END_FILL, INK, OBSTACLE, OBSTACLE_EDGE, QUIET, Route, SIGHTING, colour,
-    line, pixels, shorten, text,
+    DRIVEN_OPACITY, DRIVEN_WIDTH, END_FILL, INK, MAP_WIDTH, OBSTACLE, OBSTACLE_EDGE, QUIET, Route, SIGHTING,
+    colour, line, map_node, pixels, shorten, text,
 };
 
 /// Pixels.
@@ -25,6 +25,7 @@ pub(super) fn height(routes: &[Route], obstacles: &[Obstacle]) -> f64 {
     routes.iter().map(|_| ENTRY_HEIGHT).sum::<f64>()
         + KEY_HEIGHT
         + 2.0 * KEY_LINE * f64::from(u8::from(!obstacles.is_empty()))
+        + KEY_LINE * f64::from(u8::from(routes.iter().any(|route| !route.map.nodes.is_empty())))
 }
 
 pub(super) fn draw(routes: &[Route], obstacles: &[Obstacle], left: f64, top: f64) -> Group {
@@ -80,6 +81,10 @@ fn key(routes: &[Route], obstacles: &[Obstacle], left: f64, top: f64) -> Group {
         let dot = Circle::new().set("cx", 18).set("r", SIGHTING).set("fill", QUIET);
         samples.push(("seen by a sensor", Box::new(dot)));
     }
+    if routes.iter().any(|route| !route.map.nodes.is_empty()) {
+        let way = stroke(MAP_WIDTH).set("stroke", INK);
+        samples.push(("map", Box::new(Group::new().add(way).add(map_node(18.0, 0.0)))));
+    }
     let mut group = Group::new();
     let mut y = top + 12.0;
     for (meaning, sample) in samples {
@@ -123,6 +128,7 @@ fn fixed(value: f64, decimals: usize) -> String {
 mod tests {
     use pydslrep_scene::Body;
 
+    use super::super::Map;
     use super::*;
 
     #[test]
@@ -144,6 +150,7 @@ mod tests {
             unknown_after: false,
             driven: vec![turned],
             seen: vec![],
+            map: Map::default(),
         };
         assert_eq!(error_text(&route), "3.0 mm, 1.15° off the plan");
         assert_eq!(end_text(&route), "ends at (−1.000, 0.003) m, 179.4°");

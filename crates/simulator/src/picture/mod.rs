@@ -42,6 +42,10 @@ const DRIVEN_OPACITY: f64 = 0.6;
 /// The radius of a point that a sensor saw, pixels.
 const SIGHTING: f64 = 2.2;
 
+/// The line of a way and the radius of a place in a map, pixels.
+const MAP_WIDTH: f64 = 1.4;
+const MAP_NODE: f64 = 3.0;
+
 /// A circle is drawn with so many corners.
 const CIRCLE_SIDES: u32 = 48;
 
@@ -63,6 +67,17 @@ pub struct Route {
     pub driven: Vec<Pose>,
     /// Points on the floor that the robot's sensors saw.
     pub seen: Vec<(f64, f64)>,
+    /// What the robot found on exploring.
+    pub map: Map,
+}
+
+/// A map of places and the ways between them, metres.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Map {
+    /// Places.
+    pub nodes: Vec<(f64, f64)>,
+    /// Ways that were driven, from one place to another.
+    pub edges: Vec<((f64, f64), (f64, f64))>,
 }
 
 /// Draws the routes on the floor among its obstacles: planned dashed, driven solid, bodies at start and end, what sensors
@@ -92,6 +107,9 @@ pub fn draw(title: &str, routes: &[Route], obstacles: &[Obstacle]) -> String {
     }
     for (index, route) in routes.iter().enumerate() {
         document = document.add(sightings(&view, route, colour(index)));
+    }
+    for route in routes {
+        document = document.add(map(&view, &route.map));
     }
     document.add(legend::draw(routes, obstacles, legend_left, TOP)).to_string()
 }
@@ -204,6 +222,24 @@ fn sightings(view: &View, route: &Route, colour: &str) -> Group {
     group
 }
 
+/// Ways as lines, and places as dots on them.
+fn map(view: &View, map: &Map) -> Group {
+    let place = |&(x, y): &(f64, f64)| view.place(x, y);
+    let mut group = Group::new().set("stroke", INK).set("stroke-width", MAP_WIDTH);
+    for (from, to) in &map.edges {
+        group = group.add(line(place(from), place(to), INK));
+    }
+    for (x, y) in map.nodes.iter().map(place) {
+        group = group.add(map_node(x, y));
+    }
+    group
+}
+
+fn map_node(x: f64, y: f64) -> Circle {
+    let dot = Circle::new().set("cx", pixels(x)).set("cy", pixels(y)).set("r", MAP_NODE);
+    dot.set("fill", "#ffffff").set("stroke", INK).set("stroke-width", MAP_WIDTH)
+}
+
 /// The driven line in the robot's colour, and on it the planned one, dashed.
 fn lines(view: &View, route: &Route, colour: &str) -> Group {
     let driven = polyline(view, &route.driven)
@@ -287,7 +323,15 @@ mod tests {
         let side = [Action::Move { distance: 1.0, speed: 0.09 }, turn];
         let planned = plan_movement(&model, Pose::default(), &side.repeat(3)).sample(50);
         let driven = planned.iter().map(|pose| Pose { x: pose.x + 0.002, ..*pose }).collect();
-        Route { name: "robot_1".to_owned(), body: BODY, planned, unknown_after: false, driven, seen: vec![] }
+        Route {
+            name: "robot_1".to_owned(),
+            body: BODY,
+            planned,
+            unknown_after: false,
+            driven,
+            seen: vec![],
+            map: Map::default(),
+        }
     }
 
     #[test]
@@ -346,6 +390,18 @@ mod tests {
         assert!(!without.contains(OBSTACLE) && !without.contains("obstacle"));
         let view = View::of(&[square()], &[wall], 0.0, 0.0);
         assert!(view.place(3.05, 0.0).0 < view.width, "all of it is in the picture");
+    }
+
+    #[test]
+    fn a_map_over_the_world() {
+        let found = Map { nodes: vec![(0.0, 0.0), (0.5, 0.0)], edges: vec![((0.0, 0.0), (0.5, 0.0))] };
+        let with = draw("m", &[Route { map: found, ..square() }], &[]);
+        let without = draw("m", &[square()], &[]);
+        let count = |picture: &str, part: &str| picture.matches(part).count();
+        // Two places and one way, and one of each in the legend.
+        assert_eq!(count(&with, "<circle"), count(&without, "<circle") + 3);
+        assert_eq!(count(&with, "<line"), count(&without, "<line") + 2);
+        assert!(with.contains("\nmap\n") && !without.contains("\nmap\n"));
     }
 
     #[test]
