@@ -337,6 +337,11 @@ def simxSetJointTargetVelocity(
     return _ask(number, 0x1008, key, mode, payload)[0]
 
 
+def simxGetJointPosition(number: int, joint: int, mode: int) -> tuple[int, float]:
+    code, payload = _ask(number, 0x1001, struct.pack("<i", joint), mode)
+    return code, _numbers_of(payload, "<f")[0]
+
+
 def simxReadProximitySensor(
     number: int, sensor: int, mode: int
 ) -> tuple[int, bool, list[float], int, list[float]]:

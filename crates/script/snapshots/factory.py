@@ -713,6 +713,9 @@ class Robot:
     def _begin(self, action: str) -> Pose:
         self._actions += 1
         self._action = f"{self._actions}: {action}"
+        return self._locate()
+
+    def _locate(self) -> Pose:
         return self.body.pose()
 
     def _start(self, here: Pose) -> Pose:
@@ -742,7 +745,7 @@ class Robot:
         self._rates = rates
         self.body.set_wheel_rates(rates)
         self.body.advance()
-        here = self.body.pose()
+        here = self._locate()
         name = self.body.model.name
         self._trace.add(self.body.time, name, here, rates, self._movement, self._action)
         return here

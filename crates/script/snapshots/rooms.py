@@ -420,6 +420,13 @@ class Body:
                 self._ask(self._sim.setJointTargetVelocity, joint, velocity)
                 self._rates[index] = rate
 
+    def wheel_angles(self) -> list[float]:
+        """How far the wheels have turned, in radians, forward where positive."""
+        angles = [
+            self._ask(self._sim.getJointPosition, joint) for joint in self._joints
+        ]
+        return [s * a for s, a in zip(self._mounting.senses, angles, strict=True)]
+
     def distance(self, sensor: str) -> float | None:
         """How far off what a proximity sensor sees is, in metres; None where it sees nothing."""
         handle = self._sensors[sensor]
@@ -677,6 +684,11 @@ class Floor:
             cell for cell in self._roomy if math.dist(cell, (column, row)) > self._reach
         }
 
+    def edges(self) -> list[Place]:
+        """Where something stands."""
+        cells = sorted(self._edges - self._free)
+        return [(column * self.CELL, row * self.CELL) for column, row in cells]
+
     def has_room(self, x: float, y: float) -> bool:
         """Whether the robot can stand here and turn."""
         return self._is_roomy(self._cell(x, y))
@@ -737,6 +749,91 @@ class Floor:
         left, low = self._cell(min(p.x for p in points), min(p.y for p in points))
         right, high = self._cell(max(p.x for p in points), max(p.y for p in points))
         return range(left - 1, right + 2), range(low - 1, high + 2)
+
+
+class Odometer:
+    """Adds up what the wheels of a two-wheel robot roll."""
+
+    def __init__(self, body: Body) -> None:
+        """Starts where the simulator says that the robot is, and never asks it again."""
+        self._body = body
+        self._pose = body.pose()
+        self._angles = body.wheel_angles()
+
+    def pose(self) -> Pose:
+        """Where the robot should be."""
+        before, self._angles = self._angles, self._body.wheel_angles()
+        left, right = (
+            wrap_angle(now - was) * radius
+            for now, was, radius in zip(
+                self._angles, before, self._body.model.wheels.values(), strict=True
+            )
+        )
+        # Both wheels go round the same centre: this is exact for any arc.
+        turned = (right - left) / (2.0 * self._body.drive.turning_radius)
+        chord = (left + right) / 2.0
+        if turned:
+            chord *= 2.0 * math.sin(turned / 2.0) / turned
+        there = self._pose.turned(turned / 2.0).ahead(chord)
+        self._pose = there.turned(turned / 2.0)
+        return self._pose
+
+    def correct(self, pose: Pose) -> None:
+        """The robot is somewhere else."""
+        self._pose = pose
+
+
+GRAIN = 0.04  # m between cells of what was seen before
+TURNS = math.radians(8.0)  # the most that a heading is put right at once ...
+SHIFT = 0.16  # m: ... and a place
+
+
+def recognise(here: Pose, seen: Sequence[Place], known: Sequence[Place]) -> Pose:
+    """The pose from which `seen` lies on `known` best, near the one it was thought to be.
+
+    Both are places where something stands, `seen` as it is from `here`. Where little of it
+    fits, or nothing fits better, the pose stays.
+    """
+    field: dict[tuple[int, int], float] = {}
+    for x, y in known:
+        column, row = round(x / GRAIN), round(y / GRAIN)
+        for right in range(-2, 3):
+            for up in range(-2, 3):
+                cell = column + right, row + up
+                fit = 1.0 - math.hypot(right, up) / 3.0
+                field[cell] = max(fit, field.get(cell, 0.0))
+    points = [Pose(x, y, 0.0).seen_from(here) for x, y in seen]
+
+    def score(pose: Pose) -> float:
+        cos, sin = math.cos(pose.theta), math.sin(pose.theta)
+        total = 0.0
+        for point in points:
+            x = pose.x + cos * point.x - sin * point.y
+            y = pose.y + sin * point.x + cos * point.y
+            total += field.get((round(x / GRAIN), round(y / GRAIN)), 0.0)
+        # Along a bare wall everything fits: then the least change is best.
+        off = math.hypot(pose.x - here.x, pose.y - here.y)
+        turned = abs(wrap_angle(pose.theta - here.theta))
+        return total / len(points) - 0.3 * off - 0.3 * turned
+
+    if len(points) < 10:
+        return here
+    best, most = here, score(here)
+    shift, turn = SHIFT / 2.0, TURNS / 2.0
+    steps = [-2, -1, 0, 1, 2]
+    while shift > 0.005:
+        middle = best
+        for a in steps:
+            for b in steps:
+                for c in steps:
+                    pose = Pose(
+                        middle.x + a * shift, middle.y + b * shift, middle.theta
+                    )
+                    pose = pose.turned(c * turn)
+                    if (value := score(pose)) > most:
+                        best, most = pose, value
+        shift, turn, steps = shift / 2.0, turn / 2.0, [-1, 0, 1]
+    return best if most > 0.4 else here
 
 
 @dataclass
@@ -859,6 +956,9 @@ class Rover(Protocol):
     def turn_by(self, angle: float) -> None:
         """Turns in place, to the left where positive."""
 
+    def localise(self) -> None:
+        """Makes sure of where it is, if it has to."""
+
     def drive_to(self, goal: Place, is_enough: Callable[[], bool]) -> bool:
         """Turns to a place and drives there; whether it arrived, or something came near.
 
@@ -946,12 +1046,15 @@ class Explorer:
 
     def _travel(self, node: Node) -> bool:
         """Drives by known edges; whether it arrived."""
+        start = self._here.number
         for following in self.map.path(self._here, node):
             if not self._rover.drive_to(following.place, lambda: False):
                 self._rover.retreat_to(self._here.place)
                 self.map.block(self._here, following)
                 return False
             self._here = following
+        if self._here.number != start:
+            self._rover.localise()
         return True
 
     def _leave(self, way: Way) -> None:
@@ -964,6 +1067,8 @@ class Explorer:
             node.exits.remove(way.exit)
             self._dead.add((node.number, self._direction(way.exit.bearing)))
             return
+        if way.known:
+            self._rover.localise()
         self._here = way.known or self._settle()
         self.map.connect(node, self._here)
         way.exit.leads_to = self._here.number
@@ -991,20 +1096,37 @@ class Explorer:
 
     def _settle(self) -> Node:
         """Makes a node here, and finds its exits and what is new about those near it."""
+        self._rover.localise()
         here = self._rover.pose()
         if len(self.map.nodes) >= self.MOST_NODES:
             raise NoEndError
         node = self.map.add(here.x, here.y)
         self._floor.stand(here.x, here.y)
-        if any(
-            self._floor.is_undecided(node.place, self._end(node, bearing))
-            for bearing in self._bearings()
-        ):
-            self._rover.turn_by(self._blind)
-            self._floor.stand(here.x, here.y)
+        self._look_around(node)
         for near in self.map.near(node.place, 4.0 * self._step):
             self._find_exits(near)
         return node
+
+    def _look_around(self, node: Node) -> None:
+        """Turns until all about a node was seen, to the side where less is missing."""
+        turned, side = 0.0, 1.0
+        while turned < self._blind and (missing := self._undecided(node)):
+            if turned == 0.0:
+                heading = self._rover.pose().theta
+                left = sum(wrap_angle(bearing - heading) > 0.0 for bearing in missing)
+                side = 1.0 if 2 * left >= len(missing) else -1.0
+            angle = min(self._blind - turned, math.pi / 6.0)
+            self._rover.turn_by(side * angle)
+            turned += angle
+        self._floor.stand(node.x, node.y)
+
+    def _undecided(self, node: Node) -> list[float]:
+        """The directions in which nobody has looked yet."""
+        return [
+            bearing
+            for bearing in self._bearings()
+            if self._floor.is_undecided(node.place, self._end(node, bearing))
+        ]
 
     def _find_exits(self, node: Node) -> None:
         """Sees which directions are open by now; what is known of exits stays."""
@@ -1189,6 +1311,9 @@ STEP_LENGTH = 0.5  # m between the places of a map
 LOOK_DISTANCE = 0.03  # m to drive from one look to the next ...
 LOOK_ANGLE = math.radians(5.0)  # ... or to turn
 NEAR = 0.02  # m about a robot that nothing may enter
+LOOK_APART = 0.3  # m between places from where it remembers what it sees
+UNSURE = 0.05  # m that a robot may be beside where its wheels have it
+MEMORY = 1.5  # m about a robot from where it knows again what it saw before
 
 
 class Surveyor:
@@ -1205,7 +1330,10 @@ class Surveyor:
         span = body.drive.turning_radius * math.sqrt(2.0)
         mounts = (math.hypot(eye.x, eye.y) for eye in self._eyes.values())
         self.radius = survey.radius(name, max(span, *mounts))
-        self.floor = Floor(self.radius)
+        self._is_unsure = survey.by_odometry
+        self.floor = Floor(self.radius + (UNSURE if self._is_unsure else 0.0))
+        self._scan: Floor | None = None
+        self._scans: list[tuple[Pose, list[Place]]] = []
         self._looked: Pose | None = None
         self._near: Place | None = None
 
@@ -1230,6 +1358,29 @@ class Surveyor:
     def turn_by(self, angle: float) -> None:
         """Turns in place."""
         self._robot.rotate(angle, self._look)
+
+    def localise(self) -> None:
+        """Looks all about and puts the pose right by what was seen before, by odometry."""
+        if not self._is_unsure:
+            return
+        self._scan = Floor(self.radius)
+        self._looked = None
+        self.turn_by(self._blind_angle())
+        here, seen = self.pose(), self._scan.edges()
+        self._scan = None
+        near = [
+            (scan, places)
+            for scan, places in self._scans
+            if math.hypot(scan.x - here.x, scan.y - here.y) < MEMORY
+        ]
+        known = [place for _, places in near for place in places]
+        pose = recognise(here, seen, known)
+        self._robot.correct(pose)
+        if all(math.hypot(s.x - pose.x, s.y - pose.y) > LOOK_APART for s, _ in near):
+            points = (
+                Pose(*place, 0.0).seen_from(here).placed_on(pose) for place in seen
+            )
+            self._scans.append((pose, [(point.x, point.y) for point in points]))
 
     def drive_to(self, goal: Place, is_enough: Callable[[], bool]) -> bool:
         """Turns to a place and drives there until something comes near."""
@@ -1271,7 +1422,10 @@ class Surveyor:
                 distance = self._ranges[sensor]
             else:
                 self._heed(eye.ahead(distance), here)
-            self.floor.see(Reading(eye, self._cones[sensor], distance, sees))
+            reading = Reading(eye, self._cones[sensor], distance, sees)
+            self.floor.see(reading)
+            if self._scan is not None:
+                self._scan.see(reading)
         return True
 
     def _heed(self, point: Pose, here: Pose) -> None:
@@ -1316,6 +1470,7 @@ class Robot:
         self._actions = 0
         self.survey: Survey | None = None
         self._watch: Callable[[Pose], object] | None = None
+        self._odometer: Odometer | None = None
 
     def move(self, distance: float, speed: float = RIM_SPEED) -> None:
         """Drives straight on, in metres (backwards where negative) and m/s."""
@@ -1348,12 +1503,20 @@ class Robot:
         # Before the first step, sensors are blind.
         self._planned = self._step(self._standstill())
         if self.survey is not None:
+            if self.survey.by_odometry:
+                self._odometer = Odometer(self.body)
             survey_with(self, self.survey)
         self._report(self.pose())
 
     def pose(self) -> Pose:
-        """Where the robot is."""
-        return self.body.pose()
+        """Where the robot is, or should be by how its wheels turned."""
+        return self._locate()
+
+    def correct(self, pose: Pose) -> None:
+        """The robot is somewhere else than its wheels have it."""
+        if self._odometer is not None:
+            self._odometer.correct(pose)
+            self._planned = pose
 
     def rotate(self, angle: float, heed: Callable[[Pose], object]) -> None:
         """Turns in place, to the left where positive, and shows every pose on the way."""
@@ -1397,6 +1560,11 @@ class Robot:
     def _begin(self, action: str) -> Pose:
         self._actions += 1
         self._action = f"{self._actions}: {action}"
+        return self._locate()
+
+    def _locate(self) -> Pose:
+        if self._odometer is not None:
+            return self._odometer.pose()
         return self.body.pose()
 
     def _start(self, here: Pose) -> Pose:
@@ -1426,7 +1594,7 @@ class Robot:
         self._rates = rates
         self.body.set_wheel_rates(rates)
         self.body.advance()
-        here = self.body.pose()
+        here = self._locate()
         name = self.body.model.name
         self._trace.add(self.body.time, name, here, rates, self._movement, self._action)
         return here

@@ -9,7 +9,7 @@ use crate::{ScriptError, context::Script};
 const TEMPLATE: &str = "environment.py.j2";
 
 /// Every source by the name that `include` knows it by.
-const SOURCES: [(&str, &str); 22] = [
+const SOURCES: [(&str, &str); 23] = [
     (TEMPLATE, include_str!("../templates/environment.py.j2")),
     ("approach.py", include_str!("../python/pydslrep_parts/approach.py")),
     ("command.py", include_str!("../python/pydslrep_parts/command.py")),
@@ -23,6 +23,7 @@ const SOURCES: [(&str, &str); 22] = [
     ("floor.py", include_str!("../python/pydslrep_parts/floor.py")),
     ("model.py", include_str!("../python/pydslrep_parts/model.py")),
     ("movement.py", include_str!("../python/pydslrep_parts/movement.py")),
+    ("odometer.py", include_str!("../python/pydslrep_parts/odometer.py")),
     ("pose.py", include_str!("../python/pydslrep_parts/pose.py")),
     ("robot.py", include_str!("../python/pydslrep_parts/robot.py")),
     ("settings.py", include_str!("../python/pydslrep_parts/settings.py")),

@@ -63,7 +63,7 @@ pub(crate) struct Arguments {
     /// Write every step into a file, as JSON lines
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
-    /// Write the map of robots that explore into a file, as JSON [default: ENVIRONMENT_map.json]
+    /// Write the map of robots that explore into a file, as JSON [default: `ENVIRONMENT_map.json`]
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
     /// Explore by how the wheels turn, without asking the simulator where the robot is

@@ -114,6 +114,13 @@ class Body:
 
     #: endif
     #: if slam
+    def wheel_angles(self) -> list[float]:
+        """How far the wheels have turned, in radians, forward where positive."""
+        angles = [
+            self._ask(self._sim.getJointPosition, joint) for joint in self._joints
+        ]
+        return [s * a for s, a in zip(self._mounting.senses, angles, strict=True)]
+
     def distance(self, sensor: str) -> float | None:
         """How far off what a proximity sensor sees is, in metres; None where it sees nothing."""
         handle = self._sensors[sensor]

@@ -22,6 +22,9 @@ class Rover(Protocol):
     def turn_by(self, angle: float) -> None:
         """Turns in place, to the left where positive."""
 
+    def localise(self) -> None:
+        """Makes sure of where it is, if it has to."""
+
     def drive_to(self, goal: Place, is_enough: Callable[[], bool]) -> bool:
         """Turns to a place and drives there; whether it arrived, or something came near.
 
@@ -109,12 +112,15 @@ class Explorer:
 
     def _travel(self, node: Node) -> bool:
         """Drives by known edges; whether it arrived."""
+        start = self._here.number
         for following in self.map.path(self._here, node):
             if not self._rover.drive_to(following.place, lambda: False):
                 self._rover.retreat_to(self._here.place)
                 self.map.block(self._here, following)
                 return False
             self._here = following
+        if self._here.number != start:
+            self._rover.localise()
         return True
 
     def _leave(self, way: Way) -> None:
@@ -127,6 +133,8 @@ class Explorer:
             node.exits.remove(way.exit)
             self._dead.add((node.number, self._direction(way.exit.bearing)))
             return
+        if way.known:
+            self._rover.localise()
         self._here = way.known or self._settle()
         self.map.connect(node, self._here)
         way.exit.leads_to = self._here.number
@@ -154,6 +162,7 @@ class Explorer:
 
     def _settle(self) -> Node:
         """Makes a node here, and finds its exits and what is new about those near it."""
+        self._rover.localise()
         here = self._rover.pose()
         if len(self.map.nodes) >= self.MOST_NODES:
             raise NoEndError

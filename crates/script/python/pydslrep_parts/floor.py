@@ -81,6 +81,11 @@ class Floor:
             cell for cell in self._roomy if math.dist(cell, (column, row)) > self._reach
         }
 
+    def edges(self) -> list[Place]:
+        """Where something stands."""
+        cells = sorted(self._edges - self._free)
+        return [(column * self.CELL, row * self.CELL) for column, row in cells]
+
     def has_room(self, x: float, y: float) -> bool:
         """Whether the robot can stand here and turn."""
         return self._is_roomy(self._cell(x, y))

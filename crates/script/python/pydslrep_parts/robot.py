@@ -9,6 +9,7 @@ from typing import Literal
 from .approach import Approach
 from .coppeliasim import Body
 from .errors import MovementCancelledError, MovementError
+from .odometer import Odometer
 from .pose import Pose, wrap_angle
 from .settings import RIM_SPEED, STALL_TIME
 from .survey import Survey
@@ -37,6 +38,7 @@ class Robot:
         #: if slam
         self.survey: Survey | None = None
         self._watch: Callable[[Pose], object] | None = None
+        self._odometer: Odometer | None = None
         #: endif
 
     def move(self, distance: float, speed: float = RIM_SPEED) -> None:
@@ -98,12 +100,20 @@ class Robot:
         # Before the first step, sensors are blind.
         self._planned = self._step(self._standstill())
         if self.survey is not None:
+            if self.survey.by_odometry:
+                self._odometer = Odometer(self.body)
             survey_with(self, self.survey)
         self._report(self.pose())
 
     def pose(self) -> Pose:
-        """Where the robot is."""
-        return self.body.pose()
+        """Where the robot is, or should be by how its wheels turned."""
+        return self._locate()
+
+    def correct(self, pose: Pose) -> None:
+        """The robot is somewhere else than its wheels have it."""
+        if self._odometer is not None:
+            self._odometer.correct(pose)
+            self._planned = pose
 
     def rotate(self, angle: float, heed: Callable[[Pose], object]) -> None:
         """Turns in place, to the left where positive, and shows every pose on the way."""
@@ -148,6 +158,13 @@ class Robot:
     def _begin(self, action: str) -> Pose:
         self._actions += 1
         self._action = f"{self._actions}: {action}"
+        return self._locate()
+
+    def _locate(self) -> Pose:
+        #: if slam
+        if self._odometer is not None:
+            return self._odometer.pose()
+        #: endif
         return self.body.pose()
 
     def _start(self, here: Pose) -> Pose:
@@ -183,7 +200,7 @@ class Robot:
         self._rates = rates
         self.body.set_wheel_rates(rates)
         self.body.advance()
-        here = self.body.pose()
+        here = self._locate()
         name = self.body.model.name
         self._trace.add(self.body.time, name, here, rates, self._movement, self._action)
         return here

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from .explorer import Explorer, NoEndError
 from .floor import Floor, Place, Reading
+from .odometer import recognise
 from .pose import Pose, wrap_angle
 from .survey import Survey
 
@@ -20,6 +21,9 @@ STEP_LENGTH = 0.5  # m between the places of a map
 LOOK_DISTANCE = 0.03  # m to drive from one look to the next ...
 LOOK_ANGLE = math.radians(5.0)  # ... or to turn
 NEAR = 0.02  # m about a robot that nothing may enter
+LOOK_APART = 0.3  # m between places from where it remembers what it sees
+UNSURE = 0.05  # m that a robot may be beside where its wheels have it
+MEMORY = 1.5  # m about a robot from where it knows again what it saw before
 
 
 class Surveyor:
@@ -36,7 +40,10 @@ class Surveyor:
         span = body.drive.turning_radius * math.sqrt(2.0)
         mounts = (math.hypot(eye.x, eye.y) for eye in self._eyes.values())
         self.radius = survey.radius(name, max(span, *mounts))
-        self.floor = Floor(self.radius)
+        self._is_unsure = survey.by_odometry
+        self.floor = Floor(self.radius + (UNSURE if self._is_unsure else 0.0))
+        self._scan: Floor | None = None
+        self._scans: list[tuple[Pose, list[Place]]] = []
         self._looked: Pose | None = None
         self._near: Place | None = None
 
@@ -61,6 +68,29 @@ class Surveyor:
     def turn_by(self, angle: float) -> None:
         """Turns in place."""
         self._robot.rotate(angle, self._look)
+
+    def localise(self) -> None:
+        """Looks all about and puts the pose right by what was seen before, by odometry."""
+        if not self._is_unsure:
+            return
+        self._scan = Floor(self.radius)
+        self._looked = None
+        self.turn_by(self._blind_angle())
+        here, seen = self.pose(), self._scan.edges()
+        self._scan = None
+        near = [
+            (scan, places)
+            for scan, places in self._scans
+            if math.hypot(scan.x - here.x, scan.y - here.y) < MEMORY
+        ]
+        known = [place for _, places in near for place in places]
+        pose = recognise(here, seen, known)
+        self._robot.correct(pose)
+        if all(math.hypot(s.x - pose.x, s.y - pose.y) > LOOK_APART for s, _ in near):
+            points = (
+                Pose(*place, 0.0).seen_from(here).placed_on(pose) for place in seen
+            )
+            self._scans.append((pose, [(point.x, point.y) for point in points]))
 
     def drive_to(self, goal: Place, is_enough: Callable[[], bool]) -> bool:
         """Turns to a place and drives there until something comes near."""
@@ -102,7 +132,10 @@ class Surveyor:
                 distance = self._ranges[sensor]
             else:
                 self._heed(eye.ahead(distance), here)
-            self.floor.see(Reading(eye, self._cones[sensor], distance, sees))
+            reading = Reading(eye, self._cones[sensor], distance, sees)
+            self.floor.see(reading)
+            if self._scan is not None:
+                self._scan.see(reading)
         return True
 
     def _heed(self, point: Pose, here: Pose) -> None:

@@ -149,6 +149,12 @@ class Body:
 
     #: endif
     #: if slam
+    def wheel_angles(self) -> list[float]:
+        """How far the wheels have turned, in radians, forward where positive."""
+        read, mode = self._client.simxGetJointPosition, self._client.simx_opmode_buffer
+        angles = [self._ask(read, joint, mode) for joint in self._joints]
+        return [s * a for s, a in zip(self._mounting.senses, angles, strict=True)]
+
     def distance(self, sensor: str) -> float | None:
         """How far off what a proximity sensor sees is, in metres; None where it sees nothing."""
         client, handle = self._client, self._sensors[sensor]
@@ -307,6 +313,10 @@ class Body:
             # Before the first step, sensors are blind.
             may = NO_VALUE | REMOTE_ERROR
             self._ask(client.simxReadProximitySensor, sensor, stream, may=may)
+        #: endif
+        #: if slam
+        for joint in self._joints:
+            self._ask(client.simxGetJointPosition, joint, stream, may=NO_VALUE)
         #: endif
         self._ask(client.simxGetPingTime)
 
