@@ -15,6 +15,7 @@ in every script. To drive physical robots, replace the class Body.
 import argparse
 import heapq
 import importlib
+import itertools
 import json
 import math
 import signal
@@ -685,9 +686,15 @@ class Floor:
         }
 
     def edges(self) -> list[Place]:
-        """Where something stands."""
-        cells = sorted(self._edges - self._free)
-        return [(column * self.CELL, row * self.CELL) for column, row in cells]
+        """Where something stands: at the border of what is free."""
+        return [
+            (column * self.CELL, row * self.CELL)
+            for column, row in sorted(self._edges - self._free)
+            if any(
+                (column + right, row + up) in self._free
+                for right, up in ((1, 0), (-1, 0), (0, 1), (0, -1))
+            )
+        ]
 
     def has_room(self, x: float, y: float) -> bool:
         """Whether the robot can stand here and turn."""
@@ -783,26 +790,66 @@ class Odometer:
         self._pose = pose
 
 
+class Memory:
+    """What a robot saw from where, to know again where it is when it comes back."""
+
+    REACH = 0.7  # m from a place, so that about the same is seen
+    APART = 0.3  # m between places to remember what is seen from
+
+    def __init__(self) -> None:
+        self._scans: list[tuple[Pose, list[Place]]] = []
+
+    def recognise(self, here: Pose, seen: Sequence[Place]) -> Pose:
+        """The pose, put right by what was seen before; remembers what is new.
+
+        `seen` has places where something stands, as they are from `here`.
+        """
+        away, known = min(
+            (
+                (math.hypot(scan.x - here.x, scan.y - here.y), places)
+                for scan, places in self._scans
+            ),
+            key=lambda found: found[0],
+            default=(math.inf, []),
+        )
+        pose = fitted(here, seen, known) if away < self.REACH else here
+        if away > self.APART:
+            points = (Pose(*place, 0.0).seen_from(here) for place in seen)
+            moved = (point.placed_on(pose) for point in points)
+            self._scans.append((pose, [(point.x, point.y) for point in moved]))
+        return pose
+
+
+COARSE = 0.15  # m about a place within which what is seen again is looked for
 GRAIN = 0.04  # m between cells of what was seen before
+WORTH = 0.06  # of what is seen: a pose that fits better by less is no better
 TURNS = math.radians(8.0)  # the most that a heading is put right at once ...
-SHIFT = 0.16  # m: ... and a place
+SHIFT = 0.12  # m: ... and a place
 
 
-def recognise(here: Pose, seen: Sequence[Place], known: Sequence[Place]) -> Pose:
+def fitted(here: Pose, seen: Sequence[Place], known: Sequence[Place]) -> Pose:
     """The pose from which `seen` lies on `known` best, near the one it was thought to be.
 
     Both are places where something stands, `seen` as it is from `here`. Where little of it
     fits, or nothing fits better, the pose stays.
     """
     field: dict[tuple[int, int], float] = {}
+    about: set[tuple[int, int]] = set()
     for x, y in known:
+        column, row = round(x / COARSE), round(y / COARSE)
+        about |= {(column + a, row + b) for a in (-1, 0, 1) for b in (-1, 0, 1)}
         column, row = round(x / GRAIN), round(y / GRAIN)
         for right in range(-2, 3):
             for up in range(-2, 3):
                 cell = column + right, row + up
                 fit = 1.0 - math.hypot(right, up) / 3.0
                 field[cell] = max(fit, field.get(cell, 0.0))
-    points = [Pose(x, y, 0.0).seen_from(here) for x, y in seen]
+    # What has no counterpart near is new, and says nothing.
+    points = [
+        Pose(x, y, 0.0).seen_from(here)
+        for x, y in seen
+        if (round(x / COARSE), round(y / COARSE)) in about
+    ]
 
     def score(pose: Pose) -> float:
         cos, sin = math.cos(pose.theta), math.sin(pose.theta)
@@ -814,25 +861,21 @@ def recognise(here: Pose, seen: Sequence[Place], known: Sequence[Place]) -> Pose
         # Along a bare wall everything fits: then the least change is best.
         off = math.hypot(pose.x - here.x, pose.y - here.y)
         turned = abs(wrap_angle(pose.theta - here.theta))
-        return total / len(points) - 0.3 * off - 0.3 * turned
+        return total / len(points) - 0.5 * off - 0.3 * turned
 
-    if len(points) < 10:
+    if len(points) < 15:
         return here
-    best, most = here, score(here)
-    shift, turn = SHIFT / 2.0, TURNS / 2.0
-    steps = [-2, -1, 0, 1, 2]
+    best, most = here, score(here) + WORTH
+    shift, turn = SHIFT / 3.0, TURNS / 4.0
+    shifts, turns = range(-3, 4), range(-4, 5)
     while shift > 0.005:
         middle = best
-        for a in steps:
-            for b in steps:
-                for c in steps:
-                    pose = Pose(
-                        middle.x + a * shift, middle.y + b * shift, middle.theta
-                    )
-                    pose = pose.turned(c * turn)
-                    if (value := score(pose)) > most:
-                        best, most = pose, value
-        shift, turn, steps = shift / 2.0, turn / 2.0, [-1, 0, 1]
+        for a, b, c in itertools.product(shifts, shifts, turns):
+            pose = Pose(middle.x + a * shift, middle.y + b * shift, middle.theta)
+            pose = pose.turned(c * turn)
+            if (value := score(pose)) > most:
+                best, most = pose, value
+        shift, turn, shifts, turns = shift / 2.0, turn / 2.0, range(-1, 2), range(-1, 2)
     return best if most > 0.4 else here
 
 
@@ -1311,9 +1354,7 @@ STEP_LENGTH = 0.5  # m between the places of a map
 LOOK_DISTANCE = 0.03  # m to drive from one look to the next ...
 LOOK_ANGLE = math.radians(5.0)  # ... or to turn
 NEAR = 0.02  # m about a robot that nothing may enter
-LOOK_APART = 0.3  # m between places from where it remembers what it sees
 UNSURE = 0.05  # m that a robot may be beside where its wheels have it
-MEMORY = 1.5  # m about a robot from where it knows again what it saw before
 
 
 class Surveyor:
@@ -1333,7 +1374,7 @@ class Surveyor:
         self._is_unsure = survey.by_odometry
         self.floor = Floor(self.radius + (UNSURE if self._is_unsure else 0.0))
         self._scan: Floor | None = None
-        self._scans: list[tuple[Pose, list[Place]]] = []
+        self._memory = Memory()
         self._looked: Pose | None = None
         self._near: Place | None = None
 
@@ -1368,19 +1409,7 @@ class Surveyor:
         self.turn_by(self._blind_angle())
         here, seen = self.pose(), self._scan.edges()
         self._scan = None
-        near = [
-            (scan, places)
-            for scan, places in self._scans
-            if math.hypot(scan.x - here.x, scan.y - here.y) < MEMORY
-        ]
-        known = [place for _, places in near for place in places]
-        pose = recognise(here, seen, known)
-        self._robot.correct(pose)
-        if all(math.hypot(s.x - pose.x, s.y - pose.y) > LOOK_APART for s, _ in near):
-            points = (
-                Pose(*place, 0.0).seen_from(here).placed_on(pose) for place in seen
-            )
-            self._scans.append((pose, [(point.x, point.y) for point in points]))
+        self._robot.correct(self._memory.recognise(here, seen))
 
     def drive_to(self, goal: Place, is_enough: Callable[[], bool]) -> bool:
         """Turns to a place and drives there until something comes near."""

@@ -9,7 +9,7 @@ use crate::{ScriptError, context::Script};
 const TEMPLATE: &str = "environment.py.j2";
 
 /// Every source by the name that `include` knows it by.
-const SOURCES: [(&str, &str); 23] = [
+const SOURCES: [(&str, &str); 24] = [
     (TEMPLATE, include_str!("../templates/environment.py.j2")),
     ("approach.py", include_str!("../python/pydslrep_parts/approach.py")),
     ("command.py", include_str!("../python/pydslrep_parts/command.py")),
@@ -21,6 +21,7 @@ const SOURCES: [(&str, &str); 23] = [
     ("explorer.py", include_str!("../python/pydslrep_parts/explorer.py")),
     ("fleet.py", include_str!("../python/pydslrep_parts/fleet.py")),
     ("floor.py", include_str!("../python/pydslrep_parts/floor.py")),
+    ("memory.py", include_str!("../python/pydslrep_parts/memory.py")),
     ("model.py", include_str!("../python/pydslrep_parts/model.py")),
     ("movement.py", include_str!("../python/pydslrep_parts/movement.py")),
     ("odometer.py", include_str!("../python/pydslrep_parts/odometer.py")),

@@ -82,9 +82,15 @@ class Floor:
         }
 
     def edges(self) -> list[Place]:
-        """Where something stands."""
-        cells = sorted(self._edges - self._free)
-        return [(column * self.CELL, row * self.CELL) for column, row in cells]
+        """Where something stands: at the border of what is free."""
+        return [
+            (column * self.CELL, row * self.CELL)
+            for column, row in sorted(self._edges - self._free)
+            if any(
+                (column + right, row + up) in self._free
+                for right, up in ((1, 0), (-1, 0), (0, 1), (0, -1))
+            )
+        ]
 
     def has_room(self, x: float, y: float) -> bool:
         """Whether the robot can stand here and turn."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from .explorer import Explorer, NoEndError
 from .floor import Floor, Place, Reading
-from .odometer import recognise
+from .memory import Memory
 from .pose import Pose, wrap_angle
 from .survey import Survey
 
@@ -21,9 +21,7 @@ STEP_LENGTH = 0.5  # m between the places of a map
 LOOK_DISTANCE = 0.03  # m to drive from one look to the next ...
 LOOK_ANGLE = math.radians(5.0)  # ... or to turn
 NEAR = 0.02  # m about a robot that nothing may enter
-LOOK_APART = 0.3  # m between places from where it remembers what it sees
 UNSURE = 0.05  # m that a robot may be beside where its wheels have it
-MEMORY = 1.5  # m about a robot from where it knows again what it saw before
 
 
 class Surveyor:
@@ -43,7 +41,7 @@ class Surveyor:
         self._is_unsure = survey.by_odometry
         self.floor = Floor(self.radius + (UNSURE if self._is_unsure else 0.0))
         self._scan: Floor | None = None
-        self._scans: list[tuple[Pose, list[Place]]] = []
+        self._memory = Memory()
         self._looked: Pose | None = None
         self._near: Place | None = None
 
@@ -78,19 +76,7 @@ class Surveyor:
         self.turn_by(self._blind_angle())
         here, seen = self.pose(), self._scan.edges()
         self._scan = None
-        near = [
-            (scan, places)
-            for scan, places in self._scans
-            if math.hypot(scan.x - here.x, scan.y - here.y) < MEMORY
-        ]
-        known = [place for _, places in near for place in places]
-        pose = recognise(here, seen, known)
-        self._robot.correct(pose)
-        if all(math.hypot(s.x - pose.x, s.y - pose.y) > LOOK_APART for s, _ in near):
-            points = (
-                Pose(*place, 0.0).seen_from(here).placed_on(pose) for place in seen
-            )
-            self._scans.append((pose, [(point.x, point.y) for point in points]))
+        self._robot.correct(self._memory.recognise(here, seen))
 
     def drive_to(self, goal: Place, is_enough: Callable[[], bool]) -> bool:
         """Turns to a place and drives there until something comes near."""
