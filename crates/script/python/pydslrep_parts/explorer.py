@@ -57,7 +57,7 @@ class Explorer:
     """
 
     DIRECTIONS = 24  # that are tried at a node
-    MOST_NODES = 2000  # that a closed area can be thought to have
+    MOST_NODES = 1000  # that a closed area can be thought to have
 
     def __init__(self, rover: Rover, floor: Floor, step: float, blind: float) -> None:
         """`step` is the length of an edge, `blind` the angle that no sensor looks at."""
