@@ -315,8 +315,8 @@ async def completions_are_explained(s: Session) -> None:
     'completionProvider.triggerCharacters["]',
 )
 async def completions_in_settings(s: Session) -> None:
-    async def labels(text: str, trigger: str) -> set[str]:
-        settings = s.open("pydslrep.toml", text)
+    async def labels(text: str, trigger: str, name: str = "pydslrep.toml") -> set[str]:
+        settings = s.open(name, text)
         identifier = types.TextDocumentIdentifier(settings.uri)
         place = types.Position(**settings.position(len(text)))
         context = types.CompletionContext(
@@ -329,6 +329,7 @@ async def completions_in_settings(s: Session) -> None:
         return {item.label for item in found.items}
 
     assert {"severity", "inlay-hints"} <= await labels("[", "[")
+    assert {"world", "box"} <= await labels("[", "[", "yard.scene.toml")
     levels = await labels('[severity]\nsyntax-error = "', '"')
     assert {'"error"', '"hint"', '"off"'} <= levels
 

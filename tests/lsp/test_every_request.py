@@ -152,32 +152,50 @@ def test_places_are_the_same_in_every_encoding_and_line_ending(
 SETTINGS = 'inlay-hints = { "🤖 日本 e\u0301" = 1, pse = true }\n'
 
 
-def test_places_in_settings_are_the_same_in_every_encoding(
-    server: str, tmp_path: pathlib.Path
+SCENE = 'robots = { "🤖 日本 e\u0301" = {}, rovr = { track = 1 } }\n'
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "known", "typed", "slip", "mended"),
+    [
+        ("pydslrep.toml", SETTINGS, "inlay-hi", ", ps", "pse", "pose"),
+        ("yard.scene.toml", SCENE, "tra", ", ro", "rovr", "rover"),
+    ],
+)
+def test_places_in_files_of_keys_are_the_same_in_every_encoding(
+    server: str,
+    tmp_path: pathlib.Path,
+    name: str,
+    text: str,
+    known: str,
+    typed: str,
+    slip: str,
+    mended: str,
 ) -> None:
     asked: dict[str, Callable[[Buffer], dict[str, Any]]] = {
-        "textDocument/hover": lambda b: b.at("inlay-hi"),
-        "textDocument/completion": lambda b: b.at(", ps"),
+        "textDocument/hover": lambda b: b.at(known),
+        "textDocument/completion": lambda b: b.at(typed),
         "textDocument/codeAction": lambda b: {
             "textDocument": b.document(),
-            "range": b.span("pse"),
+            "range": b.span(slip),
             "context": {"diagnostics": []},
         },
         "textDocument/diagnostic": lambda b: {"textDocument": b.document()},
     }
-    uri = (tmp_path / "pydslrep.toml").as_uri()
+    program = Buffer((tmp_path / "main.pyr").as_uri(), PROGRAM, "utf-8")
+    uri = (tmp_path / name).as_uri()
     places = []
     for encoding in ENCODINGS:
-        buffer = Buffer(uri, SETTINGS, encoding)
+        buffer = Buffer(uri, text, encoding)
         with conversation(server, tmp_path, encoding) as talk:
-            talk.server.send(opened(buffer))
+            talk.server.send(opened(program), opened(buffer))
             answers = {
                 name: talk.ask(name, make(buffer)) for name, make in asked.items()
             }
             places.append({n: comparable(a, buffer, n) for n, a in answers.items()})
     assert places[0] == places[1] == places[2]
     assert all(places[0].values())
-    assert "Change to `pose`" in str(places[0]["textDocument/codeAction"])
+    assert f"Change to `{mended}`" in str(places[0]["textDocument/codeAction"])
 
 
 def test_an_answer_is_about_the_change_sent_right_before_it(

@@ -106,7 +106,7 @@ def test_an_unopened_scene_has_diagnostics(yard: Yard) -> None:
     (yard.folder / "yard.scene.toml").write_text("[robots.rovr]\nstart = [1, 0]\n")
     (yard.folder / "alone.scene.toml").write_text("[wrold]\n")
     yard.start(CLIENT)
-    told = {}
+    told: dict[str, list[str]] = {}
     while len(told) < 2:
         message = yard.next()
         if message.get("method") == "textDocument/publishDiagnostics":
@@ -140,3 +140,28 @@ def test_a_planned_path_starts_where_the_scene_says(yard: Yard) -> None:
     yard.type(scene, "[robots.rovr]\n")
     error = yard.question("pydslrep/plannedPath", which)["error"]
     assert "`yard.scene.toml`" in error["message"]
+
+
+def test_scenes_are_completed_explained_and_mended(yard: Yard) -> None:
+    yard.start(CLIENT)
+    yard.indexed()
+    yard.open("main.pyr", PROGRAM)
+    text = "# 🤖\n[robots.rovr]\ntrack = 0.2\n\n[robots.rover.sensors.]\n"
+    scene = yard.open("yard.scene.toml", text)
+    assert yard.published("yard.scene.toml") == ["invalid-toml"]
+    at = scene.at("sensors.")
+    found = yard.question("textDocument/completion", at)["result"]["items"]
+    assert [item["label"] for item in found] == ["front"]
+    hover = yard.question("textDocument/hover", scene.at("tra"))["result"]
+    assert "left and right wheels" in str(hover["contents"])
+    yard.type(scene, text.replace("sensors.]", "sensors.front]"))
+    assert yard.published("yard.scene.toml") == ["unknown-name"]
+    asked = {
+        "textDocument": scene.document(),
+        "range": scene.span("rovr"),
+        "context": {"diagnostics": []},
+    }
+    [action] = yard.question("textDocument/codeAction", asked)["result"]
+    assert action["title"] == "Change to `rover`"
+    [edits] = action["edit"]["changes"].values()
+    assert edits == [{"range": scene.span("rovr"), "newText": "rover"}]

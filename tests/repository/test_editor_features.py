@@ -26,7 +26,12 @@ GROUPS: dict[str, dict[str, list[str]]] = {
             "textDocument/hover",
             "textDocument/codeAction",
         ],
-        "scenes": ["textDocument/publishDiagnostics"],
+        "scenes": [
+            "textDocument/publishDiagnostics",
+            "textDocument/completion",
+            "textDocument/hover",
+            "textDocument/codeAction",
+        ],
     },
     "Reading": {
         "hover": ["textDocument/hover"],

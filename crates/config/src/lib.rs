@@ -10,14 +10,12 @@
 mod config;
 mod keys;
 mod manual;
-mod outline;
 mod read;
 mod severities;
 
 pub use config::{Config, InlayHints, InlayHintsConfig, Settings};
 pub use keys::{KEYS, Key, Values, Word, tables};
 pub use manual::{json_schema, manual};
-pub use outline::{Named, Place, Slot, names, place_at};
 pub use pydslrep_analysis::Target;
 pub use pydslrep_notation::{Problem, ProblemKind};
 pub use severities::{Level, Severities, UnknownWord, find_rule};

@@ -230,7 +230,7 @@ impl State {
 
     /// The file of settings or the scene at an address, with its text.
     pub(crate) fn keyed_text(&self, uri: &Uri) -> Option<(&Document, String)> {
-        let document = self.document(uri).filter(|document| document.sort() == Sort::Settings)?;
+        let document = self.document(uri).filter(|document| !document.is_program())?;
         Some((document, document.text.to_string()))
     }
 

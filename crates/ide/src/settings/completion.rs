@@ -1,7 +1,8 @@
 //! Completion in a settings file: keys of the table at the cursor, and what their values can be.
 
 use pydslrep_analysis::diagnostics::CATALOGUE;
-use pydslrep_config::{KEYS, Level, Place, Slot, Values, names, place_at, tables};
+use pydslrep_config::{KEYS, Level, Values, tables};
+use pydslrep_notation::{Place, Slot, names, place_at};
 
 use super::{Meaning, documentation, meaning};
 use crate::completion::Rank;
@@ -14,7 +15,9 @@ pub fn settings_completions(text: &str, offset: u32) -> Vec<Completion> {
     let taken: Vec<String> = others.map(|named| named.name).collect();
     let is_free = |name: &str| !taken.iter().any(|taken| taken == name);
     match &place.slot {
-        Slot::Table { is_closed } => {
+        // No name of a table has several parts.
+        Slot::Table { outer, .. } if !outer.is_empty() => Vec::new(),
+        Slot::Table { is_closed, .. } => {
             let end = if *is_closed { "" } else { "]" };
             let free = tables().into_iter().filter(|table| is_free(table));
             free.map(|table| setting(&place, table, table, format!("{table}{end}"), Rank::Fitting)).collect()

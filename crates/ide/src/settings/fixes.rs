@@ -1,11 +1,12 @@
-//! Quick fixes in a settings file.
+//! Quick fixes in a settings file, and in any other that has keys.
 
-use pydslrep_config::{Config, Problem};
+use pydslrep_config::Config;
+use pydslrep_notation::Problem;
 use pydslrep_syntax::Span;
 
 /// A fix with the problem it mends.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SettingsFix {
+pub struct KeyFix {
     /// What it mends.
     pub problem: Problem,
     /// What it does, in words.
@@ -17,13 +18,17 @@ pub struct SettingsFix {
 }
 
 /// The fixes of all problems that touch a range of the text.
-pub fn settings_fixes(text: &str, range: Span) -> Vec<SettingsFix> {
-    let (_, problems) = Config::from_toml(text);
+pub fn settings_fixes(text: &str, range: Span) -> Vec<KeyFix> {
+    fixes(Config::from_toml(text).1, range)
+}
+
+/// The fixes of those problems that touch a range.
+pub(crate) fn fixes(problems: Vec<Problem>, range: Span) -> Vec<KeyFix> {
     let fix = |problem: Problem| {
         let span = problem.span.filter(|span| span.start <= range.end && range.start <= span.end)?;
         let text = problem.replacement.clone()?;
         let title = format!("change to `{}`", text.trim_matches('"'));
-        Some(SettingsFix { problem, title, span, text })
+        Some(KeyFix { problem, title, span, text })
     };
     problems.into_iter().filter_map(fix).collect()
 }

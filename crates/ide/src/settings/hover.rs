@@ -1,6 +1,6 @@
 //! Hover in a settings file: what the setting under the cursor does.
 
-use pydslrep_config::names;
+use pydslrep_notation::names;
 
 use super::{documentation, meaning};
 use crate::Hover;

@@ -8,7 +8,8 @@ mod fixes;
 mod hover;
 
 pub use completion::settings_completions;
-pub use fixes::{SettingsFix, settings_fixes};
+pub(crate) use fixes::fixes;
+pub use fixes::{KeyFix, settings_fixes};
 pub use hover::settings_hover;
 
 use pydslrep_analysis::diagnostics::Rule;
@@ -61,7 +62,7 @@ fn documentation(meaning: &Meaning) -> String {
 
 /// A text of a settings file, and the place of `$0` in it.
 #[cfg(test)]
-fn at_cursor(fixture: &str) -> (String, u32) {
+pub(crate) fn at_cursor(fixture: &str) -> (String, u32) {
     let offset = fixture.find("$0").expect("the fixture has no `$0`");
     (fixture.replacen("$0", "", 1), u32::try_from(offset).unwrap())
 }

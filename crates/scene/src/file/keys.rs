@@ -105,6 +105,17 @@ impl Key {
         Self { default, ..self }
     }
 
+    /// What there is to say of it, in Markdown.
+    pub fn markdown(&self) -> String {
+        let default =
+            if self.required { "Required".to_owned() } else { format!("Default: {}", self.default) };
+        let (name, words, example) = (self.name, self.values.words(), self.example);
+        format!(
+            "**`{name}`**: {words}\n\n{}\n\n{default}\n\nFor example `{name} = {example}`\n",
+            self.summary
+        )
+    }
+
     const fn example(self, example: &'static str) -> Self {
         Self { example, ..self }
     }
@@ -120,6 +131,23 @@ const AT: Key = key("at", Values::Point, "Where its middle stands.").required().
 const HEADING: Key = key("heading", Values::Angle, "How far it is turned about that, to the left.")
     .default("`0`")
     .example("30");
+
+impl Table {
+    /// As a file begins it.
+    pub fn header(&self) -> String {
+        match self.sort {
+            Sort::Each => format!("[[{}]]", self.name),
+            Sort::Once | Sort::Robot | Sort::Sensor => format!("[{}]", self.name),
+        }
+    }
+
+    /// What there is to say of it, in Markdown.
+    pub fn markdown(&self) -> String {
+        let keys: Vec<String> =
+            self.keys.iter().map(|key| format!("* `{}`: {}\n", key.name, key.summary)).collect();
+        format!("**`{}`**\n\n{}\n\n{}", self.header(), self.summary, keys.concat())
+    }
+}
 
 /// All tables.
 pub const TABLES: [Table; 8] = [

@@ -22,7 +22,7 @@ pub fn manual() -> String {
     for table in &TABLES {
         out += &format!(
             "\n## {}\n\n{}\n\n| key | value | default | |\n|---|---|---|---|\n",
-            header(table),
+            table.header(),
             table.summary
         );
         for key in table.keys {
@@ -56,14 +56,6 @@ track = 0.28
 range = 0.6
 cone = 30
 ";
-
-/// A table as a file begins it.
-fn header(table: &Table) -> String {
-    match table.sort {
-        Sort::Each => format!("[[{}]]", table.name),
-        _ => format!("[{}]", table.name),
-    }
-}
 
 /// The JSON schema of scene files, for editors that check TOML by one.
 pub fn json_schema() -> Value {

@@ -1,7 +1,9 @@
 //! From the text of a scene file to a scene.
 
 use pydslrep_kinematics::{Drive, Pose};
-use pydslrep_notation::{Entry, Node, Problem, ProblemKind, Span, Value, closest, did_you_mean, parse};
+use pydslrep_notation::{
+    Entry, Node, Problem, ProblemKind, Span, Value, as_key, closest, did_you_mean, parse,
+};
 
 use super::keys::{Key, Sort, TABLES, Table, Values, find};
 use crate::{Body, Noise, Obstacle, Robot, Scene, SensorKind, Shape, Thing, defaults, mounts_by_name, space};
@@ -511,7 +513,7 @@ fn unknown_name(what: &str, they_are: &str, entry: &Entry, names: &[&str]) -> Pr
         span: entry.key_span,
         message: format!("{what} `{}`", entry.key),
         help: Some(help),
-        replacement: near.map(str::to_owned),
+        replacement: near.map(as_key),
     }
 }
 

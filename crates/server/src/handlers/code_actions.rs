@@ -16,7 +16,7 @@ use tower_lsp::ls_types::{
 
 use self::rewriting::FixAllOf;
 use crate::chosen::ChosenEnvironment;
-use crate::documents::Document;
+use crate::documents::{Document, Sort, key};
 use crate::handlers::diagnostics;
 use crate::handlers::scripts;
 use crate::state::State;
@@ -34,7 +34,7 @@ pub(crate) fn code_actions(state: &State, params: &CodeActionParams) -> Option<C
     };
     if let Some((document, text)) = state.keyed_text(&params.text_document.uri) {
         let is_wanted = wanted(&CodeActionKind::QUICKFIX) && state.client.action_literals;
-        return Some(if is_wanted { settings_fixes(state, document, &text, params) } else { Vec::new() });
+        return Some(if is_wanted { key_fixes(state, document, &text, params) } else { Vec::new() });
     }
     let (document, file) = state.analysed(&params.text_document.uri)?;
     let mut actions = Vec::new();
@@ -88,15 +88,21 @@ fn quick_fixes(
     fixes.collect()
 }
 
-/// The fixes of what is wrong with a settings file where the range is.
-fn settings_fixes(
+/// The fixes of what is wrong with a settings file or a scene where the range is.
+fn key_fixes(
     state: &State,
     document: &Document,
     text: &str,
     params: &CodeActionParams,
 ) -> Vec<CodeActionOrCommand> {
-    let found = ide::settings_fixes(text, state.span(document, params.range));
-    let action = |fix: ide::SettingsFix| {
+    let range = state.span(document, params.range);
+    let found = if document.sort() == Sort::Scene {
+        let environment = state.environment_in(&key(&document.uri));
+        ide::scene_fixes(&state.database, environment, text, range)
+    } else {
+        ide::settings_fixes(text, range)
+    };
+    let action = |fix: ide::KeyFix| {
         let edit = TextEdit::new(state.range(document, fix.span), fix.text);
         let shown = diagnostics::convert_problem(state, document, fix.problem);
         CodeAction {

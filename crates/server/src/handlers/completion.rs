@@ -10,7 +10,7 @@ use tower_lsp::ls_types::{
     CompletionTextEdit, Documentation, InsertTextFormat, MarkupContent, TextEdit,
 };
 
-use crate::documents::Document;
+use crate::documents::{Document, Sort, key};
 use crate::state::State;
 
 /// Clients that do not ask for documentation get it for the first of a list: finding a declaration takes a while in a
@@ -27,11 +27,17 @@ struct CompletionOf {
     name: String,
 }
 
-/// What the grammar allows at a position, and which names make sense there; in a settings file, which settings.
+/// What the grammar allows at a position, and which names make sense there; in a settings file or a scene, which keys.
 pub(crate) fn completion(state: &State, params: &CompletionParams) -> Option<CompletionResponse> {
     let at = &params.text_document_position;
     if let Some((document, text)) = state.keyed_text(&at.text_document.uri) {
-        let items = ide::settings_completions(&text, state.offset(document, at.position));
+        let offset = state.offset(document, at.position);
+        let items = if document.sort() == Sort::Scene {
+            let environment = state.environment_in(&key(&document.uri));
+            ide::scene_completions(&state.database, environment, &text, offset)
+        } else {
+            ide::settings_completions(&text, offset)
+        };
         return Some(list(state, document, items, false));
     }
     let place = state.place(at)?;

@@ -8,6 +8,7 @@ use tower_lsp::ls_types::{
     ExecuteCommandParams, Hover, HoverContents, HoverParams, MarkedString, MarkupContent, Uri,
 };
 
+use crate::documents::Sort;
 use crate::handlers::scripts::failure;
 use crate::state::State;
 
@@ -42,7 +43,10 @@ pub(crate) fn kinematics(state: &State, params: &ExecuteCommandParams) -> Result
 pub(crate) fn hover(state: &State, params: &HoverParams) -> Option<Hover> {
     let at = &params.text_document_position_params;
     let (document, found) = if let Some((document, text)) = state.keyed_text(&at.text_document.uri) {
-        (document, ide::settings_hover(&text, state.offset(document, at.position))?)
+        let offset = state.offset(document, at.position);
+        let is_scene = document.sort() == Sort::Scene;
+        let hover = if is_scene { ide::scene_hover } else { ide::settings_hover };
+        (document, hover(&text, offset)?)
     } else {
         let place = state.place(at)?;
         (place.document, ide::hover(&state.database, place.position())?)

@@ -1,11 +1,12 @@
-//! What stands where in a `pydslrep.toml`, also where it is half typed and no TOML.
+//! What stands where in a file, also where it is half typed and no TOML.
 
 use std::borrow::Cow;
 
-use pydslrep_notation::span;
 use pydslrep_syntax::Span;
 use toml_parser::Source;
 use toml_parser::parser::{Event, EventKind, RecursionGuard, parse_document};
+
+use crate::span;
 
 /// How deep values may lie in each other; what lies deeper is not looked at.
 const DEEPEST: u32 = 16;
@@ -17,6 +18,8 @@ pub struct Named {
     pub name: String,
     /// Where the part is.
     pub span: Span,
+    /// Which stretch of the text it is in: each begins with a table.
+    pub stretch: usize,
 }
 
 /// What can stand at a place.
@@ -24,6 +27,8 @@ pub struct Named {
 pub struct Place {
     /// The text there, which is being typed or would be replaced.
     pub word: Span,
+    /// Which stretch of the text it is in: each begins with a table.
+    pub stretch: usize,
     /// What it is.
     pub slot: Slot,
 }
@@ -31,9 +36,15 @@ pub struct Place {
 /// What a text at a place would be.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Slot {
-    /// The name of a table, in brackets.
+    /// A part of the name of a table, in brackets.
     Table {
-        /// Whether the bracket behind it is there.
+        /// The parts before it, each with a dot behind it.
+        outer: String,
+        /// Whether more parts follow.
+        has_more: bool,
+        /// Whether it stands in two brackets, as tables do that may stand any number of times.
+        is_each: bool,
+        /// Whether the brackets behind it are there.
         is_closed: bool,
     },
     /// A key.
@@ -55,12 +66,12 @@ pub enum Slot {
 /// All parts of names, in the order of the text.
 pub fn names(text: &str) -> Vec<Named> {
     let mut names = Vec::new();
-    for chunk in chunks(text) {
+    for (stretch, chunk) in chunks(text).into_iter().enumerate() {
         let mut reader = Reader::new(chunk);
         for event in chunk.events() {
             reader.take(&event);
             if event.kind() == EventKind::SimpleKey && !event.span().is_empty() {
-                names.push(Named { name: reader.name(), span: chunk.span(&event) });
+                names.push(Named { name: reader.name(), span: chunk.span(&event), stretch });
             }
         }
     }
@@ -69,7 +80,7 @@ pub fn names(text: &str) -> Vec<Named> {
 
 /// What a text at an offset in bytes would be; `None` where no setting can be typed.
 pub fn place_at(text: &str, offset: u32) -> Option<Place> {
-    let chunk = chunks(text).into_iter().rfind(|chunk| chunk.start <= offset)?;
+    let (stretch, chunk) = chunks(text).into_iter().enumerate().rfind(|(_, chunk)| chunk.start <= offset)?;
     let events = chunk.events();
     let next = events.iter().position(|event| chunk.span(event).start >= offset).unwrap_or(events.len());
     let (before, behind) = events.split_at(next);
@@ -86,9 +97,12 @@ pub fn place_at(text: &str, offset: u32) -> Option<Place> {
     let rest =
         || behind.iter().take_while(|event| !ends_statement(event)).filter(|event| !event.span().is_empty());
     let slot = match reader.stage {
-        Stage::Header if reader.parts.is_empty() => {
-            Slot::Table { is_closed: rest().any(|event| event.kind() == EventKind::StdTableClose) }
-        }
+        Stage::Header if reader.wants_part => Slot::Table {
+            outer: reader.table(),
+            has_more: rest().any(|event| event.kind() == EventKind::KeySep),
+            is_each: reader.is_each,
+            is_closed: rest().any(is_table_close),
+        },
         Stage::Key if reader.wants_part => Slot::Key {
             begins_line: reader.parts.is_empty() && reader.outer.is_empty(),
             table: reader.table(),
@@ -97,11 +111,15 @@ pub fn place_at(text: &str, offset: u32) -> Option<Place> {
         Stage::Value => Slot::Value { key: reader.name() },
         Stage::Header | Stage::Key | Stage::Nothing => return None,
     };
-    Some(Place { word, slot })
+    Some(Place { word, stretch, slot })
 }
 
 fn is_word(event: &Event) -> bool {
     matches!(event.kind(), EventKind::SimpleKey | EventKind::Scalar)
+}
+
+fn is_table_close(event: &Event) -> bool {
+    matches!(event.kind(), EventKind::StdTableClose | EventKind::ArrayTableClose)
 }
 
 fn ends_statement(event: &Event) -> bool {
@@ -130,16 +148,23 @@ impl Chunk<'_> {
     }
 
     fn begins_table(self) -> bool {
-        self.text.trim_start().starts_with('[')
+        begins_table(self.text)
     }
 }
 
-/// A line that begins with a bracket begins a table, whatever is left open above it: no setting is a list.
+/// A line that begins with a bracket begins a table, whatever is left open above it, unless there is a number in the
+/// bracket: lists may go over several lines, and they hold points.
+fn begins_table(line: &str) -> bool {
+    let Some(inside) = line.trim_start().strip_prefix('[') else { return false };
+    let inside = inside.strip_prefix('[').unwrap_or(inside).trim_start();
+    !inside.starts_with(|first: char| first.is_ascii_digit() || matches!(first, '[' | '-' | '+' | '.'))
+}
+
 fn chunks(text: &str) -> Vec<Chunk<'_>> {
     let mut chunks = Vec::new();
     let (mut start, mut at) = (0, 0);
     for line in text.split_inclusive('\n') {
-        if line.trim_start().starts_with('[') && at > start {
+        if begins_table(line) && at > start {
             chunks.push(start..at);
             start = at;
         }
@@ -174,6 +199,10 @@ struct Reader<'t> {
     wants_part: bool,
     /// What the last word changed: the stage before it.
     before_word: Stage,
+    /// How many lists are open.
+    lists: usize,
+    /// Whether the table began with two brackets.
+    is_each: bool,
 }
 
 impl<'t> Reader<'t> {
@@ -188,13 +217,18 @@ impl<'t> Reader<'t> {
             parts: Vec::new(),
             wants_part: true,
             before_word: stage,
+            lists: 0,
+            is_each: false,
         }
     }
 
     fn take(&mut self, event: &Event) {
         match event.kind() {
-            EventKind::StdTableOpen => self.begin(Stage::Header),
-            EventKind::StdTableClose => {
+            EventKind::StdTableOpen | EventKind::ArrayTableOpen => {
+                self.is_each = event.kind() == EventKind::ArrayTableOpen;
+                self.begin(Stage::Header);
+            }
+            EventKind::StdTableClose | EventKind::ArrayTableClose => {
                 self.path = std::mem::take(&mut self.parts);
                 self.stage = Stage::Nothing;
             }
@@ -220,18 +254,21 @@ impl<'t> Reader<'t> {
                 self.begin(Stage::Nothing);
             }
             EventKind::ValueSep if !self.outer.is_empty() => self.begin(Stage::Key),
-            EventKind::Newline if self.outer.is_empty() => {
+            EventKind::Newline if self.outer.is_empty() && self.lists == 0 => {
                 if self.stage == Stage::Header {
                     self.path = std::mem::take(&mut self.parts);
                 }
                 self.begin(Stage::Key);
             }
-            EventKind::Comment
-            | EventKind::Error
-            | EventKind::ArrayOpen
-            | EventKind::ArrayClose
-            | EventKind::ArrayTableOpen
-            | EventKind::ArrayTableClose => self.stage = Stage::Nothing,
+            EventKind::ArrayOpen => {
+                self.lists += 1;
+                self.stage = Stage::Nothing;
+            }
+            EventKind::ArrayClose => {
+                self.lists = self.lists.saturating_sub(1);
+                self.stage = Stage::Nothing;
+            }
+            EventKind::Comment | EventKind::Error => self.stage = Stage::Nothing,
             EventKind::ValueSep | EventKind::Newline | EventKind::Whitespace => {}
         }
     }
@@ -288,8 +325,11 @@ mod tests {
         for fixture in fixtures {
             let offset = u32::try_from(fixture.find("$0").unwrap()).unwrap();
             let text = fixture.replacen("$0", "", 1);
-            let told = place_at(&text, offset).map(|Place { word, slot }| match slot {
-                Slot::Table { is_closed } => format!("table `{}`, closed: {is_closed}", word.text(&text)),
+            let told = place_at(&text, offset).map(|Place { word, slot, .. }| match slot {
+                Slot::Table { outer, has_more, is_each, is_closed } => format!(
+                    "table `{}` in `{outer}`, more: {has_more}, each: {is_each}, closed: {is_closed}",
+                    word.text(&text)
+                ),
                 Slot::Key { table, has_value, begins_line } => format!(
                     "key `{}` of `{table}`, value: {has_value}, first: {begins_line}",
                     word.text(&text)
@@ -327,6 +367,9 @@ mod tests {
                 "[inlay-hints] $0",
                 "x = [$0",
                 "x = [1, $0",
+                "x = [\n$0",
+                "[[a]]\nx = [\n  [1.0, 2.0],\n[-1, 2]]\n$0",
+                "[[a]]\nx = [0, 1]\n[[b]]\ny$0",
             ],
             &expect![[r##"
                 "$0": key `` of ``, value: false, first: true
@@ -351,6 +394,9 @@ mod tests {
                 "[inlay-hints] $0": nothing
                 "x = [$0": nothing
                 "x = [1, $0": nothing
+                "x = [\n$0": nothing
+                "[[a]]\nx = [\n  [1.0, 2.0],\n[-1, 2]]\n$0": key `` of `a.`, value: false, first: true
+                "[[a]]\nx = [0, 1]\n[[b]]\ny$0": key `y` of `b.`, value: false, first: true
             "##]],
         );
     }
@@ -399,16 +445,26 @@ mod tests {
                 "$0[severity]",
                 "[severity]$0",
                 "[inlay-hints.$0]",
+                "[robots.$0",
+                "[robots.ro$0ver.sensors.front]",
+                "[[$0",
+                "[[bo$0]]\nx = 1",
+                "[[$0box",
             ],
             &expect![[r#"
-                "[$0": table ``, closed: false
-                "[$0]": table ``, closed: true
-                "[sev$0]": table `sev`, closed: true
-                "[sev$0\nx = 1": table `sev`, closed: false
-                "x = 1\n[$0sev]": table `sev`, closed: true
+                "[$0": table `` in ``, more: false, each: false, closed: false
+                "[$0]": table `` in ``, more: false, each: false, closed: true
+                "[sev$0]": table `sev` in ``, more: false, each: false, closed: true
+                "[sev$0\nx = 1": table `sev` in ``, more: false, each: false, closed: false
+                "x = 1\n[$0sev]": table `sev` in ``, more: false, each: false, closed: true
                 "$0[severity]": nothing
                 "[severity]$0": nothing
-                "[inlay-hints.$0]": nothing
+                "[inlay-hints.$0]": table `` in `inlay-hints.`, more: false, each: false, closed: true
+                "[robots.$0": table `` in `robots.`, more: false, each: false, closed: false
+                "[robots.ro$0ver.sensors.front]": table `rover` in `robots.`, more: true, each: false, closed: true
+                "[[$0": table `` in ``, more: false, each: true, closed: false
+                "[[bo$0]]\nx = 1": table `bo` in ``, more: false, each: true, closed: true
+                "[[$0box": table `box` in ``, more: false, each: true, closed: false
             "#]],
         );
     }
