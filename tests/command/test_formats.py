@@ -22,6 +22,7 @@ movement m of r { move 0 meters turn left until { s } slam }
 environment yard has { r } robots with { m m } moves ;
 """,
     "clean.pyr": "",
+    "yard.scene.toml": "[wrold]\nseed = 2\n",
 }
 
 
@@ -67,7 +68,9 @@ def test_sarif_is_what_the_standard_says(command: str, tmp_path: pathlib.Path) -
     [run] = log["runs"]
     assert run["columnKind"] == "unicodeCodePoints"
     rules = run["tool"]["driver"]["rules"]
-    for result in run["results"]:
+    in_programs = [result for result in run["results"] if "ruleIndex" in result]
+    assert len(in_programs) == len(run["results"]) - 1, "the scene has no rule"
+    for result in in_programs:
         assert rules[result["ruleIndex"]]["id"] == result["ruleId"]
     assert all(rule["help"]["markdown"].startswith("# ") for rule in rules)
 
@@ -121,7 +124,7 @@ def test_sarif_places_and_fixes_lead_into_the_files(
         result["locations"][0]["physicalLocation"]["artifactLocation"]["uri"]
         for result in results
     }
-    assert files == {"a%20b%231.pyr", "lib/wheels.pyr"}
+    assert files == {"a%20b%231.pyr", "lib/wheels.pyr", "yard.scene.toml"}
 
 
 RANGE = {
@@ -176,7 +179,8 @@ PROBLEM = exactly(
 def test_json_has_its_shape(command: str, tmp_path: pathlib.Path) -> None:
     problems = json.loads(checked(command, tmp_path, "json"))
     jsonschema.Draft7Validator({"type": "array", "items": PROBLEM}).validate(problems)
-    assert {problem["file"] for problem in problems} == {"a b#1.pyr", "lib/wheels.pyr"}
+    files = {problem["file"] for problem in problems}
+    assert files == {"a b#1.pyr", "lib/wheels.pyr", "yard.scene.toml"}
     assert any(problem["related"] for problem in problems)
     assert any(problem["fix"] for problem in problems)
 

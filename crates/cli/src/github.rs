@@ -2,15 +2,26 @@
 
 use pydslrep_analysis::{Diagnostic, Severity};
 
-use crate::place;
+use crate::mistakes::{self, Mistake};
+use crate::place::{self, PlaceRange};
 use crate::sources::Sources;
 
 /// The problems as workflow commands, a line each.
-pub(crate) fn commands(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
-    diagnostics.iter().map(|diagnostic| command(sources, diagnostic)).collect()
+pub(crate) fn commands(sources: &Sources, diagnostics: &[Diagnostic], mistakes: &[Mistake]) -> String {
+    let commands = diagnostics.iter().map(|diagnostic| of_diagnostic(sources, diagnostic));
+    commands.chain(mistakes.iter().map(of_mistake)).collect()
 }
 
-fn command(sources: &Sources, diagnostic: &Diagnostic) -> String {
+fn of_mistake(mistake: &Mistake) -> String {
+    let Mistake { shown, range, problem, .. } = mistake;
+    let mut message = problem.message.clone();
+    if let Some(help) = &problem.help {
+        message += &format!("\nhelp: {help}");
+    }
+    command(mistakes::SEVERITY, shown, *range, problem.kind.code(), &message)
+}
+
+fn of_diagnostic(sources: &Sources, diagnostic: &Diagnostic) -> String {
     let range = place::range(&sources.database, diagnostic.file, diagnostic.span);
     let mut message = diagnostic.message.clone();
     for (word, text) in [("help", &diagnostic.help), ("note", &diagnostic.note)] {
@@ -18,16 +29,21 @@ fn command(sources: &Sources, diagnostic: &Diagnostic) -> String {
             message += &format!("\n{word}: {text}");
         }
     }
+    let (severity, file) = (diagnostic.severity, sources.shown(diagnostic.file));
+    command(severity, file, range, diagnostic.code(), &message)
+}
+
+fn command(severity: Severity, file: &str, range: PlaceRange, code: &str, message: &str) -> String {
     format!(
         "::{} file={},line={},col={},endLine={},endColumn={},title={}::{}\n",
-        command_name(diagnostic.severity),
-        property(sources.shown(diagnostic.file)),
+        command_name(severity),
+        property(file),
         range.start.line,
         range.start.column,
         range.end.line,
         range.end.column,
-        property(diagnostic.code()),
-        escaped(&message),
+        property(code),
+        escaped(message),
     )
 }
 

@@ -1,8 +1,11 @@
 //! Problems for programs: the elements of `check --format json`.
 
+use std::borrow::Cow;
+
 use pydslrep_analysis::{Diagnostic, Edit, Fix, Related};
 use serde::Serialize;
 
+use crate::mistakes::{self, Mistake};
 use crate::place::{self, PlaceRange};
 use crate::sources::Sources;
 
@@ -26,7 +29,7 @@ struct SecondPlace<'a> {
 
 #[derive(Debug, Serialize)]
 struct FirstFix<'a> {
-    title: &'a str,
+    title: Cow<'a, str>,
     edits: Vec<Replacement<'a>>,
 }
 
@@ -40,8 +43,13 @@ struct Replacement<'a> {
 ///
 /// # Errors
 /// Never, with what is handed in here.
-pub(crate) fn array(sources: &Sources, diagnostics: &[Diagnostic]) -> serde_json::Result<String> {
-    let problems: Vec<Problem> = diagnostics.iter().map(|diagnostic| problem(sources, diagnostic)).collect();
+pub(crate) fn array(
+    sources: &Sources,
+    diagnostics: &[Diagnostic],
+    mistakes: &[Mistake],
+) -> serde_json::Result<String> {
+    let problems = diagnostics.iter().map(|diagnostic| problem(sources, diagnostic));
+    let problems: Vec<Problem> = problems.chain(mistakes.iter().map(in_scene)).collect();
     serde_json::to_string_pretty(&problems)
 }
 
@@ -60,6 +68,23 @@ fn problem<'a>(sources: &'a Sources, diagnostic: &'a Diagnostic) -> Problem<'a> 
     }
 }
 
+fn in_scene(mistake: &Mistake) -> Problem<'_> {
+    let replacement = mistake.problem.replacement.as_deref();
+    let fix = replacement.map(|text| FirstFix {
+        title: format!("change to `{}`", text.trim_matches('"')).into(),
+        edits: vec![Replacement { range: mistake.range, text }],
+    });
+    Problem {
+        file: &mistake.shown,
+        code: mistake.problem.kind.code(),
+        severity: mistakes::SEVERITY.word(),
+        message: &mistake.problem.message,
+        range: mistake.range,
+        related: Vec::new(),
+        fix,
+    }
+}
+
 fn second_place<'a>(sources: &'a Sources, related: &'a Related) -> SecondPlace<'a> {
     SecondPlace {
         message: &related.message,
@@ -73,5 +98,5 @@ fn first_fix<'a>(sources: &Sources, fix: &'a Fix) -> FirstFix<'a> {
         range: place::range(&sources.database, edit.file, edit.span),
         text: &edit.text,
     };
-    FirstFix { title: &fix.title, edits: fix.edits.iter().map(replacement).collect() }
+    FirstFix { title: Cow::from(&fix.title), edits: fix.edits.iter().map(replacement).collect() }
 }

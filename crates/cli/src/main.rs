@@ -7,7 +7,7 @@
 //! * [`sources`]: programs and what they import, from files into the database.
 //! * [`render`], [`json`], [`github`], [`sarif`]: problems for people and for programs.
 //! * [`project`], [`severities`]: what is set for programs, and how bad problems are to whoever asks.
-//! * [`scenes`]: what else stands on the floor.
+//! * [`scenes`], [`mistakes`]: what else stands on the floor, and what is wrong with the files that say so.
 //! * [`fixing`], [`rewrite`]: what is done about them.
 //! * [`lines`]: how much people and the generator write.
 //! * [`watch`]: when to look again.
@@ -25,6 +25,7 @@ mod github;
 mod interrupt;
 mod json;
 mod lines;
+mod mistakes;
 mod outcome;
 mod output;
 mod place;

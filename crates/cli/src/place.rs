@@ -28,6 +28,23 @@ pub(crate) fn place(database: &Database, file: FileId, offset: u32) -> Place {
     Place { line: line + 1, column: column + 1 }
 }
 
+/// Where an offset in bytes is in a text that no database has; at the end where it is behind it.
+fn place_in(text: &str, offset: u32) -> Place {
+    let before = text.get(..offset as usize).unwrap_or(text);
+    let ends_line = |(at, end): (usize, char)| {
+        let is_end = end == '\n' || (end == '\r' && !text[at + 1..].starts_with('\n'));
+        is_end.then_some(at + 1)
+    };
+    let ends: Vec<usize> = before.char_indices().filter_map(ends_line).collect();
+    let start = ends.last().copied().unwrap_or(0);
+    Place { line: ends.len() + 1, column: before[start..].chars().count() + 1 }
+}
+
+/// Where a span is in a text that no database has.
+pub(crate) fn range_in(text: &str, span: Span) -> PlaceRange {
+    PlaceRange { start: place_in(text, span.start), end: place_in(text, span.end) }
+}
+
 /// Where a span is.
 pub(crate) fn range(database: &Database, file: FileId, span: Span) -> PlaceRange {
     PlaceRange { start: place(database, file, span.start), end: place(database, file, span.end) }
@@ -50,6 +67,10 @@ mod tests {
             [at("机"), at("🤖"), at("x"), at("a\r"), at("b"), at("c")],
             [(1, 4), (1, 8), (1, 10), (2, 1), (3, 1), (4, 1)]
         );
+        for offset in text.char_indices().map(|(offset, _)| u32::try_from(offset).unwrap()) {
+            assert_eq!(place_in(text, offset), place(&database, file, offset), "{offset}");
+        }
+        assert_eq!(place_in(text, 1000), place(&database, file, 1000));
         let end = place(&database, file, 1000);
         assert_eq!((end.line, end.column), (4, 2));
     }

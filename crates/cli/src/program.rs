@@ -106,6 +106,10 @@ fn add(problems: &mut Vec<Diagnostic>, more: &[Diagnostic]) {
 
 fn show(sources: &Sources, problems: &[Diagnostic]) {
     if !problems.is_empty() {
-        say(&format!("{}{}.\n", render::diagnostics(sources, problems), render::summary(problems)));
+        say(&format!(
+            "{}{}.\n",
+            render::diagnostics(sources, problems),
+            render::summary(sources, problems, &[])
+        ));
     }
 }

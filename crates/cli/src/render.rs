@@ -6,6 +6,7 @@ use annotate_snippets::{Annotation, AnnotationKind, Element, Group, Level, Patch
 use pydslrep_analysis::{Database, Diagnostic, FileId, Fix, Severity};
 use pydslrep_syntax::Span;
 
+use crate::mistakes::{self, Mistake};
 use crate::output::{count, renderer};
 use crate::sources::Sources;
 
@@ -20,17 +21,20 @@ pub(crate) fn diagnostics(sources: &Sources, diagnostics: &[Diagnostic]) -> Stri
 }
 
 /// "2 errors and 1 warning in 1 file".
-pub(crate) fn summary(diagnostics: &[Diagnostic]) -> String {
+pub(crate) fn summary(sources: &Sources, diagnostics: &[Diagnostic], mistakes: &[Mistake]) -> String {
+    let found = diagnostics.iter().map(|diagnostic| (diagnostic.severity, sources.shown(diagnostic.file)));
+    let in_scenes = mistakes.iter().map(|mistake| (mistakes::SEVERITY, mistake.shown.as_str()));
+    let found: Vec<(Severity, &str)> = found.chain(in_scenes).collect();
     let counts =
         [Severity::Error, Severity::Warning, Severity::Information, Severity::Hint].map(|severity| {
-            let number = diagnostics.iter().filter(|diagnostic| diagnostic.severity == severity).count();
+            let number = found.iter().filter(|(found, _)| *found == severity).count();
             (number > 0).then(|| match severity {
                 // Nobody counts informations.
                 Severity::Information => count(number, "remark"),
                 _ => count(number, severity.word()),
             })
         });
-    let mut files: Vec<FileId> = diagnostics.iter().map(|diagnostic| diagnostic.file).collect();
+    let mut files: Vec<&str> = found.into_iter().map(|(_, file)| file).collect();
     files.sort_unstable();
     files.dedup();
     let counts: Vec<String> = counts.into_iter().flatten().collect();

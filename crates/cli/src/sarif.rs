@@ -6,7 +6,8 @@ use pydslrep_analysis::{Database, Diagnostic, Edit, FileId, Fix, Severity};
 use pydslrep_syntax::Span;
 use serde_json::{Value, json};
 
-use crate::place;
+use crate::mistakes::{self, Mistake};
+use crate::place::{self, PlaceRange};
 use crate::sources::Sources;
 
 const SCHEMA: &str = "https://json.schemastore.org/sarif-2.1.0.json";
@@ -34,8 +35,13 @@ const RESERVED: &AsciiSet = &CONTROLS
 ///
 /// # Errors
 /// Never, with what is handed in here.
-pub(crate) fn log(sources: &Sources, diagnostics: &[Diagnostic]) -> serde_json::Result<String> {
-    let results: Vec<Value> = diagnostics.iter().map(|diagnostic| result(sources, diagnostic)).collect();
+pub(crate) fn log(
+    sources: &Sources,
+    diagnostics: &[Diagnostic],
+    mistakes: &[Mistake],
+) -> serde_json::Result<String> {
+    let results = diagnostics.iter().map(|diagnostic| result(sources, diagnostic));
+    let results: Vec<Value> = results.chain(mistakes.iter().map(in_scene)).collect();
     serde_json::to_string_pretty(&json!({
         "$schema": SCHEMA,
         "version": "2.1.0",
@@ -95,13 +101,32 @@ fn result(sources: &Sources, diagnostic: &Diagnostic) -> Value {
     })
 }
 
+/// These have no rule in the catalogue: it is about programs.
+fn in_scene(mistake: &Mistake) -> Value {
+    let Mistake { shown, range, problem, .. } = mistake;
+    let mut text = problem.message.clone();
+    if let Some(help) = &problem.help {
+        text += &format!("\nhelp: {help}");
+    }
+    let place = json!({ "artifactLocation": { "uri": uri(shown) }, "region": region_of(*range) });
+    json!({
+        "ruleId": problem.kind.code(),
+        "level": level(mistakes::SEVERITY),
+        "message": { "text": text },
+        "locations": [{ "physicalLocation": place }],
+    })
+}
+
 fn location(sources: &Sources, file: FileId, span: Span) -> Value {
     json!({ "artifactLocation": artifact(sources, file), "region": region(&sources.database, file, span) })
 }
 
 /// From the first character to right behind the last one, as everywhere here.
 fn region(database: &Database, file: FileId, span: Span) -> Value {
-    let range = place::range(database, file, span);
+    region_of(place::range(database, file, span))
+}
+
+fn region_of(range: PlaceRange) -> Value {
     json!({
         "startLine": range.start.line,
         "startColumn": range.start.column,

@@ -59,7 +59,7 @@ pub use refactorings::{Refactoring, RefactoringKind, refactorings};
 pub use reference::{KeywordPage, keyword_page};
 pub use references::references;
 pub use rename::{Refusal, RenameTarget, prepare_rename, rename};
-pub use scenes::{scene_completions, scene_fixes, scene_hover, scene_problems};
+pub use scenes::{scene_completions, scene_fixes, scene_hover};
 pub use selection::selection_ranges;
 pub use semantic_tokens::{Modifier, SemanticToken, TokenKind, entity_tokens, semantic_tokens};
 pub use settings::{KeyFix, settings_completions, settings_fixes, settings_hover};

@@ -71,6 +71,15 @@ impl Database {
         if problems.is_empty() { Ok(scene) } else { Err(problems) }
     }
 
+    /// What is wrong with the text of a scene file, in the order of the text. Without an environment, or where a robot of
+    /// it is broken, names can be any.
+    pub fn scene_problems(&self, environment: Option<EntityId>, text: &str) -> Vec<Problem> {
+        match environment.and_then(|id| self.floor(id)) {
+            Some(floor) => pydslrep_scene::read(text, floor).1,
+            None => pydslrep_scene::problems(text),
+        }
+    }
+
     /// The environments whose names came or went since this was last asked: each by its file and name. Also those of
     /// files that were closed.
     pub fn take_changed_environments(&mut self) -> Vec<(FileId, SmolStr)> {

@@ -11,6 +11,7 @@ use pydslrep_config::Config;
 
 use crate::failure::Failure;
 use crate::fixing::{self, Fixed};
+use crate::mistakes::{self, Mistake};
 use crate::output::{self, count};
 use crate::project::Projects;
 use crate::sources::{Sources, count_files};
@@ -46,7 +47,7 @@ pub(crate) struct Arguments {
     /// standard output
     #[arg(long)]
     fix: bool,
-    /// Check again whenever a program, an import or a pydslrep.toml changes, until Ctrl-C
+    /// Check again whenever a program, an import, a scene or a pydslrep.toml changes, until Ctrl-C
     #[arg(long, conflicts_with_all = ["fix", "deny"])]
     watch: bool,
     /// How bad problems of a code are: off, hint, information, warning or error; for each code once
@@ -102,7 +103,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         None
     };
     let diagnostics = find(&sources);
-    let report = report(arguments.format, &sources, &files, &diagnostics)?;
+    let (mistakes, unread) = mistakes::find(&sources, &files);
+    failures.extend(unread);
+    let report = report(arguments.format, &sources, &files, &diagnostics, &mistakes)?;
     if fixed.is_some() && files.iter().any(|file| sources.place(*file).is_none()) {
         // The fixed program is on standard output.
         output::say(&report);
@@ -114,7 +117,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
     failures.iter().for_each(output::fail);
     Ok(ExitCode::from(if failures.is_empty() {
-        exit_code(&diagnostics, arguments.deny)
+        exit_code(&diagnostics, &mistakes, arguments.deny)
     } else {
         Failure::EXIT_CODE
     }))
@@ -131,12 +134,13 @@ fn report(
     sources: &Sources,
     files: &[FileId],
     diagnostics: &[Diagnostic],
+    mistakes: &[Mistake],
 ) -> Result<String, Failure> {
     match format {
-        Format::Human => Ok(human(sources, files, diagnostics)),
-        Format::Json => written(json::array(sources, diagnostics)),
-        Format::Sarif => written(sarif::log(sources, diagnostics)),
-        Format::Github => Ok(github::commands(sources, diagnostics)),
+        Format::Human => Ok(human(sources, files, diagnostics, mistakes)),
+        Format::Json => written(json::array(sources, diagnostics, mistakes)),
+        Format::Sarif => written(sarif::log(sources, diagnostics, mistakes)),
+        Format::Github => Ok(github::commands(sources, diagnostics, mistakes)),
     }
 }
 
@@ -144,17 +148,23 @@ fn written(json: serde_json::Result<String>) -> Result<String, Failure> {
     json.map(|json| json + "\n").map_err(|error| Failure::new(format!("cannot write JSON: {error}")))
 }
 
-fn human(sources: &Sources, files: &[FileId], diagnostics: &[Diagnostic]) -> String {
-    let problems = render::diagnostics(sources, diagnostics);
-    summary(files, diagnostics).map_or(problems.clone(), |summary| format!("{problems}{summary}\n"))
+fn human(sources: &Sources, files: &[FileId], diagnostics: &[Diagnostic], mistakes: &[Mistake]) -> String {
+    let problems = render::diagnostics(sources, diagnostics) + &mistakes::render(mistakes);
+    summary(sources, files, diagnostics, mistakes)
+        .map_or(problems.clone(), |summary| format!("{problems}{summary}\n"))
 }
 
 /// What was found, in one line; `None` where nothing was read: there is nothing to be pleased about.
-fn summary(files: &[FileId], diagnostics: &[Diagnostic]) -> Option<String> {
-    if diagnostics.is_empty() {
+fn summary(
+    sources: &Sources,
+    files: &[FileId],
+    diagnostics: &[Diagnostic],
+    mistakes: &[Mistake],
+) -> Option<String> {
+    if diagnostics.is_empty() && mistakes.is_empty() {
         return (!files.is_empty()).then(|| format!("No problems in {}.", count_files(files)));
     }
-    let summary = render::summary(diagnostics);
+    let summary = render::summary(sources, diagnostics, mistakes);
     let is_mendable = |diagnostic: &&Diagnostic| diagnostic.fixes.iter().any(|fix| fix.safe);
     Some(match diagnostics.iter().filter(is_mendable).count() {
         0 => format!("{summary}."),
@@ -174,8 +184,9 @@ fn told(fixed: &Fixed, left: &[Diagnostic]) -> String {
 }
 
 /// 1 where problems are bad enough.
-fn exit_code(diagnostics: &[Diagnostic], deny: Option<Deny>) -> u8 {
-    let worst = diagnostics.iter().map(|diagnostic| diagnostic.severity).max();
+fn exit_code(diagnostics: &[Diagnostic], mistakes: &[Mistake], deny: Option<Deny>) -> u8 {
+    let in_scenes = mistakes.iter().map(|_| mistakes::SEVERITY);
+    let worst = diagnostics.iter().map(|diagnostic| diagnostic.severity).chain(in_scenes).max();
     let denied = if deny.is_some() { Severity::Warning } else { Severity::Error };
     u8::from(worst >= Some(denied))
 }

@@ -344,3 +344,53 @@ fn wrong_use_ends_with_2() {
         assert_eq!(Place::new().run(arguments).code, Some(2), "{arguments:?}");
     }
 }
+
+#[test]
+fn mistakes_in_the_scene_of_an_environment_are_told() {
+    let program = format!(
+        "{TWO_WHEELS}robot rover with port 1 has {{ a b }} wheels\nmovement m of rover {{ move 1 meters }}\n\
+         environment yard has {{ rover }} robots with {{ m }} moves\n"
+    );
+    let place = Place::with("x.pyr", &program);
+    place.write("yard.scene.toml", "# 机\n[robots.rovr]\nstart = [0, 0]\n");
+    let done = place.run(&["check"]);
+    expect![[r#"
+        error: the environment has no robot `rovr`
+         --> yard.scene.toml:2:9
+          |
+        2 | [robots.rovr]
+          |         ^^^^
+          |
+          = help: did you mean `rover`?
+
+        1 error in 1 file.
+    "#]]
+    .assert_eq(&done.out);
+    assert_eq!((done.code, done.err.as_str()), (Some(1), ""));
+    let done = place.run(&["check", "--format", "json"]);
+    let [problem] = &serde_json::from_str::<Vec<Value>>(&done.out).unwrap()[..] else {
+        panic!("{}", done.out)
+    };
+    assert_eq!(
+        *problem,
+        json!({
+            "file": "yard.scene.toml", "code": "unknown-name", "severity": "error",
+            "message": "the environment has no robot `rovr`",
+            "range": { "start": { "line": 2, "column": 9 }, "end": { "line": 2, "column": 13 } },
+            "related": [],
+            "fix": { "title": "change to `rover`", "edits": [{
+                "range": { "start": { "line": 2, "column": 9 }, "end": { "line": 2, "column": 13 } },
+                "text": "rover",
+            }] },
+        })
+    );
+    let done = place.run(&["check", "--format", "github"]);
+    expect![[r#"
+        ::error file=yard.scene.toml,line=2,col=9,endLine=2,endColumn=13,title=unknown-name::the environment has no robot `rovr`%0Ahelp: did you mean `rover`?
+    "#]].assert_eq(&done.out);
+    let sarif: Value = serde_json::from_str(&place.run(&["check", "--format", "sarif"]).out).unwrap();
+    let found = &sarif["runs"][0]["results"][0];
+    assert_eq!((&found["ruleId"], &found["level"]), (&json!("unknown-name"), &json!("error")));
+    place.write("yard.scene.toml", "[robots.rover]\nstart = [0, 0]\n");
+    assert_eq!(place.run(&["check"]).code, Some(0));
+}

@@ -8,7 +8,7 @@ mod completion;
 pub use completion::scene_completions;
 
 use pydslrep_analysis::{Database, EntityId};
-use pydslrep_notation::{Problem, names};
+use pydslrep_notation::names;
 use pydslrep_scene::{Key, TABLES, Table};
 use pydslrep_syntax::ast::{Entity, Name};
 use pydslrep_syntax::{EntityKind, Span};
@@ -17,14 +17,6 @@ use smol_str::SmolStr;
 use crate::settings::fixes;
 use crate::{Hover, KeyFix};
 
-/// What is wrong with a scene file. Without an environment, or where that is broken, names can be any.
-pub fn scene_problems(database: &Database, environment: Option<EntityId>, text: &str) -> Vec<Problem> {
-    match environment.and_then(|id| database.floor(id)) {
-        Some(floor) => pydslrep_scene::read(text, floor).1,
-        None => pydslrep_scene::problems(text),
-    }
-}
-
 /// The fixes of all problems that touch a range of the text.
 pub fn scene_fixes(
     database: &Database,
@@ -32,7 +24,7 @@ pub fn scene_fixes(
     text: &str,
     range: Span,
 ) -> Vec<KeyFix> {
-    fixes(scene_problems(database, environment, text), range)
+    fixes(database.scene_problems(environment, text), range)
 }
 
 /// What there is to say of an offset in the text of a scene file.
@@ -208,7 +200,7 @@ mod tests {
     fn check_fixes(fixture: &str, expected: &Expect) {
         let (text, offset) = at_cursor(fixture);
         let (database, environment) = program();
-        let before = scene_problems(&database, environment, &text);
+        let before = database.scene_problems(environment, &text);
         let mut out = String::new();
         for problem in &before {
             out += &problem.message;
@@ -217,7 +209,7 @@ mod tests {
         for fix in scene_fixes(&database, environment, &text, Span::at(offset)) {
             let mut mended = text.clone();
             mended.replace_range(std::ops::Range::from(fix.span), &fix.text);
-            assert!(scene_problems(&database, environment, &mended).len() < before.len(), "{mended}");
+            assert!(database.scene_problems(environment, &mended).len() < before.len(), "{mended}");
             out += &format!("{}\n{mended}\n", fix.title);
         }
         expected.assert_eq(&out);
@@ -285,7 +277,7 @@ mod tests {
         let database = Database::new();
         let text = "[robots.rovr]\nstart = 2\n[robots.rovr.sensors.x]\nrnge = 1\n[wrold]";
         let told: Vec<String> =
-            scene_problems(&database, None, text).into_iter().map(|problem| problem.message).collect();
+            database.scene_problems(None, text).into_iter().map(|problem| problem.message).collect();
         expect![[r#"
             `robots.rovr.start` must be a pose `[x, y, heading]`, not a number
             there is no key `rnge` in `robots.rovr.sensors.x`

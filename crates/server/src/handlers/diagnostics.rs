@@ -8,7 +8,6 @@ use std::str::FromStr;
 use pydslrep_analysis as analysis;
 use pydslrep_analysis::diagnostics::Tag;
 use pydslrep_config::{Config, Problem};
-use pydslrep_ide as ide;
 use pydslrep_syntax::Span;
 use rustc_hash::FxHashMap;
 use tower_lsp::ls_types::{
@@ -160,7 +159,7 @@ pub(crate) fn of_document(state: &State, document: &Document) -> Vec<Diagnostic>
         Sort::Scene => {
             let environment = state.environment_in(&key(&document.uri));
             let text = document.text.to_string();
-            return of_keys(state, document, ide::scene_problems(&state.database, environment, &text));
+            return of_keys(state, document, state.database.scene_problems(environment, &text));
         }
         Sort::Program => {}
     }

@@ -14,7 +14,7 @@ use crate::interrupt::{self, Interrupts};
 use crate::project::Projects;
 use crate::sources::{Sources, absolute};
 use crate::watch::{Scope, Watch};
-use crate::{output, render};
+use crate::{mistakes, output, render};
 
 /// Erases what is on a terminal and above it.
 const CLEAR: &str = "\u{1b}[2J\u{1b}[3J\u{1b}[H";
@@ -75,7 +75,10 @@ impl Look {
         let (problems, summary) = match Projects::open(&mut sources, &files, options) {
             Ok(projects) => {
                 let found = diagnostics(&sources, &files, &projects);
-                (render::diagnostics(&sources, &found), summary(&files, &found))
+                let (mistakes, unread) = mistakes::find(&sources, &files);
+                failures.extend(unread);
+                let problems = render::diagnostics(&sources, &found) + &mistakes::render(&mistakes);
+                (problems, summary(&sources, &files, &found, &mistakes))
             }
             Err(failure) => {
                 failures.push(failure);
