@@ -165,3 +165,24 @@ def test_scenes_are_completed_explained_and_mended(yard: Yard) -> None:
     assert action["title"] == "Change to `rover`"
     [edits] = action["edit"]["changes"].values()
     assert edits == [{"range": scene.span("rovr"), "newText": "rover"}]
+
+
+def test_a_preview_uses_the_scene_as_it_is_in_the_editor(yard: Yard) -> None:
+    yard.start(CLIENT)
+    yard.indexed()
+    program = yard.open("main.pyr", PROGRAM)
+    scene = yard.open("yard.scene.toml", CRATE)
+    arguments = [{"uri": program.uri, "environment": "yard"}]
+    preview = {"command": "pydslrep.previewPath", "arguments": arguments}
+
+    def picture() -> str:
+        address = yard.question("workspace/executeCommand", preview)["result"]
+        return pathlib.Path(address["picture"].removeprefix("file://")).read_text()
+
+    with_crate = picture()
+    assert "obstacle" in with_crate
+    yard.type(scene, ASIDE)
+    aside = picture()
+    assert "obstacle" in aside
+    assert aside != with_crate
+    assert not (yard.folder / "yard.scene.toml").exists()
