@@ -32,7 +32,7 @@ pub(crate) struct Problem {
 }
 
 /// What people write within a number or a name, such as `1'000`: what is left on either side of it is one word.
-pub(super) const WITHIN_WORDS: [char; 4] = ['\'', '’', '$', '@'];
+const WITHIN_WORDS: [char; 4] = ['\'', '’', '$', '@'];
 
 /// One half of a pair of braces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,6 +66,15 @@ pub(crate) struct ProblemEdit {
     pub(crate) span: Span,
     /// With `\n` for the end of a line, whatever the file uses; which it is may change with any edit.
     pub(crate) text: String,
+    /// Whether what stands on its sides is to become one word; else words are kept apart.
+    pub(crate) joins: bool,
+}
+
+impl ProblemEdit {
+    /// A replacement that keeps words apart.
+    pub(super) fn new(entity: EntityId, span: Span, text: impl Into<String>) -> Self {
+        Self { entity, span, text: text.into(), joins: false }
+    }
 }
 
 impl Rule {
@@ -226,7 +235,12 @@ impl<'a> Context<'a> {
 
     /// A replacement of text in this entity.
     pub(super) fn replace(&self, span: Span, text: impl Into<String>) -> ProblemEdit {
-        ProblemEdit { entity: self.id, span, text: text.into() }
+        ProblemEdit::new(self.id, span, text)
+    }
+
+    /// A replacement that makes one word of what stands on its sides.
+    pub(super) fn join(&self, span: Span, text: impl Into<String>) -> ProblemEdit {
+        ProblemEdit { joins: true, ..self.replace(span, text) }
     }
 
     /// The smallest edit that removes `span` and the white space around it that would be left over. A comment that the
@@ -258,7 +272,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Removes characters, with a space where they have one on both sides.
+    /// Removes characters, with one space where they have one on both sides.
     pub(super) fn remove_character(&self, span: Span) -> ProblemEdit {
         let end = self.place().map_or(span.end, Span::len);
         let blank = |span: Span| [" ", "\t"].contains(&self.text(span).as_str());
@@ -268,12 +282,10 @@ impl<'a> Context<'a> {
             return self.replace(Span::new(span.start - 1, span.end), "");
         }
         let first = span.start == 0 && behind.starts_with(' ');
-        let is_word = |text: &str| text.contains(|c: char| c.is_alphanumeric() || c == '_');
-        let between = span.start > 0
-            && is_word(&self.text(Span::new(span.start - 1, span.start)))
-            && is_word(&behind)
-            && !self.text(span).contains(WITHIN_WORDS);
-        self.replace(Span::new(span.start, span.end + u32::from(first)), if between { " " } else { "" })
+        if self.text(span).contains(WITHIN_WORDS) {
+            return self.join(span, "");
+        }
+        self.replace(Span::new(span.start, span.end + u32::from(first)), "")
     }
 
     /// Removes a word; what stands on other lines stays there.
@@ -356,5 +368,5 @@ pub(super) fn append(entity: EntityId, list: &References, name: &str, separator:
         Some(last) => (last.span.end, format!("{separator}{}", as_written(name))),
         None => (list.span.start + 1, format!(" {} ", as_written(name))),
     };
-    ProblemEdit { entity, span: Span::at(offset), text }
+    ProblemEdit::new(entity, Span::at(offset), text)
 }

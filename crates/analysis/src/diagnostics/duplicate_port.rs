@@ -93,7 +93,7 @@ fn problem(context: &Context<'_>, robots: &[Listed<'_>], first: &Listed<'_>, sec
     let later = if is_behind(context, first, second) { second } else { first };
     match (free_port(robots, later.port), &later.robot.port) {
         (Some(free), Some(port)) => {
-            let edit = ProblemEdit { entity: later.id, span: port.span, text: free.to_string() };
+            let edit = ProblemEdit::new(later.id, port.span, free.to_string());
             let name = context.database.tree(later.id).and_then(|tree| tree.name());
             let name = name.map_or("", |name| name.text.as_str());
             problem.fix(format!("give `{name}` port {free}"), [edit])

@@ -49,7 +49,7 @@ mod testing;
 use pydslrep_syntax::Span;
 
 use self::consequences::Consequences;
-use self::context::{Brace, Context, WITHIN_WORDS};
+use self::context::{Brace, Context};
 pub(crate) use self::context::{Problem, ProblemFix};
 pub use self::manual::{Page, Remedy, index};
 pub(crate) use self::planned_collision::PlannedRun;
@@ -239,10 +239,6 @@ fn kept_apart(database: &Database, file: FileId, span: Span, text: &str) -> Stri
     let behind = (1..=4).map(|ahead| beside(span.end, span.end + ahead)).find(|text| !text.is_empty());
     let runs_on = behind.is_some_and(|text| first(&text));
     let replaced = database.slice(file, span);
-    let joins = text == "_" || replaced.starts_with(WITHIN_WORDS);
-    if joins {
-        return text.to_owned();
-    }
     if text.is_empty() {
         return if runs_in && runs_on { " ".to_owned() } else { String::new() };
     }
@@ -273,7 +269,7 @@ fn located_fix(database: &Database, fix: &ProblemFix) -> Option<Fix> {
     let edits = fix.edits.iter().map(|edit| {
         let (file, span) = absolute(database, edit.entity, edit.span)?;
         let span = if edit.text.is_empty() { tidy_removal(database, file, span) } else { span };
-        let text = kept_apart(database, file, span, &edit.text);
+        let text = if edit.joins { edit.text.clone() } else { kept_apart(database, file, span, &edit.text) };
         Some(Edit { file, span, text: text.replace('\n', database.line_ending(file)) })
     });
     Some(Fix { title: fix.title.clone(), safe: fix.safe, edits: edits.collect::<Option<_>>()? })

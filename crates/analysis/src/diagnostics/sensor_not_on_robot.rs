@@ -94,11 +94,7 @@ fn added(context: &Context<'_>, id: EntityId, robot: &Robot, sensor: &str) -> Op
     }
     let lexemes = &context.database.parse(id)?.lexemes;
     let end = lexemes.iter().rev().find(|(token, _)| !token.is_comment())?.1.end;
-    Some(ProblemEdit {
-        entity: id,
-        span: Span::at(end),
-        text: format!(" with sensors {{ {} }}", as_written(sensor)),
-    })
+    Some(ProblemEdit::new(id, Span::at(end), format!(" with sensors {{ {} }}", as_written(sensor))))
 }
 
 #[cfg(test)]

@@ -182,7 +182,7 @@ fn two_names(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Optio
     if !declared || !wanted || before != Token::Name || place.here() != Some(Token::Name) {
         return None;
     }
-    let gap = place.context.replace(Span::new(first.end, place.span.start), "_");
+    let gap = place.context.join(Span::new(first.end, place.span.start), "_");
     let name = format!("{}_{found}", place.context.text(first));
     (place.context.text(first) != found && mend::is_mended(place.context, std::slice::from_ref(&gap))).then(
         || {

@@ -287,7 +287,7 @@ fn late_import(context: &Context<'_>) -> Option<Problem> {
     } else {
         top
     };
-    let insert = super::context::ProblemEdit { entity: start, span: Span::at(0), text };
+    let insert = super::context::ProblemEdit::new(start, Span::at(0), text);
     Some(
         RULE.problem(span, "an import must stand before everything else")
             .help("move it to the top of the file")
