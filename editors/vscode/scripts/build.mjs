@@ -1,0 +1,64 @@
+// Builds what the extension consists of into dist/: the extension itself, the browser side of the preview, and copies
+// of what the repository keeps elsewhere. `--watch` builds again at every change, `--production` is for the package.
+import { existsSync } from "node:fs";
+import { copyFile, mkdir, rm, writeFile } from "node:fs/promises";
+import path from "node:path";
+
+import esbuild from "esbuild";
+
+const root = path.resolve(import.meta.dirname, "..");
+const repository = path.resolve(root, "../..");
+const production = process.argv.includes("--production");
+
+/** What is made elsewhere in the repository and shipped with the extension. */
+const copies = [
+  ["grammar/textmate/pydslrep.tmLanguage.json", "dist/pydslrep.tmLanguage.json"],
+  ["editors/vscode/webview/preview/style.css", "dist/preview.css"],
+  ["LICENSE", "LICENSE"],
+];
+
+const common = {
+  absWorkingDir: root,
+  bundle: true,
+  logLevel: "warning",
+  minify: production,
+  sourcemap: production ? false : "linked",
+  legalComments: "linked",
+};
+const bundles = [
+  // VS Code 1.91 runs extensions in Node 20.
+  {
+    entryPoints: { extension: "src/extension.ts" },
+    outdir: "dist",
+    platform: "node",
+    target: "node20",
+    format: "cjs",
+    external: ["vscode"],
+  },
+  {
+    entryPoints: { preview: "webview/preview/main.ts" },
+    outdir: "dist",
+    platform: "browser",
+    target: "es2022",
+    format: "iife",
+  },
+];
+
+await rm(path.join(root, "dist"), { recursive: true, force: true });
+await mkdir(path.join(root, "dist"), { recursive: true });
+for (const [from, to] of copies) {
+  if (!existsSync(path.join(repository, from))) {
+    console.warn(`${from} is not there yet`);
+    await writeFile(path.join(root, to), JSON.stringify({ scopeName: "source.pydslrep", patterns: [] }));
+    continue;
+  }
+  await copyFile(path.join(repository, from), path.join(root, to));
+}
+for (const bundle of bundles) {
+  const options = { ...common, ...bundle };
+  if (process.argv.includes("--watch")) {
+    await (await esbuild.context(options)).watch();
+  } else {
+    await esbuild.build(options);
+  }
+}

@@ -1,0 +1,38 @@
+// Runs the unit tests: bundles every *.test.ts of tests/, src/ and webview/ for Node, and hands them to its test runner.
+import { spawnSync } from "node:child_process";
+import { readdirSync, rmSync } from "node:fs";
+import path from "node:path";
+
+import esbuild from "esbuild";
+
+const root = path.resolve(import.meta.dirname, "..");
+const out = path.join(root, "dist", "tests");
+
+const entryPoints = ["tests", "src", "webview"].flatMap((folder) =>
+  readdirSync(path.join(root, folder), { recursive: true })
+    .filter((file) => file.endsWith(".test.ts"))
+    .map((file) => path.join(folder, file)),
+);
+rmSync(out, { recursive: true, force: true });
+await esbuild.build({
+  absWorkingDir: root,
+  entryPoints,
+  outdir: out,
+  outbase: ".",
+  bundle: true,
+  platform: "node",
+  target: "node20",
+  format: "cjs",
+  sourcemap: "inline",
+  external: ["vscode"],
+  logLevel: "warning",
+  // Tests find the repository's files from here, wherever their bundle is.
+  define: { EXTENSION_FOLDER: JSON.stringify(root) },
+});
+const files = readdirSync(out, { recursive: true }).filter((file) => file.endsWith(".test.js"));
+const { status } = spawnSync(
+  process.execPath,
+  ["--enable-source-maps", "--test", ...files.map((file) => path.join(out, file))],
+  { stdio: "inherit" },
+);
+process.exit(status ?? 1);

