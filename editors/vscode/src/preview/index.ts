@@ -2,7 +2,10 @@
 import * as vscode from "vscode";
 import type { LanguageClient } from "vscode-languageclient/node";
 
-/** Registers the command `pydslrep.showPreview` and the panel behind it. */
+/**
+ * Registers the command `pydslrep.showPreview` and the panel behind it. Its arguments are both optional: the program's
+ * `vscode.Uri`, which the button in the title bar gives, and the environment's name, which lenses give besides.
+ */
 export function registerPreview(
   _context: vscode.ExtensionContext,
   _client: () => LanguageClient | undefined,
