@@ -14,6 +14,7 @@ const production = process.argv.includes("--production");
 const copies = [
   ["grammar/textmate/pydslrep.tmLanguage.json", "dist/pydslrep.tmLanguage.json"],
   ["editors/vscode/webview/preview/style.css", "dist/preview.css"],
+  ["docs/images/square.svg", "dist/square.svg"],
   ["LICENSE", "LICENSE"],
 ];
 

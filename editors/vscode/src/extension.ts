@@ -1,11 +1,27 @@
 // The extension: starts the language server and adds what the protocol has no word for.
-import type * as vscode from "vscode";
+import * as vscode from "vscode";
 
+import { registerCommands } from "./commands";
 import { registerPreview } from "./preview";
 import { Session } from "./session";
+import { registerStatus } from "./status";
+import { registerTasks } from "./tasks";
 
 export async function activate(context: vscode.ExtensionContext): Promise<void> {
   const session = new Session(context);
-  context.subscriptions.push(session, registerPreview(context, () => session.client));
+  context.subscriptions.push(
+    session,
+    registerCommands(session),
+    registerStatus(session),
+    registerTasks(session),
+    registerPreview(context, () => session.client),
+    vscode.workspace.onDidChangeConfiguration((event) => {
+      if (event.affectsConfiguration("pydslrep.server.path")) {
+        void session.restart();
+      }
+    }),
+    // Paths that the workspace names count from now on.
+    vscode.workspace.onDidGrantWorkspaceTrust(() => void session.restart()),
+  );
   await session.start();
 }

@@ -1,0 +1,58 @@
+// What is between the editor and the server: which settings it is told, and where its commands and pictures go.
+import * as vscode from "vscode";
+import type { Middleware } from "vscode-languageclient/node";
+
+import manifest from "../package.json";
+import { runInSimulator } from "./run";
+import { setTable } from "./settings";
+
+/** The commands of this extension that the server may put into a lens. */
+export const CLIENT_COMMANDS = ["pydslrep.showReferences"];
+
+const SECTION = "pydslrep";
+
+/** The settings that the server knows. */
+const KEYS = manifest.contributes.configuration
+  .filter(({ title }) => title === "Programs")
+  .flatMap(({ properties }) => Object.keys(properties))
+  .map((key) => key.slice(SECTION.length + 1));
+
+/** What a lens hands to a command: the program's address and the environment's name. */
+export interface ChosenEnvironment {
+  uri: string;
+  environment: string;
+}
+
+export function middleware(): Middleware {
+  return {
+    workspace: {
+      configuration: async (params, token, next) => {
+        const answers: unknown = await next(params, token);
+        const others: unknown[] = Array.isArray(answers) ? answers : [];
+        const settings = vscode.workspace.getConfiguration(SECTION);
+        const told = params.items.map((item, index): unknown =>
+          item.section === SECTION ? setTable(KEYS, (key) => settings.inspect(key)) : others[index],
+        );
+        return told;
+      },
+    },
+    executeCommand: (command, args: unknown[], next) => {
+      const [chosen] = args;
+      switch (command) {
+        case "pydslrep.run":
+          return runInSimulator(chosen as ChosenEnvironment, () => next(command, args));
+        case "pydslrep.previewPath": {
+          const { uri, environment } = chosen as ChosenEnvironment;
+          return vscode.commands.executeCommand("pydslrep.showPreview", vscode.Uri.parse(uri), environment);
+        }
+        default:
+          return next(command, args);
+      }
+    },
+    window: {
+      // The picture of a run comes with the answer as well, and is shown beside the program.
+      showDocument: (params, token, next) =>
+        params.external === true && params.uri.endsWith(".svg") ? { success: true } : next(params, token),
+    },
+  };
+}

@@ -1,0 +1,78 @@
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import path from "node:path";
+import { test } from "node:test";
+
+import manifest from "../package.json";
+import snippets from "../snippets/pydslrep.json";
+import { command } from "./command";
+
+const at = (...parts: string[]) => path.join(EXTENSION_FOLDER, ...parts);
+
+test("settings are those of pydslrep.schema.json", () => {
+  const { status, stderr } = spawnSync(process.execPath, [at("scripts/contributions.mjs"), "--check"], { encoding: "utf8" });
+  assert.equal(status, 0, stderr);
+});
+
+test("no setting speaks of the file that it was described for", () => {
+  assert.doesNotMatch(JSON.stringify(manifest.contributes.configuration), /this file/);
+});
+
+test("every file that the manifest names is there once the extension is built", () => {
+  const named = JSON.stringify(manifest).matchAll(/"(?:\.\/)?((?:dist|images|snippets|walkthrough)\/[^"]+)"/g);
+  const missing = [...named].map(([, file = ""]) => file).filter((file) => !existsSync(at(file)));
+  assert.deepEqual(missing, []);
+});
+
+test("no command of ours has the name of one that the server has", () => {
+  const protocol = readFileSync(path.resolve(EXTENSION_FOLDER, "../../docs/protocol.md"), "utf8");
+  const servers = [...protocol.matchAll(/^\| `(pydslrep\.\w+)`/gm)].map(([, name]) => name);
+  assert.equal(servers.length, 4);
+  const ours = manifest.contributes.commands.map(({ command: name }) => name);
+  assert.deepEqual(ours.filter((name) => servers.includes(name)), []);
+});
+
+test("menus, keys and the walkthrough call commands that there are", () => {
+  const { commands, menus, keybindings, walkthroughs } = manifest.contributes;
+  const known = new Set(commands.map(({ command: name }) => name));
+  const called = [
+    ...Object.values(menus).flat().map(({ command: name }) => name),
+    ...keybindings.map(({ command: name }) => name),
+    ...[...JSON.stringify(walkthroughs).matchAll(/(?:command|onCommand):(pydslrep\.\w+)/g)].map(([, name]) => name),
+  ];
+  assert.deepEqual(called.filter((name) => name !== undefined && !known.has(name)), []);
+});
+
+/** A snippet's text with what its places hold at first. */
+function filledIn(body: string[]): string {
+  return body
+    .join("\n")
+    .replace(/\$\{\d+\|([^,|]*)[^|]*\|\}/g, "$1")
+    .replace(/\$\{\d+:([^}]*)\}/g, "$1")
+    .replace(/\$(?:\w+)/g, "");
+}
+
+/** What a snippet needs around it to be a whole program. */
+const SURROUNDINGS: Record<string, string> = {
+  "Movement that drives a square":
+    "wheel a with radius 4\nwheel b with radius 4\nrobot rover type tw with port 1 has { a b } wheels\n",
+};
+
+test("what snippets insert is a program without errors, in the canonical layout", () => {
+  const folder = mkdtempSync(path.join(tmpdir(), "pydslrep-snippets-"));
+  try {
+    for (const [name, { body }] of Object.entries(snippets)) {
+      const file = path.join(folder, "program.pyr");
+      const text = `${SURROUNDINGS[name] ?? ""}${filledIn(body)}`;
+      assert.doesNotMatch(text, /\$/, name);
+      writeFileSync(file, text);
+      const { status, stdout } = spawnSync(command(), ["check", file], { encoding: "utf8" });
+      assert.equal(status, 0, `${name}: ${stdout}`);
+      assert.doesNotMatch(stdout, /^(error|warning)/m, name);
+    }
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
+});
