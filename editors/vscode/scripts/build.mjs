@@ -1,6 +1,6 @@
 // Builds what the extension consists of into dist/: the extension itself, the browser side of the preview, and copies
 // of what the repository keeps elsewhere. `--watch` builds again at every change, `--production` is for the package.
-import { existsSync } from "node:fs";
+import { existsSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { copyFile, mkdir, rm, writeFile } from "node:fs/promises";
 import path from "node:path";
 
@@ -24,7 +24,7 @@ const common = {
   logLevel: "warning",
   minify: production,
   sourcemap: production ? false : "linked",
-  legalComments: "linked",
+  metafile: true,
 };
 const bundles = [
   // VS Code 1.91 runs extensions in Node 20.
@@ -55,11 +55,31 @@ for (const [from, to] of copies) {
   }
   await copyFile(path.join(repository, from), path.join(root, to));
 }
+const inputs = new Set();
 for (const bundle of bundles) {
   const options = { ...common, ...bundle };
   if (process.argv.includes("--watch")) {
     await (await esbuild.context(options)).watch();
   } else {
-    await esbuild.build(options);
+    const { metafile } = await esbuild.build(options);
+    Object.keys(metafile.inputs).forEach((input) => inputs.add(input));
   }
+}
+writeFileSync(path.join(root, "dist", "LICENSES.txt"), licences(inputs));
+
+/** What the packages that were put into a bundle want to be said with it. */
+function licences(inputs) {
+  const folders = [...inputs].map((input) => /^.*node_modules\/(?:@[^/]+\/)?[^/]+/.exec(input)?.[0]);
+  return [...new Set(folders)]
+    .filter((folder) => folder !== undefined)
+    .sort()
+    .map((folder) => {
+      const licence = readdirSync(path.join(root, folder)).find((name) => /^licen[cs]e/i.test(name));
+      if (licence === undefined) {
+        throw new Error(`${folder} has no licence: it cannot be bundled`);
+      }
+      const { name, version } = JSON.parse(readFileSync(path.join(root, folder, "package.json"), "utf8"));
+      return `${name} ${version}\n\n${readFileSync(path.join(root, folder, licence), "utf8")}`;
+    })
+    .join("\n----\n\n");
 }

@@ -31,7 +31,7 @@ export function middleware(): Middleware {
         const others: unknown[] = Array.isArray(answers) ? answers : [];
         const settings = vscode.workspace.getConfiguration(SECTION);
         const told = params.items.map((item, index): unknown =>
-          item.section === SECTION ? setTable(KEYS, (key) => settings.inspect(key)) : others[index],
+          item.section === SECTION ? setTable(KEYS, (key) => settings.inspect<unknown>(key)) : others[index],
         );
         return told;
       },
@@ -46,7 +46,7 @@ export function middleware(): Middleware {
           return vscode.commands.executeCommand("pydslrep.showPreview", vscode.Uri.parse(uri), environment);
         }
         default:
-          return next(command, args);
+          return next(command, args) as unknown;
       }
     },
     window: {

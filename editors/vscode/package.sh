@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# Builds the extension for this platform, with the server inside: a .vsix that works with no setting at all.
+# Needs Rust and Node 20 or later. Prints the path of the package.
+# `--command FILE` takes a command `pydslrep` that is already built, `--target NAME` says which platform that is for.
+set -euo pipefail
+cd "$(dirname "$0")"
+repository=$(cd ../.. && pwd)
+
+command=
+target=
+while [ $# -gt 0 ]; do
+  case $1 in
+    --command) command=$(realpath "${2:?--command needs a file}"); shift 2 ;;
+    --target) target=${2:?--target needs a name, such as linux-x64}; shift 2 ;;
+    *) echo "usage: package.sh [--command FILE] [--target NAME]" >&2; exit 2 ;;
+  esac
+done
+for needed in node npm; do
+  command -v "$needed" >/dev/null || { echo "$needed is missing: install Node 20 or later" >&2; exit 2; }
+done
+target=${target:-$(node -p 'process.platform + "-" + process.arch')}
+ending=
+case $target in win32-*) ending=.exe ;; esac
+
+if [ -z "$command" ]; then
+  (cd "$repository" && cargo build --release --locked --bin pydslrep >&2)
+  command=${CARGO_TARGET_DIR:-$repository/target}/release/pydslrep$ending
+fi
+
+npm ci --silent >&2
+npm ci --silent --prefix packaging >&2
+rm -rf server
+mkdir server
+# The command is the server as well (`pydslrep lsp`), and is what runs programs.
+cp "$command" "server/pydslrep$ending"
+chmod +x "server/pydslrep$ending"
+node scripts/build.mjs --production >&2
+package=pydslrep-$target.vsix
+# There is no place yet that links in the readme could lead to.
+packaging/node_modules/.bin/vsce package --target "$target" --out "$package" --no-dependencies --allow-missing-repository \
+  --no-rewrite-relative-links >&2
+echo "$PWD/$package"
