@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Everything that must hold, in one command: formats, lints, tests of every crate, and whole behaviour through the
-# command, the protocol and the generated scripts. Needs Rust and Python; the rest it sets up in .venv and target.
+# command, the protocol and the generated scripts. Needs Rust, Python and Node; the rest it sets up in .venv and target.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -22,6 +22,18 @@ if ! cmp -s tests/requirements.txt "$stamp"; then
   python3 -m venv .venv
   .venv/bin/pip install --quiet --disable-pip-version-check --requirement tests/requirements.txt
   cp tests/requirements.txt "$stamp"
+fi
+
+step "Node packages"
+# What reads the TextMate grammar as an editor does.
+if ! command -v npm >/dev/null; then
+  echo "npm is missing: install Node 20 or later (on Debian and Ubuntu: apt install npm) and run this again" >&2
+  exit 2
+fi
+stamp=grammar/textmate/node_modules/package-lock.json
+if ! cmp -s grammar/textmate/package-lock.json "$stamp"; then
+  npm ci --prefix grammar/textmate --no-audit --no-fund
+  cp grammar/textmate/package-lock.json "$stamp"
 fi
 
 step "Rust: format and lints"

@@ -1,0 +1,141 @@
+"""Each fact of the grammars is said once: what is made from another file is what that file says now."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+import tree_sitter as sitter
+from colours import GRAMMAR, ROOT, TABLE, TEXTMATE, TREE_SITTER, TextMate, TreeSitter
+
+CORPUS = re.compile(r"^=+\n([^\n]+)\n=+\n(.*?)\n-{10,}\n(.*?)(?=^=+$|\Z)", re.M | re.S)
+# Who made the parser, and from what.
+CHECKSUMS = TREE_SITTER / "src" / "checksums.txt"
+CONTEXTUAL = {"distance", "bumper", "import"}
+
+
+def words() -> set[str]:
+    """The words of the published grammar, which a test in `syntax` holds against the lexer."""
+    rules, _, _ = (GRAMMAR / "pydslrep.ebnf").read_text().partition("(* Tokens.")
+    return set(re.findall(r'"([A-Za-z]+)"', rules))
+
+
+def query(name: str) -> str:
+    """A query without its comments."""
+    return re.sub(r";.*", "", (TREE_SITTER / "queries" / name).read_text())
+
+
+def test_the_tree_sitter_grammar_has_the_words_of_the_language() -> None:
+    grammar = (TREE_SITTER / "src" / "grammar.json").read_text()
+    literals = set(re.findall(r'"type": "STRING",\s*"value": "(\w+)"', grammar))
+    assert literals == words()
+
+
+def test_the_query_for_colours_has_them_too() -> None:
+    plain, _, misplaced = query("highlights.scm").partition("#any-of?")
+    named = set(re.findall(r"\((\w+)\) @keyword", plain)) - {"name"}
+    assert set(re.findall(r'"(\w+)"', plain)) | named == words()
+    assert set(re.findall(r'"(\w+)"', misplaced)) == words() - CONTEXTUAL
+
+
+def test_textmate_knows_every_word_and_no_other(textmate: TextMate) -> None:
+    texts = [*sorted(words()), "colour", "radios", "4wheelx"]
+    answers = textmate.read([f"at {text}" for text in texts])
+    keywords = {
+        text
+        for text, (_, colours) in zip(texts, answers, strict=True)
+        if colours[3:] == ["keyword"] * len(text)
+    }
+    # The other two are words behind the `:` of a sensor alone.
+    assert keywords == words() - {"distance", "bumper"}
+
+
+def test_textmate_is_what_its_source_says() -> None:
+    command = ["node", str(TEXTMATE / "build.mjs"), "--check"]
+    assert subprocess.run(command, check=False).returncode == 0
+
+
+def test_textmate_says_of_examples_what_they_note() -> None:
+    program = TEXTMATE / "node_modules" / ".bin" / "vscode-tmgrammar-test"
+    result = subprocess.run(
+        [program, "tests/*.pyr"], cwd=TEXTMATE, check=False, stdout=subprocess.PIPE
+    )
+    assert result.returncode == 0, result.stdout.decode()
+
+
+def test_the_parser_is_made_from_the_grammar() -> None:
+    """Whoever changes either without `generate.sh` is told, also where there is no tree-sitter command."""
+    _, *lines = CHECKSUMS.read_text().splitlines()
+    noted = {name: digest for digest, name in (line.split() for line in lines)}
+    now = {
+        name: hashlib.sha256((TREE_SITTER / name).read_bytes()).hexdigest()
+        for name in noted
+    }
+    assert {"grammar.js", "src/parser.c"} <= set(now)
+    assert now == noted, "run grammar/tree-sitter/generate.sh"
+
+
+@pytest.mark.skipif(
+    not shutil.which("tree-sitter"), reason="needs the tree-sitter command"
+)
+def test_tree_sitter_makes_the_same_parser_again(tmp_path: Path) -> None:
+    made = (TREE_SITTER / "src" / "parser.c").read_text()
+    maker, *_ = CHECKSUMS.read_text().splitlines()
+    version = subprocess.run(
+        ["tree-sitter", "--version"], check=True, stdout=subprocess.PIPE
+    )
+    if version.stdout.decode().strip() not in maker:
+        pytest.skip("another tree-sitter made the parser")
+    shutil.copy(TREE_SITTER / "grammar.js", tmp_path)
+    shutil.copy(TREE_SITTER / "tree-sitter.json", tmp_path)
+    subprocess.run(["tree-sitter", "generate", "--abi", "14"], cwd=tmp_path, check=True)
+    assert (tmp_path / "src" / "parser.c").read_text() == made
+
+
+@pytest.mark.parametrize(
+    "corpus",
+    sorted((TREE_SITTER / "test" / "corpus").iterdir()),
+    ids=lambda path: path.stem,
+)
+def test_trees_are_those_of_the_corpus(corpus: Path, tree_sitter: TreeSitter) -> None:
+    cases = CORPUS.findall(corpus.read_text())
+    assert len(cases) == corpus.read_text().count("====\n") / 2
+    for name, text, tree in cases:
+        root = tree_sitter.parser.parse(text.encode()).root_node
+        assert str(root) == " ".join(tree.split()).replace(" )", ")"), name
+
+
+@pytest.mark.parametrize(
+    "name", sorted(path.name for path in (TREE_SITTER / "queries").iterdir())
+)
+def test_queries_fit_the_grammar(name: str, tree_sitter: TreeSitter) -> None:
+    assert sitter.Query(tree_sitter.language, query(name)).pattern_count > 0
+
+
+def test_helix_has_its_names_of_the_colours() -> None:
+    expected = (TREE_SITTER / "queries" / "highlights.scm").read_text()
+    for row in TABLE.values():
+        expected = re.sub(rf"@{row['capture']}\b(?!\.)", f"@{row['helix']}", expected)
+    expected = re.sub(
+        r"^; .*\n(; .*\n)*",
+        "; Made from grammar/tree-sitter/queries/highlights.scm.\n",
+        expected,
+        count=1,
+    )
+    helix = ROOT / "editors" / "helix" / "queries" / "pydslrep" / "highlights.scm"
+    assert helix.read_text() == expected
+
+
+def test_the_versions_are_the_project_s() -> None:
+    version = re.search(r'^version = "(.+)"', (ROOT / "Cargo.toml").read_text(), re.M)
+    assert version
+    assert (
+        json.loads((TREE_SITTER / "package.json").read_text())["version"] == version[1]
+    )
+    metadata = json.loads((TREE_SITTER / "tree-sitter.json").read_text())["metadata"]
+    assert metadata["version"] == version[1]

@@ -1,0 +1,100 @@
+"""What is wrong with an entity stays its own affair: no grammar lets it reach the entities before and behind it."""
+
+from __future__ import annotations
+
+import random
+import re
+from dataclasses import dataclass
+from typing import Protocol
+
+import pytest
+from colours import Colours, TextMate, TreeSitter, random_programs
+
+TOKEN = re.compile(
+    r'//[^\r\n]*|/\*.*?\*/|"[^"\r\n]*"|\^?[A-Za-z_]\w*|-?[0-9][0-9.]*|[{}:,]', re.S
+)
+BEGINS_ENTITY = re.compile(r"(wheelH?|sensor|ip|robot|parallel|movement|environment)\b")
+# What somebody may type too much; nothing that begins an entity or a comment.
+STRAY = re.split(
+    " ",
+    "with radius has { } , : 4.5 -1 name distance 1.2.3.4 port wheels sensors of move turn left until at meters robots "
+    "moves type tw slam § left-wheel größe ^ 4. ; ( ) = '",
+)
+
+
+@dataclass
+class Broken:
+    """A program with a mistake in one entity."""
+
+    before: str
+    entity: str
+    mistaken: str
+    behind: str
+
+    @property
+    def whole(self) -> str:
+        return self.before + self.entity + self.behind
+
+    @property
+    def text(self) -> str:
+        return self.before + self.mistaken + self.behind
+
+
+def broken(program: str, starts: list[int], choose: random.Random) -> Broken:
+    """The program with an entity that breaks off, or has one token too much or too few; those that begin entities
+    do not count."""
+    index = choose.randrange(len(starts))
+    start, end = [*starts, len(program)][index : index + 2]
+    entity = program[start:end]
+    _, *tokens = TOKEN.finditer(entity)
+    token = choose.choice(tokens)
+    if choose.random() < 0.3:
+        return Broken(
+            program[:start], entity, f"{entity[: token.start()]}\n", program[end:]
+        )
+    is_plain = not token[0].startswith(("/", '"')) and not BEGINS_ENTITY.match(token[0])
+    if is_plain and choose.random() < 0.5:
+        mistaken = entity[: token.start()] + entity[token.end() :]
+    else:
+        stray = f" {choose.choice(STRAY)} "
+        mistaken = entity[: token.start()] + stray + entity[token.start() :]
+    return Broken(program[:start], entity, mistaken, program[end:])
+
+
+@pytest.fixture(scope="module")
+def mistakes(tree_sitter: TreeSitter) -> list[Broken]:
+    choose = random.Random(7)
+    found = []
+    for program in random_programs(80, 12):
+        starts = tree_sitter.entities(program)
+        found += [broken(program, starts, choose) for _ in range(4) if starts]
+    return found
+
+
+class Reader(Protocol):
+    def __call__(self, texts: list[str]) -> list[Colours]: ...
+
+
+def check_neighbours(mistakes: list[Broken], read: Reader) -> None:
+    whole = read([mistake.whole for mistake in mistakes])
+    after = read([mistake.text for mistake in mistakes])
+    for mistake, sound, seen in zip(mistakes, whole, after, strict=True):
+        head, tail = len(mistake.before), len(mistake.behind)
+        assert seen[:head] == sound[:head], mistake
+        assert seen[len(seen) - tail :] == sound[len(sound) - tail :], mistake
+
+
+def test_textmate_keeps_the_neighbours(
+    mistakes: list[Broken], textmate: TextMate
+) -> None:
+    check_neighbours(
+        mistakes, lambda texts: [colours for _, colours in textmate.read(texts)]
+    )
+
+
+def test_tree_sitter_keeps_the_neighbours(
+    mistakes: list[Broken], tree_sitter: TreeSitter
+) -> None:
+    check_neighbours(
+        mistakes, lambda texts: [tree_sitter.read(text)[1] for text in texts]
+    )
