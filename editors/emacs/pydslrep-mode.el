@@ -1,0 +1,116 @@
+;;; pydslrep-mode.el --- Major mode for PyDSLRep -*- lexical-binding: t -*-
+
+;; License: MIT
+;; Package-Requires: ((emacs "29.1"))
+
+;;; Commentary:
+
+;; Colours, indentation and comments for programs of PyDSLRep (*.pyr), and the language server by eglot.
+;;
+;; Where the tree-sitter parser is installed (`treesit-install-language-grammar', or as the README says), every name has
+;; the colour of what it names; without it, words, numbers and declarations have colours.
+
+;;; Code:
+
+(require 'treesit)
+
+(defgroup pydslrep nil
+  "Programs of PyDSLRep."
+  :group 'languages)
+
+(defcustom pydslrep-server '("pydslrep-lsp" "--stdio")
+  "The command that starts the language server."
+  :type '(repeat string))
+
+(defconst pydslrep-words
+  '("wheel" "wheelH" "with" "radius" "sensor" "ip" "robot" "type" "tw" "fw" "fwh" "port" "has" "wheels" "sensors"
+    "parallel" "movement" "of" "move" "meters" "centimeters" "at" "turn" "left" "right" "until" "slam" "environment"
+    "robots" "moves")
+  "The words that are no names.")
+
+(defvar pydslrep-mode-syntax-table
+  (let ((table (make-syntax-table)))
+    (modify-syntax-entry ?/ ". 124" table)
+    (modify-syntax-entry ?* ". 23b" table)
+    (modify-syntax-entry ?\n ">" table)
+    (modify-syntax-entry ?_ "_" table)
+    ;; `^robots' is a name.
+    (modify-syntax-entry ?^ "_" table)
+    (modify-syntax-entry ?\' "." table)
+    table))
+
+(defun pydslrep--declares (words face)
+  "What gives the name behind one of WORDS a FACE."
+  `(,(concat "\\_<\\(?:" words "\\)\\s-+\\(\\_<.+?\\_>\\)") 1 ',face))
+
+(defvar pydslrep-font-lock-keywords
+  `((,(regexp-opt pydslrep-words 'symbols) . 'font-lock-keyword-face)
+    ("^\\s-*\\(import\\)\\s-*\"" 1 'font-lock-keyword-face)
+    (":\\s-*\\(distance\\|bumper\\)\\_>" 1 'font-lock-keyword-face)
+    ("\\_<-?[0-9]+\\(?:\\.[0-9]+\\)*" . 'font-lock-number-face)
+    ,(pydslrep--declares "wheelH?" 'font-lock-variable-name-face)
+    ,(pydslrep--declares "sensor" 'font-lock-property-name-face)
+    ,(pydslrep--declares "ip" 'font-lock-constant-face)
+    ,(pydslrep--declares "robot\\|of" 'font-lock-type-face)
+    ,(pydslrep--declares "movement" 'font-lock-function-name-face)
+    ,(pydslrep--declares "environment" 'font-lock-preprocessor-face))
+  "Colours where there is no parser.")
+
+(defun pydslrep--font-lock-rules ()
+  "Colours by the parser: the same as in grammar/tree-sitter/queries/highlights.scm."
+  (treesit-font-lock-rules
+   :language 'pydslrep :feature 'comment '((comment) @font-lock-comment-face)
+   :language 'pydslrep :feature 'string '((string) @font-lock-string-face)
+   :language 'pydslrep :feature 'keyword
+   `([,@(remove "slam" pydslrep-words) "distance" "bumper" "import"] @font-lock-keyword-face
+     (slam) @font-lock-keyword-face)
+   :language 'pydslrep :feature 'number '([(number) (address)] @font-lock-number-face)
+   :language 'pydslrep :feature 'definition
+   '((wheel_definition name: (name) @font-lock-variable-name-face)
+     (sensor_definition name: (name) @font-lock-property-name-face)
+     (ip_definition name: (name) @font-lock-constant-face)
+     (robot_definition name: (name) @font-lock-type-face)
+     (movement_definition name: (name) @font-lock-function-name-face)
+     (environment_definition name: (name) @font-lock-preprocessor-face))
+   :language 'pydslrep :feature 'reference
+   '((wheel_references (name) @font-lock-variable-use-face)
+     (sensor_references (name) @font-lock-property-use-face)
+     (ip_clause ip: (name) @font-lock-constant-face)
+     (movement_definition robot: (name) @font-lock-type-face)
+     (robot_references (name) @font-lock-type-face)
+     (movement_references (name) @font-lock-function-call-face))))
+
+(defun pydslrep-indent-line ()
+  "Indents by two for each open brace."
+  (let* ((state (save-excursion (syntax-ppss (line-beginning-position))))
+         (depth (- (car state) (if (looking-at-p "[ \t]*}") 1 0))))
+    (unless (or (nth 3 state) (nth 4 state))
+      (if (<= (current-column) (current-indentation))
+          (indent-line-to (* 2 (max 0 depth)))
+        (save-excursion (indent-line-to (* 2 (max 0 depth))))))))
+
+;;;###autoload
+(define-derived-mode pydslrep-mode prog-mode "PyDSLRep"
+  "Programs of PyDSLRep."
+  (setq-local comment-start "// "
+              comment-end ""
+              comment-start-skip "\\(?://+\\|/\\*+\\)\\s-*"
+              indent-tabs-mode nil
+              indent-line-function #'pydslrep-indent-line)
+  (setq-local electric-indent-chars (cons ?} electric-indent-chars))
+  (if (not (treesit-ready-p 'pydslrep t))
+      (setq-local font-lock-defaults '(pydslrep-font-lock-keywords))
+    (treesit-parser-create 'pydslrep)
+    (setq-local treesit-font-lock-settings (pydslrep--font-lock-rules)
+                treesit-font-lock-feature-list '((comment definition) (keyword string) (number reference))
+                treesit-defun-type-regexp "_definition\\'")
+    (treesit-major-mode-setup)))
+
+;;;###autoload
+(add-to-list 'auto-mode-alist '("\\.pyr\\'" . pydslrep-mode))
+
+(with-eval-after-load 'eglot
+  (add-to-list 'eglot-server-programs `(pydslrep-mode . ,pydslrep-server)))
+
+(provide 'pydslrep-mode)
+;;; pydslrep-mode.el ends here

@@ -1,0 +1,56 @@
+# Sourced by the run.sh of terminal editors: finds an editor, or unpacks it with all it needs from a Debian package.
+#
+# What is unpacked lies in target/editors and has its own libraries, so that an editor of a newer Debian runs on an older
+# one and nothing of the machine is changed.
+
+repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+
+need() { # a program, the package that has it
+  command -v "$1" >/dev/null && return
+  if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
+    apt-get update -qq && apt-get install -y -qq --no-install-recommends "$2" >/dev/null
+  else
+    echo "$1 is missing: install it (on Debian and Ubuntu: apt install $2) and run this again" >&2
+    exit 2
+  fi
+}
+
+unpacked() { # suite, package: prints the folder it is unpacked in
+  local folder="$repository/target/editors/$1-$2"
+  if [ ! -e "$folder/complete" ]; then
+    need apt-get apt >&2
+    need patchelf patchelf >&2
+    rm -rf "$folder"
+    unpack "$1" "$folder" "$2" >&2
+    touch "$folder/complete"
+  fi
+  echo "$folder"
+}
+
+unpack() { # suite, folder, package
+  local folder=$2 state="$2/apt" mirror
+  mkdir -p "$folder/usr/"{bin,sbin,lib,lib64} "$state/lists/partial" "$state/cache/archives/partial"
+  for name in bin sbin lib lib64; do ln -s "usr/$name" "$folder/$name"; done
+  mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' | grep -v security | sort | uniq -c | sort -rn | awk 'NR == 1 { print $2 }')
+  echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror $1 main" > "$state/sources.list"
+  : > "$state/status"
+  local options=(
+    -qq -o Dir::Etc::sourcelist="$state/sources.list" -o Dir::Etc::sourceparts=/dev/null
+    -o Dir::Etc::preferencesparts=/dev/null -o Dir::State="$state" -o Dir::State::status="$state/status"
+    -o Dir::Cache="$state/cache" -o APT::Sandbox::User=root -o APT::Install-Recommends=false
+    -o Acquire::Languages=none -o Debug::NoLocking=1
+  )
+  apt-get "${options[@]}" update
+  apt-get "${options[@]}" -y --download-only install "$3" > /dev/null
+  for package in "$state"/cache/archives/*.deb; do
+    dpkg-deb --fsys-tarfile "$package" | tar -x -C "$folder" --keep-directory-symlink --no-same-owner
+  done
+  rm -rf "$state"
+  local loader libraries
+  loader=$(find "$folder"/usr/lib* -name 'ld-linux*.so.*' | head -n 1)
+  libraries=$(dirname "$(find "$folder"/usr/lib* -name libc.so.6 | head -n 1)")
+  find "$folder/usr" -type f -perm -100 ! -name '*.so*' | while read -r file; do
+    patchelf --print-interpreter "$file" > /dev/null 2>&1 || continue
+    patchelf --set-interpreter "$loader" --force-rpath --set-rpath "$libraries:$folder/usr/lib" "$file" 2> /dev/null || true
+  done
+}

@@ -1,0 +1,97 @@
+"""Emacs, set up as its readme says: once with the parser, once without. With `--pictures` it takes those of the docs."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from session import FIX, FIXED, MESSAGE, PICTURES, PROGRAM, ROOT, Session, session
+from terminal import Terminal
+
+EMACS = [os.environ["EMACS"], *os.environ.get("EMACS_OPTIONS", "").split()]
+# What is not the readme's: nothing asks questions or writes elsewhere, and the picture shows the program.
+QUIET = """
+(setq native-comp-jit-compilation nil inhibit-startup-screen t make-backup-files nil auto-save-default nil
+      create-lockfiles nil eglot-sync-connect 10 eglot-confirm-server-edits nil custom-file "/dev/null")
+(menu-bar-mode -1)
+(load-theme 'modus-vivendi t)
+"""
+
+
+def command(terminal: Terminal, name: str) -> None:
+    terminal.press("M-x")
+    terminal.wait(r"M-x\s*$")
+    terminal.type(name)
+    terminal.wait(rf"M-x {name}")
+    terminal.press("Enter")
+
+
+def edit(made: Session, terminal: Terminal, picture: Path | None) -> None:
+    made.check("attached", terminal.wait(r"\[eglot:"), terminal.screen())
+    command(terminal, "flymake-goto-next-error")
+    made.check("diagnostics", terminal.wait(MESSAGE), terminal.screen())
+    made.check(
+        "poses and times behind actions",
+        terminal.wait(r"9\.0.*\d s"),
+        terminal.screen(),
+    )
+    words = ("robot", "wheelL", "19999", "patrol", "rover", "yard")
+    colours = {word: terminal.colour_of(word) for word in words}
+    made.check(
+        "colours",
+        len(set(colours.values())) >= 5 and None not in colours.values(),
+        str(colours),
+    )
+    if picture:
+        terminal.picture(picture)
+    command(terminal, "eglot-code-actions")
+    made.check("quick fix is offered", terminal.wait(FIX), terminal.screen())
+    terminal.press("Enter")
+    made.check("quick fix", terminal.wait(FIXED), terminal.screen())
+    command(terminal, "eglot-format-buffer")
+    made.check("format", terminal.wait("(?m)^ {2,4}move 4.0 meters"), terminal.screen())
+    terminal.press("M-<")
+    terminal.press("C-n")
+    terminal.press("M-f", "C-f")
+    command(terminal, "eldoc-doc-buffer")
+    made.check("hover", terminal.wait("28.3 cm a turn"), terminal.screen())
+    terminal.press("C-x")
+    terminal.type("1")
+    command(terminal, "eglot-rename")
+    made.check("rename asks", terminal.wait("Rename .wheelL. to"), terminal.screen())
+    terminal.press("C-a", "C-k")
+    terminal.type("port_side")
+    terminal.press("Enter")
+    made.check("rename", terminal.wait(r"\{ port_side wheelR \}"), terminal.screen())
+    terminal.press("M->")
+    terminal.type("movement n of ")
+    terminal.press("C-M-i")
+    made.check("completion", terminal.wait("movement n of rover"), terminal.screen())
+
+
+def run(made: Session, takes_pictures: bool) -> None:
+    made.program.write_text(PROGRAM)
+    start = [*EMACS, "-nw", str(made.program)]
+    with Terminal(start, made.program.parent, made.environment()) as terminal:
+        edit(made, terminal, PICTURES / "emacs.png" if takes_pictures else None)
+
+
+def main() -> None:
+    with session("emacs") as made:
+        readme = (ROOT / "editors" / "emacs" / "README.md").read_text()
+        block = re.search(r"^```elisp\n(.*?)^```", readme, re.M | re.S)
+        assert block, "the readme has no elisp"
+        settings = made.home / ".emacs.d" / "init.el"
+        settings.parent.mkdir()
+        settings.write_text(QUIET + block[1].replace("/path/to/pydslrep", str(ROOT)))
+        print("== without the parser")
+        run(made, takes_pictures=False)
+        print("== with the parser")
+        made.set_up()
+        run(made, takes_pictures="--pictures" in sys.argv)
+
+
+main()

@@ -1,0 +1,97 @@
+"""Helix, set up as its readme says. With `--pictures` it also takes those of the documentation."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from session import FIX, FIXED, MESSAGE, PICTURES, Session, session
+from terminal import Terminal
+
+HX = os.environ["HX"]
+SHOWS_HINTS = '[editor]\nend-of-line-diagnostics = "hint"\ntrue-color = true\n[editor.lsp]\ndisplay-inlay-hints = true\n'
+
+
+def health(made: Session) -> None:
+    variables = {**os.environ, **made.environment()}
+    for language in ("pydslrep", "pydslrep-toml"):
+        report = subprocess.run(
+            [HX, "--health", language],
+            env=variables,
+            check=True,
+            stdout=subprocess.PIPE,
+        )
+        text = re.sub(r"\x1b\[[0-9;]*m", "", report.stdout.decode())
+        found = "✓ pydslrep-lsp" in text and "Highlight queries: ✓" in text
+        made.check(f"health of {language}", found, text)
+
+
+def edit(made: Session, terminal: Terminal, takes_pictures: bool) -> None:
+    made.check("diagnostics", terminal.wait(MESSAGE), terminal.screen())
+    terminal.type("jk")
+    made.check(
+        "poses and times behind actions",
+        terminal.wait(r"9\.0.*\d s"),
+        terminal.screen(),
+    )
+    colours = {
+        word: terminal.colour_of(word)
+        for word in ("robot", "wheelL", "19999", "patrol", "rover", "yard")
+    }
+    made.check(
+        "colours",
+        len(set(colours.values())) >= 5 and None not in colours.values(),
+        str(colours),
+    )
+    if takes_pictures:
+        terminal.picture(PICTURES / "helix.png")
+    terminal.type("6gg6l")
+    terminal.press("Space")
+    terminal.type("k")
+    made.check(
+        "hover", terminal.wait("Two-wheel differential drive"), terminal.screen()
+    )
+    terminal.press("Escape")
+    terminal.type("]d")
+    terminal.press("Space")
+    terminal.type("a")
+    made.check("quick fix is offered", terminal.wait(FIX), terminal.screen())
+    terminal.press("Enter", "Escape")
+    made.check("quick fix", terminal.wait(FIXED), terminal.screen())
+    terminal.type(":format")
+    terminal.press("Enter")
+    made.check("format", terminal.wait(r"\d {4}move 4.0 meters"), terminal.screen())
+    terminal.type("2gg7l")
+    terminal.press("Space")
+    terminal.type("r")
+    made.check("rename asks", terminal.wait("rename-to:"), terminal.screen())
+    terminal.press("C-u")
+    terminal.type("port_side")
+    terminal.press("Enter")
+    made.check("rename", terminal.wait(r"\{ port_side wheelR \}"), terminal.screen())
+    terminal.type("5ggo")
+    terminal.type("wheel c wi")
+    made.check("completion", terminal.wait("with radius +keyword"), terminal.screen())
+    if takes_pictures:
+        terminal.picture(PICTURES / "helix-completion.png")
+    terminal.press("Escape")
+    terminal.type(":q!")
+    terminal.press("Enter")
+
+
+def main() -> None:
+    with session("helix") as made:
+        made.set_up()
+        health(made)
+        (made.home / ".config" / "helix" / "config.toml").write_text(SHOWS_HINTS)
+        with Terminal(
+            [HX, str(made.program)], made.program.parent, made.environment()
+        ) as terminal:
+            edit(made, terminal, "--pictures" in sys.argv)
+
+
+main()
