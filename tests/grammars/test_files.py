@@ -131,6 +131,12 @@ def test_helix_has_its_names_of_the_colours() -> None:
     assert helix.read_text() == expected
 
 
+def test_emacs_has_the_words_too() -> None:
+    mode = (ROOT / "editors" / "emacs" / "pydslrep-mode.el").read_text()
+    _, _, listed = mode.partition("(defconst pydslrep-words")
+    assert set(re.findall(r'"(\w+)"', listed.partition(")")[0])) == words() - CONTEXTUAL
+
+
 def test_the_versions_are_the_project_s() -> None:
     version = re.search(r'^version = "(.+)"', (ROOT / "Cargo.toml").read_text(), re.M)
     assert version

@@ -13,4 +13,4 @@ if [ -z "${EMACS:-}" ] && ! EMACS=$(command -v emacs); then
   export EMACS_OPTIONS="--dump-file=$(echo "$parts"/*.pdmp)"
 fi
 export EMACS
-exec python3 "$repository/tests/editors/emacs/session.py" "$@"
+exec python3 "$repository/tests/editors/emacs/check.py" "$@"

@@ -8,4 +8,4 @@ if [ -z "${HX:-}" ] && ! HX=$(command -v hx); then
   export HX="$folder/usr/bin/hx" HELIX_RUNTIME="$folder/usr/lib/hx/runtime"
 fi
 export HX
-exec python3 "$repository/tests/editors/helix/session.py" "$@"
+exec python3 "$repository/tests/editors/helix/check.py" "$@"
