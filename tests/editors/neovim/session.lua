@@ -1,100 +1,20 @@
 -- What a person does in Neovim with a program, key by key; run.sh starts it in an empty folder and says what it needs.
 -- Prints one line for each thing that must hold; the exit code says whether all did.
 
--- Everything runs in a coroutine: Neovim's own loop goes on between the steps, so that typed keys are really typed.
-local routine
-local failed = false
-
-local function sleep(milliseconds)
-  vim.defer_fn(function() assert(coroutine.resume(routine)) end, milliseconds)
-  coroutine.yield()
-end
-
---- Waits until `condition` gives something, and gives it on.
-local function wait(condition)
-  local deadline = vim.uv.hrtime() + 10e9
-  while vim.uv.hrtime() < deadline do
-    local value = condition()
-    if value then return value end
-    sleep(10)
-  end
-  return condition()
-end
-
-local function check(what, holds, seen)
-  failed = failed or not holds
-  local detail = not holds and seen ~= nil and ': ' .. vim.inspect(seen) or ''
-  io.stdout:write(holds and 'ok   ' or 'FAIL ', what, detail, '\n')
-end
-
---- Checks that `actual()` becomes what is expected.
-local function becomes(what, expected, actual)
-  wait(function() return vim.deep_equal(actual(), expected) end)
-  local seen = actual()
-  check(what, vim.deep_equal(seen, expected), seen)
-end
-
-local function read(name)
-  local file = io.open(name, 'rb')
-  if not file then return nil end
-  local bytes = file:read('*a')
-  file:close()
-  return bytes
-end
-
-local function write(name, bytes)
-  local file = assert(io.open(name, 'wb'))
-  file:write(bytes)
-  file:close()
-end
-
-local function client()
-  return vim.lsp.get_clients({ bufnr = 0 })[1]
-end
-
---- The id of the server's process, Neovim's only child.
-local function process()
-  return vim.api.nvim_get_proc_children(vim.fn.getpid())[1]
-end
-
-local function open(name)
-  vim.cmd.edit({ args = { name }, bang = true })
-  wait(function() return client() and client().initialized end)
-end
-
-local function text(buffer)
-  return table.concat(vim.api.nvim_buf_get_lines(buffer or 0, 0, -1, false), '\n') .. '\n'
-end
-
---- Puts the cursor on the first place of `pattern` in the buffer.
-local function go_to(pattern)
-  vim.api.nvim_win_set_cursor(0, { 1, 0 })
-  assert(vim.fn.search(pattern, 'c') > 0, pattern)
-end
-
---- The errors in the program: where, and the code.
-local function errors()
-  return vim.tbl_map(function(found)
-    return { found.lnum, found.col, found.end_lnum, found.end_col, found.code }
-  end, vim.diagnostic.get(0, { severity = vim.diagnostic.severity.ERROR }))
-end
-
---- Presses the key for code actions, takes the one whose title has `wanted` in it, and gives all titles.
-local function act(wanted)
-  local titles
-  local select = vim.ui.select
-  vim.ui.select = function(items, options, choose)
-    titles = vim.tbl_map(options.format_item, items)
-    for index, title in ipairs(titles) do
-      if title:find(wanted, 1, true) then return choose(items[index], index) end
-    end
-    choose(nil, nil)
-  end
-  vim.api.nvim_input('gra')
-  wait(function() return titles end)
-  vim.ui.select = select
-  return titles
-end
+local harness = dofile(vim.env.TESTS .. '/harness.lua')
+local sleep = harness.sleep
+local wait = harness.wait
+local check = harness.check
+local becomes = harness.becomes
+local read = harness.read
+local write = harness.write
+local client = harness.client
+local process = harness.process
+local open = harness.open
+local text = harness.text
+local go_to = harness.go_to
+local errors = harness.errors
+local act = harness.act
 
 local MENDED = read(vim.env.PROGRAM)
 local TYPO = MENDED:gsub('{ wheelL wheelR }', '{ wheelL whelR }')
@@ -274,13 +194,31 @@ local function rewriting()
   becomes('and done', true, function() return text():find('move 400', 1, true) ~= nil end)
 end
 
+local function renaming()
+  write('renamed.pyr', MENDED)
+  open('renamed.pyr')
+  go_to('wheelL with')
+  local input = vim.ui.input
+  vim.ui.input = function(options, answer) answer(options.default .. '2') end
+  vim.api.nvim_input('grn')
+  becomes('a rename changes a declaration and its uses', (MENDED:gsub('wheelL', 'wheelL2')), text)
+  vim.ui.input = input
+end
+
+local function formatting()
+  write('formatted.pyr', (MENDED:gsub('\n  ', '\n'):gsub('with radius', 'with   radius')))
+  open('formatted.pyr')
+  vim.lsp.buf.format({ async = true })
+  becomes('a program can be brought into its layout', MENDED, text)
+end
+
 local function files_that_move()
   write('parts.pyr', 'wheel a with radius 4.5\nwheel b with radius 4.5\n')
   write('main.pyr', 'import "parts.pyr"\nrobot r type tw with port 1 has { a b } wheels\n')
   open('main.pyr')
   becomes('an import is found', {}, errors)
-  local old, new = vim.uri_from_fname(vim.fn.fnamemodify('parts.pyr', ':p')), nil
-  new = old:gsub('parts%.pyr$', 'lib/parts.pyr')
+  local old = vim.uri_from_fname(vim.fn.fnamemodify('parts.pyr', ':p'))
+  local new = old:gsub('parts%.pyr$', 'lib/parts.pyr')
   local moved = { files = { { oldUri = old, newUri = new } } }
   -- What file trees in Neovim do; it has no command of its own for it.
   local answer = client():request_sync('workspace/willRenameFiles', moved, 10000, 0)
@@ -411,17 +349,7 @@ local function life()
   write('../server.pid', tostring(process()))
 end
 
-routine = coroutine.create(function()
-  for _, part in ipairs({
-    diagnostics, no_script_of_a_broken_program, completion, reading, beside_the_program, while_typing,
-    rewriting, files_that_move, settings_file, quick_fix, script, other_texts, life,
-  }) do
-    local fine, why = xpcall(part, debug.traceback)
-    if not fine then
-      check(why, false)
-      break -- Each part goes on where the one before it ended.
-    end
-  end
-  vim.cmd(failed and 'cquit!' or 'quitall!')
-end)
-vim.schedule(function() assert(coroutine.resume(routine)) end)
+harness.run({
+  diagnostics, no_script_of_a_broken_program, completion, reading, beside_the_program, while_typing,
+  rewriting, renaming, formatting, files_that_move, settings_file, quick_fix, script, other_texts, life,
+})

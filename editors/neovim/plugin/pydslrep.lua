@@ -1,0 +1,55 @@
+-- What is there from the start; the rest is loaded when it is needed.
+if vim.g.loaded_pydslrep or vim.fn.has('nvim-0.10') == 0 then
+  return
+end
+vim.g.loaded_pydslrep = true
+
+vim.api.nvim_create_user_command('Pydslrep', function(call)
+  require('pydslrep.command').run(call.fargs)
+end, {
+  nargs = '*',
+  desc = 'PyDSLRep: scripts, runs, previews, and the server',
+  complete = function(typed, line)
+    return require('pydslrep.command').complete(typed, line)
+  end,
+})
+
+local group = vim.api.nvim_create_augroup('pydslrep', {})
+
+---@param event string
+---@param act fun(event: table)
+local function on_server(event, act)
+  vim.api.nvim_create_autocmd(event, {
+    group = group,
+    callback = function(happened)
+      local client = vim.lsp.get_client_by_id(happened.data.client_id)
+      if client and client.name == 'pydslrep' then
+        act(happened)
+      end
+    end,
+  })
+end
+
+on_server('LspAttach', function(event)
+  require('pydslrep.lenses').register()
+  if vim.bo[event.buf].filetype == 'pydslrep' then
+    require('pydslrep.folding').attached(event.buf)
+  end
+end)
+on_server('LspProgress', function(event)
+  require('pydslrep.runs').progressed(event.data)
+end)
+
+-- For those who have nvim-treesitter, which forgets what others have told it whenever it reads its list anew.
+vim.api.nvim_create_autocmd('User', {
+  group = group,
+  pattern = 'TSUpdate',
+  callback = function()
+    local there, parsers = pcall(require, 'nvim-treesitter.parsers')
+    if there and type(parsers) == 'table' then
+      parsers.pydslrep = { install_info = { path = require('pydslrep.parser').grammar() } }
+    end
+  end,
+})
+
+require('pydslrep.server').enable()

@@ -1,0 +1,7 @@
+[
+  (robot_definition)
+  (movement_definition)
+  (environment_definition)
+  (import)+
+  (comment)+
+] @fold

@@ -1,0 +1,3 @@
+; TODO and FIXME, links
+((comment) @injection.content
+  (#set! injection.language "comment"))

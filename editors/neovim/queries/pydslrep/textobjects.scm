@@ -1,0 +1,17 @@
+(movement_definition) @function.outer
+(actions . "{" . (_) @function.inner . "}")
+(actions . "{" . (_) @_first (_) @_last . "}"
+  (#make-range! "function.inner" @_first @_last))
+
+(robot_definition) @class.outer
+(environment_definition) @class.outer
+
+[(move) (turn) (slam)] @statement.outer
+
+(wheel_references (name) @parameter.inner)
+(sensor_references (name) @parameter.inner)
+(robot_references (name) @parameter.inner)
+(movement_references (name) @parameter.inner)
+
+(number) @number.inner
+(comment) @comment.outer

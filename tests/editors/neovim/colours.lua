@@ -1,0 +1,172 @@
+-- Colours of the same programs by the syntax file, by the parser and by the server: none changes when the next comes.
+-- run.sh starts it in an empty folder, with the server switched off.
+
+local harness = dofile(vim.env.TESTS .. '/harness.lua')
+local wait, check, told = harness.wait, harness.check, harness.told
+
+-- Whatever the grammar knows and the programs of the article do not have.
+local EVERYTHING = [[
+import "parts/rover.pyr"
+// A comment, TODO: with a robot { in it }
+/* one of
+   several lines: wheel w with radius 1 */
+wheelH ^robots with radius 4.5
+wheelH b with radius 10
+sensor distance : distance
+sensor bumper: bumper
+sensor import
+ip home 127.0.0.1
+robot first type fwh with port 20000 has { ^robots, b, ^robots, b } wheels with sensors { distance bumper, import }
+robot second with port 20001 has { /* none } */ b b } wheels
+parallel movement m of first {
+  move -1.5 meters at 12
+  turn left 30 turn right until { distance, bumper } // and on
+  slam
+}
+movement n of second { turn left }
+environment e with ip home has { first, second } robots with { m, n } moves
+environment f has { first } robots
+]]
+
+local function programs()
+  harness.write('everything.pyr', EVERYTHING)
+  local found = { 'everything.pyr' }
+  for _, folder in ipairs({ '/tests/paper/*.pyr', '/examples/*.pyr', '/examples/parts/*.pyr' }) do
+    vim.list_extend(found, vim.fn.glob(vim.env.REPOSITORY .. folder, true, true))
+  end
+  return found
+end
+
+--- What is to be seen of groups that lie on each other, and the last of them that has a colour.
+local function seen(groups)
+  local colour, name = {}, nil
+  for _, group in ipairs(groups) do
+    local own = vim.api.nvim_get_hl(0, { name = group, link = false })
+    if next(own) then
+      colour = vim.tbl_extend('force', colour, own)
+      name = group
+    end
+  end
+  return name and { colour = colour, group = name } or nil
+end
+
+local WAYS = {
+  syntax = function(found) return vim.tbl_map(function(item) return item.hl_group end, found.syntax) end,
+  treesitter = function(found)
+    local own = vim.tbl_filter(function(item) return item.lang == 'pydslrep' end, found.treesitter)
+    return vim.tbl_map(function(item) return item.hl_group end, own)
+  end,
+  semantic_tokens = function(found)
+    table.sort(found.semantic_tokens, function(a, b) return a.opts.priority < b.opts.priority end)
+    return vim.tbl_map(function(item) return item.opts.hl_group end, found.semantic_tokens)
+  end,
+}
+
+--- What is to be seen of each character of a program that is no space: by its place.
+local function colours(program, way)
+  vim.cmd.edit(program)
+  if way == 'treesitter' then
+    assert(vim.treesitter.highlighter.active[vim.api.nvim_get_current_buf()], 'tree-sitter does not colour')
+    vim.treesitter.get_parser(0):parse()
+  elseif way == 'semantic_tokens' then
+    wait(function() return vim.lsp.semantic_tokens.get_at_pos(0, vim.fn.line('$') - 1, 0) end)
+    wait(function() return #vim.inspect_pos(0, 0, 0).semantic_tokens > 0 end)
+  end
+  local all = {}
+  for row, line in ipairs(vim.api.nvim_buf_get_lines(0, 0, -1, false)) do
+    for column in line:gmatch('()%S') do
+      all[row .. ':' .. column] = seen(WAYS[way](vim.inspect_pos(0, row - 1, column - 1)))
+    end
+  end
+  return all
+end
+
+--- Where two ways to colour a program differ.
+local function differences(program, before, after)
+  local found = {}
+  for place, one in pairs(after) do
+    local other = before[place]
+    if not other or not vim.deep_equal(one.colour, other.colour) then
+      table.insert(found, { program, place, one.group, other and other.group or 'nothing' })
+    end
+  end
+  for place, one in pairs(before) do
+    -- Signs have no colour by the server; where another gives them one, it stays.
+    if not after[place] and not one.group:find('^@punctuation') then
+      table.insert(found, { program, place, 'nothing', one.group })
+    end
+  end
+  return found
+end
+
+-- Neovim fetches the server's colours of what is to be seen.
+vim.o.lines = 400
+
+local of = { syntax = {}, treesitter = {}, semantic_tokens = {} }
+
+local function read(way)
+  for _, program in ipairs(programs()) do
+    of[way][program] = colours(program, way)
+  end
+end
+
+local function by_the_syntax_file()
+  local parser = require('pydslrep.parser')
+  vim.fn.mkdir(vim.fs.dirname(parser.path()), 'p')
+  harness.write(parser.path(), 'no parser')
+  read('syntax')
+  check('a parser that is none is passed over', vim.bo.syntax == 'pydslrep')
+  vim.cmd.checkhealth('pydslrep')
+  check('and told of', harness.text():find('cannot be used', 1, true), harness.text())
+  vim.cmd.bwipeout()
+  vim.uv.fs_unlink(parser.path())
+end
+
+local function by_the_parser()
+  local nothing = told('there is no grammar in', function() vim.cmd('Pydslrep parser /nowhere') end)
+  check('without a grammar there is no parser, and it is said', nothing)
+  local compiler = vim.env.CC
+  vim.env.CC = 'false'
+  check('nor where the compiler fails', told('did not build', function() vim.cmd('Pydslrep parser') end))
+  vim.env.CC = compiler
+  check('the parser is built', told('is built', function() vim.cmd('Pydslrep parser') end))
+  check('and used at once', vim.treesitter.highlighter.active[vim.api.nvim_get_current_buf()])
+  vim.cmd.checkhealth('pydslrep')
+  check('health finds it', harness.text():find('parser/pydslrep.so', 1, true), harness.text())
+  vim.cmd.bwipeout()
+  vim.cmd('silent %bwipeout')
+  read('treesitter')
+  local method = vim.wo.foldmethod .. ' ' .. vim.wo.foldexpr
+  check('it folds, too', method == 'expr v:lua.vim.treesitter.foldexpr()', method)
+  vim.cmd.edit(vim.env.PROGRAM)
+  check('movements, for one', vim.fn.foldlevel(8) == 1, vim.fn.foldlevel(8))
+end
+
+local function by_the_server()
+  vim.cmd('silent %bwipeout')
+  vim.lsp.enable('pydslrep')
+  read('semantic_tokens')
+  local groups, places = {}, 0
+  for _, all in pairs(of.semantic_tokens) do
+    for _, one in pairs(all) do
+      places = places + 1
+      groups[one.group:match('type%.(%w+)') or one.group:match('typemod%.(%w+)') or one.group] = true
+    end
+  end
+  local names = vim.tbl_keys(groups)
+  table.sort(names)
+  local all = { 'class', 'comment', 'enumMember', 'function', 'keyword', 'namespace', 'number', 'property', 'string',
+    'variable' }
+  check('the server has a colour for all kinds of words', vim.deep_equal(names, all), names)
+  check('and for many places', places > 3000, places)
+  for _, way in ipairs({ 'syntax', 'treesitter' }) do
+    local found = {}
+    for program, after in pairs(of.semantic_tokens) do
+      vim.list_extend(found, differences(program, of[way][program], after))
+    end
+    check('nothing changes its colour: ' .. way .. ' and server', #found == 0, vim.list_slice(found, 1, 40))
+  end
+  harness.write('../server.pid', tostring(harness.process()))
+end
+
+harness.run({ by_the_syntax_file, by_the_parser, by_the_server })

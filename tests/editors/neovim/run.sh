@@ -1,0 +1,97 @@
+#!/usr/bin/env bash
+# Sessions in real Neovims, set up as editors/neovim/README.md says. On Debian and its kin everything that is needed is
+# unpacked into target/editors; elsewhere $NVIM names the Neovim (0.11 or later) to use, and lints are left out.
+# $PYDSLREP_LSP and $PYDSLREP name the programs; without them, they are built. Arguments choose sessions.
+set -euo pipefail
+tests=$(cd "$(dirname "$0")" && pwd)
+source "$tests/../debian.sh"
+plugin="$repository/editors/neovim"
+cache="$repository/target/editors"
+
+# Inside Neovim's own terminal the variable holds the socket of that Neovim.
+[ -S "${NVIM:-}" ] && NVIM=
+current=${NVIM:-} older='' lints=''
+if [ -z "$current" ] && command -v apt-get > /dev/null; then
+  # Of the stable and of the coming Debian: the oldest Neovim that is supported, and the newest.
+  older=$(unpacked trixie neovim)/usr/bin/nvim
+  current=$(unpacked forky neovim)/usr/bin/nvim
+  lints=$(unpacked trixie lua-check)/usr
+fi
+current=$(command -v "${current:-nvim}") || { echo "there is no nvim: install Neovim, or name it in NVIM" >&2; exit 2; }
+unset NVIM
+
+if [ -z "${PYDSLREP:-}" ] || [ -z "${PYDSLREP_LSP:-}" ]; then
+  cargo build --quiet --locked --manifest-path "$repository/Cargo.toml" --bin pydslrep --bin pydslrep-lsp
+  built=${CARGO_TARGET_DIR:-$repository/target}/debug
+fi
+server=$(realpath -e "${PYDSLREP_LSP:-$built/pydslrep-lsp}")
+command=$(realpath -e "${PYDSLREP:-$built/pydslrep}")
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+mkdir "$scratch/bin"
+ln -s "$server" "$scratch/bin/pydslrep-lsp"
+ln -s "$command" "$scratch/bin/pydslrep"
+export PATH="$scratch/bin:$PATH" TESTS="$tests" REPOSITORY="$repository"
+export PROGRAM="$repository/tests/paper/table2_two_wheels.pyr"
+
+lua_block() { # the n-th Lua block of the readme, with the real folder in it
+  awk -v wanted="$1" '/^```/ { inside = $0 == "```lua" && ++block == wanted; next } inside' "$plugin/README.md" |
+    sed "s|/path/to/pydslrep|$repository|"
+}
+
+alive() { # a dead process that nobody has waited for yet does not count
+  case $(ps -o stat= -p "$1" || true) in "" | Z*) return 1 ;; esac
+}
+
+session() { # name, Neovim, file; init.lua comes from standard input
+  echo "== $1"
+  local home="$scratch/$1" failed=0
+  mkdir -p "$home/config/nvim" "$home/work"
+  cat > "$home/config/nvim/init.lua"
+  if [ "$1" = package ]; then
+    # As with any plugin manager: one folder among others.
+    mkdir -p "$home/data/nvim/site/pack/person/start"
+    ln -s "$plugin" "$home/data/nvim/site/pack/person/start/pydslrep"
+  fi
+  (
+    cd "$home/work"
+    export XDG_CONFIG_HOME="$home/config" XDG_DATA_HOME="$home/data" XDG_STATE_HOME="$home/state"
+    # Kept: what a first run installs.
+    export XDG_CACHE_HOME="$cache/cache"
+    timeout 180 "$2" --headless -S "$tests/$3" 2> "$home/messages"
+  ) || failed=1
+  local server_id
+  server_id=$(cat "$home/server.pid" 2>/dev/null || true)
+  if [ -n "$server_id" ] && ! alive "$server_id"; then
+    echo "ok   the server is gone when Neovim is"
+  else
+    echo "FAIL the server is gone when Neovim is"
+    failed=1
+  fi
+  [ $failed = 0 ] || cat "$home/messages" "$home/state/nvim/lsp.log" 2>/dev/null || true
+  return $failed
+}
+
+lint() {
+  echo "== lint"
+  (
+    cd "$repository"
+    export PATH="$lints/bin:$PATH" LUA_PATH="$lints/share/lua/5.1/?.lua;$lints/share/lua/5.1/?/init.lua"
+    LUA_CPATH=$(echo "$lints"/lib/*/lua/5.1)/?.so luacheck --quiet --config "$tests/luacheckrc" "$plugin" "$tests"
+  )
+}
+
+failed=0
+for name in ${*:-lint folder pasted package colours older}; do
+  case $name in
+    lint) [ -z "$lints" ] || lint ;;
+    folder) lua_block 1 | session folder "$current" session.lua ;;
+    pasted) lua_block 2 | session pasted "$current" session.lua ;;
+    package) session package "$current" package.lua < "$tests/init.lua" ;;
+    colours) session colours "$current" colours.lua < <(echo "vim.g.pydslrep = { enable = false }"; lua_block 1) ;;
+    older) [ -z "$older" ] || session older "$older" older.lua < <(lua_block 1) ;;
+    *) echo "there is no session $name" >&2; false ;;
+  esac || failed=1
+done
+exit $failed

@@ -1,0 +1,50 @@
+"""What the plugin for Neovim repeats: `UPDATE_EXPECT=1` copies the queries anew."""
+
+import os
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PLUGIN = ROOT / "editors" / "neovim"
+QUERIES = ROOT / "grammar" / "tree-sitter" / "queries"
+COPIES = PLUGIN / "queries" / "pydslrep"
+
+# Neovim has no use for what tells search engines of a program's names.
+NOT_FOR_NEOVIM = {"tags.scm"}
+
+
+def names(folder: Path) -> set[str]:
+    return {query.name for query in folder.glob("*.scm")}
+
+
+def test_all_queries_are_there() -> None:
+    assert names(COPIES) == names(QUERIES) - NOT_FOR_NEOVIM
+
+
+@pytest.mark.parametrize("name", sorted(names(QUERIES) - NOT_FOR_NEOVIM))
+def test_queries_are_those_of_the_grammar(name: str) -> None:
+    original = (QUERIES / name).read_text(encoding="utf-8")
+    if os.environ.get("UPDATE_EXPECT"):
+        (COPIES / name).write_text(original, encoding="utf-8")
+    copy = (COPIES / name).read_text(encoding="utf-8")
+    assert copy == original, "run it with UPDATE_EXPECT=1"
+
+
+def test_the_syntax_file_has_every_word_of_the_language() -> None:
+    # A test in `syntax` holds the published grammar against the lexer.
+    grammar = (ROOT / "grammar" / "pydslrep.ebnf").read_text(encoding="utf-8")
+    rules, _, _ = grammar.partition("(* Tokens.")
+    words = set(re.findall(r'"([A-Za-z]+)"', rules))
+
+    syntax = (PLUGIN / "syntax" / "pydslrep.vim").read_text(encoding="utf-8")
+    plain, contextual = set[str](), set[str]()
+    for line in re.findall(r"^syn keyword pydslrepKeyword (.*)", syntax, re.M):
+        plain |= set(re.sub(r" (nextgroup|skip).*", "", line).split())
+    for line in re.findall(r"^syn keyword pydslrepKind contained (.*)", syntax, re.M):
+        contextual |= set(line.split())
+    contextual |= set(re.findall(r"^syn match pydslrepImport /\\<(\w+)", syntax, re.M))
+    assert plain | contextual == words
+    assert contextual == {"distance", "bumper", "import"}
+    assert not plain & contextual
