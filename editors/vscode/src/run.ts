@@ -62,8 +62,8 @@ function page(drawing: string, output: string): string {
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
 <style>
 body { margin: 0; padding: 12px; }
-img { display: block; max-width: 100%; max-height: 75vh; margin: auto; border-radius: 4px; }
-pre { font-family: var(--vscode-editor-font-family); font-size: var(--vscode-editor-font-size); overflow-x: auto; }
+img { display: block; width: 100%; max-height: 75vh; object-fit: contain; border-radius: 4px; }
+pre { font-family: var(--vscode-editor-font-family); font-size: 12px; overflow-x: auto; }
 </style>
 </head>
 <body>

@@ -1,0 +1,228 @@
+// A real editor to test in: code-server with a fresh profile and the extension in it, open in a headless Chromium.
+import { execFileSync, spawn } from "node:child_process";
+import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import net from "node:net";
+import os from "node:os";
+import path from "node:path";
+
+import { chromium } from "playwright-core";
+
+const { VSIX, CHROMIUM, CODE_SERVER, PICTURES } = process.env;
+for (const [name, value] of Object.entries({ VSIX, CHROMIUM, CODE_SERVER })) {
+  if (!value) {
+    throw new Error(`${name} is not set: start the tests by tests/editors/run.sh vscode`);
+  }
+}
+const entry = path.join(CODE_SERVER, "node_modules/code-server/out/node/entry.js");
+
+export const repository = path.resolve(import.meta.dirname, "../../..");
+
+/** How long anything may take that is waited for. */
+const PATIENCE = 60_000;
+
+/** Nothing on the screen that is not the extension's. */
+const SETTINGS = {
+  "workbench.startupEditor": "none",
+  "workbench.colorTheme": "Default Dark Modern",
+  "workbench.tips.enabled": false,
+  "workbench.secondarySideBar.defaultVisibility": "hidden",
+  "workbench.layoutControl.enabled": false,
+  "workbench.reduceMotion": "on",
+  "remote.autoForwardPorts": false,
+  "chat.disableAIFeatures": true,
+  "window.commandCenter": false,
+  "editor.minimap.enabled": false,
+  "editor.accessibilitySupport": "off",
+  "files.autoSave": "off",
+  "telemetry.telemetryLevel": "off",
+  "update.mode": "none",
+  "extensions.autoUpdate": false,
+  "extensions.autoCheckUpdates": false,
+};
+
+/** An editor with a workspace of these files: names in it, and texts or files of the repository. */
+export class Stage {
+  /** @param {{files: Record<string, string>, settings?: object, trusted?: boolean, env?: object, open?: string, query?: [string, string][], prepare?: (page) => Promise<void>, size?: {width: number, height: number}}} options */
+  static async open(options) {
+    const stage = new Stage();
+    try {
+      await stage.#start(options);
+      return stage;
+    } catch (error) {
+      await stage.close();
+      throw error;
+    }
+  }
+
+  async #start({ files, settings = {}, trusted = true, env = {}, open, query = [], prepare, size }) {
+    this.scratch = mkdtempSync(path.join(os.tmpdir(), "pyr-"));
+    this.folder = path.join(this.scratch, "ws");
+    mkdirSync(path.join(this.scratch, "data/User"), { recursive: true });
+    for (const [name, text] of Object.entries(files)) {
+      mkdirSync(path.dirname(path.join(this.folder, name)), { recursive: true });
+      writeFileSync(path.join(this.folder, name), text);
+    }
+    writeFileSync(path.join(this.scratch, "data/User/settings.json"), JSON.stringify({ ...SETTINGS, ...settings }));
+    writeFileSync(path.join(this.scratch, "config.yaml"), "auth: none\n");
+    this.env = {
+      ...process.env,
+      XDG_CONFIG_HOME: this.scratch,
+      XDG_DATA_HOME: this.scratch,
+      TMPDIR: this.scratch,
+      ...env,
+    };
+    const base = ["--config", "config.yaml", "--user-data-dir", "data", "--extensions-dir", "extensions"];
+    const inScratch = { env: this.env, cwd: this.scratch };
+    execFileSync(process.execPath, [entry, ...base, "--install-extension", VSIX], { ...inScratch, stdio: "ignore" });
+    const port = await freePort();
+    this.address = `127.0.0.1:${port}`;
+    const trust = trusted ? ["--disable-workspace-trust"] : [];
+    const quiet = ["--disable-telemetry", "--disable-update-check", "--disable-getting-started-override"];
+    this.server = spawn(
+      process.execPath,
+      [entry, ...base, "--auth", "none", "--bind-addr", this.address, ...quiet, ...trust, this.folder],
+      { ...inScratch, detached: true, stdio: "ignore" },
+    );
+    this.ended = new Promise((resolve) => this.server.once("exit", resolve));
+    await until("code-server answers", async () => (await fetch(`http://${this.address}/healthz`).catch(() => undefined))?.ok);
+    this.browser = await chromium.launch({
+      executablePath: CHROMIUM,
+      args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking"],
+    });
+    this.page = await this.browser.newPage({ viewport: size ?? { width: 1100, height: 680 } });
+    this.page.setDefaultTimeout(PATIENCE);
+    await prepare?.(this.page);
+    const payload = [...(open ? [["openFile", this.remote(open)]] : []), ...query];
+    const search = new URLSearchParams({ folder: this.folder, payload: JSON.stringify(payload) });
+    await this.page.goto(`http://${this.address}/?${search}`);
+    await this.page.locator(".monaco-workbench").waitFor();
+    if (open) {
+      await this.line("").first().waitFor();
+      await this.page.keyboard.press("Control+B");
+      await this.page.locator(".part.sidebar").waitFor({ state: "hidden" });
+    }
+  }
+
+  /** The address of a file as the editor in the browser has it; with the authority, or marks are not drawn. */
+  remote(file) {
+    return `vscode-remote://${this.address}${path.resolve(this.folder, file)}`;
+  }
+
+  /** Lines of the editor that contain this text. */
+  line(text) {
+    return this.page.locator(".editor-instance .view-line", { hasText: text });
+  }
+
+  /** The tab of a file. */
+  tab(name) {
+    return this.page.locator(`.tab[data-resource-name="${name}"]`);
+  }
+
+  /** Puts the cursor into a word of a line. */
+  async clickWord(line, word) {
+    await this.line(line).first().locator("span span", { hasText: word }).first().click();
+  }
+
+  /** The editor's text as one sees it, with single spaces. */
+  async text() {
+    return spaced(await this.page.locator(".editor-instance .view-lines").first().innerText());
+  }
+
+  /** A file of the workspace. */
+  read(file) {
+    return readFileSync(path.join(this.folder, file), "utf8");
+  }
+
+  /** Calls a command by its title in the palette. */
+  async call(title) {
+    await this.page.keyboard.press("F1");
+    const input = this.page.locator(".quick-input-widget input").first();
+    await input.waitFor();
+    await input.fill(`>${title}`);
+    await this.page.locator(".quick-input-widget .monaco-list-row", { hasText: title.split(": ").at(-1) }).first().waitFor();
+    await this.page.keyboard.press("Enter");
+  }
+
+  /** Types at the cursor, as a person does: key by key. */
+  async type(text) {
+    await this.page.keyboard.type(text, { delay: 15 });
+  }
+
+  /** The frame of a webview that has an element like this. */
+  async webview(selector) {
+    return until(`a webview with ${selector}`, async () => {
+      for (const frame of this.page.frames()) {
+        if (await frame.locator(selector).count().catch(() => 0)) {
+          return frame;
+        }
+      }
+      return undefined;
+    });
+  }
+
+  /** A picture for the documentation, if pictures are wanted. */
+  async picture(name, options = {}) {
+    if (PICTURES) {
+      mkdirSync(PICTURES, { recursive: true });
+      await this.page.screenshot({ path: path.join(PICTURES, `vscode-${name}.png`), ...options });
+    }
+  }
+
+  /** The processes of the extension's own server, by their numbers. */
+  servers() {
+    const list = execFileSync("ps", ["-eo", "pid=,args="], { encoding: "utf8" }).split("\n");
+    const ours = list.filter((line) => line.includes(this.scratch) && / lsp --stdio\b/.test(line));
+    return ours.map((line) => Number.parseInt(line, 10));
+  }
+
+  /** Ends everything and removes its files. */
+  async close() {
+    await this.browser?.close().catch(() => undefined);
+    if (this.server) {
+      process.kill(-this.server.pid, "SIGTERM");
+      await Promise.race([this.ended, new Promise((resolve) => setTimeout(resolve, 5000).unref())]);
+      await until("the language server is gone", () => this.servers().length === 0);
+    }
+    if (this.scratch && !process.env.KEEP) {
+      rmSync(this.scratch, { recursive: true, force: true, maxRetries: 10, retryDelay: 200 });
+    }
+  }
+}
+
+/** A program of the repository. */
+export function program(name) {
+  return readFileSync(path.join(repository, name), "utf8");
+}
+
+/** A whole folder of the repository, as files for a stage. */
+export function copyInto(stage, from, to) {
+  cpSync(path.join(repository, from), path.join(stage.folder, to), { recursive: true });
+}
+
+/** Text from the editor: it has spaces that do not break, and as many as the layout wants. */
+export function spaced(text) {
+  return text.replace(/[\u00a0\s]+/g, " ");
+}
+
+/** Waits until something is so, and returns it; what was waited for is said where it never is. */
+export async function until(what, check, patience = PATIENCE) {
+  const end = Date.now() + patience;
+  for (;;) {
+    const value = await check();
+    if (value) {
+      return value;
+    }
+    if (Date.now() > end) {
+      throw new Error(`waited ${patience / 1000} s in vain until ${what}`);
+    }
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+}
+
+async function freePort() {
+  const server = net.createServer();
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+  const { port } = server.address();
+  await new Promise((resolve) => server.close(resolve));
+  return port;
+}

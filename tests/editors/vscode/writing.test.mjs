@@ -1,0 +1,96 @@
+// What a person does with a program in the editor: sees a mistake, completes, mends, generates, runs.
+import assert from "node:assert/strict";
+import { existsSync } from "node:fs";
+import path from "node:path";
+import { after, before, test } from "node:test";
+
+import { Stage, spaced, until } from "./stage.mjs";
+
+const PROGRAM = `wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+
+robot rover type tw with port 19999 has { wheelL wheelR } wheels
+
+movement patrol of rovr {
+  move 2.0 meters
+  turn left
+  move 50 centimeters at 12.5
+}
+
+environment yard has { rover } robots with { patrol } moves
+`;
+
+let stage;
+before(async () => {
+  stage = await Stage.open({ files: { "yard.pyr": PROGRAM }, open: "yard.pyr" });
+});
+after(() => stage?.close());
+
+test("a mistake is underlined, and the file is one of the language", async () => {
+  await stage.page.locator(".squiggly-error").first().waitFor();
+  const bar = spaced(await stage.page.locator(".statusbar").innerText());
+  assert.match(bar, /PyDSLRep/);
+});
+
+test("the server is the one in the extension, with nothing set", () => {
+  assert.equal(stage.servers().length, 1);
+});
+
+test("lenses are shown above declarations", async () => {
+  await stage.page.locator(".codelens-decoration", { hasText: "Generate script" }).first().waitFor();
+});
+
+test("a quick fix mends the mistake", async () => {
+  await stage.clickWord("movement patrol of", "rovr");
+  await stage.page.keyboard.press("Control+.");
+  await stage.page.locator(".action-widget .monaco-list-row", { hasText: "rover" }).first().waitFor();
+  await stage.picture("quick-fix");
+  await stage.page.keyboard.press("Enter");
+  await stage.page.locator(".squiggly-error").first().waitFor({ state: "detached" });
+  assert.match(await stage.text(), /movement patrol of rover \{/);
+});
+
+test("hints say behind each action how long it takes and where it leads", async () => {
+  await until("hints are shown", async () => /move 2.0 meters.* s → \(2 m, 0 m, 0°\)/.test(await stage.text()));
+});
+
+test("completion offers what can come next, and inserts it", async () => {
+  await stage.line("move 50 centimeters").first().click();
+  await stage.page.keyboard.press("End");
+  await stage.page.keyboard.press("Enter");
+  await stage.type("tu");
+  const offered = stage.page.locator(".suggest-widget.visible .monaco-list-row");
+  await offered.filter({ hasText: "turn" }).first().waitFor();
+  await stage.picture("completion");
+  await stage.page.keyboard.press("Escape");
+  await stage.type("rn right 45");
+  await stage.page.keyboard.press("Escape");
+  await stage.page.keyboard.press("Control+S");
+  await until("it is saved", () => stage.read("yard.pyr").includes("\n  turn right 45\n}"));
+  assert.equal(await stage.page.locator(".squiggly-error").count(), 0);
+});
+
+test("hovering over a robot shows its equations", async () => {
+  await stage.line("robot rover").first().locator("span span", { hasText: "rover" }).first().hover();
+  const hover = stage.page.locator(".monaco-hover .hover-contents, .monaco-resizable-hover .hover-contents");
+  await hover.filter({ hasText: "wheelL" }).first().waitFor();
+  await stage.picture("hover");
+  await stage.page.mouse.move(5, 5);
+});
+
+test("the script is generated from the palette, and shown", async () => {
+  await stage.call("PyDSLRep: Generate Script");
+  await until("the script is written", () => existsSync(path.join(stage.folder, "yard.py")));
+  assert.match(stage.read("yard.py"), /def patrol|patrol/);
+  await stage.tab("yard.py").waitFor();
+  await stage.tab("yard.pyr").click();
+});
+
+test("the program runs in the simulator, and the driven path is shown beside it", async () => {
+  await stage.line("movement patrol").first().waitFor();
+  await stage.page.locator(".codelens-decoration a", { hasText: /^Run$/ }).first().click();
+  const frame = await stage.webview('img[alt="Planned and driven path"]');
+  await until("the picture is drawn", () => frame.locator("img").evaluate((image) => image.naturalWidth > 0));
+  assert.match(await frame.locator("pre").innerText(), /rover/);
+  await stage.picture("run");
+});
