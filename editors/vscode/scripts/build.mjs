@@ -1,7 +1,7 @@
 // Builds what the extension consists of into dist/: the extension itself, the browser side of the preview, and copies
 // of what the repository keeps elsewhere. `--watch` builds again at every change, `--production` is for the package.
-import { existsSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
-import { copyFile, mkdir, rm, writeFile } from "node:fs/promises";
+import { readFileSync, readdirSync, writeFileSync } from "node:fs";
+import { copyFile, mkdir, rm } from "node:fs/promises";
 import path from "node:path";
 
 import esbuild from "esbuild";
@@ -48,11 +48,6 @@ const bundles = [
 await rm(path.join(root, "dist"), { recursive: true, force: true });
 await mkdir(path.join(root, "dist"), { recursive: true });
 for (const [from, to] of copies) {
-  if (!existsSync(path.join(repository, from))) {
-    console.warn(`${from} is not there yet`);
-    await writeFile(path.join(root, to), JSON.stringify({ scopeName: "source.pydslrep", patterns: [] }));
-    continue;
-  }
   await copyFile(path.join(repository, from), path.join(root, to));
 }
 const inputs = new Set();

@@ -1,14 +1,13 @@
-// Puts into package.json what other files of the repository say: the settings, from pydslrep.schema.json, and which
-// scope of the grammar each semantic token is coloured like. `--check` says what is out of date instead of writing it.
+// Puts into package.json what other files of the repository say: the settings, from pydslrep.schema.json, and like which
+// scope of the grammar each semantic token is coloured, from grammar/colours.json. `--check` says what is out of date instead of writing it.
 import { readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
-import { pathToFileURL } from "node:url";
 
 const root = path.resolve(import.meta.dirname, "..");
 const manifest = path.join(root, "package.json");
 
 /** The settings of a program, as VS Code has them: `inlay-hints.pose` is `pydslrep.inlayHints.pose`. */
-export function settings(schema) {
+function settings(schema) {
   const flat = (properties, prefix) =>
     Object.entries(properties).flatMap(([key, value]) => {
       const name = prefix + key.replace(/-([a-z])/g, (_, letter) => letter.toUpperCase());
@@ -28,27 +27,34 @@ function setting({ description, pattern: _, properties, ...rest }) {
   return { scope: "window", markdownDescription: words, ...type, ...rest, ...inner };
 }
 
+/** For each type of semantic token the scope that the grammar gives to the same words. */
+function scopes(colours) {
+  const types = Object.entries(colours).filter(([type]) => !type.startsWith("$"));
+  return Object.fromEntries(
+    types.flatMap(([type, { scope }]) => {
+      // VS Code has a rule of its own for what is readonly, which would win over one without the word.
+      return [type, `${type}.readonly`].map((selector) => [selector, [`${scope}.pydslrep`]]);
+    }),
+  );
+}
+
 /** The manifest as it has to be. */
-export function upToDate(text, schema, scopes) {
+function upToDate(text, schema, colours) {
   const read = JSON.parse(text);
   const group = read.contributes.configuration.find(({ title }) => title === "Programs");
   group.properties = settings(schema);
-  if (scopes !== undefined) {
-    read.contributes.semanticTokenScopes = [{ language: "pydslrep", scopes }];
-  }
+  read.contributes.semanticTokenScopes = [{ language: "pydslrep", scopes: scopes(colours) }];
   return `${JSON.stringify(read, null, 2)}\n`;
 }
 
-if (import.meta.url === pathToFileURL(process.argv[1]).href) {
-  const text = readFileSync(manifest, "utf8");
-  const schema = JSON.parse(readFileSync(path.join(root, "../pydslrep.schema.json"), "utf8"));
-  const wanted = upToDate(text, schema, undefined);
-  if (process.argv.includes("--check")) {
-    if (text !== wanted) {
-      console.error("package.json is out of date: run `npm run contributions` in editors/vscode");
-      process.exit(1);
-    }
-  } else {
-    writeFileSync(manifest, wanted);
+const text = readFileSync(manifest, "utf8");
+const read = (file) => JSON.parse(readFileSync(path.join(root, file), "utf8"));
+const wanted = upToDate(text, read("../pydslrep.schema.json"), read("../../grammar/colours.json"));
+if (process.argv.includes("--check")) {
+  if (text !== wanted) {
+    console.error("package.json is out of date: run `npm run contributions` in editors/vscode");
+    process.exit(1);
   }
+} else {
+  writeFileSync(manifest, wanted);
 }

@@ -11,7 +11,7 @@ import { command } from "./command";
 
 const at = (...parts: string[]) => path.join(EXTENSION_FOLDER, ...parts);
 
-test("settings are those of pydslrep.schema.json", () => {
+test("settings are those of pydslrep.schema.json, and colours those of grammar/colours.json", () => {
   const { status, stderr } = spawnSync(process.execPath, [at("scripts/contributions.mjs"), "--check"], { encoding: "utf8" });
   assert.equal(status, 0, stderr);
 });

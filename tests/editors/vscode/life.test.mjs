@@ -1,6 +1,5 @@
 // The language server's life: started again when it dies, found by a setting, and missed in words that help.
 import assert from "node:assert/strict";
-import path from "node:path";
 import { test } from "node:test";
 
 import { Stage, program, until } from "./stage.mjs";
@@ -16,8 +15,7 @@ async function status(stage) {
 }
 
 test("a server that is killed comes back, with what is open", async () => {
-  const stage = await Stage.open({ files: FILES, open: "broken.pyr" });
-  try {
+  await Stage.with({ files: FILES, open: "broken.pyr" }, async (stage) => {
     await stage.page.locator(".squiggly-error").first().waitFor();
     const [first] = stage.servers();
     process.kill(first, "SIGKILL");
@@ -41,50 +39,42 @@ test("a server that is killed comes back, with what is open", async () => {
     await until("it runs", async () => /running/.test(await status(stage)));
     await stage.call("PyDSLRep: Show Output");
     await stage.page.locator(".output-view-content, .panel .view-lines", { hasText: "starting" }).first().waitFor();
-  } finally {
-    await stage.close();
-  }
+  });
 });
 
 test("a path that leads nowhere is said, and a new one is used at once", async () => {
-  const stage = await Stage.open({
+  await Stage.with({
     files: FILES,
     open: "broken.pyr",
     settings: { "pydslrep.server.path": "/nowhere/pydslrep-lsp" },
-  });
-  try {
+  }, async (stage) => {
     const message = stage.page.locator(".notification-toast", { hasText: "/nowhere/pydslrep-lsp" });
     await message.waitFor();
     assert.match(await message.innerText(), /there is no such program/);
     assert.equal(stage.servers().length, 0);
     await until("the status bar says it", async () => /no server/.test(await status(stage)));
-    await message.locator(".action-label", { hasText: "Change the Setting" }).or(message.locator("a", { hasText: "Change the Setting" })).first().click();
-    await stage.page.locator(".settings-editor .setting-item-contents", { hasText: "Path" }).first().waitFor();
-    const input = stage.page.locator(".settings-editor .setting-item-contents input").first();
-    await input.fill(path.join(stage.scratch, "extensions"));
-    await input.fill("");
-    await stage.page.keyboard.press("Enter");
+    await message.getByRole("button", { name: "Change the Setting" }).click();
+    const search = stage.page.locator(".settings-editor .search-container");
+    await until("the setting is looked for", async () => /pydslrep\.server\.path/.test(await search.innerText()));
+    stage.set({ "pydslrep.server.path": "" });
     await until("the extension's own server runs", () => stage.servers().length === 1);
-  } finally {
-    await stage.close();
-  }
+  });
 });
 
 test("in a workspace that is not trusted programs are checked but not run", async () => {
-  const stage = await Stage.open({
+  await Stage.with({
     files: { ...FILES, ".vscode/settings.json": JSON.stringify({ "pydslrep.server.path": "/bin/false" }) },
     open: "square.pyr",
     trusted: false,
     settings: { "security.workspace.trust.startupPrompt": "never" },
-  });
-  try {
+  }, async (stage) => {
+    await stage.page.locator(".view-line").first().click();
+    await stage.page.keyboard.press("Control+End");
     await stage.page.locator(".codelens-decoration", { hasText: "Run" }).first().waitFor();
     assert.equal(stage.servers().length, 1, "the workspace's path does not count");
     await stage.page.locator(".codelens-decoration a", { hasText: /^Run$/ }).first().click();
     const message = stage.page.locator(".notification-toast", { hasText: "workspaces that you trust" });
     await message.waitFor();
     assert.equal(await message.locator("a", { hasText: "Manage Workspace Trust" }).count(), 1);
-  } finally {
-    await stage.close();
-  }
+  });
 });

@@ -42,7 +42,7 @@ const SETTINGS = {
 
 /** An editor with a workspace of these files: names in it, and texts or files of the repository. */
 export class Stage {
-  /** @param {{files: Record<string, string>, settings?: object, trusted?: boolean, env?: object, open?: string, query?: [string, string][], prepare?: (page) => Promise<void>, size?: {width: number, height: number}}} options */
+  /** @param {{files: Record<string, string>, settings?: object, trusted?: boolean, env?: object, open?: string, query?: (address: string) => [string, string][], prepare?: (page) => Promise<void>, size?: {width: number, height: number}}} options */
   static async open(options) {
     const stage = new Stage();
     try {
@@ -54,7 +54,27 @@ export class Stage {
     }
   }
 
-  async #start({ files, settings = {}, trusted = true, env = {}, open, query = [], prepare, size }) {
+  /** Opens an editor for a test and closes it afterwards; of a test that fails a picture is kept in `target`. */
+  static async with(options, test) {
+    const stage = await Stage.open(options);
+    try {
+      await test(stage);
+    } catch (error) {
+      await stage.keepPicture();
+      throw error;
+    } finally {
+      await stage.close();
+    }
+  }
+
+  /** What is on the screen, for whoever wants to know why a test failed. */
+  async keepPicture() {
+    const file = path.join(repository, "target", "editors", `vscode-failed-${Date.now()}.png`);
+    await this.page.screenshot({ path: file });
+    console.log(`what was on the screen: ${file}`);
+  }
+
+  async #start({ files, settings = {}, trusted = true, env = {}, open, query, prepare, size }) {
     this.scratch = mkdtempSync(path.join(os.tmpdir(), "pyr-"));
     this.folder = path.join(this.scratch, "ws");
     mkdirSync(path.join(this.scratch, "data/User"), { recursive: true });
@@ -62,7 +82,8 @@ export class Stage {
       mkdirSync(path.dirname(path.join(this.folder, name)), { recursive: true });
       writeFileSync(path.join(this.folder, name), text);
     }
-    writeFileSync(path.join(this.scratch, "data/User/settings.json"), JSON.stringify({ ...SETTINGS, ...settings }));
+    this.settings = { ...SETTINGS, ...settings };
+    this.set({});
     writeFileSync(path.join(this.scratch, "config.yaml"), "auth: none\n");
     this.env = {
       ...process.env,
@@ -92,7 +113,7 @@ export class Stage {
     this.page = await this.browser.newPage({ viewport: size ?? { width: 1100, height: 680 } });
     this.page.setDefaultTimeout(PATIENCE);
     await prepare?.(this.page);
-    const payload = [...(open ? [["openFile", this.remote(open)]] : []), ...query];
+    const payload = [...(open ? [["openFile", this.remote(open)]] : []), ...(query?.(this.address) ?? [])];
     const search = new URLSearchParams({ folder: this.folder, payload: JSON.stringify(payload) });
     await this.page.goto(`http://${this.address}/?${search}`);
     await this.page.locator(".monaco-workbench").waitFor();
@@ -101,6 +122,22 @@ export class Stage {
       await this.page.keyboard.press("Control+B");
       await this.page.locator(".part.sidebar").waitFor({ state: "hidden" });
     }
+  }
+
+  /** Changes settings of the person, as if in the settings editor. */
+  set(settings) {
+    Object.assign(this.settings, settings);
+    writeFileSync(path.join(this.scratch, "data/User/settings.json"), JSON.stringify(this.settings));
+  }
+
+  /** Opens a file of the workspace, as a person does by its name. */
+  async openFile(name) {
+    await this.page.keyboard.press("Control+P");
+    const input = this.page.locator(".quick-input-widget input").first();
+    await input.fill(name);
+    await this.page.locator(".quick-input-widget .monaco-list-row", { hasText: path.basename(name) }).first().waitFor();
+    await this.page.keyboard.press("Enter");
+    await this.tab(path.basename(name)).waitFor();
   }
 
   /** The address of a file as the editor in the browser has it; with the authority, or marks are not drawn. */

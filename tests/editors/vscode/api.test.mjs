@@ -1,0 +1,51 @@
+// The tests of api/tests.cjs, run where extensions run.
+import assert from "node:assert/strict";
+import { existsSync, readFileSync } from "node:fs";
+import os from "node:os";
+import path from "node:path";
+import { test } from "node:test";
+
+import { Stage, program, until } from "./stage.mjs";
+
+const ROVER = "wheel l with radius 4\nwheel r with radius 4\nrobot rover type tw with port 1 has { l r } wheels\n";
+const FILES = {
+  "square.pyr": program("examples/square.pyr"),
+  "broken.pyr": "wheel w with radius -1\n",
+  "unopened.pyr": "wheel w with radius -1\n",
+  "unused.pyr": `sensor spare\n${program("examples/square.pyr")}`,
+  "misspelt.pyr": `${ROVER}movement m of rovr {\n  move 1 meters\n}\n`,
+};
+
+/** A built editor runs tests only where its page says that it is there to be tested. */
+function allowTests() {
+  new MutationObserver((_, observer) => {
+    const element = document.getElementById("vscode-workbench-web-configuration");
+    if (element) {
+      observer.disconnect();
+      const options = JSON.parse(element.dataset.settings);
+      options.developmentOptions = { ...options.developmentOptions, enableSmokeTestDriver: true };
+      element.dataset.settings = JSON.stringify(options);
+    }
+  }).observe(document, { childList: true, subtree: true });
+}
+
+test("what the editor's own interface says", async (t) => {
+  const out = path.join(os.tmpdir(), `pyr-api-${process.pid}.json`);
+  const api = path.join(import.meta.dirname, "api");
+  const prepare = async (page) => {
+    await page.exposeFunction("codeAutomationExit", () => undefined);
+    await page.exposeFunction("codeAutomationLog", () => undefined);
+    await page.addInitScript(allowTests);
+  };
+  const query = (address) => [
+    ["extensionDevelopmentPath", `vscode-remote://${address}${api}`],
+    ["extensionTestsPath", `vscode-remote://${address}${api}/tests.cjs`],
+  ];
+  await Stage.with({ files: FILES, env: { API_RESULTS: out }, prepare, query }, async () => {
+    const results = JSON.parse(await until("the tests are through", () => existsSync(out) && readFileSync(out, "utf8"), 240_000));
+    for (const { name, error } of results) {
+      await t.test(name, () => assert.equal(error, undefined, error));
+    }
+    assert.ok(results.length > 10);
+  });
+});

@@ -1,0 +1,2 @@
+// An extension that does nothing: the editor runs the tests beside it.
+exports.activate = () => undefined;

@@ -1,0 +1,206 @@
+// Runs inside the editor's extension host, where extensions live: asks the editor for what it would show.
+const assert = require("node:assert/strict");
+const { writeFileSync } = require("node:fs");
+
+const vscode = require("vscode");
+
+const folder = vscode.workspace.workspaceFolders[0].uri;
+const file = (name) => vscode.Uri.joinPath(folder, name);
+const ask = (provider, ...args) => vscode.commands.executeCommand(`vscode.${provider}`, ...args);
+
+async function until(what, check, patience = 30_000) {
+  const end = Date.now() + patience;
+  for (;;) {
+    const value = await check();
+    if (value) {
+      return value;
+    }
+    assert.ok(Date.now() < end, `waited in vain until ${what}`);
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+}
+
+async function open(name) {
+  const document = await vscode.workspace.openTextDocument(file(name));
+  await vscode.window.showTextDocument(document);
+  return document;
+}
+
+/** Where a text is in a document, behind its first characters. */
+function at(document, text, behind = 0) {
+  const offset = document.getText().indexOf(text);
+  assert.notEqual(offset, -1, text);
+  return document.positionAt(offset + behind);
+}
+
+const problems = (name) => vscode.languages.getDiagnostics(file(name));
+const labels = ({ items }) => items.map(({ label }) => label.label ?? label);
+const extension = () => vscode.extensions.getExtension("pydslrep.pydslrep");
+
+const tests = {
+  async "the extension starts with a program"() {
+    const document = await open("square.pyr");
+    assert.equal(document.languageId, "pydslrep");
+    await until("it is active", () => extension()?.isActive);
+  },
+
+  async "diagnostics have codes that lead to pages, and go when the mistake goes"() {
+    const document = await open("broken.pyr");
+    const [problem] = await until("there is a problem", () => problems("broken.pyr").length > 0 && problems("broken.pyr"));
+    assert.equal(problem.source, "pydslrep");
+    assert.equal(problem.code.value ?? problem.code, "invalid-radius");
+    const edit = new vscode.WorkspaceEdit();
+    edit.replace(document.uri, new vscode.Range(at(document, "-1"), at(document, "-1", 2)), "4");
+    await vscode.workspace.applyEdit(edit);
+    await until("it is gone", () => problems("broken.pyr").length === 0);
+    await vscode.commands.executeCommand("undo");
+    await until("it is back", () => problems("broken.pyr").length > 0);
+  },
+
+  async "files that are not open have diagnostics too"() {
+    await until("the other file's problem", () => problems("unopened.pyr").length > 0);
+  },
+
+  async "completion knows the language"() {
+    const document = await open("square.pyr");
+    const found = await ask("executeCompletionItemProvider", document.uri, at(document, "turn left", 5));
+    assert.ok(labels(found).includes("left") && labels(found).includes("right"), labels(found).join());
+  },
+
+  async "hover explains"() {
+    const document = await open("square.pyr");
+    const [hover] = await ask("executeHoverProvider", document.uri, at(document, "robot scout", 7));
+    assert.match(hover.contents.map(({ value }) => value).join("\n"), /rad\/s/);
+  },
+
+  async "the outline, folding, hints, lenses and links are there"() {
+    const document = await open("square.pyr");
+    const symbols = await ask("executeDocumentSymbolProvider", document.uri);
+    assert.ok(symbols.some(({ name }) => name === "yard"));
+    assert.ok((await ask("executeFoldingRangeProvider", document.uri)).length > 0);
+    const whole = new vscode.Range(0, 0, document.lineCount, 0);
+    assert.ok((await ask("executeInlayHintProvider", document.uri, whole)).length > 3);
+    const lenses = await ask("executeCodeLensProvider", document.uri, 100);
+    const titles = lenses.map(({ command }) => command?.title);
+    for (const title of ["Generate script", "Run", "Preview"]) {
+      assert.ok(titles.includes(title), titles.join());
+    }
+    const references = lenses.find(({ command }) => /references?$/.test(command?.title ?? ""));
+    assert.equal(references.command.command, "pydslrep.showReferences");
+  },
+
+  async "definition and references find their way"() {
+    const document = await open("square.pyr");
+    const use = at(document, "of scout", 4);
+    const [definition] = await ask("executeDefinitionProvider", document.uri, use);
+    const { start } = definition.targetSelectionRange ?? definition.range;
+    assert.deepEqual(start, at(document, "robot scout", 6));
+    assert.ok((await ask("executeReferenceProvider", document.uri, use)).length >= 3);
+  },
+
+  async "rename changes every use"() {
+    const document = await open("square.pyr");
+    const edit = await ask("executeDocumentRenameProvider", document.uri, at(document, "of scout", 4), "ranger");
+    assert.ok(edit.get(document.uri).length >= 3);
+  },
+
+  async "quick fixes mend, and the script is a code action"() {
+    const document = await open("misspelt.pyr");
+    const isReference = ({ code }) => (code.value ?? code) === "unresolved-reference";
+    const problem = await until("there is a problem", () => problems("misspelt.pyr").find(isReference));
+    const actions = await ask("executeCodeActionProvider", document.uri, problem.range, vscode.CodeActionKind.QuickFix.value, 5);
+    assert.ok(actions.some(({ title }) => title.includes("`rover`")), actions.map(({ title }) => title).join());
+    const square = await open("square.pyr");
+    const inside = new vscode.Range(at(square, "environment"), at(square, "environment"));
+    const source = await ask("executeCodeActionProvider", square.uri, inside, "source.generateScript", 5);
+    assert.ok(source.some(({ title }) => /script/i.test(title)), source.map(({ title }) => title).join());
+  },
+
+  async "formatting makes the canonical layout"() {
+    const document = await vscode.workspace.openTextDocument({ language: "pydslrep", content: "wheel   a with radius 4\n" });
+    const edits = await until("edits", () => ask("executeFormatDocumentProvider", document.uri, { tabSize: 8, insertSpaces: false }));
+    assert.ok(edits.length > 0);
+  },
+
+  async "semantic tokens have the types that the manifest gives scopes to"() {
+    const document = await open("square.pyr");
+    const legend = await ask("provideDocumentSemanticTokensLegend", document.uri);
+    const [{ scopes }] = extension().packageJSON.contributes.semanticTokenScopes;
+    assert.deepEqual(legend.tokenTypes.filter((type) => !(type in scopes)), []);
+    assert.ok((await ask("provideDocumentSemanticTokens", document.uri)).data.length > 50);
+  },
+
+  async "a settings file wins where the editor says nothing, and the editor's setting wins over it"() {
+    await open("square.pyr");
+    const unused = () => problems("unused.pyr").find(({ code }) => (code.value ?? code) === "unused-declaration");
+    await open("unused.pyr");
+    const severity = (level) => until(`the level is ${level}`, () => unused()?.severity === level);
+    await severity(vscode.DiagnosticSeverity.Hint);
+    await vscode.workspace.fs.writeFile(file("pydslrep.toml"), Buffer.from('[severity]\nunused-declaration = "warning"\n'));
+    await severity(vscode.DiagnosticSeverity.Warning);
+    const settings = vscode.workspace.getConfiguration("pydslrep");
+    await settings.update("severity", { "unused-declaration": "error" }, vscode.ConfigurationTarget.Workspace);
+    await severity(vscode.DiagnosticSeverity.Error);
+    await settings.update("severity", undefined, vscode.ConfigurationTarget.Workspace);
+    await severity(vscode.DiagnosticSeverity.Warning);
+    await vscode.workspace.fs.delete(file("pydslrep.toml"));
+    await severity(vscode.DiagnosticSeverity.Hint);
+  },
+
+  async "settings and scene files are checked"() {
+    await vscode.workspace.fs.writeFile(file("inner/pydslrep.toml"), Buffer.from('tarqet = "vrep"\n'));
+    await open("inner/pydslrep.toml");
+    await until("the misspelt key is told", () => problems("inner/pydslrep.toml").length > 0);
+    const [problem] = problems("inner/pydslrep.toml");
+    assert.match(problem.message, /tarqet/);
+  },
+
+  async "tasks check and their problems are matched"() {
+    await open("square.pyr");
+    const tasks = await vscode.tasks.fetchTasks({ type: "pydslrep" });
+    const names = tasks.map(({ name }) => name);
+    assert.deepEqual(names, ["check", "build", "run square.pyr"]);
+    const ended = new Promise((resolve) => {
+      const listening = vscode.tasks.onDidEndTaskProcess(({ execution, exitCode }) => {
+        if (execution.task.name === "check") {
+          listening.dispose();
+          resolve(exitCode);
+        }
+      });
+    });
+    await vscode.tasks.executeTask(tasks[0]);
+    assert.equal(await ended, 1);
+    // The matcher speaks of files that are not open in an editor.
+    await until("the task's problem", () => problems("unopened.pyr").some(({ code }) => code === "invalid-radius"));
+  },
+
+  async "every command of the manifest is there, and those of the server too"() {
+    const known = await vscode.commands.getCommands(true);
+    const wanted = extension().packageJSON.contributes.commands.map(({ command }) => command);
+    const all = [...wanted, "pydslrep.generateScript", "pydslrep.run", "pydslrep.showKinematics", "pydslrep.previewPath"];
+    assert.deepEqual(all.filter((command) => !known.includes(command)), []);
+  },
+
+  async "a comment goes on at the next line, and braces close themselves"() {
+    const document = await vscode.workspace.openTextDocument({ language: "pydslrep", content: "" });
+    await vscode.window.showTextDocument(document);
+    for (const text of ["/", "*", " a"]) {
+      await vscode.commands.executeCommand("type", { text });
+    }
+    await vscode.commands.executeCommand("type", { text: "\n" });
+    assert.match(document.getText(), /^\/\* a\r?\n \* ?\r?\n? ?\*\/$/, JSON.stringify(document.getText()));
+  },
+};
+
+exports.run = async () => {
+  const results = [];
+  for (const [name, test] of Object.entries(tests)) {
+    try {
+      await test();
+      results.push({ name });
+    } catch (error) {
+      results.push({ name, error: String(error.stack ?? error) });
+    }
+  }
+  writeFileSync(process.env.API_RESULTS, JSON.stringify(results));
+};
