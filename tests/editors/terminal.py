@@ -14,6 +14,7 @@ import subprocess
 import tempfile
 import time
 import uuid
+from collections.abc import Callable
 from pathlib import Path
 
 SIZE = (100, 24)
@@ -91,7 +92,7 @@ class Terminal:
         """Whether something disappears."""
         return self._wait(lambda screen: re.search(pattern, screen) is None)
 
-    def _wait(self, is_reached) -> bool:  # type: ignore[no-untyped-def]
+    def _wait(self, is_reached: Callable[[str], bool]) -> bool:
         until = time.monotonic() + PATIENCE
         while time.monotonic() < until:
             if is_reached(self.screen()):
@@ -110,6 +111,15 @@ class Terminal:
                 if re.search(rf"(?<!\w){re.escape(text)}(?!\w)", piece):
                     return style.get("color", FOREGROUND)
         return None
+
+    def wait_for_colours(self, words: tuple[str, ...], count: int) -> bool:
+        """Whether these words, sooner or later, have so many different colours."""
+
+        def has_them(_: str) -> bool:
+            colours = {self.colour_of(word) for word in words}
+            return None not in colours and len(colours) >= count
+
+        return self._wait(has_them)
 
     def picture(self, file: Path) -> None:
         """Saves what it shows as a PNG, where there is a Chromium to draw it."""

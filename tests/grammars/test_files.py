@@ -137,6 +137,13 @@ def test_emacs_has_the_words_too() -> None:
     assert set(re.findall(r'"(\w+)"', listed.partition(")")[0])) == words() - CONTEXTUAL
 
 
+def test_kakoune_has_the_words_too() -> None:
+    highlighter = (ROOT / "editors" / "kakoune" / "pydslrep.kak").read_text()
+    listed = re.search(r"\((wheel\|[\w|]+)\)", highlighter)
+    assert listed
+    assert set(listed[1].split("|")) == words() - CONTEXTUAL
+
+
 def test_the_versions_are_the_project_s() -> None:
     version = re.search(r'^version = "(.+)"', (ROOT / "Cargo.toml").read_text(), re.M)
     assert version

@@ -39,12 +39,7 @@ def edit(made: Session, terminal: Terminal, picture: Path | None) -> None:
         terminal.screen(),
     )
     words = ("robot", "wheelL", "19999", "patrol", "rover", "yard")
-    colours = {word: terminal.colour_of(word) for word in words}
-    made.check(
-        "colours",
-        len(set(colours.values())) >= 5 and None not in colours.values(),
-        str(colours),
-    )
+    made.check("colours", terminal.wait_for_colours(words, 5), terminal.screen())
     if picture:
         terminal.picture(picture)
     command(terminal, "eglot-code-actions")

@@ -38,15 +38,8 @@ def edit(made: Session, terminal: Terminal, takes_pictures: bool) -> None:
         terminal.wait(r"9\.0.*\d s"),
         terminal.screen(),
     )
-    colours = {
-        word: terminal.colour_of(word)
-        for word in ("robot", "wheelL", "19999", "patrol", "rover", "yard")
-    }
-    made.check(
-        "colours",
-        len(set(colours.values())) >= 5 and None not in colours.values(),
-        str(colours),
-    )
+    words = ("robot", "wheelL", "19999", "patrol", "rover", "yard")
+    made.check("colours", terminal.wait_for_colours(words, 5), terminal.screen())
     if takes_pictures:
         terminal.picture(PICTURES / "helix.png")
     terminal.type("6gg6l")
@@ -76,8 +69,6 @@ def edit(made: Session, terminal: Terminal, takes_pictures: bool) -> None:
     terminal.type("5ggo")
     terminal.type("wheel c wi")
     made.check("completion", terminal.wait("with radius +keyword"), terminal.screen())
-    if takes_pictures:
-        terminal.picture(PICTURES / "helix-completion.png")
     terminal.press("Escape")
     terminal.type(":q!")
     terminal.press("Enter")

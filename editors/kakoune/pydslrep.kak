@@ -1,0 +1,58 @@
+# PyDSLRep for Kakoune: words, numbers and comments have colours by themselves, names by kakoune-lsp.
+
+hook global BufCreate .*[.]pyr %{ set-option buffer filetype pydslrep }
+hook global BufCreate (.*/)?(pydslrep|[^/]*[.]scene)[.]toml %{ set-option buffer filetype toml }
+
+add-highlighter shared/pydslrep regions
+add-highlighter shared/pydslrep/line region '//' '$' fill comment
+add-highlighter shared/pydslrep/block region '/\*' '\*/' fill comment
+add-highlighter shared/pydslrep/string region '"' '"|$' fill string
+add-highlighter shared/pydslrep/code default-region group
+add-highlighter shared/pydslrep/code/ regex '(?<![\w^])(wheel|wheelH|with|radius|sensor|ip|robot|type|tw|fw|fwh|port|has|wheels|sensors|parallel|movement|of|move|meters|centimeters|at|turn|left|right|until|slam|environment|robots|moves)(?!\w)' 0:keyword
+add-highlighter shared/pydslrep/code/ regex '^\h*(import)\h*(?=")' 1:keyword
+add-highlighter shared/pydslrep/code/ regex '(?<!\w)-?\d+(\.\d+)*' 0:value
+
+hook -group pydslrep-highlight global WinSetOption filetype=pydslrep %{
+    add-highlighter window/pydslrep ref pydslrep
+    hook -once -always window WinSetOption filetype=.* %{ remove-highlighter window/pydslrep }
+}
+
+hook global WinSetOption filetype=pydslrep %{
+    set-option window indentwidth 2
+    set-option window comment_line '//'
+    set-option window comment_block_begin '/*'
+    set-option window comment_block_end '*/'
+}
+
+hook -group lsp-filetype-pydslrep global BufSetOption filetype=pydslrep %{
+    set-option buffer lsp_servers %{
+        [pydslrep-lsp]
+        args = ["--stdio"]
+        root_globs = ["pydslrep.toml", ".git"]
+    }
+    # Faces that Kakoune's own colour schemes have.
+    set-option buffer lsp_semantic_tokens %{
+        [
+            {face="comment", token="comment"},
+            {face="keyword", token="keyword"},
+            {face="value", token="number"},
+            {face="string", token="string"},
+            {face="variable", token="variable"},
+            {face="attribute", token="property"},
+            {face="builtin", token="enumMember"},
+            {face="type", token="class"},
+            {face="function", token="function"},
+            {face="module", token="namespace"},
+        ]
+    }
+}
+
+hook global WinSetOption filetype=pydslrep %{
+    lsp-enable-window
+    lsp-inlay-diagnostics-enable window
+    lsp-inlay-hints-enable window
+    hook -group pydslrep-tokens window BufReload .* lsp-semantic-tokens
+    hook -group pydslrep-tokens window NormalIdle .* lsp-semantic-tokens
+    hook -group pydslrep-tokens window InsertIdle .* lsp-semantic-tokens
+    hook -once -always window WinSetOption filetype=.* %{ remove-hooks window pydslrep-tokens }
+}

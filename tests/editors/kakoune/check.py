@@ -1,0 +1,58 @@
+"""Kakoune, set up as its readme says. With `--pictures` it also takes that of the documentation."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from session import FIX, FIXED, MESSAGE, PICTURES, Session, session
+from terminal import Terminal
+
+
+def command(terminal: Terminal, text: str) -> None:
+    terminal.type(f":{text}")
+    terminal.press("Enter")
+
+
+def edit(made: Session, terminal: Terminal, takes_pictures: bool) -> None:
+    made.check("diagnostics", terminal.wait(MESSAGE), terminal.screen())
+    made.check(
+        "poses and times behind actions",
+        terminal.wait(r"9\.0.*\d s"),
+        terminal.screen(),
+    )
+    words = ("robot", "wheelR", "19999", "patrol", "rover", "yard")
+    made.check(
+        "colours of names", terminal.wait_for_colours(words, 5), terminal.screen()
+    )
+    if takes_pictures:
+        terminal.picture(PICTURES / "kakoune.png")
+    terminal.type("2g6l")
+    command(terminal, "lsp-hover")
+    made.check("hover", terminal.wait("28.3 cm a turn"), terminal.screen())
+    command(terminal, "lsp-rename port_side")
+    made.check("rename", terminal.wait(r"\{ port_side wheelR \}"), terminal.screen())
+    terminal.type("13g17l")
+    command(terminal, "lsp-code-actions")
+    made.check("quick fix is offered", terminal.wait(FIX), terminal.screen())
+    terminal.press("Enter")
+    made.check("quick fix", terminal.wait(FIXED), terminal.screen())
+    command(terminal, "lsp-formatting")
+    made.check("format", terminal.wait("(?m)^ *  move 4.0 meters"), terminal.screen())
+    terminal.type("ge")
+    terminal.type("omovement n of ro")
+    made.check("completion", terminal.wait(r"rover +\S*.*[Rr]obot"), terminal.screen())
+
+
+def main() -> None:
+    with session("kakoune") as made:
+        (made.home / "bin" / "kak-lsp").symlink_to(os.environ["KAK_LSP"])
+        made.set_up()
+        start = [os.environ["KAK"], str(made.program)]
+        with Terminal(start, made.program.parent, made.environment()) as terminal:
+            edit(made, terminal, "--pictures" in sys.argv)
+
+
+main()
