@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -16,6 +17,11 @@ from colours import GRAMMAR, ROOT, TABLE, TEXTMATE, TREE_SITTER, TextMate, TreeS
 CORPUS = re.compile(r"^=+\n([^\n]+)\n=+\n(.*?)\n-{10,}\n(.*?)(?=^=+$|\Z)", re.M | re.S)
 # Who made the parser, and from what.
 CHECKSUMS = TREE_SITTER / "src" / "checksums.txt"
+# Editors that have names of their own for the colours, and where theirs are.
+OTHERS = {
+    "helix": ROOT / "editors" / "helix" / "queries" / "pydslrep",
+    "zed": ROOT / "editors" / "zed" / "languages" / "pydslrep",
+}
 CONTEXTUAL = {"distance", "bumper", "import"}
 
 
@@ -110,25 +116,23 @@ def test_trees_are_those_of_the_corpus(corpus: Path, tree_sitter: TreeSitter) ->
         assert str(root) == " ".join(tree.split()).replace(" )", ")"), name
 
 
-@pytest.mark.parametrize(
-    "name", sorted(path.name for path in (TREE_SITTER / "queries").iterdir())
-)
-def test_queries_fit_the_grammar(name: str, tree_sitter: TreeSitter) -> None:
-    assert sitter.Query(tree_sitter.language, query(name)).pattern_count > 0
+@pytest.mark.parametrize("folder", [TREE_SITTER / "queries", *OTHERS.values()], ids=str)
+def test_queries_fit_the_grammar(folder: Path, tree_sitter: TreeSitter) -> None:
+    for file in folder.glob("*.scm"):
+        assert sitter.Query(tree_sitter.language, file.read_text()).pattern_count > 0
 
 
-def test_helix_has_its_names_of_the_colours() -> None:
+@pytest.mark.parametrize("editor", OTHERS)
+def test_other_editors_have_their_names_of_the_colours(editor: str) -> None:
     expected = (TREE_SITTER / "queries" / "highlights.scm").read_text()
     for row in TABLE.values():
-        expected = re.sub(rf"@{row['capture']}\b(?!\.)", f"@{row['helix']}", expected)
-    expected = re.sub(
-        r"^; .*\n(; .*\n)*",
-        "; Made from grammar/tree-sitter/queries/highlights.scm.\n",
-        expected,
-        count=1,
-    )
-    helix = ROOT / "editors" / "helix" / "queries" / "pydslrep" / "highlights.scm"
-    assert helix.read_text() == expected
+        expected = re.sub(rf"@{row['capture']}\b(?!\.)", f"@{row[editor]}", expected)
+    origin = "; Made from grammar/tree-sitter/queries/highlights.scm.\n"
+    expected = re.sub(r"^; .*\n(; .*\n)*", origin, expected, count=1)
+    file = OTHERS[editor] / "highlights.scm"
+    if os.environ.get("UPDATE_EXPECT"):
+        file.write_text(expected)
+    assert file.read_text() == expected, "UPDATE_EXPECT=1 writes it"
 
 
 def test_emacs_has_the_words_too() -> None:
