@@ -33,8 +33,13 @@ class Terminal:
     """A running program and its screen."""
 
     def __init__(
-        self, command: list[str], folder: Path, environment: dict[str, str]
+        self,
+        command: list[str],
+        folder: Path,
+        environment: dict[str, str],
+        size: tuple[int, int] = SIZE,
     ) -> None:
+        self.size = size
         self.name = f"pydslrep-{uuid.uuid4().hex[:8]}"
         variables = {
             **os.environ,
@@ -44,10 +49,10 @@ class Terminal:
         }
         variables |= {"LANG": "C.UTF-8", "LC_ALL": "C.UTF-8"}
         variables.pop("TMUX", None)
-        size = ["-x", str(SIZE[0]), "-y", str(SIZE[1])]
-        start = ["-f", "/dev/null", "-u", "new-session", "-d", *size, "-c", str(folder)]
+        measures = ["-x", str(size[0]), "-y", str(size[1])]
+        start = ["-f", "/dev/null", "-u", "new-session", "-d", *measures]
         subprocess.run(
-            ["tmux", "-L", self.name, *start, shlex.join(command)],
+            ["tmux", "-L", self.name, *start, "-c", str(folder), shlex.join(command)],
             env=variables,
             check=True,
         )
@@ -131,7 +136,7 @@ class Terminal:
         file.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "screen.html").write_text(page)
-            window = f"--window-size={SIZE[0] * 9 + 24},{SIZE[1] * 19 + 16}"
+            window = f"--window-size={self.size[0] * 9 + 24},{self.size[1] * 19 + 16}"
             options = [
                 "--headless",
                 "--no-sandbox",

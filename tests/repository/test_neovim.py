@@ -1,5 +1,6 @@
 """What the plugin for Neovim repeats: `UPDATE_EXPECT=1` copies the queries anew."""
 
+import json
 import os
 import re
 from pathlib import Path
@@ -48,3 +49,16 @@ def test_the_syntax_file_has_every_word_of_the_language() -> None:
     assert plain | contextual == words
     assert contextual == {"distance", "bumper", "import"}
     assert not plain & contextual
+
+
+def test_the_server_s_colours_are_the_parser_s() -> None:
+    table = json.loads((ROOT / "grammar" / "colours.json").read_text(encoding="utf-8"))
+    table.pop("$comment")
+    pairs = {kind: row["capture"] for kind, row in table.items()}
+    colours = PLUGIN / "lua" / "pydslrep" / "colours.lua"
+    entry = re.compile(r"^  (?:\['?)?(\w+)(?:'?\])? = '(\w+)',$", re.M)
+    assert dict(entry.findall(colours.read_text(encoding="utf-8"))) == pairs
+
+    syntax = (PLUGIN / "syntax" / "pydslrep.vim").read_text(encoding="utf-8")
+    links = set(re.findall(r"^hi def link pydslrep\w+ @(\w+)$", syntax, re.M))
+    assert links == set(pairs.values())

@@ -52,4 +52,5 @@ vim.api.nvim_create_autocmd('User', {
   end,
 })
 
+require('pydslrep.colours').link()
 require('pydslrep.server').enable()

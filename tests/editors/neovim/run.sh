@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Sessions in real Neovims, set up as editors/neovim/README.md says. On Debian and its kin everything that is needed is
 # unpacked into target/editors; elsewhere $NVIM names the Neovim (0.11 or later) to use, and lints are left out.
-# $PYDSLREP_LSP and $PYDSLREP name the programs; without them, they are built. Arguments choose sessions.
+# $PYDSLREP_LSP and $PYDSLREP name the programs; without them, they are built. Arguments choose sessions; `pictures` are
+# those of the documentation.
 set -euo pipefail
 tests=$(cd "$(dirname "$0")" && pwd)
 source "$tests/../debian.sh"
@@ -91,6 +92,11 @@ for name in ${*:-lint folder pasted package colours older}; do
     package) session package "$current" package.lua < "$tests/init.lua" ;;
     colours) session colours "$current" colours.lua < <(echo "vim.g.pydslrep = { enable = false }"; lua_block 1) ;;
     older) [ -z "$older" ] || session older "$older" older.lua < <(lua_block 1) ;;
+    pictures)
+      need tmux tmux
+      need chromium chromium
+      NVIM="$current" PYDSLREP="$command" PYDSLREP_LSP="$server" python3 "$tests/pictures.py"
+      ;;
     *) echo "there is no session $name" >&2; false ;;
   esac || failed=1
 done

@@ -33,7 +33,7 @@ local HEIGHT = 14
 ---@param name string
 ---@param result pydslrep.Result
 local function show(name, result)
-  local lines = vim.split(vim.trim(result.output or ''), '\n')
+  local lines = vim.split((result.output or ''):gsub('^%s*\n', ''):gsub('%s+$', ''), '\n')
   if result.picture then
     vim.list_extend(lines, { '', vim.uri_to_fname(result.picture) })
   end

@@ -1,0 +1,105 @@
+"""Neovim in a terminal, set up as its readme says, for the pictures of the documentation."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from session import PICTURES, ROOT, Session, session
+from terminal import Terminal
+
+SIZE = (110, 36)
+FENCE = """\
+// Drives along the fence and turns where it ends.
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+sensor front : distance
+
+robot rover type tw with port 19999 has { wheelL wheelR } wheels with sensors { front }
+
+movement patrol of rover {
+  move 4.0 meters at 12.5
+  turn left
+  move 150 centimeters
+  turn right 45
+}
+
+environment yard has { rover } robots with { patrol } moves
+"""
+SHOWN = """\
+vim.o.number, vim.o.signcolumn, vim.o.laststatus = true, 'yes', 2
+vim.o.completeopt = 'menuone,noselect,popup'
+vim.lsp.inlay_hint.enable()
+vim.lsp.codelens.enable()
+vim.diagnostic.config({ virtual_lines = { current_line = true, format = function(found) return found.message end } })
+"""
+NO_SERVER = "vim.g.pydslrep = { enable = false }\nvim.o.number = true\n"
+
+
+def start(made: Session, settings: str) -> Terminal:
+    """Neovim with the program, the plugin and some settings."""
+    folder = made.home / ".config" / "nvim"
+    folder.mkdir(parents=True, exist_ok=True)
+    plugin = ROOT / "editors" / "neovim"
+    (folder / "init.lua").write_text(
+        f"vim.opt.runtimepath:append('{plugin}')\nvim.cmd.colorscheme('catppuccin')\nvim.o.wrap = false\nvim.g.pydslrep = {{ open = print }}\n{settings}"
+    )
+    command = [os.environ["NVIM"], str(made.program.name)]
+    # What a first run installs is kept.
+    kept = {"XDG_CACHE_HOME": str(ROOT / "target" / "editors" / "cache")}
+    return Terminal(command, made.program.parent, {**made.environment(), **kept}, SIZE)
+
+
+def run(made: Session) -> None:
+    made.program.write_text(FENCE)
+    with start(made, SHOWN) as terminal:
+        made.check(
+            "poses and times", terminal.wait(r"meters at 12.5.*→"), terminal.screen()
+        )
+        made.check("lenses", terminal.wait("Generate script"), terminal.screen())
+        terminal.type(":Pydslrep run")
+        terminal.press("Enter")
+        made.check("a run", terminal.wait(r"yard-driven"), terminal.screen())
+        made.check("its end", terminal.wait(r"done"), terminal.screen())
+        terminal.picture(PICTURES / "neovim-run.png")
+
+
+def mistake(made: Session) -> None:
+    made.program.write_text(FENCE.replace("{ patrol }", "{ patrl }"))
+    with start(made, SHOWN) as terminal:
+        made.check("lenses", terminal.wait("Generate script"), terminal.screen())
+        terminal.type("/patrl")
+        terminal.press("Enter")
+        made.check("a problem", terminal.wait("did you mean"), terminal.screen())
+        terminal.type("gra")
+        made.check(
+            "its fixes", terminal.wait(r"1: Change to `patrol`"), terminal.screen()
+        )
+        terminal.picture(PICTURES / "neovim-fix.png")
+
+
+def colours(made: Session) -> None:
+    made.program.write_text(FENCE)
+    with start(made, NO_SERVER) as terminal:
+        terminal.type(":Pydslrep parser")
+        terminal.press("Enter")
+        made.check("the parser", terminal.wait("is built"), terminal.screen())
+        terminal.press("Enter")
+        terminal.type(":InspectTree")
+        terminal.press("Enter")
+        made.check("its tree", terminal.wait("wheel_definition"), terminal.screen())
+        terminal.picture(PICTURES / "neovim-colours.png")
+
+
+if shutil.which("chromium") is None:
+    sys.exit("chromium is missing: it draws the pictures")
+with session("neovim") as made:
+    command = Path(
+        os.environ.get("PYDSLREP", str(ROOT / "target" / "debug" / "pydslrep"))
+    )
+    (made.home / "bin" / "pydslrep").symlink_to(command.resolve())
+    for part in (run, mistake, colours):
+        part(made)
