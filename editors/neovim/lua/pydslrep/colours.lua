@@ -1,5 +1,5 @@
---- The colours of the words that the server knows are those of the parser and of the syntax file, whatever a colour scheme
---- has for servers: nothing changes when the server comes. The pairs are from `grammar/colours.json`.
+--- The colours of what the server knows are those of the parser and of the syntax file, whatever a colour scheme has
+--- for servers: nothing changes when the server comes. The pairs are from `grammar/colours.json`.
 
 local M = {}
 

@@ -94,7 +94,9 @@ function M.execute(client, buffer, command, chosen)
   current = run
   say.progress(run.progress, 'running', 'starts')
   server.ask(client, 'workspace/executeCommand', params, function(problem, result)
-    if problem then
+    if problem and run.stopping then
+      finish(run, 'cancel', 'stopped')
+    elseif problem then
       finish(run, 'failed', 'failed')
       say.error(problem.message)
     else
