@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Everything that must hold, in one command: formats, lints, tests of every crate, and whole behaviour through the
-# command, the protocol and the generated scripts. Needs Rust, Python and Node; the rest it sets up in .venv and target.
+# command, the protocol and the generated scripts. Needs Rust and Python; the rest it sets up.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -25,16 +25,15 @@ if ! cmp -s tests/requirements.txt "$stamp"; then
 fi
 
 step "Node packages"
-# What reads the TextMate grammar as an editor does.
-if ! command -v npm >/dev/null; then
-  echo "npm is missing: install Node 20 or later (on Debian and Ubuntu: apt install npm) and run this again" >&2
-  exit 2
-fi
-stamp=grammar/textmate/node_modules/package-lock.json
-if ! cmp -s grammar/textmate/package-lock.json "$stamp"; then
-  npm ci --prefix grammar/textmate --no-audit --no-fund
-  cp grammar/textmate/package-lock.json "$stamp"
-fi
+# What reads the TextMate grammar as an editor does, and what the extension for VS Code is built and tested with.
+PATH=$(tests/node.sh):$PATH
+for folder in grammar/textmate editors/vscode; do
+  stamp=$folder/node_modules/package-lock.json
+  if ! cmp -s "$folder/package-lock.json" "$stamp"; then
+    npm ci --prefix "$folder" --no-audit --no-fund
+    cp "$folder/package-lock.json" "$stamp"
+  fi
+done
 
 step "Rust: format and lints"
 cargo fmt --all --check
@@ -49,6 +48,9 @@ else
 fi
 # The simulator without sockets is what a browser would get.
 cargo check --package pydslrep-simulator --no-default-features --locked
+
+step "Extension for VS Code: types, lints, build and tests"
+npm run --silent --prefix editors/vscode check
 
 step "Python: format, lints, types and tests"
 .venv/bin/ruff check .

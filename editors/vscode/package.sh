@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the extension for this platform, with the server inside: a .vsix that works with no setting at all.
-# Needs Rust and Node 20 or later. Prints the path of the package.
+# Needs Rust; Node it finds or gets by pip. Prints the path of the package.
 # `--command FILE` takes a command `pydslrep` that is already built, `--target NAME` says which platform that is for.
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -15,9 +15,7 @@ while [ $# -gt 0 ]; do
     *) echo "usage: package.sh [--command FILE] [--target NAME]" >&2; exit 2 ;;
   esac
 done
-for needed in node npm; do
-  command -v "$needed" >/dev/null || { echo "$needed is missing: install Node 20 or later" >&2; exit 2; }
-done
+PATH=$("$repository/tests/node.sh"):$PATH
 target=${target:-$(node -p 'process.platform + "-" + process.arch')}
 ending=
 case $target in win32-*) ending=.exe ;; esac
@@ -27,8 +25,8 @@ if [ -z "$command" ]; then
   command=${CARGO_TARGET_DIR:-$repository/target}/release/pydslrep$ending
 fi
 
-npm ci --silent >&2
-npm ci --silent --prefix packaging >&2
+npm ci --loglevel error >&2
+npm ci --loglevel error --prefix packaging >&2
 rm -rf server
 mkdir server
 # The command is the server as well (`pydslrep lsp`), and is what runs programs.

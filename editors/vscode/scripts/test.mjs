@@ -32,7 +32,7 @@ await esbuild.build({
 const files = readdirSync(out, { recursive: true }).filter((file) => file.endsWith(".test.js"));
 const { status } = spawnSync(
   process.execPath,
-  ["--enable-source-maps", "--test", ...files.map((file) => path.join(out, file))],
+  ["--enable-source-maps", "--test", "--test-reporter=spec", ...files.map((file) => path.join(out, file))],
   { stdio: "inherit" },
 );
 process.exit(status ?? 1);

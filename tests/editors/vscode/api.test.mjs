@@ -16,32 +16,14 @@ const FILES = {
   "misspelt.pyr": `${ROVER}movement m of rovr {\n  move 1 meters\n}\n`,
 };
 
-/** A built editor runs tests only where its page says that it is there to be tested. */
-function allowTests() {
-  new MutationObserver((_, observer) => {
-    const element = document.getElementById("vscode-workbench-web-configuration");
-    if (element) {
-      observer.disconnect();
-      const options = JSON.parse(element.dataset.settings);
-      options.developmentOptions = { ...options.developmentOptions, enableSmokeTestDriver: true };
-      element.dataset.settings = JSON.stringify(options);
-    }
-  }).observe(document, { childList: true, subtree: true });
-}
-
 test("what the editor's own interface says", async (t) => {
   const out = path.join(os.tmpdir(), `pyr-api-${process.pid}.json`);
-  const api = path.join(import.meta.dirname, "api");
+  const testsPath = path.join(import.meta.dirname, "api/tests.cjs");
   const prepare = async (page) => {
     await page.exposeFunction("codeAutomationExit", () => undefined);
     await page.exposeFunction("codeAutomationLog", () => undefined);
-    await page.addInitScript(allowTests);
   };
-  const query = (address) => [
-    ["extensionDevelopmentPath", `vscode-remote://${address}${api}`],
-    ["extensionTestsPath", `vscode-remote://${address}${api}/tests.cjs`],
-  ];
-  await Stage.with({ files: FILES, env: { API_RESULTS: out }, prepare, query }, async () => {
+  await Stage.with({ files: FILES, env: { API_RESULTS: out }, prepare, testsPath }, async () => {
     const results = JSON.parse(await until("the tests are through", () => existsSync(out) && readFileSync(out, "utf8"), 240_000));
     for (const { name, error } of results) {
       await t.test(name, () => assert.equal(error, undefined, error));

@@ -9,13 +9,21 @@ import { Stage, program, repository, until } from "./stage.mjs";
 const names = readdirSync(path.join(repository, "tests/paper")).filter((name) => name.endsWith(".pyr"));
 const files = Object.fromEntries(names.map((name) => [name, program(`tests/paper/${name}`)]));
 
-const THEMES = ["Default Dark Modern", "Default Light Modern", "Default High Contrast", "Monokai"];
+/** Themes, each with what the page calls it. */
+const THEMES = { "Default Dark Modern": "dark_modern", "Default Light Modern": "light_modern", Monokai: "monokai" };
 
 /** Nothing in the lines but the program. */
 const BARE = { "editor.codeLens": false, "editor.inlayHints.enabled": "off", "editor.occurrencesHighlight": "off" };
 
-const MARK = "rgb(1, 254, 3)";
-const MARKED = { enabled: true, rules: { "class": "#01fe03" } };
+/** The semantic tokens of two types get colours that no theme has: what one sees is then proved to be new. */
+const MARKS = { "class": "rgb(1, 254, 3)", "function": "rgb(1, 253, 3)" };
+
+function marked(type, enabled = true) {
+  const [red, green, blue] = MARKS[type].match(/\d+/g).map((part) => Number(part).toString(16).padStart(2, "0"));
+  return { "editor.semanticTokenColorCustomizations": { enabled, rules: { [type]: `#${red}${green}${blue}` } } };
+}
+
+const has = (seen, type) => seen.some((one) => one.includes(MARKS[type]));
 
 /** Every character of the editor that can be seen, with its colour. */
 function colours(page) {
@@ -36,39 +44,33 @@ function colours(page) {
   });
 }
 
-/** The colours once they no longer change. */
-async function settled(page) {
-  let last = "";
-  return until("colours stay as they are", async () => {
-    const now = await colours(page);
-    const same = now.length > 0 && JSON.stringify(now) === last;
-    last = JSON.stringify(now);
-    await page.waitForTimeout(300);
-    return same && now;
-  });
-}
-
 test("with and without semantic tokens every character of the article's programs has one colour", async () => {
-  await Stage.with({ files, open: names[0], settings: BARE, size: { width: 1300, height: 1000 } }, async (stage) => {
+  await Stage.with({ files, open: names[0], settings: BARE, size: { width: 1300, height: 900 } }, async (stage) => {
     let compared = 0;
-    for (const name of names) {
-      await stage.openFile(name);
-      for (const theme of THEMES) {
-        stage.set({ "workbench.colorTheme": theme, "editor.semanticTokenColorCustomizations": MARKED });
-        // Only the server knows which name is a robot's, so its tokens are here when one has the mark.
-        await until(`semantic tokens in ${name}`, async () => (await colours(stage.page)).some((seen) => seen.includes(MARK)));
-        stage.set({ "editor.semanticTokenColorCustomizations": { enabled: true } });
-        await until("the mark is gone", async () => !(await colours(stage.page)).some((seen) => seen.includes(MARK)));
-        const semantic = await settled(stage.page);
-        stage.set({ "editor.semanticTokenColorCustomizations": { enabled: false } });
-        await stage.page.waitForTimeout(500);
-        const grammatical = await settled(stage.page);
-        assert.equal(semantic.map((seen) => seen[0]).join(""), files[name].replace(/\s/g, ""), `${name} is seen whole`);
+    for (const [theme, called] of Object.entries(THEMES)) {
+      stage.set({ "workbench.colorTheme": theme });
+      await stage.page.locator(`.monaco-workbench[class*="${called}"]`).waitFor();
+      for (const name of names) {
+        await stage.openFile(name);
+        const once = (what, check) =>
+          until(`${what} in ${name} in ${theme}`, async () => {
+            const seen = await colours(stage.page);
+            return check(seen) && seen;
+          });
+        stage.set(marked("class"));
+        const robots = await once("robots are marked", (seen) => has(seen, "class"));
+        stage.set(marked("function"));
+        const movements = await once("movements are marked", (seen) => has(seen, "function"));
+        stage.set(marked("function", false));
+        const grammatical = await once("no marks", (seen) => !has(seen, "class") && !has(seen, "function"));
+
+        const semantic = movements.map((one, at) => (has([one], "function") ? robots[at] : one));
+        assert.equal(semantic.map((one) => one[0]).join(""), files[name].replace(/\s/g, ""), `${name} is seen whole`);
         assert.deepEqual(grammatical, semantic, `${name} in ${theme}`);
-        assert.ok(new Set(semantic.map((seen) => seen.slice(2))).size > 3, `${name} has colours in ${theme}`);
+        assert.ok(new Set(semantic.map((one) => one.slice(2))).size > 3, `${name} has colours in ${theme}`);
         compared += semantic.length;
       }
     }
-    console.log(`${compared} characters compared, in ${names.length} programs and ${THEMES.length} themes`);
+    console.log(`${compared} characters compared, in ${names.length} programs and ${Object.keys(THEMES).length} themes`);
   });
 });

@@ -1,6 +1,6 @@
 // A real editor to test in: code-server with a fresh profile and the extension in it, open in a headless Chromium.
 import { execFileSync, spawn } from "node:child_process";
-import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, mkdirSync, mkdtempSync, readFileSync, renameSync, rmSync, writeFileSync } from "node:fs";
 import net from "node:net";
 import os from "node:os";
 import path from "node:path";
@@ -42,7 +42,7 @@ const SETTINGS = {
 
 /** An editor with a workspace of these files: names in it, and texts or files of the repository. */
 export class Stage {
-  /** @param {{files: Record<string, string>, settings?: object, trusted?: boolean, env?: object, open?: string, query?: (address: string) => [string, string][], prepare?: (page) => Promise<void>, size?: {width: number, height: number}}} options */
+  /** @param {{files: Record<string, string>, settings?: object, trusted?: boolean, env?: object, open?: string, testsPath?: string, prepare?: (page) => Promise<void>, size?: {width: number, height: number}}} options */
   static async open(options) {
     const stage = new Stage();
     try {
@@ -74,7 +74,7 @@ export class Stage {
     console.log(`what was on the screen: ${file}`);
   }
 
-  async #start({ files, settings = {}, trusted = true, env = {}, open, query, prepare, size }) {
+  async #start({ files, settings = {}, trusted = true, env = {}, open, testsPath, prepare, size }) {
     this.scratch = mkdtempSync(path.join(os.tmpdir(), "pyr-"));
     this.folder = path.join(this.scratch, "ws");
     mkdirSync(path.join(this.scratch, "data/User"), { recursive: true });
@@ -82,7 +82,7 @@ export class Stage {
       mkdirSync(path.dirname(path.join(this.folder, name)), { recursive: true });
       writeFileSync(path.join(this.folder, name), text);
     }
-    this.settings = { ...SETTINGS, ...settings };
+    writeFileSync(path.join(this.scratch, "data/User/settings.json"), JSON.stringify({ ...SETTINGS, ...settings }));
     this.set({});
     writeFileSync(path.join(this.scratch, "config.yaml"), "auth: none\n");
     this.env = {
@@ -90,6 +90,7 @@ export class Stage {
       XDG_CONFIG_HOME: this.scratch,
       XDG_DATA_HOME: this.scratch,
       TMPDIR: this.scratch,
+      WANTED_SETTINGS: path.join(this.scratch, "wanted.json"),
       ...env,
     };
     const base = ["--config", "config.yaml", "--user-data-dir", "data", "--extensions-dir", "extensions"];
@@ -112,8 +113,14 @@ export class Stage {
     });
     this.page = await this.browser.newPage({ viewport: size ?? { width: 1100, height: 680 } });
     this.page.setDefaultTimeout(PATIENCE);
+    await this.page.addInitScript(allowTests);
     await prepare?.(this.page);
-    const payload = [...(open ? [["openFile", this.remote(open)]] : []), ...(query?.(this.address) ?? [])];
+    const helper = path.join(import.meta.dirname, "api");
+    const payload = [
+      ["extensionDevelopmentPath", this.inEditor(helper)],
+      ...(open ? [["openFile", this.inEditor(open)]] : []),
+      ...(testsPath ? [["extensionTestsPath", this.inEditor(testsPath)]] : []),
+    ];
     const search = new URLSearchParams({ folder: this.folder, payload: JSON.stringify(payload) });
     await this.page.goto(`http://${this.address}/?${search}`);
     await this.page.locator(".monaco-workbench").waitFor();
@@ -124,10 +131,12 @@ export class Stage {
     }
   }
 
-  /** Changes settings of the person, as if in the settings editor. */
+  /** Changes settings of the person, by the extension that is there for it. */
   set(settings) {
-    Object.assign(this.settings, settings);
-    writeFileSync(path.join(this.scratch, "data/User/settings.json"), JSON.stringify(this.settings));
+    const file = path.join(this.scratch, "wanted.json");
+    // At once, or half of it may be read.
+    writeFileSync(`${file}.new`, JSON.stringify(settings));
+    renameSync(`${file}.new`, file);
   }
 
   /** Opens a file of the workspace, as a person does by its name. */
@@ -141,7 +150,7 @@ export class Stage {
   }
 
   /** The address of a file as the editor in the browser has it; with the authority, or marks are not drawn. */
-  remote(file) {
+  inEditor(file) {
     return `vscode-remote://${this.address}${path.resolve(this.folder, file)}`;
   }
 
@@ -224,6 +233,19 @@ export class Stage {
       rmSync(this.scratch, { recursive: true, force: true, maxRetries: 10, retryDelay: 200 });
     }
   }
+}
+
+/** A built editor loads extensions from elsewhere, and runs tests, only where its page says that it is there to be tested. */
+function allowTests() {
+  new MutationObserver((_, observer) => {
+    const element = document.getElementById("vscode-workbench-web-configuration");
+    if (element) {
+      observer.disconnect();
+      const options = JSON.parse(element.dataset.settings);
+      options.developmentOptions = { ...options.developmentOptions, enableSmokeTestDriver: true };
+      element.dataset.settings = JSON.stringify(options);
+    }
+  }).observe(document, { childList: true, subtree: true });
 }
 
 /** A program of the repository. */
