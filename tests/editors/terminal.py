@@ -89,16 +89,20 @@ class Terminal:
         """What it shows, without colours."""
         return self._tmux("capture-pane", "-p")
 
-    def wait(self, pattern: str) -> bool:
+    def wait(self, pattern: str, patience: float = PATIENCE) -> bool:
         """Whether something appears, sooner or later."""
-        return self._wait(lambda screen: re.search(pattern, screen) is not None)
+        return self._wait(
+            lambda screen: re.search(pattern, screen) is not None, patience
+        )
 
     def wait_without(self, pattern: str) -> bool:
         """Whether something disappears."""
         return self._wait(lambda screen: re.search(pattern, screen) is None)
 
-    def _wait(self, is_reached: Callable[[str], bool]) -> bool:
-        until = time.monotonic() + PATIENCE
+    def _wait(
+        self, is_reached: Callable[[str], bool], patience: float = PATIENCE
+    ) -> bool:
+        until = time.monotonic() + patience
         while time.monotonic() < until:
             if is_reached(self.screen()):
                 return True

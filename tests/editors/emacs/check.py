@@ -24,8 +24,16 @@ QUIET = """
 def command(terminal: Terminal, name: str) -> None:
     terminal.press("M-x")
     terminal.wait(r"M-x\s*$")
-    terminal.type(name)
-    terminal.wait(rf"M-x {name}")
+    answer(terminal, name)
+
+
+def answer(terminal: Terminal, text: str) -> None:
+    """Fills in what Emacs asks for. Now and then it loses a key that comes while it is busy."""
+    for _ in range(5):
+        terminal.press("C-a", "C-k")
+        terminal.type(text)
+        if terminal.wait(rf" {re.escape(text)}\s*$", patience=3):
+            break
     terminal.press("Enter")
 
 
@@ -57,12 +65,11 @@ def edit(made: Session, terminal: Terminal, picture: Path | None) -> None:
     terminal.type("1")
     command(terminal, "eglot-rename")
     made.check("rename asks", terminal.wait("Rename .wheelL. to"), terminal.screen())
-    terminal.press("C-a", "C-k")
-    terminal.type("port_side")
-    terminal.press("Enter")
+    answer(terminal, "port_side")
     made.check("rename", terminal.wait(r"\{ port_side wheelR \}"), terminal.screen())
     terminal.press("M->")
-    terminal.type("movement n of ")
+    terminal.press("M-:")
+    answer(terminal, '(insert "movement n of ")')
     terminal.press("C-M-i")
     made.check("completion", terminal.wait("movement n of rover"), terminal.screen())
 
