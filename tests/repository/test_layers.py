@@ -19,6 +19,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "ide": {"config", "analysis", "syntax", "notation", "kinematics", "scene"},
     "script": {"analysis", "kinematics"},
     "files": {"config", "scene"},
+    "picture": {"kinematics", "scene"},
     "simulator": {"kinematics", "scene"},
     "server": {"ide", "script", "config", "analysis", "syntax", "scene", "files"},
     "cli": {
@@ -31,6 +32,7 @@ MAY_KNOW: dict[str, set[str]] = {
         "ide",
         "script",
         "files",
+        "picture",
         "simulator",
         "server",
     },
@@ -48,6 +50,8 @@ ONLY_IN: dict[str, set[str]] = {
     "logos": {"syntax"},
     "ropey": {"analysis", "server"},
     "minijinja": {"script"},
+    "svg": {"picture"},
+    "resvg": {"picture"},
     "toml": {"notation"},
     "toml_parser": {"notation"},
 }
@@ -62,6 +66,7 @@ PURE = [
     "config",
     "ide",
     "script",
+    "picture",
 ]
 IMPURE = re.compile(
     r"\bstd::(fs|net::(Tcp|Udp)|thread|process|time::(Instant|SystemTime)|env)\b"

@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::Path;
 
-use pydslrep_kinematics::Pose;
-use pydslrep_simulator::picture::Map;
+use pydslrep_kinematics::{Pose, TimedPose};
+use pydslrep_picture::Map;
 use pydslrep_simulator::{Sightings, TraceRecord};
 use serde::Deserialize;
 
@@ -28,8 +28,8 @@ pub(crate) struct Driven {
 #[derive(Debug)]
 pub(crate) struct DrivenPath {
     robot: String,
-    kept: Vec<Pose>,
-    last: Option<Pose>,
+    kept: Vec<TimedPose>,
+    last: Option<TimedPose>,
 }
 
 /// A line of a trace file, as far as it matters here.
@@ -76,32 +76,39 @@ impl Driven {
     fn add(&mut self, time: f64, robot: &str, pose: Pose) {
         self.time = self.time.max(time);
         let Some(path) = self.robots.iter_mut().find(|path| path.robot == robot) else { return };
-        let is_near = |kept: &Pose| {
-            let off = kept.relative(&pose);
-            off.x.hypot(off.y) < FINENESS && off.theta.abs() < FINENESS
-        };
-        if !path.kept.last().is_some_and(is_near) {
-            path.kept.push(pose);
-        }
-        path.last = Some(pose);
+        path.add(TimedPose { time: Some(time), pose });
     }
 }
 
 impl DrivenPath {
     /// Its poses, the first and the last always among them.
-    pub(crate) fn poses(&self) -> Vec<Pose> {
+    pub(crate) fn poses(&self) -> Vec<TimedPose> {
         let end = self.last.filter(|last| self.kept.last() != Some(last));
         self.kept.iter().copied().chain(end).collect()
     }
 
     /// Where it began.
     pub(crate) fn start(&self) -> Option<Pose> {
-        self.kept.first().copied()
+        self.kept.first().map(|first| first.pose)
     }
 
     /// Where it ended.
     pub(crate) fn end(&self) -> Option<Pose> {
-        self.last
+        self.last.map(|last| last.pose)
+    }
+
+    fn add(&mut self, now: TimedPose) {
+        let is_near = |kept: &TimedPose| {
+            let off = kept.pose.relative(&now.pose);
+            off.x.hypot(off.y) < FINENESS && off.theta.abs() < FINENESS
+        };
+        if !self.kept.last().is_some_and(is_near) {
+            // Until when it stood there before it went on.
+            let rest = self.last.filter(|last| self.kept.last().is_some_and(|kept| kept.pose == last.pose));
+            self.kept.extend(rest.filter(|rest| self.kept.last() != Some(rest)));
+            self.kept.push(now);
+        }
+        self.last = Some(now);
     }
 }
 
@@ -116,8 +123,18 @@ mod tests {
             driven.add(t, "a", Pose::new(x, 0.0, 0.0));
         }
         driven.add(0.2, "stranger", Pose::default());
-        let xs: Vec<f64> = driven.paths()[0].poses().iter().map(|pose| pose.x).collect();
+        let xs: Vec<f64> = driven.paths()[0].poses().iter().map(|timed| timed.pose.x).collect();
         assert_eq!(xs, [0.0, 0.01, 0.0101]);
         assert!(driven.paths()[1].end().is_none());
+    }
+
+    #[test]
+    fn a_rest_has_two_ends() {
+        let mut driven = Driven::new(["a"].into_iter());
+        for (t, x) in [(0.0, 0.0), (0.05, 0.0), (0.1, 0.0), (0.15, 0.01), (0.2, 0.02)] {
+            driven.add(t, "a", Pose::new(x, 0.0, 0.0));
+        }
+        let times: Vec<Option<f64>> = driven.paths()[0].poses().iter().map(|timed| timed.time).collect();
+        assert_eq!(times, [0.0, 0.1, 0.15, 0.2].map(Some));
     }
 }

@@ -28,6 +28,7 @@ mod lines;
 mod mistakes;
 mod outcome;
 mod output;
+mod pictures;
 mod place;
 mod program;
 mod progress;

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use comfy_table::Table;
 use pydslrep_kinematics::Pose;
-use pydslrep_simulator::picture::Route;
+use pydslrep_picture::Route;
 
 use crate::commands::plan::{Planned, fixed, heading};
 use crate::driven::{Driven, DrivenPath};

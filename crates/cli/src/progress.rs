@@ -10,7 +10,7 @@ use crate::commands::plan::{Planned, fixed};
 /// More robots than these are not shown one by one.
 const MOST_ROBOTS: usize = 12;
 
-/// The bar, and a line for each robot. Draws on standard error, and only where that is a terminal.
+/// A bar for the time, and for each robot one of its actions and what it does now. Draws on standard error, and only where that is a terminal.
 pub(crate) struct Progress {
     tasks: Vec<Tasks>,
     bars: MultiProgress,
@@ -38,10 +38,10 @@ impl Progress {
         }
         let time = bars.add(time_bar(planned.plan.duration));
         let tasks = tasks(planned);
-        let line = |_: &Tasks| {
-            let style = ProgressStyle::with_template("  {msg}");
-            let bar = ProgressBar::new_spinner();
-            bars.add(bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner())))
+        let line = |tasks: &Tasks| {
+            let style = ProgressStyle::with_template("  {bar:10} {msg}");
+            let bar = ProgressBar::new(tasks.left.len() as u64);
+            bars.add(bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())))
         };
         let lines = tasks.iter().take(MOST_ROBOTS).map(line).collect();
         let progress = Self { tasks, bars, time, lines };
@@ -76,6 +76,7 @@ impl Progress {
     fn show_tasks(&self) {
         let group = self.group();
         for (line, tasks) in self.lines.iter().zip(&self.tasks) {
+            line.set_position(line.length().unwrap_or(0).saturating_sub(tasks.left.len() as u64));
             line.set_message(format!("{}  {}", tasks.robot, tasks.now(group)));
         }
     }

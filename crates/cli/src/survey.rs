@@ -5,8 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use pydslrep_analysis::environment::{ActionKind, Environment};
+use pydslrep_picture::Map;
 use pydslrep_scene::Scene;
-use pydslrep_simulator::picture::Map;
 use serde::Deserialize;
 
 use crate::failure::Failure;

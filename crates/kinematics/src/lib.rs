@@ -25,7 +25,9 @@ mod traction;
 
 pub use drive::Drive;
 pub use model::{Geometry, Model, ModelError};
-pub use plan::{Action, ActionIndex, Leg, Plan, PlanError, RobotPath, RobotPlan, Run, plan, plan_movement};
+pub use plan::{
+    Action, ActionIndex, Leg, Plan, PlanError, RobotPath, RobotPlan, Run, TimedPose, plan, plan_movement,
+};
 pub use pose::{Pose, Twist, angle_between, heading_degrees, wrap_angle};
 pub use profile::SpeedProfile;
 pub use traction::{Traction, scrub_factor};

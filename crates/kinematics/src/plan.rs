@@ -73,6 +73,15 @@ pub struct Leg {
     twist_per_rim: Twist,
 }
 
+/// Where a robot is, and when.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TimedPose {
+    /// Seconds; `None` where that is not known.
+    pub time: Option<f64>,
+    /// Where it is.
+    pub pose: Pose,
+}
+
 /// All that is known of one robot's drives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobotPath {
@@ -142,14 +151,19 @@ impl RobotPath {
         self.legs.last().map_or(self.start, |leg| leg.to)
     }
 
-    /// The known path as poses, the start first, then `per_leg` (at least one) for each leg at equal intervals
-    /// of time; the last of them is the leg's end.
-    pub fn sample(&self, per_leg: u32) -> Vec<Pose> {
-        let mut poses = vec![self.start];
+    /// The known path, the start first, then `per_leg` poses (at least one) for each leg at equal intervals of time; the
+    /// last of them is the leg's end.
+    pub fn sample(&self, per_leg: u32) -> Vec<TimedPose> {
+        let mut poses = vec![TimedPose { time: Some(0.0), pose: self.start }];
         for leg in &self.legs {
+            let at = |seconds: f64| leg.start.map(|start| start + seconds);
+            if poses.last().is_some_and(|last| last.time < leg.start) {
+                // It waited for others.
+                poses.push(TimedPose { time: leg.start, pose: leg.from });
+            }
             let inner = (1..per_leg).map(|i| leg.duration * f64::from(i) / f64::from(per_leg));
-            poses.extend(inner.map(|seconds| leg.pose_at(seconds)));
-            poses.push(leg.to);
+            poses.extend(inner.map(|seconds| TimedPose { time: at(seconds), pose: leg.pose_at(seconds) }));
+            poses.push(TimedPose { time: at(leg.duration), pose: leg.to });
         }
         poses
     }
@@ -326,11 +340,22 @@ mod tests {
         let path = plan_movement(&robot(Pose::default()).model, Pose::default(), &actions);
         let poses = path.sample(100);
         let most = 0.09 * path.legs[0].duration / 100.0 + 1e-12;
-        assert!(poses.windows(2).all(|pair| pair[0].distance(&pair[1]) <= most));
+        assert!(poses.windows(2).all(|pair| pair[0].pose.distance(&pair[1].pose) <= most));
+        assert!(poses.windows(2).all(|pair| pair[0].time < pair[1].time));
         assert_eq!(poses.len(), 201);
-        assert_eq!(poses.first(), Some(&Pose::default()));
-        assert_eq!(poses.last(), Some(&path.end()));
+        assert_eq!(poses.first(), Some(&TimedPose { time: Some(0.0), pose: Pose::default() }));
+        assert_eq!(poses.last(), Some(&TimedPose { time: path.legs[1].end(), pose: path.end() }));
         assert!((path.legs[1].pose_at(path.legs[1].duration / 2.0).theta - FRAC_PI_2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn samples_show_how_long_a_robot_waits() {
+        let robots = [robot(Pose::default()), robot(Pose::default())];
+        let run = |robot, distance| vec![Run { robot, actions: vec![forward(distance)] }];
+        let plan = plan(&robots, &[run(0, 1.0), run(1, 2.0), run(0, 1.0)]).unwrap();
+        let times: Vec<Option<f64>> = plan.robots[0].sample(1).iter().map(|pose| pose.time).collect();
+        let again = plan.robots[0].legs[1].start;
+        assert_eq!(times, [Some(0.0), plan.robots[0].legs[0].end(), again, plan.duration]);
     }
 
     #[test]

@@ -7,11 +7,9 @@
 //! * [`World`]: robots with wheel joints, stepped in simulation time.
 //! * [`Session`]: the calls of both remote APIs on a world, for several clients that may step it in lockstep.
 //! * [`edge`] (feature `remote`): the same on TCP ports, and [`Simulator`] to embed it all.
-//! * [`picture`]: planned against driven path, as SVG.
 
 #[cfg(feature = "remote")]
 pub mod edge;
-pub mod picture;
 mod remote;
 mod sightings;
 mod trace;

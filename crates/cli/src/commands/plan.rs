@@ -1,6 +1,5 @@
 //! `pydslrep plan`: where and when robots are to be, without a simulator.
 
-use std::fs;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -8,12 +7,13 @@ use clap::Args;
 use pydslrep_analysis::environment::{Environment, Movement};
 use pydslrep_config::Config;
 use pydslrep_kinematics::{ActionIndex, Leg, Plan, Pose, heading_degrees};
+use pydslrep_picture::{Map, Picture, Route};
 use pydslrep_scene::{Collision, Scene, Thing, collisions};
-use pydslrep_simulator::picture::{self, Map, Route};
 use serde::Serialize;
 
 use crate::driven::Driven;
 use crate::failure::Failure;
+use crate::pictures::Pictures;
 use crate::project::Projects;
 use crate::sources::Sources;
 use crate::{output, program, scenes};
@@ -22,7 +22,8 @@ const EXAMPLES: &str = "\
 Examples:
   pydslrep plan patrol.pyr
   pydslrep plan patrol.pyr --json
-  pydslrep plan patrol.pyr --picture patrol.svg";
+  pydslrep plan patrol.pyr --picture patrol.svg
+  pydslrep plan patrol.pyr --replay patrol.svg     robots that drive, for a browser";
 
 /// Points of a planned leg in a picture.
 const POINTS_PER_LEG: u32 = 24;
@@ -39,9 +40,8 @@ pub(crate) struct Arguments {
     /// Print JSON instead of a table
     #[arg(long)]
     json: bool,
-    /// Draw the path into a file, as SVG
-    #[arg(long, value_name = "FILE")]
-    picture: Option<PathBuf>,
+    #[command(flatten)]
+    pictures: Pictures,
     /// The scene to plan in [default: ENVIRONMENT.scene.toml beside the program, if it is there]
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
@@ -91,6 +91,18 @@ impl Planned {
         routes.collect()
     }
 
+    /// Draws such routes in its scene, with what the plan runs into.
+    ///
+    /// # Errors
+    /// When a file cannot be written.
+    pub(crate) fn draw(&self, pictures: &Pictures, title: &str, routes: &[Route]) -> Result<(), Failure> {
+        let met = collisions(&self.scene, &self.plan);
+        let collisions: Vec<(f64, f64)> = met.iter().map(|met| (met.pose.x, met.pose.y)).collect();
+        let title = &format!("{}: {title}", self.environment.name);
+        let obstacles = &self.scene.obstacles;
+        pictures.draw(&Picture { title, routes, obstacles, collisions: &collisions })
+    }
+
     fn movement(&self, index: ActionIndex) -> Option<&Movement> {
         self.environment.movements.get(*self.environment.schedule.get(index.group)?.get(index.run)?)
     }
@@ -119,7 +131,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let (mut sources, file) = Sources::open_one(&arguments.program)?;
     let projects = Projects::open(&mut sources, &[file], &Config::default())?;
     let ids = program::environments(&sources, file, arguments.environment.as_deref());
-    if ids.is_empty() || arguments.picture.is_some() || arguments.scene.is_some() {
+    if ids.is_empty() || arguments.pictures.are_wanted() || arguments.scene.is_some() {
         // A picture shows one environment, as a scene is of one; and where there is none, this says which there are.
         program::environment(&sources, file, arguments.environment.as_deref())?;
     }
@@ -134,11 +146,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     };
     let plans: Vec<Planned> = prepared.environments.into_iter().map(planned).collect::<Result<_, _>>()?;
     output::print(&if arguments.json { json(&plans)? } else { plans.iter().map(table).collect() })?;
-    if let (Some(path), Some(planned)) = (&arguments.picture, plans.first()) {
-        let title = format!("{}: planned path", planned.environment.name);
-        let drawing = picture::draw(&title, &planned.routes(), &planned.scene.obstacles);
-        fs::write(path, drawing).map_err(|error| Failure::unwritten(path, &error))?;
-        output::say(&format!("Picture: {}\n", path.display()));
+    if let Some(planned) = plans.first() {
+        planned.draw(&arguments.pictures, "planned path", &planned.routes())?;
+        arguments.pictures.tell();
     }
     Ok(ExitCode::from(u8::from(prepared.has_errors)))
 }

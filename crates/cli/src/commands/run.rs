@@ -8,8 +8,8 @@ use std::time::Instant;
 
 use clap::Args;
 use pydslrep_config::{Config, Target};
+use pydslrep_picture::Map;
 use pydslrep_script::{file_name, generate};
-use pydslrep_simulator::picture::{self, Map};
 use pydslrep_simulator::{Options, Simulator};
 use tempfile::TempDir;
 
@@ -19,6 +19,7 @@ use crate::driver::{Ending, Script, drive};
 use crate::failure::Failure;
 use crate::interrupt::{self, Interrupts};
 use crate::outcome::Outcome;
+use crate::pictures::Pictures;
 use crate::progress::Progress;
 use crate::project::Projects;
 use crate::sources::Sources;
@@ -29,6 +30,7 @@ const EXAMPLES: &str = "\
 Examples:
   pydslrep run patrol.pyr                          in the embedded simulator
   pydslrep run patrol.pyr --picture patrol.svg     and draw planned and driven path
+  pydslrep run patrol.pyr --replay driven.svg      and draw robots that drive, for a browser
   pydslrep run patrol.pyr --scene hall.scene.toml  among what stands in a hall
   pydslrep run patrol.pyr --host 127.0.0.1 --port 23000
                                                    in a CoppeliaSim that runs there
@@ -57,9 +59,8 @@ pub(crate) struct Arguments {
     /// The simulator that the script is for [default: that of pydslrep.toml, else coppeliasim]
     #[arg(long, value_name = "TARGET", value_parser = target_parser())]
     target: Option<Target>,
-    /// Draw planned and driven path into a file, as SVG
-    #[arg(long, value_name = "FILE")]
-    picture: Option<PathBuf>,
+    #[command(flatten)]
+    pictures: Pictures,
     /// Write every step into a file, as JSON lines
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
@@ -294,13 +295,10 @@ impl Run<'_> {
             }
         };
         output::print(&outcome.table())?;
-        if let Some(path) = &self.arguments.picture {
-            let title = format!("{}: planned and driven path", self.planned.environment.name);
-            let drawing = picture::draw(&title, &outcome.routes(), &self.planned.scene.obstacles);
-            fs::write(path, drawing).map_err(|error| Failure::unwritten(path, &error))?;
-        }
+        self.planned.draw(&self.arguments.pictures, "planned and driven path", &outcome.routes())?;
+        self.arguments.pictures.tell();
         let map = (!driven.maps.is_empty()).then(|| self.map_file());
-        let written = [("picture", &self.arguments.picture), ("trace", &self.arguments.trace), ("map", &map)];
+        let written = [("trace", &self.arguments.trace), ("map", &map)];
         for (what, path) in written {
             if let Some(path) = path {
                 output::say(&format!("{what}: {}\n", path.display()));

@@ -68,6 +68,31 @@ fn a_picture_of_it() {
     assert_eq!(done.code, Some(0));
     let picture = place.read("plan.svg");
     assert!(picture.starts_with("<svg") && picture.contains("robot_1"), "{picture}");
+    assert!(picture.contains("heading, every "), "{picture}");
+}
+
+#[test]
+fn a_picture_of_pixels_and_one_that_moves() {
+    let place = Place::new();
+    let program = paper("table2_two_wheels");
+    let done = place.run(&["plan", &program, "--picture", "plan.png", "--replay", "plan.svg"]);
+    assert_eq!(done.code, Some(0), "{}", done.err);
+    assert!(done.err.ends_with("picture: plan.png\nreplay: plan.svg\n"), "{}", done.err);
+    let pixels = std::fs::read(place.path("plan.png")).unwrap();
+    assert!(pixels.starts_with(b"\x89PNG\r\n"), "{:?}", &pixels[..8]);
+    let replay = place.read("plan.svg");
+    assert!(replay.contains("<animateTransform") && replay.contains("times as fast"), "{replay}");
+}
+
+#[test]
+fn a_picture_of_a_kind_that_is_not_drawn() {
+    let place = Place::new();
+    let program = paper("table2_two_wheels");
+    for (option, name, hint) in [("--picture", "a.pdf", ".svg or .png"), ("--replay", "a.png", ".svg")] {
+        let done = place.run(&["plan", &program, option, name]);
+        assert_eq!(done.code, Some(2));
+        assert!(done.err.contains(&format!("ends in {hint}")), "{}", done.err);
+    }
 }
 
 #[test]

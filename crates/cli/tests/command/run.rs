@@ -73,11 +73,13 @@ fn every_example_ends_where_it_is_planned() {
 fn a_new_program_runs_and_is_drawn() {
     let place = Place::new();
     place.run(&["new", "patrol"]);
-    let done = run(&place, &["patrol/patrol.pyr", "--picture", "patrol.svg"]);
+    let done = run(&place, &["patrol/patrol.pyr", "--picture", "patrol.svg", "--replay", "driven.svg"]);
     assert_eq!(done.code, Some(0), "{}", done.err);
     assert!(done.out.contains("times real time"), "{}", done.out);
     let picture = place.read("patrol.svg");
     assert!(picture.starts_with("<svg") && picture.contains("off the plan"), "{picture}");
+    let replay = place.read("driven.svg");
+    assert!(replay.contains("<animateTransform") && replay.contains("driven"), "{replay}");
 }
 
 #[test]

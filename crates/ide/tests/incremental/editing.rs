@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use proptest::prelude::*;
 use pydslrep_analysis::{Absence, Database, Diagnostic, FileId, Snapshot, Target};
-use pydslrep_syntax::{KEYWORDS, Span, lex, parse};
+use pydslrep_syntax::{EntityKind, KEYWORDS, Span, lex, parse};
 
 use crate::answers::{self, Focus};
 use crate::panics::without_panic;
@@ -32,6 +32,8 @@ pub(crate) enum Step {
     Absence { file: usize, import: usize, why: Option<Absence> },
     /// A setting changed.
     Target { file: usize, target: Target },
+    /// The scene of one of the file's environments came, changed or went.
+    Scene { file: usize, environment: u8, scene: Option<usize> },
 }
 
 /// A place that stays near what it was when something before it is left out.
@@ -113,6 +115,15 @@ const SIGNS: [&str; 60] = [
     "",
 ];
 
+/// Scenes in which many, some or no paths meet something, and one that is none.
+const SCENES: [&str; 5] = [
+    "[world]\nsize = [1.5, 1.5]\n",
+    "[[wall]]\nfrom = [0.4, -9]\nto = [0.4, 9]\n[robots.r]\nstart = [0, 0, 90]\n",
+    "[[cylinder]]\nat = [0.0, 1.0]\nradius = 0.3\n[robots.robot_1]\ntrack = 0.5\n",
+    "[noise]\nseed = 3\n",
+    "[wrold]\nsize =",
+];
+
 fn files() -> impl Strategy<Value = usize> {
     // Most happens in the file that a person has before them.
     prop_oneof![3 => Just(0), 2 => Just(1), 1 => Just(2), 1 => Just(3)]
@@ -153,6 +164,8 @@ fn steps() -> impl Strategy<Value = Step> {
         1 => (files(), files()).prop_map(|(file, like)| Step::Reopen { file, like }),
         2 => (files(), import, why).prop_map(|(file, import, why)| Step::Absence { file, import, why }),
         1 => (files(), proptest::sample::select(Target::ALL.to_vec())).prop_map(|(file, target)| Step::Target { file, target }),
+        3 => (files(), any::<u8>(), proptest::option::weighted(0.8, 0..SCENES.len()))
+            .prop_map(|(file, environment, scene)| Step::Scene { file, environment, scene }),
     ]
 }
 
@@ -169,6 +182,8 @@ pub(crate) struct Model {
     pub(crate) texts: [Option<String>; 4],
     pub(crate) absences: BTreeMap<(usize, String), Absence>,
     pub(crate) targets: [Target; 4],
+    /// By file and environment; kept while a file is closed.
+    pub(crate) scenes: BTreeMap<(usize, String), String>,
 }
 
 /// What a database is told.
@@ -179,6 +194,7 @@ pub(crate) enum Change {
     Close { file: usize },
     Absence { file: usize, path: String, why: Option<Absence> },
     Target { file: usize, target: Target },
+    Scene { file: usize, environment: String, text: Option<String> },
 }
 
 impl Change {
@@ -188,7 +204,8 @@ impl Change {
             | Self::Open { file, .. }
             | Self::Close { file }
             | Self::Absence { file, .. }
-            | Self::Target { file, .. } => *file,
+            | Self::Target { file, .. }
+            | Self::Scene { file, .. } => *file,
         }
     }
 
@@ -200,6 +217,9 @@ impl Change {
             Self::Close { file } => database.close(files[*file]),
             Self::Absence { file, path, why } => database.set_absence(files[*file], path, why.clone()),
             Self::Target { file, target } => database.set_target(files[*file], *target),
+            Self::Scene { file, environment, text } => {
+                database.set_scene(files[*file], environment, text.as_deref());
+            }
         }
     }
 }
@@ -230,6 +250,13 @@ impl Model {
             }
             Change::Absence { .. } => {}
             Change::Target { file, target } => self.targets[*file] = *target,
+            Change::Scene { file, environment, text } => {
+                let key = (*file, environment.clone());
+                match text {
+                    Some(text) => self.scenes.insert(key, text.clone()),
+                    None => self.scenes.remove(&key),
+                };
+            }
         }
     }
 
@@ -244,6 +271,9 @@ impl Model {
             file
         });
         for index in (0..PATHS.len()).map(|index| (index + turn) % PATHS.len()) {
+            for ((_, environment), text) in self.scenes.iter().filter(|((file, _), _)| *file == index) {
+                database.set_scene(files[index], environment, Some(text));
+            }
             database.set_target(files[index], self.targets[index]);
             if let Some(text) = &self.texts[index] {
                 database.open(PATHS[index], text);
@@ -404,8 +434,27 @@ impl Editing {
                 vec![Change::Absence { file: *file, path: IMPORTS[*import].to_owned(), why: why.clone() }]
             }
             Step::Target { file, target } => vec![Change::Target { file: *file, target: *target }],
+            Step::Scene { file, environment, scene } => {
+                let environment = self.environment(*file, *environment);
+                vec![Change::Scene {
+                    file: *file,
+                    environment,
+                    text: scene.map(|scene| SCENES[scene].to_owned()),
+                }]
+            }
             Step::Undo(_) | Step::Redo(_) => Vec::new(),
         }
+    }
+
+    /// The name of one of a file's environments.
+    fn environment(&self, file: usize, index: u8) -> String {
+        let pieces = parse(self.model.text(file));
+        let environments = pieces.iter().filter_map(|(_, piece)| piece.entity.as_ref());
+        let names: Vec<&str> = environments
+            .filter(|entity| entity.kind() == Some(EntityKind::Environment))
+            .filter_map(|entity| Some(entity.name()?.text.as_str()))
+            .collect();
+        names.get(usize::from(index) % names.len().max(1)).map_or("e", |name| name).to_owned()
     }
 
     fn moved(&self, file: usize, entity: u8, to_file: usize, to: u8, is_move: bool) -> Vec<Change> {

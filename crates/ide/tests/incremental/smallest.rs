@@ -65,9 +65,14 @@ fn compare(before: &Model, change: &Change) -> Result<(), String> {
     answers::untold(&database, files, &touched, &reported)
 }
 
-/// The same with less around the edit: a file closed, or tokens left out; long runs of them first.
+/// The same with less around the edit: a scene gone, a file closed, or tokens left out; long runs of them first.
 fn smaller(before: &Model, change: &Change) -> Vec<(Model, Change)> {
     let mut found = Vec::new();
+    for key in before.scenes.keys() {
+        let mut without = before.clone();
+        without.scenes.remove(key);
+        found.push((without, change.clone()));
+    }
     for file in 0..PATHS.len() {
         let Some(text) = &before.texts[file] else { continue };
         if file != change.file() {
@@ -119,6 +124,9 @@ impl fmt::Display for Failure {
         }
         for ((file, path), why) in &self.before.absences {
             writeln!(f, "--- {} cannot import {path}: {why:?}", PATHS[*file])?;
+        }
+        for ((file, environment), text) in &self.before.scenes {
+            writeln!(f, "--- {environment}.scene.toml of {}\n{}", PATHS[*file], text.trim_end())?;
         }
         writeln!(f, "--- targets: {:?}", self.before.targets)?;
         match &self.change {

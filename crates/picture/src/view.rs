@@ -1,9 +1,8 @@
 //! From metres on the floor to pixels in the picture.
 
-use pydslrep_kinematics::Pose;
 use pydslrep_scene::Obstacle;
 
-use super::Route;
+use crate::route::{Route, is_drawable};
 
 /// The widest and highest the floor may become, pixels.
 const MOST_WIDTH: f64 = 760.0;
@@ -23,25 +22,26 @@ const TICK_SPACING: f64 = 52.0;
 
 /// The part of the floor that is shown, and where.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct View {
+pub(crate) struct View {
     /// The floor's place in the picture, pixels.
-    pub(super) left: f64,
-    pub(super) top: f64,
-    pub(super) width: f64,
-    pub(super) height: f64,
+    pub(crate) left: f64,
+    pub(crate) top: f64,
+    pub(crate) width: f64,
+    pub(crate) height: f64,
     /// Pixels per metre.
-    pub(super) scale: f64,
+    pub(crate) scale: f64,
     x_min: f64,
     y_max: f64,
 }
 
 impl View {
     /// A view that holds all paths with the robots' bodies and all obstacles, its upper left corner at (`left`, `top`).
-    pub(super) fn of(routes: &[Route], obstacles: &[Obstacle], left: f64, top: f64) -> Self {
+    pub(crate) fn of(routes: &[Route], obstacles: &[Obstacle], left: f64, top: f64) -> Self {
         let (mut x, mut y) = (Span::EMPTY, Span::EMPTY);
         for route in routes {
             let reach = route.body.length.hypot(route.body.width) / 2.0;
-            for pose in route.planned.iter().chain(&route.driven).filter(|pose| is_finite(pose)) {
+            for timed in route.planned.iter().chain(&route.driven).filter(|timed| is_drawable(timed)) {
+                let pose = timed.pose;
                 x.include(pose.x, reach);
                 y.include(pose.y, reach);
             }
@@ -70,18 +70,12 @@ impl View {
     }
 
     /// Where a point of the floor is in the picture.
-    pub(super) fn place(&self, x: f64, y: f64) -> (f64, f64) {
+    pub(crate) fn place(&self, x: f64, y: f64) -> (f64, f64) {
         (self.left + (x - self.x_min) * self.scale, self.top + (self.y_max - y) * self.scale)
     }
 
-    /// Where the point (x, y) of a body at `pose` is in the picture.
-    pub(super) fn place_on(&self, pose: &Pose, (x, y): (f64, f64)) -> (f64, f64) {
-        let point = pose.compose(&Pose { x, y, theta: 0.0 });
-        self.place(point.x, point.y)
-    }
-
     /// The distance of grid lines, metres: 1, 2 or 5 times a power of ten.
-    pub(super) fn tick(&self) -> f64 {
+    pub(crate) fn tick(&self) -> f64 {
         let least = TICK_SPACING / self.scale;
         let power = 10_f64.powf(least.log10().floor());
         [1.0, 2.0, 5.0]
@@ -92,19 +86,14 @@ impl View {
     }
 
     /// Metres along x where vertical grid lines stand.
-    pub(super) fn x_ticks(&self) -> Vec<f64> {
+    pub(crate) fn x_ticks(&self) -> Vec<f64> {
         ticks(self.x_min, self.x_min + self.width / self.scale, self.tick())
     }
 
     /// Metres along y where horizontal grid lines stand.
-    pub(super) fn y_ticks(&self) -> Vec<f64> {
+    pub(crate) fn y_ticks(&self) -> Vec<f64> {
         ticks(self.y_max - self.height / self.scale, self.y_max, self.tick())
     }
-}
-
-/// Poses with numbers that are none cannot be drawn.
-pub(super) fn is_finite(pose: &Pose) -> bool {
-    pose.x.is_finite() && pose.y.is_finite() && pose.theta.is_finite()
 }
 
 fn ticks(low: f64, high: f64, step: f64) -> Vec<f64> {

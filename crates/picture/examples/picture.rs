@@ -1,12 +1,12 @@
-//! A picture of robots that miss their plans a little: `cargo run -p pydslrep-simulator --example picture -- 3`.
+//! A picture of robots that miss their plans a little: `cargo run -p pydslrep-picture --example picture -- 3`.
 
 #![allow(clippy::print_stdout)]
 
 use std::f64::consts::FRAC_PI_2;
 
-use pydslrep_kinematics::{Action, Drive, Pose, plan_movement};
+use pydslrep_kinematics::{Action, Drive, Pose, TimedPose, plan_movement};
+use pydslrep_picture::{Map, Picture, Route};
 use pydslrep_scene::{Robot, Scene, Wheel};
-use pydslrep_simulator::picture::{Map, Route, draw};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let count: u32 = std::env::args().nth(1).map_or(Ok(1), |count| count.parse())?;
@@ -21,9 +21,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let turn = Action::Turn { angle: sign * FRAC_PI_2 };
         let path = plan_movement(&robot.model()?, robot.start, &[forward, turn, forward, turn]);
         let planned = path.sample(100);
-        let drift = |(i, pose): (u32, &Pose)| {
+        let drift = |(i, TimedPose { time, pose }): (u32, &TimedPose)| {
             let off = 0.02 * (f64::from(i) / 40.0).sin();
-            Pose::new(pose.x + off, pose.y - off / 2.0, pose.theta + off)
+            TimedPose { time: *time, pose: Pose::new(pose.x + off, pose.y - off / 2.0, pose.theta + off) }
         };
         let driven = (0..).zip(&planned).map(drift).collect();
         routes.push(Route {
@@ -36,6 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             map: Map::default(),
         });
     }
-    println!("{}", draw("area_1: planned and driven paths", &routes, &[]));
+    let title = "area_1: planned and driven paths";
+    println!("{}", Picture { title, routes: &routes, obstacles: &[], collisions: &[] }.svg());
     Ok(())
 }

@@ -1,0 +1,58 @@
+//! Colours, letters and numbers that all pictures share.
+
+use svg::node::element::{Line, Text};
+
+/// Okabe and Ito's colours, which stay apart for colour-blind readers, without the ones too light on white.
+const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#b0508f", "#c08a00", "#3b9bd6"];
+
+pub(crate) const INK: &str = "#24292f";
+pub(crate) const QUIET: &str = "#6e7781";
+pub(crate) const GRID: &str = "#e4e8ec";
+pub(crate) const AXIS: &str = "#c3cad1";
+pub(crate) const PAPER: &str = "#ffffff";
+pub(crate) const OBSTACLE: &str = "#d4dae1";
+pub(crate) const OBSTACLE_EDGE: &str = "#8c959f";
+pub(crate) const ALARM: &str = "#cf222e";
+pub(crate) const FONT: &str = "'Helvetica Neue', Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
+
+/// Dash and gap of planned paths, pixels.
+pub(crate) const DASHES: &str = "6 4";
+
+pub(crate) fn colour(index: usize) -> &'static str {
+    COLOURS[index % COLOURS.len()]
+}
+
+/// Two digits after the point are finer than any screen.
+pub(crate) fn pixels(value: f64) -> f64 {
+    (value * 100.0).round() / 100.0
+}
+
+/// Text of at most so many letters.
+pub(crate) fn shorten(text: &str, most: usize) -> String {
+    if text.chars().count() <= most {
+        return text.to_owned();
+    }
+    let short: String = text.chars().take(most.saturating_sub(1)).collect();
+    format!("{short}…")
+}
+
+/// Text on one line; characters that XML cannot hold are left out.
+pub(crate) fn text(content: &str, x: f64, y: f64, size: u32) -> Text {
+    let content: String = content.chars().filter(|c| !c.is_control()).collect();
+    Text::new(content).set("x", pixels(x)).set("y", pixels(y)).set("font-size", size).set("fill", INK)
+}
+
+pub(crate) fn line((x1, y1): (f64, f64), (x2, y2): (f64, f64), colour: &str) -> Line {
+    Line::new()
+        .set("x1", pixels(x1))
+        .set("y1", pixels(y1))
+        .set("x2", pixels(x2))
+        .set("y2", pixels(y2))
+        .set("stroke", colour)
+}
+
+/// Points as SVG lists them.
+pub(crate) fn list(points: &[(f64, f64)]) -> String {
+    let points: Vec<String> = points.iter().map(|&(x, y)| format!("{},{}", pixels(x), pixels(y))).collect();
+    points.join(" ")
+}

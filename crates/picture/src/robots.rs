@@ -1,0 +1,132 @@
+//! Where robots are and were, and what they found.
+
+use pydslrep_kinematics::{Pose, TimedPose};
+use pydslrep_scene::Body;
+use svg::node::element::{Circle, Group, Polygon, Polyline};
+
+use crate::paper::{DASHES, INK, PAPER, line, list, pixels};
+use crate::route::{Map, Route, is_drawable};
+use crate::view::View;
+
+/// Points of a line nearer than this to the last one drawn are left out, pixels.
+const FINENESS: f64 = 0.7;
+
+/// How dark the body at the end is.
+pub(crate) const END_FILL: f64 = 0.22;
+
+/// The driven line, pixels, and how dark it is: the dashes of the planned one must stand out on it.
+pub(crate) const DRIVEN_WIDTH: f64 = 5.0;
+pub(crate) const DRIVEN_OPACITY: f64 = 0.6;
+
+/// The radius of a point that a sensor saw, pixels.
+pub(crate) const SIGHTING: f64 = 2.2;
+
+/// The line of a way and the radius of a place in a map, pixels.
+pub(crate) const MAP_WIDTH: f64 = 1.4;
+const MAP_NODE: f64 = 3.0;
+
+/// Points that a robot's sensors saw.
+pub(crate) fn sightings(view: &View, route: &Route, colour: &str) -> Group {
+    let mut drawn = std::collections::BTreeSet::new();
+    let mut group = Group::new().set("fill", colour).set("stroke", PAPER).set("stroke-width", 0.5);
+    for &(x, y) in &route.seen {
+        let (x, y) = view.place(x, y);
+        #[allow(clippy::cast_possible_truncation)] // pixels
+        if drawn.insert(((x / SIGHTING).round() as i64, (y / SIGHTING).round() as i64)) {
+            let dot = Circle::new().set("cx", pixels(x)).set("cy", pixels(y)).set("r", SIGHTING);
+            group = group.add(dot);
+        }
+    }
+    group
+}
+
+/// Ways as lines, and places as dots on them.
+pub(crate) fn map(view: &View, map: &Map) -> Group {
+    let place = |&(x, y): &(f64, f64)| view.place(x, y);
+    let mut group = Group::new().set("stroke", INK).set("stroke-width", MAP_WIDTH);
+    for (from, to) in &map.edges {
+        group = group.add(line(place(from), place(to), INK));
+    }
+    for (x, y) in map.nodes.iter().map(place) {
+        group = group.add(map_node(x, y));
+    }
+    group
+}
+
+pub(crate) fn map_node(x: f64, y: f64) -> Circle {
+    let dot = Circle::new().set("cx", pixels(x)).set("cy", pixels(y)).set("r", MAP_NODE);
+    dot.set("fill", PAPER).set("stroke", INK).set("stroke-width", MAP_WIDTH)
+}
+
+/// The driven line in the robot's colour, and on it the planned one, dashed.
+pub(crate) fn lines(view: &View, route: &Route, colour: &str) -> Group {
+    let driven = polyline(view, &route.driven)
+        .set("stroke", colour)
+        .set("stroke-width", DRIVEN_WIDTH)
+        .set("stroke-opacity", DRIVEN_OPACITY);
+    Group::new().add(driven).add(planned(view, route, colour))
+}
+
+/// The planned line, dashed; in ink where a driven one has the robot's colour.
+pub(crate) fn planned(view: &View, route: &Route, colour: &str) -> Group {
+    let planned = polyline(view, &route.planned)
+        .set("stroke", if route.driven.is_empty() { colour } else { INK })
+        .set("stroke-width", 1.4)
+        .set("stroke-linecap", "butt")
+        .set("stroke-dasharray", DASHES);
+    Group::new().add(planned)
+}
+
+fn polyline(view: &View, path: &[TimedPose]) -> Polyline {
+    let mut points: Vec<(f64, f64)> = Vec::new();
+    let drawable = path.iter().filter(|timed| is_drawable(timed));
+    for point in drawable.map(|timed| view.place(timed.pose.x, timed.pose.y)) {
+        if points.last().is_none_or(|last| (point.0 - last.0).hypot(point.1 - last.1) >= FINENESS) {
+            points.push(point);
+        }
+    }
+    if let Some(end) = path.last().filter(|timed| is_drawable(timed)) {
+        points.push(view.place(end.pose.x, end.pose.y));
+    }
+    Polyline::new()
+        .set("points", list(&points))
+        .set("fill", "none")
+        .set("stroke-linejoin", "round")
+        .set("stroke-linecap", "round")
+}
+
+/// The robot at the start (outline) and at the end (filled).
+pub(crate) fn bodies(view: &View, route: &Route, colour: &str) -> Group {
+    let path = route.path();
+    let Some(start) = path.first() else { return Group::new() };
+    let group = Group::new().add(body(view, route.body, &start.pose, colour, 0.0, 1.2));
+    match path.last() {
+        Some(end) if path.len() > 1 => group.add(body(view, route.body, &end.pose, colour, END_FILL, 2.0)),
+        _ => group,
+    }
+}
+
+fn body(view: &View, body: Body, pose: &Pose, colour: &str, fill: f64, stroke: f64) -> Group {
+    let (x, y) = view.place(pose.x, pose.y);
+    // The picture's y points down.
+    let degrees = pixels(-pose.theta.to_degrees());
+    let place = format!("translate({} {}) rotate({degrees})", pixels(x), pixels(y));
+    body_about_origin(view.scale, body, colour, fill, stroke).set("transform", place)
+}
+
+/// The outline of a body that heads along x, with an arrowhead in front, `scale` pixels a metre.
+pub(crate) fn body_about_origin(scale: f64, body: Body, colour: &str, fill: f64, stroke: f64) -> Group {
+    let on_screen = |(x, y): (f64, f64)| (x * scale, -y * scale);
+    let (length, width) = (body.length, body.width);
+    let mark = [(0.42 * length, 0.0), (0.16 * length, 0.2 * width), (0.16 * length, -0.2 * width)];
+    let outline = Polygon::new()
+        .set("points", list(&body.corners().map(on_screen)))
+        .set("fill", colour)
+        .set("fill-opacity", fill)
+        .set("stroke", colour)
+        .set("stroke-width", stroke)
+        .set("stroke-linejoin", "round");
+    let mark = Polygon::new().set("points", list(&mark.map(on_screen))).set("fill", colour);
+    let centre = Circle::new().set("r", 2.5).set("fill", colour);
+    Group::new().add(outline).add(mark).add(centre)
+}

@@ -1,0 +1,184 @@
+//! A picture that stands still.
+
+use svg::Document;
+use svg::node::element::{Group, Rectangle};
+
+use crate::legend::Key;
+use crate::paper::{FONT, PAPER, colour, pixels, shorten, text};
+use crate::route::{Picture, Route};
+use crate::view::View;
+use crate::{floor, legend, robots, ticks};
+
+/// Room for title, tick labels and legend about the floor, pixels.
+const LEFT: f64 = 62.0;
+const TOP: f64 = 56.0;
+const BOTTOM: f64 = 54.0;
+const RIGHT: f64 = 24.0;
+
+/// How wide a letter of the title is at most, pixels.
+const TITLE_LETTER: f64 = 12.0;
+
+impl Picture<'_> {
+    /// Draws it as SVG: the floor with a grid in metres, planned paths dashed and driven ones solid with marks at equal
+    /// times that point ahead, bodies at start and end, what sensors saw, maps, planned collisions, and a legend with the
+    /// end of each route and how far it is off the plan.
+    pub fn svg(&self) -> String {
+        let (view, sheet) = self.sheet(0.0);
+        let step = ticks::step(self.routes);
+        let sheet = sheet
+            .add(self.each(|route, colour| robots::lines(&view, route, colour)))
+            .add(self.each(|route, colour| robots::bodies(&view, route, colour)))
+            .add(self.each(|route, colour| robots::sightings(&view, route, colour)))
+            .add(self.each(|route, _| robots::map(&view, &route.map)))
+            .add(ticks::draw(&view, self.routes, step))
+            .add(floor::collisions(&view, self.collisions));
+        sheet.add(legend::draw(self, Key::Still(step), Picture::beside(&view))).to_string()
+    }
+
+    /// A sheet of paper with the title and the floor, and with room of some height, pixels, below it.
+    pub(crate) fn sheet(&self, below: f64) -> (View, Document) {
+        let view = View::of(self.routes, self.obstacles, LEFT, TOP);
+        let width = view.left + view.width + RIGHT + legend::WIDTH + RIGHT;
+        let height = TOP + view.height.max(legend::height(self)) + BOTTOM + below;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a width in pixels
+        let title = shorten(self.title, ((width - LEFT - RIGHT) / TITLE_LETTER) as usize);
+        let paper = Rectangle::new().set("width", "100%").set("height", "100%").set("fill", PAPER);
+        let sheet = Document::new()
+            .set("viewBox", (0, 0, pixels(width), pixels(height)))
+            .set("width", pixels(width))
+            .set("height", pixels(height))
+            .set("font-family", FONT)
+            .add(paper)
+            .add(text(&title, LEFT, 32.0, 18).set("font-weight", "bold"))
+            .add(floor::grid(&view))
+            .add(floor::obstacles(&view, self.obstacles));
+        (view, sheet)
+    }
+
+    /// The legend's place beside the floor.
+    pub(crate) fn beside(view: &View) -> (f64, f64) {
+        (view.left + view.width + RIGHT, TOP)
+    }
+
+    /// One group of drawings, of each route in its colour.
+    pub(crate) fn each(&self, draw: impl Fn(&Route, &str) -> Group) -> Group {
+        let routes = self.routes.iter().enumerate();
+        routes.fold(Group::new(), |group, (index, route)| group.add(draw(route, colour(index))))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use pydslrep_kinematics::{Action, Drive, Geometry, Model, Pose, TimedPose, plan_movement};
+    use pydslrep_scene::Obstacle;
+
+    use super::*;
+    use crate::Map;
+    use crate::paper::OBSTACLE;
+    use crate::testing::route;
+
+    fn draw(title: &str, routes: &[Route], obstacles: &[Obstacle]) -> String {
+        Picture { title, routes, obstacles, collisions: &[] }.svg()
+    }
+
+    fn square() -> Route {
+        let geometry = Geometry { track: 0.3, wheelbase: 0.25 };
+        let model = Model::new(Drive::TwoWheel, &[0.035, 0.035], geometry).unwrap();
+        let turn = Action::Turn { angle: std::f64::consts::FRAC_PI_2 };
+        let side = [Action::Move { distance: 1.0, speed: 0.09 }, turn];
+        let planned = plan_movement(&model, Pose::default(), &side.repeat(3)).sample(50);
+        let off =
+            |timed: &TimedPose| TimedPose { pose: Pose { x: timed.pose.x + 0.002, ..timed.pose }, ..*timed };
+        let driven = planned.iter().map(off).collect();
+        Route { driven, ..route(planned) }
+    }
+
+    fn untimed(poses: impl IntoIterator<Item = Pose>) -> Vec<TimedPose> {
+        poses.into_iter().map(|pose| TimedPose { time: None, pose }).collect()
+    }
+
+    #[test]
+    fn a_route_with_its_error() {
+        let picture = draw("area_1", &[square()], &[]);
+        for part in [
+            "<svg",
+            "area_1",
+            "robot_1",
+            "2.0 mm",
+            "stroke-dasharray",
+            "x in m",
+            "\n0.0\n",
+            "\n−0.2\n",
+            "every 5 s",
+        ] {
+            assert!(picture.contains(part), "no {part} in {picture}");
+        }
+        assert_eq!(picture, draw("area_1", &[square()], &[]), "the same picture each time");
+    }
+
+    #[test]
+    fn lines_have_no_more_points_than_can_be_seen() {
+        let mut route = square();
+        route.driven = untimed((0..100_000).map(|i| Pose::new(f64::from(i) * 1e-5, 0.0, 0.0)));
+        assert!(draw("fine", &[route], &[]).len() < 40_000);
+    }
+
+    #[test]
+    fn names_cannot_break_out_of_the_picture() {
+        let mut route = square();
+        route.name = "</text><script>\u{1}".to_owned();
+        let picture = draw("a & b", &[route], &[]);
+        assert!(!picture.contains("<script") && !picture.contains('\u{1}') && picture.contains("a &amp; b"));
+    }
+
+    #[test]
+    fn strange_routes_are_still_pictures() {
+        let mut route = square();
+        route.driven =
+            untimed([Pose { x: f64::NAN, y: 0.0, theta: 0.0 }, Pose { x: f64::INFINITY, ..Pose::default() }]);
+        let still = Route { planned: untimed([Pose::default()]), driven: vec![], ..square() };
+        let far = Route { planned: untimed([Pose::new(-1e12, 1e12, 0.0), Pose::default()]), ..square() };
+        let empty = Route { planned: vec![], driven: vec![], ..square() };
+        for routes in [vec![], vec![route], vec![still], vec![far], vec![empty]] {
+            let picture = draw("strange", &routes, &[]);
+            assert!(
+                picture.contains("</svg>") && !picture.contains("NaN") && !picture.contains("inf"),
+                "{picture}"
+            );
+        }
+    }
+
+    #[test]
+    fn obstacles_and_what_is_seen_of_them() {
+        let wall = Obstacle::wall("w", (3.0, -1.0), (3.0, 1.0), 0.1);
+        let route = Route { seen: vec![(2.95, 0.0), (2.95, 0.0001), (2.95, 0.5)], ..square() };
+        let with = draw("w", std::slice::from_ref(&route), std::slice::from_ref(&wall));
+        let without = draw("w", &[Route { seen: vec![], ..route }], &[]);
+        let dots = |picture: &str| picture.matches("<circle").count();
+        // Two points that can be told apart, and one in the legend.
+        assert_eq!(dots(&with), dots(&without) + 3);
+        assert!(with.contains(OBSTACLE) && with.contains("obstacle") && with.contains("seen by a sensor"));
+        assert!(!without.contains(OBSTACLE) && !without.contains("obstacle"));
+        let view = View::of(&[square()], &[wall], 0.0, 0.0);
+        assert!(view.place(3.05, 0.0).0 < view.width, "all of it is in the picture");
+    }
+
+    #[test]
+    fn a_map_over_the_world() {
+        let found = Map { nodes: vec![(0.0, 0.0), (0.5, 0.0)], edges: vec![((0.0, 0.0), (0.5, 0.0))] };
+        let with = draw("m", &[Route { map: found, ..square() }], &[]);
+        let without = draw("m", &[square()], &[]);
+        let count = |picture: &str, part: &str| picture.matches(part).count();
+        // Two places and one way, and one of each in the legend.
+        assert_eq!(count(&with, "<circle"), count(&without, "<circle") + 3);
+        assert_eq!(count(&with, "<line"), count(&without, "<line") + 2);
+        assert!(with.contains("\nmap\n") && !without.contains("\nmap\n"));
+    }
+
+    #[test]
+    fn planned_collisions_are_crossed() {
+        let routes = [square()];
+        let with = Picture { title: "c", routes: &routes, obstacles: &[], collisions: &[(0.5, 0.0)] }.svg();
+        assert!(with.contains("planned collision") && !draw("c", &routes, &[]).contains("planned collision"));
+    }
+}
