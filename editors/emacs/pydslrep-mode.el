@@ -14,6 +14,8 @@
 
 (require 'treesit)
 
+(defvar eglot-server-programs)
+
 (defgroup pydslrep nil
   "Programs of PyDSLRep."
   :group 'languages)
@@ -57,7 +59,7 @@
   "Colours where there is no parser.")
 
 (defun pydslrep--font-lock-rules ()
-  "Colours by the parser: the same as in grammar/tree-sitter/queries/highlights.scm."
+  "Colours by the parser, the same as those of its highlights.scm."
   (treesit-font-lock-rules
    :language 'pydslrep :feature 'comment '((comment) @font-lock-comment-face)
    :language 'pydslrep :feature 'string '((string) @font-lock-string-face)

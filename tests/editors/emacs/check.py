@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -74,6 +75,23 @@ def edit(made: Session, terminal: Terminal, picture: Path | None) -> None:
     made.check("completion", terminal.wait("movement n of rover"), terminal.screen())
 
 
+def compiles(folder: Path) -> bool:
+    mode = folder / "pydslrep-mode.el"
+    mode.write_text((ROOT / "editors" / "emacs" / mode.name).read_text())
+    strict = [
+        "--eval",
+        "(setq byte-compile-error-on-warn t)",
+        "-f",
+        "batch-byte-compile",
+    ]
+    return (
+        subprocess.run(
+            [*EMACS, "-Q", "--batch", *strict, str(mode)], check=False
+        ).returncode
+        == 0
+    )
+
+
 def run(made: Session, takes_pictures: bool) -> None:
     made.program.write_text(PROGRAM)
     start = [*EMACS, "-nw", str(made.program)]
@@ -89,6 +107,7 @@ def main() -> None:
         settings = made.home / ".emacs.d" / "init.el"
         settings.parent.mkdir()
         settings.write_text(QUIET + block[1].replace("/path/to/pydslrep", str(ROOT)))
+        made.check("compiles without a warning", compiles(made.home))
         print("== without the parser")
         run(made, takes_pictures=False)
         print("== with the parser")

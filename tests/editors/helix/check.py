@@ -70,6 +70,20 @@ def edit(made: Session, terminal: Terminal, takes_pictures: bool) -> None:
     terminal.type("wheel c wi")
     made.check("completion", terminal.wait("with radius +keyword"), terminal.screen())
     terminal.press("Escape")
+    terminal.press("Escape")
+    terminal.type("uggjjj/move 4")
+    terminal.press("Enter")
+    terminal.type("o")
+    terminal.type("slam")
+    made.check("indentation", terminal.wait(r"11 {4}slam"), terminal.screen())
+    terminal.press("Escape")
+    terminal.type("mafd")
+    made.check(
+        "text objects", terminal.wait_without("movement patrol of"), terminal.screen()
+    )
+    made.check(
+        "of the right size", "movement home of" in terminal.screen(), terminal.screen()
+    )
     terminal.type(":q!")
     terminal.press("Enter")
 
