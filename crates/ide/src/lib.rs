@@ -19,6 +19,7 @@ mod hover;
 mod inlay_hints;
 mod linked_editing;
 mod on_type;
+mod planned_action;
 mod planned_path;
 mod quick_fixes;
 mod refactorings;
@@ -53,7 +54,10 @@ pub use hover::{Hover, hover};
 pub use inlay_hints::{InlayHint, InlayHintOptions, inlay_hints};
 pub use linked_editing::linked_editing_ranges;
 pub use on_type::{format_after_brace, format_after_line_break};
-pub use planned_path::{PlannedAction, PlannedPath, PlannedPose, PlannedRobot, planned_path};
+pub use planned_action::{PlannedAt, action_place, planned_at};
+pub use planned_path::{
+    Met, PlannedAction, PlannedCollision, PlannedLeg, PlannedPath, PlannedPose, PlannedRobot, planned_path,
+};
 pub use quick_fixes::{QuickFix, quick_fixes};
 pub use refactorings::{Refactoring, RefactoringKind, refactorings};
 pub use reference::{KeywordPage, keyword_page};

@@ -2,9 +2,9 @@
 
 use pydslrep_analysis::environment::Environment;
 use pydslrep_analysis::{Blocked, Database, EntityId, plan};
-use pydslrep_kinematics::{Leg, Pose, RobotPath};
+use pydslrep_kinematics::{ActionIndex, Leg, Plan, Pose, RobotPath};
 use pydslrep_notation::Problem;
-use pydslrep_scene::ENDING;
+use pydslrep_scene::{self as scenery, Body, Collision, ENDING, Obstacle, Scene, Sensor, Thing};
 
 /// The planned path of an environment in its scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +15,10 @@ pub struct PlannedPath {
     pub duration: Option<f64>,
     /// In listed order.
     pub robots: Vec<PlannedRobot>,
+    /// What stands on the floor.
+    pub obstacles: Vec<Obstacle>,
+    /// Where robots would run into something, the earliest first.
+    pub collisions: Vec<PlannedCollision>,
 }
 
 /// The planned path of a robot.
@@ -22,10 +26,53 @@ pub struct PlannedPath {
 pub struct PlannedRobot {
     /// Its name.
     pub name: String,
+    /// Its outer size.
+    pub body: Body,
+    /// Where its sensors sit and what they see.
+    pub sensors: Vec<Sensor>,
     /// Its first pose is where it starts.
     pub poses: Vec<PlannedPose>,
+    /// Its drives, in order: the same movement may be listed twice, so that poses alone do not tell them apart.
+    pub legs: Vec<PlannedLeg>,
     /// The action after which its poses cannot be planned.
     pub unknown_after: Option<PlannedAction>,
+}
+
+/// The drive of one action.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlannedLeg {
+    /// The action.
+    pub action: PlannedAction,
+    /// Seconds from the start; `None` where an earlier action takes an unknown time.
+    pub start: Option<f64>,
+    /// Seconds.
+    pub duration: f64,
+    /// The index of its last pose among those of its robot; its first is the last one of the drive before.
+    pub last: usize,
+}
+
+/// A robot that would run into something.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlannedCollision {
+    /// Its name.
+    pub robot: String,
+    /// What it is doing.
+    pub action: Option<PlannedAction>,
+    /// Seconds from the start; `None` where an earlier action takes an unknown time.
+    pub time: Option<f64>,
+    /// Where it is.
+    pub pose: Pose,
+    /// What it meets.
+    pub with: Met,
+}
+
+/// What a robot meets, by its name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Met {
+    /// Something that stands on the floor.
+    Obstacle(String),
+    /// Another robot.
+    Robot(String),
 }
 
 /// A pose on the way.
@@ -62,15 +109,34 @@ pub fn planned_path(database: &Database, environment: EntityId) -> Result<Planne
     let environment = database.environment(id).map_err(|blocked: Blocked| blocked.reason())?;
     let scene = database.scene(id, &environment).map_err(|problems| wrong_scene(&environment, &problems))?;
     let plan = plan(&environment, &scene).map_err(|error| error.to_string())?;
-    let robots = environment.robots.iter().zip(&plan.robots).map(|(robot, path)| PlannedRobot {
-        name: robot.name.clone(),
+    let collisions = collisions(&environment, &scene, &plan);
+    let robots = scene.robots.into_iter().zip(&plan.robots).map(|(robot, path)| PlannedRobot {
+        name: robot.name,
+        body: robot.body,
+        sensors: robot.sensors,
         poses: poses(&environment, path),
-        unknown_after: path
-            .unknown_after
-            .and_then(|index| action(&environment, index.group, index.run, index.action)),
+        legs: legs(&environment, path),
+        unknown_after: path.unknown_after.and_then(|index| action(&environment, index)),
     });
     let robots = robots.collect();
-    Ok(PlannedPath { environment: environment.name, duration: plan.duration, robots })
+    let (duration, obstacles) = (plan.duration, scene.obstacles);
+    Ok(PlannedPath { environment: environment.name, duration, robots, obstacles, collisions })
+}
+
+fn collisions(environment: &Environment, scene: &Scene, plan: &Plan) -> Vec<PlannedCollision> {
+    let met = |thing| match thing {
+        Thing::Obstacle(index) => scene.obstacles.get(index).map(|thing| Met::Obstacle(thing.name.clone())),
+        Thing::Robot(index) => scene.robots.get(index).map(|robot| Met::Robot(robot.name.clone())),
+    };
+    let named = |found: Collision| {
+        let robot = scene.robots.get(found.robot)?.name.clone();
+        let (action, with) = (action(environment, found.action), met(found.with)?);
+        Some(PlannedCollision { robot, action, time: found.time, pose: found.pose, with })
+    };
+    let mut found: Vec<_> = scenery::collisions(scene, plan).into_iter().filter_map(named).collect();
+    let moment = |collision: &PlannedCollision| collision.time.unwrap_or(f64::INFINITY);
+    found.sort_by(|a, b| moment(a).total_cmp(&moment(b)));
+    found
 }
 
 /// Why nothing is planned in a scene, in words.
@@ -85,7 +151,7 @@ fn poses(environment: &Environment, path: &RobotPath) -> Vec<PlannedPose> {
 }
 
 fn on_leg(environment: &Environment, leg: &Leg) -> Vec<PlannedPose> {
-    let action = action(environment, leg.index.group, leg.index.run, leg.index.action);
+    let action = action(environment, leg.index);
     let at = |number: u32| {
         let seconds = leg.duration * f64::from(number) / f64::from(POSES_PER_ACTION);
         PlannedPose {
@@ -97,10 +163,19 @@ fn on_leg(environment: &Environment, leg: &Leg) -> Vec<PlannedPose> {
     (1..=POSES_PER_ACTION).map(at).collect()
 }
 
-fn action(environment: &Environment, group: usize, run: usize, index: usize) -> Option<PlannedAction> {
-    let movement = environment.movements.get(*environment.schedule.get(group)?.get(run)?)?;
-    let text = movement.actions.get(index)?.text.clone();
-    Some(PlannedAction { movement: movement.name.clone(), index, text })
+fn legs(environment: &Environment, path: &RobotPath) -> Vec<PlannedLeg> {
+    let ends = (1..).map(|number| number * POSES_PER_ACTION as usize);
+    let planned = |(leg, last): (&Leg, usize)| {
+        let action = action(environment, leg.index)?;
+        Some(PlannedLeg { action, start: leg.start, duration: leg.duration, last })
+    };
+    path.legs.iter().zip(ends).filter_map(planned).collect()
+}
+
+fn action(environment: &Environment, at: ActionIndex) -> Option<PlannedAction> {
+    let movement = environment.movements.get(*environment.schedule.get(at.group)?.get(at.run)?)?;
+    let text = movement.actions.get(at.action)?.text.clone();
+    Some(PlannedAction { movement: movement.name.clone(), index: at.action, text })
 }
 
 #[cfg(test)]
@@ -135,6 +210,29 @@ mod tests {
         assert_eq!(last.action.as_ref().unwrap().text, "turn left");
         assert!(rover.poses.windows(2).all(|pair| pair[0].time < pair[1].time));
         assert_eq!(rover.unknown_after.as_ref().unwrap().index, 2);
+        let legs: Vec<_> = rover.legs.iter().map(|leg| (leg.action.index, leg.last)).collect();
+        assert_eq!(legs, [(0, 8), (1, 16)]);
+        let turn = &rover.legs[1];
+        assert_eq!(rover.poses[turn.last].time, turn.start.map(|start| start + turn.duration));
+    }
+
+    #[test]
+    fn collisions_say_when_and_with_what() {
+        let mut database = Database::new();
+        let rest = "movement m of rover { turn left move 3 meters }
+            environment e has { rover } robots with { m } moves";
+        let file = database.open("a.pyr", &format!("{PARTS}{rest}"));
+        let id = database.environments(file)[0].0;
+        database.set_scene(file, "e", Some("[[cylinder]]\nname = \"pole\"\nat = [0, 1]\nradius = 0.1"));
+        let path = planned_path(&database, id).unwrap();
+        assert_eq!(path.obstacles[0].name, "pole");
+        let [collision] = &path.collisions[..] else { panic!("{:?}", path.collisions) };
+        assert_eq!((collision.robot.as_str(), &collision.with), ("rover", &Met::Obstacle("pole".to_owned())));
+        assert_eq!(collision.action.as_ref().unwrap().text, "move 3 meters");
+        let front = collision.pose.y + path.robots[0].body.length / 2.0;
+        assert!((front - 0.9).abs() < 0.002, "{collision:?}");
+        let leg = &path.robots[0].legs[1];
+        assert!(collision.time > leg.start && collision.time < Some(path.duration.unwrap()), "{leg:?}");
     }
 
     #[test]

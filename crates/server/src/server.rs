@@ -19,12 +19,13 @@ use crate::capabilities;
 use crate::children::Children;
 use crate::chosen::ChosenEnvironment;
 use crate::client::ClientFeatures;
+use crate::handlers::planned_action::{ActionOf, PlannedAt};
 #[cfg(feature = "process")]
 use crate::handlers::runs;
 use crate::handlers::{
     self, call_hierarchy, code_actions, code_lenses, completion, diagnostics, document_links,
-    file_operations, formatting, hover, inlay_hints, navigation, planned_path, references, rename, scripts,
-    selection, semantic_tokens, signature, synchronization, workspace_symbols,
+    file_operations, formatting, hover, inlay_hints, navigation, planned_action, planned_path, references,
+    rename, scripts, selection, semantic_tokens, signature, synchronization, workspace_symbols,
 };
 use crate::log::log;
 use crate::message::Outbox;
@@ -394,6 +395,24 @@ impl Server {
     #[allow(clippy::unused_async, reason = "what the router takes")]
     pub(crate) async fn planned_path(&self, which: ChosenEnvironment) -> Result<serde_json::Value> {
         planned_path::planned_path(&mut self.state(), &which)
+    }
+
+    /// A request of ours: see [`driven_path`](handlers::driven_path).
+    #[allow(clippy::unused_async, reason = "what the router takes")]
+    pub(crate) async fn driven_path(&self, which: ChosenEnvironment) -> Result<serde_json::Value> {
+        Ok(self.state().driven.answer(&which))
+    }
+
+    /// A request of ours: see [`planned_action`].
+    #[allow(clippy::unused_async, reason = "what the router takes")]
+    pub(crate) async fn planned_at(&self, at: TextDocumentPositionParams) -> Result<Option<PlannedAt>> {
+        Ok(planned_action::planned_at(&self.state(), &at))
+    }
+
+    /// A request of ours: see [`planned_action`].
+    #[allow(clippy::unused_async, reason = "what the router takes")]
+    pub(crate) async fn action_location(&self, of: ActionOf) -> Result<Option<Location>> {
+        planned_action::action_location(&self.state(), &of)
     }
 
     /// The client wants to know more, or less, of what the server does.

@@ -16,6 +16,8 @@ use tower_lsp::{ClientSocket, ExitedError, LspService};
 use tower_service::Service;
 
 use crate::bulk::Bulk;
+use crate::handlers::driven_path::DRIVEN_PATH;
+use crate::handlers::planned_action::{ACTION_LOCATION, PLANNED_AT};
 use crate::handlers::planned_path::PLANNED_PATH;
 use crate::log::log;
 use crate::message::{Incoming, Outbox, parse, refuse};
@@ -67,6 +69,9 @@ impl Session {
     pub fn new(outbox: Outbox, spawn: impl Fn(BoxFuture<'static, ()>) + 'static) -> Self {
         let (service, socket) = LspService::build(|client| Server::new(client, outbox.clone()))
             .custom_method(PLANNED_PATH, Server::planned_path)
+            .custom_method(DRIVEN_PATH, Server::driven_path)
+            .custom_method(PLANNED_AT, Server::planned_at)
+            .custom_method(ACTION_LOCATION, Server::action_location)
             .custom_method("$/setTrace", Server::set_trace)
             .custom_method("window/workDoneProgress/cancel", Server::cancel_progress)
             .finish();

@@ -22,6 +22,7 @@ use self::settings::SettingsStore;
 use crate::chosen::Watched;
 use crate::client::ClientFeatures;
 use crate::documents::{Document, Documents, Sort, key};
+use crate::handlers::driven_path::DrivenPaths;
 use crate::positions::{Encoding, to_offset, to_range, to_span};
 use crate::work::Work;
 
@@ -58,6 +59,8 @@ pub(crate) struct State {
     pub(crate) told: FxHashSet<String>,
     /// Planned paths that the client has.
     pub(crate) watched: Vec<Watched>,
+    /// Paths that were driven.
+    pub(crate) driven: DrivenPaths,
 }
 
 /// Documents whose diagnostics have to be told again.

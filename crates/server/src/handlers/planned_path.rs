@@ -3,6 +3,7 @@
 
 use pydslrep_analysis::MadeOf;
 use pydslrep_ide as ide;
+use pydslrep_scene::{self as scenery, Mount, Shape};
 use serde::Serialize;
 use serde_json::Value;
 use tower_lsp::jsonrpc::Result;
@@ -24,14 +25,35 @@ struct Path {
     environment: String,
     duration: Option<f64>,
     robots: Vec<Robot>,
+    obstacles: Vec<Obstacle>,
+    collisions: Vec<Collision>,
 }
 
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
 struct Robot {
     name: String,
+    body: Body,
+    sensors: Vec<Sensor>,
     poses: Vec<Pose>,
+    legs: Vec<Leg>,
     unknown_after: Option<Action>,
+}
+
+#[derive(Serialize)]
+struct Body {
+    length: f64,
+    width: f64,
+}
+
+#[derive(Serialize)]
+struct Sensor {
+    name: String,
+    x: f64,
+    y: f64,
+    theta: f64,
+    range: f64,
+    cone: f64,
 }
 
 #[derive(Serialize)]
@@ -44,10 +66,43 @@ struct Pose {
 }
 
 #[derive(Serialize)]
+struct Leg {
+    action: Action,
+    start: Option<f64>,
+    duration: f64,
+    last: usize,
+}
+
+#[derive(Serialize)]
 struct Action {
     movement: String,
     index: usize,
     text: String,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Obstacle {
+    Round { name: String, centre: (f64, f64), radius: f64 },
+    Angular { name: String, corners: Vec<(f64, f64)> },
+}
+
+#[derive(Serialize)]
+struct Collision {
+    robot: String,
+    action: Option<Action>,
+    t: Option<f64>,
+    x: f64,
+    y: f64,
+    theta: f64,
+    with: Met,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Met {
+    Obstacle(String),
+    Robot(String),
 }
 
 /// The planned path of an environment. From now on the client is told when it changes.
@@ -85,23 +140,69 @@ pub(crate) fn announce(state: &mut State, outbox: &Outbox) {
 }
 
 fn convert(path: ide::PlannedPath) -> Path {
-    let action =
-        |ide::PlannedAction { movement, index, text }: ide::PlannedAction| Action { movement, index, text };
-    let pose = |planned: ide::PlannedPose| Pose {
+    Path {
+        environment: path.environment,
+        duration: path.duration,
+        robots: path.robots.into_iter().map(robot).collect(),
+        obstacles: path.obstacles.into_iter().map(obstacle).collect(),
+        collisions: path.collisions.into_iter().map(collision).collect(),
+    }
+}
+
+fn robot(robot: ide::PlannedRobot) -> Robot {
+    Robot {
+        name: robot.name,
+        body: Body { length: robot.body.length, width: robot.body.width },
+        sensors: robot.sensors.into_iter().map(sensor).collect(),
+        poses: robot.poses.into_iter().map(pose).collect(),
+        legs: robot.legs.into_iter().map(leg).collect(),
+        unknown_after: robot.unknown_after.map(action),
+    }
+}
+
+fn sensor(sensor: scenery::Sensor) -> Sensor {
+    let Mount { pose, range, cone } = sensor.mount;
+    Sensor { name: sensor.name, x: pose.x, y: pose.y, theta: pose.theta, range, cone }
+}
+
+fn pose(planned: ide::PlannedPose) -> Pose {
+    Pose {
         t: planned.time,
         x: planned.pose.x,
         y: planned.pose.y,
         theta: planned.pose.theta,
         action: planned.action.map(action),
-    };
-    let robot = |robot: ide::PlannedRobot| Robot {
-        name: robot.name,
-        poses: robot.poses.into_iter().map(pose).collect(),
-        unknown_after: robot.unknown_after.map(action),
-    };
-    Path {
-        environment: path.environment,
-        duration: path.duration,
-        robots: path.robots.into_iter().map(robot).collect(),
+    }
+}
+
+fn leg(leg: ide::PlannedLeg) -> Leg {
+    Leg { action: action(leg.action), start: leg.start, duration: leg.duration, last: leg.last }
+}
+
+fn action(ide::PlannedAction { movement, index, text }: ide::PlannedAction) -> Action {
+    Action { movement, index, text }
+}
+
+fn obstacle(obstacle: scenery::Obstacle) -> Obstacle {
+    if let Shape::Cylinder { radius } = obstacle.shape {
+        return Obstacle::Round { name: obstacle.name, centre: (obstacle.pose.x, obstacle.pose.y), radius };
+    }
+    // What is not round has its own corners.
+    let corners = obstacle.outline(0);
+    Obstacle::Angular { name: obstacle.name, corners }
+}
+
+fn collision(found: ide::PlannedCollision) -> Collision {
+    Collision {
+        robot: found.robot,
+        action: found.action.map(action),
+        t: found.time,
+        x: found.pose.x,
+        y: found.pose.y,
+        theta: found.pose.theta,
+        with: match found.with {
+            ide::Met::Obstacle(name) => Met::Obstacle(name),
+            ide::Met::Robot(name) => Met::Robot(name),
+        },
     }
 }

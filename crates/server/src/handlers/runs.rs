@@ -143,6 +143,9 @@ impl Job {
         let mut command = Command::new(&program);
         command.arg(self.subcommand).arg(&self.program);
         command.args(["--environment", &self.environment, "--picture"]).arg(&picture);
+        if self.subcommand == "run" {
+            command.arg("--trace").arg(trace(&picture)).arg("--map").arg(map(&picture));
+        }
         let (running, news) = children.start(&mut command, self.folder).map_err(|error| {
             let name = program.display();
             failure(format!(
@@ -151,6 +154,16 @@ impl Job {
         })?;
         Ok((running, news, picture))
     }
+}
+
+/// Where a run writes every step: beside its picture.
+pub(crate) fn trace(picture: &Path) -> PathBuf {
+    picture.with_extension("jsonl")
+}
+
+/// Where a run writes the map of robots that explore: beside its picture.
+pub(crate) fn map(picture: &Path) -> PathBuf {
+    picture.with_extension("map.json")
 }
 
 /// The program `pydslrep`: beside this one, else wherever the system finds it.
@@ -166,8 +179,16 @@ pub(crate) fn ended_badly(code: Option<i32>, said: &[String]) -> Error {
         Some(130) => {
             Error { code: ErrorCode::RequestCancelled, message: "the run was cancelled".into(), data: None }
         }
-        _ if said.is_empty() => failure("pydslrep ended without a word".to_owned()),
-        _ => failure(said.join("\n")),
+        _ => {
+            // Where it wrote to is nothing that the person asked for.
+            let files = ["picture: ", "trace: ", "map: "];
+            let is_news = |line: &&String| !files.iter().any(|file| line.starts_with(file));
+            let words: Vec<&str> = said.iter().filter(is_news).map(String::as_str).collect();
+            if words.is_empty() {
+                return failure("pydslrep ended without a word".to_owned());
+            }
+            failure(words.join("\n"))
+        }
     }
 }
 

@@ -53,6 +53,10 @@ impl Server {
             }
         }
         self.children().remove(&running);
+        if params.command == runs::RUN {
+            // Also what was driven up to a failure is worth showing.
+            self.state().driven.add(&which, &runs::trace(&picture), &runs::map(&picture), &self.outbox);
+        }
         if let Some(progress) = progress {
             progress.finish().await;
         }

@@ -1,0 +1,162 @@
+//! Actions of planned paths: which action of which environment stands at the cursor, and where an action of a path stands.
+
+use pydslrep_analysis::{Database, EntityId, EntityRef, FileId};
+use pydslrep_syntax::ast::{Action, Entity};
+use pydslrep_syntax::{EntityKind, Span};
+use rustc_hash::FxHashSet;
+use smol_str::SmolStr;
+
+use crate::FilePosition;
+use crate::cursor::entities_at;
+
+/// What of planned paths stands at a place.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct PlannedAt {
+    /// The environments of the file in the order of the text, each name once.
+    pub environments: Vec<SmolStr>,
+    /// Those of them that are declared at the place or use, directly or through others, what is declared there.
+    pub using: Vec<SmolStr>,
+    /// The movement and the number of its action, counted from 0; on its line an action has the room beside it.
+    pub action: Option<(SmolStr, usize)>,
+}
+
+/// What of planned paths stands at a place.
+pub fn planned_at(database: &Database, position: FilePosition) -> PlannedAt {
+    let mut environments: Vec<SmolStr> = Vec::new();
+    for (_, name) in database.environments(position.file) {
+        if !environments.contains(&name.text) {
+            environments.push(name.text);
+        }
+    }
+    let entities = entities_at(database, position);
+    let used = entities.first().map(|entity| users(database, entity));
+    let is_used = |name: &&SmolStr| used.as_ref().is_some_and(|users| users.contains(*name));
+    let using = environments.iter().filter(is_used).cloned().collect();
+    let action = entities.iter().find_map(|entity| action_in(database, entity, position.offset));
+    PlannedAt { environments, using, action }
+}
+
+/// Where an action of an environment stands: the movement's name as the environment uses it, and the action's number.
+pub fn action_place(
+    database: &Database,
+    environment: EntityId,
+    movement: &SmolStr,
+    index: usize,
+) -> Option<(FileId, Span)> {
+    let home = database.file_of(environment)?;
+    let declared = database.resolve(home, EntityKind::Movement, movement).entity()?;
+    let entity = database.entity(declared)?;
+    let Entity::Movement(tree) = entity.parse.entity.as_ref()? else { return None };
+    Some((entity.file, tree.actions.get(index)?.span.shifted(entity.span.start)))
+}
+
+/// The environments of a file that use an entity of it, directly or through others; one uses itself.
+fn users(database: &Database, entity: &EntityRef<'_>) -> FxHashSet<SmolStr> {
+    let mut environments = FxHashSet::default();
+    let mut open = vec![entity.id];
+    let mut seen: FxHashSet<EntityId> = open.iter().copied().collect();
+    while let Some(id) = open.pop() {
+        let named = database.tree(id).and_then(|tree| Some((tree.kind()?, &tree.name()?.text)));
+        let Some((kind, name)) = named else { continue };
+        if kind == EntityKind::Environment {
+            environments.insert(name.clone());
+        }
+        open.extend(database.users(entity.file, kind, name).iter().filter(|user| seen.insert(**user)));
+    }
+    environments
+}
+
+fn action_in(database: &Database, entity: &EntityRef<'_>, offset: u32) -> Option<(SmolStr, usize)> {
+    let Entity::Movement(tree) = entity.parse.entity.as_ref()? else { return None };
+    let place = |action: &Action| action.span.shifted(entity.span.start);
+    let is_one_line = |span: Span| !database.slice(entity.file, span).contains(['\n', '\r']);
+    let begun = tree.actions.partition_point(|action| place(action).start <= offset);
+    let before = begun.checked_sub(1).filter(|&index| {
+        let end = place(&tree.actions[index]).end;
+        offset <= end || is_one_line(Span::new(end, offset))
+    });
+    let behind = || {
+        tree.actions
+            .get(begun)
+            .filter(|next| is_one_line(Span::new(offset, place(next).start)))
+            .map(|_| begun)
+    };
+    let body = tree.body?.shifted(entity.span.start);
+    let index = before.or_else(behind).filter(|_| body.touches(offset))?;
+    Some((tree.name.as_ref()?.text.clone(), index))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::PARTS;
+
+    const PROGRAM: &str = "movement go of rover {\n  move 1 meters // far\n\n  turn left move 2 meters\n}
+movement stay of rover { }
+environment first has { rover } robots with { stay } moves
+environment second has { rover } robots with { go } moves
+";
+
+    fn at(marked: &str) -> PlannedAt {
+        let text = format!("{PARTS}{marked}");
+        let offset = text.find('|').unwrap();
+        let mut database = Database::new();
+        let file = database.open("a.pyr", &text.replace('|', ""));
+        planned_at(&database, FilePosition { file, offset: u32::try_from(offset).unwrap() })
+    }
+
+    fn action(marked: &str) -> Option<usize> {
+        at(marked).action.map(|(movement, index)| {
+            assert_eq!(movement, "go");
+            index
+        })
+    }
+
+    #[test]
+    fn an_action_has_the_room_beside_it_on_its_line() {
+        for (place, expected) in [
+            ("|  move 1 meters", Some(0)),
+            ("  mo|ve 1 meters", Some(0)),
+            ("// far|", Some(0)),
+            ("far\n|\n", None),
+            ("\n |  turn left", Some(1)),
+            ("turn left| move", Some(1)),
+            ("turn left m|ove", Some(2)),
+            ("\n}|", None),
+            ("movement g|o", None),
+        ] {
+            let plain = place.replace('|', "");
+            assert_eq!(action(&PROGRAM.replacen(&plain, place, 1)), expected, "{place:?}");
+        }
+    }
+
+    #[test]
+    fn environments_use_what_they_list_and_what_that_is_made_of() {
+        let using = |text: &str, place: &str| {
+            let plain = place.replace('|', "");
+            at(&text.replacen(&plain, place, 1)).using.join(" ")
+        };
+        assert_eq!(using(PROGRAM, "go of ro|ver"), "second");
+        assert_eq!(using(PROGRAM, "stay o|f"), "first");
+        assert_eq!(using(PROGRAM, "environment se|cond"), "second");
+        let own = format!("wheel spare with radius 4\nsensor rear\n{PROGRAM}");
+        assert_eq!(using(&own, "wheel sp|are"), "");
+        assert_eq!(at(&own.replacen("sensor", "sens|or", 1)).environments, ["first", "second"]);
+        let mut database = Database::new();
+        let file = database.open("a.pyr", &format!("{PARTS}{PROGRAM}"));
+        assert_eq!(planned_at(&database, FilePosition { file, offset: 3 }).using, ["first", "second"]);
+    }
+
+    #[test]
+    fn actions_are_found_in_the_file_that_declares_them() {
+        let mut database = Database::new();
+        let parts = database.open("parts.pyr", &format!("{PARTS}{PROGRAM}"));
+        let text = "import \"parts.pyr\"\nenvironment third has { rover } robots with { go } moves";
+        let file = database.open("a.pyr", text);
+        let id = database.environments(file)[0].0;
+        let (home, span) = action_place(&database, id, &"go".into(), 2).unwrap();
+        assert_eq!((home, database.slice(home, span).as_str()), (parts, "move 2 meters"));
+        assert_eq!(action_place(&database, id, &"go".into(), 3), None);
+        assert_eq!(action_place(&database, id, &"gone".into(), 0), None);
+    }
+}
