@@ -1,0 +1,96 @@
+// The lines that robots drive, planned and driven, and what they found.
+import type { DrivenRobot, Leg, Robot } from "./model";
+import type { Theme } from "./theme";
+import type { View } from "./view";
+
+/** The joint between two actions, pixels. */
+const JOINT = 2.5;
+
+export function drawPlanned(context: CanvasRenderingContext2D, view: View, theme: Theme, robot: Robot, colour: string): void {
+  context.strokeStyle = colour;
+  context.lineWidth = 2;
+  context.lineCap = "round";
+  context.lineJoin = "round";
+  trace(context, view, robot.line, 0, robot.line.length / 2 - 1);
+  context.stroke();
+  context.fillStyle = theme.paper;
+  context.lineWidth = 1.5;
+  for (const leg of robot.legs) {
+    context.beginPath();
+    context.arc(view.toX(leg.to.x), view.toY(leg.to.y), JOINT, 0, 2 * Math.PI);
+    context.fill();
+    context.stroke();
+  }
+}
+
+export function drawDriven(context: CanvasRenderingContext2D, view: View, theme: Theme, driven: DrivenRobot, colour: string): void {
+  context.save();
+  context.globalAlpha = theme.isHighContrast ? 0.55 : 0.38;
+  context.strokeStyle = colour;
+  context.lineWidth = 6;
+  context.lineCap = "round";
+  context.lineJoin = "round";
+  trace(context, view, driven.line, 0, driven.line.length / 2 - 1);
+  context.stroke();
+  context.restore();
+}
+
+/** Places and the ways between them. */
+export function drawMap(context: CanvasRenderingContext2D, view: View, theme: Theme, driven: DrivenRobot): void {
+  context.strokeStyle = theme.ink;
+  context.lineWidth = 1.25;
+  context.beginPath();
+  for (const [[ax, ay], [bx, by]] of driven.edges) {
+    context.moveTo(view.toX(ax), view.toY(ay));
+    context.lineTo(view.toX(bx), view.toY(by));
+  }
+  context.stroke();
+  context.fillStyle = theme.paper;
+  for (const [x, y] of driven.nodes) {
+    context.beginPath();
+    context.arc(view.toX(x), view.toY(y), 3, 0, 2 * Math.PI);
+    context.fill();
+    context.stroke();
+  }
+}
+
+/** Makes one leg stand out. */
+export function drawHighlight(context: CanvasRenderingContext2D, view: View, theme: Theme, robot: Robot, leg: Leg, colour: string): void {
+  context.lineCap = "round";
+  context.lineJoin = "round";
+  if (leg.isTurn) {
+    const [x, y] = [view.toX(leg.from.x), view.toY(leg.from.y)];
+    ring(context, x, y, 9, theme.highlight, 4);
+    ring(context, x, y, 9, colour, 2);
+    return;
+  }
+  context.strokeStyle = theme.highlight;
+  context.lineWidth = 10;
+  trace(context, view, robot.line, leg.first, leg.last);
+  context.stroke();
+  context.strokeStyle = colour;
+  context.lineWidth = 3.5;
+  context.stroke();
+}
+
+function ring(context: CanvasRenderingContext2D, x: number, y: number, radius: number, colour: string, width: number): void {
+  context.strokeStyle = colour;
+  context.lineWidth = width;
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  context.stroke();
+}
+
+/** A path along a robot's line; points that fall onto the same pixel are left out. */
+function trace(context: CanvasRenderingContext2D, view: View, line: Float64Array, first: number, last: number): void {
+  context.beginPath();
+  let [beforeX, beforeY] = [NaN, NaN];
+  for (let index = first; index <= last; index += 1) {
+    const x = view.toX(line[2 * index] ?? 0);
+    const y = view.toY(line[2 * index + 1] ?? 0);
+    if (index === first) context.moveTo(x, y);
+    else if (index === last || Math.abs(x - beforeX) + Math.abs(y - beforeY) > 0.7) context.lineTo(x, y);
+    else continue;
+    [beforeX, beforeY] = [x, y];
+  }
+}

@@ -1,0 +1,59 @@
+// What is above the picture: which environment it is, how much of the floor is seen, and what is wrong.
+import { element, icon, ICONS } from "./elements";
+
+export interface ToolbarEvents {
+  choose: (environment: string) => void;
+  zoom: (factor: number) => void;
+  fit: () => void;
+}
+
+export class Toolbar {
+  readonly bar: HTMLElement;
+  readonly banner: HTMLElement;
+  private readonly title = element("h1", { "data-part": "environment" });
+  private readonly picker = element("select", { "aria-label": "Environment", "data-part": "picker" });
+
+  constructor(events: ToolbarEvents) {
+    this.picker.addEventListener("change", () => events.choose(this.picker.value));
+    this.bar = element(
+      "header",
+      { class: "toolbar" },
+      this.title,
+      this.picker,
+      element("span", { class: "space" }),
+      button("Zoom out (−)", ICONS.minus, "zoom-out", () => events.zoom(1 / 1.4)),
+      button("Zoom in (+)", ICONS.plus, "zoom-in", () => events.zoom(1.4)),
+      button("Fit the picture (0)", ICONS.fit, "fit", events.fit),
+    );
+    this.banner = element("p", { class: "banner", role: "status", "data-part": "banner" });
+    this.banner.hidden = true;
+    this.picker.hidden = true;
+  }
+
+  /** One environment is a title; among several one may choose. */
+  setEnvironments(names: readonly string[], shown: string | null): void {
+    const isChoice = names.length > 1;
+    this.picker.hidden = !isChoice;
+    this.title.hidden = isChoice;
+    this.title.textContent = shown ?? names[0] ?? "Path preview";
+    this.picker.replaceChildren(...names.map((name) => element("option", { value: name }, name)));
+    if (shown !== null) this.picker.value = shown;
+  }
+
+  /** What is wrong, in a sentence; undefined where nothing is. */
+  setTrouble(sentence: string | undefined, hasPicture: boolean): void {
+    this.banner.hidden = sentence === undefined;
+    if (sentence === undefined) return;
+    this.banner.textContent = hasPicture ? `${ended(sentence)} This is the path as it was before.` : ended(sentence);
+  }
+}
+
+export function button(label: string, shape: string, part: string, pressed: () => void): HTMLButtonElement {
+  const made = element("button", { type: "button", class: "icon", title: label, "aria-label": label, "data-part": part }, icon(shape));
+  made.addEventListener("click", pressed);
+  return made;
+}
+
+function ended(sentence: string): string {
+  return /[.!?]$/.test(sentence) ? sentence : `${sentence}.`;
+}
