@@ -34,6 +34,7 @@ WITHOUT_COLUMNS = {
     "workspace/executeCommand",
     "workspace/willRenameFiles",
     "pydslrep/plannedPath",
+    "pydslrep/plannedAt",
 }
 
 # Edits that every answer shows: all places move, counts and lengths grow, and there is one more environment.

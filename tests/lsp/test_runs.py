@@ -175,6 +175,7 @@ def test_a_run_can_be_cancelled(endless: Session, tmp_path: pathlib.Path) -> Non
     arguments = (tmp_path / "bin" / "arguments").read_text(encoding="utf-8").split()
     assert arguments[0] == "run"
     assert arguments[2:5] == ["--environment", "area", "--picture"]
+    assert arguments[6::2] == ["--trace", "--map"]
     endless.raw.send(notification("window/workDoneProgress/cancel", {"token": token}))
     assert endless.raw.answer(1)["error"]["code"] == -32800
     assert not pathlib.Path(arguments[1]).exists(), "what was run is tidied up"
@@ -236,6 +237,60 @@ def telling(server: str, folder: pathlib.Path) -> pathlib.Path:
     return beside / "told"
 
 
+# Stands in for a run that drives, and fails at last if it is told to.
+DRIVING = """\
+#!/bin/sh
+beside="$(dirname "$0")"
+while [ $# -gt 0 ]; do
+  case "$1" in
+    --trace) cat "$beside/trace" > "$2" ;;
+    --map) cat "$beside/map" > "$2" ;;
+    --picture) echo "<svg/>" > "$2"; echo "picture: $2" >&2 ;;
+  esac
+  shift
+done
+[ ! -e "$beside/fails" ] || { echo "rover does not move" >&2; exit 1; }
+"""
+STEP = '{"t": %s, "robot": "rover", "x": %s, "y": 0, "theta": 0, "wheels": [1, 1]}\n'
+MAP = (
+    '{"nodes": [{"robot": "rover", "x": 0, "y": 1}, {"robot": "rover", "x": 2, "y": 3}],'
+    ' "edges": [{"from": 0, "to": 1}]}'
+)
+
+
+def test_what_was_driven_is_told_and_that_it_changed(
+    endless: Session, tmp_path: pathlib.Path
+) -> None:
+    beside = tmp_path / "bin"
+    (beside / "pydslrep").write_text(DRIVING, encoding="utf-8")
+    (beside / "trace").write_text("".join(STEP % (t, t / 8) for t in range(3)))
+    (beside / "map").write_text(MAP)
+    raw = endless.raw
+    raw.send(request(1, "pydslrep/drivenPath", endless.area))
+    assert raw.answer(1)["result"] is None, "nothing was driven yet"
+
+    endless.execute(2, "pydslrep.run", endless.area)
+    endless.accept_progress()
+    changed = raw.read_until("pydslrep/drivenPathChanged")
+    assert changed["params"] == endless.area
+    assert "picture" in raw.answer(2)["result"]
+    raw.send(request(3, "pydslrep/drivenPath", endless.area))
+    [rover] = raw.answer(3)["result"]["robots"]
+    assert rover["name"] == "rover"
+    assert [pose["x"] for pose in rover["poses"]] == [0, 0.125, 0.25]
+    assert rover["map"] == {"nodes": [[0, 1], [2, 3]], "edges": [[[0, 1], [2, 3]]]}
+
+    (beside / "fails").touch()
+    (beside / "trace").write_text(STEP % (0, 7))
+    endless.execute(4, "pydslrep.run", endless.area)
+    endless.accept_progress()
+    raw.read_until("pydslrep/drivenPathChanged")
+    error = raw.answer(4)["error"]
+    assert error["message"] == "rover does not move"
+    raw.send(request(5, "pydslrep/drivenPath", endless.area))
+    assert raw.answer(5)["result"]["robots"][0]["poses"][0]["x"] == 7
+
+
 def test_what_has_errors_does_not_run(session: Session) -> None:
     session.replace(2, "turn left", "turn leftt")
     session.execute(1, "pydslrep.run", session.area)
@@ -275,3 +330,52 @@ def test_a_planned_path_is_told_and_that_it_changed(session: Session) -> None:
     path = session.raw.answer(2)["result"]
     assert path["duration"] is None
     assert path["robots"][0]["unknownAfter"]["index"] == 1
+
+
+def test_paths_and_text_lead_to_each_other(session: Session) -> None:
+    """By positions in the client's units: the movement stands behind a robot's face."""
+    raw = session.raw
+    line = PROGRAM.split("\n").index("  turn left")
+    position = {"line": line, "character": 4}
+    at = {"textDocument": {"uri": session.uri}, "position": position}
+    raw.send(request(1, "pydslrep/plannedAt", at))
+    assert raw.answer(1)["result"] == {
+        "environments": ["area"],
+        "using": ["area"],
+        "action": {"movement": "patrol", "index": 1},
+    }
+    raw.send(
+        request(
+            2,
+            "pydslrep/actionLocation",
+            {**session.area, "movement": "patrol", "index": 1},
+        ),
+        request(
+            3,
+            "pydslrep/actionLocation",
+            {**session.area, "movement": "patrol", "index": 2},
+        ),
+    )
+    place = {
+        "start": {"line": line, "character": 2},
+        "end": {"line": line, "character": 11},
+    }
+    assert raw.answer(2)["result"] == {"uri": session.uri, "range": place}
+    assert raw.answer(3)["result"] is None
+    at["textDocument"] = {"uri": "untitled:nowhere"}
+    raw.send(request(4, "pydslrep/plannedAt", at))
+    assert raw.answer(4)["result"] is None
+
+
+def test_a_planned_path_tells_bodies_and_drives(session: Session) -> None:
+    session.raw.send(request(1, "pydslrep/plannedPath", session.area))
+    path = session.raw.answer(1)["result"]
+    [rover] = path["robots"]
+    assert rover["body"]["length"] > rover["body"]["width"] / 2 > 0
+    assert [sensor["name"] for sensor in rover["sensors"]] == ["front"]
+    assert [leg["action"]["index"] for leg in rover["legs"]] == [0, 1]
+    for leg in rover["legs"]:
+        end = rover["poses"][leg["last"]]
+        assert end["action"] == leg["action"]
+        assert end["t"] == pytest.approx(leg["start"] + leg["duration"])
+    assert (path["obstacles"], path["collisions"]) == ([], [])

@@ -142,6 +142,41 @@ def test_a_planned_path_starts_where_the_scene_says(yard: Yard) -> None:
     assert "`yard.scene.toml`" in error["message"]
 
 
+def test_a_planned_path_tells_what_stands_in_its_way(yard: Yard) -> None:
+    yard.start(CLIENT)
+    yard.indexed()
+    program = yard.open("main.pyr", PROGRAM)
+    scene = """\
+[[cylinder]]
+name = "pole"
+at = [1, 0]
+radius = 0.1
+
+[[box]]
+name = "crate"
+at = [0, 5]
+size = [2, 1]
+"""
+    yard.open("yard.scene.toml", scene)
+    which = {"uri": program.uri, "environment": "yard"}
+    path = yard.question("pydslrep/plannedPath", which)["result"]
+    pole, crate = path["obstacles"]
+    assert pole == {"name": "pole", "centre": [1, 0], "radius": 0.1}
+    assert crate["name"] == "crate"
+    assert sorted(map(tuple, crate["corners"])) == [
+        (-1, 4.5),
+        (-1, 5.5),
+        (1, 4.5),
+        (1, 5.5),
+    ]
+    [collision] = path["collisions"]
+    assert collision["robot"] == "rover"
+    assert collision["with"] == {"obstacle": "pole"}
+    front = collision["x"] + path["robots"][0]["body"]["length"] / 2
+    assert front == pytest.approx(0.9, abs=0.002)
+    assert 0 < collision["t"] < path["duration"]
+
+
 def test_scenes_are_completed_explained_and_mended(yard: Yard) -> None:
     yard.start(CLIENT)
     yard.indexed()

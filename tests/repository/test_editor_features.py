@@ -46,6 +46,7 @@ GROUPS: dict[str, dict[str, list[str]]] = {
         "folding": ["textDocument/foldingRange"],
         "selection": ["textDocument/selectionRange"],
         "planned_path": ["pydslrep/plannedPath", "pydslrep/plannedPathChanged"],
+        "planned_action": ["pydslrep/plannedAt", "pydslrep/actionLocation"],
     },
     "Finding one's way": {
         "definition": ["textDocument/definition", "textDocument/declaration"],

@@ -119,7 +119,7 @@ environment second has { rover } robots with { go } moves
             ("  mo|ve 1 meters", Some(0)),
             ("// far|", Some(0)),
             ("far\n|\n", None),
-            ("\n |  turn left", Some(1)),
+            ("\n|  turn left", Some(1)),
             ("turn left| move", Some(1)),
             ("turn left m|ove", Some(2)),
             ("\n}|", None),

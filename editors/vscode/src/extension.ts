@@ -14,7 +14,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     registerCommands(session),
     registerStatus(session),
     registerTasks(session),
-    registerPreview(context, () => session.client),
+    registerPreview(context, () => session.client, session.onDidChangeState),
     vscode.workspace.onDidChangeConfiguration((event) => {
       if (event.affectsConfiguration("pydslrep.server.path")) {
         void session.restart();

@@ -1,6 +1,6 @@
 // The command, the panel that VS Code restores, and the connection to the server.
 import * as vscode from "vscode";
-import { State, type LanguageClient } from "vscode-languageclient/node";
+import type { LanguageClient } from "vscode-languageclient/node";
 
 import type { Ask } from "./follower";
 import { pageState } from "./messages";
@@ -10,13 +10,19 @@ import { DRIVEN_PATH_CHANGED, PLANNED_PATH_CHANGED, type Which } from "./protoco
 /**
  * Registers the command `pydslrep.showPreview` and the panel behind it. Its arguments are both optional: the program's
  * `vscode.Uri`, which the button in the title bar gives, and the environment's name, which lenses give besides.
+ * `onDidChangeState` tells "running" when a server has been started.
  */
 export function registerPreview(
   context: vscode.ExtensionContext,
   client: () => LanguageClient | undefined,
+  onDidChangeState: vscode.Event<string>,
 ): vscode.Disposable {
   const preview = new Preview(context.extensionUri, client);
   return vscode.Disposable.from(
+    // A server that was started again knows of nobody who wants a path.
+    onDidChangeState((state) => {
+      if (state === "running") preview.refresh();
+    }),
     vscode.commands.registerCommand("pydslrep.showPreview", (uri?: unknown, environment?: unknown) =>
       preview.open(uri, environment),
     ),
@@ -57,6 +63,10 @@ class Preview implements vscode.WebviewPanelSerializer {
     if (uri !== undefined) await adopted.follow(vscode.Uri.parse(uri), environment);
   }
 
+  refresh(): void {
+    void this.shown?.refresh();
+  }
+
   private adopt(panel: vscode.WebviewPanel): PreviewPanel {
     const adopted = new PreviewPanel(panel, this.extension, this.ask);
     this.shown = adopted;
@@ -84,9 +94,5 @@ class Preview implements vscode.WebviewPanelSerializer {
     this.connected.add(client);
     client.onNotification(PLANNED_PATH_CHANGED, (which: Which) => void this.shown?.pathChanged(which));
     client.onNotification(DRIVEN_PATH_CHANGED, (which: Which) => void this.shown?.drivenChanged(which));
-    client.onDidChangeState(({ newState }) => {
-      // One that was started again knows of nobody who wants a path.
-      if (newState === State.Running) void this.shown?.refresh();
-    });
   }
 }

@@ -25,7 +25,7 @@ export function drawBody(context: CanvasRenderingContext2D, view: View, robot: R
   context.roundRect(-long / 2, -wide / 2, long, wide, Math.min(long, wide) / 8);
   if (look !== "start" && look !== "ghost") {
     context.save();
-    context.globalAlpha = look === "solid" ? 0.9 : 0.22;
+    context.globalAlpha = look === "solid" ? 1 : 0.22;
     context.fill();
     context.restore();
   }

@@ -38,7 +38,14 @@ export function drawScale(context: CanvasRenderingContext2D, view: View, theme: 
 function drawBar(context: CanvasRenderingContext2D, view: View, theme: Theme): void {
   const metres = niceStep(50 / view.scale);
   const long = metres * view.scale;
-  const [right, y] = [view.width - 12, 14];
+  const [right, y] = [view.width - 18, view.height - EDGE - 24];
+  context.save();
+  context.globalAlpha = 0.85;
+  context.fillStyle = theme.paper;
+  context.beginPath();
+  context.roundRect(right - long - 8, y - 9, long + 16, 32, 4);
+  context.fill();
+  context.restore();
   context.strokeStyle = theme.ink;
   context.lineWidth = 1.5;
   context.beginPath();

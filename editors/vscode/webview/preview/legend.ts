@@ -45,8 +45,8 @@ export class Legend {
     const swatch = element("span", { class: `swatch robot-${robot.colour % ROBOT_COLOURS}`, "aria-hidden": "true" });
     const name = element("span", { class: "name", title: robot.name }, robot.name);
     const found = isRunShown ? driven?.robots.get(robot.name)?.end : undefined;
-    const lines = [robot.unknownAfter ? `planned up to “${robot.unknownAfter.text}”` : `ends at ${words.pose(robot.end)}`];
-    if (found && robot.unknownAfter) lines.push(`driven to ${words.pose(found)}`);
+    const lines = [robot.unknownAfter ? `planned up to “${robot.unknownAfter.text}”: how that goes is for the world to decide` : `→ ${words.pose(robot.end)}`];
+    if (found && robot.unknownAfter) lines.push(`driven → ${words.pose(found)}`);
     else if (found) {
       const { distance, angle } = deviation(robot.end, found);
       lines.push(`driven ${words.small(distance)}, ${words.fixed((angle * 180) / Math.PI, 1)}° off`);
@@ -66,7 +66,8 @@ export class Legend {
     const items = crashes.map((crash, index) => {
       const when = crash.t === null ? "" : ` after ${words.time(crash.t)}`;
       const sentence = `${crash.robot.name} would run into ${crash.other}${when}`;
-      const go = element("button", { type: "button", class: "crash", "data-key": `crash ${index}`, "data-collision": `${index}` }, sentence);
+      const go = element("button", { type: "button", class: "crash", "data-key": `crash ${index}`, "data-collision": `${index}` });
+      go.append(sample("collision"), element("span", {}, sentence));
       go.addEventListener("click", () => this.events.goTo(crash));
       return element("li", {}, go);
     });
@@ -83,7 +84,11 @@ function key({ model, driven, isRunShown }: LegendContent): HTMLElement {
   if (model && model.outlines.length > 0) samples.push(["obstacle", "obstacle"]);
   if (model && model.crashes.length > 0) samples.push(["collision", "collision"]);
   const items = samples.map(([kind = "", meaning = ""]) =>
-    element("li", {}, element("span", { class: `sample ${kind}`, "aria-hidden": "true" }), meaning),
+    element("li", {}, sample(kind), meaning),
   );
   return element("ul", { class: "key", "aria-label": "Key" }, ...items);
+}
+
+function sample(kind: string): HTMLElement {
+  return element("span", { class: `sample ${kind}`, "aria-hidden": "true" });
 }

@@ -186,12 +186,16 @@ export function boundsOf(model: Model, driven: Driven | undefined): Bounds {
   const includeLine = (line: Float64Array, reach: number): void => {
     for (let index = 0; index + 1 < line.length; index += 2) include(line[index] ?? 0, line[index + 1] ?? 0, reach);
   };
-  for (const { line, body } of model.robots) includeLine(line, Math.hypot(body.length, body.width) / 2);
+  for (const { name, line, body } of model.robots) {
+    const reach = Math.hypot(body.length, body.width) / 2;
+    includeLine(line, reach);
+    const found = driven?.robots.get(name);
+    if (found) includeLine(found.line, reach);
+  }
   for (const outline of model.outlines) {
     if ("points" in outline) for (const [x, y] of outline.points) include(x, y, 0);
     else include(outline.x, outline.y, outline.radius);
   }
-  for (const robot of driven?.robots.values() ?? []) includeLine(robot.line, 0.1);
   if (bounds.left > bounds.right) return { left: -1, bottom: -1, right: 1, top: 1 };
   return bounds;
 }

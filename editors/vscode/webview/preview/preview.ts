@@ -82,8 +82,7 @@ export class Preview {
       "main",
       { class: "preview", "data-state": "empty", "data-drawn": "0", "data-steps": "0" },
       this.toolbar.bar,
-      this.toolbar.banner,
-      element("div", { class: "middle" }, this.surface, this.legend.panel),
+      element("div", { class: "middle" }, element("div", { class: "stage" }, this.surface, this.toolbar.banner), this.legend.panel),
       this.controls.bar,
       this.spoken,
     );

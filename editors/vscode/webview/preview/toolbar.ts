@@ -44,7 +44,10 @@ export class Toolbar {
   setTrouble(sentence: string | undefined, hasPicture: boolean): void {
     this.banner.hidden = sentence === undefined;
     if (sentence === undefined) return;
-    this.banner.textContent = hasPicture ? `${ended(sentence)} This is the path as it was before.` : ended(sentence);
+    const words = hasPicture ? `${ended(sentence)} This is the path as it was before.` : ended(sentence);
+    // What stands in backquotes is out of the program.
+    const parts = words.split("`").map((part, index) => (index % 2 === 1 ? element("code", {}, part) : part));
+    this.banner.replaceChildren(...parts);
   }
 }
 

@@ -1,0 +1,432 @@
+// The path preview as somebody uses it: paths from the language server, the page in a browser.
+import assert from "node:assert/strict";
+import { mkdirSync, readFileSync } from "node:fs";
+import path from "node:path";
+import { after, before, test } from "node:test";
+import { pathToFileURL } from "node:url";
+
+import { extensionModule, launch, Panel, ROOT } from "./panel.mjs";
+import { rangeOf, Server } from "./server.mjs";
+
+const EXAMPLES = path.join(ROOT, "examples");
+const OUT = path.join(import.meta.dirname, "out");
+const PICTURES = process.env.UPDATE_EXPECT ? path.join(ROOT, "docs", "images", "editors") : OUT;
+
+const { Follower } = await extensionModule("follower.ts");
+
+let browser;
+let server;
+
+before(async () => {
+  for (const folder of [OUT, PICTURES]) mkdirSync(folder, { recursive: true });
+  browser = await launch();
+  server = await Server.start(EXAMPLES);
+  server.on("pydslrep/plannedPathChanged", (which) => void following?.pathChanged(which));
+  server.on("pydslrep/drivenPathChanged", (which) => void following?.drivenChanged(which));
+});
+
+after(async () => {
+  await browser?.close();
+  await server?.stop();
+});
+
+/** Who is told when paths change. */
+let following;
+
+/** A panel that follows a program as the extension's does, with that program open in the server. */
+async function follow(uri, text, options = {}) {
+  const panel = await Panel.open(browser, options);
+  const follower = new Follower(
+    (method, params) => server.ask(method, params),
+    (message) => void panel.tell(message),
+  );
+  following = follower;
+  await server.open(uri, text);
+  await follower.follow(uri, options.at ?? { line: 0, character: 0 });
+  await panel.until("state", "ready");
+  return { panel, follower };
+}
+
+function example(name) {
+  const file = path.join(EXAMPLES, `${name}.pyr`);
+  return { uri: pathToFileURL(file).href, text: readFileSync(file, "utf8") };
+}
+
+/** Four robots with so many actions each. */
+function manyActions(count) {
+  const names = ["north", "east", "south", "west"];
+  const parts = names.map(
+    (name) => `wheel ${name}L with radius 4.5
+wheel ${name}R with radius 4.5
+robot ${name} type tw with port 19997 has { ${name}L ${name}R } wheels
+parallel movement go_${name} of ${name} {
+${Array.from({ length: count / 2 }, (_, index) => `  move ${(0.3 + (index % 7) * 0.1).toFixed(1)} meters at 20\n  turn ${index % 3 === 0 ? "right" : "left"} ${60 + (index % 5) * 10}`).join("\n")}
+}
+`,
+  );
+  return `${parts.join("\n")}environment many has { ${names.join(" ")} } robots with { ${names.map((name) => `go_${name}`).join(" ")} } moves\n`;
+}
+
+/** How many pixels of the picture are not paper, on each layer. */
+function inked(panel) {
+  return panel.page.evaluate(() =>
+    [...document.querySelectorAll("canvas")].map((canvas) => {
+      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      let count = 0;
+      for (let index = 3; index < data.length; index += 4) if (data[index] > 0) count += 1;
+      return count;
+    }),
+  );
+}
+
+/** A picture of the layer with the robots, to tell two of them apart. */
+function robotsDrawn(panel) {
+  return panel.page.evaluate(() => document.querySelectorAll("canvas")[1].toDataURL());
+}
+
+/** Where a robot's action is in the picture: the middle of it, in pixels of the surface. */
+function sameColour(panel, index) {
+  return panel.page.evaluate((robot) => getComputedStyle(document.body).getPropertyValue(`--robot-${robot}`).trim(), index);
+}
+
+test("a program is drawn with all its robots, and only our script runs", async () => {
+  const { uri, text } = example("crossing");
+  const { panel } = await follow(uri, text);
+  const [still, moving] = await inked(panel);
+  assert.ok(still > 20_000, `${still} pixels`);
+  assert.ok(moving > 2_000, `${moving} pixels`);
+  const names = await panel.page.locator(".robots .name").allTextContents();
+  assert.deepEqual(names, ["north", "east", "south", "west"]);
+  assert.equal(await panel.part("environment").textContent(), "crossing");
+  assert.match(await panel.part("clock").textContent(), /^0\.0 s \/ 36\.\d s$/);
+  assert.match(await panel.part("picture").getAttribute("aria-label"), /crossing: 4 robots, 36/);
+  assert.deepEqual(panel.complaints, []);
+  await panel.page.evaluate(() => {
+    const script = document.createElement("script");
+    script.textContent = "window.ran = true";
+    document.body.append(script);
+  });
+  assert.equal(await panel.page.evaluate(() => window.ran), undefined);
+  await panel.close();
+});
+
+test("every step of the slider through 200 actions of 4 robots is drawn", async () => {
+  const { panel } = await follow("file:///many.pyr", manyActions(200));
+  const STEPS = 400;
+  const measured = await panel.page.evaluate(async (steps) => {
+    const slider = document.querySelector('[data-part="slider"]');
+    const main = document.querySelector("main");
+    const end = Number(slider.max);
+    const costs = [];
+    let shown = 0;
+    for (let step = 1; step <= steps; step += 1) {
+      slider.value = String((end * step) / steps);
+      const begin = performance.now();
+      slider.dispatchEvent(new Event("input", { bubbles: true }));
+      costs.push(performance.now() - begin);
+      if (Math.abs(Number(main.dataset.time) - (end * step) / steps) < 0.01) shown += 1;
+      if (step % 8 === 0) await new Promise(requestAnimationFrame);
+    }
+    costs.sort((a, b) => a - b);
+    return { handled: Number(main.dataset.steps), shown, middle: costs[costs.length >> 1], worst: costs.at(-1) };
+  }, STEPS);
+  console.log(`a step of 4 × 200 actions: ${measured.middle.toFixed(2)} ms in the middle, ${measured.worst.toFixed(2)} ms at worst`);
+  assert.deepEqual([measured.handled, measured.shown], [STEPS, STEPS]);
+  await panel.close();
+});
+
+test("dragging the slider draws each time that the browser reports", async () => {
+  const { panel } = await follow("file:///many.pyr", manyActions(200));
+  const { page } = panel;
+  await page.evaluate(() => {
+    window.reported = 0;
+    document.querySelector('[data-part="slider"]').addEventListener("input", () => (window.reported += 1));
+  });
+  const box = await panel.part("slider").boundingBox();
+  await page.mouse.move(box.x + 8, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width - 8, box.y + box.height / 2, { steps: 80 });
+  await page.mouse.up();
+  const reported = await page.evaluate(() => window.reported);
+  assert.ok(reported > 20, `${reported} events`);
+  assert.equal(Number(await panel.data("steps")), reported);
+  assert.ok(Number(await panel.data("time")) > 0);
+  await panel.close();
+});
+
+test("the picture follows typing", async () => {
+  const { uri, text } = example("crossing");
+  const { panel } = await follow(uri, text);
+  const place = rangeOf(text, "2.1", text.indexOf("movement down"));
+  let length = "2.1";
+  await panel.page.exposeFunction("type", (typed) => {
+    const range = { start: place.start, end: { ...place.start, character: place.start.character + length.length } };
+    length = typed;
+    return server.change(uri, range, typed);
+  });
+  const times = [];
+  for (let turn = 0; turn < 12; turn += 1) {
+    const typed = `2.${turn % 2 === 0 ? 2 : 1}`;
+    times.push(
+      await panel.page.evaluate(async (digits) => {
+        const main = document.querySelector("main");
+        const drawn = new Promise((resolve) => {
+          new MutationObserver(() => resolve()).observe(main, { attributeFilter: ["data-drawn"] });
+        });
+        const begin = performance.now();
+        window.type(digits);
+        await drawn;
+        return performance.now() - begin;
+      }, typed),
+    );
+  }
+  times.sort((a, b) => a - b);
+  console.log(`from a keystroke to its picture, 4 robots: ${times[6].toFixed(0)} ms in the middle, ${times.at(-1).toFixed(0)} ms at worst`);
+  const ends = await panel.page.locator(".robots small").first().textContent();
+  assert.match(ends, /^→ \(0\.99, −0\.99\) m, 0°$/);
+  await panel.close();
+});
+
+test("a program with errors keeps its last picture, grey, and says why", async () => {
+  const { uri, text } = example("crossing");
+  const { panel } = await follow(uri, text);
+  const before = await inked(panel);
+  await server.change(uri, rangeOf(text, "move 2.1 meters"), "move meters");
+  await panel.until("state", "stale");
+  const banner = await panel.part("banner").textContent();
+  assert.match(banner, /crossing has errors: .+ This is the path as it was before\.$/);
+  assert.deepEqual(await inked(panel), before);
+  await panel.page.waitForFunction(() => getComputedStyle(document.querySelector("canvas")).filter.includes("grayscale"));
+  await panel.page.screenshot({ path: path.join(OUT, "stale.png") });
+  await server.change(uri, rangeOf(text.replace("move 2.1 meters", "move meters"), "move meters"), "move 2.1 meters");
+  await panel.until("state", "ready");
+  assert.ok(!(await panel.part("banner").isVisible()));
+  await panel.close();
+});
+
+test("there is never an empty panel", async () => {
+  const panel = await Panel.open(browser);
+  const follower = new Follower((method, params) => server.ask(method, params), (message) => void panel.tell(message));
+  await follower.again();
+  await panel.part("banner").waitFor();
+  assert.match(await panel.part("banner").textContent(), /Open a program/);
+  await server.open("file:///empty.pyr", "wheel w with radius 3\n");
+  await follower.follow("file:///empty.pyr", { line: 0, character: 0 });
+  await panel.page.getByText("no environment yet").waitFor();
+  await panel.close();
+});
+
+test("pointing at an action explains it, clicking it asks for its place in the text", async () => {
+  const { uri, text } = example("crossing");
+  const { panel, follower } = await follow(uri, text);
+  const { page } = panel;
+  // Along the middle of the picture's width a robot drives across: look for it from above.
+  const box = await panel.part("picture").boundingBox();
+  let found;
+  for (let y = 10; y < box.height - 30 && !found; y += 4) {
+    await page.mouse.move(box.x + box.width / 2, box.y + y);
+    if (await panel.part("tooltip").isVisible()) found = y;
+  }
+  assert.ok(found, "an action is under the pointer");
+  const words = await panel.part("tooltip").innerText();
+  assert.match(words, /^(?:move|turn) .+\n\w+ · \w+, action \d\ntakes .+, from .+ to .+\nends at \(.+\) m, .+°$/);
+  assert.match(await panel.data("highlighted"), /^\w+ \d$/);
+  const [robotLine] = words.split("\n").slice(1);
+  const [, movement, number] = /· (\w+), action (\d)/.exec(robotLine);
+  await page.mouse.click(box.x + box.width / 2, box.y + found);
+  const { action } = panel.said.find(({ type }) => type === "reveal");
+  assert.deepEqual(action, { movement, index: Number(number) - 1 });
+  const place = await follower.place(action);
+  assert.equal(place.uri, uri);
+  const line = text.split("\n")[place.range.start.line];
+  assert.equal(line.slice(place.range.start.character, place.range.end.character), words.split("\n")[0]);
+  await page.screenshot({ path: path.join(OUT, "tooltip.png") });
+  await panel.close();
+});
+
+test("the action at the cursor stands out", async () => {
+  const { uri, text } = example("crossing");
+  const { panel, follower } = await follow(uri, text);
+  const before = await robotsDrawn(panel);
+  const at = rangeOf(text, "move 1.4", text.indexOf("movement across")).start;
+  await follower.look(at, true);
+  await panel.until("highlighted", "across 2");
+  assert.notEqual(await robotsDrawn(panel), before);
+  await follower.look({ line: 0, character: 0 }, true);
+  await panel.until("highlighted", "");
+  assert.equal(await robotsDrawn(panel), before);
+  await panel.close();
+});
+
+test("keys play, step, jump, zoom and go through the actions", async () => {
+  const { uri, text } = example("crossing");
+  const { panel } = await follow(uri, text);
+  const { page } = panel;
+  const time = async () => Number(await panel.data("time"));
+  await page.keyboard.press("End");
+  const end = await time();
+  assert.ok(end > 36);
+  await page.keyboard.press("Home");
+  assert.equal(await time(), 0);
+  await page.keyboard.press("ArrowRight");
+  assert.ok((await time()) > 0 && (await time()) < 1);
+  await page.keyboard.press("ArrowLeft");
+  assert.equal(await time(), 0);
+  await page.keyboard.press("Space");
+  await page.waitForFunction(() => Number(document.querySelector("main").dataset.time) > 0.2);
+  await page.keyboard.press("Space");
+  const paused = await time();
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+  assert.equal(await time(), paused);
+  await page.keyboard.press("n");
+  await page.keyboard.press("n");
+  assert.equal(await panel.data("highlighted"), "down 1");
+  assert.match(await panel.part("spoken").textContent(), /^turn left 45, north · down, action 2/);
+  await page.keyboard.press("Enter");
+  assert.deepEqual(panel.said.at(-1), { type: "reveal", action: { movement: "down", index: 1 } });
+  const [before] = await inked(panel);
+  await page.keyboard.press("+");
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+  assert.notEqual((await inked(panel))[0], before);
+  // All that can be used is reached by Tab, and shows that it has the focus.
+  const reached = new Set();
+  for (let turn = 0; turn < 14; turn += 1) {
+    await page.keyboard.press("Tab");
+    const focus = await page.evaluate(() => {
+      const { activeElement } = document;
+      return [activeElement.dataset.part ?? activeElement.dataset.key ?? "", getComputedStyle(activeElement).outlineStyle];
+    });
+    if (focus[0]) {
+      reached.add(focus[0]);
+      assert.equal(focus[1], "solid", focus[0]);
+    }
+  }
+  for (const part of ["zoom-in", "zoom-out", "fit", "picture", "robot north", "robot west", "play", "slider", "speed"]) {
+    assert.ok(reached.has(part), `${part} is reached by Tab`);
+  }
+  await panel.close();
+});
+
+test("with reduced motion time goes by in steps", async () => {
+  const { uri, text } = example("crossing");
+  const { panel } = await follow(uri, text, { reducedMotion: "reduce" });
+  const times = await panel.page.evaluate(async () => {
+    const main = document.querySelector("main");
+    const seen = new Set();
+    document.querySelector('[data-part="play"]').click();
+    const begin = performance.now();
+    while (performance.now() - begin < 1300) {
+      await new Promise(requestAnimationFrame);
+      seen.add(main.dataset.time);
+    }
+    return [...seen];
+  });
+  assert.ok(times.length >= 2 && times.length <= 4, `${times}`);
+  await panel.close();
+});
+
+test("robots are hidden by their legend, and stay so after a reload", async () => {
+  const { uri, text } = example("crossing");
+  const { panel } = await follow(uri, text);
+  const [, before] = await inked(panel);
+  await panel.page.locator('[data-robot="east"]').uncheck();
+  const [, without] = await inked(panel);
+  assert.ok(without < before * 0.9, `${before} → ${without}`);
+  await panel.page.locator('[data-part="slider"]').fill("10");
+  const state = await panel.page.evaluate(() => window.keptState);
+  assert.deepEqual({ ...state, time: Math.round(state.time) }, { uri, environment: "crossing", hidden: ["east"], time: 10 });
+  await panel.close();
+  const again = await follow(uri, text, { state });
+  assert.equal(await again.panel.page.locator('[data-robot="east"]').isChecked(), false);
+  assert.equal(Math.round(Number(await again.panel.data("time"))), 10);
+  assert.deepEqual(again.panel.said[0], { type: "ready" });
+  await again.panel.close();
+});
+
+test("among several environments one may choose", async () => {
+  const { text } = example("crossing");
+  const uri = "file:///two.pyr";
+  const { panel, follower } = await follow(uri, `${text}\nenvironment alone has { north } robots with { down } moves\n`);
+  panel.hear = (message) => {
+    if (message.type === "choose") void follower.choose(message.environment);
+  };
+  await panel.until("environment", "crossing");
+  await panel.part("picker").selectOption("alone");
+  await panel.until("environment", "alone");
+  assert.deepEqual(await panel.page.locator(".robots .name").allTextContents(), ["north"]);
+  // The cursor is in what both use: nothing jumps. In what only the other uses, it does.
+  await follower.look(rangeOf(text, "turn left", text.indexOf("movement down")).start, true);
+  assert.equal(await panel.data("environment"), "alone");
+  await follower.look(rangeOf(text, "turn left", text.indexOf("movement across")).start, true);
+  await panel.until("environment", "crossing");
+  await panel.close();
+});
+
+test("collisions are marked, and told with when and what", async () => {
+  const { uri, text } = example("crossing");
+  const { panel } = await follow(uri, text.replace("turn left 45\n  move 1.4", "turn left 85\n  move 1.4"));
+  const crash = panel.page.locator("[data-collision]").first();
+  assert.match(await crash.textContent(), /^north would run into \w+ after \d+\.\d s$/);
+  assert.ok((await panel.page.locator(".marks i").count()) > 0);
+  await crash.click();
+  assert.ok(Number(await panel.data("time")) > 1);
+  assert.equal(panel.said.at(-1).action.movement, "down");
+  await panel.page.screenshot({ path: path.join(OUT, "collision.png") });
+  await panel.close();
+});
+
+test("a plan that the world decides says so", async () => {
+  const { uri, text } = example("horseshoe");
+  const { panel } = await follow(uri, text);
+  assert.match(await panel.page.locator(".robots li").textContent(), /planned up to “turn right until \{ fSensorLeft, fSensor, fSensorRight \}”/);
+  assert.match(await panel.part("clock").textContent(), /…$/);
+  await panel.page.screenshot({ path: path.join(OUT, "horseshoe.png") });
+  await panel.close();
+});
+
+/** Drives the shown program, and waits for the picture of it. */
+async function drive(panel, uri, environment) {
+  await server.ask("workspace/executeCommand", { command: "pydslrep.run", arguments: [{ uri, environment }] });
+  await panel.page.locator(`main[data-driven="${environment}"]`).waitFor({ state: "attached", timeout: 15_000 });
+}
+
+test("after a run the driven path is over the planned one", async () => {
+  const { uri, text } = example("horseshoe");
+  const { panel } = await follow(uri, text, { theme: "dark" });
+  const [before] = await inked(panel);
+  await drive(panel, uri, "horseshoe");
+  assert.ok((await inked(panel))[0] > before + 3000);
+  assert.match(await panel.page.locator(".robots li").textContent(), /driven → \(.+\) m, .+°$/);
+  // The world decides how long it takes: the time goes on to the end of the run.
+  await panel.page.keyboard.press("End");
+  assert.ok(Number(await panel.data("time")) > 30);
+  await panel.page.screenshot({ path: path.join(OUT, "driven.png") });
+  await panel.part("show-run").uncheck();
+  assert.equal((await inked(panel))[0], before);
+  await panel.close();
+});
+
+test("pictures", async () => {
+  const scenes = [
+    { name: "crossing", theme: "light", time: 0.4 },
+    { name: "crossing", theme: "dark", time: 0.4 },
+    { name: "crossing", theme: "high-contrast", time: 0.4 },
+    { name: "crossing", theme: "high-contrast-light", time: 0.4 },
+    { name: "rooms", theme: "light", time: 0 },
+    { name: "convoy", theme: "dark", time: 0.5 },
+    { name: "crossing", theme: "dark", time: 0.6, width: 420, height: 640 },
+  ];
+  for (const { name, theme, time, width, height } of scenes) {
+    const { uri, text } = example(name);
+    const { panel } = await follow(uri, text, { theme, ...(width ? { width, height } : {}) });
+    const slider = panel.part("slider");
+    await slider.evaluate((input, share) => {
+      input.value = String(Number(input.max) * share);
+      input.dispatchEvent(new Event("input"));
+    }, time);
+    assert.equal(await sameColour(panel, 0), { light: "#0072b2", dark: "#56b4e9", "high-contrast": "#4cc2ff", "high-contrast-light": "#00538a" }[theme]);
+    await panel.page.screenshot({ path: path.join(OUT, `${name}-${theme}${width ? "-narrow" : ""}.png`) });
+    assert.deepEqual(panel.complaints, []);
+    await panel.close();
+  }
+});

@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# The path preview of editors/vscode in a browser, with paths from the language server.
+# PYDSLREP_LSP: the server, else that of target/debug. CHROMIUM: the browser, else the system's.
+# UPDATE_EXPECT=1 writes the pictures of docs/images/editors.
+set -euo pipefail
+here="$(cd "$(dirname "$0")" && pwd)"
+root="$(cd "$here/../../.." && pwd)"
+export CHROMIUM="${CHROMIUM:-/usr/bin/chromium}"
+export PYDSLREP_LSP="${PYDSLREP_LSP:-${CARGO_TARGET_DIR:-$root/target}/debug/pydslrep-lsp}"
+
+if [ ! -x "$CHROMIUM" ]; then
+  if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
+    apt-get update -qq && apt-get install -y -qq --no-install-recommends chromium fonts-dejavu-core
+  else
+    echo "Chromium is missing: install it (on Debian and Ubuntu: apt install chromium), or set CHROMIUM" >&2
+    exit 2
+  fi
+fi
+if [ ! -x "$PYDSLREP_LSP" ]; then
+  (cd "$root" && cargo build --quiet --locked --package pydslrep-server)
+fi
+install() { if [ ! -d "$1/node_modules" ]; then npm ci --silent --prefix "$1"; fi; }
+install "$root/editors/vscode"
+install "$here"
+npm run --silent --prefix "$root/editors/vscode" build
+exec node --test --test-reporter=spec "$here"/*.test.mjs
