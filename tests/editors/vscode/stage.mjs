@@ -144,9 +144,9 @@ export class Stage {
     await this.page.keyboard.press("Control+P");
     const input = this.page.locator(".quick-input-widget input").first();
     await input.fill(name);
-    await this.page.locator(".quick-input-widget .monaco-list-row", { hasText: path.basename(name) }).first().waitFor();
+    await this.page.locator(".quick-input-widget .monaco-list-row.focused", { hasText: path.basename(name) }).waitFor();
     await this.page.keyboard.press("Enter");
-    await this.tab(path.basename(name)).waitFor();
+    await this.page.locator(`.tab.active[data-resource-name="${path.basename(name)}"]`).waitFor();
   }
 
   /** The address of a file as the editor in the browser has it; with the authority, or marks are not drawn. */
