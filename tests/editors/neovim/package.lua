@@ -80,14 +80,38 @@ local function file_type()
   vim.cmd('bwipeout!')
 end
 
+local NESTED = [[
+robot r with port 1 has {
+  left right
+} wheels with sensors {
+  front } // and no more: {
+
+/* In front of it:
+ * { nothing }
+ */
+movement m of r {
+  turn left until {
+    front
+    back
+  }
+  /*
+   * Then on.
+   */
+  slam
+}
+]]
+
 local function indentation()
   local folder = vim.env.REPOSITORY
   local programs = vim.fn.glob(folder .. '/tests/paper/*.pyr', true, true)
   vim.list_extend(programs, vim.fn.glob(folder .. '/examples/*.pyr', true, true))
   check('there are programs', #programs > 8, programs)
-  local wrong = {}
+  local layouts = { nested = NESTED }
   for _, program in ipairs(programs) do
-    local layout = vim.system({ 'pydslrep', 'fmt', '-' }, { stdin = harness.read(program) }):wait().stdout
+    layouts[program] = vim.system({ 'pydslrep', 'fmt', '-' }, { stdin = harness.read(program) }):wait().stdout
+  end
+  local wrong = {}
+  for program, layout in pairs(layouts) do
     harness.write('indented.pyr', (layout:gsub('\n[ \t]+', '\n')))
     vim.cmd.edit({ args = { 'indented.pyr' }, bang = true })
     vim.cmd('silent normal! gg=G')
