@@ -169,6 +169,14 @@ local function by_the_server()
       check(what, #found == 0, vim.list_slice(found, 1, 40))
     end
   end
+  vim.cmd.edit(vim.env.PROGRAM)
+  wait(function() return harness.client() end)
+  local first = harness.client().id
+  vim.cmd('Pydslrep restart')
+  local function restarted()
+    return harness.client() and harness.client().initialized and harness.client().id ~= first
+  end
+  check('a server that is not started by the plugin is started again by it', wait(restarted))
   harness.write('../server.pid', tostring(harness.process()))
 end
 

@@ -122,10 +122,7 @@ local function start(buffer)
 end
 
 --- Has the server started for programs, settings and scenes, those that are open included.
-function M.enable()
-  if not config.get().enable then
-    return
-  end
+local function enable()
   if vim.lsp.enable then
     vim.lsp.enable(M.NAME)
     return
@@ -141,6 +138,13 @@ function M.enable()
     if vim.api.nvim_buf_is_loaded(buffer) then
       start(buffer)
     end
+  end
+end
+
+--- The same, unless that is switched off.
+function M.enable()
+  if config.get().enable then
+    enable()
   end
 end
 
@@ -213,7 +217,7 @@ local function start_when_ended(looks)
     end, LOOK_EVERY_MS)
     return
   end
-  M.enable()
+  enable()
   say.information('the server starts again')
 end
 
