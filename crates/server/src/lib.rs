@@ -21,6 +21,8 @@ mod chosen;
 mod client;
 mod documents;
 #[cfg(feature = "process")]
+mod driven;
+#[cfg(feature = "process")]
 mod frame;
 mod handlers;
 mod log;

@@ -175,21 +175,21 @@ fn executable() -> PathBuf {
 
 /// The error for a run that did not come to its end.
 pub(crate) fn ended_badly(code: Option<i32>, said: &[String]) -> Error {
-    match code {
-        Some(130) => {
-            Error { code: ErrorCode::RequestCancelled, message: "the run was cancelled".into(), data: None }
-        }
-        _ => {
-            // Where it wrote to is nothing that the person asked for.
-            let files = ["picture: ", "trace: ", "map: "];
-            let is_news = |line: &&String| !files.iter().any(|file| line.starts_with(file));
-            let words: Vec<&str> = said.iter().filter(is_news).map(String::as_str).collect();
-            if words.is_empty() {
-                return failure("pydslrep ended without a word".to_owned());
-            }
-            failure(words.join("\n"))
-        }
+    if code == Some(130) {
+        return Error {
+            code: ErrorCode::RequestCancelled,
+            message: "the run was cancelled".into(),
+            data: None,
+        };
     }
+    // Where it wrote to is nothing that the person asked for.
+    let files = ["picture: ", "trace: ", "map: "];
+    let is_news = |line: &&String| !files.iter().any(|file| line.starts_with(file));
+    let words: Vec<&str> = said.iter().filter(is_news).map(String::as_str).collect();
+    if words.is_empty() {
+        return failure("pydslrep ended without a word".to_owned());
+    }
+    failure(words.join("\n"))
 }
 
 #[cfg(test)]
