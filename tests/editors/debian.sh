@@ -18,7 +18,10 @@ need() { # a program, the package that has it
 unpacked() { # suite, package: prints the folder it is unpacked in
   local folder="$repository/target/editors/$1-$2"
   if [ ! -e "$folder/complete" ]; then
-    need apt-get apt >&2
+    command -v apt-get >/dev/null || {
+      echo "$2 is not on the path and no Debian package can be had here: install it and run this again" >&2
+      exit 2
+    }
     need patchelf patchelf >&2
     rm -rf "$folder"
     unpack "$1" "$folder" "$2" >&2
