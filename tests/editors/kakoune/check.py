@@ -40,10 +40,14 @@ def edit(made: Session, terminal: Terminal, takes_pictures: bool) -> None:
     terminal.press("Enter")
     made.check("quick fix", terminal.wait(FIXED), terminal.screen())
     command(terminal, "lsp-formatting")
-    made.check("format", terminal.wait("(?m)^ *  move 4.0 meters"), terminal.screen())
+    made.check("format", terminal.wait("(?m)^ {3}move 4.0 meters"), terminal.screen())
     terminal.type("ge")
     terminal.type("omovement n of ro")
-    made.check("completion", terminal.wait(r"rover +\S*.*[Rr]obot"), terminal.screen())
+    made.check(
+        "completion is offered", terminal.wait("rover +Class"), terminal.screen()
+    )
+    terminal.press("C-n")
+    made.check("completion", terminal.wait("movement n of rover"), terminal.screen())
 
 
 def main() -> None:
