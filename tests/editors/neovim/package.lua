@@ -239,6 +239,10 @@ local function stop()
   becomes('stopped, it is told', true, function() return said():find('stopped', 1, true) ~= nil end)
   becomes('and the process is gone', false, runs)
   check('then nothing runs', told('nothing runs', function() vim.cmd('Pydslrep stop') end))
+  vim.cmd('Pydslrep run')
+  check('and another can be started', wait(runs))
+  vim.uv.kill(harness.process(), 'sigkill')
+  becomes('that goes with the server', true, function() return said():find('the server has ended', 1, true) ~= nil end)
 end
 
 local function lenses()
