@@ -18,7 +18,7 @@ const entry = path.join(CODE_SERVER, "node_modules/code-server/out/node/entry.js
 export const repository = path.resolve(import.meta.dirname, "../../..");
 
 /** How long anything may take that is waited for. */
-const PATIENCE = 60_000;
+const PATIENCE = 90_000;
 
 /** Nothing on the screen that is not the extension's. */
 const SETTINGS = {
@@ -126,6 +126,8 @@ export class Stage {
     await this.page.locator(".monaco-workbench").waitFor();
     if (open) {
       await this.line("").first().waitFor();
+      // Before that, the editor does not know the extension.
+      await this.page.locator(".statusbar-item", { hasText: "PyDSLRep" }).first().waitFor();
       await this.page.keyboard.press("Control+B");
       await this.page.locator(".part.sidebar").waitFor({ state: "hidden" });
     }
@@ -217,7 +219,7 @@ export class Stage {
   /** The processes of the extension's own server, by their numbers. */
   servers() {
     const list = execFileSync("ps", ["-eo", "pid=,args="], { encoding: "utf8" }).split("\n");
-    const ours = list.filter((line) => line.includes(this.scratch) && / lsp --stdio\b/.test(line));
+    const ours = list.filter((line) => line.includes(this.scratch) && / (lsp )?--stdio\b/.test(line));
     return ours.map((line) => Number.parseInt(line, 10));
   }
 

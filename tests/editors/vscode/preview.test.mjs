@@ -1,0 +1,85 @@
+// The path preview in the real editor: opens beside the program, and follows what is typed.
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+
+import { Stage, program, until } from "./stage.mjs";
+
+let stage;
+let frame;
+before(async () => {
+  stage = await Stage.open({
+    files: { "convoy.pyr": program("examples/convoy.pyr") },
+    open: "convoy.pyr",
+    settings: { "editor.codeLens": false, "editor.inlayHints.enabled": "off" },
+  });
+});
+after(() => stage?.close());
+
+/** How often the page has drawn a path. */
+const drawn = () => frame.locator("main.preview").getAttribute("data-drawn").then(Number);
+
+test("the preview opens beside the program by its keys", async () => {
+  await stage.line("parallel movement cross_1").first().click();
+  await stage.page.keyboard.press("Control+K");
+  await stage.page.keyboard.press("v");
+  frame = await stage.webview("main.preview");
+  await until("a path is drawn", async () => (await drawn()) > 0);
+  assert.equal(await frame.locator("main.preview").getAttribute("data-state"), "ready");
+  await stage.picture("preview");
+});
+
+/** What is on the canvases, in a number. */
+const picture = () =>
+  frame.evaluate(() => [...document.querySelectorAll("canvas")].map((canvas) => canvas.toDataURL()).join());
+
+test("it moves when a number is edited", async () => {
+  const before = await picture();
+  const count = await drawn();
+  await cursorBehind("move 2 meters at 10", "2");
+  await stage.page.keyboard.press("Backspace");
+  await stage.type("3");
+  await until("it is drawn anew", async () => (await drawn()) > count && (await picture()) !== before);
+  assert.equal(await frame.locator("main.preview").getAttribute("data-state"), "ready");
+});
+
+test("a mistake keeps the last picture, and says so", async () => {
+  await stage.page.keyboard.press("Backspace");
+  await until("it says that it is old", async () => (await frame.locator("main.preview").getAttribute("data-state")) === "stale");
+  await stage.type("2");
+  await until("it is new", async () => (await frame.locator("main.preview").getAttribute("data-state")) === "ready");
+});
+
+test("from a key to the picture on the screen", async (t) => {
+  await stage.page.evaluate(() => {
+    window.addEventListener("keydown", () => (window.lastKey = performance.timeOrigin + performance.now()), { capture: true });
+  });
+  await frame.evaluate(() => {
+    const main = document.querySelector("main.preview");
+    const seen = () => (window.lastDrawn = { count: Number(main.dataset.drawn), time: performance.timeOrigin + performance.now() });
+    // The frame behind the one that the change is drawn in: by then it can be seen.
+    new MutationObserver(() => requestAnimationFrame(() => requestAnimationFrame(seen))).observe(main, { attributeFilter: ["data-drawn"] });
+  });
+  const times = [];
+  for (let round = 0; round < 40; round++) {
+    const count = await drawn();
+    await stage.page.keyboard.press(round % 2 === 0 ? "5" : "Backspace");
+    const last = await until("it is drawn", async () => {
+      const seen = await frame.evaluate(() => window.lastDrawn);
+      return seen?.count > count && seen;
+    });
+    times.push(last.time - (await stage.page.evaluate(() => window.lastKey)));
+  }
+  times.sort((a, b) => a - b);
+  const at = (share) => times[Math.floor(share * (times.length - 1))].toFixed(0);
+  t.diagnostic(`${times.length} keys in a program of four robots: median ${at(0.5)} ms, 90 % within ${at(0.9)} ms, at most ${at(1)} ms`);
+});
+
+/** Puts the cursor behind a word of a line. */
+async function cursorBehind(line, word) {
+  await stage.line(line).first().click();
+  await stage.page.keyboard.press("Home");
+  const text = (await stage.line(line).first().innerText()).trimStart();
+  for (let at = 0; at < text.indexOf(word) + word.length; at++) {
+    await stage.page.keyboard.press("ArrowRight");
+  }
+}
