@@ -290,7 +290,9 @@ mod tests {
     #[test]
     fn strange_routes_are_still_pictures() {
         let mut timeless = along(&[(0.0, 0.0), (60.0, 4.0)]);
-        timeless.iter_mut().for_each(|timed| timed.time = None);
+        for timed in &mut timeless {
+            timed.time = None;
+        }
         let still = along(&[(0.0, 0.0), (3.0, 0.0)]);
         let broken = along(&[(0.0, 0.0), (f64::NAN, 1.0), (2.0, f64::INFINITY), (3.0, 1.0)]);
         for path in [timeless, still, broken, vec![]] {

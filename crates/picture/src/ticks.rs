@@ -177,7 +177,9 @@ mod tests {
     #[test]
     fn no_marks_without_times() {
         let mut path = along(&[(0.0, 0.0), (60.0, 4.0)]);
-        path.iter_mut().for_each(|timed| timed.time = None);
+        for timed in &mut path {
+            timed.time = None;
+        }
         assert_eq!(step(&[route(path)]), None);
         assert_eq!(step(&[]), None);
     }
