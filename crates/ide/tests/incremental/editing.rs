@@ -344,6 +344,10 @@ impl Editing {
                 closed[file] = text;
             }
         }
+        for (file, environment, text) in start.scenes() {
+            let (environment, text) = ((*environment).to_owned(), Some((*text).to_owned()));
+            model.apply(&Change::Scene { file: *file, environment, text });
+        }
         let (mut database, files) = model.fresh(0);
         database.take_touched();
         let reported = files.map(|file| database.diagnostics(file));

@@ -46,6 +46,33 @@ wheel c with radius 3
 robot p with port 2 has { b c } wheels
 ";
 
+/// Nothing in it is wrong but that robots run into what stands in their way, in files that need each other.
+const DRIVING: [&str; 4] = [
+    "\
+import \"lib.pyr\"
+movement m of r { move 4 meters turn left move 3 meters }
+environment e has { r q } robots with { m n } moves
+",
+    "\
+wheel a with radius 4
+wheel b with radius 4
+robot r type tw with port 19999 has { a b } wheels
+wheel c with radius 4
+wheel d with radius 4
+robot q type tw with port 20000 has { c d } wheels
+movement n of q { move 2 meters }
+",
+    "",
+    "\
+import \"lib.pyr\"
+environment e has { q } robots with { n } moves
+",
+];
+
+/// What stands in the way, by file and environment.
+const IN_THE_WAY: [(usize, &str, &str); 2] =
+    [(0, "e", "[[wall]]\nfrom = [1, -9]\nto = [1, 9]\n"), (3, "e", "[world]\nsize = [2, 2]\n")];
+
 /// How the files begin. What is left out makes a failure smaller.
 #[derive(Debug, Clone)]
 pub(crate) struct Start {
@@ -61,26 +88,35 @@ pub(crate) struct Start {
     open: u8,
     /// Which entities are there at all.
     kept: Vec<bool>,
+    /// Whether robots drive in scenes, and nothing is wrong at first.
+    driving: bool,
 }
 
 pub(crate) fn starts() -> impl Strategy<Value = Start> {
     let written = proptest::option::of(0..WRITTEN.len());
     let kept = proptest::collection::vec(proptest::bool::weighted(0.97), 128);
     let imports = proptest::bits::u32::masked(0xff_ffff);
-    (any::<u64>().no_shrink(), written, any::<bool>(), imports, proptest::bits::u8::masked(0b1110), kept)
-        .prop_map(|(seed, written, dealt, imports, open, kept)| Start {
+    let driving = proptest::bool::weighted(0.15);
+    let open = proptest::bits::u8::masked(0b1110);
+    (any::<u64>().no_shrink(), written, any::<bool>(), imports, open, kept, driving).prop_map(
+        |(seed, written, dealt, imports, open, kept, driving)| Start {
             seed,
             written,
             dealt,
             imports,
             open,
             kept,
-        })
+            driving,
+        },
+    )
 }
 
 impl Start {
     /// The text of each file.
     pub(crate) fn texts(&self) -> [String; 4] {
+        if self.driving {
+            return DRIVING.map(str::to_owned);
+        }
         let mut kept = self.kept.iter().copied().chain(std::iter::repeat(true));
         let mut programs: Vec<String> = (0..PATHS.len()).map(|index| self.program(index)).collect();
         for program in &mut programs {
@@ -101,9 +137,14 @@ impl Start {
         texts
     }
 
+    /// The scenes there are: file, environment, and text.
+    pub(crate) fn scenes(&self) -> &'static [(usize, &'static str, &'static str)] {
+        if self.driving { &IN_THE_WAY } else { &[] }
+    }
+
     /// Whether a file is open before the first step.
     pub(crate) fn is_open(&self, file: usize) -> bool {
-        file == 0 || self.open >> file & 1 == 1
+        self.driving || file == 0 || self.open >> file & 1 == 1
     }
 
     fn program(&self, index: usize) -> String {
