@@ -19,9 +19,10 @@ MAY_KNOW: dict[str, set[str]] = {
     "ide": {"config", "analysis", "syntax", "notation", "kinematics", "scene"},
     "script": {"analysis", "kinematics"},
     "files": {"config", "scene"},
-    "picture": {"kinematics", "scene"},
-    "simulator": {"kinematics", "scene"},
-    "server": {"ide", "script", "config", "analysis", "syntax", "scene", "files"},
+    "record": {"kinematics"},
+    "picture": {"kinematics", "scene", "record"},
+    "simulator": {"kinematics", "scene", "record"},
+    "server": {"ide", "script", "config", "analysis", "syntax", "kinematics", "scene", "record", "files"},
     "cli": {
         "syntax",
         "notation",
@@ -32,6 +33,7 @@ MAY_KNOW: dict[str, set[str]] = {
         "ide",
         "script",
         "files",
+        "record",
         "picture",
         "simulator",
         "server",
@@ -66,6 +68,7 @@ PURE = [
     "config",
     "ide",
     "script",
+    "record",
     "picture",
 ]
 IMPURE = re.compile(

@@ -5,9 +5,10 @@ use std::time::Duration;
 use comfy_table::Table;
 use pydslrep_kinematics::Pose;
 use pydslrep_picture::Route;
+use pydslrep_record::Track;
 
 use crate::commands::plan::{Planned, fixed, heading};
-use crate::driven::{Driven, DrivenPath};
+use crate::driven::Driven;
 use crate::output;
 
 /// A finished run.
@@ -29,7 +30,7 @@ impl Outcome<'_> {
 
     fn comparison(&self) -> Table {
         let mut table = output::table(["robot", "", "x m", "y m", "heading °", "off mm", "off °"]);
-        let paths = self.planned.plan.robots.iter().zip(self.driven.paths());
+        let paths = self.planned.plan.robots.iter().zip(self.driven.tracks());
         for (robot, (plan, driven)) in self.planned.scene.robots.iter().zip(paths) {
             let planned = plan.unknown_after.is_none().then(|| plan.end());
             let [x, y, heading] = words(planned);
@@ -53,7 +54,7 @@ impl Outcome<'_> {
     /// A run that was broken off can only be compared with a plan that was broken off too.
     fn ends(&self) -> Table {
         let mut table = output::table(["robot", "", "x m", "y m", "heading °"]);
-        for (robot, driven) in self.planned.scene.robots.iter().zip(self.driven.paths()) {
+        for (robot, driven) in self.planned.scene.robots.iter().zip(self.driven.tracks()) {
             let [x, y, heading] = words(driven.end());
             table.add_row([robot.name.clone(), "stopped".into(), x, y, heading]);
         }
@@ -63,8 +64,8 @@ impl Outcome<'_> {
 
     /// What to draw.
     pub(crate) fn routes(&self) -> Vec<Route> {
-        let routes = self.planned.routes().into_iter().zip(self.driven.paths()).enumerate();
-        let route = |(index, (route, path)): (usize, (Route, &DrivenPath))| {
+        let routes = self.planned.routes().into_iter().zip(self.driven.tracks()).enumerate();
+        let route = |(index, (route, path)): (usize, (Route, &Track))| {
             let seen = self.driven.seen.of(index);
             let map = self.driven.maps.get(index).cloned().unwrap_or_default();
             Route { driven: path.poses(), seen, map, ..route }

@@ -5,7 +5,8 @@
 use std::f64::consts::FRAC_PI_2;
 
 use pydslrep_kinematics::{Action, Drive, Pose, TimedPose, plan_movement};
-use pydslrep_picture::{Map, Picture, Route};
+use pydslrep_picture::{Picture, Route};
+use pydslrep_record::Map;
 use pydslrep_scene::{Robot, Scene, Wheel};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

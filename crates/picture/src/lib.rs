@@ -21,4 +21,4 @@ mod ticks;
 mod view;
 
 pub use raster::{Unpaintable, png};
-pub use route::{Map, Picture, Route};
+pub use route::{Picture, Route};

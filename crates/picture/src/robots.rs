@@ -1,11 +1,12 @@
 //! Where robots are and were, and what they found.
 
 use pydslrep_kinematics::{Pose, TimedPose};
+use pydslrep_record::Map;
 use pydslrep_scene::Body;
 use svg::node::element::{Circle, Group, Polygon, Polyline};
 
 use crate::paper::{DASHES, INK, PAPER, line, list, pixels};
-use crate::route::{Map, Route, is_drawable};
+use crate::route::{Route, is_drawable};
 use crate::view::View;
 
 /// Points of a line nearer than this to the last one drawn are left out, pixels.

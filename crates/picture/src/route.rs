@@ -1,6 +1,7 @@
 //! What is drawn.
 
 use pydslrep_kinematics::{Pose, TimedPose, angle_between};
+use pydslrep_record::Map;
 use pydslrep_scene::{Body, Obstacle};
 
 /// Everything in a picture.
@@ -33,15 +34,6 @@ pub struct Route {
     pub seen: Vec<(f64, f64)>,
     /// What the robot found on exploring.
     pub map: Map,
-}
-
-/// A map of places and the ways between them, metres.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Map {
-    /// Places.
-    pub nodes: Vec<(f64, f64)>,
-    /// Ways that were driven, from one place to another.
-    pub edges: Vec<((f64, f64), (f64, f64))>,
 }
 
 impl Route {

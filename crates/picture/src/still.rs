@@ -70,10 +70,10 @@ impl Picture<'_> {
 #[cfg(test)]
 mod tests {
     use pydslrep_kinematics::{Action, Drive, Geometry, Model, Pose, TimedPose, plan_movement};
+    use pydslrep_record::Map;
     use pydslrep_scene::Obstacle;
 
     use super::*;
-    use crate::Map;
     use crate::paper::OBSTACLE;
     use crate::testing::route;
 

@@ -1,9 +1,10 @@
 //! Routes for tests.
 
 use pydslrep_kinematics::{Pose, TimedPose};
+use pydslrep_record::Map;
 use pydslrep_scene::Body;
 
-use crate::{Map, Route};
+use crate::Route;
 
 /// A path along x: (seconds, metres).
 pub(crate) fn along(points: &[(f64, f64)]) -> Vec<TimedPose> {

@@ -4,7 +4,9 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
+use pydslrep_kinematics::TimedPose;
+use pydslrep_record::{Map, MapFile, TraceRecord, Track};
+use serde::Serialize;
 
 /// Between poses that are kept a robot moves less than this, metres and radians: far less than a picture shows.
 const FINENESS: f64 = 0.005;
@@ -17,7 +19,7 @@ pub(crate) struct DrivenRobot {
     map: Map,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, PartialEq, Serialize)]
 struct Pose {
     t: f64,
     x: f64,
@@ -25,112 +27,33 @@ struct Pose {
     theta: f64,
 }
 
-/// What a robot found on exploring, metres.
-#[derive(Debug, Default, PartialEq, Serialize)]
-struct Map {
-    nodes: Vec<(f64, f64)>,
-    edges: Vec<((f64, f64), (f64, f64))>,
-}
-
-/// A line of a trace, as far as it matters here.
-#[derive(Deserialize)]
-struct Line {
-    robot: String,
-    t: f64,
-    x: f64,
-    y: f64,
-    theta: f64,
-}
-
-/// A map, as far as it matters here.
-#[derive(Default, Deserialize)]
-struct MapFile {
-    nodes: Vec<Node>,
-    edges: Vec<Edge>,
-}
-
-#[derive(Deserialize)]
-struct Node {
-    robot: String,
-    x: f64,
-    y: f64,
-}
-
-#[derive(Deserialize)]
-struct Edge {
-    from: usize,
-    to: usize,
-}
-
 /// What the robots of a run did, in the order in which the trace names them first. A map that is not there is empty.
 ///
 /// # Errors
 /// When there is no trace.
 pub(crate) fn read(trace: &Path, map: &Path) -> io::Result<Vec<DrivenRobot>> {
-    let mut robots: Vec<Track> = Vec::new();
+    let mut tracks: Vec<(String, Track)> = Vec::new();
     for line in BufReader::new(File::open(trace)?).lines() {
         // A run that was cut off may have left half a line.
-        let Ok(line) = serde_json::from_str::<Line>(&line?) else { continue };
-        let Line { robot, t, x, y, theta } = line;
-        let index = robots.iter().position(|track| track.name == robot).unwrap_or_else(|| {
-            robots.push(Track { name: robot, kept: Vec::new(), last: None });
-            robots.len() - 1
+        let Ok(record) = serde_json::from_str::<TraceRecord>(&line?) else { continue };
+        let index = tracks.iter().position(|(robot, _)| *robot == record.robot).unwrap_or_else(|| {
+            tracks.push((record.robot.clone(), Track::new(FINENESS)));
+            tracks.len() - 1
         });
-        robots[index].add(Pose { t, x, y, theta });
+        tracks[index].1.add(record.timed_pose());
     }
     let found = File::open(map).ok().and_then(|map| serde_json::from_reader(BufReader::new(map)).ok());
     let found: MapFile = found.unwrap_or_default();
-    let whole = |track: Track| {
-        let map = found.of(&track.name);
-        DrivenRobot { name: track.name.clone(), poses: track.poses(), map }
+    let whole = |(name, track): (String, Track)| {
+        let poses = track.poses().iter().filter_map(Pose::of).collect();
+        DrivenRobot { map: found.of(&name), poses, name }
     };
-    Ok(robots.into_iter().map(whole).collect())
+    Ok(tracks.into_iter().map(whole).collect())
 }
 
-/// The path of a robot, thinned out on its way in.
-struct Track {
-    name: String,
-    kept: Vec<Pose>,
-    last: Option<Pose>,
-}
-
-impl Track {
-    fn add(&mut self, pose: Pose) {
-        let is_near = |kept: &Pose| {
-            (pose.x - kept.x).hypot(pose.y - kept.y) < FINENESS && (pose.theta - kept.theta).abs() < FINENESS
-        };
-        if !self.kept.last().is_some_and(is_near) {
-            // After a rest the end of it is kept too, or the robot would seem to creep all that time.
-            let rested = self
-                .last
-                .filter(|last| self.kept.last().is_some_and(|kept| kept != last && is_rest(kept, last)));
-            self.kept.extend(rested);
-            self.kept.push(pose);
-        }
-        self.last = Some(pose);
-    }
-
-    fn poses(mut self) -> Vec<Pose> {
-        let end = self.last.filter(|last| self.kept.last() != Some(last));
-        self.kept.extend(end);
-        self.kept
-    }
-}
-
-/// Whether more time went by than a robot in motion needs to leave a pose: half a second.
-fn is_rest(from: &Pose, to: &Pose) -> bool {
-    to.t - from.t > 0.5
-}
-
-impl MapFile {
-    fn of(&self, robot: &str) -> Map {
-        let place = |index: usize| {
-            self.nodes.get(index).filter(|node| node.robot == robot).map(|node| (node.x, node.y))
-        };
-        Map {
-            nodes: (0..self.nodes.len()).filter_map(place).collect(),
-            edges: self.edges.iter().filter_map(|edge| Some((place(edge.from)?, place(edge.to)?))).collect(),
-        }
+impl Pose {
+    fn of(TimedPose { time, pose }: &TimedPose) -> Option<Self> {
+        Some(Self { t: (*time)?, x: pose.x, y: pose.y, theta: pose.theta })
     }
 }
 

@@ -12,12 +12,10 @@
 pub mod edge;
 mod remote;
 mod sightings;
-mod trace;
 mod world;
 
 #[cfg(feature = "remote")]
 pub use edge::{Options, Simulator, StartError};
 pub use remote::{Answer, Malformed, Pass, Session};
 pub use sightings::Sightings;
-pub use trace::TraceRecord;
 pub use world::{World, WorldError};

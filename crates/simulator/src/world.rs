@@ -8,9 +8,9 @@ use std::fmt;
 use pydslrep_kinematics::{ModelError, Pose, Traction, Twist, motion};
 use pydslrep_scene::{Body, Scene, SensorKind, Sighting, Space};
 
-use crate::TraceRecord;
 use contact::Surroundings;
 use noise::{Slip, reading_error};
+use pydslrep_record::TraceRecord;
 
 /// Motors and motion are integrated this many times per step, as CoppeliaSim does (5 ms in a step of 50 ms).
 const SUBSTEPS: u32 = 10;

@@ -9,8 +9,9 @@ use std::time::Duration;
 
 use ciborium::{Value, cbor};
 use pydslrep_kinematics::Drive;
+use pydslrep_record::TraceRecord;
 use pydslrep_scene::{Robot, Scene, Wheel};
-use pydslrep_simulator::{Options, Simulator, StartError, TraceRecord};
+use pydslrep_simulator::{Options, Simulator, StartError};
 use zeromq::{ReqSocket, Socket, SocketRecv, SocketSend, ZmqMessage};
 
 /// Nothing here takes this long; a test that hangs fails instead.

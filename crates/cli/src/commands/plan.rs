@@ -7,7 +7,8 @@ use clap::Args;
 use pydslrep_analysis::environment::{Environment, Movement};
 use pydslrep_config::Config;
 use pydslrep_kinematics::{ActionIndex, Leg, Plan, Pose, heading_degrees};
-use pydslrep_picture::{Map, Picture, Route};
+use pydslrep_picture::{Picture, Route};
+use pydslrep_record::Map;
 use pydslrep_scene::{Collision, Scene, Thing, collisions};
 use serde::Serialize;
 
@@ -69,7 +70,7 @@ impl Planned {
     /// # Errors
     /// When a robot cannot drive.
     pub(crate) fn start_from(&mut self, driven: &Driven) -> Result<(), Failure> {
-        for (robot, path) in self.scene.robots.iter_mut().zip(driven.paths()) {
+        for (robot, path) in self.scene.robots.iter_mut().zip(driven.tracks()) {
             robot.start = path.start().unwrap_or(robot.start);
         }
         self.plan = plan(&self.environment, &self.scene)?;

@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use clap::Args;
 use pydslrep_config::{Config, Target};
-use pydslrep_picture::Map;
+use pydslrep_record::Map;
 use pydslrep_script::{file_name, generate};
 use pydslrep_simulator::{Options, Simulator};
 use tempfile::TempDir;

@@ -9,7 +9,8 @@ use std::time::Duration;
 
 use clap::Args;
 use pydslrep_config::Config;
-use pydslrep_simulator::{Options, Simulator, TraceRecord};
+use pydslrep_record::TraceRecord;
+use pydslrep_simulator::{Options, Simulator};
 use tokio::time::{MissedTickBehavior, interval};
 
 use crate::failure::Failure;

@@ -14,7 +14,9 @@ use tokio::time::sleep;
 
 use super::connection::listen;
 use super::exchange::Exchange;
-use crate::{Session, Sightings, TraceRecord, World, WorldError};
+use pydslrep_record::TraceRecord;
+
+use crate::{Session, Sightings, World, WorldError};
 
 /// How often the clock looks at the time, whether it runs by itself or somebody steps it.
 const CLOCK_PERIOD: Duration = Duration::from_millis(2);

@@ -10,7 +10,9 @@ use super::calls::{self, Bench, Drivers};
 use super::info;
 use super::legacy;
 use super::objects::Objects;
-use crate::{Sightings, TraceRecord, World};
+use pydslrep_record::TraceRecord;
+
+use crate::{Sightings, World};
 
 /// Requests nest their arguments two or three levels deep; more is an attack on the stack.
 const NESTING: usize = 32;
