@@ -58,6 +58,16 @@ while :; do sleep 0.01; done
 """
 
 
+# Tells through a pipe that it has begun, and that whoever started it is gone.
+LISTENING = """\
+#!/bin/sh
+told="$(dirname "$0")/told"
+if [ -p /dev/stdin ]; then echo begun; else echo nothing to listen to; fi > "$told"
+cat > /dev/null
+echo no more input > "$told"
+"""
+
+
 class Session:
     """A server with a program open whose text is nowhere on the disk."""
 
@@ -175,7 +185,7 @@ def test_a_run_can_be_cancelled(endless: Session, tmp_path: pathlib.Path) -> Non
     arguments = (tmp_path / "bin" / "arguments").read_text(encoding="utf-8").split()
     assert arguments[0] == "run"
     assert arguments[2:5] == ["--environment", "area", "--picture"]
-    assert arguments[6::2] == ["--trace", "--map"]
+    assert arguments[6:11:2] == ["--trace", "--map", "--until-input-ends"]
     endless.raw.send(notification("window/workDoneProgress/cancel", {"token": token}))
     assert endless.raw.answer(1)["error"]["code"] == -32800
     assert not pathlib.Path(arguments[1]).exists(), "what was run is tidied up"
@@ -223,6 +233,19 @@ def test_a_run_ends_with_its_session(
         assert raw.leave() == (0 if ending == "shutdown" else 1)
     assert not program.parent.exists(), "what was run is tidied up"
     assert not picture.parent.exists(), "pictures are kept as long as the session"
+
+
+def test_a_run_learns_that_its_server_was_killed(
+    server: str, tmp_path: pathlib.Path
+) -> None:
+    told = telling(server, tmp_path)
+    (tmp_path / "bin" / "pydslrep").write_text(LISTENING, encoding="utf-8")
+    with RawServer(str(tmp_path / "bin" / "pydslrep-lsp"), "--stdio") as raw:
+        session = Session(raw, tmp_path, progress=False)
+        session.execute(1, "pydslrep.run", session.area)
+        assert told.read_text() == "begun\n"
+        raw.process.kill()
+        assert told.read_text() == "no more input\n"
 
 
 def telling(server: str, folder: pathlib.Path) -> pathlib.Path:

@@ -31,6 +31,8 @@ impl Config {
         let mut reader = Reader::new(Spelling::KebabOrCamel);
         match from_json(value) {
             Value::Nothing => {}
+            // What Lua makes of an empty table.
+            Value::List(items) if items.is_empty() => {}
             Value::Table(mut entries) => {
                 entries.retain(|entry| !KEPT_BY_EDITORS.contains(&entry.key.as_str()));
                 reader.table("", "", &entries);
@@ -211,6 +213,8 @@ fn refusal(message: &str, help: &str) -> Refusal {
 pub(crate) fn table(value: &Value) -> Result<(), Refusal> {
     match value {
         Value::Table(_) | Value::Nothing => Ok(()),
+        // What Lua makes of an empty table.
+        Value::List(items) if items.is_empty() => Ok(()),
         other => Err(wrong_sort("a table", other)),
     }
 }
@@ -502,6 +506,9 @@ mod tests {
         assert_eq!(config, same);
         assert_eq!(Config::from_json(&json!({ "pydslrep": inner, "editor": {} })).0, same);
         assert_eq!(Config::from_json(&json!(null)), (Config::default(), vec![]));
+        // Lua knows no empty table.
+        assert_eq!(Config::from_json(&json!([])), (Config::default(), vec![]));
+        assert_eq!(Config::from_json(&json!({"severity": [], "target": "vrep"})).1, vec![]);
     }
 
     #[test]
@@ -524,7 +531,7 @@ mod tests {
             "#]],
         );
         json(
-            &json!([]),
+            &json!(["vrep"]),
             &expect![[r#"
             invalid-value at ``: the settings are a table of keys and values, not a list
               help: the keys here are target, output, generate-on-save, default-speed, severity, inlay-hints

@@ -112,7 +112,8 @@ impl Drop for Leash {
 
 impl Running {
     fn start(command: &mut Command, folder: TempDir) -> io::Result<(Self, UnboundedReceiver<News>)> {
-        let piped = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        // Nothing is ever said to it; that its input ends tells it that the server is no more, however that came.
+        let piped = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = piped.spawn()?;
         let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
         let running = Self { child: Arc::new(Mutex::new(child)), folder: folder.path().into() };

@@ -82,6 +82,9 @@ pub(crate) struct Arguments {
     /// Port of that CoppeliaSim, for all robots or for one; may be repeated
     #[arg(long, value_name = "[ROBOT=]PORT", requires = "host")]
     port: Vec<String>,
+    /// End like by Ctrl-C when standard input ends: for programs that start this one and may be killed
+    #[arg(long, hide = true)]
+    until_input_ends: bool,
     /// The Python to run the script with [default: python3]
     #[arg(long, value_name = "PATH")]
     python: Option<PathBuf>,
@@ -140,6 +143,9 @@ struct Run<'a> {
 impl Run<'_> {
     async fn drive(mut self, name: &str, text: &str) -> Result<u8, Failure> {
         let mut interrupts = Interrupts::listen().map_err(|error| unstarted(&error))?;
+        if self.arguments.until_input_ends {
+            interrupts = interrupts.with_end_of_input();
+        }
         let python = tokio::select! {
             python = self.python() => python?,
             () = interrupts.next() => return Ok(interrupt::EXIT_CODE),

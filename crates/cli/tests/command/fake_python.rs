@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
-use std::process::Command;
+use std::process::{ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 
 use crate::process::{Done, Place, paper};
@@ -83,6 +83,17 @@ fn an_interrupt_stops_the_script() {
 }
 
 #[test]
+fn whoever_started_a_run_need_not_live_to_end_it() {
+    let mut running = Running::start_with(
+        &["--until-input-ends"],
+        "tail -f /dev/null > /dev/null 2>&1 & trap 'kill $!; echo stopped > end; exit 130' INT; echo > started; wait",
+    );
+    drop(running.input.take());
+    assert_eq!(running.event(), Event::Ended(Some(130)));
+    assert_eq!(running.place.read("end"), "stopped\n");
+}
+
+#[test]
 fn a_script_that_does_not_listen_is_ended() {
     let running = Running::start("trap '' INT; echo > started; exec tail -f /dev/null");
     running.interrupt();
@@ -93,6 +104,7 @@ fn a_script_that_does_not_listen_is_ended() {
 struct Running {
     place: Place,
     pid: rustix::process::Pid,
+    input: Option<ChildStdin>,
     events: Receiver<Event>,
 }
 
@@ -104,9 +116,14 @@ enum Event {
 
 impl Running {
     fn start(behaviour: &str) -> Self {
+        Self::start_with(&[], behaviour)
+    }
+
+    fn start_with(arguments: &[&str], behaviour: &str) -> Self {
         let place = place(&format!("cd \"$(dirname \"$BEHAVIOUR\")\"; {behaviour}"));
         assert!(Command::new("mkfifo").arg(place.path("started")).status().unwrap().success());
-        let child = command(&place).spawn().unwrap();
+        let mut child = command(&place).args(arguments).stdin(Stdio::piped()).spawn().unwrap();
+        let input = child.stdin.take();
         let pid = rustix::process::Pid::from_child(&child);
         let (tell, events) = channel();
         let (tell_of_start, started) = (tell.clone(), place.path("started"));
@@ -115,7 +132,7 @@ impl Running {
         std::thread::spawn(move || {
             tell.send(Event::Ended(child.wait_with_output().unwrap().status.code())).unwrap();
         });
-        let running = Self { place, pid, events };
+        let running = Self { place, pid, input, events };
         assert_eq!(running.event(), Event::Started);
         running
     }

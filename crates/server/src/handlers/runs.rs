@@ -145,6 +145,7 @@ impl Job {
         command.args(["--environment", &self.environment, "--picture"]).arg(&picture);
         if self.subcommand == "run" {
             command.arg("--trace").arg(trace(&picture)).arg("--map").arg(map(&picture));
+            command.arg("--until-input-ends");
         }
         let (running, news) = children.start(&mut command, self.folder).map_err(|error| {
             let name = program.display();
