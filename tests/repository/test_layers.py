@@ -22,7 +22,17 @@ MAY_KNOW: dict[str, set[str]] = {
     "record": {"kinematics"},
     "picture": {"kinematics", "scene", "record"},
     "simulator": {"kinematics", "scene", "record"},
-    "server": {"ide", "script", "config", "analysis", "syntax", "kinematics", "scene", "record", "files"},
+    "server": {
+        "ide",
+        "script",
+        "config",
+        "analysis",
+        "syntax",
+        "kinematics",
+        "scene",
+        "record",
+        "files",
+    },
     "cli": {
         "syntax",
         "notation",
