@@ -54,6 +54,10 @@ export class Panel {
     });
     await page.addInitScript((before) => {
       let kept = before;
+      // Before the page hears it.
+      window.addEventListener("message", ({ data }) => {
+        if (data.type === "path") window.toldAt = performance.now();
+      });
       window.acquireVsCodeApi = () => ({
         postMessage: (message) => void window.toHost(message),
         getState: () => kept,

@@ -1,8 +1,8 @@
 // The floor: a grid in metres, and what stands on it.
 import type { Outline } from "./model";
 import type { Theme } from "./theme";
-import { niceStep, ticks, type View } from "./view";
-import { length, tickLabel } from "./words";
+import { ticks, type View } from "./view";
+import { tickLabel } from "./words";
 
 /** Room for the labels of the grid, pixels. */
 const EDGE = 18;
@@ -20,7 +20,7 @@ export function drawGrid(context: CanvasRenderingContext2D, view: View, theme: T
   }
 }
 
-/** The values of the grid's lines at two edges, and a scale: on top of everything, on strips of their own. */
+/** The values of the grid's lines at two edges, on top of everything. */
 export function drawScale(context: CanvasRenderingContext2D, view: View, theme: Theme): void {
   const { step, width, height } = view;
   context.font = `11px ${theme.font}`;
@@ -31,32 +31,6 @@ export function drawScale(context: CanvasRenderingContext2D, view: View, theme: 
   for (const y of ticks(view.fromY(height - EDGE - 8), view.fromY(12), step)) {
     label(context, tickLabel(y, step), 6, view.toY(y), "left", theme);
   }
-  drawBar(context, view, theme);
-}
-
-/** A bar as long as it says. */
-function drawBar(context: CanvasRenderingContext2D, view: View, theme: Theme): void {
-  const metres = niceStep(50 / view.scale);
-  const long = metres * view.scale;
-  const [right, y] = [view.width - 18, view.height - EDGE - 24];
-  context.save();
-  context.globalAlpha = 0.85;
-  context.fillStyle = theme.paper;
-  context.beginPath();
-  context.roundRect(right - long - 8, y - 9, long + 16, 32, 4);
-  context.fill();
-  context.restore();
-  context.strokeStyle = theme.ink;
-  context.lineWidth = 1.5;
-  context.beginPath();
-  context.moveTo(right - long, y - 4);
-  context.lineTo(right - long, y + 4);
-  context.moveTo(right - long, y);
-  context.lineTo(right, y);
-  context.moveTo(right, y - 4);
-  context.lineTo(right, y + 4);
-  context.stroke();
-  label(context, length(metres), right - long / 2, y + 12, "center", theme, theme.ink);
 }
 
 export function drawOutlines(context: CanvasRenderingContext2D, view: View, theme: Theme, outlines: readonly Outline[]): void {

@@ -45,7 +45,7 @@ export class Legend {
     const swatch = element("span", { class: `swatch robot-${robot.colour % ROBOT_COLOURS}`, "aria-hidden": "true" });
     const name = element("span", { class: "name", title: robot.name }, robot.name);
     const found = isRunShown ? driven?.robots.get(robot.name)?.end : undefined;
-    const lines = [robot.unknownAfter ? `planned up to “${robot.unknownAfter.text}”: how that goes is for the world to decide` : `→ ${words.pose(robot.end)}`];
+    const lines = [robot.unknownAfter ? `planned up to “${robot.unknownAfter.text}”; the rest depends on the world` : `→ ${words.pose(robot.end)}`];
     if (found && robot.unknownAfter) lines.push(`driven → ${words.pose(found)}`);
     else if (found) {
       const { distance, angle } = deviation(robot.end, found);
@@ -79,7 +79,8 @@ export class Legend {
 function key({ model, driven, isRunShown }: LegendContent): HTMLElement {
   const samples = [["planned", "planned path"]];
   if (driven && isRunShown) samples.push(["driven", "driven path"]);
-  samples.push(["start", "start"], ["end", "planned end"]);
+  samples.push(["start", "start"]);
+  if (model?.robots.some(({ legs }) => legs.length > 0)) samples.push(["end", "planned end"]);
   if (driven && isRunShown && [...driven.robots.values()].some(({ nodes }) => nodes.length > 0)) samples.push(["map", "map"]);
   if (model && model.outlines.length > 0) samples.push(["obstacle", "obstacle"]);
   if (model && model.crashes.length > 0) samples.push(["collision", "collision"]);

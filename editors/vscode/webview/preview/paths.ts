@@ -60,8 +60,10 @@ export function drawHighlight(context: CanvasRenderingContext2D, view: View, the
   context.lineJoin = "round";
   if (leg.isTurn) {
     const [x, y] = [view.toX(leg.from.x), view.toY(leg.from.y)];
-    ring(context, x, y, 9, theme.highlight, 4);
-    ring(context, x, y, 9, colour, 2);
+    // About the body, which may stand right there.
+    const radius = Math.max((Math.hypot(robot.body.length, robot.body.width) / 2) * view.scale + 3, 9);
+    ring(context, x, y, radius, theme.highlight, 5);
+    ring(context, x, y, radius, colour, 2);
     return;
   }
   context.strokeStyle = theme.highlight;

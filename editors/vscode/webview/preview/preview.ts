@@ -13,6 +13,7 @@ import { Stage, type Scene } from "./stage";
 import { readTheme, watchTheme, type Theme } from "./theme";
 import { Toolbar } from "./toolbar";
 import { describe, Tooltip } from "./tooltip";
+import { niceStep } from "./view";
 import * as words from "./words";
 
 export interface Outside {
@@ -27,6 +28,8 @@ export class Preview {
   private readonly hidden: Set<string>;
   /** The action at the cursor of the editor. */
   private cursor: NumberedAction | null = null;
+  /** Its drives: looked for once, for time goes by without them. */
+  private atCursor: Hit[] = [];
   private pointed: Hit | undefined;
   /** What the keys have reached. */
   private chosen: Hit | undefined;
@@ -108,6 +111,7 @@ export class Preview {
       case "cursor":
         this.cursor = message.action;
         this.chosen = undefined;
+        this.findCursor();
         this.drawMoving();
         break;
       case "driven":
@@ -156,6 +160,7 @@ export class Preview {
   private takeIn(isOther: boolean): void {
     const { model } = this;
     const driven = this.shownRun;
+    this.findCursor();
     this.playback.setDuration(Math.max(model?.duration ?? 0, driven?.duration ?? 0));
     this.controls.setPath(this.playback, model?.crashes ?? [], model?.isWhole !== false || driven !== undefined);
     this.legend.show(this.content);
@@ -255,6 +260,7 @@ export class Preview {
     if (isHidden) this.hidden.add(robot);
     else this.hidden.delete(robot);
     this.remember({ hidden: [...this.hidden] });
+    this.findCursor();
     this.draw();
   }
 
@@ -356,14 +362,21 @@ export class Preview {
     return hitTest(this.seen, this.stage.view, px, py);
   }
 
+  private findCursor(): void {
+    const of = (leg: Hit["leg"]): boolean => isOf(leg, this.cursor);
+    this.atCursor = this.cursor === null ? [] : this.seen.flatMap((robot) => robot.legs.filter(of).map((leg) => ({ robot, leg })));
+  }
+
   private scene(): Scene {
-    const atCursor = this.chosen ? [] : this.seen.flatMap((robot) => robot.legs.filter((leg) => isOf(leg, this.cursor)).map((leg) => ({ robot, leg })));
-    const highlights = [...atCursor, ...[this.chosen, this.pointed].filter((hit) => hit !== undefined)];
+    const highlights = [...(this.chosen ? [] : this.atCursor), ...[this.chosen, this.pointed].filter((hit) => hit !== undefined)];
     this.root.dataset.highlighted = highlights.map(({ leg: { action } }) => `${action.movement} ${action.index}`).join(", ");
     return { model: this.model, driven: this.shownRun, hidden: this.hidden, highlights, time: this.playback.time };
   }
 
   private draw(): void {
+    const { scale } = this.stage.view;
+    const metres = niceStep(36 / scale);
+    this.toolbar.setScale(metres * scale, words.length(metres));
     this.stage.drawStill(this.scene(), this.theme);
     this.drawMoving();
   }

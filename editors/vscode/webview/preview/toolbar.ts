@@ -11,6 +11,7 @@ export class Toolbar {
   readonly bar: HTMLElement;
   readonly banner: HTMLElement;
   private readonly title = element("h1", { "data-part": "environment" });
+  private readonly scale = element("span", { class: "scale", "aria-hidden": "true", "data-part": "scale" });
   private readonly picker = element("select", { "aria-label": "Environment", "data-part": "picker" });
 
   constructor(events: ToolbarEvents) {
@@ -21,6 +22,7 @@ export class Toolbar {
       this.title,
       this.picker,
       element("span", { class: "space" }),
+      this.scale,
       button("Zoom out (−)", ICONS.minus, "zoom-out", () => events.zoom(1 / 1.4)),
       button("Zoom in (+)", ICONS.plus, "zoom-in", () => events.zoom(1.4)),
       button("Fit the picture (0)", ICONS.fit, "fit", events.fit),
@@ -38,6 +40,12 @@ export class Toolbar {
     this.title.textContent = shown ?? names[0] ?? "Path preview";
     this.picker.replaceChildren(...names.map((name) => element("option", { value: name }, name)));
     if (shown !== null) this.picker.value = shown;
+  }
+
+  /** How long a length of the floor is in the picture, pixels. */
+  setScale(pixels: number, length: string): void {
+    this.scale.style.setProperty("--long", `${pixels}px`);
+    this.scale.textContent = length;
   }
 
   /** What is wrong, in a sentence; undefined where nothing is. */
