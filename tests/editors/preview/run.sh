@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The path preview of editors/vscode in a browser, with paths from the language server.
-# PYDSLREP_LSP: the server, else that of target/debug. CHROMIUM: the browser, else the system's.
+# PYDSLREP_LSP: the server, with the command beside it, else that of target/debug. CHROMIUM: the browser, else the system's.
 # UPDATE_EXPECT=1 writes the pictures of docs/images/editors.
 set -euo pipefail
 here="$(cd "$(dirname "$0")" && pwd)"
@@ -16,8 +16,9 @@ if [ ! -x "$CHROMIUM" ]; then
     exit 2
   fi
 fi
-if [ ! -x "$PYDSLREP_LSP" ]; then
-  (cd "$root" && cargo build --quiet --locked --package pydslrep-server)
+# The server starts the command that is beside it.
+if [ ! -x "$PYDSLREP_LSP" ] || [ ! -x "$(dirname "$PYDSLREP_LSP")/pydslrep" ]; then
+  (cd "$root" && cargo build --quiet --locked --bin pydslrep --bin pydslrep-lsp)
 fi
 install() { if [ ! -d "$1/node_modules" ]; then npm ci --silent --prefix "$1"; fi; }
 install "$root/editors/vscode"
