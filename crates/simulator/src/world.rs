@@ -244,10 +244,10 @@ impl World {
             return;
         }
         let around = Surroundings { space: &self.space, others: &others };
-        let (pose, is_stopped) = around.advance(moving.body, moving.pose, twist, seconds);
+        let (pose, changed) = around.advance(moving.body, moving.pose, twist, seconds);
         moving.pose = pose;
-        if is_stopped {
-            moving.twist = Twist::default();
+        if let Some(twist) = changed {
+            moving.twist = twist;
         }
     }
 

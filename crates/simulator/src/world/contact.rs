@@ -1,4 +1,4 @@
-//! Bodies that stop before they touch something.
+//! Bodies that stop before they touch something, or slide along it.
 
 use pydslrep_kinematics::{Pose, Twist};
 use pydslrep_scene::{Body, Space, distance_between};
@@ -12,6 +12,15 @@ const ROUNDING: f64 = 1e-9;
 /// A body makes no more little moves than this at once; it is slower along a wall than in the open if it would take
 /// more.
 const MOST_MOVES: u32 = 256;
+
+/// Coulomb's coefficient between a body and what it slides along.
+const FRICTION: f64 = 0.3;
+
+/// How much harder wheels are pushed across the direction that they roll in than along it.
+const ACROSS: f64 = 3.0;
+
+/// By how much a body is moved and turned to see which way it gets nearer to something, metres and radians.
+const NUDGE: f64 = 1e-4;
 
 /// What a body can run into.
 pub(super) struct Surroundings<'a> {
@@ -33,39 +42,115 @@ impl Surroundings<'_> {
         })
     }
 
-    /// Where a body comes in `seconds` of a constant twist, and whether something stopped it on the way.
+    /// Where a body comes in `seconds` of a twist that its wheels want, and the twist that it moves with in the end, if
+    /// something in its way changed it.
     ///
     /// Conservative advancement: no point of the body is faster than v + |ω|r, so as long as the nearest thing is further
     /// than that times the time of a move, nothing can be passed through, however thin it is. What touches something can
     /// still move along it and away from it.
-    pub(super) fn advance(&self, body: Body, from: Pose, twist: Twist, seconds: f64) -> (Pose, bool) {
+    pub(super) fn advance(
+        &self,
+        body: Body,
+        from: Pose,
+        wanted: Twist,
+        seconds: f64,
+    ) -> (Pose, Option<Twist>) {
+        let (mut here, mut left, mut changed) = (from, seconds, None);
+        for attempt in [Attempt::Freely, Attempt::Sliding, Attempt::SlidingStraight] {
+            let twist = match attempt {
+                Attempt::Freely => wanted,
+                Attempt::Sliding => self.along(body, here, wanted, body_inertia(body)),
+                Attempt::SlidingStraight => self.along(body, here, wanted, f64::INFINITY),
+            };
+            if attempt != Attempt::Freely {
+                changed = Some(twist);
+            }
+            (here, left) = self.move_freely(body, here, twist, left);
+            if left <= 0.0 {
+                return (here, changed);
+            }
+        }
+        (here, Some(Twist::default()))
+    }
+
+    /// Where a body comes with a constant twist until something stops it, and how much time is left then.
+    fn move_freely(&self, body: Body, from: Pose, twist: Twist, seconds: f64) -> (Pose, f64) {
         let reach = body.length.hypot(body.width) / 2.0;
         let speed = twist.vx.hypot(twist.vy) + twist.omega.abs() * reach;
         if speed * seconds <= 0.0 {
-            return (from, false);
+            return (from, 0.0);
         }
         let (mut here, mut left) = (from, seconds);
         let mut clearance = self.clearance(body, here, PLAY + speed * left);
         for _ in 0..MOST_MOVES {
             if clearance >= PLAY + speed * left {
-                return (here.advance(twist, left), false);
+                return (here.advance(twist, left), 0.0);
             }
             let is_touching = clearance < 2.0 * PLAY;
             let way = if is_touching { PLAY / 2.0 } else { clearance - PLAY };
             let time = (way / speed).min(left);
             let next = here.advance(twist, time);
-            left -= time;
             let after = self.clearance(body, next, PLAY + speed * left.max(time));
             if is_touching && after < PLAY && after < clearance - ROUNDING {
-                return (here, true);
+                return (here, left);
             }
+            left -= time;
             (here, clearance) = (next, after);
             if left <= 0.0 {
-                return (here, false);
+                return (here, 0.0);
             }
         }
-        (here, false)
+        (here, 0.0)
     }
+
+    /// The twist nearest to the wanted one that comes no nearer to anything, less what friction takes of it.
+    ///
+    /// Near in the sense of what it takes to push the body aside: a metre ahead counts as one, across the wheels as
+    /// [`ACROSS`], and turning by its `inertia`, the square of a radius. With the gradient g of the clearance and these
+    /// as the matrix M, the twist is v − M⁻¹g (g·v) / (g·M⁻¹g); M is also what friction is measured with.
+    fn along(&self, body: Body, here: Pose, wanted: Twist, inertia: f64) -> Twist {
+        let ease = [1.0, 1.0 / ACROSS, 1.0 / inertia];
+        let gradient = self.gradient(body, here);
+        let wanted = [wanted.vx, wanted.vy, if inertia.is_finite() { wanted.omega } else { 0.0 }];
+        let nearing: f64 = gradient.iter().zip(wanted).map(|(slope, part)| slope * part).sum();
+        let stiffness: f64 = gradient.iter().zip(ease).map(|(slope, ease)| slope * slope * ease).sum();
+        if nearing >= 0.0 || stiffness <= 0.0 {
+            return Twist { vx: wanted[0], vy: wanted[1], omega: wanted[2] };
+        }
+        let push: Vec<f64> =
+            gradient.iter().zip(ease).map(|(slope, ease)| -ease * slope * nearing / stiffness).collect();
+        let slide: Vec<f64> = wanted.iter().zip(&push).map(|(part, push)| part + push).collect();
+        let size = |twist: &[f64]| {
+            let squares = twist.iter().zip(ease).filter(|(_, ease)| *ease > 0.0);
+            squares.map(|(part, ease)| part * part / ease).sum::<f64>().sqrt()
+        };
+        let kept = (1.0 - FRICTION * size(&push) / size(&slide).max(f64::MIN_POSITIVE)).max(0.0);
+        Twist { vx: kept * slide[0], vy: kept * slide[1], omega: kept * slide[2] }
+    }
+
+    /// How the clearance grows as the body moves ahead, to its left, and turns to the left.
+    fn gradient(&self, body: Body, here: Pose) -> [f64; 3] {
+        let nudged = |vx: f64, vy: f64, omega: f64| {
+            let at = |way: f64| here.advance(Twist { vx, vy, omega }, way);
+            let clearance = |way: f64| self.clearance(body, at(way), 3.0 * PLAY);
+            (clearance(NUDGE) - clearance(-NUDGE)) / (2.0 * NUDGE)
+        };
+        [nudged(1.0, 0.0, 0.0), nudged(0.0, 1.0, 0.0), nudged(0.0, 0.0, 1.0)]
+    }
+}
+
+/// How a body tries to get on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Attempt {
+    Freely,
+    Sliding,
+    /// Without turning: flush with a wall, turning either way is into it.
+    SlidingStraight,
+}
+
+/// Of a rectangle, by its mass: the square of its radius of gyration.
+fn body_inertia(body: Body) -> f64 {
+    (body.length * body.length + body.width * body.width) / 12.0
 }
 
 #[cfg(test)]
@@ -90,11 +175,12 @@ mod tests {
         for (speed, thickness) in [(0.09, 0.1), (3.0, 0.001), (5000.0, 1e-6)] {
             let space = space(vec![Obstacle::wall("w", (1.0, -1.0), (1.0, 1.0), thickness)]);
             let around = Surroundings { space: &space, others: &[] };
-            let (pose, stopped) = around.advance(BODY, Pose::default(), forward(speed), 60.0);
+            let (pose, changed) = around.advance(BODY, Pose::default(), forward(speed), 60.0);
             let gap = 1.0 - thickness / 2.0 - 0.15 - pose.x;
+            let stopped = changed.is_some_and(|twist| twist.vx.hypot(twist.vy) < 1e-3);
             assert!(stopped && gap > 0.0 && gap < 2.0 * PLAY, "{speed}: {pose:?}");
-            let (back, stopped) = around.advance(BODY, pose, forward(-speed), 1.0);
-            assert!(!stopped && (pose.x - back.x - speed).abs() < 1e-6, "{speed}: {back:?}");
+            let (back, changed) = around.advance(BODY, pose, forward(-speed), 1.0);
+            assert!(changed.is_none() && (pose.x - back.x - speed).abs() < 1e-6, "{speed}: {back:?}");
         }
     }
 
@@ -104,22 +190,66 @@ mod tests {
         let around = Surroundings { space: &space, others: &[] };
         let mut pose = Pose::default();
         for _ in 0..200 {
-            let (next, stopped) = around.advance(BODY, pose, forward(0.5), 0.005);
-            assert!(!stopped);
+            let (next, changed) = around.advance(BODY, pose, forward(0.5), 0.005);
+            assert!(changed.is_none());
             pose = next;
         }
         assert!((pose.x - 0.5).abs() < 1e-9, "{pose:?}");
         let turn = Twist { omega: 1.0, ..Twist::default() };
-        assert!(around.advance(BODY, pose, turn, 0.5).1, "its corner would go into the wall");
+        let (turned, changed) = around.advance(BODY, pose, turn, 0.5);
+        assert!(changed.is_some() && turned.theta < 0.25, "its corner would go into the wall: {turned:?}");
     }
 
     #[test]
     fn robots_stop_each_other() {
         let others = [(BODY, Pose::new(1.0, 0.1, 0.5))];
         let around = Surroundings { space: &Space::default(), others: &others };
-        let (pose, stopped) = around.advance(BODY, Pose::default(), forward(2.0), 5.0);
-        let gap = distance_between((BODY, pose), others[0]);
-        assert!(stopped && gap > 0.0 && gap < 2.0 * PLAY, "{pose:?}");
+        let mut pose = Pose::default();
+        for _ in 0..400 {
+            pose = around.advance(BODY, pose, forward(2.0), 0.005).0;
+            assert!(distance_between((BODY, pose), others[0]) > 0.0, "{pose:?}");
+        }
+        let (_, changed) = around.advance(BODY, Pose::new(0.65, 0.1, 0.5), forward(2.0), 0.4);
+        assert_eq!(changed.map(|twist| twist.vx.abs() < 0.01), Some(true), "flush, it stands");
+    }
+
+    /// Where a body is after some seconds of driving on, in the steps that a world takes.
+    fn after(around: &Surroundings, start: Pose, wanted: Twist, seconds: f64) -> Pose {
+        let mut pose = start;
+        let mut time = 0.0;
+        while time < seconds {
+            pose = around.advance(BODY, pose, wanted, 0.005).0;
+            time += 0.005;
+        }
+        pose
+    }
+
+    #[test]
+    fn slides_along_a_slanting_wall_and_loses_some_of_its_speed() {
+        let space = space(vec![Obstacle::wall("w", (-1.0, 0.5), (9.0, 0.5), 0.1)]);
+        let around = Surroundings { space: &space, others: &[] };
+        for degrees in [10.0_f64, 20.0, 35.0] {
+            let start = Pose::new(0.0, 0.0, degrees.to_radians());
+            let end = after(&around, start, forward(0.1), 20.0);
+            let gap = space.nearest(BODY, end, 1.0).unwrap().distance;
+            assert!(gap > 0.0 && gap < 2.0 * PLAY, "{degrees}: {end:?}");
+            assert!(end.x > 0.8 && end.x < 1.98, "{degrees}: {end:?}");
+            assert!(end.theta.abs() < 0.02, "the wall turns it: {degrees}: {end:?}");
+        }
+    }
+
+    #[test]
+    fn does_not_slide_where_it_drives_straight_into_something() {
+        let wall = Obstacle::wall("w", (1.0, -3.0), (1.0, 3.0), 0.1);
+        let corner = Obstacle::wall("c", (-3.0, 0.5), (3.0, 0.5), 0.1);
+        let space = space(vec![wall, corner]);
+        let around = Surroundings { space: &space, others: &[] };
+        for (start, seconds) in [(Pose::default(), 20.0), (Pose::new(0.0, 0.0, 0.5), 60.0)] {
+            let there = after(&around, start, forward(0.1), seconds);
+            let later = after(&around, there, forward(0.1), 5.0);
+            assert!(there.distance(&later) < 0.001, "{there:?} {later:?}");
+            assert!(there.x > 0.75, "it gets as far as it can: {there:?}");
+        }
     }
 
     proptest! {
