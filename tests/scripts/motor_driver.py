@@ -1,7 +1,8 @@
 """A pretended driver of a two-wheel robot's motors, for docs/physical-robot.md.
 
 It has a clock of its own in place of the machine's, and motors that get to their speed as real ones do. When the script
-ends it writes down where the robot really is. `MOTOR_DRIVER` holds what else is to happen: `stuck` or `missing`.
+ends it writes down where the robot really is. `MOTOR_DRIVER` holds what else is to happen: `stuck` or `missing`, `room`
+for a room around the robot, `broken` for a room and a sensor that stops answering.
 """
 
 import atexit
@@ -40,9 +41,36 @@ class Motor:
         self.closed = True
 
 
+ROOM = (-0.5, -0.5, 1.7, 0.5)  # least x and y, most x and y
+EYES = {  # where sensors are, and their bearings in degrees
+    "front": (0.15, 0.0, 0),
+    "front_left": (0.15, 0.15, 45),
+    "front_right": (0.15, -0.15, -45),
+    "side_left": (0.0, 0.15, 90),
+    "side_right": (0.0, -0.15, -90),
+}
+
+
 def distance(sensor: str) -> float:
     """There is a wall ahead, as far as the robot has not turned by a third of a right angle."""
+    if TROUBLE == "broken" and now > 5.0:
+        raise OSError(f"no answer from sensor {sensor}")
+    if TROUBLE in ("room", "broken"):
+        x, y, bearing = EYES[sensor]
+        return min(to_wall(x, y, bearing + side) for side in range(-10, 11, 2))
     return 0.2 if abs(truth["theta"]) < math.pi / 6 else 3.0
+
+
+def to_wall(x: float, y: float, bearing: float) -> float:
+    """How far it is to the room's walls, from a place on the robot."""
+    cos, sin = math.cos(truth["theta"]), math.sin(truth["theta"])
+    x, y = truth["x"] + cos * x - sin * y, truth["y"] + sin * x + cos * y
+    angle = truth["theta"] + math.radians(bearing)
+    cos, sin = math.cos(angle), math.sin(angle)
+    left, low, right, high = ROOM
+    across = ((right if cos > 0.0 else left) - x) / (cos or 1e-9)
+    along = ((high if sin > 0.0 else low) - y) / (sin or 1e-9)
+    return min(across, along)
 
 
 def sleep(seconds: float) -> None:

@@ -38,9 +38,11 @@ def code_of_the_page() -> list[str]:
     ]
 
 
-def ported(script: str) -> str:
+def ported(script: str, *, explores: bool = False) -> str:
     """The script with the page's code in place of what the page names."""
-    imports, body = code_of_the_page()
+    imports, body, eyes, methods = code_of_the_page()
+    if explores:
+        body = f"{eyes}\n\n{body}\n{textwrap.indent(methods, '    ')}"
     lines = script.splitlines(keepends=True)
     places: dict[str, tuple[int, int]] = {}
     for node in ast.parse(script).body:
@@ -63,21 +65,49 @@ def ported(script: str) -> str:
     return "".join(lines)
 
 
-@pytest.fixture(name="script")
-def fixture_script(command: str, tmp_path: pathlib.Path) -> pathlib.Path:
-    program = tmp_path / "program.pyr"
-    program.write_text(PROGRAM, encoding="utf-8")
+EXPLORING = """
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+sensor front
+sensor front_left
+sensor front_right
+sensor side_left
+sensor side_right
+robot rover with port 23000 has { wheelL wheelR } wheels with sensors { front front_left front_right side_left side_right }
+movement trip of rover { slam }
+environment yard has { rover } robots with { trip } moves
+"""
+
+
+def build(
+    command: str, folder: pathlib.Path, text: str, *, explores: bool
+) -> pathlib.Path:
+    program = folder / "program.pyr"
+    program.write_text(text, encoding="utf-8")
     subprocess.run([command, "build", str(program)], check=True, capture_output=True)
-    script = tmp_path / "yard.py"
-    script.write_text(ported(script.read_text(encoding="utf-8")), encoding="utf-8")
-    shutil.copy(DRIVER, tmp_path)
+    script = folder / "yard.py"
+    generated = script.read_text(encoding="utf-8")
+    script.write_text(ported(generated, explores=explores), encoding="utf-8")
+    shutil.copy(DRIVER, folder)
     return script
 
 
-def drive(script: pathlib.Path, code: int, trouble: str = "") -> tuple[Any, str]:
+@pytest.fixture(name="script")
+def fixture_script(command: str, tmp_path: pathlib.Path) -> pathlib.Path:
+    return build(command, tmp_path, PROGRAM, explores=False)
+
+
+@pytest.fixture(name="explorer")
+def fixture_explorer(command: str, tmp_path: pathlib.Path) -> pathlib.Path:
+    return build(command, tmp_path, EXPLORING, explores=True)
+
+
+def drive(
+    script: pathlib.Path, code: int, trouble: str = "", *options: str
+) -> tuple[Any, str]:
     """Where the robot really ended, and what the script complained about."""
     done = subprocess.run(
-        [sys.executable, str(script)],
+        [sys.executable, str(script), *options],
         cwd=script.parent,
         env={**os.environ, "MOTOR_DRIVER": trouble},
         capture_output=True,
@@ -110,7 +140,28 @@ def test_missing_motors_are_told(script: pathlib.Path) -> None:
     assert err == "error: robot rover: no motor wheelL on the bus\n"
 
 
-def test_the_ported_script_pleases_its_tools(script: pathlib.Path) -> None:
+@pytest.mark.parametrize("options", [[], ["--odometry"]])
+def test_a_robot_explores_its_room(explorer: pathlib.Path, options: list[str]) -> None:
+    truth, _ = drive(explorer, 0, "room", *options)
+    found = json.loads((explorer.parent / "yard_map.json").read_text(encoding="utf-8"))
+    nodes = [(node["x"], node["y"]) for node in found["nodes"]]
+    # A room of 2.2 m by 1 m, in whose one end it starts.
+    assert max(x for x, _ in nodes) > 0.7
+    assert all(-0.25 < x < 1.45 and abs(y) < 0.25 for x, y in nodes)
+    assert len(found["edges"]) >= len(nodes) - 1
+    assert min(math.dist((truth["x"], truth["y"]), node) for node in nodes) < 0.05
+
+
+def test_a_sensor_that_breaks_ends_the_exploration(explorer: pathlib.Path) -> None:
+    _, err = drive(explorer, 1, "broken")
+    assert "robot rover, movement trip, action 1: slam: no answer from sensor" in err
+
+
+@pytest.mark.parametrize("kind", ["script", "explorer"])
+def test_the_ported_script_pleases_its_tools(
+    kind: str, request: pytest.FixtureRequest
+) -> None:
+    script: pathlib.Path = request.getfixturevalue(kind)
     for arguments in (
         # Imports that are left over are for its reader to take out.
         ["ruff", "check", "--ignore=F401", "--isolated", "--no-cache", script.name],

@@ -23,7 +23,7 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Protocol, TextIO
 
@@ -114,7 +114,7 @@ def steer(speed: float, offset: Pose, to_go: float) -> float:
     that fades out at the end of the line, where only the heading counts. At constant
     speed this is a critically damped system in the distance driven.
     """
-    reach = max(0.15, 0.5 * abs(speed))
+    reach = max(0.15, 0.4 * abs(speed))
     fade = min(1.0, abs(to_go) / (2.0 * reach))
     aim = max(-0.5, min(0.5, -offset.y / (2.0 * reach))) * fade
     return 2.0 / reach * (speed * aim - abs(speed) * offset.theta)
@@ -627,6 +627,10 @@ class Reading:
     distance: float  # m; the sensor's range where it sees nothing
     sees: bool  # whether something is at that distance, anywhere across the cone
 
+    def seen_by(self, here: Pose) -> "Reading":
+        """The reading of a sensor that is mounted like that on a robot."""
+        return Reading(self.eye.placed_on(here), self.cone, self.distance, self.sees)
+
 
 class Floor:
     """The floor in cells: free where some cone has shown it, unknown where none has.
@@ -637,6 +641,7 @@ class Floor:
 
     CELL = 0.05  # m
     CAUTION = 0.03  # m by which a sensor's reading may be too long
+    SIGHT = 0.6  # m that something is near enough for a robot to know where it is
     LEEWAY = 0.06  # m to keep from obstacles: half a cell, and what driving is off
 
     def __init__(self, radius: float) -> None:
@@ -647,6 +652,12 @@ class Floor:
         self._free: set[Cell] = set()
         self._edges: set[Cell] = set()  # where something is, unless free as well
         self._roomy: set[Cell] = set()
+
+    def clear(self) -> None:
+        """Nothing was seen."""
+        self._free.clear()
+        self._edges.clear()
+        self._roomy.clear()
 
     def stand(self, x: float, y: float) -> None:
         """The robot has turned here, and touched nothing."""
@@ -685,17 +696,6 @@ class Floor:
             cell for cell in self._roomy if math.dist(cell, (column, row)) > self._reach
         }
 
-    def edges(self) -> list[Place]:
-        """Where something stands: at the border of what is free."""
-        return [
-            (column * self.CELL, row * self.CELL)
-            for column, row in sorted(self._edges - self._free)
-            if any(
-                (column + right, row + up) in self._free
-                for right, up in ((1, 0), (-1, 0), (0, 1), (0, -1))
-            )
-        ]
-
     def has_room(self, x: float, y: float) -> bool:
         """Whether the robot can stand here and turn."""
         return self._is_roomy(self._cell(x, y))
@@ -703,6 +703,17 @@ class Floor:
     def is_open(self, start: Place, end: Place) -> bool:
         """Whether the robot can drive straight from one place to another."""
         return all(self._is_roomy(cell) for cell in self._cells(start, end))
+
+    def is_bare(self, place: Place) -> bool:
+        """Whether nothing is near by which a robot could tell where it is."""
+        column, row = self._cell(*place)
+        reach = round(self.SIGHT / self.CELL)
+        return not any(
+            (cell := (column + right, row + up)) in self._edges
+            and cell not in self._free
+            for right in range(-reach, reach + 1)
+            for up in range(-reach, reach + 1)
+        )
 
     def is_undecided(self, start: Place, end: Place) -> bool:
         """Whether a way is not open only because nobody has looked there yet."""
@@ -766,6 +777,7 @@ class Odometer:
         self._body = body
         self._pose = body.pose()
         self._angles = body.wheel_angles()
+        self.rolled = 0.0  # m that the wheels have rolled, on average
 
     def pose(self) -> Pose:
         """Where the robot should be."""
@@ -776,6 +788,7 @@ class Odometer:
                 self._angles, before, self._body.model.wheels.values(), strict=True
             )
         )
+        self.rolled += (abs(left) + abs(right)) / 2.0
         # Both wheels go round the same centre: this is exact for any arc.
         turned = (right - left) / (2.0 * self._body.drive.turning_radius)
         chord = (left + right) / 2.0
@@ -790,93 +803,931 @@ class Odometer:
         self._pose = pose
 
 
-class Memory:
-    """What a robot saw from where, to know again where it is when it comes back."""
+@dataclass(frozen=True)
+class Mark:
+    """A point of a surface, as it is from the place it was seen from."""
 
-    REACH = 0.7  # m from a place, so that about the same is seen
-    APART = 0.3  # m between places to remember what is seen from
+    x: float
+    y: float
+    normal: float  # radians: where the surface faces
+    when: float = 0.0  # of the sweep: -0.5 is its begin, 0.5 its end
+
+
+@dataclass(frozen=True)
+class Point:
+    """What is seen in a direction."""
+
+    depth: float  # m from the origin
+    direction: float  # radians
+    when: float  # of the sweep
+
+    @property
+    def place(self) -> Place:
+        """Where it is."""
+        x, y = math.cos(self.direction), math.sin(self.direction)
+        return self.depth * x, self.depth * y
+
+
+class Sweep:
+    """Readings on a turn in place, and the surfaces that they show.
+
+    A cone tells how far off the nearest point in it is, but not where across the cone. On
+    a flat surface that is slanting to it, the point is at one of its edges. So each edge
+    tells, while the cone turns, a depth for every direction, of which the larger one is
+    that of the surface.
+    """
+
+    BIN = math.radians(2.5)  # between the directions that are told apart
+    ABOUT = 4  # directions to each side that make the surface at one of them
+    EDGE = 0.1  # m: where depths differ so much at once, one surface hides another
+    NEAR = 0.15  # m: next to each other, they are further apart at edges
+    ROUGH = 0.012  # m that points of a flat surface are off it
+    DENT = 0.01  # m: corners are rounded by cones; where it bends so, it is one
 
     def __init__(self) -> None:
-        self._scans: list[tuple[Pose, list[Place]]] = []
+        self._readings: dict[str, list[tuple[Pose, Reading]]] = {}
 
-    def recognise(self, here: Pose, seen: Sequence[Place]) -> Pose:
-        """The pose, put right by what was seen before; remembers what is new.
+    def add(self, here: Pose, sensor: str, reading: Reading) -> None:
+        """What a sensor, as it is mounted, sees from a pose."""
+        self._readings.setdefault(sensor, []).append((here, reading))
 
-        `seen` has places where something stands, as they are from `here`.
-        """
-        away, known = min(
-            (
-                (math.hypot(scan.x - here.x, scan.y - here.y), places)
-                for scan, places in self._scans
-            ),
-            key=lambda found: found[0],
-            default=(math.inf, []),
-        )
-        pose = fitted(here, seen, known) if away < self.REACH else here
-        if away > self.APART:
-            points = (Pose(*place, 0.0).seen_from(here) for place in seen)
-            moved = (point.placed_on(pose) for point in points)
-            self._scans.append((pose, [(point.x, point.y) for point in moved]))
-        return pose
+    def middle(self) -> Pose:
+        """Where the robot was half-way: the place that marks are seen from."""
+        some = next(iter(self._readings.values()))
+        return some[len(some) // 2][0]
+
+    def marks(self) -> list[Mark]:
+        """The surfaces, as they are from the middle."""
+        origin = self.middle()
+        found: list[Mark] = []
+        for readings in self._readings.values():
+            found += self._marks_of(
+                [reading.seen_by(here.seen_from(origin)) for here, reading in readings]
+            )
+        return found
+
+    def _marks_of(self, readings: Sequence[Reading]) -> list[Mark]:
+        count = round(math.tau / self.BIN)
+        points: list[Point | None] = [None] * count
+        blank: set[int] = set()  # as far as the sensor sees, there is nothing
+        mean = smoothed(readings, 1.05 * self.BIN)
+        for index, (now, after) in enumerate(itertools.pairwise(mean)):
+            for side in (-0.5, 0.5):
+                first, last = edge_of(now, side), edge_of(after, side)
+                if abs(last.depth - first.depth) > self.EDGE:
+                    continue
+                turned = wrap_angle(last.direction - first.direction)
+                for number in self._directions(first.direction, turned):
+                    part = (number * self.BIN - first.direction) / (turned or 1.0)
+                    if not (now.sees and after.sees):
+                        blank.add(number % count)
+                    depth = first.depth + part * (last.depth - first.depth)
+                    known = points[number % count]
+                    if known is None or depth > known.depth:
+                        when = (index + part) / (len(mean) - 1) - 0.5
+                        points[number % count] = Point(depth, number * self.BIN, when)
+        for number in blank:
+            points[number] = None
+        marks = (self._mark(points, number) for number in range(count))
+        return [mark for mark in marks if mark]
+
+    def _directions(self, first: float, turned: float) -> range:
+        """The directions that an edge of a cone sweeps over."""
+        low, high = sorted((first / self.BIN, (first + turned) / self.BIN))
+        return range(math.ceil(low), math.ceil(high))
+
+    def _mark(self, points: "Sequence[Point | None]", number: int) -> Mark | None:
+        """A direction's point, if there is a flat surface about it."""
+        point = points[number]
+        if point is None:
+            return None
+        place, about, ends = point.place, [], []
+        for step in range(-self.ABOUT, self.ABOUT + 1):
+            other = points[(number + step) % len(points)]
+            if other is not None and math.dist(other.place, place) < self.NEAR:
+                about.append(other.place)
+                if abs(step) == self.ABOUT:
+                    ends.append(other.depth)
+        if len(about) < self.ABOUT + 2:
+            return None
+        if len(ends) == 2 and max(ends) < point.depth - self.DENT:
+            return None
+        x, y, along, rough = line_through(about)
+        if rough > self.ROUGH:
+            return None
+        normal = along + math.pi / 2.0
+        away = (place[0] - x) * math.cos(normal) + (place[1] - y) * math.sin(normal)
+        x = place[0] - away * math.cos(normal)
+        y = place[1] - away * math.sin(normal)
+        if x * math.cos(normal) + y * math.sin(normal) > 0.0:
+            normal += math.pi  # it faces who sees it
+        return Mark(x, y, wrap_angle(normal), point.when)
 
 
-COARSE = 0.15  # m about a place within which what is seen again is looked for
-GRAIN = 0.04  # m between cells of what was seen before
-WORTH = 0.06  # of what is seen: a pose that fits better by less is no better
-TURNS = math.radians(8.0)  # the most that a heading is put right at once ...
-SHIFT = 0.12  # m: ... and a place
+def smoothed(readings: Sequence[Reading], within: float) -> list[Reading]:
+    """Readings with less noise: each one the mean with those about it, up to an angle."""
+    found = []
+    for index, now in enumerate(readings):
+        count = 0
+        while (
+            index - count - 1 >= 0
+            and index + count + 1 < len(readings)
+            and all(
+                abs(wrap_angle(readings[n].eye.theta - now.eye.theta)) < within
+                for n in (index - count - 1, index + count + 1)
+            )
+        ):
+            count += 1
+        about = [
+            r.distance for r in readings[index - count : index + count + 1] if r.sees
+        ]
+        if len(about) == 2 * count + 1 and max(about) - min(about) < 0.06:
+            now = replace(now, distance=sum(about) / len(about))
+        found.append(now)
+    return found
 
 
-def fitted(here: Pose, seen: Sequence[Place], known: Sequence[Place]) -> Pose:
-    """The pose from which `seen` lies on `known` best, near the one it was thought to be.
+def edge_of(reading: Reading, side: float) -> Point:
+    """The end of an edge of a cone."""
+    end = reading.eye.turned(side * reading.cone).ahead(reading.distance)
+    return Point(math.hypot(end.x, end.y), math.atan2(end.y, end.x), 0.0)
 
-    Both are places where something stands, `seen` as it is from `here`. Where little of it
-    fits, or nothing fits better, the pose stays.
+
+def line_through(places: Sequence[Place]) -> tuple[float, float, float, float]:
+    """The line through places: a point, its direction, and how far off it they are (rms)."""
+    count = len(places)
+    x = sum(place[0] for place in places) / count
+    y = sum(place[1] for place in places) / count
+    xx = sum((place[0] - x) ** 2 for place in places) / count
+    yy = sum((place[1] - y) ** 2 for place in places) / count
+    xy = sum((place[0] - x) * (place[1] - y) for place in places) / count
+    along = 0.5 * math.atan2(2.0 * xy, xx - yy)
+    # The smaller eigenvalue of the covariance: the variance across the line.
+    across = (xx + yy) / 2.0 - math.hypot((xx - yy) / 2.0, xy)
+    return x, y, along, math.sqrt(max(0.0, across))
+
+
+Matrix = list[list[float]]
+
+
+def solve(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> list[float]:
+    """The solution of linear equations, by elimination; the matrix is positive definite."""
+    rows = [[*row, value] for row, value in zip(matrix, right, strict=True)]
+    size = len(rows)
+    for pivot in range(size):
+        for row in rows[pivot + 1 :]:
+            share = row[pivot] / rows[pivot][pivot]
+            for column in range(pivot, size + 1):
+                row[column] -= share * rows[pivot][column]
+    solution = [0.0] * size
+    for index in reversed(range(size)):
+        known = sum(rows[index][c] * solution[c] for c in range(index + 1, size))
+        solution[index] = (rows[index][size] - known) / rows[index][index]
+    return solution
+
+
+@dataclass(frozen=True)
+class KnownMark:
+    """A mark in the world, and the number of the place that it was seen from."""
+
+    x: float
+    y: float
+    cos: float  # of its normal
+    sin: float
+    place: int
+
+
+class KnownMarks:
+    """Marks by where they are."""
+
+    CELL = 0.1  # m
+
+    def __init__(self, marks: Iterable[KnownMark]) -> None:
+        self._cells: dict[tuple[int, int], list[KnownMark]] = {}
+        for mark in marks:
+            self._cells.setdefault(self._cell(mark.x, mark.y), []).append(mark)
+
+    def _cell(self, x: float, y: float) -> tuple[int, int]:
+        return math.floor(x / self.CELL), math.floor(y / self.CELL)
+
+    def nearest(
+        self, x: float, y: float, normal: float, within: float
+    ) -> KnownMark | None:
+        """The nearest mark that faces about the same way."""
+        cos, sin = math.cos(normal), math.sin(normal)
+        left, low = self._cell(x - within, y - within)
+        right, high = self._cell(x + within, y + within)
+        best, least = None, within * within
+        for column in range(left, right + 1):
+            for row in range(low, high + 1):
+                for mark in self._cells.get((column, row), ()):
+                    square = (mark.x - x) ** 2 + (mark.y - y) ** 2
+                    if square < least and mark.cos * cos + mark.sin * sin > 0.8:
+                        best, least = mark, square
+        return best
+
+
+@dataclass(frozen=True)
+class Match:
+    """Where marks lie best on known ones."""
+
+    pose: Pose  # of the place they are seen from
+    drift: float  # radians that the sweep turned further than the wheels did
+    share: float  # of the marks that lie on something known
+    count: int  # of these
+    rough: float  # m that they are off it (rms)
+    information: dict[int, Matrix]  # on the pose, by the place that told it
+
+
+MARK_ERROR = 0.015  # m
+ALIKE = 4.0  # marks that tell the same, for they are next to each other
+DRIFT = 0.03  # radians that a sweep may turn too far (standard deviation)
+GATES = (
+    0.25,
+    0.2,
+    0.15,
+    0.1,
+    0.08,
+    0.06,
+    0.06,
+    0.06,
+)  # m from mark to mark, as it goes on
+
+
+def match(
+    marks: Sequence[Mark],
+    guess: Pose,
+    uncertainty: tuple[float, float],
+    known: KnownMarks,
+    start: Pose | None = None,
+) -> Match | None:
+    """Lays marks on known ones, from point to line; None where too few have a counterpart.
+
+    `uncertainty` is how far off the guess may be in metres and radians, as standard
+    deviations: what the marks do not tell stays as it was. The search begins at `start`.
     """
-    field: dict[tuple[int, int], float] = {}
-    about: set[tuple[int, int]] = set()
-    for x, y in known:
-        column, row = round(x / COARSE), round(y / COARSE)
-        about |= {(column + a, row + b) for a in (-1, 0, 1) for b in (-1, 0, 1)}
-        column, row = round(x / GRAIN), round(y / GRAIN)
-        for right in range(-2, 3):
-            for up in range(-2, 3):
-                cell = column + right, row + up
-                fit = 1.0 - math.hypot(right, up) / 3.0
-                field[cell] = max(fit, field.get(cell, 0.0))
-    # What has no counterpart near is new, and says nothing.
-    points = [
-        Pose(x, y, 0.0).seen_from(here)
-        for x, y in seen
-        if (round(x / COARSE), round(y / COARSE)) in about
+    pose, drift = start or guess, 0.0
+    place, heading = (1.0 / sigma**2 for sigma in uncertainty)
+    for gate in GATES:
+        rows = [
+            [place, 0.0, 0.0, 0.0],
+            [0.0, place, 0.0, 0.0],
+            [0.0, 0.0, heading, 0.0],
+            [0.0, 0.0, 0.0, 1.0 / DRIFT**2],
+        ]
+        off = (guess.x - pose.x, guess.y - pose.y, wrap_angle(guess.theta - pose.theta))
+        right = [place * off[0], place * off[1], heading * off[2], -drift / DRIFT**2]
+        pairs = list(paired(marks, pose, drift, known, gate))
+        if len(pairs) < 8:
+            return None
+        for _, slope, error in pairs:
+            weight = weight_of(error)
+            for i in range(4):
+                right[i] -= weight * slope[i] * error
+                for j in range(4):
+                    rows[i][j] += weight * slope[i] * slope[j]
+        dx, dy, turned, more = solve(rows, right)
+        pose = Pose(pose.x + dx, pose.y + dy, wrap_angle(pose.theta + turned))
+        drift += more
+    return summed_up(marks, pose, drift, known)
+
+
+def weight_of(error: float) -> float:
+    """Of a pair: the further apart, the less likely is it one (Geman and McClure)."""
+    return (
+        1.0 / (ALIKE * MARK_ERROR**2) / (1.0 + (error / (2.0 * MARK_ERROR)) ** 2) ** 2
+    )
+
+
+def paired(
+    marks: Sequence[Mark], pose: Pose, drift: float, known: KnownMarks, gate: float
+) -> Iterable[tuple[KnownMark, list[float], float]]:
+    """Marks with their counterparts: how an error depends on the pose and the drift."""
+    for mark in marks:
+        turned = Pose(pose.x, pose.y, pose.theta + drift * mark.when)
+        at = Pose(mark.x, mark.y, mark.normal).placed_on(turned)
+        other = known.nearest(at.x, at.y, at.theta, gate)
+        if other is not None:
+            error = other.cos * (at.x - other.x) + other.sin * (at.y - other.y)
+            swing = other.sin * (at.x - pose.x) - other.cos * (at.y - pose.y)
+            yield other, [other.cos, other.sin, swing, swing * mark.when], error
+
+
+def summed_up(
+    marks: Sequence[Mark], pose: Pose, drift: float, known: KnownMarks
+) -> Match:
+    information: dict[int, Matrix] = {}
+    squares, count = 0.0, 0
+    for other, slope, error in paired(marks, pose, drift, known, GATES[-1]):
+        rows = information.setdefault(other.place, [[0.0] * 4 for _ in range(4)])
+        weight = weight_of(error)
+        for i in range(4):
+            for j in range(4):
+                rows[i][j] += weight * slope[i] * slope[j]
+        squares += error * error
+        count += 1
+    # What also a drift would explain says nothing of the pose (Schur complement).
+    reduced = {}
+    for number, rows in information.items():
+        rest = rows[3][3] + 1.0 / DRIFT**2
+        reduced[number] = [
+            [rows[i][j] - rows[i][3] * rows[3][j] / rest for j in range(3)]
+            for i in range(3)
+        ]
+    share = count / max(1, len(marks))
+    return Match(pose, drift, share, count, math.sqrt(squares / max(1, count)), reduced)
+
+
+RIGHT_ANGLE = math.pi / 2.0
+SPREAD = math.radians(3.5)  # of the normals of marks on the same wall
+ASIDE = math.radians(
+    8.0
+)  # so far from the direction of the others, a wall is a slanting one
+
+
+@dataclass(frozen=True)
+class Grain:
+    """The direction of walls that are parallel or at right angles."""
+
+    angle: float  # radians, up to full right angles
+    drift: float  # radians that the sweep turned further than the wheels did
+    share: float  # of the marks that have this direction
+
+
+def grain_of(marks: Sequence[Mark], guess: float, within: float) -> Grain | None:
+    """The direction of most walls, that near the one it was thought to be; None without walls."""
+    if len(marks) < 20:
+        return None
+    angle, drift = mode_of(marks, guess, within), 0.0
+    for _ in range(8):
+        # Least squares for both, with a weight that makes light of what is far off.
+        aa, ad, dd, ra, rd = 0.0, 0.0, SPREAD**2 / DRIFT**2, 0.0, 0.0
+        for mark in marks:
+            off = math.remainder(mark.normal + drift * mark.when - angle, RIGHT_ANGLE)
+            weight = 0.2 / (1.0 + (off / SPREAD / 1.5) ** 2) ** 2
+            aa += weight
+            ad -= weight * mark.when
+            dd += weight * mark.when**2
+            ra += weight * off
+            rd -= weight * mark.when * off
+        rd -= SPREAD**2 / DRIFT**2 * drift
+        determinant = aa * dd - ad * ad
+        if determinant <= 0.0:
+            return None
+        angle += (ra * dd - rd * ad) / determinant
+        drift += (aa * rd - ad * ra) / determinant
+    fitting = sum(
+        abs(math.remainder(m.normal + drift * m.when - angle, RIGHT_ANGLE)) < ASIDE
+        for m in marks
+    )
+    return Grain(angle, drift, fitting / len(marks))
+
+
+def mode_of(marks: Sequence[Mark], guess: float, within: float) -> float:
+    """The direction that most marks have."""
+    count = int(within / SPREAD)
+    tried = [guess + index * SPREAD for index in range(-count, count + 1)]
+    tried.sort(key=lambda angle: abs(angle - guess))
+    return max(
+        tried,
+        key=lambda angle: sum(
+            abs(math.remainder(mark.normal - angle, RIGHT_ANGLE)) < SPREAD
+            for mark in marks
+        ),
+    )
+
+
+@dataclass(frozen=True)
+class Link:
+    """Where a place is as seen from another one, and how sure that is."""
+
+    start: int
+    end: int
+    relative: Pose  # of the end, seen from the start
+    information: Matrix  # on x, y and heading in the world: the inverse of a covariance
+    is_certain: bool = False  # that it is about these places: wheels never mistake them
+
+
+@dataclass(frozen=True)
+class Compass:
+    """The heading of a place, and how sure that is."""
+
+    place: int
+    heading: float
+    information: float
+
+
+class PoseGraph:
+    """Poses of places, and links between them.
+
+    The poses are those that agree best with all links, in the sense of least squares: an
+    error that shows when a loop closes is spread over all the way round.
+    """
+
+    ROUNDS = 3  # of making the problem linear about the poses by then
+    STRAIN = 16.0  # squared deviations that what is certain may be off at most
+
+    def __init__(self) -> None:
+        self.poses: list[Pose] = []
+        self._links: list[Link] = []
+        self._compasses: list[Compass] = []
+
+    def add(self, pose: Pose) -> int:
+        """A new place; the first one stays where it is. The result is its number."""
+        self.poses.append(pose)
+        return len(self.poses) - 1
+
+    def link(self, link: Link) -> None:
+        """Something is known of two places."""
+        self._links.append(link)
+
+    def orient(self, compass: Compass) -> None:
+        """Something is known of a heading."""
+        self._compasses.append(compass)
+
+    def components(self, places: Sequence[int]) -> list[list[int]]:
+        """The places in groups that hang together by links between them."""
+        left, found = set(places), []
+        neighbours: dict[int, list[int]] = {place: [] for place in left}
+        for link in self._links:
+            if link.start in left and link.end in left:
+                neighbours[link.start].append(link.end)
+                neighbours[link.end].append(link.start)
+        for place in places:
+            group, queue = [], [place]
+            while queue:
+                number = queue.pop()
+                if number in left:
+                    left.remove(number)
+                    group.append(number)
+                    queue += neighbours[number]
+            if group:
+                found.append(sorted(group))
+        return found
+
+    def relax(self) -> None:
+        """Finds the poses that agree best (Gauss-Newton)."""
+        for _ in range(self.ROUNDS):
+            system = self._linear()
+            change = system.solution()
+            for number, (dx, dy, turned) in enumerate(change):
+                pose = self.poses[number]
+                theta = wrap_angle(pose.theta + turned)
+                self.poses[number] = Pose(pose.x + dx, pose.y + dy, theta)
+            if max(max(map(abs, step)) for step in change) < 1e-4:
+                break
+
+    def closes(self, links: Sequence[Link]) -> bool:
+        """Adds links that close a loop, if all that is certain can be as they say."""
+        poses, count = list(self.poses), len(self._links)
+        self._links += links
+        self.relax()
+        strain = max(
+            (
+                bilinear(link.information, self._error(link), self._error(link))
+                for link in self._links
+                if link.is_certain
+            ),
+            default=0.0,
+        )
+        if strain <= self.STRAIN:
+            return True
+        self.poses[:] = poses
+        del self._links[count:]
+        return False
+
+    def _error(self, link: Link) -> list[float]:
+        """How far the end is from where the link has it."""
+        end, there = (
+            self.poses[link.end],
+            link.relative.placed_on(self.poses[link.start]),
+        )
+        return [end.x - there.x, end.y - there.y, wrap_angle(end.theta - there.theta)]
+
+    def _linear(self) -> "LinearSystem":
+        system = LinearSystem(len(self.poses))
+        for link in self._links:
+            start = self.poses[link.start]
+            there = link.relative.placed_on(start)
+            # When the start turns, the end goes round it.
+            lever = (-(there.y - start.y), there.x - start.x)
+            slope = [[-1.0, 0.0, -lever[0]], [0.0, -1.0, -lever[1]], [0.0, 0.0, -1.0]]
+            system.add(link, slope, self._error(link))
+        for compass in self._compasses:
+            off = wrap_angle(self.poses[compass.place].theta - compass.heading)
+            system.turn(compass.place, compass.information, off)
+        return system
+
+
+def bilinear(matrix: Matrix, a: Sequence[float], b: Sequence[float]) -> float:
+    """A'Mb."""
+    return sum(a[i] * matrix[i][j] * b[j] for i in range(len(a)) for j in range(len(b)))
+
+
+Vector = list[list[float]]  # three numbers for each place
+
+
+class LinearSystem:
+    """Equations for small changes of poses, in blocks of three by three."""
+
+    def __init__(self, count: int) -> None:
+        self._count = count
+        self._blocks: dict[tuple[int, int], Matrix] = {}
+        self._right: Vector = [[0.0] * 3 for _ in range(count)]
+        # The first place stays.
+        self._add_block(0, 0, [[1e9 * (i == j) for j in range(3)] for i in range(3)])
+        for number in range(count):
+            tiny = [[1e-6 * (i == j) for j in range(3)] for i in range(3)]
+            self._add_block(number, number, tiny)
+
+    def add(self, link: Link, slope: Matrix, error: Sequence[float]) -> None:
+        """A link, whose error depends on the start by `slope` and on the end directly."""
+        start, end, weighted = link.start, link.end, link.information
+        across = product(transposed(slope), weighted)
+        self._add_block(start, start, product(across, slope))
+        self._add_block(start, end, across)
+        self._add_block(end, start, transposed(across))
+        self._add_block(end, end, weighted)
+        for i in range(3):
+            self._right[start][i] -= sum(across[i][j] * error[j] for j in range(3))
+            self._right[end][i] -= sum(weighted[i][j] * error[j] for j in range(3))
+
+    def turn(self, place: int, information: float, error: float) -> None:
+        """A heading that is known."""
+        self._blocks[place, place][2][2] += information
+        self._right[place][2] -= information * error
+
+    def _add_block(self, row: int, column: int, block: Matrix) -> None:
+        known = self._blocks.setdefault((row, column), [[0.0] * 3 for _ in range(3)])
+        for i in range(3):
+            for j in range(3):
+                known[i][j] += block[i][j]
+
+    def solution(self) -> Vector:
+        """By conjugate gradients, with each place's own block to begin with."""
+        found: Vector = [[0.0] * 3 for _ in range(self._count)]
+        rest = [list(part) for part in self._right]
+        eased = self._eased(rest)
+        direction = [list(part) for part in eased]
+        now = dot_product(rest, eased)
+        goal = 1e-8 * now
+        for _ in range(6 * self._count):
+            if now <= goal or now < 1e-12:
+                break
+            image = self._times(direction)
+            step = now / dot_product(direction, image)
+            for n in range(self._count):
+                for i in range(3):
+                    found[n][i] += step * direction[n][i]
+                    rest[n][i] -= step * image[n][i]
+            eased = self._eased(rest)
+            before, now = now, dot_product(rest, eased)
+            for n in range(self._count):
+                for i in range(3):
+                    direction[n][i] = eased[n][i] + now / before * direction[n][i]
+        return found
+
+    def _eased(self, vector: Vector) -> Vector:
+        return [solve(self._blocks[n, n], part) for n, part in enumerate(vector)]
+
+    def _times(self, vector: Vector) -> Vector:
+        found: Vector = [[0.0] * 3 for _ in range(self._count)]
+        for (row, column), block in self._blocks.items():
+            x, y, theta = vector[column]
+            sums = found[row]
+            for i in range(3):
+                a, b, c = block[i]
+                sums[i] += a * x + b * y + c * theta
+        return found
+
+
+def transposed(matrix: Matrix) -> Matrix:
+    return [list(column) for column in zip(*matrix, strict=True)]
+
+
+def product(a: Matrix, b: Matrix) -> Matrix:
+    return [
+        [
+            sum(p * q for p, q in zip(row, column, strict=True))
+            for column in zip(*b, strict=True)
+        ]
+        for row in a
     ]
 
-    def score(pose: Pose) -> float:
-        cos, sin = math.cos(pose.theta), math.sin(pose.theta)
-        total = 0.0
-        for point in points:
-            x = pose.x + cos * point.x - sin * point.y
-            y = pose.y + sin * point.x + cos * point.y
-            total += field.get((round(x / GRAIN), round(y / GRAIN)), 0.0)
-        # Along a bare wall everything fits: then the least change is best.
-        off = math.hypot(pose.x - here.x, pose.y - here.y)
-        turned = abs(wrap_angle(pose.theta - here.theta))
-        return total / len(points) - 0.5 * off - 0.3 * turned
 
-    if len(points) < 15:
-        return here
-    best, most = here, score(here) + WORTH
-    shift, turn = SHIFT / 3.0, TURNS / 4.0
-    shifts, turns = range(-3, 4), range(-4, 5)
-    while shift > 0.005:
-        middle = best
-        for a, b, c in itertools.product(shifts, shifts, turns):
-            pose = Pose(middle.x + a * shift, middle.y + b * shift, middle.theta)
-            pose = pose.turned(c * turn)
-            if (value := score(pose)) > most:
-                best, most = pose, value
-        shift, turn, shifts, turns = shift / 2.0, turn / 2.0, range(-1, 2), range(-1, 2)
-    return best if most > 0.4 else here
+def dot_product(a: Vector, b: Vector) -> float:
+    return sum(
+        p * q for u, v in zip(a, b, strict=True) for p, q in zip(u, v, strict=True)
+    )
+
+
+MOST_DRIFT = 0.1  # radians in a sweep: more is a mistake
+
+
+class Memory:
+    """The places where a robot has looked about, and what it saw there.
+
+    Each place is linked to the one before by what the wheels rolled, and to those near it
+    by what is seen from both. Walls that run along each other tell the heading besides.
+    """
+
+    NEAR = 1.2  # m between places from which the same may be seen
+    MOST = 8  # of these are looked at
+    ROLL_ERROR = 0.012  # m per root of a metre rolled (standard deviation) ...
+    TURN_ERROR = 0.04  # ... and radians
+    GRAIN_ERROR = math.radians(0.8)  # of the heading that walls tell
+    AGREED = 0.5  # of the marks must have the direction that walls run in
+
+    def __init__(self) -> None:
+        self._graph = PoseGraph()
+        self._marks: list[list[Mark]] = []
+        self._walls: float | None = None  # the direction that they run in
+        self._unsure = 0.0  # m rolled since they told the heading
+
+    @property
+    def places(self) -> Sequence[Pose]:
+        """Where they are, as far as is known by now."""
+        return self._graph.poses
+
+    def recognise(self, sweep: Sweep, here: Pose, rolled: float) -> Pose:
+        """A new place: where the robot is now, by all it knows.
+
+        `here` is where its wheels have it at the end of the sweep, `rolled` how far they
+        rolled since the place before, in metres.
+        """
+        middle, marks = sweep.middle(), sweep.marks()
+        number = self._graph.add(middle)
+        self._unsure += rolled
+        grain = self._grain(marks, middle)
+        self._link_by_wheels(number, middle, rolled)
+        drift = 0.0
+        if grain:
+            drift = grain.drift
+            self._orient(number, grain, middle)
+        marks = thinned(undistorted(mark, drift) for mark in marks)
+        more = self._link_by_marks(number, marks, rolled)
+        self._marks.append([undistorted(mark, more) for mark in marks])
+        drift += more
+        end = here.seen_from(middle).placed_on(self._graph.poses[number])
+        return end.turned(drift / 2.0)
+
+    def _link_by_wheels(self, number: int, middle: Pose, rolled: float) -> None:
+        if number == 0:
+            return
+        before = self._graph.poses[number - 1]
+        place = 1.0 / (self.ROLL_ERROR**2 * rolled + 1e-6)
+        heading = 1.0 / (self.TURN_ERROR**2 * rolled + 1e-6)
+        information = [[place, 0.0, 0.0], [0.0, place, 0.0], [0.0, 0.0, heading]]
+        relative = middle.seen_from(before)
+        self._graph.link(
+            Link(number - 1, number, relative, information, is_certain=True)
+        )
+
+    def _grain(self, marks: Sequence[Mark], middle: Pose) -> Grain | None:
+        """The direction of the walls as seen from a place."""
+        within = math.pi / 4.0
+        guess = 0.0
+        if self._walls is not None:
+            within = min(within, 0.03 + 3.0 * self.TURN_ERROR * math.sqrt(self._unsure))
+            guess = self._walls - middle.theta
+        grain = grain_of(marks, guess, within)
+        if grain is None or grain.share < self.AGREED or abs(grain.drift) > MOST_DRIFT:
+            return None
+        off = math.remainder(grain.angle - guess, math.pi / 2.0)
+        return grain if abs(off) <= within else None
+
+    def _orient(self, number: int, grain: Grain, middle: Pose) -> None:
+        """Puts the heading right by the walls."""
+        self._unsure = 0.0
+        if self._walls is None:
+            # The first place is where the robot stood before the sweep.
+            middle = middle.turned(grain.drift / 2.0)
+            self._graph.poses[number] = middle
+            self._walls = middle.theta + grain.angle
+            return
+        off = math.remainder(self._walls - grain.angle - middle.theta, math.pi / 2.0)
+        heading = wrap_angle(middle.theta + off)
+        self._graph.orient(Compass(number, heading, 1.0 / self.GRAIN_ERROR**2))
+        self._graph.poses[number] = Pose(middle.x, middle.y, heading)
+        if abs(off) > self.TURN_ERROR:
+            self._graph.relax()
+
+    def _link_by_marks(self, number: int, marks: list[Mark], rolled: float) -> float:
+        """Links a place to those near it; the rest of the drift."""
+        poses = self._graph.poses
+        here = poses[number]
+        away = {n: math.hypot(p.x - here.x, p.y - here.y) for n, p in enumerate(poses)}
+        near = sorted((n for n in away if away[n] < self.NEAR), key=lambda n: away[n])
+        groups = self._graph.components(near[: self.MOST])
+        drift = 0.0
+        # First those that the robot comes from.
+        groups.sort(key=lambda group: number not in group)
+        for group in groups:
+            known = self._known([n for n in group if n != number])
+            if number in group:
+                found = self._beside(marks, poses[number], known, rolled)
+                if found:
+                    drift = found.drift
+                    poses[number] = found.pose
+                    for link in self._links(number, found):
+                        self._graph.link(link)
+            else:
+                found = self._closed_loop(marks, poses[number], known)
+                if found and self._graph.closes(self._links(number, found)):
+                    drift = found.drift
+        if number % 10 == 9:
+            self._graph.relax()
+        return drift
+
+    def _beside(
+        self, marks: Sequence[Mark], here: Pose, known: KnownMarks, rolled: float
+    ) -> Match | None:
+        """Where the robot is beside the places that it comes from."""
+        off = 0.02 + self.ROLL_ERROR * math.sqrt(rolled), 0.03
+        found = match(marks, here, off, known)
+        if (
+            found is None
+            or found.count < 10
+            or found.rough > 0.03
+            or abs(found.drift) > MOST_DRIFT
+        ):
+            return None
+        change = found.pose.seen_from(here)
+        is_near = math.hypot(change.x, change.y) < 4.0 * off[0]
+        return found if is_near and abs(change.theta) < 4.0 * off[1] else None
+
+    def _closed_loop(
+        self, marks: Sequence[Mark], here: Pose, known: KnownMarks
+    ) -> Match | None:
+        """Where the robot is among places that it comes back to, by another way."""
+        if len(marks) < 25:
+            return None
+        best: Match | None = None
+        shifts = sorted(
+            itertools.product((0.0, -0.2, 0.2, -0.4, 0.4), repeat=2),
+            key=lambda s: math.hypot(*s),
+        )
+        for right, up in shifts:
+            start = Pose(here.x + right, here.y + up, here.theta)
+            found = match(marks, here, (0.4, 0.05), known, start)
+            if (
+                not found
+                or found.count < 15
+                or abs(found.drift) > MOST_DRIFT
+                or abs(wrap_angle(found.pose.theta - here.theta)) > 0.15
+                or found.share < 0.4
+                or found.rough > 0.025
+            ):
+                continue
+            if best is None or found.share > best.share + 0.05:
+                best = found
+            if found.share > 0.7:
+                break
+        return best
+
+    def _links(self, number: int, found: Match) -> list[Link]:
+        poses = self._graph.poses
+        return [
+            Link(place, number, found.pose.seen_from(poses[place]), information)
+            for place, information in found.information.items()
+        ]
+
+    def _known(self, places: Sequence[int]) -> KnownMarks:
+        found = []
+        for number in places:
+            for mark in self._marks[number]:
+                at = Pose(mark.x, mark.y, mark.normal).placed_on(
+                    self._graph.poses[number]
+                )
+                cos, sin = math.cos(at.theta), math.sin(at.theta)
+                found.append(KnownMark(at.x, at.y, cos, sin, number))
+        return KnownMarks(found)
+
+
+def undistorted(mark: Mark, drift: float) -> Mark:
+    """A mark as it is where the sweep turned that much further than the wheels did."""
+    at = Pose(mark.x, mark.y, mark.normal)
+    at = at.placed_on(Pose(0.0, 0.0, drift * mark.when))
+    return Mark(at.x, at.y, at.theta, mark.when)
+
+
+THIN = 0.04  # m about which marks that face the same way are one
+
+
+def thinned(marks: Iterable[Mark]) -> list[Mark]:
+    """Fewer marks, each the mean of some that were seen next to each other at about the same time."""
+    cells: dict[tuple[int, ...], list[Mark]] = {}
+    for mark in marks:
+        facing = round(4.0 * mark.normal / math.pi) % 8
+        cell = (
+            round(mark.x / THIN),
+            round(mark.y / THIN),
+            facing,
+            round(4.0 * mark.when),
+        )
+        cells.setdefault(cell, []).append(mark)
+    return [mean_of(alike) for alike in cells.values()]
+
+
+def mean_of(marks: Sequence[Mark]) -> Mark:
+    """The mean of marks that are alike."""
+    count, first = len(marks), marks[0].normal
+    return Mark(
+        sum(mark.x for mark in marks) / count,
+        sum(mark.y for mark in marks) / count,
+        first + sum(wrap_angle(mark.normal - first) for mark in marks) / count,
+        sum(mark.when for mark in marks) / count,
+    )
+
+
+@dataclass(frozen=True)
+class Look:
+    """What was seen at once; eyes and obstacle are as they are from the robot."""
+
+    readings: Sequence[Reading]
+    obstacle: Place | None = None  # that came near
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A look between two places, and where the robot was, as seen from each."""
+
+    look: Look
+    from_start: Pose
+    from_end: Pose
+    share: float  # of the way from the one to the other
+
+
+class Diary:
+    """Looks on the way from place to place.
+
+    Where the robot was between two places follows from both: what the wheels made wrong on
+    the way is spread along it.
+    """
+
+    def __init__(self) -> None:
+        self._legs: list[list[Entry]] = []
+        self._begun: list[
+            tuple[Pose, Look]
+        ] = []  # since the last place, as seen from it
+        self._place = Pose(0.0, 0.0, 0.0)  # the last one
+
+    def note(self, here: Pose, look: Look) -> None:
+        """A look from where the robot believes to be."""
+        self._begun.append((here.seen_from(self._place), look))
+
+    def arrive(self, middle: Pose, place: Pose) -> None:
+        """A place: the wheels have it at `middle`, which was on the way, but it is at `place`."""
+        end = middle.seen_from(self._place)
+        seen = [(pose, pose.seen_from(end), look) for pose, look in self._begun]
+        after = min(
+            range(len(seen)), key=lambda n: (far_from_origin(seen[n][1]), -n), default=0
+        )
+        count = max(1, after)
+        leg = [
+            Entry(look, from_start, from_end, number / count)
+            for number, (from_start, from_end, look) in enumerate(seen[:after])
+        ]
+        if not self._legs:
+            # Before the first place there is none to see it from.
+            leg = [Entry(e.look, e.from_end, e.from_end, 1.0) for e in leg]
+        self._legs.append(leg)
+        self._begun = [(from_end, look) for _, from_end, look in seen[after:]]
+        self._place = place
+
+    def draw(self, floor: Floor, places: Sequence[Pose], since: int = 0) -> None:
+        """Shows a floor what was seen on the ways to these places, but for the first ones."""
+        for here, look in self._looks(places, since):
+            for reading in look.readings:
+                floor.see(reading.seen_by(here))
+            if look.obstacle is not None:
+                at = Pose(*look.obstacle, 0.0).placed_on(here)
+                floor.block(at.x, at.y)
+        for place in places[since:]:
+            floor.stand(place.x, place.y)
+
+    def _looks(self, places: Sequence[Pose], since: int) -> Iterator[tuple[Pose, Look]]:
+        for number in range(since, len(self._legs)):
+            start, end = places[max(0, number - 1)], places[number]
+            for entry in self._legs[number]:
+                a, b = entry.from_start.placed_on(start), entry.from_end.placed_on(end)
+                yield between(a, b, entry.share), entry.look
+        for pose, look in self._begun:
+            yield pose.placed_on(places[-1]), look
+
+
+def far_from_origin(pose: Pose) -> float:
+    """In metres, or radians."""
+    return math.hypot(pose.x, pose.y) + abs(pose.theta)
+
+
+def between(a: Pose, b: Pose, share: float) -> Pose:
+    """The pose that is that share of the way from one to another, which are near."""
+    return Pose(
+        a.x + share * (b.x - a.x),
+        a.y + share * (b.y - a.y),
+        wrap_angle(a.theta + share * wrap_angle(b.theta - a.theta)),
+    )
 
 
 @dataclass
@@ -915,6 +1766,13 @@ class TopologicalMap:
         node = Node(len(self.nodes), x, y)
         self.nodes.append(node)
         return node
+
+    def move(self, node: Node, place: Place) -> None:
+        """A node is elsewhere than was thought."""
+        node.x, node.y = place
+        for number in node.ways:
+            other = self.nodes[number]
+            node.ways[number] = other.ways[node.number] = math.dist(place, other.place)
 
     def connect(self, a: Node, b: Node) -> None:
         """An edge that was driven."""
@@ -999,8 +1857,11 @@ class Rover(Protocol):
     def turn_by(self, angle: float) -> None:
         """Turns in place, to the left where positive."""
 
-    def localise(self) -> None:
-        """Makes sure of where it is, if it has to."""
+    def localise(self) -> int:
+        """Makes sure of where it is, if it has to; the number of this place."""
+
+    def place(self, number: int) -> Place:
+        """Where a place is, as far as is known by now."""
 
     def drive_to(self, goal: Place, is_enough: Callable[[], bool]) -> bool:
         """Turns to a place and drives there; whether it arrived, or something came near.
@@ -1013,7 +1874,7 @@ class Rover(Protocol):
 
 
 class NoEndError(Exception):
-    """There seems to be no end to what can be explored."""
+    """There seems to be no end to what can be explored; says what was found so far."""
 
 
 @dataclass(frozen=True)
@@ -1036,13 +1897,31 @@ class Explorer:
     DIRECTIONS = 24  # that are tried at a node
     MOST_NODES = 1000  # that a closed area can be thought to have
 
-    def __init__(self, rover: Rover, floor: Floor, step: float, blind: float) -> None:
-        """`step` is the length of an edge, `blind` the angle that no sensor looks at."""
+    def __init__(
+        self,
+        rover: Rover,
+        floor: Floor,
+        step: float,
+        blind: float,
+        extent: float,
+        *,
+        keeps_to_walls: bool = False,
+    ) -> None:
+        """`step` is the length of an edge, `blind` the angle that no sensor looks at.
+
+        A closed area ends less than `extent` away from where exploring starts, in metres.
+        """
         self.map = TopologicalMap()
         self._rover, self._floor = rover, floor
-        self._step, self._blind = step, blind
+        self._step, self._blind, self._extent = step, blind, extent
+        # A robot that needs walls to know where it is goes into the open last, metres.
+        self._shyness = 4.0 * step if keeps_to_walls else 0.0
         self._spacing = 0.8 * step  # nearer to a node, a place is the same
+        self._sure = (
+            1.5 * step
+        )  # to be driven without making sure of where the robot is
         self._loop = 4.0 * step  # a known way of this length is worth a shorter one
+        self._numbers: list[int] = []  # of the nodes' places, as the rover counts them
         self._dead: set[tuple[int, int]] = set()  # node and direction: something came
 
     def explore(self) -> None:
@@ -1066,6 +1945,9 @@ class Explorer:
                     continue
                 turn = abs(wrap_angle(exit_.bearing - heading)) if not away else 0.0
                 cost = away + 0.1 * self._step * turn
+                if cost < least and self._shyness:
+                    goal = self._end(node, exit_.bearing)
+                    cost += self._shyness * self._floor.is_bare(goal)
                 if cost < least and (way := self._way(node, exit_)):
                     best, least = way, cost
         return best
@@ -1089,15 +1971,17 @@ class Explorer:
 
     def _travel(self, node: Node) -> bool:
         """Drives by known edges; whether it arrived."""
-        start = self._here.number
+        unsure = 0.0
         for following in self.map.path(self._here, node):
+            unsure += self._here.ways[following.number]
             if not self._rover.drive_to(following.place, lambda: False):
                 self._rover.retreat_to(self._here.place)
                 self.map.block(self._here, following)
                 return False
             self._here = following
-        if self._here.number != start:
-            self._rover.localise()
+            if unsure > self._sure or following is node:
+                self._localise()
+                unsure = 0.0
         return True
 
     def _leave(self, way: Way) -> None:
@@ -1111,7 +1995,7 @@ class Explorer:
             self._dead.add((node.number, self._direction(way.exit.bearing)))
             return
         if way.known:
-            self._rover.localise()
+            self._localise()
         self._here = way.known or self._settle()
         self.map.connect(node, self._here)
         way.exit.leads_to = self._here.number
@@ -1139,16 +2023,37 @@ class Explorer:
 
     def _settle(self) -> Node:
         """Makes a node here, and finds its exits and what is new about those near it."""
-        self._rover.localise()
-        here = self._rover.pose()
-        if len(self.map.nodes) >= self.MOST_NODES:
-            raise NoEndError
+        number = self._localise()
+        here = Pose(*self._rover.place(number), 0.0)
         node = self.map.add(here.x, here.y)
+        self._numbers.append(number)
         self._floor.stand(here.x, here.y)
+        self._check_end(node)
         self._look_around(node)
         for near in self.map.near(node.place, 4.0 * self._step):
             self._find_exits(near)
         return node
+
+    def _check_end(self, node: Node) -> None:
+        """Raises NoEndError where the area seems to be open."""
+        away = math.dist(node.place, self.map.nodes[0].place)
+        if away > self._extent:
+            raise NoEndError(
+                f"got {away:.1f} m away from its start without an end: is the area closed? "
+                f"If it is that large, say --extent with more than {self._extent:g} m"
+            )
+        if len(self.map.nodes) >= self.MOST_NODES:
+            raise NoEndError(
+                f"found {len(self.map.nodes)} places and no end: is the area closed?"
+            )
+
+    def _localise(self) -> int:
+        """Makes sure of where the robot is, and of where the nodes are by that."""
+        number = self._rover.localise()
+        for node, own in zip(self.map.nodes, self._numbers, strict=True):
+            if (place := self._rover.place(own)) != node.place:
+                self.map.move(node, place)
+        return number
 
     def _look_around(self, node: Node) -> None:
         """Turns until all about a node was seen, to the side where less is missing."""
@@ -1220,16 +2125,24 @@ class Explorer:
 Choice = tuple[str | None, float]  # of a sensor or robot, or for all of them
 
 
-def parse_choice(text: str) -> Choice:
-    """NUMBER or NAME=NUMBER, above zero."""
-    name, equals, number = text.rpartition("=")
+EXTENT = 20.0  # m from the start: further off, an area has no end
+
+
+def parse_length(text: str) -> float:
+    """A number above zero."""
     try:
-        value = float(number)
+        value = float(text)
     except ValueError:
         value = math.nan
     if not 0.0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{number!r} is no number above zero")
-    return name if equals else None, value
+        raise argparse.ArgumentTypeError(f"{text!r} is no number above zero")
+    return value
+
+
+def parse_choice(text: str) -> Choice:
+    """NUMBER or NAME=NUMBER, above zero."""
+    name, equals, number = text.rpartition("=")
+    return name if equals else None, parse_length(number)
 
 
 def add_survey_options(parser: argparse.ArgumentParser, environment: str) -> None:
@@ -1262,6 +2175,13 @@ def add_survey_options(parser: argparse.ArgumentParser, environment: str) -> Non
             help=text,
         )
     group.add_argument(
+        "--extent",
+        type=parse_length,
+        default=EXTENT,
+        metavar="METRES",
+        help="how far an area may go on from where the robot starts (%(default)g)",
+    )
+    group.add_argument(
         "--odometry",
         action="store_true",
         help="tell where the robot is by how its wheels turn, not by the simulator",
@@ -1280,6 +2200,7 @@ class Survey:
 
     def __init__(self, environment: str, options: argparse.Namespace) -> None:
         self.by_odometry: bool = options.odometry
+        self.extent: float = options.extent
         self._environment = environment
         self._ranges: dict[str | None, float] = dict(options.range)
         self._cones: dict[str | None, float] = dict(options.cone)
@@ -1332,7 +2253,7 @@ class Survey:
             figure_module = importlib.import_module("matplotlib.figure")
         except ImportError:
             return
-        figure = figure_module.Figure(figsize=(8, 8))
+        figure = figure_module.Figure(figsize=(8, 8), layout="constrained")
         axes = figure.add_subplot(
             aspect="equal", xlabel="x in m", ylabel="y in m", title=self._environment
         )
@@ -1354,6 +2275,8 @@ STEP_LENGTH = 0.5  # m between the places of a map
 LOOK_DISTANCE = 0.03  # m to drive from one look to the next ...
 LOOK_ANGLE = math.radians(5.0)  # ... or to turn
 NEAR = 0.02  # m about a robot that nothing may enter
+DRAWN_APART = 0.04  # m that places may be beside where they were drawn ...
+DRAWN_TURNED = math.radians(2.0)  # ... and turned
 UNSURE = 0.05  # m that a robot may be beside where its wheels have it
 
 
@@ -1370,11 +2293,18 @@ class Surveyor:
         # The corners of a square body are that much further out than its wheels.
         span = body.drive.turning_radius * math.sqrt(2.0)
         mounts = (math.hypot(eye.x, eye.y) for eye in self._eyes.values())
+        self._extent = survey.extent
         self.radius = survey.radius(name, max(span, *mounts))
         self._is_unsure = survey.by_odometry
+        # Wheels slip less where they turn slowly.
+        self._turning_speed = RIM_SPEED * (0.5 if self._is_unsure else 1.0)
         self.floor = Floor(self.radius + (UNSURE if self._is_unsure else 0.0))
-        self._scan: Floor | None = None
+        self._sweep: Sweep | None = None
+        self._rolled = 0.0
         self._memory = Memory()
+        self._diary = Diary()
+        self._drawn: list[Pose] = []  # places that the floor was drawn by
+        self._places: list[Place] = []
         self._looked: Pose | None = None
         self._near: Place | None = None
 
@@ -1390,7 +2320,14 @@ class Surveyor:
             raise self._robot.failure(
                 f"its sensors see no more than {least:g} m, which is too little to explore by"
             )
-        return Explorer(self, self.floor, step, self._blind_angle())
+        return Explorer(
+            self,
+            self.floor,
+            step,
+            self._blind_angle(),
+            self._extent,
+            keeps_to_walls=self._is_unsure,
+        )
 
     def pose(self) -> Pose:
         """Where the robot is."""
@@ -1398,18 +2335,40 @@ class Surveyor:
 
     def turn_by(self, angle: float) -> None:
         """Turns in place."""
-        self._robot.rotate(angle, self._look)
+        self._robot.rotate(angle, self._look, self._turning_speed)
 
-    def localise(self) -> None:
-        """Looks all about and puts the pose right by what was seen before, by odometry."""
+    def localise(self) -> int:
+        """By odometry, looks all about and finds out by that where the robot is."""
         if not self._is_unsure:
-            return
-        self._scan = Floor(self.radius)
-        self._looked = None
-        self.turn_by(self._blind_angle())
-        here, seen = self.pose(), self._scan.edges()
-        self._scan = None
-        self._robot.correct(self._memory.recognise(here, seen))
+            here = self.pose()
+            self._places.append((here.x, here.y))
+            return len(self._places) - 1
+        self._sweep, self._looked = Sweep(), None
+        # All else is seen from the first place.
+        speed = self._turning_speed if self._places else 0.5 * self._turning_speed
+        self._robot.rotate(self._blind_angle(), self._look, speed)
+        sweep, self._sweep = self._sweep, None
+        rolled = self._robot.rolled()
+        there = self._memory.recognise(sweep, self.pose(), rolled - self._rolled)
+        self._rolled = rolled
+        self._robot.correct(there)
+        self._draw(sweep.middle())
+        return len(self._places) - 1
+
+    def place(self, number: int) -> Place:
+        """Where a place is, as far as is known by now."""
+        return self._places[number]
+
+    def _draw(self, middle: Pose) -> None:
+        """Draws what was seen on the way here, or all of it where places have moved."""
+        places = self._memory.places
+        self._diary.arrive(middle, places[-1])
+        self._places = [(place.x, place.y) for place in places]
+        if any(map(are_apart, self._drawn, places)):
+            self.floor.clear()
+            self._drawn = []
+        self._diary.draw(self.floor, places, since=len(self._drawn))
+        self._drawn += places[len(self._drawn) :]
 
     def drive_to(self, goal: Place, is_enough: Callable[[], bool]) -> bool:
         """Turns to a place and drives there until something comes near."""
@@ -1425,6 +2384,10 @@ class Surveyor:
         if self._near is None:
             return True
         self.floor.block(*self._near)
+        if self._is_unsure:
+            here = self.pose()
+            near = Pose(*self._near, 0.0).seen_from(here)
+            self._diary.note(here, Look((), (near.x, near.y)))
         return False
 
     def retreat_to(self, goal: Place) -> None:
@@ -1438,24 +2401,28 @@ class Surveyor:
 
     def _look(self, here: Pose) -> bool:
         """Reads all sensors where that shows something new; whether it did."""
-        if self._looked is not None:
-            off = here.seen_from(self._looked)
-            if math.hypot(off.x, off.y) < LOOK_DISTANCE and abs(off.theta) < LOOK_ANGLE:
-                return False
-        self._looked = here
+        is_new = self._looked is None or is_moved(here, self._looked)
+        if is_new:
+            self._looked = here
+        elif self._sweep is None:
+            return False
+        seen = []
         for sensor, mount in self._eyes.items():
-            eye = mount.placed_on(here)
             distance = self._robot.body.distance(sensor)
             sees = distance is not None
             if distance is None:
                 distance = self._ranges[sensor]
+            elif is_new:
+                self._heed(mount.placed_on(here).ahead(distance), here)
+            reading = Reading(mount, self._cones[sensor], distance, sees)
+            seen.append(reading)
+            if self._sweep is not None:
+                self._sweep.add(here, sensor, reading)
             else:
-                self._heed(eye.ahead(distance), here)
-            reading = Reading(eye, self._cones[sensor], distance, sees)
-            self.floor.see(reading)
-            if self._scan is not None:
-                self._scan.see(reading)
-        return True
+                self.floor.see(reading.seen_by(here))
+        if self._is_unsure and is_new:
+            self._diary.note(here, Look(seen))
+        return is_new
 
     def _heed(self, point: Pose, here: Pose) -> None:
         """Notices what is so near ahead that the robot could not turn there."""
@@ -1471,15 +2438,25 @@ class Surveyor:
         return max(b - a for a, b in zip(bearings, following, strict=True))
 
 
+def is_moved(here: Pose, before: Pose) -> bool:
+    """Whether there may be something new to see."""
+    off = here.seen_from(before)
+    return math.hypot(off.x, off.y) >= LOOK_DISTANCE or abs(off.theta) >= LOOK_ANGLE
+
+
+def are_apart(a: Pose, b: Pose) -> bool:
+    """Whether what was seen from a place has to be drawn anew."""
+    turned = abs(wrap_angle(a.theta - b.theta))
+    return math.hypot(a.x - b.x, a.y - b.y) > DRAWN_APART or turned > DRAWN_TURNED
+
+
 def survey_with(robot: "Robot", survey: Survey) -> None:
     """Explores with a robot and adds the map to the survey; raises MovementError."""
     explorer = Surveyor(robot, survey).explore()
     try:
         explorer.explore()
     except NoEndError as error:
-        raise robot.failure(
-            f"found {len(explorer.map.nodes)} places and no end: is the area closed?"
-        ) from error
+        raise robot.failure(error) from error
     finally:
         survey.add(robot.body.model.name, explorer.map)
 
@@ -1547,11 +2524,17 @@ class Robot:
             self._odometer.correct(pose)
             self._planned = pose
 
-    def rotate(self, angle: float, heed: Callable[[Pose], object]) -> None:
+    def rolled(self) -> float:
+        """How far the wheels have rolled, in metres; by odometry only."""
+        return self._odometer.rolled if self._odometer is not None else 0.0
+
+    def rotate(
+        self, angle: float, heed: Callable[[Pose], object], speed: float = RIM_SPEED
+    ) -> None:
         """Turns in place, to the left where positive, and shows every pose on the way."""
         self._watch = heed
         try:
-            self._rotate(self.pose(), angle)
+            self._rotate(self.pose(), angle, speed)
         finally:
             self._watch = None
 
@@ -1600,12 +2583,12 @@ class Robot:
         """Where the action starts: where the last one should have ended."""
         return self._planned or here
 
-    def _rotate(self, here: Pose, angle: float) -> Pose:
+    def _rotate(self, here: Pose, angle: float, speed: float = RIM_SPEED) -> Pose:
         """Turns by an angle in radians, of any number of full turns."""
         start = self._start(here)
         goal = start.turned(angle)
         drive = self.body.drive
-        approach = Approach(RIM_SPEED, self.body.time_step)
+        approach = Approach(speed, self.body.time_step)
         turned = wrap_angle(here.theta - start.theta)
         while not approach.arrived(to_go := (angle - turned) * drive.turning_radius):
             self._check_progress(approach, to_go)

@@ -102,7 +102,7 @@ def steer(speed: float, offset: Pose, to_go: float) -> float:
     that fades out at the end of the line, where only the heading counts. At constant
     speed this is a critically damped system in the distance driven.
     """
-    reach = max(0.15, 0.5 * abs(speed))
+    reach = max(0.15, 0.4 * abs(speed))
     fade = min(1.0, abs(to_go) / (2.0 * reach))
     aim = max(-0.5, min(0.5, -offset.y / (2.0 * reach))) * fade
     return 2.0 / reach * (speed * aim - abs(speed) * offset.theta)
@@ -711,7 +711,8 @@ class Robot:
     def turn_until_free(self, side: Literal["left", "right"], *sensors: str) -> None:
         """Turns in place until none of the sensors detects anything."""
         names = ", ".join(sensors)
-        here = self._begin(f"turn {side} until {names} detect nothing")
+        nothing = "detects nothing" if len(sensors) == 1 else "detect nothing"
+        here = self._begin(f"turn {side} until {names} {nothing}")
         here = self._step(
             self._standstill()
         )  # before the first step, sensors are blind
@@ -723,7 +724,8 @@ class Robot:
         while (busy := any(map(self.body.detects, sensors))) or approach.speed != 0.0:
             to_go = full_turn - turned * radius
             if approach.arrived(to_go):
-                raise self.failure(f"after a full turn {names} still detect something")
+                still = "detects" if len(sensors) == 1 else "detect"
+                raise self.failure(f"after a full turn {names} still {still} something")
             self._check_progress(approach, to_go)
             rim_speed = approach.next_speed(to_go) if busy else approach.slowed_down()
             offset, before = here.seen_from(start), here
@@ -756,12 +758,12 @@ class Robot:
         """Where the action starts: where the last one should have ended."""
         return self._planned or here
 
-    def _rotate(self, here: Pose, angle: float) -> Pose:
+    def _rotate(self, here: Pose, angle: float, speed: float = RIM_SPEED) -> Pose:
         """Turns by an angle in radians, of any number of full turns."""
         start = self._start(here)
         goal = start.turned(angle)
         drive = self.body.drive
-        approach = Approach(RIM_SPEED, self.body.time_step)
+        approach = Approach(speed, self.body.time_step)
         turned = wrap_angle(here.theta - start.theta)
         while not approach.arrived(to_go := (angle - turned) * drive.turning_radius):
             self._check_progress(approach, to_go)

@@ -9,11 +9,12 @@ use crate::{ScriptError, context::Script};
 const TEMPLATE: &str = "environment.py.j2";
 
 /// Every source by the name that `include` knows it by.
-const SOURCES: [(&str, &str); 24] = [
+const SOURCES: [(&str, &str); 29] = [
     (TEMPLATE, include_str!("../templates/environment.py.j2")),
     ("approach.py", include_str!("../python/pydslrep_parts/approach.py")),
     ("command.py", include_str!("../python/pydslrep_parts/command.py")),
     ("coppeliasim.py", include_str!("../python/pydslrep_parts/coppeliasim.py")),
+    ("diary.py", include_str!("../python/pydslrep_parts/diary.py")),
     ("drive_four_mecanum.py", include_str!("../python/pydslrep_parts/drive_four_mecanum.py")),
     ("drive_four_wheel.py", include_str!("../python/pydslrep_parts/drive_four_wheel.py")),
     ("drive_two_wheel.py", include_str!("../python/pydslrep_parts/drive_two_wheel.py")),
@@ -21,16 +22,20 @@ const SOURCES: [(&str, &str); 24] = [
     ("explorer.py", include_str!("../python/pydslrep_parts/explorer.py")),
     ("fleet.py", include_str!("../python/pydslrep_parts/fleet.py")),
     ("floor.py", include_str!("../python/pydslrep_parts/floor.py")),
+    ("grain.py", include_str!("../python/pydslrep_parts/grain.py")),
+    ("matching.py", include_str!("../python/pydslrep_parts/matching.py")),
     ("memory.py", include_str!("../python/pydslrep_parts/memory.py")),
     ("model.py", include_str!("../python/pydslrep_parts/model.py")),
     ("movement.py", include_str!("../python/pydslrep_parts/movement.py")),
     ("odometer.py", include_str!("../python/pydslrep_parts/odometer.py")),
     ("pose.py", include_str!("../python/pydslrep_parts/pose.py")),
+    ("pose_graph.py", include_str!("../python/pydslrep_parts/pose_graph.py")),
     ("robot.py", include_str!("../python/pydslrep_parts/robot.py")),
     ("settings.py", include_str!("../python/pydslrep_parts/settings.py")),
     ("steering.py", include_str!("../python/pydslrep_parts/steering.py")),
     ("survey.py", include_str!("../python/pydslrep_parts/survey.py")),
     ("surveyor.py", include_str!("../python/pydslrep_parts/surveyor.py")),
+    ("sweep.py", include_str!("../python/pydslrep_parts/sweep.py")),
     ("topology.py", include_str!("../python/pydslrep_parts/topology.py")),
     ("trace_file.py", include_str!("../python/pydslrep_parts/trace_file.py")),
     ("vrep.py", include_str!("../python/pydslrep_parts/vrep.py")),

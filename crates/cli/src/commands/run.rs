@@ -70,6 +70,9 @@ pub(crate) struct Arguments {
     /// Explore by how the wheels turn, without asking the simulator where the robot is
     #[arg(long)]
     odometry: bool,
+    /// How far an area may go on from where a robot starts to explore it, in metres [default: 20]
+    #[arg(long, value_name = "METRES", value_parser = above_zero)]
+    extent: Option<f64>,
     /// Simulated seconds per second, so that the run can be watched [default: as fast as it goes]
     #[arg(long, value_name = "X", value_parser = above_zero, conflicts_with = "host")]
     speed: Option<f64>,
@@ -253,6 +256,9 @@ impl Run<'_> {
         if survey::explores(&self.planned.environment) {
             all.extend(["--map".into(), map.into()]);
             all.extend(self.arguments.odometry.then(|| "--odometry".into()));
+            if let Some(extent) = self.arguments.extent {
+                all.extend(["--extent".into(), extent.to_string().into()]);
+            }
             if simulator.is_some() {
                 all.extend(survey::arguments(&self.planned.scene));
             }

@@ -162,7 +162,7 @@ fn sensors_that_are_never_free_fail_their_action() {
     place.write("hut.toml", "[world]\nsize = [1, 1]\n");
     let done = run(&place, &["x.pyr", "--environment", "cage", "--scene", "hut.toml", "--no-progress"]);
     assert_eq!(done.code, Some(1), "{}", done.err);
-    assert!(done.err.contains("after a full turn fSensor still detect something"), "{}", done.err);
+    assert!(done.err.contains("after a full turn fSensor still detects something"), "{}", done.err);
 }
 
 #[test]

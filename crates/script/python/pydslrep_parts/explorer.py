@@ -22,8 +22,11 @@ class Rover(Protocol):
     def turn_by(self, angle: float) -> None:
         """Turns in place, to the left where positive."""
 
-    def localise(self) -> None:
-        """Makes sure of where it is, if it has to."""
+    def localise(self) -> int:
+        """Makes sure of where it is, if it has to; the number of this place."""
+
+    def place(self, number: int) -> Place:
+        """Where a place is, as far as is known by now."""
 
     def drive_to(self, goal: Place, is_enough: Callable[[], bool]) -> bool:
         """Turns to a place and drives there; whether it arrived, or something came near.
@@ -36,7 +39,7 @@ class Rover(Protocol):
 
 
 class NoEndError(Exception):
-    """There seems to be no end to what can be explored."""
+    """There seems to be no end to what can be explored; says what was found so far."""
 
 
 @dataclass(frozen=True)
@@ -59,13 +62,31 @@ class Explorer:
     DIRECTIONS = 24  # that are tried at a node
     MOST_NODES = 1000  # that a closed area can be thought to have
 
-    def __init__(self, rover: Rover, floor: Floor, step: float, blind: float) -> None:
-        """`step` is the length of an edge, `blind` the angle that no sensor looks at."""
+    def __init__(
+        self,
+        rover: Rover,
+        floor: Floor,
+        step: float,
+        blind: float,
+        extent: float,
+        *,
+        keeps_to_walls: bool = False,
+    ) -> None:
+        """`step` is the length of an edge, `blind` the angle that no sensor looks at.
+
+        A closed area ends less than `extent` away from where exploring starts, in metres.
+        """
         self.map = TopologicalMap()
         self._rover, self._floor = rover, floor
-        self._step, self._blind = step, blind
+        self._step, self._blind, self._extent = step, blind, extent
+        # A robot that needs walls to know where it is goes into the open last, metres.
+        self._shyness = 4.0 * step if keeps_to_walls else 0.0
         self._spacing = 0.8 * step  # nearer to a node, a place is the same
+        self._sure = (
+            1.5 * step
+        )  # to be driven without making sure of where the robot is
         self._loop = 4.0 * step  # a known way of this length is worth a shorter one
+        self._numbers: list[int] = []  # of the nodes' places, as the rover counts them
         self._dead: set[tuple[int, int]] = set()  # node and direction: something came
 
     def explore(self) -> None:
@@ -89,6 +110,9 @@ class Explorer:
                     continue
                 turn = abs(wrap_angle(exit_.bearing - heading)) if not away else 0.0
                 cost = away + 0.1 * self._step * turn
+                if cost < least and self._shyness:
+                    goal = self._end(node, exit_.bearing)
+                    cost += self._shyness * self._floor.is_bare(goal)
                 if cost < least and (way := self._way(node, exit_)):
                     best, least = way, cost
         return best
@@ -112,15 +136,17 @@ class Explorer:
 
     def _travel(self, node: Node) -> bool:
         """Drives by known edges; whether it arrived."""
-        start = self._here.number
+        unsure = 0.0
         for following in self.map.path(self._here, node):
+            unsure += self._here.ways[following.number]
             if not self._rover.drive_to(following.place, lambda: False):
                 self._rover.retreat_to(self._here.place)
                 self.map.block(self._here, following)
                 return False
             self._here = following
-        if self._here.number != start:
-            self._rover.localise()
+            if unsure > self._sure or following is node:
+                self._localise()
+                unsure = 0.0
         return True
 
     def _leave(self, way: Way) -> None:
@@ -134,7 +160,7 @@ class Explorer:
             self._dead.add((node.number, self._direction(way.exit.bearing)))
             return
         if way.known:
-            self._rover.localise()
+            self._localise()
         self._here = way.known or self._settle()
         self.map.connect(node, self._here)
         way.exit.leads_to = self._here.number
@@ -162,16 +188,37 @@ class Explorer:
 
     def _settle(self) -> Node:
         """Makes a node here, and finds its exits and what is new about those near it."""
-        self._rover.localise()
-        here = self._rover.pose()
-        if len(self.map.nodes) >= self.MOST_NODES:
-            raise NoEndError
+        number = self._localise()
+        here = Pose(*self._rover.place(number), 0.0)
         node = self.map.add(here.x, here.y)
+        self._numbers.append(number)
         self._floor.stand(here.x, here.y)
+        self._check_end(node)
         self._look_around(node)
         for near in self.map.near(node.place, 4.0 * self._step):
             self._find_exits(near)
         return node
+
+    def _check_end(self, node: Node) -> None:
+        """Raises NoEndError where the area seems to be open."""
+        away = math.dist(node.place, self.map.nodes[0].place)
+        if away > self._extent:
+            raise NoEndError(
+                f"got {away:.1f} m away from its start without an end: is the area closed? "
+                f"If it is that large, say --extent with more than {self._extent:g} m"
+            )
+        if len(self.map.nodes) >= self.MOST_NODES:
+            raise NoEndError(
+                f"found {len(self.map.nodes)} places and no end: is the area closed?"
+            )
+
+    def _localise(self) -> int:
+        """Makes sure of where the robot is, and of where the nodes are by that."""
+        number = self._rover.localise()
+        for node, own in zip(self.map.nodes, self._numbers, strict=True):
+            if (place := self._rover.place(own)) != node.place:
+                self.map.move(node, place)
+        return number
 
     def _look_around(self, node: Node) -> None:
         """Turns until all about a node was seen, to the side where less is missing."""

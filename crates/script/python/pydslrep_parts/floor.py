@@ -23,6 +23,10 @@ class Reading:
     distance: float  # m; the sensor's range where it sees nothing
     sees: bool  # whether something is at that distance, anywhere across the cone
 
+    def seen_by(self, here: Pose) -> "Reading":
+        """The reading of a sensor that is mounted like that on a robot."""
+        return Reading(self.eye.placed_on(here), self.cone, self.distance, self.sees)
+
 
 class Floor:
     """The floor in cells: free where some cone has shown it, unknown where none has.
@@ -33,6 +37,7 @@ class Floor:
 
     CELL = 0.05  # m
     CAUTION = 0.03  # m by which a sensor's reading may be too long
+    SIGHT = 0.6  # m that something is near enough for a robot to know where it is
     LEEWAY = 0.06  # m to keep from obstacles: half a cell, and what driving is off
 
     def __init__(self, radius: float) -> None:
@@ -43,6 +48,12 @@ class Floor:
         self._free: set[Cell] = set()
         self._edges: set[Cell] = set()  # where something is, unless free as well
         self._roomy: set[Cell] = set()
+
+    def clear(self) -> None:
+        """Nothing was seen."""
+        self._free.clear()
+        self._edges.clear()
+        self._roomy.clear()
 
     def stand(self, x: float, y: float) -> None:
         """The robot has turned here, and touched nothing."""
@@ -81,17 +92,6 @@ class Floor:
             cell for cell in self._roomy if math.dist(cell, (column, row)) > self._reach
         }
 
-    def edges(self) -> list[Place]:
-        """Where something stands: at the border of what is free."""
-        return [
-            (column * self.CELL, row * self.CELL)
-            for column, row in sorted(self._edges - self._free)
-            if any(
-                (column + right, row + up) in self._free
-                for right, up in ((1, 0), (-1, 0), (0, 1), (0, -1))
-            )
-        ]
-
     def has_room(self, x: float, y: float) -> bool:
         """Whether the robot can stand here and turn."""
         return self._is_roomy(self._cell(x, y))
@@ -99,6 +99,17 @@ class Floor:
     def is_open(self, start: Place, end: Place) -> bool:
         """Whether the robot can drive straight from one place to another."""
         return all(self._is_roomy(cell) for cell in self._cells(start, end))
+
+    def is_bare(self, place: Place) -> bool:
+        """Whether nothing is near by which a robot could tell where it is."""
+        column, row = self._cell(*place)
+        reach = round(self.SIGHT / self.CELL)
+        return not any(
+            (cell := (column + right, row + up)) in self._edges
+            and cell not in self._free
+            for right in range(-reach, reach + 1)
+            for up in range(-reach, reach + 1)
+        )
 
     def is_undecided(self, start: Place, end: Place) -> bool:
         """Whether a way is not open only because nobody has looked there yet."""

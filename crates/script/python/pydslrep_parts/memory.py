@@ -1,100 +1,233 @@
 #: if standalone
-"""How a robot knows again where it is."""
+"""How a robot that goes by its wheels knows where it is."""
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
-from .floor import Place
+from .grain import Grain, grain_of
+from .matching import KnownMark, KnownMarks, Match, match
 from .pose import Pose, wrap_angle
+from .pose_graph import Compass, Link, PoseGraph
+from .sweep import Mark, Sweep
 
 #: endif
 
 
-class Memory:
-    """What a robot saw from where, to know again where it is when it comes back."""
+MOST_DRIFT = 0.1  # radians in a sweep: more is a mistake
 
-    REACH = 0.7  # m from a place, so that about the same is seen
-    APART = 0.3  # m between places to remember what is seen from
+
+class Memory:
+    """The places where a robot has looked about, and what it saw there.
+
+    Each place is linked to the one before by what the wheels rolled, and to those near it
+    by what is seen from both. Walls that run along each other tell the heading besides.
+    """
+
+    NEAR = 1.2  # m between places from which the same may be seen
+    MOST = 8  # of these are looked at
+    ROLL_ERROR = 0.012  # m per root of a metre rolled (standard deviation) ...
+    TURN_ERROR = 0.04  # ... and radians
+    GRAIN_ERROR = math.radians(0.8)  # of the heading that walls tell
+    AGREED = 0.5  # of the marks must have the direction that walls run in
 
     def __init__(self) -> None:
-        self._scans: list[tuple[Pose, list[Place]]] = []
+        self._graph = PoseGraph()
+        self._marks: list[list[Mark]] = []
+        self._walls: float | None = None  # the direction that they run in
+        self._unsure = 0.0  # m rolled since they told the heading
 
-    def recognise(self, here: Pose, seen: Sequence[Place]) -> Pose:
-        """The pose, put right by what was seen before; remembers what is new.
+    @property
+    def places(self) -> Sequence[Pose]:
+        """Where they are, as far as is known by now."""
+        return self._graph.poses
 
-        `seen` has places where something stands, as they are from `here`.
+    def recognise(self, sweep: Sweep, here: Pose, rolled: float) -> Pose:
+        """A new place: where the robot is now, by all it knows.
+
+        `here` is where its wheels have it at the end of the sweep, `rolled` how far they
+        rolled since the place before, in metres.
         """
-        away, known = min(
-            (
-                (math.hypot(scan.x - here.x, scan.y - here.y), places)
-                for scan, places in self._scans
-            ),
-            key=lambda found: found[0],
-            default=(math.inf, []),
+        middle, marks = sweep.middle(), sweep.marks()
+        number = self._graph.add(middle)
+        self._unsure += rolled
+        grain = self._grain(marks, middle)
+        self._link_by_wheels(number, middle, rolled)
+        drift = 0.0
+        if grain:
+            drift = grain.drift
+            self._orient(number, grain, middle)
+        marks = thinned(undistorted(mark, drift) for mark in marks)
+        more = self._link_by_marks(number, marks, rolled)
+        self._marks.append([undistorted(mark, more) for mark in marks])
+        drift += more
+        end = here.seen_from(middle).placed_on(self._graph.poses[number])
+        return end.turned(drift / 2.0)
+
+    def _link_by_wheels(self, number: int, middle: Pose, rolled: float) -> None:
+        if number == 0:
+            return
+        before = self._graph.poses[number - 1]
+        place = 1.0 / (self.ROLL_ERROR**2 * rolled + 1e-6)
+        heading = 1.0 / (self.TURN_ERROR**2 * rolled + 1e-6)
+        information = [[place, 0.0, 0.0], [0.0, place, 0.0], [0.0, 0.0, heading]]
+        relative = middle.seen_from(before)
+        self._graph.link(
+            Link(number - 1, number, relative, information, is_certain=True)
         )
-        pose = fitted(here, seen, known) if away < self.REACH else here
-        if away > self.APART:
-            points = (Pose(*place, 0.0).seen_from(here) for place in seen)
-            moved = (point.placed_on(pose) for point in points)
-            self._scans.append((pose, [(point.x, point.y) for point in moved]))
-        return pose
+
+    def _grain(self, marks: Sequence[Mark], middle: Pose) -> Grain | None:
+        """The direction of the walls as seen from a place."""
+        within = math.pi / 4.0
+        guess = 0.0
+        if self._walls is not None:
+            within = min(within, 0.03 + 3.0 * self.TURN_ERROR * math.sqrt(self._unsure))
+            guess = self._walls - middle.theta
+        grain = grain_of(marks, guess, within)
+        if grain is None or grain.share < self.AGREED or abs(grain.drift) > MOST_DRIFT:
+            return None
+        off = math.remainder(grain.angle - guess, math.pi / 2.0)
+        return grain if abs(off) <= within else None
+
+    def _orient(self, number: int, grain: Grain, middle: Pose) -> None:
+        """Puts the heading right by the walls."""
+        self._unsure = 0.0
+        if self._walls is None:
+            # The first place is where the robot stood before the sweep.
+            middle = middle.turned(grain.drift / 2.0)
+            self._graph.poses[number] = middle
+            self._walls = middle.theta + grain.angle
+            return
+        off = math.remainder(self._walls - grain.angle - middle.theta, math.pi / 2.0)
+        heading = wrap_angle(middle.theta + off)
+        self._graph.orient(Compass(number, heading, 1.0 / self.GRAIN_ERROR**2))
+        self._graph.poses[number] = Pose(middle.x, middle.y, heading)
+        if abs(off) > self.TURN_ERROR:
+            self._graph.relax()
+
+    def _link_by_marks(self, number: int, marks: list[Mark], rolled: float) -> float:
+        """Links a place to those near it; the rest of the drift."""
+        poses = self._graph.poses
+        here = poses[number]
+        away = {n: math.hypot(p.x - here.x, p.y - here.y) for n, p in enumerate(poses)}
+        near = sorted((n for n in away if away[n] < self.NEAR), key=lambda n: away[n])
+        groups = self._graph.components(near[: self.MOST])
+        drift = 0.0
+        # First those that the robot comes from.
+        groups.sort(key=lambda group: number not in group)
+        for group in groups:
+            known = self._known([n for n in group if n != number])
+            if number in group:
+                found = self._beside(marks, poses[number], known, rolled)
+                if found:
+                    drift = found.drift
+                    poses[number] = found.pose
+                    for link in self._links(number, found):
+                        self._graph.link(link)
+            else:
+                found = self._closed_loop(marks, poses[number], known)
+                if found and self._graph.closes(self._links(number, found)):
+                    drift = found.drift
+        if number % 10 == 9:
+            self._graph.relax()
+        return drift
+
+    def _beside(
+        self, marks: Sequence[Mark], here: Pose, known: KnownMarks, rolled: float
+    ) -> Match | None:
+        """Where the robot is beside the places that it comes from."""
+        off = 0.02 + self.ROLL_ERROR * math.sqrt(rolled), 0.03
+        found = match(marks, here, off, known)
+        if (
+            found is None
+            or found.count < 10
+            or found.rough > 0.03
+            or abs(found.drift) > MOST_DRIFT
+        ):
+            return None
+        change = found.pose.seen_from(here)
+        is_near = math.hypot(change.x, change.y) < 4.0 * off[0]
+        return found if is_near and abs(change.theta) < 4.0 * off[1] else None
+
+    def _closed_loop(
+        self, marks: Sequence[Mark], here: Pose, known: KnownMarks
+    ) -> Match | None:
+        """Where the robot is among places that it comes back to, by another way."""
+        if len(marks) < 25:
+            return None
+        best: Match | None = None
+        shifts = sorted(
+            itertools.product((0.0, -0.2, 0.2, -0.4, 0.4), repeat=2),
+            key=lambda s: math.hypot(*s),
+        )
+        for right, up in shifts:
+            start = Pose(here.x + right, here.y + up, here.theta)
+            found = match(marks, here, (0.4, 0.05), known, start)
+            if (
+                not found
+                or found.count < 15
+                or abs(found.drift) > MOST_DRIFT
+                or abs(wrap_angle(found.pose.theta - here.theta)) > 0.15
+                or found.share < 0.4
+                or found.rough > 0.025
+            ):
+                continue
+            if best is None or found.share > best.share + 0.05:
+                best = found
+            if found.share > 0.7:
+                break
+        return best
+
+    def _links(self, number: int, found: Match) -> list[Link]:
+        poses = self._graph.poses
+        return [
+            Link(place, number, found.pose.seen_from(poses[place]), information)
+            for place, information in found.information.items()
+        ]
+
+    def _known(self, places: Sequence[int]) -> KnownMarks:
+        found = []
+        for number in places:
+            for mark in self._marks[number]:
+                at = Pose(mark.x, mark.y, mark.normal).placed_on(
+                    self._graph.poses[number]
+                )
+                cos, sin = math.cos(at.theta), math.sin(at.theta)
+                found.append(KnownMark(at.x, at.y, cos, sin, number))
+        return KnownMarks(found)
 
 
-COARSE = 0.15  # m about a place within which what is seen again is looked for
-GRAIN = 0.04  # m between cells of what was seen before
-WORTH = 0.06  # of what is seen: a pose that fits better by less is no better
-TURNS = math.radians(8.0)  # the most that a heading is put right at once ...
-SHIFT = 0.12  # m: ... and a place
+def undistorted(mark: Mark, drift: float) -> Mark:
+    """A mark as it is where the sweep turned that much further than the wheels did."""
+    at = Pose(mark.x, mark.y, mark.normal)
+    at = at.placed_on(Pose(0.0, 0.0, drift * mark.when))
+    return Mark(at.x, at.y, at.theta, mark.when)
 
 
-def fitted(here: Pose, seen: Sequence[Place], known: Sequence[Place]) -> Pose:
-    """The pose from which `seen` lies on `known` best, near the one it was thought to be.
+THIN = 0.04  # m about which marks that face the same way are one
 
-    Both are places where something stands, `seen` as it is from `here`. Where little of it
-    fits, or nothing fits better, the pose stays.
-    """
-    field: dict[tuple[int, int], float] = {}
-    about: set[tuple[int, int]] = set()
-    for x, y in known:
-        column, row = round(x / COARSE), round(y / COARSE)
-        about |= {(column + a, row + b) for a in (-1, 0, 1) for b in (-1, 0, 1)}
-        column, row = round(x / GRAIN), round(y / GRAIN)
-        for right in range(-2, 3):
-            for up in range(-2, 3):
-                cell = column + right, row + up
-                fit = 1.0 - math.hypot(right, up) / 3.0
-                field[cell] = max(fit, field.get(cell, 0.0))
-    # What has no counterpart near is new, and says nothing.
-    points = [
-        Pose(x, y, 0.0).seen_from(here)
-        for x, y in seen
-        if (round(x / COARSE), round(y / COARSE)) in about
-    ]
 
-    def score(pose: Pose) -> float:
-        cos, sin = math.cos(pose.theta), math.sin(pose.theta)
-        total = 0.0
-        for point in points:
-            x = pose.x + cos * point.x - sin * point.y
-            y = pose.y + sin * point.x + cos * point.y
-            total += field.get((round(x / GRAIN), round(y / GRAIN)), 0.0)
-        # Along a bare wall everything fits: then the least change is best.
-        off = math.hypot(pose.x - here.x, pose.y - here.y)
-        turned = abs(wrap_angle(pose.theta - here.theta))
-        return total / len(points) - 0.5 * off - 0.3 * turned
+def thinned(marks: Iterable[Mark]) -> list[Mark]:
+    """Fewer marks, each the mean of some that were seen next to each other at about the same time."""
+    cells: dict[tuple[int, ...], list[Mark]] = {}
+    for mark in marks:
+        facing = round(4.0 * mark.normal / math.pi) % 8
+        cell = (
+            round(mark.x / THIN),
+            round(mark.y / THIN),
+            facing,
+            round(4.0 * mark.when),
+        )
+        cells.setdefault(cell, []).append(mark)
+    return [mean_of(alike) for alike in cells.values()]
 
-    if len(points) < 15:
-        return here
-    best, most = here, score(here) + WORTH
-    shift, turn = SHIFT / 3.0, TURNS / 4.0
-    shifts, turns = range(-3, 4), range(-4, 5)
-    while shift > 0.005:
-        middle = best
-        for a, b, c in itertools.product(shifts, shifts, turns):
-            pose = Pose(middle.x + a * shift, middle.y + b * shift, middle.theta)
-            pose = pose.turned(c * turn)
-            if (value := score(pose)) > most:
-                best, most = pose, value
-        shift, turn, shifts, turns = shift / 2.0, turn / 2.0, range(-1, 2), range(-1, 2)
-    return best if most > 0.4 else here
+
+def mean_of(marks: Sequence[Mark]) -> Mark:
+    """The mean of marks that are alike."""
+    count, first = len(marks), marks[0].normal
+    return Mark(
+        sum(mark.x for mark in marks) / count,
+        sum(mark.y for mark in marks) / count,
+        first + sum(wrap_angle(mark.normal - first) for mark in marks) / count,
+        sum(mark.when for mark in marks) / count,
+    )

@@ -17,6 +17,7 @@ class Odometer:
         self._body = body
         self._pose = body.pose()
         self._angles = body.wheel_angles()
+        self.rolled = 0.0  # m that the wheels have rolled, on average
 
     def pose(self) -> Pose:
         """Where the robot should be."""
@@ -27,6 +28,7 @@ class Odometer:
                 self._angles, before, self._body.model.wheels.values(), strict=True
             )
         )
+        self.rolled += (abs(left) + abs(right)) / 2.0
         # Both wheels go round the same centre: this is exact for any arc.
         turned = (right - left) / (2.0 * self._body.drive.turning_radius)
         chord = (left + right) / 2.0

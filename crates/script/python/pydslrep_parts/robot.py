@@ -70,7 +70,8 @@ class Robot:
     def turn_until_free(self, side: Literal["left", "right"], *sensors: str) -> None:
         """Turns in place until none of the sensors detects anything."""
         names = ", ".join(sensors)
-        here = self._begin(f"turn {side} until {names} detect nothing")
+        nothing = "detects nothing" if len(sensors) == 1 else "detect nothing"
+        here = self._begin(f"turn {side} until {names} {nothing}")
         here = self._step(
             self._standstill()
         )  # before the first step, sensors are blind
@@ -82,7 +83,8 @@ class Robot:
         while (busy := any(map(self.body.detects, sensors))) or approach.speed != 0.0:
             to_go = full_turn - turned * radius
             if approach.arrived(to_go):
-                raise self.failure(f"after a full turn {names} still detect something")
+                still = "detects" if len(sensors) == 1 else "detect"
+                raise self.failure(f"after a full turn {names} still {still} something")
             self._check_progress(approach, to_go)
             rim_speed = approach.next_speed(to_go) if busy else approach.slowed_down()
             offset, before = here.seen_from(start), here
@@ -115,11 +117,17 @@ class Robot:
             self._odometer.correct(pose)
             self._planned = pose
 
-    def rotate(self, angle: float, heed: Callable[[Pose], object]) -> None:
+    def rolled(self) -> float:
+        """How far the wheels have rolled, in metres; by odometry only."""
+        return self._odometer.rolled if self._odometer is not None else 0.0
+
+    def rotate(
+        self, angle: float, heed: Callable[[Pose], object], speed: float = RIM_SPEED
+    ) -> None:
         """Turns in place, to the left where positive, and shows every pose on the way."""
         self._watch = heed
         try:
-            self._rotate(self.pose(), angle)
+            self._rotate(self.pose(), angle, speed)
         finally:
             self._watch = None
 
@@ -171,12 +179,12 @@ class Robot:
         """Where the action starts: where the last one should have ended."""
         return self._planned or here
 
-    def _rotate(self, here: Pose, angle: float) -> Pose:
+    def _rotate(self, here: Pose, angle: float, speed: float = RIM_SPEED) -> Pose:
         """Turns by an angle in radians, of any number of full turns."""
         start = self._start(here)
         goal = start.turned(angle)
         drive = self.body.drive
-        approach = Approach(RIM_SPEED, self.body.time_step)
+        approach = Approach(speed, self.body.time_step)
         turned = wrap_angle(here.theta - start.theta)
         while not approach.arrived(to_go := (angle - turned) * drive.turning_radius):
             self._check_progress(approach, to_go)

@@ -16,7 +16,7 @@ def steer(speed: float, offset: Pose, to_go: float) -> float:
     that fades out at the end of the line, where only the heading counts. At constant
     speed this is a critically damped system in the distance driven.
     """
-    reach = max(0.15, 0.5 * abs(speed))
+    reach = max(0.15, 0.4 * abs(speed))
     fade = min(1.0, abs(to_go) / (2.0 * reach))
     aim = max(-0.5, min(0.5, -offset.y / (2.0 * reach))) * fade
     return 2.0 / reach * (speed * aim - abs(speed) * offset.theta)

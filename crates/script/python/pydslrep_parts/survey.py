@@ -16,16 +16,24 @@ from .topology import TopologicalMap
 Choice = tuple[str | None, float]  # of a sensor or robot, or for all of them
 
 
-def parse_choice(text: str) -> Choice:
-    """NUMBER or NAME=NUMBER, above zero."""
-    name, equals, number = text.rpartition("=")
+EXTENT = 20.0  # m from the start: further off, an area has no end
+
+
+def parse_length(text: str) -> float:
+    """A number above zero."""
     try:
-        value = float(number)
+        value = float(text)
     except ValueError:
         value = math.nan
     if not 0.0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{number!r} is no number above zero")
-    return name if equals else None, value
+        raise argparse.ArgumentTypeError(f"{text!r} is no number above zero")
+    return value
+
+
+def parse_choice(text: str) -> Choice:
+    """NUMBER or NAME=NUMBER, above zero."""
+    name, equals, number = text.rpartition("=")
+    return name if equals else None, parse_length(number)
 
 
 def add_survey_options(parser: argparse.ArgumentParser, environment: str) -> None:
@@ -58,6 +66,13 @@ def add_survey_options(parser: argparse.ArgumentParser, environment: str) -> Non
             help=text,
         )
     group.add_argument(
+        "--extent",
+        type=parse_length,
+        default=EXTENT,
+        metavar="METRES",
+        help="how far an area may go on from where the robot starts (%(default)g)",
+    )
+    group.add_argument(
         "--odometry",
         action="store_true",
         help="tell where the robot is by how its wheels turn, not by the simulator",
@@ -76,6 +91,7 @@ class Survey:
 
     def __init__(self, environment: str, options: argparse.Namespace) -> None:
         self.by_odometry: bool = options.odometry
+        self.extent: float = options.extent
         self._environment = environment
         self._ranges: dict[str | None, float] = dict(options.range)
         self._cones: dict[str | None, float] = dict(options.cone)
@@ -128,7 +144,7 @@ class Survey:
             figure_module = importlib.import_module("matplotlib.figure")
         except ImportError:
             return
-        figure = figure_module.Figure(figsize=(8, 8))
+        figure = figure_module.Figure(figsize=(8, 8), layout="constrained")
         axes = figure.add_subplot(
             aspect="equal", xlabel="x in m", ylabel="y in m", title=self._environment
         )

@@ -5,11 +5,14 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from .diary import Diary, Look
 from .explorer import Explorer, NoEndError
 from .floor import Floor, Place, Reading
 from .memory import Memory
 from .pose import Pose, wrap_angle
+from .settings import RIM_SPEED
 from .survey import Survey
+from .sweep import Sweep
 
 if TYPE_CHECKING:
     from .robot import Robot
@@ -21,6 +24,8 @@ STEP_LENGTH = 0.5  # m between the places of a map
 LOOK_DISTANCE = 0.03  # m to drive from one look to the next ...
 LOOK_ANGLE = math.radians(5.0)  # ... or to turn
 NEAR = 0.02  # m about a robot that nothing may enter
+DRAWN_APART = 0.04  # m that places may be beside where they were drawn ...
+DRAWN_TURNED = math.radians(2.0)  # ... and turned
 UNSURE = 0.05  # m that a robot may be beside where its wheels have it
 
 
@@ -37,11 +42,18 @@ class Surveyor:
         # The corners of a square body are that much further out than its wheels.
         span = body.drive.turning_radius * math.sqrt(2.0)
         mounts = (math.hypot(eye.x, eye.y) for eye in self._eyes.values())
+        self._extent = survey.extent
         self.radius = survey.radius(name, max(span, *mounts))
         self._is_unsure = survey.by_odometry
+        # Wheels slip less where they turn slowly.
+        self._turning_speed = RIM_SPEED * (0.5 if self._is_unsure else 1.0)
         self.floor = Floor(self.radius + (UNSURE if self._is_unsure else 0.0))
-        self._scan: Floor | None = None
+        self._sweep: Sweep | None = None
+        self._rolled = 0.0
         self._memory = Memory()
+        self._diary = Diary()
+        self._drawn: list[Pose] = []  # places that the floor was drawn by
+        self._places: list[Place] = []
         self._looked: Pose | None = None
         self._near: Place | None = None
 
@@ -57,7 +69,14 @@ class Surveyor:
             raise self._robot.failure(
                 f"its sensors see no more than {least:g} m, which is too little to explore by"
             )
-        return Explorer(self, self.floor, step, self._blind_angle())
+        return Explorer(
+            self,
+            self.floor,
+            step,
+            self._blind_angle(),
+            self._extent,
+            keeps_to_walls=self._is_unsure,
+        )
 
     def pose(self) -> Pose:
         """Where the robot is."""
@@ -65,18 +84,40 @@ class Surveyor:
 
     def turn_by(self, angle: float) -> None:
         """Turns in place."""
-        self._robot.rotate(angle, self._look)
+        self._robot.rotate(angle, self._look, self._turning_speed)
 
-    def localise(self) -> None:
-        """Looks all about and puts the pose right by what was seen before, by odometry."""
+    def localise(self) -> int:
+        """By odometry, looks all about and finds out by that where the robot is."""
         if not self._is_unsure:
-            return
-        self._scan = Floor(self.radius)
-        self._looked = None
-        self.turn_by(self._blind_angle())
-        here, seen = self.pose(), self._scan.edges()
-        self._scan = None
-        self._robot.correct(self._memory.recognise(here, seen))
+            here = self.pose()
+            self._places.append((here.x, here.y))
+            return len(self._places) - 1
+        self._sweep, self._looked = Sweep(), None
+        # All else is seen from the first place.
+        speed = self._turning_speed if self._places else 0.5 * self._turning_speed
+        self._robot.rotate(self._blind_angle(), self._look, speed)
+        sweep, self._sweep = self._sweep, None
+        rolled = self._robot.rolled()
+        there = self._memory.recognise(sweep, self.pose(), rolled - self._rolled)
+        self._rolled = rolled
+        self._robot.correct(there)
+        self._draw(sweep.middle())
+        return len(self._places) - 1
+
+    def place(self, number: int) -> Place:
+        """Where a place is, as far as is known by now."""
+        return self._places[number]
+
+    def _draw(self, middle: Pose) -> None:
+        """Draws what was seen on the way here, or all of it where places have moved."""
+        places = self._memory.places
+        self._diary.arrive(middle, places[-1])
+        self._places = [(place.x, place.y) for place in places]
+        if any(map(are_apart, self._drawn, places)):
+            self.floor.clear()
+            self._drawn = []
+        self._diary.draw(self.floor, places, since=len(self._drawn))
+        self._drawn += places[len(self._drawn) :]
 
     def drive_to(self, goal: Place, is_enough: Callable[[], bool]) -> bool:
         """Turns to a place and drives there until something comes near."""
@@ -92,6 +133,10 @@ class Surveyor:
         if self._near is None:
             return True
         self.floor.block(*self._near)
+        if self._is_unsure:
+            here = self.pose()
+            near = Pose(*self._near, 0.0).seen_from(here)
+            self._diary.note(here, Look((), (near.x, near.y)))
         return False
 
     def retreat_to(self, goal: Place) -> None:
@@ -105,24 +150,28 @@ class Surveyor:
 
     def _look(self, here: Pose) -> bool:
         """Reads all sensors where that shows something new; whether it did."""
-        if self._looked is not None:
-            off = here.seen_from(self._looked)
-            if math.hypot(off.x, off.y) < LOOK_DISTANCE and abs(off.theta) < LOOK_ANGLE:
-                return False
-        self._looked = here
+        is_new = self._looked is None or is_moved(here, self._looked)
+        if is_new:
+            self._looked = here
+        elif self._sweep is None:
+            return False
+        seen = []
         for sensor, mount in self._eyes.items():
-            eye = mount.placed_on(here)
             distance = self._robot.body.distance(sensor)
             sees = distance is not None
             if distance is None:
                 distance = self._ranges[sensor]
+            elif is_new:
+                self._heed(mount.placed_on(here).ahead(distance), here)
+            reading = Reading(mount, self._cones[sensor], distance, sees)
+            seen.append(reading)
+            if self._sweep is not None:
+                self._sweep.add(here, sensor, reading)
             else:
-                self._heed(eye.ahead(distance), here)
-            reading = Reading(eye, self._cones[sensor], distance, sees)
-            self.floor.see(reading)
-            if self._scan is not None:
-                self._scan.see(reading)
-        return True
+                self.floor.see(reading.seen_by(here))
+        if self._is_unsure and is_new:
+            self._diary.note(here, Look(seen))
+        return is_new
 
     def _heed(self, point: Pose, here: Pose) -> None:
         """Notices what is so near ahead that the robot could not turn there."""
@@ -138,14 +187,24 @@ class Surveyor:
         return max(b - a for a, b in zip(bearings, following, strict=True))
 
 
+def is_moved(here: Pose, before: Pose) -> bool:
+    """Whether there may be something new to see."""
+    off = here.seen_from(before)
+    return math.hypot(off.x, off.y) >= LOOK_DISTANCE or abs(off.theta) >= LOOK_ANGLE
+
+
+def are_apart(a: Pose, b: Pose) -> bool:
+    """Whether what was seen from a place has to be drawn anew."""
+    turned = abs(wrap_angle(a.theta - b.theta))
+    return math.hypot(a.x - b.x, a.y - b.y) > DRAWN_APART or turned > DRAWN_TURNED
+
+
 def survey_with(robot: "Robot", survey: Survey) -> None:
     """Explores with a robot and adds the map to the survey; raises MovementError."""
     explorer = Surveyor(robot, survey).explore()
     try:
         explorer.explore()
     except NoEndError as error:
-        raise robot.failure(
-            f"found {len(explorer.map.nodes)} places and no end: is the area closed?"
-        ) from error
+        raise robot.failure(error) from error
     finally:
         survey.add(robot.body.model.name, explorer.map)

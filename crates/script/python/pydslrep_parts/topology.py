@@ -49,6 +49,13 @@ class TopologicalMap:
         self.nodes.append(node)
         return node
 
+    def move(self, node: Node, place: Place) -> None:
+        """A node is elsewhere than was thought."""
+        node.x, node.y = place
+        for number in node.ways:
+            other = self.nodes[number]
+            node.ways[number] = other.ways[node.number] = math.dist(place, other.place)
+
     def connect(self, a: Node, b: Node) -> None:
         """An edge that was driven."""
         a.ways[b.number] = b.ways[a.number] = math.dist(a.place, b.place)

@@ -50,6 +50,7 @@ class GhostRover:
         self.rooms, self.floor, self.reach, self.cone = rooms, floor, reach, cone
         self.here = Pose(*rooms.start, 0.0)
         self.touched: list[Pose] = []
+        self.places: list[Place] = []
         self.driven = self.turned = 0.0
         self.segments = rooms.segments()
         self.surprises: list[Pillar] = []  # that no sensor sees from afar
@@ -65,8 +66,13 @@ class GhostRover:
             self.look()
         self.turned += abs(angle)
 
-    def localise(self) -> None:
+    def localise(self) -> int:
         """It is sure."""
+        self.places.append((self.here.x, self.here.y))
+        return len(self.places) - 1
+
+    def place(self, number: int) -> Place:
+        return self.places[number]
 
     def drive_to(self, goal: Place, is_enough: Callable[[], bool]) -> bool:
         dx, dy = goal[0] - self.here.x, goal[1] - self.here.y

@@ -11,10 +11,12 @@ from rooms import Pillar, Rooms, Wall, generate
 STEP = 0.5
 
 
-def explore(rooms: Rooms, *surprises: Pillar) -> tuple[GhostRover, Explorer]:
+def explore(
+    rooms: Rooms, *surprises: Pillar, extent: float = 20.0
+) -> tuple[GhostRover, Explorer]:
     rover = GhostRover(rooms, Floor(RADIUS))
     rover.surprises += surprises
-    explorer = Explorer(rover, rover.floor, STEP, math.pi)
+    explorer = Explorer(rover, rover.floor, STEP, math.pi, extent)
     explorer.explore()
     assert not rover.touched
     for a, b, length in explorer.map.edges():
@@ -97,8 +99,31 @@ def test_a_place_without_exits_is_a_map_of_one_node() -> None:
 
 def test_no_end_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Explorer, "MOST_NODES", 20)
-    with pytest.raises(NoEndError):
-        explore(Rooms(50.0, 50.0, start=(25.0, 25.0)))
+    with pytest.raises(NoEndError, match="found 20 places and no end"):
+        explore(Rooms(50.0, 50.0, start=(25.0, 25.0)), extent=30.0)
+
+
+def test_what_is_too_far_away_is_no_closed_area() -> None:
+    message = r"got 3\.\d m away .* say --extent with more than 3 m"
+    with pytest.raises(NoEndError, match=message):
+        explore(Rooms(50.0, 50.0, start=(25.0, 25.0)), extent=3.0)
+    explore(Rooms(3.0, 1.0, start=(0.5, 0.5)), extent=3.0)
+
+
+def test_who_needs_walls_goes_into_the_open_last() -> None:
+    rooms = Rooms(4.4, 4.4, start=(0.5, 0.5))
+    rover = GhostRover(rooms, Floor(RADIUS))
+    explorer = Explorer(rover, rover.floor, STEP, math.pi, 20.0, keeps_to_walls=True)
+    explorer.explore()
+    assert coverage(rooms, explorer) > 0.99
+
+    def to_wall(place: tuple[float, float]) -> float:
+        return min(*place, 4.4 - place[0], 4.4 - place[1])
+
+    ways = [to_wall(node.place) for node in explorer.map.nodes]
+    half = len(ways) // 2
+    assert max(ways) > 1.5
+    assert sum(ways[:half]) < 0.7 * sum(ways[half:])
 
 
 def test_the_same_world_is_explored_the_same_way() -> None:

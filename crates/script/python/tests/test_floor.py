@@ -51,6 +51,14 @@ def test_a_nearer_look_opens_what_a_wide_cone_hid() -> None:
     assert floor.is_open((0.4, 0.0), (0.8, 0.0))
 
 
+def test_a_place_is_bare_where_nothing_is_near() -> None:
+    floor = seen(Reading(Pose(0.0, 0.0, 0.0), WIDE, 1.0, sees=False))
+    assert floor.is_bare((0.5, 0.0))
+    floor.block(1.0, 0.0)
+    assert not floor.is_bare((0.5, 0.0))
+    assert floor.is_bare((0.0, 0.0))
+
+
 def test_something_new_closes_the_floor_about_it() -> None:
     floor = seen(Reading(Pose(0.0, 0.0, 0.0), WIDE, 2.0, sees=False))
     assert floor.is_open((0.4, 0.0), (1.6, 0.0))

@@ -3,17 +3,8 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from drifting_rover import DriftingRover
-from ghost_rover import RADIUS
-from pydslrep_parts.explorer import Explorer
-from pydslrep_parts.floor import Floor
-from pydslrep_parts.memory import Memory
 from pydslrep_parts.odometer import Odometer
 from pydslrep_parts.pose import Pose
-from rooms import Rooms, Wall
-
-ROOM = [(x / 20.0, y) for x in range(-20, 21) for y in (-0.8, 1.0)]
-ROOM += [(x, y / 20.0) for y in range(-16, 21) for x in (-1.0, 1.0)]
 
 
 def body(angles: list[float]) -> Any:
@@ -53,36 +44,11 @@ def test_an_arc_is_exact() -> None:
     assert there.y == pytest.approx(2.0 + 0.3 * math.sin(0.2))
 
 
-@pytest.mark.parametrize(
-    "off", [Pose(0.0, 0.0, 0.0), Pose(0.08, -0.06, 0.0), Pose(0.03, 0.05, -0.08)]
-)
-def test_what_was_seen_before_tells_where_a_robot_is(off: Pose) -> None:
-    memory = Memory()
-    here = Pose(0.0, 0.0, 0.4)
-    assert memory.recognise(here, ROOM) == here
-    believed = Pose(off.x, off.y, 0.4 + off.theta)
-    moved = [Pose(*p, 0.0).seen_from(here).placed_on(believed) for p in ROOM]
-    found = memory.recognise(believed, [(p.x, p.y) for p in moved])
-    assert (found.x, found.y) == pytest.approx((0.0, 0.0), abs=0.025)
-    assert found.theta == pytest.approx(0.4, abs=math.radians(1.5))
-
-
-def test_what_is_new_or_little_changes_nothing() -> None:
-    memory = Memory()
-    here = Pose(0.0, 0.0, 0.0)
-    memory.recognise(here, ROOM)
-    assert memory.recognise(Pose(0.1, 0.0, 0.0), ROOM[:5]) == Pose(0.1, 0.0, 0.0)
-    far = Pose(5.0, 0.0, 0.0)
-    assert memory.recognise(far, [(x + 5.0, y) for x, y in ROOM]) == far
-
-
-def test_exploring_by_wheels_that_do_not_slip() -> None:
-    rooms = Rooms(4.0, 2.5, start=(0.6, 0.5))
-    rooms.walls = [Wall((2.0, 0.0), (2.0, 1.0)), Wall((2.0, 2.0), (2.0, 2.5))]
-    rover = DriftingRover(rooms, Floor(RADIUS + 0.05), slip=0.0)
-    explorer = Explorer(rover, rover.floor, 0.5, math.pi)
-    explorer.explore()
-    assert not rover.touched
-    assert rover.off() < 0.1
-    nodes = [node.place for node in explorer.map.nodes]
-    assert rooms.coverage(nodes, 1.5, grain=0.2) >= 0.95
+def test_what_the_wheels_roll_counts_either_way() -> None:
+    angles = [0.0, 0.0]
+    odometer = Odometer(body(angles))
+    angles[:] = [-1.0, 2.0]
+    odometer.pose()
+    angles[:] = [0.0, 2.0]
+    odometer.pose()
+    assert odometer.rolled == pytest.approx(0.05 * (1.5 + 0.5))
