@@ -1421,6 +1421,7 @@ def dot_product(a: Vector, b: Vector) -> float:
     )
 
 
+FURTHEST = 0.3  # m from where a robot believes to be: further off, it is another place
 MOST_DRIFT = 0.1  # radians in a sweep: more is a mistake
 
 
@@ -1564,12 +1565,12 @@ class Memory:
             return None
         best: Match | None = None
         shifts = sorted(
-            itertools.product((0.0, -0.2, 0.2, -0.4, 0.4), repeat=2),
+            itertools.product((0.0, -0.2, 0.2), repeat=2),
             key=lambda s: math.hypot(*s),
         )
         for right, up in shifts:
             start = Pose(here.x + right, here.y + up, here.theta)
-            found = match(marks, here, (0.4, 0.05), known, start)
+            found = match(marks, here, (0.2, 0.05), known, start)
             if (
                 not found
                 or found.count < 15
@@ -1578,6 +1579,8 @@ class Memory:
                 or found.share < 0.4
                 or found.rough > 0.025
             ):
+                continue
+            if math.hypot(found.pose.x - here.x, found.pose.y - here.y) > FURTHEST:
                 continue
             if best is None or found.share > best.share + 0.05:
                 best = found
