@@ -50,7 +50,7 @@ export function middleware(): Middleware {
       }
     },
     window: {
-      // The picture of a run comes with the answer as well, and is shown beside the program.
+      // The picture of a run: the preview shows what is in it, where one can look closer.
       showDocument: (params, token, next) =>
         params.external === true && params.uri.endsWith(".svg") ? { success: true } : next(params, token),
     },

@@ -1,19 +1,18 @@
-// Running a program: only where the workspace is trusted, and what it drew is shown beside the program.
-import { readFile } from "node:fs/promises";
-
+// Running a program: only where the workspace is trusted; the preview then shows what was driven over what was planned.
 import * as vscode from "vscode";
 
 import type { ChosenEnvironment } from "./middleware";
 
-/** What the server answers when a run has come to its end. */
+/** What the server answers when a run has come to its end; there is a picture, too, which the preview draws better. */
 interface Driven {
-  /** The address of the picture. */
-  picture: string;
   /** What was printed: the table of poses and times. */
   output: string;
 }
 
-/** Runs an environment, and shows its picture. */
+/** Tables of runs. */
+let runs: vscode.OutputChannel | undefined;
+
+/** Runs an environment, and shows the path that was driven. */
 export async function runInSimulator(chosen: ChosenEnvironment, run: () => unknown): Promise<unknown> {
   if (!vscode.workspace.isTrusted) {
     const manage = "Manage Workspace Trust";
@@ -25,54 +24,28 @@ export async function runInSimulator(chosen: ChosenEnvironment, run: () => unkno
   }
   const answer = await run();
   if (isDriven(answer)) {
-    const drawing = await readFile(vscode.Uri.parse(answer.picture).fsPath, "utf8");
-    show(chosen, drawing, answer.output);
+    void tell(answer.output);
+    void vscode.commands.executeCommand("pydslrep.showPreview", vscode.Uri.parse(chosen.uri), chosen.environment);
   }
   return answer;
 }
 
 function isDriven(answer: unknown): answer is Driven {
-  return typeof answer === "object" && answer !== null && "picture" in answer && "output" in answer;
+  return typeof answer === "object" && answer !== null && "output" in answer && typeof answer.output === "string";
 }
 
-/** The panel of each environment, by the program's address and its name. */
-const panels = new Map<string, vscode.WebviewPanel>();
-
-function show({ uri, environment }: ChosenEnvironment, drawing: string, output: string): void {
-  const key = `${uri}#${environment}`;
-  let panel = panels.get(key);
-  if (panel === undefined) {
-    const place = { viewColumn: vscode.ViewColumn.Beside, preserveFocus: true };
-    panel = vscode.window.createWebviewPanel("pydslrep.driven", `Driven: ${environment}`, place, { enableFindWidget: true });
-    panels.set(key, panel);
-    panel.onDidDispose(() => panels.delete(key));
-  } else {
-    panel.reveal(undefined, true);
+/** Says in a line how it went, and keeps the table for whoever wants it. */
+async function tell(output: string): Promise<void> {
+  runs ??= vscode.window.createOutputChannel("PyDSLRep Runs");
+  runs.appendLine(`${output.trimEnd()}\n`);
+  const show = "Show Table";
+  if ((await vscode.window.showInformationMessage(summary(output), show)) === show) {
+    runs.show(true);
   }
-  panel.webview.html = page(drawing, output);
 }
 
-/** The picture above the table; no script and nothing from elsewhere. */
-function page(drawing: string, output: string): string {
-  const picture = `data:image/svg+xml;base64,${Buffer.from(drawing).toString("base64")}`;
-  return `<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
-<style>
-body { margin: 0; padding: 12px; }
-img { display: block; width: 100%; max-height: 75vh; object-fit: contain; border-radius: 4px; }
-pre { font-family: var(--vscode-editor-font-family); font-size: 12px; overflow-x: auto; }
-</style>
-</head>
-<body>
-<img src="${picture}" alt="Planned and driven path">
-<pre>${escape(output)}</pre>
-</body>
-</html>`;
-}
-
-function escape(text: string): string {
-  return text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
+/** The line that says how long it took. */
+export function summary(output: string): string {
+  const lines = output.split("\n").map((line) => line.trim());
+  return lines.find((line) => /^\S+: .* simulated in /.test(line)) ?? "The program was driven.";
 }

@@ -1,6 +1,6 @@
 // The path preview in the real editor: opens beside the program, and follows what is typed.
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
+import { after, afterEach, before, test } from "node:test";
 
 import { Stage, program, until } from "./stage.mjs";
 
@@ -13,6 +13,7 @@ before(async () => {
     settings: { "editor.codeLens": false, "editor.inlayHints.enabled": "off" },
   });
 });
+afterEach((t) => t.passed || stage?.keepPicture());
 after(() => stage?.close());
 
 /** How often the page has drawn a path. */

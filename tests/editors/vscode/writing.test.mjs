@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
 import path from "node:path";
-import { after, before, test } from "node:test";
+import { after, afterEach, before, test } from "node:test";
 
 import { Stage, spaced, until } from "./stage.mjs";
 
@@ -24,6 +24,7 @@ let stage;
 before(async () => {
   stage = await Stage.open({ files: { "yard.pyr": PROGRAM }, open: "yard.pyr" });
 });
+afterEach((t) => t.passed || stage?.keepPicture());
 after(() => stage?.close());
 
 test("a mistake is underlined, and the file is one of the language", async () => {
@@ -41,6 +42,7 @@ test("lenses are shown above declarations", async () => {
 });
 
 test("a quick fix mends the mistake", async () => {
+  await stage.page.locator(".squiggly-error").first().waitFor();
   await stage.clickWord("movement patrol of", "rovr");
   await stage.page.keyboard.press("Control+.");
   await stage.page.locator(".action-widget .monaco-list-row", { hasText: "rover" }).first().waitFor();
@@ -86,11 +88,11 @@ test("the script is generated from the palette, and shown", async () => {
   await stage.tab("yard.pyr").click();
 });
 
-test("the program runs in the simulator, and the driven path is shown beside it", async () => {
+test("the program runs in the simulator, and the preview shows what was driven", async () => {
   await stage.line("movement patrol").first().waitFor();
   await stage.page.locator(".codelens-decoration a", { hasText: /^Run$/ }).first().click();
-  const frame = await stage.webview('img[alt="Planned and driven path"]');
-  await until("the picture is drawn", () => frame.locator("img").evaluate((image) => image.naturalWidth > 0));
-  assert.match(await frame.locator("pre").innerText(), /rover/);
+  const frame = await stage.webview("main.preview");
+  await frame.locator('main.preview[data-driven="yard"]').waitFor();
+  assert.match(await frame.locator("main.preview").innerText(), /driven \d/);
   await stage.picture("run");
 });
