@@ -46,7 +46,6 @@ test("a quick fix mends the mistake", async () => {
   await stage.clickWord("movement patrol of", "rovr");
   await stage.page.keyboard.press("Control+.");
   await stage.page.locator(".action-widget .monaco-list-row", { hasText: "rover" }).first().waitFor();
-  await stage.picture("quick-fix");
   await stage.page.keyboard.press("Enter");
   await stage.page.locator(".squiggly-error").first().waitFor({ state: "detached" });
   assert.match(await stage.text(), /movement patrol of rover \{/);
@@ -76,7 +75,6 @@ test("hovering over a robot shows its equations", async () => {
   await stage.line("robot rover").first().locator("span span", { hasText: "rover" }).first().hover();
   const hover = stage.page.locator(".monaco-hover .hover-contents, .monaco-resizable-hover .hover-contents");
   await hover.filter({ hasText: "wheelL" }).first().waitFor();
-  await stage.picture("hover");
   await stage.page.mouse.move(5, 5);
 });
 
