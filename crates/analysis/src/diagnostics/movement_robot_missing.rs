@@ -13,7 +13,7 @@ pub(super) static RULE: Rule = Rule {
     summary: "an environment lists a movement whose robot it does not list",
     tag: None,
     remedy: Remedy::Safe,
-    seeks_names: false,
+    seeks_names: true,
     page: PAGE,
     check,
 };
@@ -118,5 +118,33 @@ mod tests {
             "#]],
         );
         check_clean(&format!("{PARTS}environment e has {{ r, q }} robots with {{ n m n }} moves"));
+    }
+
+    #[test]
+    fn the_robot_is_offered_as_soon_as_its_name_means_it_here() {
+        let mut database = crate::Database::new();
+        database.open(
+            "lib.pyr",
+            "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has { a b } wheels\n\
+             movement m of r { turn left }",
+        );
+        let twin = "robot r with port 2 has { a b } wheels\n";
+        let program = format!(
+            "import \"lib.pyr\"\n{twin}robot q with port 3 has {{ a b }} wheels\n\
+             environment e has {{ q }} robots with {{ m }} moves"
+        );
+        let file = database.open("a.pyr", &program);
+        let offers = |database: &crate::Database| -> Vec<usize> {
+            let diagnostics = database.diagnostics(file).into_iter();
+            diagnostics
+                .filter(|found| found.code() == super::RULE.code)
+                .map(|found| found.fixes.len())
+                .collect()
+        };
+        assert_eq!(offers(&database), [0]);
+        let start = u32::try_from(program.find("robot r").unwrap()).unwrap();
+        let end = start + u32::try_from(twin.len()).unwrap();
+        database.edit(file, pydslrep_syntax::Span::new(start, end), "");
+        assert_eq!(offers(&database), [1]);
     }
 }
