@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import math
 import os
 import pathlib
 import shutil
@@ -22,6 +24,19 @@ from stage import (
     onlooker,
     start,
 )
+
+TURNING = """\
+[[wall]]
+from = [4.6, -0.8]
+to = [4.6, 1.5]
+"""
+ROOM = """\
+[world]
+size = [2.4, 1.8]
+
+[robots.robot_1]
+start = [-0.6, 0, 0]
+"""
 
 PAPER = ROOT / "tests" / "paper"
 EXAMPLES = ROOT / "examples"
@@ -79,6 +94,37 @@ def test_both_targets_drive_alike(
     assert vrep.keys() == coppeliasim.keys()
     for robot, end in vrep.items():
         assert_near(end, coppeliasim[robot], 0.001, 0.1)
+
+
+def test_walls_make_table_6_turn(command: str, tmp_path: pathlib.Path) -> None:
+    """The robot meets the wall ahead, turns until it is free, and goes on along it."""
+    program = tmp_path / "table6_sensors.pyr"
+    shutil.copy(PAPER / program.name, program)
+    (tmp_path / "area_1.scene.toml").write_text(TURNING, encoding="utf-8")
+    found = []
+    for target in ("vrep", "coppeliasim"):
+        run(command, program, tmp_path / target, target)
+        [end] = ends(tmp_path / target).values()
+        found.append(end)
+    assert_near(found[0], found[1], 0.001, 0.1)
+    assert abs(found[0][2]) > 10, "it turned"
+
+
+def test_table_7_explores(command: str, tmp_path: pathlib.Path) -> None:
+    """A small closed room, with the same map by both targets."""
+    program = tmp_path / "table7_slam.pyr"
+    shutil.copy(PAPER / program.name, program)
+    (tmp_path / "area_1.scene.toml").write_text(ROOM, encoding="utf-8")
+    found = []
+    for target in ("vrep", "coppeliasim"):
+        file = tmp_path / f"{target}.json"
+        run(command, program, tmp_path / target, target, ["--map", str(file)])
+        found.append(json.loads(file.read_text(encoding="utf-8")))
+    vrep, coppeliasim = found
+    assert len(vrep["nodes"]) == len(coppeliasim["nodes"]) > 4
+    assert len(vrep["edges"]) == len(coppeliasim["edges"])
+    for one, other in zip(vrep["nodes"], coppeliasim["nodes"], strict=True):
+        assert math.dist((one["x"], one["y"]), (other["x"], other["y"])) < 0.01
 
 
 def test_a_run_can_be_repeated(command: str, tmp_path: pathlib.Path) -> None:
