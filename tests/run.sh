@@ -1,7 +1,13 @@
 #!/usr/bin/env bash
 # Everything that must hold, in one command: formats, lints, tests of every crate, and whole behaviour through the
-# command, the protocol and the generated scripts. Needs Rust and Python; the rest it sets up.
+# command, the protocol and the generated scripts. Needs Rust and Python; the rest it sets up. With `--editors` also in
+# real editors, which it installs on Debian and its kin.
 set -euo pipefail
+case ${1:-} in
+  '') editors='' ;;
+  --editors) editors='neovim preview' ;;
+  *) echo "usage: run.sh [--editors]" >&2; exit 2 ;;
+esac
 cd "$(dirname "$0")/.."
 
 step() { printf '\n== %s\n' "$*"; }
@@ -58,3 +64,8 @@ step "Python: format, lints, types and tests"
 .venv/bin/mypy
 .venv/bin/python crates/script/python/check_scripts.py
 .venv/bin/pytest
+
+for editor in $editors; do
+  step "Editors: $editor"
+  tests/editors/run.sh "$editor"
+done
