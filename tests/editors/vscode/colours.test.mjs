@@ -25,6 +25,17 @@ function marked(type, enabled = true) {
 
 const has = (seen, type) => seen.some((one) => one.includes(MARKS[type]));
 
+/** What declares the names that are marked. */
+const DECLARING = { "class": /\brobot (\w+) type/g, "function": /\bmovement (\w+) of/g };
+
+/** Whether all names of a type have its mark, and nothing else has: while a theme changes, marks are where the last ones were. */
+function exact(seen, type, text) {
+  const names = [...text.matchAll(DECLARING[type])].map(([, name]) => name);
+  const uses = text.match(new RegExp(`\\b(?:${names.join("|")})\\b`, "g"));
+  const marks = seen.filter((one) => has([one], type)).map((one) => one[0]);
+  return marks.join("") === uses.join("");
+}
+
 /** Every character of the editor that can be seen, with its colour. */
 function colours(page) {
   return page.evaluate(() => {
@@ -59,9 +70,9 @@ test("with and without semantic tokens every character of the article's programs
             return whole && check(seen) && seen;
           });
         stage.set(marked("class"));
-        const robots = await once("robots are marked", (seen) => has(seen, "class"));
+        const robots = await once("robots are marked", (seen) => exact(seen, "class", files[name]));
         stage.set(marked("function"));
-        const movements = await once("movements are marked", (seen) => has(seen, "function"));
+        const movements = await once("movements are marked", (seen) => exact(seen, "function", files[name]));
         stage.set(marked("function", false));
         const grammatical = await once("no marks", (seen) => !has(seen, "class") && !has(seen, "function"));
 

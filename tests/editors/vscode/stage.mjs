@@ -17,6 +17,9 @@ const entry = path.join(CODE_SERVER, "node_modules/code-server/out/node/entry.js
 
 export const repository = path.resolve(import.meta.dirname, "../../..");
 
+/** The extension that changes settings for the tests. */
+const HELPER = path.join(import.meta.dirname, "api");
+
 /** How long anything may take that is waited for. */
 const PATIENCE = 90_000;
 
@@ -95,6 +98,8 @@ export class Stage {
     };
     const base = ["--config", "config.yaml", "--user-data-dir", "data", "--extensions-dir", "extensions"];
     const inScratch = { env: this.env, cwd: this.scratch };
+    // What is in the folder when the first extension is installed is taken for installed, too.
+    cpSync(HELPER, path.join(this.scratch, "extensions/api-tests"), { recursive: true });
     execFileSync(process.execPath, [entry, ...base, "--install-extension", VSIX], { ...inScratch, stdio: "ignore" });
     const port = await freePort();
     this.address = `127.0.0.1:${port}`;
@@ -113,14 +118,12 @@ export class Stage {
     });
     this.page = await this.browser.newPage({ viewport: size ?? { width: 1100, height: 680 } });
     this.page.setDefaultTimeout(PATIENCE);
-    await this.page.addInitScript(allowTests);
+    const payload = open ? [["openFile", this.inEditor(open)]] : [];
+    if (testsPath) {
+      await this.page.addInitScript(allowTests);
+      payload.push(["extensionDevelopmentPath", this.inEditor(HELPER)], ["extensionTestsPath", this.inEditor(testsPath)]);
+    }
     await prepare?.(this.page);
-    const helper = path.join(import.meta.dirname, "api");
-    const payload = [
-      ["extensionDevelopmentPath", this.inEditor(helper)],
-      ...(open ? [["openFile", this.inEditor(open)]] : []),
-      ...(testsPath ? [["extensionTestsPath", this.inEditor(testsPath)]] : []),
-    ];
     const search = new URLSearchParams({ folder: this.folder, payload: JSON.stringify(payload) });
     await this.page.goto(`http://${this.address}/?${search}`);
     await this.page.locator(".monaco-workbench").waitFor();
@@ -237,7 +240,10 @@ export class Stage {
   }
 }
 
-/** A built editor loads extensions from elsewhere, and runs tests, only where its page says that it is there to be tested. */
+/**
+ * A built editor runs tests in its extension host only where its page says that it is there to be tested. It then keeps
+ * messages in the bell, where a person would see them: so tests of what is on the screen do without.
+ */
 function allowTests() {
   new MutationObserver((_, observer) => {
     const element = document.getElementById("vscode-workbench-web-configuration");

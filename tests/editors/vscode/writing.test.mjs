@@ -46,6 +46,7 @@ test("a quick fix mends the mistake", async () => {
   await stage.clickWord("movement patrol of", "rovr");
   await stage.page.keyboard.press("Control+.");
   await stage.page.locator(".action-widget .monaco-list-row", { hasText: "rover" }).first().waitFor();
+  await stage.picture("quick-fix");
   await stage.page.keyboard.press("Enter");
   await stage.page.locator(".squiggly-error").first().waitFor({ state: "detached" });
   assert.match(await stage.text(), /movement patrol of rover \{/);
@@ -86,11 +87,33 @@ test("the script is generated from the palette, and shown", async () => {
   await stage.tab("yard.pyr").click();
 });
 
-test("the program runs in the simulator, and the preview shows what was driven", async () => {
+test("the program runs in the simulator, and a message says how it went", async () => {
   await stage.line("movement patrol").first().waitFor();
   await stage.page.locator(".codelens-decoration a", { hasText: /^Run$/ }).first().click();
+  const message = driven();
+  await message.waitFor();
+  // A message that is pointed at stays.
+  await message.hover();
+  assert.match(spaced(await message.innerText()), /yard: [\d.]+ s \(planned: [\d.]+ s\) simulated in [\d.]+ s/);
+});
+
+test("the preview shows what was driven", async () => {
   const frame = await stage.webview("main.preview");
   await frame.locator('main.preview[data-driven="yard"]').waitFor();
   assert.match(await frame.locator("main.preview").innerText(), /driven \d/);
+});
+
+test("the message leads to the table of the run", async () => {
+  await driven().getByRole("button", { name: "Show Table" }).click();
+  await driven().waitFor({ state: "detached" });
+  const table = stage.page.locator(".panel .view-lines");
+  await until("the table is shown", async () => /rover planned .* driven /.test(spaced(await table.innerText())));
+  await stage.call("Notifications: Clear All Notifications");
+  await stage.page.locator(".notification-toast").first().waitFor({ state: "detached" });
   await stage.picture("run");
 });
+
+/** What the extension says when a run has come to its end. */
+function driven() {
+  return stage.page.locator(".notification-toast", { hasText: "simulated in" });
+}
