@@ -86,6 +86,10 @@ export class Stage {
       writeFileSync(path.join(this.folder, name), text);
     }
     writeFileSync(path.join(this.scratch, "data/User/settings.json"), JSON.stringify({ ...SETTINGS, ...settings }));
+    // Paths of programs are settings of the machine: those of the person reach it only from an editor on the same one.
+    const machine = Object.fromEntries(Object.entries(settings).filter(([name]) => name.startsWith("pydslrep.server.")));
+    mkdirSync(path.join(this.scratch, "data/Machine"), { recursive: true });
+    writeFileSync(path.join(this.scratch, "data/Machine/settings.json"), JSON.stringify(machine));
     this.set({});
     writeFileSync(path.join(this.scratch, "config.yaml"), "auth: none\n");
     this.env = {

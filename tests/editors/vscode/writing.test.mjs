@@ -39,6 +39,7 @@ test("the server is the one in the extension, with nothing set", () => {
 
 test("lenses are shown above declarations", async () => {
   await stage.page.locator(".codelens-decoration", { hasText: "Generate script" }).first().waitFor();
+  await stage.page.locator(".codelens-decoration", { hasText: /^1 reference$/ }).nth(2).waitFor();
 });
 
 test("a quick fix mends the mistake", async () => {
