@@ -5,7 +5,7 @@
 set -euo pipefail
 case ${1:-} in
   '') editors='' ;;
-  --editors) editors='neovim preview' ;;
+  --editors) editors='neovim preview vscode' ;;
   *) echo "usage: run.sh [--editors]" >&2; exit 2 ;;
 esac
 cd "$(dirname "$0")/.."
@@ -65,6 +65,8 @@ step "Python: format, lints, types and tests"
 .venv/bin/python crates/script/python/check_scripts.py
 .venv/bin/pytest
 
+built=$(realpath "${CARGO_TARGET_DIR:-target}/debug")
+export PYDSLREP=$built/pydslrep PYDSLREP_LSP=$built/pydslrep-lsp
 for editor in $editors; do
   step "Editors: $editor"
   tests/editors/run.sh "$editor"

@@ -52,7 +52,12 @@ export class Session implements vscode.Disposable {
       getState: () => ({ kind: "static" }),
       clear: () => undefined,
     });
-    client.onDidChangeState(({ newState }) => this.enter(named(newState)));
+    client.onDidChangeState(({ newState }) => {
+      // One that was let go of may still have something to say.
+      if (this.client === client) {
+        this.enter(named(newState));
+      }
+    });
     this.client = client;
     try {
       await client.start();
