@@ -128,9 +128,10 @@ mod tests {
             "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has { a b } wheels\n\
              movement m of r { turn left }",
         );
-        let twin = "robot r with port 2 has { a b } wheels\n";
+        // What stands right beside an edit is read again anyway; neither the environment nor its robot may be.
+        let twin = "robot r\n";
         let program = format!(
-            "import \"lib.pyr\"\n{twin}robot q with port 3 has {{ a b }} wheels\n\
+            "import \"lib.pyr\"\n{twin}sensor between\nrobot q with port 3 has {{ a b }} wheels\n\
              environment e has {{ q }} robots with {{ m }} moves"
         );
         let file = database.open("a.pyr", &program);
