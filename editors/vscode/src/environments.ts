@@ -2,7 +2,11 @@
 import * as vscode from "vscode";
 import type { LanguageClient } from "vscode-languageclient/node";
 
-import type { ChosenEnvironment } from "./middleware";
+/** What a lens hands to a command: the program's address and the environment's name. */
+export interface ChosenEnvironment {
+  uri: string;
+  environment: string;
+}
 
 interface Lens {
   range: { start: { line: number } };

@@ -3,6 +3,7 @@ import * as vscode from "vscode";
 import type { Middleware } from "vscode-languageclient/node";
 
 import manifest from "../package.json";
+import type { ChosenEnvironment } from "./environments";
 import { runInSimulator } from "./run";
 import { setTable } from "./settings";
 
@@ -16,12 +17,6 @@ const KEYS = manifest.contributes.configuration
   .filter(({ title }) => title === "Programs")
   .flatMap(({ properties }) => Object.keys(properties))
   .map((key) => key.slice(SECTION.length + 1));
-
-/** What a lens hands to a command: the program's address and the environment's name. */
-export interface ChosenEnvironment {
-  uri: string;
-  environment: string;
-}
 
 export function middleware(): Middleware {
   return {

@@ -1,7 +1,7 @@
 // Running a program: only where the workspace is trusted; the preview then shows what was driven over what was planned.
 import * as vscode from "vscode";
 
-import type { ChosenEnvironment } from "./middleware";
+import type { ChosenEnvironment } from "./environments";
 
 /** What the server answers when a run has come to its end; there is a picture, too, which the preview draws better. */
 interface Driven {
