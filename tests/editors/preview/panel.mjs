@@ -106,6 +106,15 @@ export class Panel {
     await this.page.locator(`main[data-${name}="${value}"]`).waitFor({ state: "attached", timeout: 15_000 });
   }
 
+  /** The last message of a kind, once the page has said one: what it says takes its own way out of the browser. */
+  async heard(type) {
+    let message;
+    while (!(message = this.said.findLast((said) => said.type === type))) {
+      await new Promise((resolve) => (this.hear = resolve));
+    }
+    return message;
+  }
+
   close() {
     return this.page.context().close();
   }

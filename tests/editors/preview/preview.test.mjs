@@ -239,7 +239,7 @@ test("pointing at an action explains it, clicking it asks for its place in the t
   const [robotLine] = words.split("\n").slice(1);
   const [, movement, number] = /· (\w+), action (\d)/.exec(robotLine);
   await page.mouse.click(box.x + box.width / 2, box.y + found);
-  const { action } = panel.said.find(({ type }) => type === "reveal");
+  const { action } = await panel.heard("reveal");
   assert.deepEqual(action, { movement, index: Number(number) - 1 });
   const place = await follower.place(action);
   assert.equal(place.uri, uri);
@@ -288,7 +288,7 @@ test("keys play, step, jump, zoom and go through the actions", async () => {
   assert.equal(await panel.data("highlighted"), "down 1");
   assert.match(await panel.part("spoken").textContent(), /^turn left 45, north · down, action 2/);
   await page.keyboard.press("Enter");
-  assert.deepEqual(panel.said.at(-1), { type: "reveal", action: { movement: "down", index: 1 } });
+  assert.deepEqual(await panel.heard("reveal"), { type: "reveal", action: { movement: "down", index: 1 } });
   const [before] = await inked(panel);
   await page.keyboard.press("+");
   await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
@@ -375,7 +375,7 @@ test("collisions are marked, and told with when and what", async () => {
   assert.ok((await panel.page.locator(".marks i").count()) > 0);
   await crash.click();
   assert.ok(Number(await panel.data("time")) > 1);
-  assert.equal(panel.said.at(-1).action.movement, "down");
+  assert.equal((await panel.heard("reveal")).action.movement, "down");
   await panel.page.screenshot({ path: path.join(OUT, "collision.png") });
   await panel.close();
 });
