@@ -7,7 +7,7 @@ import { Session } from "./session";
 import { registerStatus } from "./status";
 import { registerTasks } from "./tasks";
 
-export async function activate(context: vscode.ExtensionContext): Promise<void> {
+export function activate(context: vscode.ExtensionContext): void {
   const session = new Session(context);
   context.subscriptions.push(
     session,
@@ -23,5 +23,6 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     // Paths that the workspace names count from now on.
     vscode.workspace.onDidGrantWorkspaceTrust(() => void session.restart()),
   );
-  await session.start();
+  // Nothing waits for it: a server that never answers must not keep anybody from starting another one.
+  void session.start();
 }

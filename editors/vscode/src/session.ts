@@ -1,10 +1,19 @@
 // The language server for as long as the window is open: found, started, and started again.
+import type { ChildProcess } from "node:child_process";
 import { statSync } from "node:fs";
 import * as os from "node:os";
 
 import * as vscode from "vscode";
-import { LanguageClient, type LanguageClientOptions, State } from "vscode-languageclient/node";
+import {
+  CloseAction,
+  type CloseHandlerResult,
+  ErrorAction,
+  LanguageClient,
+  type LanguageClientOptions,
+  State,
+} from "vscode-languageclient/node";
 
+import { Ends, launch } from "./launch";
 import { CLIENT_COMMANDS, middleware } from "./middleware";
 import { findServer, type Places, type Program } from "./server";
 
@@ -25,6 +34,10 @@ export class Session implements vscode.Disposable {
   program: Program | undefined;
   state: ServerState = "starting";
 
+  private process: ChildProcess | undefined;
+  /** What was begun last. */
+  private last: Promise<void> = Promise.resolve();
+
   private readonly changed = new vscode.EventEmitter<ServerState>();
   readonly onDidChangeState = this.changed.event;
 
@@ -33,7 +46,17 @@ export class Session implements vscode.Disposable {
   constructor(private readonly context: vscode.ExtensionContext) {}
 
   /** Looks for the server and starts it; says so where it cannot. */
-  async start(): Promise<void> {
+  start(): Promise<void> {
+    return this.inTurn(() => this.begin());
+  }
+
+  /** Ends the server, if there is one, and starts the one that is found now. */
+  restart(): Promise<void> {
+    this.letGo();
+    return this.inTurn(() => this.begin());
+  }
+
+  private async begin(): Promise<void> {
     const server = findServer(this.places());
     if (!("command" in server)) {
       this.program = undefined;
@@ -43,7 +66,43 @@ export class Session implements vscode.Disposable {
     }
     this.program = server;
     this.output.info(`starting ${server.command} ${server.args.join(" ")}`);
-    const client = new LanguageClient("pydslrep", "PyDSLRep", { command: server.command, args: server.args }, this.options());
+    const client = this.connect(server);
+    this.client = client;
+    try {
+      await client.start();
+    } catch (error) {
+      if (this.client === client) {
+        this.enter("stopped");
+        void this.complain(`${server.command} is no language server of PyDSLRep: ${String(error)}`, server.origin === "setting");
+      }
+    }
+  }
+
+  private connect(server: Program): LanguageClient {
+    const folder = vscode.workspace.workspaceFolders?.[0]?.uri.fsPath;
+    const ends = new Ends();
+    const closed = (): CloseHandlerResult => {
+      if (this.client !== client) {
+        return { action: CloseAction.DoNotRestart, handled: true };
+      }
+      if (ends.add(Date.now())) {
+        return { action: CloseAction.Restart, handled: true, message: "The server ended and is started again." };
+      }
+      return { action: CloseAction.DoNotRestart, message: "The server of PyDSLRep ended again and again and is not started any more." };
+    };
+    const start = async () => {
+      const process = await launch(server, folder);
+      if (this.client !== client) {
+        process.kill();
+      }
+      this.process = process;
+      return process;
+    };
+    const client = new LanguageClient("pydslrep", "PyDSLRep", start, {
+      ...this.options(),
+      // What is written to a server that died fails before its end is seen: it is the end that counts.
+      errorHandler: { error: () => ({ action: ErrorAction.Continue, handled: true }), closed },
+    });
     client.registerFeature({
       fillClientCapabilities: (capabilities) => {
         capabilities.experimental = { commands: { commands: CLIENT_COMMANDS } };
@@ -58,27 +117,29 @@ export class Session implements vscode.Disposable {
         this.enter(named(newState));
       }
     });
-    this.client = client;
-    try {
-      await client.start();
-    } catch (error) {
-      this.enter("stopped");
-      void this.complain(`${server.command} is no language server of PyDSLRep: ${String(error)}`, server.origin === "setting");
-    }
+    return client;
   }
 
-  /** Ends the server, if there is one, and starts the one that is found now. */
-  async restart(): Promise<void> {
-    await this.stop();
-    await this.start();
-  }
-
-  /** Ends the server. */
-  async stop(): Promise<void> {
-    const client = this.client;
+  /** Lets go of the server, if there is one, and ends it in its turn. */
+  private letGo(): void {
+    const { client, process } = this;
     this.client = undefined;
-    // A server that never started has nothing to stop, and one that hangs is left behind.
-    await client?.dispose().catch((error: unknown) => this.output.warn(String(error)));
+    this.process = undefined;
+    if (client?.state === State.Starting) {
+      // It may never answer, and what comes next waits for it.
+      process?.kill();
+    }
+    void this.inTurn(async () => {
+      await client?.dispose().catch((error: unknown) => this.output.warn(String(error)));
+      // One that hangs does not go by being asked.
+      process?.kill();
+    });
+  }
+
+  /** Does one thing after the other: what is asked for while a server starts comes behind that. */
+  private inTurn(step: () => Promise<void>): Promise<void> {
+    this.last = this.last.then(step, step);
+    return this.last;
   }
 
   /** Where this window looks for programs. */
@@ -95,7 +156,7 @@ export class Session implements vscode.Disposable {
   }
 
   dispose(): void {
-    void this.stop();
+    this.letGo();
     this.changed.dispose();
     this.output.dispose();
   }

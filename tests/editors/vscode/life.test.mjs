@@ -29,7 +29,7 @@ test("a server that is killed comes back, with what is open", async () => {
     await stage.page.keyboard.press("Backspace");
     await stage.type("4");
     await stage.page.locator(".squiggly-error").first().waitFor({ state: "detached" });
-    assert.match(await status(stage), /PyDSLRep \d+\.\d+\.\d+[^]*running/);
+    await until("its version is shown", async () => /PyDSLRep \d+\.\d+\.\d+[^]*running/.test(await status(stage)));
 
     await stage.call("PyDSLRep: Restart Server");
     await until("the server was replaced", () => {
@@ -39,6 +39,20 @@ test("a server that is killed comes back, with what is open", async () => {
     await until("it runs", async () => /running/.test(await status(stage)));
     await stage.call("PyDSLRep: Show Output");
     await stage.page.locator(".output-view-content, .panel .view-lines", { hasText: "starting" }).first().waitFor();
+  });
+});
+
+test("a program that never answers keeps nobody from another one", async () => {
+  const silent = "#!/bin/sh\nwhile :; do sleep 1; done\n";
+  await Stage.with({
+    files: { ...FILES, silent },
+    open: "broken.pyr",
+    settings: { "pydslrep.server.path": "${workspaceFolder}/silent" },
+  }, async (stage) => {
+    const [first] = await until("it is started", () => stage.servers().length === 1 && stage.servers());
+    stage.set({ "pydslrep.server.path": "" });
+    await stage.page.locator(".squiggly-error").first().waitFor();
+    await until("only the other one is there", () => stage.servers().length === 1 && stage.servers()[0] !== first);
   });
 });
 

@@ -83,7 +83,7 @@ export class Stage {
     mkdirSync(path.join(this.scratch, "data/User"), { recursive: true });
     for (const [name, text] of Object.entries(files)) {
       mkdirSync(path.dirname(path.join(this.folder, name)), { recursive: true });
-      writeFileSync(path.join(this.folder, name), text);
+      writeFileSync(path.join(this.folder, name), text, { mode: text.startsWith("#!") ? 0o755 : 0o644 });
     }
     writeFileSync(path.join(this.scratch, "data/User/settings.json"), JSON.stringify({ ...SETTINGS, ...settings }));
     // Paths of programs are settings of the machine: those of the person reach it only from an editor on the same one.
@@ -196,6 +196,18 @@ export class Stage {
     await input.fill(`>${title}`);
     await this.page.locator(".quick-input-widget .monaco-list-row", { hasText: title.split(": ").at(-1) }).first().waitFor();
     await this.page.keyboard.press("Enter");
+  }
+
+  /** Presses keys until what they open is there: a busy editor may close it again at once, as it would to a person. */
+  async summon(keys, widget) {
+    await until(`${keys} opens something`, async () => {
+      await this.page.keyboard.press(keys);
+      const isThere = await widget.waitFor({ timeout: 5000 }).then(() => true, () => false);
+      if (!isThere) {
+        await this.page.keyboard.press("Escape");
+      }
+      return isThere;
+    });
   }
 
   /** Types at the cursor, as a person does: key by key. */

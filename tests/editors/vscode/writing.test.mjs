@@ -45,8 +45,7 @@ test("lenses are shown above declarations", async () => {
 test("a quick fix mends the mistake", async () => {
   await stage.page.locator(".squiggly-error").first().waitFor();
   await stage.clickWord("movement patrol of", "rovr");
-  await stage.page.keyboard.press("Control+.");
-  await stage.page.locator(".action-widget .monaco-list-row", { hasText: "rover" }).first().waitFor();
+  await stage.summon("Control+.", stage.page.locator(".action-widget .monaco-list-row", { hasText: "rover" }).first());
   await stage.picture("quick-fix");
   await stage.page.keyboard.press("Enter");
   await stage.page.locator(".squiggly-error").first().waitFor({ state: "detached" });
@@ -63,14 +62,14 @@ test("completion offers what can come next, and inserts it", async () => {
   await stage.page.keyboard.press("Enter");
   await stage.type("tu");
   const offered = stage.page.locator(".suggest-widget.visible .monaco-list-row");
-  await offered.filter({ hasText: "turn" }).first().waitFor();
+  await stage.summon("Control+Space", offered.filter({ hasText: "turn" }).first());
   await stage.picture("completion");
   await stage.page.keyboard.press("Escape");
   await stage.type("rn right 45");
   await stage.page.keyboard.press("Escape");
   await stage.page.keyboard.press("Control+S");
   await until("it is saved", () => stage.read("yard.pyr").includes("\n  turn right 45\n}"));
-  assert.equal(await stage.page.locator(".squiggly-error").count(), 0);
+  await stage.page.locator(".squiggly-error").first().waitFor({ state: "detached" });
 });
 
 test("hovering over a robot shows its equations", async () => {
