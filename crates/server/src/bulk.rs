@@ -10,13 +10,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use futures::FutureExt;
 use futures::future::BoxFuture;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use serde_json::Value;
 use tower_lsp::jsonrpc::{ErrorCode, Id, Request};
 
 use crate::handlers::{code_lenses, document_symbols, folding, formatting, references, semantic_tokens};
 use crate::log::log;
-use crate::message::{Outbox, refuse};
+use crate::message::{Outbox, WriteJson, refuse};
 use crate::server::Server;
 use crate::state::State;
 use crate::work::Work;
@@ -56,7 +56,7 @@ impl Server {
     fn answer_directly<P, R>(&self, request: &Request, handler: fn(&State, &P) -> R) -> Bulk
     where
         P: for<'a> Deserialize<'a>,
-        R: Serialize,
+        R: WriteJson,
     {
         let Some((id, params)) = read(request) else { return Bulk::Other };
         let result = handler(&self.state(), &params);
@@ -67,7 +67,7 @@ impl Server {
     fn work_on<P, R>(&self, request: &Request, prepare: fn(&mut State, &P) -> Option<Work<R>>) -> Bulk
     where
         P: for<'a> Deserialize<'a>,
-        R: Serialize + 'static,
+        R: WriteJson + 'static,
     {
         let Some((id, params)) = read(request) else { return Bulk::Other };
         let Some(work) = prepare(&mut self.state(), &params) else {
@@ -94,7 +94,7 @@ fn read<P: for<'a> Deserialize<'a>>(request: &Request) -> Option<(Id, P)> {
     Some((request.id()?.clone(), P::deserialize(request.params()?).ok()?))
 }
 
-fn finish<R: Serialize>(work: Work<R>, id: &Id, cancelled: &Arc<AtomicBool>, outbox: &Outbox) {
+fn finish<R: WriteJson>(work: Work<R>, id: &Id, cancelled: &Arc<AtomicBool>, outbox: &Outbox) {
     let Work { snapshot, outdated, run } = work;
     let snapshot = snapshot.stop_on(Arc::clone(&outdated)).stop_on(Arc::clone(cancelled));
     let result = catch_unwind(AssertUnwindSafe(|| run(&snapshot)));

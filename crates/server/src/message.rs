@@ -112,6 +112,18 @@ pub(crate) fn refuse(id: Id, code: ErrorCode, message: String) -> Response {
     Response::from_error(id, Error { code, message: message.into(), data: None })
 }
 
+/// What can be put into a message; most of it by way of serde.
+pub(crate) trait WriteJson {
+    /// Writes itself behind what is there.
+    fn write_json(&self, json: &mut Vec<u8>) -> serde_json::Result<()>;
+}
+
+impl<T: Serialize + ?Sized> WriteJson for T {
+    fn write_json(&self, json: &mut Vec<u8>) -> serde_json::Result<()> {
+        serde_json::to_writer(json, self)
+    }
+}
+
 /// Where messages to the client go; it never blocks, and messages arrive in the order in which they were sent.
 #[derive(Debug, Clone)]
 pub struct Outbox {
@@ -159,14 +171,17 @@ impl Outbox {
     }
 
     /// Answers a request without the detour over a JSON value.
-    pub(crate) fn answer(&self, id: &Id, result: &impl Serialize) {
-        #[derive(Serialize)]
-        struct Answer<'a, R> {
-            jsonrpc: &'static str,
-            id: &'a Id,
-            result: &'a R,
+    pub(crate) fn answer(&self, id: &Id, result: &impl WriteJson) {
+        let mut body = br#"{"jsonrpc":"2.0","id":"#.to_vec();
+        let written = id.write_json(&mut body).and_then(|()| {
+            body.extend(br#","result":"#);
+            result.write_json(&mut body)
+        });
+        // As in `send`.
+        if written.is_ok() {
+            body.push(b'}');
+            let _ = self.sender.send(Some(body));
         }
-        self.send(&Answer { jsonrpc: "2.0", id, result });
     }
 
     /// Tells the receiver that nothing follows.
