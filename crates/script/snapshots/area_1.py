@@ -33,6 +33,7 @@ ARRIVED = 0.0001  # m at the rim: this near, an action has reached its goal ...
 CLOSE = 0.001  # m at the rim: ... and this near, it has after CLOSE_TIME of trying
 CLOSE_TIME = 1.0  # s of simulation time
 STALL_TIME = 5.0  # s of simulation time without progress that fail an action
+MOST_ASIDE = 0.05  # m beside its goal that fail a move: more than wheels that slip make of it
 CONNECT_TIMEOUT = 5.0  # s to wait for the first answer of a simulator
 REPLY_TIMEOUT = 10.0  # s to wait for any later answer
 STOP_TIMEOUT = 1.0  # s to wait for an answer while stopping after an error
@@ -573,8 +574,10 @@ class Robot:
             rim_speed = approach.next_speed(to_go)
             here = self._step(self.body.drive.follow_line(rim_speed, offset, to_go))
         self._planned = goal
+        here = self._come_to_rest(here)
+        self._check_arrival(here.seen_from(goal).y)
         # It may have come to rest slightly turned.
-        here = self._rotate(self._come_to_rest(here), 0.0)
+        here = self._rotate(here, 0.0)
         self._report(here)
 
     def turn(self, degrees: float) -> None:
@@ -651,6 +654,14 @@ class Robot:
             raise self.failure(
                 f"came no nearer to its goal for {STALL_TIME:g} s, {abs(to_go):.3f} m before it; "
                 + self.body.why_it_stands()
+            )
+
+    def _check_arrival(self, aside: float) -> None:
+        if abs(aside) > MOST_ASIDE:
+            side = "left" if aside > 0.0 else "right"
+            raise self.failure(
+                f"ended {abs(aside):.3f} m to the {side} of its goal: something was in its way, "
+                "and it slid along it"
             )
 
     def _report(self, here: Pose) -> None:

@@ -11,7 +11,7 @@ from .coppeliasim import Body
 from .errors import MovementCancelledError, MovementError
 from .odometer import Odometer
 from .pose import Pose, wrap_angle
-from .settings import RIM_SPEED, STALL_TIME
+from .settings import MOST_ASIDE, RIM_SPEED, STALL_TIME
 from .survey import Survey
 from .surveyor import survey_with
 from .trace_file import Trace
@@ -55,8 +55,10 @@ class Robot:
             rim_speed = approach.next_speed(to_go)
             here = self._step(self.body.drive.follow_line(rim_speed, offset, to_go))
         self._planned = goal
+        here = self._come_to_rest(here)
+        self._check_arrival(here.seen_from(goal).y)
         # It may have come to rest slightly turned.
-        here = self._rotate(self._come_to_rest(here), 0.0)
+        here = self._rotate(here, 0.0)
         self._report(here)
 
     def turn(self, degrees: float) -> None:
@@ -231,6 +233,14 @@ class Robot:
             raise self.failure(
                 f"came no nearer to its goal for {STALL_TIME:g} s, {abs(to_go):.3f} m before it; "
                 + self.body.why_it_stands()
+            )
+
+    def _check_arrival(self, aside: float) -> None:
+        if abs(aside) > MOST_ASIDE:
+            side = "left" if aside > 0.0 else "right"
+            raise self.failure(
+                f"ended {abs(aside):.3f} m to the {side} of its goal: something was in its way, "
+                "and it slid along it"
             )
 
     def _report(self, here: Pose) -> None:

@@ -44,6 +44,7 @@ class FakeRobot:
     motor_acceleration: float = 40.0  # rad/s²
     slip: float = 0.0  # standard deviation of each wheel's grip
     wall: float = math.inf  # the body's x cannot exceed this
+    kerb: float = -math.inf  # it slides along this where y would fall below it
     sensors: dict[str, Callable[["FakeRobot"], bool]] = field(default_factory=dict)
     rolled: list[list[float]] = field(default_factory=list)
 
@@ -66,7 +67,8 @@ class FakeRobot:
         if self.x + (vx * math.cos(middle) - vy * math.sin(middle)) * dt > self.wall:
             return
         self.x += (vx * math.cos(middle) - vy * math.sin(middle)) * dt
-        self.y += (vx * math.sin(middle) + vy * math.cos(middle)) * dt
+        y = self.y + (vx * math.sin(middle) + vy * math.cos(middle)) * dt
+        self.y = max(y, self.kerb)
         self.theta += omega * dt
 
     def twist(self, grips: Sequence[float]) -> tuple[float, float, float]:

@@ -1,5 +1,7 @@
 """Tests of what goes wrong: blocked robots, missing objects, simulators that fall silent."""
 
+import math
+import re
 import threading
 from collections.abc import Iterator
 
@@ -34,6 +36,20 @@ def test_a_blocked_robot_fails_its_action(monkeypatch: pytest.MonkeyPatch) -> No
     assert all(joint.target == 0.0 for joint in fake.joints)
     assert not world.running
     assert 5.0 < world.steps * world.dt < 12.0
+
+
+def test_a_robot_that_slid_aside_fails_its_action(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    fake = FakeRobot("r", joints("two-wheel"), theta=math.radians(-20.0), kerb=-0.1)
+    with pytest.raises(MovementError) as error:
+        drive_alone(FakeWorld(fake), monkeypatch, "two-wheel", move_a_metre)
+    assert re.fullmatch(
+        r"robot r, movement m, action 2: move 1 m: ended 0\.2\d\d m to the left of its goal: "
+        "something was in its way, and it slid along it",
+        str(error.value),
+    )
+    assert all(joint.target == 0.0 for joint in fake.joints)
 
 
 def test_a_joint_in_another_mode_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
