@@ -13,12 +13,12 @@
 //!
 //! With the feature `process` off there is no runtime, no stdio and no socket: a browser feeds a session itself.
 
-mod bulk;
 mod capabilities;
 #[cfg(feature = "process")]
 mod children;
 mod chosen;
 mod client;
+mod direct;
 mod documents;
 #[cfg(feature = "process")]
 mod driven;

@@ -1,5 +1,5 @@
-//! The whole surface of the server, one entry per message of the protocol; those about whole files are in
-//! [`bulk`](crate::bulk).
+//! The whole surface of the server, one entry per message of the protocol; the requests about whole files and those that
+//! follow every keystroke are in [`direct`](crate::direct).
 
 mod indexing;
 #[cfg(feature = "process")]
@@ -24,8 +24,8 @@ use crate::handlers::planned_action::{ActionOf, PlannedAt};
 use crate::handlers::runs;
 use crate::handlers::{
     self, call_hierarchy, code_actions, code_lenses, completion, diagnostics, document_links,
-    file_operations, formatting, hover, inlay_hints, navigation, planned_action, planned_path, references,
-    rename, scripts, selection, semantic_tokens, signature, synchronization, workspace_symbols,
+    file_operations, formatting, hover, navigation, planned_action, planned_path, references, rename,
+    scripts, selection, signature, synchronization, workspace_symbols,
 };
 use crate::log::log;
 use crate::message::Outbox;
@@ -187,10 +187,6 @@ impl LanguageServer for Server {
 
     //// What is wrong ////
 
-    async fn diagnostic(&self, params: DocumentDiagnosticParams) -> Result<DocumentDiagnosticReportResult> {
-        Ok(diagnostics::pull(&self.state(), &params))
-    }
-
     async fn workspace_diagnostic(
         &self,
         params: WorkspaceDiagnosticParams,
@@ -238,10 +234,6 @@ impl LanguageServer for Server {
     }
 
     //// What is there ////
-
-    async fn completion(&self, params: CompletionParams) -> Result<Option<CompletionResponse>> {
-        Ok(completion::completion(&self.state(), &params))
-    }
 
     async fn completion_resolve(&self, item: CompletionItem) -> Result<CompletionItem> {
         completion::resolve(&self.state(), item)
@@ -324,10 +316,6 @@ impl LanguageServer for Server {
         Ok(rename::linked_editing_ranges(&self.state(), &params))
     }
 
-    async fn inlay_hint(&self, params: InlayHintParams) -> Result<Option<Vec<InlayHint>>> {
-        Ok(inlay_hints::inlay_hints(&self.state(), &params))
-    }
-
     async fn code_lens_resolve(&self, lens: CodeLens) -> Result<CodeLens> {
         code_lenses::resolve(&self.state(), lens)
     }
@@ -345,13 +333,6 @@ impl LanguageServer for Server {
         params: DocumentOnTypeFormattingParams,
     ) -> Result<Option<Vec<TextEdit>>> {
         Ok(formatting::on_type(&self.state(), &params))
-    }
-
-    async fn semantic_tokens_range(
-        &self,
-        params: SemanticTokensRangeParams,
-    ) -> Result<Option<SemanticTokensRangeResult>> {
-        Ok(semantic_tokens::range(&self.state(), &params).map(Into::into))
     }
 }
 

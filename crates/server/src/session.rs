@@ -15,7 +15,7 @@ use tower_lsp::jsonrpc::{ErrorCode, Id, Request, Response};
 use tower_lsp::{ClientSocket, ExitedError, LspService};
 use tower_service::Service;
 
-use crate::bulk::Bulk;
+use crate::direct::Direct;
 use crate::handlers::driven_path::DRIVEN_PATH;
 use crate::handlers::planned_action::{ACTION_LOCATION, PLANNED_AT};
 use crate::handlers::planned_path::PLANNED_PATH;
@@ -132,7 +132,7 @@ impl Session {
 
     /// Runs a handler up to its first `.await`; hands over what remains.
     fn call(&mut self, request: Request) {
-        if request.method() == "$/cancelRequest" && self.cancels_bulk(&request) {
+        if request.method() == "$/cancelRequest" && self.cancels_running(&request) {
             return;
         }
         if let Some((code, reason)) = self.why_not(&request) {
@@ -146,10 +146,10 @@ impl Session {
         let method = request.method().to_owned();
         let started = catch_unwind(AssertUnwindSafe(|| {
             if self.stage == Stage::Serving {
-                match self.server.answer_bulk(&request) {
-                    Bulk::Other => {}
-                    Bulk::Answered => return Ok(Ok(None)),
-                    Bulk::Later(work) => {
+                match self.server.answer_direct(&request) {
+                    Direct::Other => {}
+                    Direct::Answered => return Ok(Ok(None)),
+                    Direct::Later(work) => {
                         (self.spawn)(work);
                         return Ok(Ok(None));
                     }
@@ -196,7 +196,7 @@ impl Session {
         }
     }
 
-    fn cancels_bulk(&self, request: &Request) -> bool {
+    fn cancels_running(&self, request: &Request) -> bool {
         let id = request.params().and_then(|params| params.get("id")).cloned();
         id.and_then(|id| serde_json::from_value(id).ok()).is_some_and(|id| self.server.running.cancel(&id))
     }

@@ -1,8 +1,8 @@
-//! Requests about whole files. A long file is worked on beside the message loop, from a snapshot, so that typing goes on
-//! meanwhile; the work ends early when the client takes the request back or changes the text.
+//! Requests that are answered around the router, which would build a JSON value of each answer first: those about whole
+//! files, whose answers may be megabytes, and those that follow every keystroke.
 //!
-//! Their answers may be megabytes, so they go around the router too: it would build a JSON value of each first, which
-//! takes several times as long as all the rest.
+//! A long file is worked on beside the message loop, from a snapshot, so that typing goes on meanwhile; the work ends
+//! early when the client takes the request back or changes the text.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -14,7 +14,10 @@ use serde::Deserialize;
 use serde_json::Value;
 use tower_lsp::jsonrpc::{ErrorCode, Id, Request};
 
-use crate::handlers::{code_lenses, document_symbols, folding, formatting, references, semantic_tokens};
+use crate::handlers::{
+    code_lenses, completion, diagnostics, document_symbols, folding, formatting, inlay_hints, references,
+    semantic_tokens,
+};
 use crate::log::log;
 use crate::message::{Outbox, WriteJson, refuse};
 use crate::server::Server;
@@ -29,8 +32,8 @@ const CANCELLED: ErrorCode = ErrorCode::ServerError(-32800);
 const CONTENT_MODIFIED: ErrorCode = ErrorCode::ServerError(-32801);
 
 /// What became of a request.
-pub(crate) enum Bulk {
-    /// It is none about a whole file, or something is wrong with it: the router knows what.
+pub(crate) enum Direct {
+    /// It is for the router: none of these, or one that something is wrong with.
     Other,
     /// It is answered.
     Answered,
@@ -39,48 +42,52 @@ pub(crate) enum Bulk {
 }
 
 impl Server {
-    /// Answers a request about a whole file, now or later, if this is one.
-    pub(crate) fn answer_bulk(&self, request: &Request) -> Bulk {
+    /// Answers a request, now or later, if it is one of those that go around the router.
+    pub(crate) fn answer_direct(&self, request: &Request) -> Direct {
         match request.method() {
             "textDocument/documentSymbol" => self.work_on(request, document_symbols::document_symbols),
             "textDocument/foldingRange" => self.work_on(request, folding::folding_ranges),
             "textDocument/formatting" => self.work_on(request, formatting::document),
             "textDocument/semanticTokens/full" => self.work_on(request, semantic_tokens::full),
             "textDocument/semanticTokens/full/delta" => self.work_on(request, semantic_tokens::delta),
-            "textDocument/codeLens" => self.answer_directly(request, code_lenses::code_lenses),
-            "textDocument/references" => self.answer_directly(request, references::references),
-            _ => Bulk::Other,
+            "textDocument/codeLens" => self.answer_now(request, code_lenses::code_lenses),
+            "textDocument/completion" => self.answer_now(request, completion::completion),
+            "textDocument/diagnostic" => self.answer_now(request, diagnostics::pull),
+            "textDocument/inlayHint" => self.answer_now(request, inlay_hints::inlay_hints),
+            "textDocument/references" => self.answer_now(request, references::references),
+            "textDocument/semanticTokens/range" => self.answer_now(request, semantic_tokens::range),
+            _ => Direct::Other,
         }
     }
 
-    fn answer_directly<P, R>(&self, request: &Request, handler: fn(&State, &P) -> R) -> Bulk
+    fn answer_now<P, R>(&self, request: &Request, handler: fn(&State, &P) -> R) -> Direct
     where
         P: for<'a> Deserialize<'a>,
         R: WriteJson,
     {
-        let Some((id, params)) = read(request) else { return Bulk::Other };
+        let Some((id, params)) = read(request) else { return Direct::Other };
         let result = handler(&self.state(), &params);
         self.outbox.answer(&id, &result);
-        Bulk::Answered
+        Direct::Answered
     }
 
-    fn work_on<P, R>(&self, request: &Request, prepare: fn(&mut State, &P) -> Option<Work<R>>) -> Bulk
+    fn work_on<P, R>(&self, request: &Request, prepare: fn(&mut State, &P) -> Option<Work<R>>) -> Direct
     where
         P: for<'a> Deserialize<'a>,
         R: WriteJson + 'static,
     {
-        let Some((id, params)) = read(request) else { return Bulk::Other };
+        let Some((id, params)) = read(request) else { return Direct::Other };
         let Some(work) = prepare(&mut self.state(), &params) else {
             self.outbox.answer(&id, &Value::Null);
-            return Bulk::Answered;
+            return Direct::Answered;
         };
         if work.snapshot.text().len_bytes() < LONG {
             self.outbox.answer(&id, &(work.run)(&work.snapshot));
-            return Bulk::Answered;
+            return Direct::Answered;
         }
         let cancelled = self.running.add(id.clone());
         let (outbox, running) = (self.outbox.clone(), self.running.clone());
-        Bulk::Later(
+        Direct::Later(
             async move {
                 finish(work, &id, &cancelled, &outbox);
                 running.remove(&id);
