@@ -2,7 +2,8 @@
 
 use pydslrep_notation::Value;
 
-use crate::{Config, Target, read};
+use crate::values::{self, Refusal, Values, Word};
+use crate::{Config, Target};
 
 /// A setting.
 #[derive(Debug)]
@@ -18,31 +19,7 @@ pub struct Key {
     /// A value that is not the default, as TOML and JSON write it alike.
     pub example: &'static str,
     /// Puts a value into its place.
-    pub(crate) set: fn(&mut Config, &Value) -> Result<(), read::Refusal>,
-}
-
-/// What a setting can be.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Values {
-    /// One of these words.
-    Words(&'static [Word]),
-    /// `true` or `false`.
-    Flag,
-    /// A number above zero.
-    AboveZero,
-    /// A folder in the one that the settings are about.
-    Folder,
-    /// A table of codes of the catalogue, each with a [`Level`](crate::Level).
-    Levels,
-}
-
-/// A word with what it means.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Word {
-    /// The word.
-    pub word: &'static str,
-    /// What it means.
-    pub summary: &'static str,
+    pub(crate) set: fn(&mut Config, &Value) -> Result<(), Refusal>,
 }
 
 const TARGETS: [Word; Target::ALL.len()] = {
@@ -61,7 +38,7 @@ pub const KEYS: [Key; 8] = [
         summary: "The simulator that scripts are for.",
         default: "`\"coppeliasim\"`",
         example: "\"vrep\"",
-        set: |config, value| read::target(value).map(|target| config.target = Some(target)),
+        set: |config, value| values::target(value).map(|target| config.target = Some(target)),
     },
     Key {
         name: "output",
@@ -70,7 +47,7 @@ pub const KEYS: [Key; 8] = [
                   it is not there.",
         default: "beside each program",
         example: "\"scripts\"",
-        set: |config, value| read::folder(value).map(|folder| config.output = Some(folder)),
+        set: |config, value| values::folder(value).map(|folder| config.output = Some(folder)),
     },
     Key {
         name: "generate-on-save",
@@ -78,7 +55,7 @@ pub const KEYS: [Key; 8] = [
         summary: "Whether an editor writes the scripts of a program whenever it is saved without errors.",
         default: "`false`",
         example: "true",
-        set: |config, value| read::flag(value).map(|flag| config.generate_on_save = Some(flag)),
+        set: |config, value| values::flag(value).map(|flag| config.generate_on_save = Some(flag)),
     },
     Key {
         name: "default-speed",
@@ -86,7 +63,7 @@ pub const KEYS: [Key; 8] = [
         summary: "The speed in snippets that an editor inserts, in centimetres per second.",
         default: "`9.0`",
         example: "12.5",
-        set: |config, value| read::above_zero(value).map(|speed| config.default_speed = Some(speed)),
+        set: |config, value| values::above_zero(value).map(|speed| config.default_speed = Some(speed)),
     },
     Key {
         name: "severity",
@@ -97,7 +74,7 @@ pub const KEYS: [Key; 8] = [
         default: "as in the [list of messages](diagnostics/README.md)",
         example: "{ }",
         // Each code is read on its own, so that one slip does not hide the others.
-        set: |_, value| read::table(value),
+        set: |_, value| values::table(value),
     },
     Key {
         name: "inlay-hints.pose",
@@ -105,7 +82,7 @@ pub const KEYS: [Key; 8] = [
         summary: "Whether an editor shows the pose after each action.",
         default: "`true`",
         example: "false",
-        set: |config, value| read::flag(value).map(|flag| config.inlay_hints.pose = Some(flag)),
+        set: |config, value| values::flag(value).map(|flag| config.inlay_hints.pose = Some(flag)),
     },
     Key {
         name: "inlay-hints.duration",
@@ -113,7 +90,7 @@ pub const KEYS: [Key; 8] = [
         summary: "Whether an editor shows how long each action takes.",
         default: "`true`",
         example: "false",
-        set: |config, value| read::flag(value).map(|flag| config.inlay_hints.duration = Some(flag)),
+        set: |config, value| values::flag(value).map(|flag| config.inlay_hints.duration = Some(flag)),
     },
     Key {
         name: "inlay-hints.defaults",
@@ -121,7 +98,7 @@ pub const KEYS: [Key; 8] = [
         summary: "Whether an editor shows speeds and angles that are left out.",
         default: "`true`",
         example: "false",
-        set: |config, value| read::flag(value).map(|flag| config.inlay_hints.defaults = Some(flag)),
+        set: |config, value| values::flag(value).map(|flag| config.inlay_hints.defaults = Some(flag)),
     },
 ];
 

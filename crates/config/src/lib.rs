@@ -12,13 +12,15 @@ mod keys;
 mod manual;
 mod read;
 mod severities;
+mod values;
 
 pub use config::{Config, InlayHints, InlayHintsConfig, Settings};
-pub use keys::{KEYS, Key, Values, Word, tables};
+pub use keys::{KEYS, Key, tables};
 pub use manual::{json_schema, manual};
 pub use pydslrep_analysis::Target;
 pub use pydslrep_notation::{Problem, ProblemKind};
 pub use severities::{Level, Severities, UnknownWord, find_rule};
+pub use values::{Values, Word};
 
 /// What the file is called. It stands in the folder that it is about, and holds for all programs in it and below.
 pub const FILE_NAME: &str = "pydslrep.toml";

@@ -3,8 +3,8 @@
 use pydslrep_analysis::diagnostics::CATALOGUE;
 use serde_json::{Map, Value, json};
 
-use crate::keys::{KEYS, Key, Values};
-use crate::{FILE_NAME, Level};
+use crate::keys::{KEYS, Key};
+use crate::{FILE_NAME, Level, Values};
 
 /// The page of documentation, in Markdown.
 pub fn manual() -> String {
