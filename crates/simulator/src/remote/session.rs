@@ -8,7 +8,7 @@ use ciborium::Value;
 use super::arguments::{Arguments, Failure, Outcome, integer};
 use super::calls::{self, Bench, Drivers};
 use super::info;
-use super::legacy;
+use super::legacy::client::Client as LegacyClient;
 use super::objects::Objects;
 use pydslrep_record::TraceRecord;
 
@@ -49,7 +49,7 @@ pub struct Session {
     pub(super) state: State,
     clients: BTreeMap<String, Client>,
     /// Clients of the legacy remote API, by connection.
-    pub(super) legacy: BTreeMap<u64, legacy::Client>,
+    pub(super) legacy: BTreeMap<u64, LegacyClient>,
     pub(super) drivers: Drivers,
     trace: Option<Vec<TraceRecord>>,
     seen: Sightings,
@@ -155,7 +155,7 @@ impl Session {
     /// Whether time passes by itself: the simulation runs and no client steps it.
     pub fn is_free_running(&self) -> bool {
         let nobody_steps = self.clients.values().all(|client| client.level == 0)
-            && !self.legacy.values().any(legacy::Client::holds_time);
+            && !self.legacy.values().any(LegacyClient::holds_time);
         self.state == State::Running && nobody_steps
     }
 
@@ -343,7 +343,7 @@ impl Session {
             self.state = State::Stopped;
             self.world.park();
         }
-        self.legacy.values_mut().for_each(legacy::Client::release);
+        self.legacy.values_mut().for_each(LegacyClient::release);
         for client in self.clients.values_mut() {
             client.level = 0;
             // The next run counts its steps from 0 again.
@@ -374,7 +374,7 @@ impl Session {
         let asks = |client: &Client| client.wanted.as_ref().is_some_and(|wanted| wanted.steps > steps);
         let stepping = self.clients.values().filter(|client| client.level > 0).map(asks);
         let triggering = self.legacy.values().filter(|client| client.holds_time());
-        let mut joined = stepping.chain(triggering.map(legacy::Client::asks)).peekable();
+        let mut joined = stepping.chain(triggering.map(LegacyClient::asks)).peekable();
         let may = self.state == State::Running && self.allowance != Some(0);
         if may && joined.peek().is_some() && joined.all(|asks| asks) {
             self.allowance = self.allowance.map(|left| left.saturating_sub(1));
@@ -396,7 +396,7 @@ impl Session {
 
     fn take_step(&mut self) {
         self.world.step();
-        self.legacy.values_mut().for_each(legacy::Client::await_trigger);
+        self.legacy.values_mut().for_each(LegacyClient::await_trigger);
         self.note();
     }
 

@@ -1,4 +1,4 @@
-//! What the commands of the legacy remote API do; those about time are in the module above.
+//! What the commands of the legacy remote API do; those about time are executed with the pass.
 
 use nalgebra::Vector3;
 

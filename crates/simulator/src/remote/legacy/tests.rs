@@ -1,11 +1,13 @@
 //! The legacy remote API seen from a client: messages in, messages out, byte by byte.
 
+use std::time::Duration;
+
 use proptest::prelude::*;
 use pydslrep_kinematics::Drive;
 use pydslrep_scene::{Obstacle, Robot, Scene, SensorKind, Wheel};
 
-use super::*;
-use crate::World;
+use super::{Malformed, Pass};
+use crate::{Session, World};
 
 const ROBOT: i32 = 1;
 const LEFT: i32 = 2;

@@ -1,0 +1,143 @@
+//! A pass: a client's message is executed, and what came of it is the reply.
+
+use std::time::Duration;
+
+use super::super::session::{Answer, Session, State};
+use super::client::Client;
+use super::commands;
+use super::message::{self, Command, Malformed, Message, Name, Outcome, Reply, mode};
+
+const SYNCHRONOUS_ON: u16 = 0x0001;
+const SYNCHRONOUS_OFF: u16 = 0x0002;
+const TRIGGER: u16 = 0x0003;
+const FAREWELL: u16 = 0x000a;
+const START_PAUSE_STOP: u16 = 0x1007;
+
+/// What a message leads to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Pass {
+    /// The reply, for the client.
+    pub reply: Vec<u8>,
+    /// Whether the client said goodbye: nothing more comes from it.
+    pub is_last: bool,
+    /// Answers to others, who waited for this client.
+    pub answers: Vec<Answer>,
+}
+
+impl Session {
+    /// Takes a message of the legacy remote API from a connection; `now` is the time since any fixed moment.
+    ///
+    /// # Errors
+    /// When it is no such message. Nothing that follows it on the connection can be trusted.
+    pub fn legacy_message(
+        &mut self,
+        connection: u64,
+        now: Duration,
+        bytes: &[u8],
+    ) -> Result<Pass, Malformed> {
+        let message = Message::parse(bytes)?;
+        let mut client = self.legacy.remove(&connection).unwrap_or_default();
+        let milliseconds = |time: Duration| i32::try_from(time.as_millis()).unwrap_or(i32::MAX);
+        let time = if self.state == State::Stopped {
+            Duration::ZERO
+        } else {
+            Duration::from_secs_f64(self.world.time())
+        };
+        // Times of steps are no whole milliseconds in binary: 0.15 is a little less.
+        let time = milliseconds(time + Duration::from_micros(500));
+        let mut reply = Reply::new(message.client_time, milliseconds(now), time);
+        let mut is_last = false;
+        for command in &message.commands {
+            is_last |= command.name.kind == FAREWELL;
+            let outcome = self.command(&mut client, connection, now, command);
+            reply.add(&command.name, command.mode, &outcome);
+        }
+        self.stream(&mut client, connection, now, &message, &mut reply);
+        let reply = reply.finish(message.id, self.legacy_state());
+        self.legacy.insert(connection, client);
+        // Only now: the reply to a trigger comes before the step, as from the real server.
+        Ok(Pass { reply, is_last, answers: self.settle() })
+    }
+
+    fn command(&mut self, client: &mut Client, connection: u64, now: Duration, command: &Command) -> Outcome {
+        client.forget(&command.name);
+        match command.mode {
+            mode::ONESHOT | mode::BLOCKING => {
+                self.execute(client, connection, &command.name, &command.payload)
+            }
+            mode::STREAMING if client.keep(command, now) => {
+                self.execute(client, connection, &command.name, &command.payload)
+            }
+            mode::DISCONTINUE => Outcome::done(),
+            _ => Outcome::failure(),
+        }
+    }
+
+    /// Executes the streams that are due, but for those that came with this message and were executed already.
+    fn stream(
+        &mut self,
+        client: &mut Client,
+        connection: u64,
+        now: Duration,
+        message: &Message,
+        reply: &mut Reply,
+    ) {
+        let mut streams = std::mem::take(&mut client.streams);
+        for stream in &mut streams {
+            let is_new = message.commands.iter().any(|command| command.name == stream.name);
+            let is_due = now.saturating_sub(stream.last) >= Duration::from_millis(stream.period.into());
+            if is_due && !is_new {
+                stream.last = now;
+                let outcome = self.execute(client, connection, &stream.name, &stream.payload);
+                reply.add(&stream.name, mode::STREAMING, &outcome);
+            }
+        }
+        client.streams = streams;
+    }
+
+    fn execute(&mut self, client: &mut Client, connection: u64, name: &Name, payload: &[u8]) -> Outcome {
+        match name.kind {
+            SYNCHRONOUS_ON => {
+                client.synchronous = true;
+                client.triggered = false;
+                Outcome::done()
+            }
+            SYNCHRONOUS_OFF => {
+                client.synchronous = false;
+                Outcome::done()
+            }
+            TRIGGER if client.synchronous && self.state == State::Running => {
+                client.triggered = true;
+                Outcome::done()
+            }
+            FAREWELL => Outcome::done(),
+            START_PAUSE_STOP => match message::number(&name.key, 0) {
+                Some(0) => {
+                    self.start();
+                    Outcome::done()
+                }
+                Some(1) => {
+                    self.pause();
+                    Outcome::done()
+                }
+                Some(2) => {
+                    self.stop();
+                    // It is not among the others while it is served.
+                    client.release();
+                    Outcome::done()
+                }
+                _ => Outcome::failure(),
+            },
+            _ => commands::execute(&mut self.bench(connection), name, payload),
+        }
+    }
+
+    /// The byte that says how the simulation is: bit 0 not stopped, bit 1 paused, bit 2 in real time.
+    fn legacy_state(&self) -> u8 {
+        match self.state {
+            State::Stopped => 0b100,
+            State::Paused => 0b111,
+            State::Running => 0b101,
+        }
+    }
+}
