@@ -5,6 +5,7 @@ mod arguments;
 mod calls;
 mod info;
 mod legacy;
+mod message;
 mod objects;
 mod session;
 

@@ -4,21 +4,15 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 use ciborium::Value;
+use pydslrep_record::TraceRecord;
 
-use super::arguments::{Arguments, Failure, Outcome, integer};
+use super::arguments::{Arguments, Failure, Outcome};
 use super::calls::{self, Bench, Drivers};
 use super::info;
 use super::legacy::client::Client as LegacyClient;
+use super::message::{Request, encode, outcome_map};
 use super::objects::Objects;
-use pydslrep_record::TraceRecord;
-
 use crate::{Sightings, World};
-
-/// Requests nest their arguments two or three levels deep; more is an attack on the stack.
-const NESTING: usize = 32;
-
-/// How long the longest client name may be; real ones are UUIDs of 36 characters.
-const LONGEST_UUID: usize = 128;
 
 /// How many clients one connection may speak for; real ones speak for one.
 const CLIENTS_PER_CONNECTION: usize = 16;
@@ -414,58 +408,4 @@ fn namespace(arguments: &Arguments) -> Outcome {
         ("sim", false) => Ok(vec![]),
         (other, _) => Err(Failure(format!("module '{other}' not found: this simulator offers 'sim' only"))),
     }
-}
-
-/// A request, decoded.
-struct Request {
-    function: String,
-    arguments: Vec<Value>,
-    uuid: String,
-    timeout: Option<Duration>,
-}
-
-impl Request {
-    fn decode(bytes: &[u8]) -> Result<Self, &'static str> {
-        let value: Value = ciborium::de::from_reader_with_recursion_limit(bytes, NESTING)
-            .map_err(|_| "the request is not valid CBOR")?;
-        let Value::Map(map) = value else { return Err("the request is not a CBOR map") };
-        let mut request =
-            Self { function: String::new(), arguments: vec![], uuid: String::new(), timeout: None };
-        for (key, value) in map {
-            match (key.as_text().unwrap_or_default(), value) {
-                ("func", Value::Text(function)) => request.function = function,
-                ("args", Value::Array(arguments)) => request.arguments = arguments,
-                ("uuid", Value::Text(uuid)) => request.uuid = uuid,
-                ("timeout", value) => {
-                    let seconds = integer(&value).and_then(|seconds| u64::try_from(seconds).ok());
-                    request.timeout = seconds.map(Duration::from_secs);
-                }
-                _ => {}
-            }
-        }
-        if request.uuid.is_empty() || request.uuid.len() > LONGEST_UUID {
-            return Err("the client's version does not match: requests need a `uuid`");
-        }
-        if request.function.is_empty() {
-            return Err("the request names no function (`func`)");
-        }
-        Ok(request)
-    }
-}
-
-fn outcome_map(outcome: Outcome) -> Vec<(Value, Value)> {
-    match outcome {
-        // The engine encodes an empty list as an empty map.
-        Ok(values) if values.is_empty() => vec![("ret".into(), Value::Map(vec![]))],
-        Ok(values) => vec![("ret".into(), Value::Array(values))],
-        Err(Failure(text)) => vec![("err".into(), text.into())],
-    }
-}
-
-fn encode(map: Vec<(Value, Value)>) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    // Writing to a Vec cannot fail, and none of our values can fail to encode.
-    let written = ciborium::into_writer(&Value::Map(map), &mut bytes);
-    debug_assert!(written.is_ok());
-    bytes
 }

@@ -1,0 +1,67 @@
+//! Messages of ZeroMQ's remote API: requests and their replies, each one CBOR map.
+
+use std::time::Duration;
+
+use ciborium::Value;
+
+use super::arguments::{Failure, Outcome, integer};
+
+/// Requests nest their arguments two or three levels deep; more is an attack on the stack.
+const NESTING: usize = 32;
+
+/// How long the longest client name may be; real ones are UUIDs of 36 characters.
+const LONGEST_UUID: usize = 128;
+
+/// A request, decoded.
+pub(super) struct Request {
+    pub(super) function: String,
+    pub(super) arguments: Vec<Value>,
+    pub(super) uuid: String,
+    pub(super) timeout: Option<Duration>,
+}
+
+impl Request {
+    pub(super) fn decode(bytes: &[u8]) -> Result<Self, &'static str> {
+        let value: Value = ciborium::de::from_reader_with_recursion_limit(bytes, NESTING)
+            .map_err(|_| "the request is not valid CBOR")?;
+        let Value::Map(map) = value else { return Err("the request is not a CBOR map") };
+        let mut request =
+            Self { function: String::new(), arguments: vec![], uuid: String::new(), timeout: None };
+        for (key, value) in map {
+            match (key.as_text().unwrap_or_default(), value) {
+                ("func", Value::Text(function)) => request.function = function,
+                ("args", Value::Array(arguments)) => request.arguments = arguments,
+                ("uuid", Value::Text(uuid)) => request.uuid = uuid,
+                ("timeout", value) => {
+                    let seconds = integer(&value).and_then(|seconds| u64::try_from(seconds).ok());
+                    request.timeout = seconds.map(Duration::from_secs);
+                }
+                _ => {}
+            }
+        }
+        if request.uuid.is_empty() || request.uuid.len() > LONGEST_UUID {
+            return Err("the client's version does not match: requests need a `uuid`");
+        }
+        if request.function.is_empty() {
+            return Err("the request names no function (`func`)");
+        }
+        Ok(request)
+    }
+}
+
+pub(super) fn outcome_map(outcome: Outcome) -> Vec<(Value, Value)> {
+    match outcome {
+        // The engine encodes an empty list as an empty map.
+        Ok(values) if values.is_empty() => vec![("ret".into(), Value::Map(vec![]))],
+        Ok(values) => vec![("ret".into(), Value::Array(values))],
+        Err(Failure(text)) => vec![("err".into(), text.into())],
+    }
+}
+
+pub(super) fn encode(map: Vec<(Value, Value)>) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    // Writing to a Vec cannot fail, and none of our values can fail to encode.
+    let written = ciborium::into_writer(&Value::Map(map), &mut bytes);
+    debug_assert!(written.is_ok());
+    bytes
+}
