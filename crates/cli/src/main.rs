@@ -5,7 +5,7 @@
 //!
 //! * [`arguments`]: the command line; each command's own arguments stand with it in [`commands`].
 //! * [`sources`]: programs and what they import, from files into the database.
-//! * [`render`], [`json`], [`github`], [`sarif`]: problems for people and for programs.
+//! * [`render`], [`summary`], [`json`], [`github`], [`sarif`]: problems for people and for programs.
 //! * [`project`], [`severities`]: what is set for programs, and how bad problems are to whoever asks.
 //! * [`scenes`], [`mistakes`]: what else stands on the floor, and what is wrong with the files that say so.
 //! * [`fixing`], [`rewrite`]: what is done about them.
@@ -40,6 +40,7 @@ mod sarif;
 mod scenes;
 mod severities;
 mod sources;
+mod summary;
 mod survey;
 mod target;
 mod watch;

@@ -8,7 +8,7 @@ use pydslrep_files::{Unread, without_mark};
 
 use crate::failure::Failure;
 use crate::place::{self, PlaceRange};
-use crate::project;
+use crate::render;
 use crate::scenes;
 use crate::sources::{Sources, near, read_file, shown};
 
@@ -58,7 +58,7 @@ pub(crate) fn find(sources: &Sources, files: &[FileId]) -> (Vec<Mistake>, Vec<Fa
 fn mistake(path: &Path, text: &str, problem: Problem) -> Mistake {
     let shown = shown(&near(path));
     let range = place::range_in(text, problem.span.unwrap_or_default());
-    let rendered = project::render(&shown, text, &problem);
+    let rendered = render::problem(&shown, text, &problem);
     Mistake { shown, range, problem, rendered }
 }
 

@@ -8,6 +8,7 @@ use crate::output::{count, say};
 use crate::project::Project;
 use crate::render;
 use crate::sources::Sources;
+use crate::summary::summary;
 
 /// The environments of a program that were asked for: all, or those of that name.
 pub(crate) fn environments(sources: &Sources, file: FileId, name: Option<&str>) -> Vec<EntityId> {
@@ -106,10 +107,6 @@ fn add(problems: &mut Vec<Diagnostic>, more: &[Diagnostic]) {
 
 fn show(sources: &Sources, problems: &[Diagnostic]) {
     if !problems.is_empty() {
-        say(&format!(
-            "{}{}.\n",
-            render::diagnostics(sources, problems),
-            render::summary(sources, problems, &[])
-        ));
+        say(&format!("{}{}.\n", render::diagnostics(sources, problems), summary(sources, problems, &[])));
     }
 }

@@ -3,14 +3,12 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use annotate_snippets::{AnnotationKind, Group, Level, Snippet};
 use pydslrep_analysis::FileId;
-use pydslrep_config::{Config, FILE_NAME, Problem, Settings};
+use pydslrep_config::{Config, FILE_NAME, Settings};
 use pydslrep_files::{project_folder, without_mark};
 
 use crate::failure::Failure;
-use crate::output::renderer;
-use crate::render::with_one_line_ending;
+use crate::render;
 use crate::sources::{Sources, near, read_file, shown};
 
 /// The projects of the programs that were named.
@@ -86,20 +84,6 @@ fn read(path: &Path) -> Result<(Config, String), Failure> {
     let whole = read_file(&path)?;
     let text = without_mark(&whole);
     let (config, problems) = Config::from_toml(text);
-    let told = problems.iter().map(|problem| render(&shown(&path), text, problem)).collect();
+    let told = problems.iter().map(|problem| render::problem(&shown(&path), text, problem)).collect();
     Ok((config, told))
-}
-
-/// A problem with its line, with an empty line behind it.
-pub(crate) fn render(path: &str, text: &str, problem: &Problem) -> String {
-    let span = problem.span.unwrap_or_default();
-    let text = with_one_line_ending(text.to_owned());
-    let place = |offset: u32| (offset as usize).min(text.len());
-    let annotation = AnnotationKind::Primary.span(place(span.start)..place(span.end));
-    let mut group = Group::with_title(Level::ERROR.primary_title(&problem.message))
-        .element(Snippet::source(&text).path(path).annotation(annotation));
-    if let Some(help) = &problem.help {
-        group = group.element(Level::HELP.message(help));
-    }
-    format!("{}\n\n", renderer().render(&[group]))
 }

@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use annotate_snippets::{Annotation, AnnotationKind, Element, Group, Level, Patch, Snippet};
 use pydslrep_analysis::{Database, Diagnostic, FileId, Fix, Severity};
+use pydslrep_config::Problem;
 use pydslrep_syntax::Span;
 
-use crate::mistakes::{self, Mistake};
-use crate::output::{count, renderer};
+use crate::output::renderer;
 use crate::sources::Sources;
 
 /// Problems as they are shown on a terminal, each with an empty line behind it.
@@ -20,25 +20,18 @@ pub(crate) fn diagnostics(sources: &Sources, diagnostics: &[Diagnostic]) -> Stri
     text
 }
 
-/// "2 errors and 1 warning in 1 file".
-pub(crate) fn summary(sources: &Sources, diagnostics: &[Diagnostic], mistakes: &[Mistake]) -> String {
-    let found = diagnostics.iter().map(|diagnostic| (diagnostic.severity, sources.shown(diagnostic.file)));
-    let in_scenes = mistakes.iter().map(|mistake| (mistakes::SEVERITY, mistake.shown.as_str()));
-    let found: Vec<(Severity, &str)> = found.chain(in_scenes).collect();
-    let counts =
-        [Severity::Error, Severity::Warning, Severity::Information, Severity::Hint].map(|severity| {
-            let number = found.iter().filter(|(found, _)| *found == severity).count();
-            (number > 0).then(|| match severity {
-                // Nobody counts informations.
-                Severity::Information => count(number, "remark"),
-                _ => count(number, severity.word()),
-            })
-        });
-    let mut files: Vec<&str> = found.into_iter().map(|(_, file)| file).collect();
-    files.sort_unstable();
-    files.dedup();
-    let counts: Vec<String> = counts.into_iter().flatten().collect();
-    format!("{} in {}", counts.join(", "), count(files.len(), "file"))
+/// A problem of a `pydslrep.toml` or a scene file with its line, with an empty line behind it.
+pub(crate) fn problem(path: &str, text: &str, problem: &Problem) -> String {
+    let span = problem.span.unwrap_or_default();
+    let text = with_one_line_ending(text.to_owned());
+    let place = |offset: u32| (offset as usize).min(text.len());
+    let annotation = AnnotationKind::Primary.span(place(span.start)..place(span.end));
+    let mut group = Group::with_title(Level::ERROR.primary_title(&problem.message))
+        .element(Snippet::source(&text).path(path).annotation(annotation));
+    if let Some(help) = &problem.help {
+        group = group.element(Level::HELP.message(help));
+    }
+    format!("{}\n\n", renderer().render(&[group]))
 }
 
 fn one(sources: &Sources, diagnostic: &Diagnostic) -> String {
@@ -143,6 +136,6 @@ impl Window {
 }
 
 /// The renderer knows neither a lone CR nor, in patches, CRLF. Every byte stays in its place.
-pub(crate) fn with_one_line_ending(text: String) -> String {
+fn with_one_line_ending(text: String) -> String {
     if text.contains('\r') { text.replace("\r\n", " \n").replace('\r', "\n") } else { text }
 }

@@ -8,7 +8,7 @@ use pydslrep_files::{read, without_mark};
 use pydslrep_scene::{ENDING, Scene};
 
 use crate::failure::Failure;
-use crate::project::render;
+use crate::render;
 use crate::sources::{Sources, near, read_file, shown};
 
 /// The scene that an environment of a program is to be driven in: of the file that was named, else of the one beside
@@ -32,7 +32,9 @@ pub(crate) fn scene(
     if problems.is_empty() {
         return Ok(scene);
     }
-    Err(Failure::Shown(problems.iter().map(|problem| render(&shown(&path), text, problem)).collect()))
+    Err(Failure::Shown(
+        problems.iter().map(|problem| render::problem(&shown(&path), text, problem)).collect(),
+    ))
 }
 
 fn beside(environment: &Environment, program: &Path) -> Option<PathBuf> {

@@ -15,7 +15,7 @@ use crate::mistakes::{self, Mistake};
 use crate::output::{self, count};
 use crate::project::Projects;
 use crate::sources::{Sources, count_files};
-use crate::{github, json, render, sarif, severities};
+use crate::{github, json, render, sarif, severities, summary};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -164,7 +164,7 @@ fn summary(
     if diagnostics.is_empty() && mistakes.is_empty() {
         return (!files.is_empty()).then(|| format!("No problems in {}.", count_files(files)));
     }
-    let summary = render::summary(sources, diagnostics, mistakes);
+    let summary = summary::summary(sources, diagnostics, mistakes);
     let is_mendable = |diagnostic: &&Diagnostic| diagnostic.fixes.iter().any(|fix| fix.safe);
     Some(match diagnostics.iter().filter(is_mendable).count() {
         0 => format!("{summary}."),

@@ -1,0 +1,28 @@
+//! What was found, counted.
+
+use pydslrep_analysis::{Diagnostic, Severity};
+
+use crate::mistakes::{self, Mistake};
+use crate::output::count;
+use crate::sources::Sources;
+
+/// "2 errors and 1 warning in 1 file".
+pub(crate) fn summary(sources: &Sources, diagnostics: &[Diagnostic], mistakes: &[Mistake]) -> String {
+    let found = diagnostics.iter().map(|diagnostic| (diagnostic.severity, sources.shown(diagnostic.file)));
+    let in_scenes = mistakes.iter().map(|mistake| (mistakes::SEVERITY, mistake.shown.as_str()));
+    let found: Vec<(Severity, &str)> = found.chain(in_scenes).collect();
+    let counts =
+        [Severity::Error, Severity::Warning, Severity::Information, Severity::Hint].map(|severity| {
+            let number = found.iter().filter(|(found, _)| *found == severity).count();
+            (number > 0).then(|| match severity {
+                // Nobody counts informations.
+                Severity::Information => count(number, "remark"),
+                _ => count(number, severity.word()),
+            })
+        });
+    let mut files: Vec<&str> = found.into_iter().map(|(_, file)| file).collect();
+    files.sort_unstable();
+    files.dedup();
+    let counts: Vec<String> = counts.into_iter().flatten().collect();
+    format!("{} in {}", counts.join(", "), count(files.len(), "file"))
+}
