@@ -5,6 +5,7 @@
 //!
 //! * [`arguments`]: the command line; each command's own arguments stand with it in [`commands`].
 //! * [`sources`]: programs and what they import, from files into the database.
+//! * [`texts`], [`paths`]: what stands in files, and what files are called.
 //! * [`render`], [`summary`], [`json`], [`github`], [`sarif`]: problems for people and for programs.
 //! * [`project`], [`severities`]: what is set for programs, and how bad problems are to whoever asks.
 //! * [`scenes`], [`mistakes`]: what else stands on the floor, and what is wrong with the files that say so.
@@ -28,6 +29,7 @@ mod lines;
 mod mistakes;
 mod outcome;
 mod output;
+mod paths;
 mod pictures;
 mod place;
 mod program;
@@ -43,6 +45,7 @@ mod sources;
 mod summary;
 mod survey;
 mod target;
+mod texts;
 mod watch;
 
 use std::process::ExitCode;

@@ -7,10 +7,12 @@ use pydslrep_config::Problem;
 use pydslrep_files::{Unread, without_mark};
 
 use crate::failure::Failure;
+use crate::paths::{near, shown};
 use crate::place::{self, PlaceRange};
 use crate::render;
 use crate::scenes;
-use crate::sources::{Sources, near, read_file, shown};
+use crate::sources::Sources;
+use crate::texts::read_file;
 
 /// How bad they all are: nothing is driven in such a scene.
 pub(crate) const SEVERITY: pydslrep_analysis::Severity = pydslrep_analysis::Severity::Error;

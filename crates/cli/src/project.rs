@@ -8,8 +8,10 @@ use pydslrep_config::{Config, FILE_NAME, Settings};
 use pydslrep_files::{project_folder, without_mark};
 
 use crate::failure::Failure;
+use crate::paths::{near, shown};
 use crate::render;
-use crate::sources::{Sources, near, read_file, shown};
+use crate::sources::Sources;
+use crate::texts::read_file;
 
 /// The projects of the programs that were named.
 #[derive(Debug)]

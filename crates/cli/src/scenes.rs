@@ -8,8 +8,10 @@ use pydslrep_files::{read, without_mark};
 use pydslrep_scene::{ENDING, Scene};
 
 use crate::failure::Failure;
+use crate::paths::{near, shown};
 use crate::render;
-use crate::sources::{Sources, near, read_file, shown};
+use crate::sources::Sources;
+use crate::texts::read_file;
 
 /// The scene that an environment of a program is to be driven in: of the file that was named, else of the one beside
 /// the program, `<environment>.scene.toml`, if there is one.

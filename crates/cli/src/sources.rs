@@ -1,19 +1,19 @@
 //! Programs and what they import: from files into the database.
 
 use std::collections::{HashMap, HashSet};
-use std::io;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 use pydslrep_analysis::{Absence, Database, Diagnostic, FileId};
-use pydslrep_files::{EXTENSION, Found, Unread, decode, find, import_bound, read, without_mark};
+use pydslrep_files::{EXTENSION, Found, Unread, find, import_bound, read, without_mark};
 
 use crate::failure::Failure;
 use crate::output::count;
+use crate::paths::{absolute, key, near, shown};
 use crate::scenes;
+use crate::texts::{STDIN_SHOWN, read_file, read_stdin};
 
-/// What standard input is called on the command line and in what is printed.
+/// What standard input is called on the command line.
 const STDIN: &str = "-";
-const STDIN_SHOWN: &str = "<stdin>";
 
 /// Open programs and files they import.
 #[derive(Debug, Default)]
@@ -214,62 +214,6 @@ fn programs_in(folder: &Path, failures: &mut Vec<Failure>) -> Result<Vec<PathBuf
             .help(format!("programs are files that end in .{EXTENSION}; `pydslrep new NAME` starts one")));
     }
     Ok(found)
-}
-
-fn read_stdin() -> Result<String, Failure> {
-    decode(io::stdin().lock()).map_err(|unread| failure(STDIN_SHOWN, &unread))
-}
-
-pub(crate) fn read_file(path: &Path) -> Result<String, Failure> {
-    read(path).map_err(|unread| failure(&shown(path), &unread))
-}
-
-fn failure(shown: &str, unread: &Unread) -> Failure {
-    match unread {
-        Unread::Missing => Failure::new(format!("{shown} does not exist")),
-        Unread::TooLarge => Failure::new(format!("cannot read {shown}: {unread}")).help("is this a program?"),
-        Unread::NotText { .. } => {
-            Failure::new(format!("cannot read {shown}: {unread}")).help("save it in the encoding UTF-8")
-        }
-        Unread::Failed(_) => Failure::new(format!("cannot read {shown}: {unread}")),
-    }
-}
-
-/// The whole path, without `.` and `..`: the same file has the same one however it was named.
-pub(crate) fn absolute(path: &Path) -> Result<PathBuf, Failure> {
-    let whole = std::path::absolute(path)
-        .map_err(|error| Failure::new(format!("cannot find {}: {error}", path.display())))?;
-    let mut clean = PathBuf::new();
-    for component in whole.components() {
-        match component {
-            Component::ParentDir => {
-                clean.pop();
-            }
-            Component::CurDir => {}
-            other => clean.push(other),
-        }
-    }
-    Ok(clean)
-}
-
-/// The path as the database knows it.
-fn key(absolute: &Path) -> String {
-    let key = absolute.to_string_lossy();
-    if cfg!(windows) { key.replace('\\', "/") } else { key.into_owned() }
-}
-
-/// The path from the current folder, where it is in it.
-pub(crate) fn near(path: &Path) -> PathBuf {
-    let here = std::env::current_dir().unwrap_or_default();
-    match path.strip_prefix(&here) {
-        Ok(near) if !near.as_os_str().is_empty() => near.to_owned(),
-        _ => path.to_owned(),
-    }
-}
-
-/// The path as it is printed.
-pub(crate) fn shown(path: &Path) -> String {
-    path.strip_prefix(".").unwrap_or(path).display().to_string()
 }
 
 /// "1 file", "2 files".

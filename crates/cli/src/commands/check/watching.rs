@@ -11,8 +11,9 @@ use pydslrep_config::Config;
 use super::{diagnostics, summary};
 use crate::failure::Failure;
 use crate::interrupt::{self, Interrupts};
+use crate::paths::absolute;
 use crate::project::Projects;
-use crate::sources::{Sources, absolute};
+use crate::sources::Sources;
 use crate::watch::{Scope, Watch};
 use crate::{mistakes, output, render};
 

@@ -1,0 +1,42 @@
+//! Paths of files: whole, near to where the command runs, as the database knows them and as they are printed.
+
+use std::path::{Component, Path, PathBuf};
+
+use crate::failure::Failure;
+
+/// The whole path, without `.` and `..`: the same file has the same one however it was named.
+pub(crate) fn absolute(path: &Path) -> Result<PathBuf, Failure> {
+    let whole = std::path::absolute(path)
+        .map_err(|error| Failure::new(format!("cannot find {}: {error}", path.display())))?;
+    let mut clean = PathBuf::new();
+    for component in whole.components() {
+        match component {
+            Component::ParentDir => {
+                clean.pop();
+            }
+            Component::CurDir => {}
+            other => clean.push(other),
+        }
+    }
+    Ok(clean)
+}
+
+/// The path as the database knows it.
+pub(crate) fn key(absolute: &Path) -> String {
+    let key = absolute.to_string_lossy();
+    if cfg!(windows) { key.replace('\\', "/") } else { key.into_owned() }
+}
+
+/// The path from the current folder, where it is in it.
+pub(crate) fn near(path: &Path) -> PathBuf {
+    let here = std::env::current_dir().unwrap_or_default();
+    match path.strip_prefix(&here) {
+        Ok(near) if !near.as_os_str().is_empty() => near.to_owned(),
+        _ => path.to_owned(),
+    }
+}
+
+/// The path as it is printed.
+pub(crate) fn shown(path: &Path) -> String {
+    path.strip_prefix(".").unwrap_or(path).display().to_string()
+}
