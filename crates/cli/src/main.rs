@@ -4,7 +4,7 @@
 //! have logic of the language, of motion or of scripts: that is asked of the crates below.
 //!
 //! * [`arguments`]: the command line; each command's own arguments stand with it in [`commands`].
-//! * [`sources`]: programs and what they import, from files into the database.
+//! * [`sources`]: programs, what they import and their scenes, from files into the database.
 //! * [`texts`], [`paths`]: what stands in files, and what files are called.
 //! * [`render`], [`summary`], [`json`], [`github`], [`sarif`]: problems for people and for programs.
 //! * [`project`], [`severities`]: what is set for programs, and how bad problems are to whoever asks.

@@ -10,7 +10,6 @@ use crate::failure::Failure;
 use crate::paths::{near, shown};
 use crate::place::{self, PlaceRange};
 use crate::render;
-use crate::scenes;
 use crate::sources::Sources;
 use crate::texts::read_file;
 
@@ -35,7 +34,7 @@ pub(crate) fn find(sources: &Sources, files: &[FileId]) -> (Vec<Mistake>, Vec<Fa
     let (mut mistakes, mut failures) = (Vec::new(), Vec::new());
     for file in files {
         let environments = sources.database.environments(*file).into_iter();
-        for ((id, _), (_, path)) in environments.zip(scenes::paths(sources, *file)) {
+        for ((id, _), (_, path)) in environments.zip(sources.scene_paths(*file)) {
             let text = match pydslrep_files::read(&path) {
                 Ok(text) => text,
                 Err(Unread::Missing) => continue,

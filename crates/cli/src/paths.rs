@@ -2,6 +2,8 @@
 
 use std::path::{Component, Path, PathBuf};
 
+use pydslrep_scene::ENDING;
+
 use crate::failure::Failure;
 
 /// The whole path, without `.` and `..`: the same file has the same one however it was named.
@@ -39,4 +41,9 @@ pub(crate) fn near(path: &Path) -> PathBuf {
 /// The path as it is printed.
 pub(crate) fn shown(path: &Path) -> String {
     path.strip_prefix(".").unwrap_or(path).display().to_string()
+}
+
+/// Where the scene of an environment of a program would be.
+pub(crate) fn scene_path(program: &Path, environment: &str) -> PathBuf {
+    program.with_file_name(format!("{environment}{ENDING}"))
 }

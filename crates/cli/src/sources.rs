@@ -1,15 +1,14 @@
-//! Programs and what they import: from files into the database.
+//! Programs, what they import and their scenes: from files into the database.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use pydslrep_analysis::{Absence, Database, Diagnostic, FileId};
+use pydslrep_analysis::{Absence, Database, Diagnostic, EntityId, FileId};
 use pydslrep_files::{EXTENSION, Found, Unread, find, import_bound, read, without_mark};
 
 use crate::failure::Failure;
 use crate::output::count;
-use crate::paths::{absolute, key, near, shown};
-use crate::scenes;
+use crate::paths::{absolute, key, near, scene_path, shown};
 use crate::texts::{STDIN_SHOWN, read_file, read_stdin};
 
 /// What standard input is called on the command line.
@@ -40,7 +39,7 @@ impl Sources {
         files.sort_by(|a, b| sources.shown[a].cmp(&sources.shown[b]));
         files.dedup();
         sources.follow_imports(&files);
-        scenes::tell(&mut sources, &files);
+        sources.tell_scenes(&files);
         (sources, files, failures)
     }
 
@@ -74,8 +73,15 @@ impl Sources {
     /// Everything that was read, what imports could lead to, and where scenes could be: the paths of all of it.
     pub(crate) fn paths(&self) -> Vec<PathBuf> {
         let imports = self.places.keys().flat_map(|file| self.database.imports(*file)).map(PathBuf::from);
-        let scenes = self.places.keys().flat_map(|file| scenes::paths(self, *file)).map(|(_, path)| path);
+        let scenes = self.places.keys().flat_map(|file| self.scene_paths(*file)).map(|(_, path)| path);
         self.places.values().cloned().chain(imports).chain(scenes).collect()
+    }
+
+    /// Where the scenes of all environments of a program would be, with the environments' names.
+    pub(crate) fn scene_paths(&self, file: FileId) -> Vec<(String, PathBuf)> {
+        let Some(program) = self.place(file) else { return Vec::new() };
+        let environments = self.database.environments(file).into_iter();
+        environments.map(|(_, name)| (name.text.to_string(), scene_path(program, &name.text))).collect()
     }
 
     /// Everything that was read, in the order of the paths.
@@ -91,6 +97,25 @@ impl Sources {
         let mut diagnostics = self.database.diagnostics(file);
         diagnostics.sort_by_key(|diagnostic| (diagnostic.span.start, diagnostic.span.end));
         diagnostics
+    }
+
+    /// Tells the database of the scene that was named for one environment. One that cannot be read is told of later.
+    pub(crate) fn tell_scene(&mut self, file: FileId, environment: EntityId, named: Option<&Path>) {
+        let name = self.database.tree(environment).and_then(|tree| tree.name()).map(|name| name.text.clone());
+        if let (Some(name), Some(Ok(text))) = (name, named.map(read)) {
+            self.database.set_scene(file, &name, Some(without_mark(&text)));
+        }
+    }
+
+    /// Tells the database which scenes there are, so that it can tell what is in the way. A scene that cannot be read, or
+    /// that is wrong, is a matter of those who drive in it.
+    fn tell_scenes(&mut self, files: &[FileId]) {
+        for file in files {
+            for (environment, path) in self.scene_paths(*file) {
+                let text = read(&path).ok();
+                self.database.set_scene(*file, &environment, text.as_deref().map(without_mark));
+            }
+        }
     }
 
     fn open_path(&mut self, path: &Path, failures: &mut Vec<Failure>) -> Result<Vec<FileId>, Failure> {

@@ -137,7 +137,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         program::environment(&sources, file, arguments.environment.as_deref())?;
     }
     for id in &ids {
-        scenes::tell_named(&mut sources, file, *id, arguments.scene.as_deref());
+        sources.tell_scene(file, *id, arguments.scene.as_deref());
     }
     let prepared = program::prepare(&sources, projects.of(file), file, &ids);
     let named = arguments.scene.as_deref();

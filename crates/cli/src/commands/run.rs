@@ -109,7 +109,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let projects = Projects::open(&mut sources, &[file], &options)?;
     let target = projects.of(file).settings.target;
     let id = program::environment(&sources, file, arguments.environment.as_deref())?;
-    scenes::tell_named(&mut sources, file, id, arguments.scene.as_deref());
+    sources.tell_scene(file, id, arguments.scene.as_deref());
     let Some(environment) = program::prepare(&sources, projects.of(file), file, &[id]).environments.pop()
     else {
         return Ok(ExitCode::FAILURE);

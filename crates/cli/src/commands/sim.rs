@@ -66,7 +66,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let (mut sources, file) = Sources::open_one(&arguments.program)?;
     let projects = Projects::open(&mut sources, &[file], &Config::default())?;
     let id = program::environment(&sources, file, arguments.environment.as_deref())?;
-    scenes::tell_named(&mut sources, file, id, arguments.scene.as_deref());
+    sources.tell_scene(file, id, arguments.scene.as_deref());
     let Some(environment) = program::prepare(&sources, projects.of(file), file, &[id]).environments.pop()
     else {
         return Ok(ExitCode::FAILURE);
