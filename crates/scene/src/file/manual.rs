@@ -11,8 +11,9 @@ pub fn manual() -> String {
         "# Scenes\n\n\
         The embedded simulator puts the robots of an environment on an empty floor, a metre apart. A file\n\
         `<environment>{ENDING}` beside the program, or one that is named by `--scene`, says what else is there: obstacles,\n\
-        where robots start, how they are built, and what goes wrong. With one, robots are stopped by what they touch, or slide along it; without\n\
-        one they drive through each other, for nobody said where they stand. Nothing in it is required:\n\n\
+        where robots start, how they are built, and what goes wrong. With one, robots are stopped by what they touch, or slide\n\
+        along it; an action that is stopped, or a move that ends well beside its goal for that, fails. Without one they drive\n\
+        through each other, for nobody said where they stand. Nothing in it is required:\n\n\
         ```toml\n{EXAMPLE}```\n\n\
         Lengths are in metres, angles in degrees and counter-clockwise, x points ahead of a robot with heading 0 and y to its\n\
         left. What is misspelt or has a wrong value is reported with its place, and nothing is driven; so is the name of a\n\
