@@ -131,7 +131,9 @@ fn semantic_tokens(bencher: Bencher, lines: usize) {
 #[divan::bench(args = LINES)]
 fn outline(bencher: Bencher, lines: usize) {
     let (database, file) = opened(&program(lines));
-    bencher.bench_local(|| database.snapshot(file, None).map(|file| ide::document_symbols(&file)));
+    bencher.bench_local(|| {
+        database.snapshot(file, None).map(|file| ide::document_symbols(&file).collect::<Vec<_>>())
+    });
 }
 
 #[divan::bench(args = LINES)]

@@ -34,8 +34,8 @@ pub enum SymbolKind {
 }
 
 /// The named entities of a file in the order of the text, movements with their actions.
-pub fn document_symbols(snapshot: &Snapshot) -> Vec<Symbol> {
-    snapshot.entities().filter_map(|entity| symbol(snapshot, &entity)).collect()
+pub fn document_symbols(snapshot: &Snapshot) -> impl Iterator<Item = Symbol> {
+    snapshot.entities().filter_map(|entity| symbol(snapshot, &entity))
 }
 
 fn symbol(snapshot: &Snapshot, entity: &EntityRef<'_>) -> Option<Symbol> {
@@ -161,7 +161,8 @@ mod tests {
         );
         let file = database.open("a.pyr", &text);
         let mut out = String::new();
-        render(&document_symbols(&database.snapshot(file, None).unwrap()), 0, &mut out);
+        let snapshot = database.snapshot(file, None).unwrap();
+        render(&document_symbols(&snapshot).collect::<Vec<_>>(), 0, &mut out);
         expect![[r#"
             wheel wheelL (radius 4.5 cm) 0..28 6..12
             wheel wheelR (radius 4.5 cm) 29..57 35..41

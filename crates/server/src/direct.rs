@@ -19,7 +19,7 @@ use crate::handlers::{
     semantic_tokens,
 };
 use crate::log::log;
-use crate::message::{Outbox, WriteJson, refuse};
+use crate::message::{Outbox, WriteJson, encode_answer, refuse};
 use crate::server::Server;
 use crate::state::State;
 use crate::work::Work;
@@ -82,7 +82,7 @@ impl Server {
             return Direct::Answered;
         };
         if work.snapshot.text().len_bytes() < LONG {
-            self.outbox.answer(&id, &(work.run)(&work.snapshot));
+            self.outbox.answer(&id, &(work.run)(work.snapshot));
             return Direct::Answered;
         }
         let cancelled = self.running.add(id.clone());
@@ -104,20 +104,20 @@ fn read<P: for<'a> Deserialize<'a>>(request: &Request) -> Option<(Id, P)> {
 fn finish<R: WriteJson>(work: Work<R>, id: &Id, cancelled: &Arc<AtomicBool>, outbox: &Outbox) {
     let Work { snapshot, outdated, run } = work;
     let snapshot = snapshot.stop_on(Arc::clone(&outdated)).stop_on(Arc::clone(cancelled));
-    let result = catch_unwind(AssertUnwindSafe(|| run(&snapshot)));
+    let answer = catch_unwind(AssertUnwindSafe(|| encode_answer(id, &run(snapshot))));
     if cancelled.load(Ordering::Relaxed) {
         return outbox.send(&refuse(id.clone(), CANCELLED, "taken back".to_owned()));
     }
     if outdated.load(Ordering::Relaxed) {
         return outbox.send(&refuse(id.clone(), CONTENT_MODIFIED, "the text was changed".to_owned()));
     }
-    let Ok(result) = result else {
+    let Ok(answer) = answer else {
         // The panic itself is on standard error already; the state had no part in it.
         let message = "a defect of the server; the session goes on".to_owned();
         log(format_args!("{message}"));
         return outbox.send(&refuse(id.clone(), ErrorCode::InternalError, message));
     };
-    outbox.answer(id, &result);
+    outbox.send_encoded(answer);
 }
 
 #[cfg(test)]

@@ -124,6 +124,17 @@ impl<T: Serialize + ?Sized> WriteJson for T {
     }
 }
 
+/// The answer to a request, without the detour over a JSON value.
+pub(crate) fn encode_answer(id: &Id, result: &impl WriteJson) -> Vec<u8> {
+    let mut body = br#"{"jsonrpc":"2.0","id":"#.to_vec();
+    // What is ours can always be written into memory.
+    let _ = id.write_json(&mut body);
+    body.extend(br#","result":"#);
+    let _ = result.write_json(&mut body);
+    body.push(b'}');
+    body
+}
+
 /// Where messages to the client go; it never blocks, and messages arrive in the order in which they were sent.
 #[derive(Debug, Clone)]
 pub struct Outbox {
@@ -170,18 +181,15 @@ impl Outbox {
         self.send_unasked(&Notification { jsonrpc: "2.0", method, params });
     }
 
-    /// Answers a request without the detour over a JSON value.
+    /// Answers a request.
     pub(crate) fn answer(&self, id: &Id, result: &impl WriteJson) {
-        let mut body = br#"{"jsonrpc":"2.0","id":"#.to_vec();
-        let written = id.write_json(&mut body).and_then(|()| {
-            body.extend(br#","result":"#);
-            result.write_json(&mut body)
-        });
+        self.send_encoded(encode_answer(id, result));
+    }
+
+    /// Sends what is encoded already.
+    pub(crate) fn send_encoded(&self, body: Vec<u8>) {
         // As in `send`.
-        if written.is_ok() {
-            body.push(b'}');
-            let _ = self.sender.send(Some(body));
-        }
+        let _ = self.sender.send(Some(body));
     }
 
     /// Tells the receiver that nothing follows.

@@ -215,7 +215,7 @@ impl State {
     pub(crate) fn work<R>(
         &self,
         uri: &Uri,
-        run: impl FnOnce(&Document, Encoding) -> Box<dyn FnOnce(&Snapshot) -> R + Send>,
+        run: impl FnOnce(&Document, Encoding) -> Box<dyn FnOnce(Snapshot) -> R + Send>,
     ) -> Option<Work<R>> {
         let (document, file) = self.analysed(uri)?;
         Some(Work {

@@ -12,5 +12,5 @@ pub(crate) struct Work<R> {
     /// Set when the file is no longer what it was.
     pub(crate) outdated: Arc<AtomicBool>,
     /// What to do with it.
-    pub(crate) run: Box<dyn FnOnce(&Snapshot) -> R + Send>,
+    pub(crate) run: Box<dyn FnOnce(Snapshot) -> R + Send>,
 }

@@ -213,7 +213,7 @@ fn whole_file(pair: &Pair<'_>, turn: usize) -> Result<(), String> {
     pair.same("quick fixes", |database| ide::quick_fixes(database, file, part))?;
     match turn % 4 {
         0 => pair.same("document symbols", |database| {
-            database.snapshot(file, None).map(|snapshot| ide::document_symbols(&snapshot))
+            database.snapshot(file, None).map(|snapshot| ide::document_symbols(&snapshot).collect::<Vec<_>>())
         }),
         1 => pair.same("semantic tokens", |database| {
             let whole = database.snapshot(file, None).map(|snapshot| ide::semantic_tokens(&snapshot, None));

@@ -1,7 +1,9 @@
 //! `textDocument/documentSymbol`.
 
+use pydslrep_analysis::Snapshot;
 use pydslrep_ide as ide;
 use pydslrep_syntax::EntityKind;
+use serde::Serialize;
 use tower_lsp::ls_types::{DocumentSymbolParams, Location, Range, SymbolInformation, SymbolKind, Uri};
 
 use crate::message::WriteJson;
@@ -15,13 +17,12 @@ pub(crate) fn document_symbols(state: &mut State, params: &DocumentSymbolParams)
     state.work(&params.text_document.uri, |document, encoding| {
         let uri = document.uri.clone();
         Box::new(move |snapshot| {
-            let symbols = ide::document_symbols(snapshot);
             let table = LineTable::new(snapshot.text(), encoding);
             if as_tree {
-                return Outline::Tree(table, symbols);
+                return Outline::Tree(table, snapshot);
             }
             let mut flat = Vec::new();
-            flatten(&table, &uri, symbols, None, &mut flat);
+            flatten(&table, &uri, ide::document_symbols(&snapshot), None, &mut flat);
             Outline::List(flat)
         })
     })
@@ -29,8 +30,8 @@ pub(crate) fn document_symbols(state: &mut State, params: &DocumentSymbolParams)
 
 /// An answer: a tree, or for clients that know nothing else a list.
 pub(crate) enum Outline {
-    /// As it is, to be converted symbol by symbol when it is written: a long file's may be megabytes.
-    Tree(LineTable, Vec<ide::Symbol>),
+    /// Of this file, symbol by symbol when it is written: a long file's may be megabytes.
+    Tree(LineTable, Snapshot),
     List(Vec<SymbolInformation>),
 }
 
@@ -39,35 +40,43 @@ pub(crate) enum Outline {
 impl WriteJson for Outline {
     fn write_json(&self, json: &mut Vec<u8>) -> serde_json::Result<()> {
         match self {
-            Self::Tree(table, symbols) => write_tree(table, symbols, json),
+            Self::Tree(table, snapshot) => {
+                write_tree(table, ide::document_symbols(snapshot), json);
+                Ok(())
+            }
             Self::List(list) => list.write_json(json),
         }
     }
 }
 
 /// The protocol's `DocumentSymbol[]`.
-fn write_tree(table: &LineTable, symbols: &[ide::Symbol], json: &mut Vec<u8>) -> serde_json::Result<()> {
-    for (index, symbol) in symbols.iter().enumerate() {
-        json.extend(if index == 0 { b"[{\"name\":" } else { b",{\"name\":" });
-        symbol.name.as_str().write_json(json)?;
+fn write_tree(table: &LineTable, symbols: impl Iterator<Item = ide::Symbol>, json: &mut Vec<u8>) {
+    json.push(b'[');
+    for (index, symbol) in symbols.enumerate() {
+        json.extend(if index == 0 { &b"{\"name\":"[..] } else { b",{\"name\":" });
+        write_plain(symbol.name.as_str(), json);
         if !symbol.detail.is_empty() {
             json.extend(b",\"detail\":");
-            symbol.detail.as_str().write_json(json)?;
+            write_plain(symbol.detail.as_str(), json);
         }
         json.extend(b",\"kind\":");
-        kind(symbol.kind).write_json(json)?;
+        write_plain(&kind(symbol.kind), json);
         json.extend(b",\"range\":");
         write_range(table.range(symbol.full), json);
         json.extend(b",\"selectionRange\":");
         write_range(table.range(symbol.focus), json);
         if !symbol.children.is_empty() {
             json.extend(b",\"children\":");
-            write_tree(table, &symbol.children, json)?;
+            write_tree(table, symbol.children.into_iter(), json);
         }
         json.push(b'}');
     }
-    json.extend(if symbols.is_empty() { &b"[]"[..] } else { b"]" });
-    Ok(())
+    json.push(b']');
+}
+
+fn write_plain(value: &(impl Serialize + ?Sized), json: &mut Vec<u8>) {
+    // A number or a text can always be written into memory.
+    let _ = serde_json::to_writer(json, value);
 }
 
 fn write_range(range: Range, json: &mut Vec<u8>) {
@@ -88,7 +97,7 @@ fn write_range(range: Range, json: &mut Vec<u8>) {
 fn flatten(
     table: &LineTable,
     uri: &Uri,
-    symbols: Vec<ide::Symbol>,
+    symbols: impl Iterator<Item = ide::Symbol>,
     container: Option<&str>,
     flat: &mut Vec<SymbolInformation>,
 ) {
@@ -101,7 +110,7 @@ fn flatten(
             location: Location::new(uri.clone(), table.range(symbol.full)),
             container_name: container.map(str::to_owned),
         });
-        flatten(table, uri, symbol.children, Some(&symbol.name), flat);
+        flatten(table, uri, symbol.children.into_iter(), Some(&symbol.name), flat);
     }
 }
 
@@ -151,10 +160,10 @@ mod tests {
             let file = database.open("/a.pyr", text);
             let snapshot = database.snapshot(file, None).unwrap();
             let table = LineTable::new(&Rope::from_str(text), Encoding::Utf16);
-            let symbols = ide::document_symbols(&snapshot);
+            let symbols: Vec<_> = ide::document_symbols(&snapshot).collect();
             let expected = serde_json::to_string(&convert(&table, &symbols)).unwrap();
             let mut json = Vec::new();
-            Outline::Tree(table, symbols).write_json(&mut json).unwrap();
+            Outline::Tree(table, snapshot).write_json(&mut json).unwrap();
             assert_eq!(String::from_utf8(json).unwrap(), expected);
         }
     }

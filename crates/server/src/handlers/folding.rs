@@ -16,7 +16,7 @@ pub(crate) fn folding_ranges(
     state.work(&params.text_document.uri, |_, encoding| {
         Box::new(move |snapshot| {
             let table = LineTable::new(snapshot.text(), encoding);
-            let folds = ide::folding_ranges(snapshot);
+            let folds = ide::folding_ranges(&snapshot);
             folds.iter().filter_map(|fold| convert(fold, table.range(fold.span), whole_lines)).collect()
         })
     })

@@ -15,7 +15,7 @@ use crate::work::Work;
 /// The edits that bring a document into the canonical layout.
 pub(crate) fn document(state: &mut State, params: &DocumentFormattingParams) -> Option<Work<Vec<TextEdit>>> {
     state.work(&params.text_document.uri, |_, encoding| {
-        Box::new(move |snapshot| convert(snapshot, encoding, ide::format(snapshot)))
+        Box::new(move |snapshot| convert(&snapshot, encoding, ide::format(&snapshot)))
     })
 }
 

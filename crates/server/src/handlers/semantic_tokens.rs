@@ -20,7 +20,7 @@ use crate::work::Work;
 pub(crate) fn full(state: &mut State, params: &SemanticTokensParams) -> Option<Work<SemanticTokens>> {
     let uri = &params.text_document.uri;
     let (result_id, counts) = remember(state, uri);
-    state.work(uri, |_, encoding| Box::new(move |snapshot| all(snapshot, encoding, result_id, &counts)))
+    state.work(uri, |_, encoding| Box::new(move |snapshot| all(&snapshot, encoding, result_id, &counts)))
 }
 
 /// What changed since the tokens that the client has.
@@ -37,8 +37,8 @@ pub(crate) fn delta(
             let known =
                 before.as_ref().and_then(|before| Some((&before.snapshot, before.counts.get()?.as_slice())));
             match known {
-                Some(known) => change(known, snapshot, encoding, result_id, &counts).into(),
-                None => all(snapshot, encoding, result_id, &counts).into(),
+                Some(known) => change(known, &snapshot, encoding, result_id, &counts).into(),
+                None => all(&snapshot, encoding, result_id, &counts).into(),
             }
         })
     })
@@ -275,13 +275,13 @@ mod tests {
     fn all_of(state: &mut State) -> SemanticTokens {
         let params = serde_json::from_value(serde_json::json!({ "textDocument": { "uri": uri() } })).unwrap();
         let work = full(state, &params).unwrap();
-        (work.run)(&work.snapshot)
+        (work.run)(work.snapshot)
     }
 
     fn changes_since(state: &mut State, id: &str) -> SemanticTokensFullDeltaResult {
         let params = serde_json::json!({ "textDocument": { "uri": uri() }, "previousResultId": id });
         let work = delta(state, &serde_json::from_value(params).unwrap()).unwrap();
-        (work.run)(&work.snapshot)
+        (work.run)(work.snapshot)
     }
 
     /// As a client applies changes, to its list of tokens.
