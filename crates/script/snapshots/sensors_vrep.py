@@ -811,8 +811,8 @@ class Robot:
         if abs(aside) > MOST_ASIDE:
             side = "left" if aside > 0.0 else "right"
             raise self.failure(
-                f"ended {abs(aside):.3f} m to the {side} of its goal: something was in its way, "
-                "and it slid along it"
+                f"ended {abs(aside):.3f} m to the {side} of its goal: "
+                "it may have slid along something in its way"
             )
 
     def _report(self, here: Pose) -> None:

@@ -3,7 +3,7 @@ import { type ChildProcessWithoutNullStreams, spawn } from "node:child_process";
 
 import type { Program } from "./server";
 
-/** More ends of a server than these within [`WITHIN`], and it is not started again. */
+/** A server that ended so many times within `WITHIN` is not started again. */
 const MOST_ENDS = 5;
 
 /** In milliseconds. */
@@ -14,7 +14,7 @@ export function launch(program: Program, folder: string | undefined): Promise<Ch
   return new Promise((resolve, reject) => {
     const child = spawn(program.command, program.args, { cwd: folder });
     child.once("spawn", () => resolve(child));
-    // Later, it is said that a process could not be ended.
+    // Not once: a process that cannot be ended says so by the same event, and one that nobody hears ends the extension host.
     child.on("error", reject);
   });
 }

@@ -92,10 +92,11 @@ export class Session implements vscode.Disposable {
     };
     const start = async () => {
       const process = await launch(server, folder);
-      if (this.client !== client) {
+      if (this.client === client) {
+        this.process = process;
+      } else {
         process.kill();
       }
-      this.process = process;
       return process;
     };
     const client = new LanguageClient("pydslrep", "PyDSLRep", start, {

@@ -28,10 +28,6 @@ pub(crate) fn document_symbols(state: &mut State, params: &DocumentSymbolParams)
     })
 }
 
-/// About how many times as long as a program its outline is: growing step by step, megabytes would be copied again and
-/// again, and the copies stay in memory for a while.
-const JSON_PER_BYTE: usize = 8;
-
 /// An answer: a tree, or for clients that know nothing else a list.
 pub(crate) enum Outline {
     /// Of this file, symbol by symbol when it is written: a long file's may be megabytes.
@@ -45,7 +41,6 @@ impl WriteJson for Outline {
     fn write_json(&self, json: &mut Vec<u8>) -> serde_json::Result<()> {
         match self {
             Self::Tree(table, snapshot) => {
-                json.reserve(snapshot.text().len_bytes() * JSON_PER_BYTE);
                 write_tree(table, ide::document_symbols(snapshot), json);
                 Ok(())
             }

@@ -65,8 +65,7 @@ fn all(
     result_id: Option<String>,
     counts: &TokenCounts,
 ) -> SemanticTokens {
-    let most = snapshot.entities().map(|entity| entity.parse.lexemes.len()).sum();
-    let (mut tokens, mut lengths) = (Vec::with_capacity(most), Vec::with_capacity(snapshot.len()));
+    let (mut tokens, mut lengths) = (Vec::new(), Vec::with_capacity(snapshot.len()));
     for entity in snapshot.entities() {
         let before = tokens.len();
         ide::entity_tokens(snapshot, &entity, &mut tokens);
