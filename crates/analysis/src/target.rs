@@ -30,6 +30,14 @@ impl Target {
         }
     }
 
+    /// The port its simulator listens on unless somebody chose another one; further robots count on from it.
+    pub const fn default_port(self) -> u16 {
+        match self {
+            Self::CoppeliaSim => 23000,
+            Self::VRep => 19999,
+        }
+    }
+
     /// The target of a word.
     pub fn from_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|target| target.word() == word)
