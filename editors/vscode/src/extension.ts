@@ -2,6 +2,7 @@
 import * as vscode from "vscode";
 
 import { registerCommands } from "./commands";
+import { registerIndentation } from "./indentation";
 import { registerPreview } from "./preview";
 import { Session } from "./session";
 import { registerStatus } from "./status";
@@ -12,6 +13,7 @@ export function activate(context: vscode.ExtensionContext): void {
   context.subscriptions.push(
     session,
     registerCommands(session),
+    registerIndentation(),
     registerStatus(session),
     registerTasks(session),
     registerPreview(context, () => session.client, session.onDidChangeState),

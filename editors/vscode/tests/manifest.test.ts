@@ -45,6 +45,14 @@ test("menus, keys and the walkthrough call commands that there are", () => {
   assert.deepEqual(called.filter((name) => name !== undefined && !known.has(name)), []);
 });
 
+test("nothing but the server suggests, and Enter ends a line rather than take what changes nothing", () => {
+  const defaults = manifest.contributes.configurationDefaults["[pydslrep]"];
+  assert.equal(defaults["editor.acceptSuggestionOnEnter"], "smart");
+  assert.equal(defaults["editor.wordBasedSuggestions"], "off");
+  // A snippet with a prefix is suggested wherever a word is typed.
+  assert.deepEqual(Object.entries(snippets).filter(([, snippet]) => "prefix" in snippet), []);
+});
+
 /** A snippet's text with what its places hold at first. */
 function filledIn(body: string[]): string {
   return body
