@@ -22,7 +22,25 @@ hook global WinSetOption filetype=pydslrep %{
     set-option window comment_line '//'
     set-option window comment_block_begin '/*'
     set-option window comment_block_end '*/'
+    hook -group pydslrep-indent window InsertChar \n pydslrep-indent-on-new-line
+    hook -group pydslrep-indent window InsertChar \x7d pydslrep-indent-on-closing-brace
+    hook -once -always window WinSetOption filetype=.* %{ remove-hooks window pydslrep-indent }
 }
+
+define-command -hidden pydslrep-indent-on-new-line %~
+    evaluate-commands -draft -itersel %_
+        # As the line before, whose blanks are not left behind.
+        try %{ execute-keys -draft <semicolon> K <a-&> }
+        try %{ execute-keys -draft k x s \h+$ <ret> d }
+        # One step further after an opening brace.
+        try %[ execute-keys -draft k x <a-k> \{\h*(//[^\n]*)?$ <ret> j <a-gt> ]
+    _
+~
+
+define-command -hidden pydslrep-indent-on-closing-brace %~
+    # As the line of the brace that it closes.
+    try %[ execute-keys -draft <a-h> <a-k> ^\h+\}$ <ret> m <a-S> 1 <a-&> ]
+~
 
 hook -group lsp-filetype-pydslrep global BufSetOption filetype=pydslrep %{
     set-option buffer lsp_servers %{

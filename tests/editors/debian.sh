@@ -1,4 +1,5 @@
-# Sourced by the run.sh of terminal editors: finds an editor, or unpacks it with all it needs from a Debian package.
+# Sourced by the run.sh of terminal editors: finds an editor (find_NAME), or unpacks it with all it needs from a Debian
+# package.
 #
 # What is unpacked lies in target/editors and has its own libraries, so that an editor of a newer Debian runs on an older
 # one and nothing of the machine is changed.
@@ -56,4 +57,41 @@ unpack() { # suite, folder, package
     patchelf --print-interpreter "$file" > /dev/null 2>&1 || continue
     patchelf --set-interpreter "$loader" --force-rpath --set-rpath "$libraries:$folder/usr/lib" "$file" 2> /dev/null || true
   done
+}
+
+find_helix() { # $HX if it is set, else hx of the path, else that of Debian 13
+  if [ -z "${HX:-}" ] && ! HX=$(command -v hx); then
+    local folder
+    folder=$(unpacked trixie hx)
+    export HX="$folder/usr/bin/hx" HELIX_RUNTIME="$folder/usr/lib/hx/runtime"
+  fi
+  export HX
+}
+
+find_emacs() { # $EMACS if it is set, else emacs of the path, else that of Debian 13
+  if [ -z "${EMACS:-}" ] && ! EMACS=$(command -v emacs); then
+    local folder shared parts
+    folder=$(unpacked trixie emacs-nox)
+    EMACS="$folder/usr/bin/emacs-nox"
+    # Moved elsewhere, it has to be told where its parts are.
+    shared=$(echo "$folder"/usr/share/emacs/[0-9]*)
+    parts=$(echo "$folder"/usr/libexec/emacs/*/*)
+    export EMACSLOADPATH="$shared/lisp" EMACSDATA="$shared/etc" EMACSDOC="$shared/etc" EMACSPATH="$parts"
+    export EMACS_OPTIONS="--dump-file=$(echo "$parts"/*.pdmp)"
+  fi
+  export EMACS
+}
+
+find_kakoune() { # $KAK and $KAK_LSP if they are set, else those of the path, else Debian's and one that cargo builds
+  if [ -z "${KAK:-}" ] && ! KAK=$(command -v kak); then
+    local folder
+    folder=$(unpacked trixie kakoune)
+    export KAK="$folder/usr/bin/kak" KAKOUNE_RUNTIME="$folder/usr/share/kak"
+  fi
+  # No Debian package; building it takes minutes.
+  if [ -z "${KAK_LSP:-}" ] && ! KAK_LSP=$(command -v kak-lsp); then
+    KAK_LSP="$repository/target/editors/kak-lsp/bin/kak-lsp"
+    [ -x "$KAK_LSP" ] || cargo install --quiet --locked --root "$repository/target/editors/kak-lsp" kak-lsp@22.0.0
+  fi
+  export KAK KAK_LSP
 }

@@ -79,7 +79,8 @@ lint() {
   (
     cd "$repository"
     export PATH="$lints/bin:$PATH" LUA_PATH="$lints/share/lua/5.1/?.lua;$lints/share/lua/5.1/?/init.lua"
-    LUA_CPATH=$(echo "$lints"/lib/*/lua/5.1)/?.so luacheck --quiet --config "$tests/luacheckrc" "$plugin" "$tests"
+    LUA_CPATH=$(echo "$lints"/lib/*/lua/5.1)/?.so luacheck --quiet --config "$tests/luacheckrc" "$plugin" "$tests" \
+      "$tests/../typing/neovim"
   )
 }
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Tests the extension in the real editor: code-server, which is VS Code, in a headless Chromium.
 # Builds the package of the extension, or takes the one that VSIX names; `--pictures` also renews the pictures of the
-# documentation. What is missing is installed: Chromium and libraries by apt where it may, Node by pip, code-server by npm.
+# documentation, `--then COMMAND…` starts that instead of the tests. What is missing is installed: Chromium and libraries
+# by apt where it may, Node by pip, code-server by npm.
 set -euo pipefail
 cd "$(dirname "$0")"
 repository=$(cd ../../.. && pwd)
@@ -53,6 +54,9 @@ if [ -z "${VSIX:-}" ]; then
 fi
 npm ci --silent
 
-step "Tests"
 export VSIX CHROMIUM="$(browser)" CODE_SERVER=$cache PICTURES=$pictures
+if [ "${1:-}" = --then ]; then
+  exec "${@:2}"
+fi
+step "Tests"
 exec node --test --test-concurrency=1 --test-reporter=spec "${@:-*.test.mjs}"

@@ -1,5 +1,6 @@
-//! `random-programs COUNT LINES`: programs at random for tests that are not in Rust, the same ones every time, with a
-//! NUL behind each. All are grammatical; every third has imports.
+//! `random-programs COUNT LINES [tidy]`: programs at random for tests that are not in Rust, the same ones every time, with
+//! a NUL after each. All are grammatical; every third has imports. `tidy` ones have neither mistakes nor imports nor odd
+//! layout.
 
 use std::io::{Result, Write};
 use std::process::ExitCode;
@@ -7,15 +8,27 @@ use std::process::ExitCode;
 use pydslrep_naive::Recipe;
 
 fn main() -> Result<ExitCode> {
-    let mut numbers = std::env::args().skip(1).map_while(|argument| argument.parse::<u32>().ok());
-    let (Some(count), Some(lines)) = (numbers.next(), numbers.next()) else {
-        writeln!(std::io::stderr(), "usage: random-programs COUNT LINES")?;
-        return Ok(ExitCode::from(2));
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let (count, lines, is_tidy) = match arguments[..] {
+        [count, lines] => (count.parse::<u32>(), lines.parse(), false),
+        [count, lines, "tidy"] => (count.parse(), lines.parse(), true),
+        _ => return usage(),
     };
+    let (Ok(count), Ok(lines)) = (count, lines) else { return usage() };
     let mut output = std::io::stdout().lock();
     for seed in 0..count {
-        let recipe = Recipe { lines: lines as usize, imports: seed % 3 == 0, ..Recipe::default() };
+        let recipe = if is_tidy {
+            Recipe { lines, mistakes: false, odd_layout: false, older_spellings: false, imports: false }
+        } else {
+            Recipe { lines, imports: seed % 3 == 0, ..Recipe::default() }
+        };
         write!(output, "{}\0", recipe.seeded(u64::from(seed)))?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+fn usage() -> Result<ExitCode> {
+    writeln!(std::io::stderr(), "usage: random-programs COUNT LINES [tidy]")?;
+    Ok(ExitCode::from(2))
 }

@@ -1,0 +1,77 @@
+"""How a person types a program: one key after the other, and nothing that the editor has put there already.
+
+Keys are characters, and these names: Enter, Tab, Backspace, Down, End.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+STEP = 2
+LEADER = "// "
+COMMENT = re.compile(r"//.*|/\*.*?\*/")
+
+
+@dataclass(frozen=True)
+class Habits:
+    """What an editor does by itself, so that who knows it does not do it again."""
+
+    # After Enter, the line is indented as far as it should be. Elsewhere one presses Tab.
+    indents: bool = True
+    # After `{` there is a `}`. Enter between them puts it on a line of its own, where one goes down to it.
+    closes_braces: bool = False
+    # After a line comment, Enter begins another one. Where none is wanted, one deletes it.
+    continues_comments: bool = False
+    # The last line of a file ends without Enter.
+    ends_last_line: bool = False
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """A key, and which line of the program it is for, from 0."""
+
+    key: str
+    line: int
+
+
+def strokes(program: str, habits: Habits) -> list[Stroke]:
+    """The keys for a program, from an empty file on. Its comments begin and end on one line."""
+    lines = program.split("\n")
+    if habits.ends_last_line and lines[-1] == "":
+        lines.pop()
+    typed = [Stroke(key, 0) for key in lines[0]]
+    open_braces = _opened([], lines[0])
+    for number, line in enumerate(lines[1:], 1):
+        text = line.lstrip(" ")
+        if habits.closes_braces and text.startswith("}") and open_braces[-1]:
+            keys = ["Down", "End", *text.removeprefix("}")]
+        else:
+            steps = 0 if habits.indents else (len(line) - len(text)) // STEP
+            is_after_comment = lines[number - 1].lstrip().startswith("//")
+            goes_on = habits.continues_comments and is_after_comment
+            keys = ["Enter", *["Tab"] * steps, *_after_leader(text, goes_on)]
+        typed += [Stroke(key, number) for key in keys]
+        open_braces = _opened(open_braces, line)
+    return typed
+
+
+def _after_leader(text: str, is_there: bool) -> list[str]:
+    """The keys for a line that begins as a comment, if that is there."""
+    if not is_there:
+        return list(text)
+    if text.startswith(LEADER):
+        return list(text.removeprefix(LEADER))
+    return ["Backspace"] * len(LEADER) + list(text)
+
+
+def _opened(before: list[bool], line: str) -> list[bool]:
+    """The braces that are open after a line: of each, whether it was the last on its line."""
+    after = list(before)
+    code = COMMENT.sub("", line).rstrip()
+    for place, sign in enumerate(code, 1):
+        if sign == "{":
+            after.append(place == len(code))
+        elif sign == "}":
+            after.pop()
+    return after

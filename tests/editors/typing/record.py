@@ -1,0 +1,199 @@
+"""Types programs key by key into a real editor, and compares what is in its buffer then with the program.
+
+See README.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from fnmatch import fnmatch
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from corpus import FEW, Program, programs
+from drivers import EDITORS, Editor
+from person import Stroke, strokes
+from session import ROOT, session
+
+PACES = (30, 70, 150)
+# Without `--all`, all programs are typed at the first pace, and the first of them at the second.
+FEW_PACES = (30, 70)
+# How long a file may take to be written, in seconds.
+PATIENCE = 5.0
+SIGNS = {
+    " ": "␣",
+    "Enter": "⏎\n        ",
+    "Tab": "⇥",
+    "Backspace": "⌫",
+    "Down": "↓",
+    "End": "⇲",
+}
+
+
+@dataclass(frozen=True)
+class Task:
+    """A program to be typed, with so many milliseconds from key to key."""
+
+    program: Program
+    pace: int
+
+    @property
+    def file(self) -> str:
+        """The file that it is typed into."""
+        return f"{self.program.name}_{self.pace}.pyr"
+
+
+@dataclass
+class Outcome:
+    """What became of a task."""
+
+    task: Task
+    keys: int
+    seconds: float = 0.0
+    complaints: list[str] = field(default_factory=list)
+
+
+def main() -> None:
+    options = arguments()
+    chosen = list(tasks(options))
+    shares = [chosen[number :: options.jobs] for number in range(options.jobs)]
+    with ThreadPoolExecutor(options.jobs) as pool:
+        shared = pool.map(lambda share: record(options.editor, share), shares)
+        outcomes = [outcome for share in shared for outcome in share]
+    failed = [outcome for outcome in outcomes if outcome.complaints]
+    for pace in sorted({outcome.task.pace for outcome in outcomes}):
+        print(
+            summary(options.editor, [one for one in outcomes if one.task.pace == pace])
+        )
+    sys.exit(1 if failed or not outcomes else 0)
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="run.sh typing", description=__doc__)
+    parser.add_argument("--editor", choices=EDITORS, required=True)
+    parser.add_argument(
+        "--all", action="store_true", help="all programs, at every pace"
+    )
+    parser.add_argument("--programs", metavar="GLOB", help="programs with such a name")
+    parser.add_argument("--pace", type=int, action="append", help="milliseconds a key")
+    parser.add_argument("--jobs", type=int, default=1, help="editors at the same time")
+    return parser.parse_args()
+
+
+def tasks(options: argparse.Namespace) -> Iterator[Task]:
+    """What is to be typed."""
+    paces = options.pace or (PACES if options.all else FEW_PACES)
+    for program in programs():
+        if options.programs:
+            is_chosen = fnmatch(program.name, options.programs)
+        else:
+            is_chosen = options.all or program.name in FEW
+        for pace in paces if is_chosen else ():
+            if (
+                options.all
+                or options.pace
+                or pace == FEW_PACES[0]
+                or program.name == FEW[0]
+            ):
+                yield Task(program, pace)
+
+
+def record(name: str, share: list[Task]) -> list[Outcome]:
+    """Types programs one after the other into one editor, or another one where that is lost."""
+    outcomes: list[Outcome] = []
+    left = list(share)
+    while left:
+        with session("neovim" if name.startswith("neovim") else name) as made:
+            editor = EDITORS[name](made)
+            try:
+                prepare(editor.work, left)
+                while left:
+                    outcomes.append(typed(editor, left.pop(0)))
+                    show(outcomes[-1])
+                    if outcomes[-1].complaints:
+                        break
+            finally:
+                editor.close()
+    return outcomes
+
+
+def prepare(work: Path, left: list[Task]) -> None:
+    """Empty files, and what programs import."""
+    shutil.copytree(ROOT / "examples" / "parts", work / "parts")
+    for task in left:
+        (work / task.file).touch()
+
+
+def typed(editor: Editor, task: Task) -> Outcome:
+    """Types a program into its file and compares."""
+    file = editor.work / task.file
+    all_strokes = strokes(task.program.text, editor.habits)
+    keys = [stroke.key for stroke in all_strokes]
+    editor.open(file)
+    outcome = Outcome(task, len(keys), editor.type(keys, task.pace / 1000))
+    outcome.complaints += editor.covered()
+    editor.save()
+    text = saved(file, task.program.text)
+    if text != task.program.text:
+        outcome.complaints.append(difference(task.program.text, text, all_strokes))
+        if not text:
+            outcome.complaints.append(editor.screen())
+    return outcome
+
+
+def saved(file: Path, expected: str) -> str:
+    """What is in a file once it is written; it is waited for what is expected."""
+    until = time.monotonic() + PATIENCE
+    while True:
+        text = file.read_text()
+        if text == expected or time.monotonic() > until:
+            return text
+        time.sleep(0.02)
+
+
+def difference(program: str, text: str, typed: list[Stroke]) -> str:
+    """The first line that is not as it was typed, and the keys for it."""
+    if not text:
+        return "nothing was saved"
+    wanted, found = program.split("\n"), text.split("\n")
+    pairs = zip(wanted, [*found, *[""] * len(wanted)], strict=False)
+    number = next(
+        (n for n, (one, other) in enumerate(pairs) if one != other), len(wanted)
+    )
+    around = [stroke.key for stroke in typed if number - 1 <= stroke.line <= number + 1]
+    line = wanted[number] if number < len(wanted) else "(the end)"
+    shown = "\n              ".join(found[number : number + 3])
+    keys = "".join(SIGNS.get(key, key) for key in around)
+    return f"line {number + 1}\n  typed:      {line}\n  in buffer:  {shown}\n  keys: {keys}"
+
+
+def show(outcome: Outcome) -> None:
+    """Says what became of a task."""
+    verdict = "FAIL" if outcome.complaints else "ok  "
+    print(
+        f"{verdict} {outcome.task.program.name} at {outcome.task.pace} ms", flush=True
+    )
+    for complaint in outcome.complaints:
+        print("     " + complaint.replace("\n", "\n     "), flush=True)
+
+
+def summary(editor: str, outcomes: list[Outcome]) -> str:
+    """A line for an editor at a pace. The pace that it had on this machine is said as well."""
+    keys = sum(outcome.keys for outcome in outcomes)
+    real = sum(outcome.seconds for outcome in outcomes) * 1000 / keys
+    fine = sum(not outcome.complaints for outcome in outcomes)
+    wanted = outcomes[0].task.pace
+    count = f"{fine} of {len(outcomes)} programs as typed"
+    return (
+        f"{editor} at {wanted} ms a key: {count} ({keys} keys, one each {real:.1f} ms)"
+    )
+
+
+if __name__ == "__main__":
+    main()

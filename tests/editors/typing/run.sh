@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Types programs key by key into real editors: `run.sh typing [--editor NAME] [OPTIONS]`, see README.md. Without an editor,
+# VS Code and Neovim.
+set -euo pipefail
+typing=$(cd "$(dirname "$0")" && pwd)
+. "$typing/../debian.sh"
+
+editors=() options=()
+while [ $# -gt 0 ]; do
+  case $1 in
+    --editor) editors+=("${2:?--editor needs a name}"); shift 2 ;;
+    *) options+=("$1"); shift ;;
+  esac
+done
+[ ${#editors[@]} -gt 0 ] || editors=(vscode neovim)
+
+# The generator of programs is no part of what users get.
+(cd "$repository" && cargo build --quiet --locked --bin random-programs --bin pydslrep --bin pydslrep-lsp)
+built=$(realpath "${CARGO_TARGET_DIR:-$repository/target}/debug")
+export PYDSLREP=${PYDSLREP:-$built/pydslrep} PYDSLREP_LSP=${PYDSLREP_LSP:-$built/pydslrep-lsp} RANDOM_PROGRAMS=$built/random-programs
+
+failed=0
+for editor in "${editors[@]}"; do
+  record=(python3 "$typing/record.py" --editor "$editor" "${options[@]}")
+  case $editor in
+    vscode) record=("$repository/tests/editors/vscode/run.sh" --then "${record[@]}") ;;
+    *) need tmux tmux ;;
+  esac
+  case $editor in
+    neovim*)
+      # Inside Neovim's own terminal the variable holds the socket of that Neovim.
+      [ -S "${NVIM:-}" ] && NVIM=
+      export NVIM=${NVIM:-$(unpacked forky neovim)/usr/bin/nvim}
+      ;;
+    helix) find_helix ;;
+    kakoune) find_kakoune ;;
+    emacs)
+      find_emacs
+      COMPANY=${COMPANY:-$(echo "$(unpacked trixie elpa-company)"/usr/share/emacs/site-lisp/elpa-src/company-*)}
+      export COMPANY
+      ;;
+  esac
+  "${record[@]}" || failed=1
+done
+exit $failed

@@ -1,0 +1,107 @@
+// Types into Visual Studio Code for record.py: a JSON object with an action on each line of standard input, an answer on
+// each of standard output.
+import { mkdirSync } from "node:fs";
+import path from "node:path";
+import readline from "node:readline";
+
+import { Stage } from "../vscode/stage.mjs";
+
+let stage;
+
+const ACTIONS = {
+  async start({ program }) {
+    stage = await Stage.open({ files: { "patrol.pyr": program }, open: "patrol.pyr" });
+    // The server is there once it has found the mistake.
+    await stage.page.locator(".squiggly-error").first().waitFor();
+    await stage.page.evaluate(watch);
+    return { folder: stage.folder };
+  },
+
+  async open({ name }) {
+    await stage.openFile(name);
+    await stage.page.locator(".editor-instance .monaco-editor.focused").waitFor();
+    return {};
+  },
+
+  /** Presses keys, one each `pace` seconds. `frames` is a folder for ten pictures of it. */
+  async type({ keys, pace, frames }) {
+    await stage.page.evaluate(() => {
+      globalThis.covered = {};
+    });
+    const start = performance.now();
+    for (const [number, key] of keys.entries()) {
+      // The pace is what is tested. Who is late goes on at once, as a person's keys wait in the editor.
+      const wait = start + number * pace * 1000 - performance.now();
+      if (wait > 0) {
+        await new Promise((resolve) => setTimeout(resolve, wait));
+      }
+      await press(key);
+      if (frames && Math.floor((number * 10) / keys.length) < Math.floor(((number + 1) * 10) / keys.length)) {
+        await takeFrame(frames, Math.floor(((number + 1) * 10) / keys.length));
+      }
+    }
+    const seconds = (performance.now() - start) / 1000;
+    return { seconds, covered: Object.values(await stage.page.evaluate(() => globalThis.covered)) };
+  },
+
+  async save() {
+    await stage.page.keyboard.press("Control+S");
+    return {};
+  },
+};
+
+const NAMES = { Down: "ArrowDown", End: "End", Enter: "Enter", Tab: "Tab", Backspace: "Backspace" };
+
+async function press(key) {
+  await stage.page.keyboard.press(NAMES[key] ?? (key === " " ? "Space" : key));
+}
+
+async function takeFrame(folder, number) {
+  mkdirSync(folder, { recursive: true });
+  await stage.page.screenshot({ path: path.join(folder, `${String(number).padStart(2, "0")}.png`) });
+}
+
+/** In the page: notes at every frame whether something lies over the line of the cursor or the one above it. */
+function watch() {
+  const POPUPS = {
+    completion: ".suggest-widget.visible",
+    "details of a completion": ".suggest-details-container",
+    "parameter hints": ".parameter-hints-widget.visible",
+    hover: ".monaco-hover:not(.hidden), .monaco-resizable-hover",
+    fixes: ".action-widget",
+    rename: ".rename-box",
+  };
+  globalThis.covered = {};
+  const look = () => {
+    const cursor = document.querySelector(".monaco-editor.focused .cursors-layer .cursor")?.getBoundingClientRect();
+    for (const [name, selector] of cursor?.height ? Object.entries(POPUPS) : []) {
+      for (const popup of document.querySelectorAll(selector)) {
+        const box = popup.getBoundingClientRect();
+        // A border may touch the line.
+        const isOver = (top, bottom) => box.width > 0 && box.top < bottom - 2 && box.bottom > top + 2;
+        const where = isOver(cursor.top, cursor.bottom)
+          ? "the line being typed"
+          : isOver(cursor.top - cursor.height, cursor.top) && "the line above the one being typed";
+        if (where) {
+          const lines = [...document.querySelectorAll(".monaco-editor.focused .view-line")];
+          const line = lines.find((one) => Math.abs(one.getBoundingClientRect().top - cursor.top) < 3)?.textContent;
+          globalThis.covered[`${name} ${where}`] ??= `${name} over ${where}: ${line?.replaceAll("\u00a0", " ")}`;
+        }
+      }
+    }
+    requestAnimationFrame(look);
+  };
+  look();
+}
+
+for await (const line of readline.createInterface({ input: process.stdin })) {
+  const { action, ...details } = JSON.parse(line);
+  try {
+    process.stdout.write(`${JSON.stringify(await ACTIONS[action](details))}\n`);
+  } catch (error) {
+    await stage?.keepPicture();
+    await stage?.close();
+    throw error;
+  }
+}
+await stage?.close();
