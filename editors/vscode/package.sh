@@ -32,9 +32,13 @@ mkdir server
 # The command is the server as well (`pydslrep lsp`), and is what runs programs.
 cp "$command" "server/pydslrep$ending"
 chmod +x "server/pydslrep$ending"
+# What a debugger wants is most of a build that is not for release, and some of one that is.
+if [ "$target" = "$(node -p 'process.platform + "-" + process.arch')" ] && command -v strip >/dev/null; then
+  strip "server/pydslrep$ending"
+fi
 node scripts/build.mjs --production >&2
 package=pydslrep-$target.vsix
-# There is no place yet that links in the readme could lead to.
+# As long as Cargo.toml names no repository, links in the readme lead nowhere.
 packaging/node_modules/.bin/vsce package --target "$target" --out "$package" --no-dependencies --allow-missing-repository \
   --no-rewrite-relative-links >&2
 echo "$PWD/$package"

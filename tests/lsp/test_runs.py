@@ -143,8 +143,11 @@ def test_a_preview_draws_what_the_editor_shows(session: Session, command: str) -
     done = session.raw.answer(1)
     picture = pathlib.Path(unquote(urlsplit(done["result"]["picture"]).path))
     assert "<svg" in picture.read_text(encoding="utf-8")
+    replay = pathlib.Path(unquote(urlsplit(done["result"]["replay"]).path))
+    assert "<animate" in replay.read_text(encoding="utf-8")
     assert "rover" in done["result"]["output"]
     picture.unlink()
+    replay.unlink()
 
 
 @pytest.mark.parametrize(
@@ -185,7 +188,7 @@ def test_a_run_can_be_cancelled(endless: Session, tmp_path: pathlib.Path) -> Non
     arguments = (tmp_path / "bin" / "arguments").read_text(encoding="utf-8").split()
     assert arguments[0] == "run"
     assert arguments[2:5] == ["--environment", "area", "--picture"]
-    assert arguments[6:11:2] == ["--trace", "--map", "--until-input-ends"]
+    assert arguments[6:13:2] == ["--replay", "--trace", "--map", "--until-input-ends"]
     endless.raw.send(notification("window/workDoneProgress/cancel", {"token": token}))
     assert endless.raw.answer(1)["error"]["code"] == -32800
     assert not pathlib.Path(arguments[1]).exists(), "what was run is tidied up"
@@ -322,6 +325,71 @@ def test_what_has_errors_does_not_run(session: Session) -> None:
     assert "no environment `x`" in session.raw.answer(2)["error"]["message"]
     session.execute(3, "pydslrep.run", "area")
     assert session.raw.answer(3)["error"]["code"] == -32602
+
+
+def test_a_failure_says_what_helps(session: Session) -> None:
+    """In the data of the error: where the first problem is, or that there is no file yet."""
+    session.replace(2, "turn left", "turn leftt")
+    line = PROGRAM.split("\n").index("  turn left")
+    for ident, command in enumerate(
+        ["pydslrep.run", "pydslrep.previewPath", "pydslrep.generateScript"], 1
+    ):
+        session.execute(ident, command, session.area)
+        error = session.raw.answer(ident)["error"]
+        assert error["data"]["reason"] == "errors"
+        location = error["data"]["location"]
+        assert (location["uri"], location["range"]["start"]["line"]) == (
+            session.uri,
+            line,
+        )
+    unsaved = "untitled:Untitled-1"
+    session.open(unsaved, PARTS + PROGRAM.split("\n", 1)[1])
+    session.execute(
+        8, "pydslrep.generateScript", {"uri": unsaved, "environment": "area"}
+    )
+    assert session.raw.answer(8)["error"] == {
+        "code": -32803,
+        "message": "save the file first; the script is written next to it",
+        "data": {"reason": "unsaved"},
+    }
+
+
+def test_a_code_has_a_page(session: Session) -> None:
+    """The page that `pydslrep explain` prints, as Markdown."""
+    session.raw.send(request(1, "pydslrep/explain", {"code": "invalid-radius"}))
+    page = session.raw.answer(1)["result"]["markdown"]
+    assert page.startswith("# invalid-radius\n")
+    session.raw.send(request(2, "pydslrep/explain", {"code": "invalid-radios"}))
+    error = session.raw.answer(2)["error"]
+    assert error["code"] == -32602
+    assert "invalid-radios" in error["message"]
+
+
+def test_codes_link_to_pages_that_the_client_shows(
+    server: str, tmp_path: pathlib.Path
+) -> None:
+    with RawServer(server, "--stdio") as raw:
+        raw.initialize(
+            {
+                "experimental": {"pages": "pydslrep-page"},
+                "textDocument": {
+                    "publishDiagnostics": {"codeDescriptionSupport": True}
+                },
+            }
+        )
+        item = {
+            "uri": (tmp_path / "a.pyr").as_uri(),
+            "languageId": "pydslrep",
+            "version": 1,
+            "text": "wheel w with radius -1\n",
+        }
+        raw.send(notification("textDocument/didOpen", {"textDocument": item}))
+        told = raw.read_until("textDocument/publishDiagnostics")
+        links = {
+            diagnostic["code"]: diagnostic["codeDescription"]["href"]
+            for diagnostic in told["params"]["diagnostics"]
+        }
+        assert links["invalid-radius"] == "pydslrep-page:/invalid-radius.md"
 
 
 def test_the_kinematics_of_a_robot_are_shown(session: Session) -> None:

@@ -5,7 +5,7 @@ use std::env;
 use std::ffi::OsStr;
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::io;
+use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::process::{Output, Stdio};
 use std::time::Duration;
@@ -17,6 +17,7 @@ use tokio::process::Command;
 use tokio::time::timeout;
 
 use crate::failure::Failure;
+use crate::output;
 
 /// What scripts are written for.
 const OLDEST: (u32, u32) = (3, 10);
@@ -57,10 +58,25 @@ pub(crate) async fn prepare(chosen: Option<&Path>, quiet: bool) -> Result<PathBu
         return Ok(python_in(&home));
     }
     let progress = if quiet { ProgressBar::hidden() } else { spinner() };
-    let made = make(&base, &cache, &progress).await;
+    let made = make(&base, &cache, &Steps { progress: &progress, quiet }).await;
     progress.finish_and_clear();
     keep(made?, &home)?;
     Ok(python_in(&home))
+}
+
+/// Tells which step is under way: a terminal by a spinner, anything else by a line each, which an editor shows as progress.
+struct Steps<'a> {
+    progress: &'a ProgressBar,
+    quiet: bool,
+}
+
+impl Steps<'_> {
+    fn tell(&self, step: &'static str) {
+        self.progress.set_message(step);
+        if !self.quiet && !io::stderr().is_terminal() {
+            output::say(&format!("{step}\n"));
+        }
+    }
 }
 
 fn spinner() -> ProgressBar {
@@ -162,8 +178,8 @@ fn works(home: &Path) -> bool {
 }
 
 /// Makes a whole environment in a folder of its own.
-async fn make(base: &Interpreter, cache: &Path, progress: &ProgressBar) -> Result<TempDir, Failure> {
-    progress.set_message("preparing Python for the first run: making a virtual environment");
+async fn make(base: &Interpreter, cache: &Path, steps: &Steps<'_>) -> Result<TempDir, Failure> {
+    steps.tell("preparing Python for the first run: making a virtual environment");
     let folder = tempfile::Builder::new().prefix("venv-new-").tempdir_in(cache);
     let folder = folder.map_err(|error| uncached(cache, &error))?;
     let mut venv = Command::new(&base.path);
@@ -175,7 +191,7 @@ async fn make(base: &Interpreter, cache: &Path, progress: &ProgressBar) -> Resul
             base.path.display()
         ))
     })?;
-    progress.set_message("preparing Python for the first run: installing CoppeliaSim's client from PyPI");
+    steps.tell("preparing Python for the first run: installing the CoppeliaSim client library");
     let requirements = folder.path().join("requirements.txt");
     fs::write(&requirements, REQUIREMENTS).map_err(|error| uncached(&requirements, &error))?;
     let mut pip = Command::new(python_in(folder.path()));

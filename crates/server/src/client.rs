@@ -79,6 +79,8 @@ pub(crate) struct ClientFeatures {
     pub(crate) refreshes_inlay_hints: bool,
     /// It can be asked to show a file.
     pub(crate) show_document: bool,
+    /// It shows the pages of diagnostics itself, under addresses of this scheme.
+    pub(crate) pages: Option<String>,
 }
 
 impl ClientFeatures {
@@ -95,6 +97,8 @@ impl ClientFeatures {
             client.experimental.as_ref().and_then(|extra| extra.pointer("/commands/commands")?.as_array());
         features.show_references =
             commands.is_some_and(|commands| commands.iter().any(|command| command == SHOW_REFERENCES));
+        let pages = client.experimental.as_ref().and_then(|extra| extra.pointer("/pages")?.as_str());
+        features.pages = pages.map(str::to_owned);
         if let Some(workspace) = &client.workspace {
             features.read_workspace(workspace);
         }

@@ -19,6 +19,7 @@ use crate::capabilities;
 use crate::children::Children;
 use crate::chosen::ChosenEnvironment;
 use crate::client::ClientFeatures;
+use crate::handlers::explain::{self, Explain, Explanation};
 use crate::handlers::planned_action::{ActionOf, PlannedAt};
 #[cfg(feature = "process")]
 use crate::handlers::runs;
@@ -388,6 +389,12 @@ impl Server {
     #[allow(clippy::unused_async, reason = "what the router takes")]
     pub(crate) async fn planned_at(&self, at: TextDocumentPositionParams) -> Result<Option<PlannedAt>> {
         Ok(planned_action::planned_at(&self.state(), &at))
+    }
+
+    /// A request of ours: see [`explain`].
+    #[allow(clippy::unused_async, reason = "what the router takes")]
+    pub(crate) async fn explain(&self, of: Explain) -> Result<Explanation> {
+        explain::explain(&of)
     }
 
     /// A request of ours: see [`planned_action`].

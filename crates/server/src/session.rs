@@ -17,6 +17,7 @@ use tower_service::Service;
 
 use crate::direct::Direct;
 use crate::handlers::driven_path::DRIVEN_PATH;
+use crate::handlers::explain::EXPLAIN;
 use crate::handlers::planned_action::{ACTION_LOCATION, PLANNED_AT};
 use crate::handlers::planned_path::PLANNED_PATH;
 use crate::log::log;
@@ -72,6 +73,7 @@ impl Session {
             .custom_method(DRIVEN_PATH, Server::driven_path)
             .custom_method(PLANNED_AT, Server::planned_at)
             .custom_method(ACTION_LOCATION, Server::action_location)
+            .custom_method(EXPLAIN, Server::explain)
             .custom_method("$/setTrace", Server::set_trace)
             .custom_method("window/workDoneProgress/cancel", Server::cancel_progress)
             .finish();

@@ -1,7 +1,10 @@
-// Puts into package.json what other files of the repository say: the settings, from pydslrep.schema.json, and like which
-// scope of the grammar each semantic token is coloured, from grammar/colours.json. `--check` says what is out of date instead of writing it.
+// Puts into package.json what other files of the repository say: the settings, from pydslrep.schema.json, like which scope of
+// the grammar each semantic token is coloured, from grammar/colours.json, and where the project is, from Cargo.toml. `--check`
+// says what is out of date instead of writing it.
 import { readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
+
+import { addresses } from "./addresses.mjs";
 
 const root = path.resolve(import.meta.dirname, "..");
 const manifest = path.join(root, "package.json");
@@ -39,8 +42,9 @@ function scopes(colours) {
 }
 
 /** The manifest as it has to be. */
-function upToDate(text, schema, colours) {
-  const read = JSON.parse(text);
+function upToDate(text, schema, colours, cargo) {
+  const { repository: _, bugs: __, ...read } = JSON.parse(text);
+  Object.assign(read, addresses(cargo));
   const group = read.contributes.configuration.find(({ title }) => title === "Programs");
   group.properties = settings(schema);
   read.contributes.semanticTokenScopes = [{ language: "pydslrep", scopes: scopes(colours) }];
@@ -49,7 +53,7 @@ function upToDate(text, schema, colours) {
 
 const text = readFileSync(manifest, "utf8");
 const read = (file) => JSON.parse(readFileSync(path.join(root, file), "utf8"));
-const wanted = upToDate(text, read("../pydslrep.schema.json"), read("../../grammar/colours.json"));
+const wanted = upToDate(text, read("../pydslrep.schema.json"), read("../../grammar/colours.json"), readFileSync(path.join(root, "../../Cargo.toml"), "utf8"));
 if (process.argv.includes("--check")) {
   if (text !== wanted) {
     console.error("package.json is out of date: run `npm run contributions` in editors/vscode");

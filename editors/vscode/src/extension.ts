@@ -2,7 +2,10 @@
 import * as vscode from "vscode";
 
 import { registerCommands } from "./commands";
+import { registerExplanations } from "./explain";
+import { registerGhostText } from "./ghost";
 import { registerIndentation } from "./indentation";
+import { registerMilestones } from "./milestones";
 import { registerPreview } from "./preview";
 import { Session } from "./session";
 import { registerStatus } from "./status";
@@ -14,9 +17,12 @@ export function activate(context: vscode.ExtensionContext): void {
     session,
     registerCommands(session),
     registerIndentation(),
+    registerGhostText(),
+    registerMilestones(),
+    registerExplanations(() => session.client),
     registerStatus(session),
     registerTasks(session),
-    registerPreview(context, () => session.client, session.onDidChangeState),
+    registerPreview(context, session),
     vscode.workspace.onDidChangeConfiguration((event) => {
       if (event.affectsConfiguration("pydslrep.server.path")) {
         void session.restart();

@@ -4,7 +4,10 @@ import type { Middleware } from "vscode-languageclient/node";
 
 import manifest from "../package.json";
 import type { ChosenEnvironment } from "./environments";
-import { runInSimulator } from "./run";
+import { execute, type Surroundings } from "./execute";
+import { explanations } from "./explain";
+import { reached } from "./milestones";
+import type { Runs } from "./run";
 import { setTable } from "./settings";
 
 /** The commands of this extension that the server may put into a lens. */
@@ -18,7 +21,7 @@ const KEYS = manifest.contributes.configuration
   .flatMap(({ properties }) => Object.keys(properties))
   .map((key) => key.slice(SECTION.length + 1));
 
-export function middleware(): Middleware {
+export function middleware(around: Surroundings, runs: Runs): Middleware {
   return {
     workspace: {
       configuration: async (params, token, next) => {
@@ -31,18 +34,29 @@ export function middleware(): Middleware {
         return told;
       },
     },
-    executeCommand: (command, args: unknown[], next) => {
-      const [chosen] = args;
+    // Not by the client library: it would show each failure twice, and in words of the protocol.
+    executeCommand: async (command, args: unknown[], next) => {
+      const [chosen] = args as [ChosenEnvironment];
       switch (command) {
         case "pydslrep.run":
-          return runInSimulator(chosen as ChosenEnvironment, () => next(command, args));
-        case "pydslrep.previewPath": {
-          const { uri, environment } = chosen as ChosenEnvironment;
-          return vscode.commands.executeCommand("pydslrep.showPreview", vscode.Uri.parse(uri), environment);
+          return runs.run(chosen);
+        case "pydslrep.previewPath":
+          return vscode.commands.executeCommand("pydslrep.showPreview", vscode.Uri.parse(chosen.uri), chosen.environment);
+        case "pydslrep.generateScript": {
+          const answer = await execute(around, command, chosen);
+          if (answer !== undefined) {
+            reached("script");
+          }
+          return answer;
         }
         default:
           return next(command, args) as unknown;
       }
+    },
+    provideCodeActions: async (document, range, context, token, next) => {
+      const actions = (await next(document, range, context, token)) ?? [];
+      const isFix = context.only?.contains(vscode.CodeActionKind.QuickFix) ?? true;
+      return isFix ? [...actions, ...explanations(context.diagnostics)] : actions;
     },
     window: {
       // The picture of a run: the preview shows what is in it, where one can look closer.

@@ -37,7 +37,7 @@ export function findServer(places: Places): Program | Missing {
   if (named !== "") {
     const file = resolveSetting(named, places);
     return file === undefined
-      ? { reason: `The setting \`pydslrep.server.path\` is \`${named}\`, but there is no such program.`, setting: true }
+      ? { reason: `The setting \`pydslrep.server.path\` is \`${named}\`, but that file does not exist.`, setting: true }
       : serving(file, "setting", places);
   }
   const bundled = firstFile(places.bundledFolder, ["pydslrep-lsp", "pydslrep"], places);

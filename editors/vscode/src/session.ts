@@ -10,11 +10,14 @@ import {
   ErrorAction,
   LanguageClient,
   type LanguageClientOptions,
+  RevealOutputChannelOn,
   State,
 } from "vscode-languageclient/node";
 
+import { PAGES } from "./explain";
 import { Ends, launch } from "./launch";
 import { CLIENT_COMMANDS, middleware } from "./middleware";
+import { Runs } from "./run";
 import { findServer, type Places, type Program } from "./server";
 
 /** Where the server is in its life. */
@@ -42,6 +45,8 @@ export class Session implements vscode.Disposable {
   readonly onDidChangeState = this.changed.event;
 
   readonly output = vscode.window.createOutputChannel("PyDSLRep", { log: true });
+
+  readonly runs = new Runs(this);
 
   constructor(private readonly context: vscode.ExtensionContext) {}
 
@@ -73,7 +78,7 @@ export class Session implements vscode.Disposable {
     } catch (error) {
       if (this.client === client) {
         this.enter("stopped");
-        void this.complain(`${server.command} is no language server of PyDSLRep: ${String(error)}`, server.origin === "setting");
+        void this.complain(`${server.command} is not a PyDSLRep language server: ${String(error)}`, server.origin === "setting");
       }
     }
   }
@@ -86,9 +91,9 @@ export class Session implements vscode.Disposable {
         return { action: CloseAction.DoNotRestart, handled: true };
       }
       if (ends.add(Date.now())) {
-        return { action: CloseAction.Restart, handled: true, message: "The server ended and is started again." };
+        return { action: CloseAction.Restart, handled: true, message: "The server stopped and is started again." };
       }
-      return { action: CloseAction.DoNotRestart, message: "The server of PyDSLRep ended again and again and is not started any more." };
+      return { action: CloseAction.DoNotRestart, message: "The PyDSLRep server crashed repeatedly and was not restarted." };
     };
     const start = async () => {
       const process = await launch(server, folder);
@@ -106,7 +111,7 @@ export class Session implements vscode.Disposable {
     });
     client.registerFeature({
       fillClientCapabilities: (capabilities) => {
-        capabilities.experimental = { commands: { commands: CLIENT_COMMANDS } };
+        capabilities.experimental = { commands: { commands: CLIENT_COMMANDS }, pages: PAGES };
       },
       initialize: () => undefined,
       getState: () => ({ kind: "static" }),
@@ -158,6 +163,7 @@ export class Session implements vscode.Disposable {
 
   dispose(): void {
     this.letGo();
+    this.runs.dispose();
     this.changed.dispose();
     this.output.dispose();
   }
@@ -166,13 +172,18 @@ export class Session implements vscode.Disposable {
     return {
       documentSelector: [...DOCUMENTS],
       outputChannel: this.output,
-      middleware: middleware(),
+      middleware: middleware(this, this.runs),
+      // Failures are told where they are understood, and once.
+      revealOutputChannelOn: RevealOutputChannelOn.Never,
       diagnosticPullOptions: { onChange: true, onSave: true },
     };
   }
 
   private enter(state: ServerState): void {
     this.state = state;
+    if (state !== "running") {
+      this.runs.forget();
+    }
     this.changed.fire(state);
   }
 

@@ -44,11 +44,11 @@ function wordsFor(state: ServerState, session: Session): Words {
       };
     }
     case "stopped":
-      return { text: "PyDSLRep has stopped", detail: "no help while typing", severity: vscode.LanguageStatusSeverity.Error, command: RESTART };
+      return { text: "Server stopped", detail: "completion and checks are off", severity: vscode.LanguageStatusSeverity.Error, command: RESTART };
     case "missing":
       return {
         text: "PyDSLRep has no server",
-        detail: "no help while typing",
+        detail: "completion and checks are off",
         severity: vscode.LanguageStatusSeverity.Error,
         command: { command: "workbench.action.openSettings", title: "Set a Path", arguments: ["pydslrep.server.path"] },
       };

@@ -53,6 +53,30 @@ test("nothing but the server suggests, and Enter ends a line rather than take wh
   assert.deepEqual(Object.entries(snippets).filter(([, snippet]) => "prefix" in snippet), []);
 });
 
+test("the manifest has the project's addresses once it has some, and says that nothing is collected", () => {
+  const cargo = 'license = "MIT"\nrepository = "https://example.org/pydslrep"\n';
+  const script = `import(process.argv[1]).then(({ addresses }) => console.log(JSON.stringify(addresses(process.argv[2]))))`;
+  const run = (text: string): unknown =>
+    JSON.parse(spawnSync(process.execPath, ["-e", script, at("scripts/addresses.mjs"), text], { encoding: "utf8" }).stdout);
+  assert.deepEqual(run(cargo), {
+    repository: { type: "git", url: "https://example.org/pydslrep", directory: "editors/vscode" },
+    bugs: { url: "https://example.org/pydslrep/issues" },
+  });
+  assert.deepEqual(run('license = "MIT"\n'), {});
+  assert.match(manifest.description, /Collects nothing\.$/);
+});
+
+test("F5 and Ctrl+F5 run, without a launch.json", () => {
+  const { keybindings } = manifest.contributes;
+  const running = keybindings.filter(({ command: name }) => name === "pydslrep.runInSimulator");
+  assert.deepEqual(running.map(({ key }) => key), ["f5", "ctrl+f5"]);
+});
+
+test("no step of the walkthrough is done by a command that may be given up", () => {
+  const events = manifest.contributes.walkthroughs.flatMap(({ steps }) => steps.flatMap(({ completionEvents }) => completionEvents));
+  assert.deepEqual(events.filter((event) => event.startsWith("onCommand:")), []);
+});
+
 /** A snippet's text with what its places hold at first. */
 function filledIn(body: string[]): string {
   return body

@@ -64,7 +64,7 @@ test("a path that leads nowhere is said, and a new one is used at once", async (
   }, async (stage) => {
     const message = stage.page.locator(".notification-toast", { hasText: "/nowhere/pydslrep-lsp" });
     await message.waitFor();
-    assert.match(await message.innerText(), /there is no such program/);
+    assert.match(await message.innerText(), /that file does not exist/);
     assert.equal(stage.servers().length, 0);
     await until("the status bar says it", async () => /no server/.test(await status(stage)));
     await message.getByRole("button", { name: "Change the Setting" }).click();

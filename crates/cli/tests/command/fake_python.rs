@@ -17,6 +17,12 @@ case "$*" in
 esac
 "#;
 
+/// What a first run says while it prepares Python, where it is not in a terminal.
+const PREPARING: &str = "\
+preparing Python for the first run: making a virtual environment
+preparing Python for the first run: installing the CoppeliaSim client library
+";
+
 fn place(behaviour: &str) -> Place {
     let place = Place::with("python", PYTHON);
     fs::set_permissions(place.path("python"), fs::Permissions::from_mode(0o755)).unwrap();
@@ -39,7 +45,26 @@ fn run(behaviour: &str) -> Done {
 fn a_movement_that_failed_is_told() {
     let done = run("echo 'error: robot robot_1, movement mov_1, action 1: move 4 m: stuck' >&2; exit 1");
     assert_eq!(done.code, Some(1));
-    assert_eq!(done.err, "error: robot robot_1, movement mov_1, action 1: move 4 m: stuck\n");
+    let failure = "error: robot robot_1, movement mov_1, action 1: move 4 m: stuck\n";
+    assert_eq!(done.err, format!("{PREPARING}{failure}"));
+}
+
+#[test]
+fn what_a_first_run_installs_is_told_once() {
+    let place = place("");
+    let first: Done = command(&place).output().unwrap().into();
+    assert!(first.err.starts_with(PREPARING), "{}", first.err);
+    for done in [
+        Done::from(command(&place).output().unwrap()),
+        command(&place)
+            .env("XDG_CACHE_HOME", place.path("other"))
+            .arg("--no-progress")
+            .output()
+            .unwrap()
+            .into(),
+    ] {
+        assert!(!done.err.contains("preparing"), "{}", done.err);
+    }
 }
 
 #[test]

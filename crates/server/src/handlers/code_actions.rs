@@ -170,7 +170,7 @@ fn script_actions(state: &State, document: &Document, file: FileId) -> Vec<CodeA
 fn script_action(state: &State, uri: &Uri, id: EntityId, name: &str) -> Option<CodeActionOrCommand> {
     let script = match scripts::of_environment(state, uri, id) {
         Ok(script) => script,
-        Err(reason) => return disabled(state, name, reason),
+        Err(error) => return disabled(state, name, error.message.into_owned()),
     };
     let title = format!("Generate script {}", script.file_name());
     let which = ChosenEnvironment { uri: uri.clone(), environment: name.to_owned() };

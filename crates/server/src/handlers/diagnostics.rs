@@ -19,6 +19,7 @@ use tower_lsp::ls_types::{
     WorkspaceDocumentDiagnosticReport, WorkspaceFullDocumentDiagnosticReport,
 };
 
+use crate::client::ClientFeatures;
 use crate::documents::{Document, Sort, key};
 use crate::message::Outbox;
 use crate::state::State;
@@ -180,7 +181,7 @@ pub(crate) fn convert(
         range: state.range(document, diagnostic.span),
         severity: Some(severity(chosen)),
         code: Some(NumberOrString::String(diagnostic.code().to_owned())),
-        code_description: client.code_description.then(|| page(diagnostic.code())).flatten(),
+        code_description: client.code_description.then(|| page(client, diagnostic.code())).flatten(),
         source: Some(SOURCE.to_owned()),
         message: message(state, diagnostic),
         related_information: related_information(state, diagnostic),
@@ -264,8 +265,11 @@ fn related_information(
     Some(diagnostic.related.iter().filter_map(convert).collect())
 }
 
-/// The page that explains a code, in the project's repository.
-fn page(code: &str) -> Option<CodeDescription> {
+/// The page that explains a code: the client's own, else that in the project's repository.
+fn page(client: &ClientFeatures, code: &str) -> Option<CodeDescription> {
+    if let Some(scheme) = &client.pages {
+        return Some(CodeDescription { href: Uri::from_str(&format!("{scheme}:/{code}.md")).ok()? });
+    }
     let repository = option_env!("CARGO_PKG_REPOSITORY").filter(|address| !address.is_empty())?;
     let href = Uri::from_str(&format!("{repository}/blob/main/docs/diagnostics/{code}.md")).ok()?;
     Some(CodeDescription { href })

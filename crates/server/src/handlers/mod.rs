@@ -8,6 +8,7 @@ pub(crate) mod diagnostics;
 pub(crate) mod document_links;
 pub(crate) mod document_symbols;
 pub(crate) mod driven_path;
+pub(crate) mod explain;
 pub(crate) mod file_operations;
 pub(crate) mod folding;
 pub(crate) mod formatting;

@@ -19,7 +19,7 @@ use tower_lsp::jsonrpc::{Error, ErrorCode, Result};
 
 use crate::children::{Children, News, Running};
 use crate::chosen::ChosenEnvironment;
-use crate::handlers::scripts::{environment, failure};
+use crate::handlers::scripts::{blocked, environment, failure};
 use crate::state::State;
 
 /// Drives an environment.
@@ -47,7 +47,7 @@ pub(crate) struct Job {
 /// If the environment is not there or has errors, or the files cannot be written.
 pub(crate) fn prepare(state: &State, which: &ChosenEnvironment, command: &str) -> Result<Job> {
     let id = environment(state, which)?;
-    state.database.environment(id).map_err(|blocked| failure(blocked.reason()))?;
+    state.database.environment(id).map_err(|errors| blocked(state, &errors))?;
     let (subcommand, what) = if command == RUN { ("run", "driven") } else { ("plan", "planned") };
     let unwritten = |error: io::Error| failure(format!("cannot write what is to be run: {error}"));
     let folder = tempfile::Builder::new().prefix("pydslrep-").tempdir().map_err(unwritten)?;
@@ -143,6 +143,7 @@ impl Job {
         let mut command = Command::new(&program);
         command.arg(self.subcommand).arg(&self.program);
         command.args(["--environment", &self.environment, "--picture"]).arg(&picture);
+        command.arg("--replay").arg(replay(&picture));
         if self.subcommand == "run" {
             command.arg("--trace").arg(trace(&picture)).arg("--map").arg(map(&picture));
             command.arg("--until-input-ends");
@@ -155,6 +156,11 @@ impl Job {
         })?;
         Ok((running, news, picture))
     }
+}
+
+/// Where a picture that moves is drawn: beside the other.
+pub(crate) fn replay(picture: &Path) -> PathBuf {
+    picture.with_extension("replay.svg")
 }
 
 /// Where a run writes every step: beside its picture.
@@ -183,12 +189,12 @@ pub(crate) fn ended_badly(code: Option<i32>, said: &[String]) -> Error {
             data: None,
         };
     }
-    // Where it wrote to is nothing that the person asked for.
-    let files = ["picture: ", "trace: ", "map: "];
-    let is_news = |line: &&String| !files.iter().any(|file| line.starts_with(file));
+    // Where it wrote to is nothing that the person asked for, and what it began with is no reason.
+    let others = ["picture: ", "replay: ", "trace: ", "map: ", "preparing Python "];
+    let is_news = |line: &&String| !others.iter().any(|other| line.starts_with(other));
     let words: Vec<&str> = said.iter().filter(is_news).map(String::as_str).collect();
     if words.is_empty() {
-        return failure("pydslrep ended without a word".to_owned());
+        return failure("pydslrep exited without output".to_owned());
     }
     failure(words.join("\n"))
 }

@@ -4,11 +4,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use pydslrep_analysis::EntityId;
+use pydslrep_analysis::{Blocked, EntityId};
 use pydslrep_syntax::EntityKind;
+use serde::Serialize;
 use tower_lsp::jsonrpc::{self, Error, ErrorCode};
 use tower_lsp::ls_types::{
-    CreateFile, CreateFileOptions, DocumentChangeOperation, DocumentChanges, ExecuteCommandParams,
+    CreateFile, CreateFileOptions, DocumentChangeOperation, DocumentChanges, ExecuteCommandParams, Location,
     MessageType, OneOf, OptionalVersionedTextDocumentIdentifier, Position, Range, ResourceOp,
     ShowDocumentParams, ShowMessageParams, TextDocumentEdit, TextEdit, Uri, WorkspaceEdit,
 };
@@ -43,7 +44,7 @@ impl Script {
 pub(crate) fn generate(state: &State, which: &ChosenEnvironment) -> jsonrpc::Result<Script> {
     let id = environment(state, which)?;
     let program = state.document(&which.uri).map_or(&which.uri, |document| &document.uri);
-    of_environment(state, program, id).map_err(failure)
+    of_environment(state, program, id)
 }
 
 /// The environment that is meant.
@@ -61,22 +62,49 @@ pub(crate) fn environment(state: &State, which: &ChosenEnvironment) -> jsonrpc::
     first.ok_or_else(|| failure(format!("there is no environment `{}`", which.environment)))
 }
 
-/// Generates the script of an environment; the error says why there is none.
-pub(crate) fn of_environment(state: &State, program: &Uri, id: EntityId) -> Result<Script, String> {
-    let environment = state.database.environment(id).map_err(|blocked| blocked.reason())?;
+/// Generates the script of an environment.
+///
+/// # Errors
+///
+/// If it has errors, or its program has no place for a script.
+pub(crate) fn of_environment(state: &State, program: &Uri, id: EntityId) -> jsonrpc::Result<Script> {
+    let environment = state.database.environment(id).map_err(|errors| blocked(state, &errors))?;
     let target = state.document(program).map(|document| document.settings.target).unwrap_or_default();
     let file_name = pydslrep_script::file_name(&environment);
     let uri = match state.output_folder(program) {
         Some(folder) => Uri::from_file_path(folder.join(file_name)),
         None => address(program, &file_name),
     };
-    let uri = uri.ok_or(NO_PLACE)?;
-    let text = pydslrep_script::generate(&environment, target).map_err(|error| error.to_string())?;
+    let uri = uri.ok_or_else(unsaved)?;
+    let text = pydslrep_script::generate(&environment, target).map_err(|error| failure(error.to_string()))?;
     Ok(Script { uri, text })
 }
 
+/// What a client can do about a failure, in the `data` of the error.
+#[derive(Debug, Serialize)]
+#[serde(tag = "reason", rename_all = "kebab-case")]
+enum Cause {
+    /// The program was never saved.
+    Unsaved,
+    /// There are errors; the first is here, if the client can find it.
+    Errors { location: Option<Location> },
+}
+
 /// Why a document that was never saved has no script.
-const NO_PLACE: &str = "save the program first: its script goes into the same folder";
+fn unsaved() -> Error {
+    with_cause("save the file first; the script is written next to it".to_owned(), &Cause::Unsaved)
+}
+
+/// Why an environment with errors is neither run nor made a script of.
+pub(crate) fn blocked(state: &State, blocked: &Blocked) -> Error {
+    let first = blocked.errors.first();
+    let location = first.and_then(|error| state.location(error.file, error.span));
+    with_cause(blocked.reason(), &Cause::Errors { location })
+}
+
+fn with_cause(message: String, cause: &Cause) -> Error {
+    Error { data: serde_json::to_value(cause).ok(), ..failure(message) }
+}
 
 /// Where the script of a program goes, if nothing else is set: into the same folder. `None` if the program is in none.
 fn address(program: &Uri, file_name: &str) -> Option<Uri> {
@@ -127,9 +155,9 @@ pub(crate) fn which(params: &ExecuteCommandParams) -> jsonrpc::Result<ChosenEnvi
 /// where.
 pub(crate) fn execute(state: &State, params: &ExecuteCommandParams, outbox: &Outbox) -> jsonrpc::Result<Uri> {
     let script = generate(state, &which(params)?)?;
-    let path = path(&script.uri).ok_or_else(|| failure(NO_PLACE.to_owned()))?;
+    let path = path(&script.uri).ok_or_else(unsaved)?;
     write(&path, &script.text).map_err(failure)?;
-    tell(outbox, MessageType::INFO, format!("wrote {}", path.display()));
+    tell(outbox, MessageType::INFO, format!("Script written: {}", script.file_name()));
     Ok(script.uri)
 }
 
@@ -146,7 +174,7 @@ pub(crate) fn save(state: &mut State, program: &Uri, outbox: &Outbox) {
     for script in scripts {
         let Some(path) = path(&script.uri) else { continue };
         let (kind, message) = match write(&path, &script.text) {
-            Ok(()) => (MessageType::INFO, format!("wrote {}, as on every save from now on", path.display())),
+            Ok(()) => (MessageType::INFO, format!("Script written: {} (on every save)", script.file_name())),
             Err(reason) => (MessageType::WARNING, reason),
         };
         if state.told.insert(message.clone()) {
@@ -160,7 +188,7 @@ fn write(path: &Path, text: &str) -> Result<(), String> {
     let before = fs::read(path);
     // Nothing could bring back what is overwritten here.
     if before.as_ref().is_ok_and(|content| !pydslrep_script::may_replace(content)) {
-        let reason = "exists and is no generated script: move it away, or rename the environment";
+        let reason = "already exists and is not a generated script; move it, or rename the environment";
         return Err(format!("{} {reason}", path.display()));
     }
     if before.is_ok_and(|content| content == text.as_bytes()) {

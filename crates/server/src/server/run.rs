@@ -67,8 +67,10 @@ impl Server {
         if !is_done {
             // Nothing was drawn.
             let _ = std::fs::remove_file(&picture);
+            let _ = std::fs::remove_file(runs::replay(&picture));
             return Err(runs::ended_badly(code, said.make_contiguous()));
         }
+        let replay = Uri::from_file_path(runs::replay(&picture));
         let picture = Uri::from_file_path(&picture);
         let shows_documents = self.state().client.show_document;
         if let (Some(uri), true) = (&picture, shows_documents) {
@@ -81,7 +83,7 @@ impl Server {
             // The picture is there, whether or not the client then shows it.
             let _ = self.client.show_document(show).await;
         }
-        Ok(serde_json::json!({ "picture": picture, "output": printed }))
+        Ok(serde_json::json!({ "picture": picture, "replay": replay, "output": printed }))
     }
 
     /// Under which name a run shows its progress: the client's, else one of ours; `None` where it shows none.

@@ -1,5 +1,5 @@
 // Follows the text: which environment is shown, and its path as it is now. Knows neither the editor nor the panel.
-import type { ToPage } from "./messages";
+import type { Remedy, ToPage } from "./messages";
 import {
   ACTION_LOCATION,
   DRIVEN_PATH,
@@ -44,12 +44,20 @@ export class Follower {
     return this.uri;
   }
 
+  /** The environment that is shown. */
+  get which(): Which | undefined {
+    const { uri, environment } = this;
+    return uri === undefined || environment === undefined ? undefined : { uri, environment };
+  }
+
   /** Shows a program, and in it the given environment, else the one at the position. */
   async follow(uri: string, at: Position, environment?: string): Promise<void> {
     if (uri !== this.uri) {
       this.uri = uri;
       this.environment = environment;
       this.environments = [];
+      this.isAnswered = false;
+      this.isShown = false;
       await this.look(at);
     } else if (environment !== undefined && environment !== this.environment) {
       this.environment = environment;
@@ -70,9 +78,10 @@ export class Follower {
       | undefined;
     if (found === undefined || uri !== this.uri) return;
     if (found === null || found instanceof Failure) {
-      this.show({ type: "trouble", sentence: found?.message ?? "The program is not open in the editor." });
+      this.trouble(found?.message ?? "The program is not open in the editor.");
       return;
     }
+    this.isAnswered = true;
     const before = this.environment;
     this.environment = this.choice(found, mayMove);
     const list = JSON.stringify([found.environments, this.environment]);
@@ -85,7 +94,8 @@ export class Follower {
       this.show({ type: "cursor", action: found.action });
     }
     if (this.environment === undefined) {
-      this.show({ type: "trouble", sentence: "The program has no environment yet: it is what brings robots and movements together." });
+      this.isShown = false;
+      this.noEnvironment();
     } else if (this.environment !== before || !this.isShown) {
       await this.plan();
     }
@@ -93,6 +103,9 @@ export class Follower {
 
   /** Whether a path, or why there is none, was asked for the environment that is shown. */
   private isShown = false;
+
+  /** Whether the server has told which environments there are. */
+  private isAnswered = false;
 
   private choice(found: PlannedAt, mayMove: boolean): string | undefined {
     const current = this.environment;
@@ -116,19 +129,20 @@ export class Follower {
 
   /** The server says that an environment was run. */
   async drivenChanged(which: Which): Promise<void> {
-    if (this.isThis(which)) await this.driven(which);
+    if (this.isThis(which)) await this.driven(which, true);
   }
 
   /** Says everything again, to a page that knows nothing. */
   async again(): Promise<void> {
     this.isShown = false;
     if (this.uri === undefined) {
-      this.show({ type: "trouble", sentence: "Open a program (a file that ends with .pyr) to see its planned path." });
+      this.trouble("Open a program (a file that ends in .pyr) to see its planned path.");
       return;
     }
     this.tellEnvironments();
     this.show({ type: "cursor", action: this.action });
     if (this.environment !== undefined) await this.plan();
+    else if (this.isAnswered) this.noEnvironment();
   }
 
   /** Where an action of the shown environment stands. */
@@ -159,14 +173,22 @@ export class Follower {
   private async planned(which: Which): Promise<void> {
     const path = await this.request("planned", PLANNED_PATH, which);
     if (path === undefined || !this.isThis(which)) return;
-    if (path instanceof Failure) this.show({ type: "trouble", sentence: path.message });
+    if (path instanceof Failure) this.trouble(path.message);
     else this.show({ type: "path", uri: which.uri, path: path as PlannedPath });
   }
 
-  private async driven(which: Which): Promise<void> {
+  private async driven(which: Which, isNew = false): Promise<void> {
     const driven = await this.request("driven", DRIVEN_PATH, which);
     if (driven === undefined || driven instanceof Failure || !this.isThis(which)) return;
-    this.show({ type: "driven", driven: driven as DrivenPath | null });
+    this.show({ type: "driven", ...which, driven: driven as DrivenPath | null, isNew });
+  }
+
+  private noEnvironment(): void {
+    this.trouble("The program has no environment yet. Add one to see the path.", "addEnvironment");
+  }
+
+  private trouble(sentence: string, remedy?: Remedy): void {
+    this.show({ type: "trouble", uri: this.uri ?? null, sentence, ...(remedy ? { remedy } : {}) });
   }
 
   /** The answer; undefined where a newer question of the same kind was asked meanwhile. */

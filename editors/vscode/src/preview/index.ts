@@ -2,6 +2,10 @@
 import * as vscode from "vscode";
 import type { LanguageClient } from "vscode-languageclient/node";
 
+import { chooseEnvironment } from "../environments";
+import { execute } from "../execute";
+import type { Session } from "../session";
+import type { Drawn } from "./export";
 import type { Ask } from "./follower";
 import { pageState } from "./messages";
 import { isProgram, PANEL, PreviewPanel } from "./panel";
@@ -10,22 +14,21 @@ import { DRIVEN_PATH_CHANGED, PLANNED_PATH_CHANGED, type Which } from "./protoco
 /**
  * Registers the command `pydslrep.showPreview` and the panel behind it. Its arguments are both optional: the program's
  * `vscode.Uri`, which the button in the title bar gives, and the environment's name, which lenses give besides.
- * `onDidChangeState` tells "running" when a server has been started.
  */
 export function registerPreview(
   context: vscode.ExtensionContext,
-  client: () => LanguageClient | undefined,
-  onDidChangeState: vscode.Event<string>,
+  session: Session,
 ): vscode.Disposable {
-  const preview = new Preview(context.extensionUri, client);
+  const preview = new Preview(context.extensionUri, session);
   return vscode.Disposable.from(
     // A server that was started again knows of nobody who wants a path.
-    onDidChangeState((state) => {
+    session.onDidChangeState((state) => {
       if (state === "running") preview.refresh();
     }),
     vscode.commands.registerCommand("pydslrep.showPreview", (uri?: unknown, environment?: unknown) =>
       preview.open(uri, environment),
     ),
+    vscode.commands.registerCommand("pydslrep.exportPath", () => preview.export()),
     vscode.window.registerWebviewPanelSerializer(PANEL, preview),
   );
 }
@@ -37,7 +40,7 @@ class Preview implements vscode.WebviewPanelSerializer {
 
   constructor(
     private readonly extension: vscode.Uri,
-    private readonly client: () => LanguageClient | undefined,
+    private readonly session: Session,
   ) {}
 
   async open(uri: unknown, environment: unknown): Promise<void> {
@@ -63,12 +66,22 @@ class Preview implements vscode.WebviewPanelSerializer {
     if (uri !== undefined) await adopted.follow(vscode.Uri.parse(uri), environment);
   }
 
+  /** Of what is shown; where nothing is, of the program in the editor. */
+  async export(): Promise<void> {
+    if (this.shown?.which === undefined) {
+      const chosen = await chooseEnvironment(this.session.client, undefined);
+      if (chosen === undefined) return;
+      await this.open(chosen.uri, chosen.environment);
+    }
+    await this.shown?.export();
+  }
+
   refresh(): void {
     void this.shown?.refresh();
   }
 
   private adopt(panel: vscode.WebviewPanel): PreviewPanel {
-    const adopted = new PreviewPanel(panel, this.extension, this.ask);
+    const adopted = new PreviewPanel(panel, this.extension, this.ask, this.draw);
     this.shown = adopted;
     panel.onDidDispose(() => {
       if (this.shown === adopted) this.shown = undefined;
@@ -76,8 +89,16 @@ class Preview implements vscode.WebviewPanelSerializer {
     return adopted;
   }
 
+  /** Files of a path: those of its latest run, else drawn now. */
+  private readonly draw = async (which: Which): Promise<Drawn | undefined> => {
+    const driven = this.session.runs.picturesOf(which);
+    if (driven) return { ...driven, isDriven: true };
+    const planned = await execute(this.session, "pydslrep.previewPath", which);
+    return planned === undefined ? undefined : { ...(planned as Drawn), isDriven: false };
+  };
+
   private readonly ask: Ask = async (method, params, signal) => {
-    const client = this.client();
+    const { client } = this.session;
     if (!client) throw new Error("The language server is not running.");
     this.connect(client);
     const cancellation = new vscode.CancellationTokenSource();

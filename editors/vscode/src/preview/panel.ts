@@ -4,9 +4,12 @@ import { randomUUID } from "node:crypto";
 import * as vscode from "vscode";
 
 import { Follower, type Ask } from "./follower";
+import { exportPath, type Drawn } from "./export";
 import { fromPage, type ToPage } from "./messages";
 import { page } from "./page";
 import type { NumberedAction, Which } from "./protocol";
+import { addEnvironment } from "../environments";
+import { reached } from "../milestones";
 
 /** The panel's type, which VS Code restores it by. */
 export const PANEL = "pydslrep.preview";
@@ -19,11 +22,14 @@ export function isProgram(document: vscode.TextDocument): boolean {
 export class PreviewPanel {
   private readonly follower: Follower;
   private readonly subscriptions: vscode.Disposable[] = [];
+  /** Who waits for the page's picture. */
+  private awaiting: ((data: string) => void) | undefined;
 
   constructor(
     private readonly panel: vscode.WebviewPanel,
     extension: vscode.Uri,
     ask: Ask,
+    private readonly draw: (which: Which) => Promise<Drawn | undefined>,
   ) {
     this.follower = new Follower(ask, (message) => this.show(message));
     const dist = vscode.Uri.joinPath(extension, "dist");
@@ -72,7 +78,29 @@ export class PreviewPanel {
     return this.follower.again();
   }
 
+  /** What is shown. */
+  get which(): Which | undefined {
+    return this.follower.which;
+  }
+
+  /** Writes what is shown into a file that the person chooses. */
+  async export(): Promise<void> {
+    const { which } = this.follower;
+    if (which !== undefined) {
+      await exportPath(which, () => this.draw(which), () => this.picture());
+    }
+  }
+
+  /** The picture in the page, as an address with a PNG in it. */
+  private picture(): Promise<string> {
+    return new Promise((resolve) => {
+      this.awaiting = resolve;
+      this.show({ type: "draw" });
+    });
+  }
+
   private show(message: ToPage): void {
+    if (message.type === "path") reached("preview");
     void this.panel.webview.postMessage(message);
   }
 
@@ -99,6 +127,14 @@ export class PreviewPanel {
     if (heard?.type === "ready") void this.follower.again();
     else if (heard?.type === "choose") void this.follower.choose(heard.environment);
     else if (heard?.type === "reveal") void this.select(heard.action);
+    else if (heard?.type === "export") void this.export();
+    else if (heard?.type === "picture") this.awaiting?.(heard.data);
+    else if (heard?.type === "remedy") void this.remedy();
+  }
+
+  private async remedy(): Promise<void> {
+    const { program } = this.follower;
+    if (program !== undefined) await addEnvironment(await vscode.workspace.openTextDocument(vscode.Uri.parse(program)));
   }
 
   /** Selects an action in the editor; the focus stays in the panel, where one may go on to the next. */

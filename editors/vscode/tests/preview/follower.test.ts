@@ -92,7 +92,38 @@ test("why there is no path is told", async () => {
   const asking = follower.pathChanged({ uri: "file:///a.pyr", environment: "yard" });
   (await next(PLANNED_PATH)).refuse("`yard` has errors: there is no movement `go`");
   await asking;
-  assert.deepEqual(shown.at(-1), { type: "trouble", sentence: "`yard` has errors: there is no movement `go`" });
+  assert.deepEqual(shown.at(-1), { type: "trouble", uri: "file:///a.pyr", sentence: "`yard` has errors: there is no movement `go`" });
+});
+
+test("a program without environment is told as that program's, with what helps", async () => {
+  const { follower, shown, next } = await opened(at(["yard"]));
+  const following = follower.follow("file:///b.pyr", TOP);
+  (await next(PLANNED_AT)).answer(at([], []));
+  await following;
+  const trouble = {
+    type: "trouble",
+    uri: "file:///b.pyr",
+    sentence: "The program has no environment yet. Add one to see the path.",
+    remedy: "addEnvironment",
+  };
+  assert.deepEqual(shown.slice(-2), [{ type: "environments", uri: "file:///b.pyr", names: [], shown: null }, trouble]);
+  await follower.again();
+  assert.deepEqual(shown.at(-1), trouble, "also to a page that was loaded again");
+});
+
+test("a run that has just ended is told as new, one that is told again is not", async () => {
+  const { follower, shown, next } = await opened(at(["yard"]));
+  const which = { uri: "file:///a.pyr", environment: "yard" };
+  const driven = { environment: "yard", robots: [] };
+  const telling = follower.drivenChanged(which);
+  (await next(DRIVEN_PATH)).answer(driven);
+  await telling;
+  assert.deepEqual(shown.at(-1), { type: "driven", ...which, driven, isNew: true });
+  const again = follower.again();
+  (await next(PLANNED_PATH)).answer(plan());
+  (await next(DRIVEN_PATH)).answer(driven);
+  await again;
+  assert.deepEqual(shown.at(-1), { type: "driven", ...which, driven, isNew: false });
 });
 
 test("paths of other environments and programs do not matter", async () => {
@@ -150,7 +181,7 @@ test("before there is a program a page says what to do", async () => {
 
 test("messages from the page are read, whatever they are", () => {
   assert.deepEqual(fromPage({ type: "reveal", action: { movement: "go", index: 1 } }), { type: "reveal", action: { movement: "go", index: 1 } });
-  for (const nonsense of [null, 7, "ready", {}, { type: "choose" }, { type: "reveal", action: { movement: 1, index: 0 } }, { type: "reveal", action: { movement: "a", index: 0.5 } }]) {
+  for (const nonsense of [null, 7, "ready", {}, { type: "choose" }, { type: "reveal", action: { movement: 1, index: 0 } }, { type: "reveal", action: { movement: "a", index: 0.5 } }, { type: "remedy", remedy: "rm" }, { type: "picture", data: "file:///etc/passwd" }]) {
     assert.equal(fromPage(nonsense), undefined);
   }
 });

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { commandOf, type Key } from "../../webview/preview/keys";
+import { commandOf, KEYS, type Key } from "../../webview/preview/keys";
 import { Playback } from "../../webview/preview/playback";
 import * as words from "../../webview/preview/words";
 
@@ -22,6 +22,24 @@ test("time goes by as fast as was chosen, and stops at the end", () => {
   assert.ok(!playback.advance(1, false));
   playback.toggle();
   assert.deepEqual([playback.time, playback.isPlaying], [0, true]);
+});
+
+test("a playback that is replaced ends, and the next begins at its start", () => {
+  const playback = playing(10);
+  playback.advance(0.2, false);
+  playback.end();
+  assert.deepEqual([playback.time, playback.isPlaying], [0, false]);
+});
+
+test("the list of keys has every key that does something, and no other", () => {
+  const press = (key: string, shiftKey = false) =>
+    commandOf({ key, shiftKey, ctrlKey: false, altKey: false, metaKey: false }, "");
+  const listed = KEYS.flatMap(({ keys, shift }) => keys.map((key) => [key, shift === true] as const));
+  assert.deepEqual(listed.filter(([key, shift]) => press(key, shift) === undefined), []);
+  const named = ["Enter", "Home", "End", "PageUp", "PageDown", "Escape", "ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "−"];
+  const printable = Array.from({ length: 95 }, (_, index) => String.fromCharCode(32 + index));
+  const working = [...named, ...printable].filter((key) => press(key) !== undefined);
+  assert.deepEqual(working.filter((key) => !listed.some(([other]) => other === key)), []);
 });
 
 test("a window that was hidden does not jump", () => {

@@ -1,7 +1,7 @@
 // What keys do, wherever the focus is.
 
 export type Command =
-  | { do: "toggle" | "start" | "end" | "fit" | "reveal" }
+  | { do: "toggle" | "start" | "end" | "fit" | "reveal" | "help" | "close" | "export" }
   | { do: "step"; steps: number }
   | { do: "action"; direction: 1 | -1 }
   | { do: "zoom"; factor: number }
@@ -14,6 +14,22 @@ export interface Key {
   altKey: boolean;
   metaKey: boolean;
 }
+
+/** What the keys do, in words; each by the name that the browser has for it. */
+export const KEYS: readonly { keys: readonly string[]; shift?: true; shown: string; does: string }[] = [
+  { keys: [" "], shown: "Space", does: "play or pause" },
+  { keys: ["ArrowLeft", "ArrowRight"], shown: "← →", does: "step through time" },
+  { keys: ["ArrowUp", "ArrowDown"], shown: "↑ ↓", does: "ten steps" },
+  { keys: ["Home", "End"], shown: "Home End", does: "go to the start or the end" },
+  { keys: ["n", "p", "PageDown", "PageUp"], shown: "N P", does: "next or previous action" },
+  { keys: ["Enter"], shown: "Enter", does: "show the action in the program" },
+  { keys: ["+", "=", "-", "−"], shown: "+ −", does: "zoom" },
+  { keys: ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"], shift: true, shown: "Shift+arrows", does: "move the picture" },
+  { keys: ["0"], shown: "0", does: "fit to view" },
+  { keys: ["e"], shown: "E", does: "export as SVG, PNG or replay" },
+  { keys: ["?"], shown: "?", does: "show or hide this list" },
+  { keys: ["Escape"], shown: "Esc", does: "hide this list" },
+];
 
 /** So far arrows with Shift move the floor, pixels. */
 const PAN = 40;
@@ -53,6 +69,12 @@ export function commandOf(event: Key, focus: string): Command | undefined {
       return { do: "zoom", factor: 1 / 1.4 };
     case "0":
       return { do: "fit" };
+    case "e":
+      return { do: "export" };
+    case "?":
+      return { do: "help" };
+    case "Escape":
+      return { do: "close" };
     default:
       return undefined;
   }

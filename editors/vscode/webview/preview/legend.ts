@@ -49,7 +49,7 @@ export class Legend {
     if (found && robot.unknownAfter) lines.push(`driven → ${words.pose(found)}`);
     else if (found) {
       const { distance, angle } = deviation(robot.end, found);
-      lines.push(`driven ${words.small(distance)}, ${words.fixed((angle * 180) / Math.PI, 1)}° off`);
+      lines.push(`driven path ends ${words.small(distance)}, ${words.fixed((angle * 180) / Math.PI, 1)}° off`);
     }
     const notes = lines.map((line) => element("small", {}, line));
     return element("li", {}, element("label", {}, check, swatch, name), ...notes);

@@ -41,6 +41,12 @@ export class Playback {
     if (this.isPlaying && this.time >= this.duration) this.time = 0;
   }
 
+  /** What was played is no more: the next begins at its start. */
+  end(): void {
+    this.isPlaying = false;
+    this.time = 0;
+  }
+
   /** Some seconds of watching went by; says whether the time is another one now. */
   advance(seconds: number, isCalm: boolean): boolean {
     if (!this.isPlaying) return false;

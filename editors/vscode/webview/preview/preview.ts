@@ -3,6 +3,7 @@ import type { FromPage, PageState, ToPage } from "../../src/preview/messages";
 import type { NumberedAction } from "../../src/preview/protocol";
 import { Controls } from "./controls";
 import { element } from "./elements";
+import { Help } from "./help";
 import { hitTest, type Hit } from "./hit";
 import { commandOf, type Command } from "./keys";
 import { Legend } from "./legend";
@@ -23,7 +24,15 @@ export interface Outside {
 
 export class Preview {
   private model: Model | undefined;
+  /** The program whose path is shown. */
+  private shownUri: string | undefined;
+  /** The program whose environments are named. */
+  private namedUri: string | undefined;
+  /** Whether there was a path before: the first begins where the page was left. */
+  private hadPath = false;
   private driven: Driven | undefined;
+  /** The program and environment that was driven. */
+  private drivenOf: string | undefined;
   private isRunShown = true;
   private readonly hidden: Set<string>;
   /** The action at the cursor of the editor. */
@@ -47,6 +56,7 @@ export class Preview {
   private readonly controls: Controls;
   private readonly legend: Legend;
   private readonly tooltip = new Tooltip();
+  private readonly help = new Help();
   private readonly spoken = element("p", { class: "spoken", "aria-live": "polite", "data-part": "spoken" });
 
   constructor(
@@ -61,6 +71,9 @@ export class Preview {
       choose: (environment) => outside.say({ type: "choose", environment }),
       zoom: (factor) => this.zoom(factor),
       fit: () => this.fit(),
+      exportFile: () => outside.say({ type: "export" }),
+      help: () => this.help.toggle(),
+      remedy: (remedy) => outside.say({ type: "remedy", remedy }),
     });
     this.controls = new Controls({
       toggle: () => this.toggle(),
@@ -85,7 +98,7 @@ export class Preview {
       "main",
       { class: "preview", "data-state": "empty", "data-drawn": "0", "data-steps": "0" },
       this.toolbar.bar,
-      element("div", { class: "middle" }, element("div", { class: "stage" }, this.surface, this.toolbar.banner), this.legend.panel),
+      element("div", { class: "middle" }, element("div", { class: "stage" }, this.surface, this.toolbar.banner, this.help.box), this.legend.panel),
       this.controls.bar,
       this.spoken,
     );
@@ -102,10 +115,11 @@ export class Preview {
         this.showPath(message);
         break;
       case "trouble":
-        this.showTrouble(message.sentence);
+        this.showTrouble(message);
         break;
       case "environments":
         this.toolbar.setEnvironments(message.names, message.shown);
+        this.namedUri = message.uri;
         this.remember({ uri: message.uri, ...(message.shown === null ? {} : { environment: message.shown }) });
         break;
       case "cursor":
@@ -117,6 +131,9 @@ export class Preview {
       case "driven":
         this.showDriven(message);
         break;
+      case "draw":
+        this.outside.say({ type: "picture", data: this.stage.picture(this.theme) });
+        break;
     }
   }
 
@@ -124,18 +141,20 @@ export class Preview {
 
   private showPath({ uri, path }: Extract<ToPage, { type: "path" }>): void {
     const before = this.model;
-    const isOther = before?.environment !== path.environment || this.state.uri !== uri;
+    const isOther = before?.environment !== path.environment || this.shownUri !== uri;
     this.model = modelOf(path);
+    this.shownUri = uri;
     this.pointed = undefined;
     this.chosen = undefined;
     this.tooltip.hide();
     if (isOther) {
       this.isFitted = true;
-      if (before) this.driven = undefined;
+      if (this.drivenOf !== nameOf(uri, path.environment)) this.driven = undefined;
       this.playback.isPlaying = false;
       this.playback.setDuration(this.model.duration);
-      this.playback.seek(before ? 0 : (this.state.time ?? 0));
+      this.playback.seek(this.hadPath ? 0 : (this.state.time ?? 0));
     }
+    this.hadPath = true;
     this.remember({ uri, environment: path.environment });
     this.root.dataset.state = "ready";
     this.root.dataset.environment = path.environment;
@@ -144,14 +163,32 @@ export class Preview {
     this.root.dataset.drawn = `${Number(this.root.dataset.drawn) + 1}`;
   }
 
-  private showTrouble(sentence: string): void {
+  private showTrouble({ uri, sentence, remedy }: Extract<ToPage, { type: "trouble" }>): void {
+    if (uri !== this.shownUri) this.forget();
+    if (uri !== this.namedUri) this.toolbar.setEnvironments([], null);
     const hasPicture = this.model !== undefined;
     this.root.dataset.state = hasPicture ? "stale" : "empty";
-    this.toolbar.setTrouble(sentence, hasPicture);
+    this.toolbar.setTrouble(sentence, hasPicture, remedy);
   }
 
-  private showDriven({ driven }: Extract<ToPage, { type: "driven" }>): void {
+  /** Another program is meant: what is shown is none of it. */
+  private forget(): void {
+    this.model = undefined;
+    this.shownUri = undefined;
+    this.driven = undefined;
+    this.pointed = undefined;
+    this.chosen = undefined;
+    this.tooltip.hide();
+    this.playback.end();
+    this.root.dataset.environment = "";
+    this.root.dataset.driven = "";
+    this.takeIn(true);
+  }
+
+  private showDriven({ uri, environment, driven, isNew }: Extract<ToPage, { type: "driven" }>): void {
     this.driven = driven ? drivenOf(driven) : undefined;
+    this.drivenOf = nameOf(uri, environment);
+    if (isNew && this.playback.isPlaying) this.playback.end();
     this.root.dataset.driven = driven ? driven.environment : "";
     this.takeIn(false);
   }
@@ -225,6 +262,15 @@ export class Preview {
         break;
       case "fit":
         this.fit();
+        break;
+      case "export":
+        this.outside.say({ type: "export" });
+        break;
+      case "help":
+        this.help.toggle();
+        break;
+      case "close":
+        this.help.hide();
         break;
     }
   }
@@ -400,13 +446,17 @@ export class Preview {
     const robots = model.robots.length === 1 ? "1 robot" : `${model.robots.length} robots`;
     const crashes = model.crashes.length === 0 ? "" : `, ${model.crashes.length === 1 ? "1 collision" : `${model.crashes.length} collisions`}`;
     const time = model.isWhole ? `, ${words.time(model.duration)}` : ", of unknown duration";
-    return `Planned path of ${model.environment}: ${robots}${time}${crashes}. N and P go through the actions, Enter shows one in the program.`;
+    return `Planned path of ${model.environment}: ${robots}${time}${crashes}. Press ? for the keys.`;
   }
 
   private remember(news: PageState): void {
     Object.assign(this.state, news);
     this.outside.keep(this.state);
   }
+}
+
+function nameOf(uri: string, environment: string): string {
+  return `${environment} ${uri}`;
 }
 
 function numbered({ movement, index }: NumberedAction): NumberedAction {

@@ -43,6 +43,19 @@ export class Stage {
     }
   }
 
+  /** Both layers on paper, as an address with a PNG in it. */
+  picture(theme: Theme): string {
+    const canvas = document.createElement("canvas");
+    canvas.width = this.stillCanvas.width;
+    canvas.height = this.stillCanvas.height;
+    const context = contextOf(canvas);
+    context.fillStyle = theme.paper;
+    context.fillRect(0, 0, canvas.width, canvas.height);
+    context.drawImage(this.stillCanvas, 0, 0);
+    context.drawImage(this.movingCanvas, 0, 0);
+    return canvas.toDataURL("image/png");
+  }
+
   drawStill(scene: Scene, theme: Theme): void {
     const context = this.begin(this.still);
     const { view } = this;

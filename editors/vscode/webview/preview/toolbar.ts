@@ -1,10 +1,14 @@
 // What is above the picture: which environment it is, how much of the floor is seen, and what is wrong.
+import type { Remedy } from "../../src/preview/messages";
 import { element, icon, ICONS } from "./elements";
 
 export interface ToolbarEvents {
   choose: (environment: string) => void;
   zoom: (factor: number) => void;
   fit: () => void;
+  exportFile: () => void;
+  help: () => void;
+  remedy: (remedy: Remedy) => void;
 }
 
 export class Toolbar {
@@ -14,7 +18,7 @@ export class Toolbar {
   private readonly scale = element("span", { class: "scale", "aria-hidden": "true", "data-part": "scale" });
   private readonly picker = element("select", { "aria-label": "Environment", "data-part": "picker" });
 
-  constructor(events: ToolbarEvents) {
+  constructor(private readonly events: ToolbarEvents) {
     this.picker.addEventListener("change", () => events.choose(this.picker.value));
     this.bar = element(
       "header",
@@ -25,7 +29,9 @@ export class Toolbar {
       this.scale,
       button("Zoom out (−)", ICONS.minus, "zoom-out", () => events.zoom(1 / 1.4)),
       button("Zoom in (+)", ICONS.plus, "zoom-in", () => events.zoom(1.4)),
-      button("Fit the picture (0)", ICONS.fit, "fit", events.fit),
+      button("Fit to view (0)", ICONS.fit, "fit", events.fit),
+      button("Export as SVG, PNG or replay (E)", ICONS.export, "export", events.exportFile),
+      button("Keys (?)", ICONS.help, "keys", events.help),
     );
     this.banner = element("p", { class: "banner", role: "status", "data-part": "banner" });
     this.banner.hidden = true;
@@ -42,6 +48,12 @@ export class Toolbar {
     if (shown !== null) this.picker.value = shown;
   }
 
+  private remedyFor(remedy: Remedy): HTMLElement {
+    const made = element("button", { type: "button", class: "remedy", "data-part": "remedy" }, REMEDIES[remedy]);
+    made.addEventListener("click", () => this.events.remedy(remedy));
+    return made;
+  }
+
   /** How long a length of the floor is in the picture, pixels. */
   setScale(pixels: number, length: string): void {
     this.scale.style.setProperty("--long", `${pixels}px`);
@@ -49,15 +61,19 @@ export class Toolbar {
   }
 
   /** What is wrong, in a sentence; undefined where nothing is. */
-  setTrouble(sentence: string | undefined, hasPicture: boolean): void {
+  setTrouble(sentence: string | undefined, hasPicture: boolean, remedy?: Remedy): void {
     this.banner.hidden = sentence === undefined;
     if (sentence === undefined) return;
-    const words = hasPicture ? `${ended(sentence)} This is the path as it was before.` : ended(sentence);
+    const words = hasPicture ? `${ended(sentence)} Showing the last valid path.` : ended(sentence);
     // What stands in backquotes is out of the program.
     const parts = words.split("`").map((part, index) => (index % 2 === 1 ? element("code", {}, part) : part));
     this.banner.replaceChildren(...parts);
+    if (remedy) this.banner.append(" ", this.remedyFor(remedy));
   }
 }
+
+/** What a button that helps is called. */
+const REMEDIES: Record<Remedy, string> = { addEnvironment: "Add Environment" };
 
 export function button(label: string, shape: string, part: string, pressed: () => void): HTMLButtonElement {
   const made = element("button", { type: "button", class: "icon", title: label, "aria-label": label, "data-part": part }, icon(shape));
