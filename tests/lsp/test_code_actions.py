@@ -133,5 +133,5 @@ async def test_scripts_are_written_on_save_where_the_settings_say(
     script.write_text("mine\n", encoding="utf-8")
     client.text_document_did_save(saved)
     told = await client.wait_for_notification(types.WINDOW_SHOW_MESSAGE)
-    assert "no generated script" in told.message
+    assert "not a generated script" in told.message
     assert script.read_text(encoding="utf-8") == "mine\n"

@@ -199,7 +199,7 @@ test("a program with errors keeps its last picture, grey, and says why", async (
   await server.change(uri, rangeOf(text, "move 2.1 meters"), "move meters");
   await panel.until("state", "stale");
   const banner = await panel.part("banner").textContent();
-  assert.match(banner, /crossing has errors: .+ This is the path as it was before\.$/);
+  assert.match(banner, /crossing has errors: .+ Showing the last valid path\.$/);
   assert.deepEqual(await inked(panel), before);
   await panel.page.waitForFunction(() => getComputedStyle(document.querySelector("canvas")).filter.includes("grayscale"));
   await panel.page.screenshot({ path: path.join(OUT, "stale.png") });
@@ -218,6 +218,127 @@ test("there is never an empty panel", async () => {
   await server.open("file:///empty.pyr", "wheel w with radius 3\n");
   await follower.follow("file:///empty.pyr", { line: 0, character: 0 });
   await panel.page.getByText("no environment yet").waitFor();
+  await panel.close();
+});
+
+test("a program without an environment is shown as such, and never with the path of the one before", async () => {
+  const { text } = example("crossing");
+  const uri = "file:///whole.pyr";
+  const { panel, follower } = await follow(uri, text);
+  await drive(panel, uri, "crossing");
+  await panel.page.keyboard.press("Space");
+  const other = "file:///none.pyr";
+  await server.open(other, text.slice(0, text.indexOf("environment ")));
+  await follower.follow(other, { line: 0, character: 0 });
+  await panel.page.getByText("The program has no environment yet. Add one to see the path.").waitFor();
+  assert.equal(await panel.data("state"), "empty");
+  assert.equal((await inked(panel))[1], 0, "no robot is drawn");
+  assert.ok(!(await panel.part("legend").isVisible()));
+  assert.equal(await panel.part("environment").textContent(), "Path preview");
+  assert.match(await panel.part("clock").textContent(), /^0\.0 s \/ 0\.0 s$/);
+  await panel.page.screenshot({ path: path.join(OUT, "no-environment.png") });
+  await panel.part("remedy").click();
+  assert.deepEqual(await panel.heard("remedy"), { type: "remedy", remedy: "addEnvironment" });
+  // One with errors has no path either; the environment is named all the same.
+  const broken = "file:///broken.pyr";
+  await server.open(broken, text.replace("move 2.1 meters", "move meters"));
+  await follower.follow(broken, { line: 0, character: 0 });
+  await panel.page.getByText("crossing has errors").waitFor();
+  assert.equal((await inked(panel))[1], 0);
+  assert.equal(await panel.part("environment").textContent(), "crossing");
+  // Back again, and its run with it.
+  await server.open(uri, text);
+  await follower.follow(uri, { line: 0, character: 0 });
+  await panel.until("driven", "crossing");
+  assert.equal(await panel.data("time"), "0.000", "the playback has ended");
+  await panel.close();
+});
+
+test("the question mark lists all keys, and takes the list away", async () => {
+  const { uri, text } = example("crossing");
+  const { panel } = await follow(uri, text, { theme: "dark" });
+  assert.ok(!(await panel.part("help").isVisible()));
+  await panel.page.keyboard.press("?");
+  const list = await panel.part("help").innerText();
+  for (const line of [/Space\s+play or pause/, /N P\s+next or previous action/, /\?\s+show or hide this list/]) assert.match(list, line);
+  await panel.page.screenshot({ path: path.join(OUT, "keys.png") });
+  await panel.page.keyboard.press("Escape");
+  assert.ok(!(await panel.part("help").isVisible()));
+  await panel.part("keys").click();
+  await panel.page.keyboard.press("?");
+  assert.ok(!(await panel.part("help").isVisible()));
+  await panel.close();
+});
+
+test("everything fits into a window of 700 pixels, with the program beside it or not", async () => {
+  const { text } = example("crossing");
+  const long = text.replaceAll("crossing", "crossing_of_four_robots_around_a_column");
+  for (const [width, height] of [[700, 500], [350, 500], [326, 420]]) {
+    const uri = `file:///narrow-${width}.pyr`;
+    const second = "\nenvironment alone has { north } robots with { down } moves\n";
+    const { panel } = await follow(uri, width === 700 ? long : long + second, { theme: "dark", width, height });
+    await panel.part("keys").click();
+    const outside = await panel.page.evaluate(() => {
+      const parts = [...document.querySelectorAll("button, select, input, output, canvas, [data-part=help]")];
+      const isOutside = (box) => box.left < 0 || box.right > innerWidth + 0.5 || box.top < 0;
+      const visible = parts.filter((part) => part.checkVisibility());
+      return visible.filter((part) => isOutside(part.getBoundingClientRect())).map(({ dataset, tagName }) => dataset.part ?? tagName);
+    });
+    assert.deepEqual(outside, [], `at ${width} pixels`);
+    assert.ok(await panel.page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `nothing to scroll at ${width} pixels`);
+    const { width: wide, height: high } = await panel.part("picture").boundingBox();
+    assert.ok(wide >= Math.min(width * 0.6, 420) && high >= height * 0.4, `${wide} × ${high} for the picture at ${width} pixels`);
+    for (const part of ["keys", "export", "fit", "play", "speed"]) {
+      const { y, height: tall } = await panel.part(part).boundingBox();
+      assert.ok(y >= 0 && y + tall <= height, `${part} is in the window at ${width} pixels`);
+    }
+    await panel.part("keys").click();
+    await panel.page.screenshot({ path: path.join(OUT, `fits-${width}.png`) });
+    await panel.close();
+  }
+});
+
+test("the picture is exported as it is seen, in the format that the person chooses outside", async () => {
+  const { uri, text } = example("crossing");
+  const { panel } = await follow(uri, text);
+  await panel.part("export").click();
+  assert.deepEqual(await panel.heard("export"), { type: "export" });
+  panel.said.length = 0;
+  await panel.page.keyboard.press("e");
+  assert.deepEqual(await panel.heard("export"), { type: "export" });
+  await panel.tell({ type: "draw" });
+  const { data } = await panel.heard("picture");
+  const [colours, size] = await panel.page.evaluate(async (address) => {
+    // The page's policy forbids to show it, not to read it.
+    const bytes = Uint8Array.from(atob(address.split(",")[1]), (letter) => letter.charCodeAt(0));
+    const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+    const canvas = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height });
+    const context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    const { data: pixels } = context.getImageData(0, 0, image.width, image.height);
+    const seen = new Set();
+    for (let index = 0; index < pixels.length; index += 4) seen.add(`${pixels.slice(index, index + 4)}`);
+    return [[...seen], [image.width, image.height]];
+  }, data);
+  const { width, height } = await panel.part("picture").boundingBox();
+  assert.deepEqual(size, [Math.round(width * 2), Math.round(height * 2)]);
+  assert.ok(colours.includes("0,114,178,255"), "the first robot's colour");
+  assert.ok(!colours.some((colour) => colour.endsWith(",0")), "it has paper");
+  await panel.close();
+});
+
+test("a run ends the playback of the one before", async () => {
+  const { text } = example("crossing");
+  const uri = "file:///twice.pyr";
+  const { panel } = await follow(uri, text);
+  await drive(panel, uri, "crossing");
+  await panel.part("speed").selectOption("0.5");
+  await panel.page.keyboard.press("Space");
+  await panel.page.waitForFunction(() => Number(document.querySelector("main").dataset.time) > 0);
+  assert.equal(await panel.part("play").getAttribute("aria-label"), "Pause (space)");
+  await server.ask("workspace/executeCommand", { command: "pydslrep.run", arguments: [{ uri, environment: "crossing" }] });
+  await panel.page.locator('[data-part="play"][aria-label="Play (space)"]').waitFor();
+  assert.equal(await panel.data("time"), "0.000");
   await panel.close();
 });
 
@@ -295,7 +416,7 @@ test("keys play, step, jump, zoom and go through the actions", async () => {
   assert.notEqual((await inked(panel))[0], before);
   // All that can be used is reached by Tab, and shows that it has the focus.
   const reached = new Set();
-  for (let turn = 0; turn < 14; turn += 1) {
+  for (let turn = 0; turn < 16; turn += 1) {
     await page.keyboard.press("Tab");
     const focus = await page.evaluate(() => {
       const { activeElement } = document;
@@ -306,7 +427,7 @@ test("keys play, step, jump, zoom and go through the actions", async () => {
       assert.equal(focus[1], "solid", focus[0]);
     }
   }
-  for (const part of ["zoom-in", "zoom-out", "fit", "picture", "robot north", "robot west", "play", "slider", "speed"]) {
+  for (const part of ["zoom-in", "zoom-out", "fit", "export", "keys", "picture", "robot north", "robot west", "play", "slider", "speed"]) {
     assert.ok(reached.has(part), `${part} is reached by Tab`);
   }
   await panel.close();
