@@ -21,7 +21,7 @@ wheel wheelL with radius 4.5
 wheel wheelR with radius 4.5
 sensor front : distance
 
-robot rover type tw with port 19999 has { wheelL wheelR } wheels with sensors { front }
+robot rover type tw with port 23000 has { wheelL wheelR } wheels with sensors { front }
 
 movement patrol of rover {
       move 4.0 meters at 9.0

@@ -17,7 +17,7 @@ import "parts.pyr"
 {NOTE}wheel a with radius 4.5
 {NOTE}wheel b with radius 4.5
 {NOTE}sensor s
-{NOTE}robot rover type tw with port 19999 has {{ a b }} wheels with sensors {{ s }}
+{NOTE}robot rover type tw with port 23000 has {{ a b }} wheels with sensors {{ s }}
 {NOTE}movement lap of rover {{ // 日本
   {NOTE}move 4.0 meters
   {NOTE}turn left
@@ -173,7 +173,7 @@ REQUESTS: dict[str, Callable[[Buffer], dict[str, Any]]] = {
     "textDocument/documentLink": of,
     "textDocument/semanticTokens/full": of,
     "textDocument/semanticTokens/range": lambda b: of(
-        b, range=b.span("robot rover", "port 19999")
+        b, range=b.span("robot rover", "port 23000")
     ),
     "textDocument/formatting": lambda b: of(b, options=OPTIONS),
     "textDocument/rangeFormatting": lambda b: of(

@@ -307,7 +307,7 @@ async def completions_are_explained(s: Session) -> None:
     told = (await s.client.completion_item_resolve_async(rover)).documentation
     text = told.value if isinstance(told, types.MarkupContent) else told
     assert text
-    assert "port 19999" in text
+    assert "port 23000" in text
 
 
 @exercises(

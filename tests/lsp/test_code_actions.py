@@ -15,7 +15,7 @@ PROGRAM = """\
 wheel port_side with radius 4.5
 wheel far_side with radius 4.5
 
-robot rover with port 19999 has { port_side far_side } wheels
+robot rover with port 23000 has { port_side far_side } wheels
 
 movement tour of rover {
   move 0 meters

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.asyncio
 
 # Columns in it differ in UTF-8, UTF-16 and UTF-32.
 WHEELS = "/* 🤖é */ wheel wheelL with radius 4.5\n"
-ROBOT = "/* 🤖é */ robot rover with port 19999 has { wh"
+ROBOT = "/* 🤖é */ robot rover with port 23000 has { wh"
 
 
 async def offered(

@@ -15,7 +15,7 @@ pytestmark = pytest.mark.asyncio
 PROGRAM = """\
 /* 🤖é */ wheel wheelL with radius 4.5
 wheel wheelR with radius 4.5
-robot rover type tw with port 19999 has { wheelL wheelR } wheels
+robot rover type tw with port 23000 has { wheelL wheelR } wheels
 /* 🤖é */ movement patrol of rover {
   move 4.0 meters
   turn left

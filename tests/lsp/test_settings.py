@@ -15,8 +15,8 @@ PROGRAM = """\
 wheel a with radius 4.5
 wheel b with radius 4.5
 sensor s
-robot rover type tw with port 19999 has { a b } wheels
-robot other type tw with port 19999 has { a b } wheels
+robot rover type tw with port 23000 has { a b } wheels
+robot other type tw with port 23000 has { a b } wheels
 movement lap of rover {
   move 1 meters
   turn left
@@ -32,6 +32,7 @@ class Editor:
     def __init__(self, raw: RawServer, folder: pathlib.Path) -> None:
         self.talk = Conversation(raw)
         self.folder = folder
+        self.program = PROGRAM
         self.buffer = Buffer((folder / "main.pyr").as_uri(), PROGRAM, "utf-16")
         self.named = {"textDocument": self.buffer.document()}
         self.version = 1
@@ -40,7 +41,7 @@ class Editor:
         """Begins a session with settings: known from the start, or changed after it."""
         self.talk.settings = settings if at_start else {}
         self.talk.start(folder=self.folder, pulling=True)
-        item = {"languageId": "pydslrep", "version": 1, "text": PROGRAM}
+        item = {"languageId": "pydslrep", "version": 1, "text": self.program}
         item |= self.buffer.document()
         self.talk.server.send(
             notification("textDocument/didOpen", {"textDocument": item})
@@ -158,6 +159,15 @@ def test_the_target(editor: Editor, *, at_start: bool) -> None:
 
 
 @both
+def test_the_port_of_the_other_target(editor: Editor, *, at_start: bool) -> None:
+    editor.program = PROGRAM.replace("23000", "19999")
+    editor.start({"target": "coppeliasim"}, at_start=at_start)
+    assert editor.severities() == {"unused-declaration": 4, "legacy-port": 4}
+    editor.set({"target": "vrep"})
+    assert editor.severities() == {"unused-declaration": 4, "duplicate-port": 2}
+
+
+@both
 @pytest.mark.parametrize("spelling", ["defaultSpeed", "default-speed"])
 def test_the_speed_of_snippets(
     editor: Editor, spelling: str, *, at_start: bool
@@ -212,7 +222,7 @@ def test_settings_that_are_sent_without_being_asked(
     program = (tmp_path / "main.pyr").as_uri()
     with RawServer(server, "--stdio") as raw:
         raw.initialize({})
-        item = {"uri": program, "languageId": "pydslrep", "version": 1, "text": PROGRAM}
+        item = {"uri": program, "languageId": "pydslrep", "version": 1, "text": self.program}
         raw.send(notification("textDocument/didOpen", {"textDocument": item}))
 
         def severities() -> list[int]:

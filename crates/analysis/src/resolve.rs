@@ -405,7 +405,7 @@ mod tests {
 ip here 10.0.0.7
 wheelH a with radius 5 wheelH b with radius 5 wheelH c with radius 5 wheelH d with radius 5
 sensor s sensor t : bumper
-robot ^left type fw with port 19999 has { a b c d } wheels with sensors { s t s }
+robot ^left type fw with port 23000 has { a b c d } wheels with sensors { s t s }
 robot q with port 20000 has { a b } wheels
 parallel movement m of ^left { move -40 centimeters at 18 turn right // far
   turn left until { t , /* and */ s t } }

@@ -560,9 +560,9 @@ mod tests {
         let Documentation::Of(home, kind) = item.documentation else { panic!("{item:?}") };
         expect![[r#"
             ```pydslrep
-            robot rover type tw with port 19999 has { wheelL wheelR } wheels with sensors { front }
+            robot rover type tw with port 23000 has { wheelL wheelR } wheels with sensors { front }
             ```
-            Two-wheel differential drive (`tw`), port 19999."#]]
+            Two-wheel differential drive (`tw`), port 23000."#]]
         .assert_eq(&completion_documentation(&database, home, kind, &item.label.into()).unwrap_or_default());
     }
 }

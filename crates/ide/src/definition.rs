@@ -92,7 +92,7 @@ mod tests {
         check(
             &format!("{PARTS}movement m of $0rover {{ turn left until {{ front }} }}"),
             &expect![[
-                r#"98..103 "rover" in "robot rover type tw with port 19999 has { wheelL wheelR } wheels with sensors { front }""#
+                r#"98..103 "rover" in "robot rover type tw with port 23000 has { wheelL wheelR } wheels with sensors { front }""#
             ]],
         );
         check(

@@ -40,7 +40,7 @@ pub(crate) fn marked(database: &Database, file: FileId, spans: &[(Span, &str)]) 
 
 /// The parts of a program that most fixtures need.
 pub(crate) const PARTS: &str = "wheel wheelL with radius 4.5\nwheel wheelR with radius 4.5\nsensor front\nsensor back : bumper\n\
-     robot rover type tw with port 19999 has { wheelL wheelR } wheels with sensors { front }\n";
+     robot rover type tw with port 23000 has { wheelL wheelR } wheels with sensors { front }\n";
 
 /// The text of a file after edits, which are apart from each other.
 pub(crate) fn applied(database: &Database, file: FileId, edits: &[Edit]) -> String {

@@ -129,9 +129,9 @@ mod tests {
             rover
             ---
             ```pydslrep
-            robot rover type tw with port 19999 has { wheelL wheelR } wheels with sensors { front }
+            robot rover type tw with port 23000 has { wheelL wheelR } wheels with sensors { front }
             ```
-            Two-wheel differential drive (`tw`), port 19999.
+            Two-wheel differential drive (`tw`), port 23000.
 
             | wheel | position | radius |
             |---|---|---|

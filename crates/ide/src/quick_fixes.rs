@@ -61,4 +61,19 @@ mod tests {
         assert_eq!(titles(38, 40), [("change to 45".to_owned(), false)]);
         assert_eq!(titles(18, 20), []);
     }
+
+    #[test]
+    fn the_port_of_the_other_target_can_be_changed() {
+        let (mut database, position) = crate::fixture::at_cursor(
+            "wheel a with radius 4\nwheel b with radius 4\n\
+             robot r with port 23000 has { a b } wheels\nrobot q with port 1$09999 has { a b } wheels",
+        );
+        let titles = |database: &Database| -> Vec<(String, bool)> {
+            let fixes = quick_fixes(database, position.file, Span::at(position.offset));
+            fixes.into_iter().map(|fix| (fix.fix.title, fix.is_preferred)).collect()
+        };
+        assert_eq!(titles(&database), [("change the port to 23001".to_owned(), false)]);
+        database.set_target(position.file, pydslrep_analysis::Target::VRep);
+        assert_eq!(titles(&database), []);
+    }
 }

@@ -21,7 +21,7 @@ impl KeywordPage {
     }
 }
 
-const ROBOT: &str = "robot rover type tw with port 19999 has { wheelL wheelR } wheels with sensors { front }";
+const ROBOT: &str = "robot rover type tw with port 23000 has { wheelL wheelR } wheels with sensors { front }";
 const SENSORS: &str = "with sensors { SENSORS }";
 const ENVIRONMENT: &str = "environment area has { rover } robots with { patrol } moves";
 const ROBOT_SHAPE: &str =
@@ -73,12 +73,12 @@ pub fn keyword_page(token: Token) -> Option<KeywordPage> {
         Token::Fw => page(
             TYPE,
             "Four-wheel skid-steer drive: four `wheel`, listed left front, left rear, right front, right rear.",
-            "robot truck type fw with port 19999 has { lf lr rf rr } wheels",
+            "robot truck type fw with port 23000 has { lf lr rf rr } wheels",
         ),
         Token::Fwh => page(
             TYPE,
             "Mecanum drive: four `wheelH`, listed left front, left rear, right front, right rear.",
-            "robot crab type fwh with port 19999 has { lf lr rf rr } wheels",
+            "robot crab type fwh with port 23000 has { lf lr rf rr } wheels",
         ),
         Token::Port => {
             page("with port NUMBER", "The port of the simulator's remote API, from 1 to 65535.", ROBOT)

@@ -168,7 +168,7 @@ mod tests {
             wheel wheelR (radius 4.5 cm) 29..57 35..41
             sensor front (distance) 58..70 65..70
             sensor back (bumper) 71..91 78..82
-            robot rover (tw, port 19999) 92..179 98..103
+            robot rover (tw, port 23000) 92..179 98..103
             ip here (127.0.0.1) 180..197 183..187
             movement m (parallel, of rover, 2 actions) 212..270 230..231
               action move (4 meters at 9) 243..263 243..247

@@ -16,7 +16,7 @@ pub enum Entity {
     Sensor(Sensor),
     /// `ip name 127.0.0.1`
     Ip(Ip),
-    /// `robot name type tw with port 19999 has { … } wheels`
+    /// `robot name type tw with port 23000 has { … } wheels`
     Robot(Robot),
     /// `movement name of robot { … }`
     Movement(Movement),
@@ -177,7 +177,7 @@ pub struct Robot {
     pub name: Option<Name>,
     /// `type tw`
     pub drive: Option<DriveClause>,
-    /// `with port 19999`
+    /// `with port 23000`
     pub port: Option<PortNumber>,
     /// `has { … } wheels`
     pub wheels: Option<References>,

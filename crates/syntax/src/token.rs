@@ -301,7 +301,7 @@ impl EntityKind {
             Self::Wheel => "wheel NAME with radius CENTIMETRES",
             Self::Sensor => "sensor NAME",
             Self::Ip => "ip NAME 127.0.0.1",
-            Self::Robot => "robot NAME type tw with port 19999 has { WHEELS } wheels",
+            Self::Robot => "robot NAME type tw with port 23000 has { WHEELS } wheels",
             Self::Movement => "movement NAME of ROBOT { ACTIONS }",
             Self::Environment => "environment NAME has { ROBOTS } robots with { MOVEMENTS } moves",
         }

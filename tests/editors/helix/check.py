@@ -45,7 +45,7 @@ def edit(made: Session, terminal: Terminal, takes_pictures: bool) -> None:
         terminal.wait(r"9\.0.*\d s"),
         terminal.screen(),
     )
-    words = ("robot", "wheelL", "19999", "patrol", "rover", "yard")
+    words = ("robot", "wheelL", "23000", "patrol", "rover", "yard")
     made.check("colours", terminal.wait_for_colours(words, 5), terminal.screen())
     if takes_pictures:
         terminal.picture(PICTURES / "helix.png")

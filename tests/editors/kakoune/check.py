@@ -23,7 +23,7 @@ def edit(made: Session, terminal: Terminal, takes_pictures: bool) -> None:
         terminal.wait(r"9\.0.*\d s"),
         terminal.screen(),
     )
-    words = ("robot", "wheelR", "19999", "patrol", "rover", "yard")
+    words = ("robot", "wheelR", "23000", "patrol", "rover", "yard")
     made.check(
         "colours of names", terminal.wait_for_colours(words, 5), terminal.screen()
     )

@@ -9,7 +9,7 @@ import { Stage, spaced, until } from "./stage.mjs";
 const PROGRAM = `wheel wheelL with radius 4.5
 wheel wheelR with radius 4.5
 
-robot rover type tw with port 19999 has { wheelL wheelR } wheels
+robot rover type tw with port 23000 has { wheelL wheelR } wheels
 
 movement patrol of rovr {
   move 2.0 meters

@@ -89,9 +89,14 @@ pub fn index() -> String {
     out
 }
 
-/// The problems that one of the page's programs has. There are no other files than those of the page, and the target is
-/// the one with more rules.
+/// The problems that one of the page's programs has. There are no other files than those of the page. Where it has none
+/// with the usual target, those with the other one: some rules are of one target alone.
 fn example_diagnostics(page: &Page, program: &str) -> Vec<Diagnostic> {
+    let for_target = |target| target_diagnostics(page, program, target);
+    Target::ALL.into_iter().map(for_target).find(|found| !found.is_empty()).unwrap_or_default()
+}
+
+fn target_diagnostics(page: &Page, program: &str, target: Target) -> Vec<Diagnostic> {
     let mut database = Database::new();
     let file = database.open("program.pyr", program);
     for (name, text) in page.imports {
@@ -102,7 +107,7 @@ fn example_diagnostics(page: &Page, program: &str) -> Vec<Diagnostic> {
             }
         }
     }
-    database.set_target(file, Target::VRep);
+    database.set_target(file, target);
     for path in database.imports(file).to_vec() {
         if database.file(&path).is_none() {
             database.set_absence(file, &path, Some(Absence::Missing));

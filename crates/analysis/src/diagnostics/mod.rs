@@ -16,6 +16,7 @@ mod invalid_ip;
 mod invalid_port;
 mod invalid_radius;
 mod invalid_speed;
+mod legacy_port;
 mod manual;
 mod misplaced_type;
 mod mixed_radii;
@@ -104,7 +105,7 @@ impl Rule {
 }
 
 /// All rules, in the order of the language's contract.
-pub const CATALOGUE: [&Rule; 39] = [
+pub const CATALOGUE: [&Rule; 40] = [
     &syntax_error::RULE,
     &invalid_character::RULE,
     &unterminated_comment::RULE,
@@ -115,6 +116,7 @@ pub const CATALOGUE: [&Rule; 39] = [
     &invalid_radius::RULE,
     &implausible_radius::RULE,
     &invalid_port::RULE,
+    &legacy_port::RULE,
     &invalid_ip::RULE,
     &invalid_speed::RULE,
     &zero_distance::RULE,
@@ -188,6 +190,7 @@ pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
         }
         diagnostics.push(located(database, file, start, problem));
     }
+    legacy_port::offer_ports(database, file, &mut diagnostics);
     diagnostics.extend(no_environment::in_file(database, file));
     diagnostics.extend(planned_collision::in_file(database, file));
     diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);

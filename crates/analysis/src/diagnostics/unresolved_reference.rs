@@ -167,12 +167,12 @@ mod tests {
             "movement m of r { turn left }\nenvironment e with ip i has { q } robots with { n } moves",
             &expect![[r#"
                 error[unresolved-reference] 1:15 "r" there is no robot called `r`
-                  help: declare it: `robot NAME type tw with port 19999 has { WHEELS } wheels`
+                  help: declare it: `robot NAME type tw with port 23000 has { WHEELS } wheels`
                 error[unresolved-reference] 2:23 "i" there is no ip called `i`
                   help: declare it: `ip NAME 127.0.0.1`
                   suggestion: declare the ip `i` -> ip i 127.0.0.1
                 error[unresolved-reference] 2:31 "q" there is no robot called `q`
-                  help: declare it: `robot NAME type tw with port 19999 has { WHEELS } wheels`
+                  help: declare it: `robot NAME type tw with port 23000 has { WHEELS } wheels`
                 error[unresolved-reference] 2:49 "n" there is no movement called `n`
                   help: did you mean `m`?
                   suggestion: change to `m` -> environment e with ip i has { q } robots with { m } moves

@@ -28,7 +28,7 @@ const ROBOTS: &str = "\
 // a robot
 wheel wheelL with radius 4.5
 wheel wheelR with radius 4.5
-robot r type tw with port 19999 has { wheelL wheelR } wheels with sensors { s }
+robot r type tw with port 23000 has { wheelL wheelR } wheels with sensors { s }
 parallel movement m of r { move 4.0 meters at 9 turn left until { s, t } turn right }
 movement n of q { move 1 meters turn left }
 environment e has { r q p } robots with { m m n o } moves
@@ -56,7 +56,7 @@ environment e has { r q } robots with { m n } moves
     "\
 wheel a with radius 4
 wheel b with radius 4
-robot r type tw with port 19999 has { a b } wheels
+robot r type tw with port 23000 has { a b } wheels
 wheel c with radius 4
 wheel d with radius 4
 robot q type tw with port 20000 has { c d } wheels

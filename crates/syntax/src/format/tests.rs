@@ -65,7 +65,7 @@ fn the_canonical_example_stays_as_it_is() {
 wheel wheelR with radius 4.5
 wheel wheelL with radius 4.5
 
-robot robot_1 type tw with port 19999 has { wheelL wheelR } wheels with sensors { fSensor, lSensor }
+robot robot_1 type tw with port 23000 has { wheelL wheelR } wheels with sensors { fSensor, lSensor }
 
 movement mov_1 of robot_1 {
   move 4.0 meters at 9.0
@@ -135,24 +135,24 @@ environment e,i has {r,q} robots with {m,} moves environment e , i has {} robots
 #[test]
 fn long_lists() {
     check(
-        "robot quite_a_long_name type fw with port 19999 has { wheelFL wheelRL wheelFR wheelRR } wheels with sensors { front, leftOne }
-robot short type fw with port 19999 has { wheelFL wheelRL wheelFR wheelRR } wheels with sensors { front, leftOne }
-robot a_name_that_is_long_enough type fw with port 19999 has { wheelFrontLeft wheelRearLeft wheelFR } wheels
+        "robot quite_a_long_name type fw with port 23000 has { wheelFL wheelRL wheelFR wheelRR } wheels with sensors { front, leftOne }
+robot short type fw with port 23000 has { wheelFL wheelRL wheelFR wheelRR } wheels with sensors { front, leftOne }
+robot a_name_that_is_long_enough type fw with port 23000 has { wheelFrontLeft wheelRearLeft wheelFR } wheels
 movement m of r { turn left until { a_sensor_in_front, a_sensor_on_the_left_side, a_sensor_on_the_right_side_of_it_ } turn left until { a_sensor_in_front, a_sensor_on_the_left_side, a_sensor_on_the_right_side_of_it } }",
         &expect![[r#"
-            robot quite_a_long_name type fw with port 19999 has {
+            robot quite_a_long_name type fw with port 23000 has {
               wheelFL
               wheelRL
               wheelFR
               wheelRR
             } wheels with sensors { front, leftOne }
 
-            robot short type fw with port 19999 has { wheelFL wheelRL wheelFR wheelRR } wheels with sensors {
+            robot short type fw with port 23000 has { wheelFL wheelRL wheelFR wheelRR } wheels with sensors {
               front,
               leftOne
             }
 
-            robot a_name_that_is_long_enough type fw with port 19999 has {
+            robot a_name_that_is_long_enough type fw with port 23000 has {
               wheelFrontLeft
               wheelRearLeft
               wheelFR
@@ -548,7 +548,7 @@ fn entity() -> impl Strategy<Value = Vec<String>> {
     ]);
     let heads = vec![
         "robot type tw r with port 1 has",
-        "robot ^r with port 19999 has",
+        "robot ^r with port 23000 has",
         "robot r type fwh with port 7 has",
     ];
     let robot = (proptest::sample::select(heads), names(0), prop::option::of(names(1)));

@@ -22,7 +22,7 @@ const SENSORS: TokenSet = TokenSet::of(&[Token::Sensors]);
 /// What can stand behind the port clause.
 const TAIL: TokenSet = HAS.or(OPEN).or(CLOSE).or(WHEELS);
 
-/// `robot name type tw with port 19999 has { … } wheels with sensors { … }`
+/// `robot name type tw with port 23000 has { … } wheels with sensors { … }`
 pub(super) fn robot<'s>() -> Rule<'s, Option<Entity>> {
     just(Token::Robot)
         .ignore_then(head())

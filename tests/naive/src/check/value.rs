@@ -48,8 +48,13 @@ fn radius(number: &Number) -> Option<Finding> {
 /// A port may be longer than any number.
 fn port(number: &Number) -> Option<Finding> {
     let digits = number.text.trim_start_matches('0');
-    let fits = digits.len() <= 5 && digits.parse().is_ok_and(|port: u32| (1..=65535).contains(&port));
-    (!fits).then(|| Finding::new("invalid-port", &number.range))
+    let code = match digits.parse().ok().filter(|_| digits.len() <= 5) {
+        // V-REP's, where the scripts are for CoppeliaSim.
+        Some(19999) => "legacy-port",
+        Some(1..=65535_u32) => return None,
+        _ => "invalid-port",
+    };
+    Some(Finding::new(code, &number.range))
 }
 
 fn is_octet(digits: &str) -> bool {

@@ -413,11 +413,11 @@ fn another_sensor(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Proble
     Some(if mended { problem.suggestion("declare it on its own", [gap]) } else { problem })
 }
 
-/// `ip home 127.0.0.1:19999`
+/// `ip home 127.0.0.1:23000`
 fn port_of_address(place: &Place<'_, '_>) -> Option<Problem> {
     let address = matches!(place.before(1), Some((Token::Ipv4, _)));
     (address && place.here() == Some(Token::Colon)).then(|| {
         RULE.problem(place.span, "an ip is an address without a port")
-            .help("each robot has its port: `robot NAME with port 19999 has …`")
+            .help("each robot has its port: `robot NAME with port 23000 has …`")
     })
 }

@@ -58,7 +58,7 @@ fn problem(context: &Context<'_>, error: &SyntaxError) -> Option<Problem> {
         SyntaxErrorKind::MalformedNumber { written } => malformed_number(context, span, written),
         SyntaxErrorKind::PortNotWhole { written } => RULE
             .problem(span, format!("a port is a whole number, and `{written}` is not"))
-            .help("write a whole number from 1 to 65535, such as `19999`"),
+            .help("write a whole number from 1 to 65535, such as `23000`"),
         SyntaxErrorKind::EmptyList { of } => {
             let noun = of.noun();
             RULE.problem(span, format!("this list must name at least one {noun}"))
@@ -317,7 +317,7 @@ mod tests {
             &format!("{PARTS}robot r with port 1 has {{ a b wheels with sensors {{ s }}"),
             &expect![[r#"
             error[syntax-error] 4:30 "" missing `}` before `wheels`
-              help: a robot is written `robot NAME type tw with port 19999 has { WHEELS } wheels`
+              help: a robot is written `robot NAME type tw with port 23000 has { WHEELS } wheels`
               fix: insert `}` -> robot r with port 1 has { a b } wheels with sensors { s }
         "#]],
         );
@@ -343,7 +343,7 @@ mod tests {
             &format!("{PARTS}robot r has {{ a b }} wheels"),
             &expect![[r#"
                 error[syntax-error] 4:8 "" missing the robot's port before `has`
-                  help: a robot is written `robot NAME type tw with port 19999 has { WHEELS } wheels`
+                  help: a robot is written `robot NAME type tw with port 23000 has { WHEELS } wheels`
                   suggestion: insert `with port 23000` -> robot r with port 23000 has { a b } wheels
             "#]],
         );
@@ -410,9 +410,9 @@ mod tests {
             &format!("{PARTS}robot r with port 1.5 has {{ a 7 b }} wheels with sensors {{ }}"),
             &expect![[r#"
                 error[syntax-error] 4:19 "1.5" a port is a whole number, and `1.5` is not
-                  help: write a whole number from 1 to 65535, such as `19999`
+                  help: write a whole number from 1 to 65535, such as `23000`
                 error[syntax-error] 4:31 "7" expected the name of a wheel, found `7`
-                  help: a robot is written `robot NAME type tw with port 19999 has { WHEELS } wheels`
+                  help: a robot is written `robot NAME type tw with port 23000 has { WHEELS } wheels`
                   suggestion: remove `7` -> robot r with port 1.5 has { a b } wheels with sensors { }
                 error[syntax-error] 4:57 "{ }" this list must name at least one sensor
                   help: name a sensor between the braces, or leave the whole clause out

@@ -36,7 +36,7 @@ pub(super) fn shape(
     let shape = match kind {
         EntityKind::Sensor if wants(&[word(Token::Distance), word(Token::Bumper)]) => "sensor NAME : bumper",
         EntityKind::Robot if wants(&[word(Token::Sensors), Expected::ReferenceTo(EntityKind::Sensor)]) => {
-            "robot NAME type tw with port 19999 has { WHEELS } wheels with sensors { SENSORS }"
+            "robot NAME type tw with port 23000 has { WHEELS } wheels with sensors { SENSORS }"
         }
         EntityKind::Environment if wants(&[word(Token::Ip), Expected::ReferenceTo(EntityKind::Ip)]) => {
             "environment NAME with ip ADDRESS has { ROBOTS } robots with { MOVEMENTS } moves"
