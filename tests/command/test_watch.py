@@ -54,7 +54,7 @@ class Watcher:
         while True:
             line = self._lines.get(timeout=LIMIT)
             summary = re.fullmatch(
-                r"\[\d\d:\d\d:\d\d\] (.*) Watching for changes; Ctrl-C ends\.", line
+                r"\[\d\d:\d\d:\d\d\] (.*) Watching for changes; Ctrl+C ends\.", line
             )
             if summary:
                 return "\n".join(problems), summary[1]
@@ -215,7 +215,7 @@ def test_a_terminal_is_cleared_before_each_look(
 
     try:
         for _ in range(2):
-            assert read_until(b"Ctrl-C ends.\r\n").startswith(b"\x1b[2J\x1b[3J\x1b[H")
+            assert read_until(b"Ctrl+C ends.\r\n").startswith(b"\x1b[2J\x1b[3J\x1b[H")
             program.write_text(program.read_text() + "\n")
     finally:
         process.send_signal(signal.SIGINT)

@@ -222,7 +222,7 @@ def test_settings_that_are_sent_without_being_asked(
     program = (tmp_path / "main.pyr").as_uri()
     with RawServer(server, "--stdio") as raw:
         raw.initialize({})
-        item = {"uri": program, "languageId": "pydslrep", "version": 1, "text": self.program}
+        item = {"uri": program, "languageId": "pydslrep", "version": 1, "text": PROGRAM}
         raw.send(notification("textDocument/didOpen", {"textDocument": item}))
 
         def severities() -> list[int]:

@@ -1,10 +1,10 @@
 """The arrows between the crates are those of docs/architecture.md."""
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
-import tomllib
 
 ROOT = Path(__file__).resolve().parents[2]
 

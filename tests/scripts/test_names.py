@@ -128,7 +128,7 @@ def please_tools(scripts: Sequence[pathlib.Path], folder: pathlib.Path) -> None:
     for arguments in (
         ["ruff", "check", "--isolated", "--no-cache", "."],
         ["ruff", "format", "--isolated", "--no-cache", "--check", "."],
-        ["mypy", "--strict", "--python-version", "3.10", "--config-file=", "."],
+        ["mypy", "--strict", "--python-version", "3.11", "--config-file=", "."],
     ):
         done = subprocess.run(
             [sys.executable, "-m", *arguments],

@@ -10,10 +10,10 @@ import math
 import os
 import pathlib
 import subprocess
+import tomllib
 from typing import Any
 
 import pytest
-import tomllib
 from rooms import Place, Rooms, Wall, generate
 
 ROOT = pathlib.Path(__file__).parents[2]

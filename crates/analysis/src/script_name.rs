@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use rustc_hash::FxHashSet;
 
-/// Modules of Python 3.10 to 3.14.
+/// Modules of Python 3.11 to 3.14.
 static STANDARD_MODULES: LazyLock<FxHashSet<&str>> =
     LazyLock::new(|| include_str!("standard_modules.txt").lines().collect());
 

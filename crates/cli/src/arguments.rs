@@ -1,9 +1,14 @@
 //! The command line.
 
+use std::path::Path;
+
 use clap::builder::styling::{AnsiColor, Effects, Styles};
+use clap::error::{ContextKind, ContextValue};
 use clap::{Parser, Subcommand, ValueEnum};
+use pydslrep_files::is_program;
 
 use crate::commands::{build, check, completions, explain, fmt, lsp, new, plan, run, sim, stats};
+use crate::failure::Failure;
 
 /// Cargo's own colours.
 const STYLES: Styles = Styles::styled()
@@ -76,6 +81,21 @@ impl Color {
         }
         .write_global();
     }
+}
+
+/// What was probably meant where a program stands in place of a command.
+pub(crate) fn meant(error: &clap::Error) -> Option<Failure> {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else { return None };
+    let path = Path::new(word);
+    let command = if path.is_dir() {
+        "check"
+    } else if path.is_file() || is_program(path) {
+        "run"
+    } else {
+        return None;
+    };
+    let failure = Failure::new(format!("there is no command `{word}`"));
+    Some(failure.help(format!("did you mean `pydslrep {command} {word}`?")))
 }
 
 #[cfg(test)]

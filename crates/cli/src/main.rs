@@ -56,7 +56,16 @@ use crate::arguments::{Arguments, Command};
 use crate::failure::Failure;
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => match arguments::meant(&error) {
+            Some(failure) => {
+                output::fail(&failure);
+                return ExitCode::from(Failure::EXIT_CODE);
+            }
+            None => error.exit(),
+        },
+    };
     arguments.color.write_global();
     let outcome = match arguments.command {
         Command::Check(arguments) => commands::check::run(&arguments),

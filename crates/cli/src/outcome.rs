@@ -25,7 +25,7 @@ impl Outcome<'_> {
     /// Where each robot should be and is, and how long it took.
     pub(crate) fn table(&self) -> String {
         let table = if self.is_complete { self.comparison() } else { self.ends() };
-        format!("{}\n\n{}\n", table.trim_fmt(), self.times())
+        format!("{}\n\n{}\n", table.trim_fmt(), output::wrapped(&self.times()))
     }
 
     fn comparison(&self) -> Table {

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{Group, Level, Renderer};
-use comfy_table::{CellAlignment, LineStyle, Table, presets};
+use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, presets};
 
 use crate::failure::Failure;
 
@@ -67,20 +67,36 @@ pub(crate) fn count(number: usize, noun: &str) -> String {
     format!("{number} {noun}{plural}")
 }
 
-/// An empty table with a line under its head.
+/// How wide the terminal is; 80 where there is none.
+pub(crate) fn columns() -> usize {
+    textwrap::termwidth()
+}
+
+/// Text in lines that fit the terminal; what does not fit into the first is indented.
+pub(crate) fn wrapped(text: &str) -> String {
+    textwrap::fill(text, textwrap::Options::new(columns()).subsequent_indent("  "))
+}
+
+/// An empty table with a line under its head. Words are wrapped where it would be wider than the terminal.
 pub(crate) fn table<const COLUMNS: usize>(head: [&str; COLUMNS]) -> Table {
     let mut table = Table::new();
     table
         .load_style(presets::NOTHING.header_separator(LineStyle::none().fill('─').junction('─')))
-        .set_header(head);
+        .set_header(head)
+        .set_content_arrangement(ContentArrangement::Dynamic)
+        .set_width(u16::try_from(columns()).unwrap_or(u16::MAX));
+    for column in table.column_iter_mut() {
+        column.set_padding((0, 1));
+    }
     table
 }
 
-/// Aligns columns of numbers.
+/// Aligns columns of numbers, and keeps them whole.
 pub(crate) fn align_right(table: &mut Table, columns: &[usize]) {
     for column in columns {
         if let Some(column) = table.column_mut(*column) {
             column.set_cell_alignment(CellAlignment::Right);
+            column.set_constraint(ColumnConstraint::ContentWidth);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! One program and the environments in it.
 
 use pydslrep_analysis::environment::Environment;
-use pydslrep_analysis::{Diagnostic, EntityId, FileId};
+use pydslrep_analysis::{Diagnostic, EntityId, FileId, Severity};
 
 use crate::failure::Failure;
 use crate::output::{count, say};
@@ -59,8 +59,8 @@ pub(crate) struct Prepared {
     pub(crate) has_errors: bool,
 }
 
-/// Makes environments of a program ready to run. The problems of the program are shown on the way, and those of other
-/// files where they stand in the way.
+/// Makes environments of a program ready to run. The problems of the program are shown on the way, but for hints, which
+/// are for those who ask; and those of other files where they stand in the way.
 pub(crate) fn prepare(sources: &Sources, project: &Project, file: FileId, ids: &[EntityId]) -> Prepared {
     let (mut prepared, mut stuck) = (Vec::new(), Vec::new());
     let mut errors = Vec::new();
@@ -73,12 +73,13 @@ pub(crate) fn prepare(sources: &Sources, project: &Project, file: FileId, ids: &
             }
         }
     }
-    let problems = problems(sources, project, file, &errors);
+    let mut problems = problems(sources, project, file, &errors);
+    problems.retain(|problem| problem.severity > Severity::Hint);
     show(sources, &problems);
     for name in &stuck {
-        say(&format!("environment `{name}` is left out because of these errors\n"));
+        say(&format!("environment `{name}` is skipped because of these errors\n"));
     }
-    let is_error = |problem: &Diagnostic| problem.severity == pydslrep_analysis::Severity::Error;
+    let is_error = |problem: &Diagnostic| problem.severity == Severity::Error;
     Prepared { environments: prepared, has_errors: !stuck.is_empty() || problems.iter().any(is_error) }
 }
 

@@ -11,7 +11,7 @@ use std::process::{Output, Stdio};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use pydslrep_script::REQUIREMENTS;
+use pydslrep_script::{OLDEST_PYTHON, REQUIREMENTS};
 use tempfile::TempDir;
 use tokio::process::Command;
 use tokio::time::timeout;
@@ -19,25 +19,35 @@ use tokio::time::timeout;
 use crate::failure::Failure;
 use crate::output;
 
-/// What scripts are written for.
-const OLDEST: (u32, u32) = (3, 10);
-
 /// Looking at an interpreter, making an environment, installing: none may hang for ever.
 const ASK_LIMIT: Duration = Duration::from_secs(30);
 const MAKE_LIMIT: Duration = Duration::from_secs(120);
 const INSTALL_LIMIT: Duration = Duration::from_secs(600);
+
+/// Long enough for the index of packages to answer, short enough for somebody who waits.
+const INDEX_LIMIT: Duration = Duration::from_millis(2500);
+
+/// Asks the index of packages whether it is there; where it is not, ends with [`ABSENT`] and prints why.
+const ASK_INDEX: &str = include_str!("../python/ask_index.py");
+const ABSENT: i32 = 3;
 
 /// Prints version and place, one per line; works from Python 2 on, so that old ones can be told from broken ones.
 const QUESTION: &str = "import sys; print('%d.%d.%d' % sys.version_info[:3]); print(sys.executable)";
 
 /// How to get a Python, by system.
 const INSTALL_PYTHON: &str = if cfg!(target_os = "macos") {
-    "install Python 3.10 or later, e.g. `brew install python`, or name one by --python PATH"
+    "brew install python"
 } else if cfg!(windows) {
-    "install Python 3.10 or later, e.g. `winget install Python.Python.3.13`, or name one by --python PATH"
+    "winget install Python.Python.3.13"
 } else {
-    "install Python 3.10 or later, e.g. `sudo apt install python3 python3-venv`, or name one by --python PATH"
+    "sudo apt install python3 python3-venv"
 };
+
+/// What to do where there is no Python that will do.
+fn install_python() -> String {
+    let (major, minor) = OLDEST_PYTHON;
+    format!("install Python {major}.{minor} or later, e.g. `{INSTALL_PYTHON}`, or name one by --python PATH")
+}
 
 /// A Python interpreter on this machine.
 struct Interpreter {
@@ -58,6 +68,7 @@ pub(crate) async fn prepare(chosen: Option<&Path>, quiet: bool) -> Result<PathBu
         return Ok(python_in(&home));
     }
     let progress = if quiet { ProgressBar::hidden() } else { spinner() };
+    find_index(&base).await?;
     let made = make(&base, &cache, &Steps { progress: &progress, quiet }).await;
     progress.finish_and_clear();
     keep(made?, &home)?;
@@ -97,7 +108,7 @@ pub(crate) async fn interpreter(chosen: Option<&Path>) -> Result<PathBuf, Failur
 
 async fn find(chosen: Option<&Path>) -> Result<Interpreter, Failure> {
     let Some(chosen) = chosen else {
-        let mut found = Err(Failure::new("there is no Python on this machine's PATH").help(INSTALL_PYTHON));
+        let mut found = Err(Failure::new("there is no Python on this machine's PATH").help(install_python()));
         for name in ["python3", "python"] {
             found = match ask(Path::new(name)).await {
                 Ok(interpreter) => return Ok(interpreter),
@@ -110,7 +121,7 @@ async fn find(chosen: Option<&Path>) -> Result<Interpreter, Failure> {
     };
     ask(chosen).await.map_err(|failure| {
         let missing =
-            || Failure::new(format!("there is no Python at {}", chosen.display())).help(INSTALL_PYTHON);
+            || Failure::new(format!("there is no Python at {}", chosen.display())).help(install_python());
         failure.unwrap_or_else(missing)
     })
 }
@@ -131,14 +142,16 @@ async fn ask(path: &Path) -> Result<Interpreter, Option<Failure>> {
     };
     let mut numbers = version.split('.').map_while(|number| number.parse::<u32>().ok());
     let release = (numbers.next().unwrap_or(0), numbers.next().unwrap_or(0));
-    if release < OLDEST {
-        return Err(Some(unusable(path, &format!("it is version {version}, scripts need 3.10 or later"))));
+    if release < OLDEST_PYTHON {
+        let (major, minor) = OLDEST_PYTHON;
+        let reason = format!("it is version {version}, scripts need {major}.{minor} or later");
+        return Err(Some(unusable(path, &reason)));
     }
     Ok(Interpreter { path: place.into(), version: version.to_owned() })
 }
 
 fn unusable(path: &Path, reason: &str) -> Failure {
-    Failure::new(format!("cannot use the Python `{}`: {reason}", path.display())).help(INSTALL_PYTHON)
+    Failure::new(format!("cannot use the Python `{}`: {reason}", path.display())).help(install_python())
 }
 
 /// The folder for what can be made again.
@@ -177,6 +190,28 @@ fn works(home: &Path) -> bool {
     python_in(home).exists()
 }
 
+/// Sees to it that there is somewhere to install from, before anything is made: pip itself tries for minutes.
+async fn find_index(base: &Interpreter) -> Result<(), Failure> {
+    let mut command = Command::new(&base.path);
+    command.args(["-I", "-c", ASK_INDEX]);
+    match output(&mut command, INDEX_LIMIT).await {
+        Ok(output) if output.status.code() == Some(ABSENT) => {
+            Err(uninstalled(String::from_utf8_lossy(&output.stdout).trim()))
+        }
+        Err(error) if error.kind() == io::ErrorKind::TimedOut => {
+            Err(uninstalled("the package index does not answer"))
+        }
+        // What else may be wrong is for pip to say.
+        _ => Ok(()),
+    }
+}
+
+fn uninstalled(reason: &str) -> Failure {
+    Failure::new(format!("cannot install the CoppeliaSim client library: {reason}")).help(
+        "the first run needs network access to PyPI; behind a proxy or with a mirror, set HTTPS_PROXY or PIP_INDEX_URL",
+    )
+}
+
 /// Makes a whole environment in a folder of its own.
 async fn make(base: &Interpreter, cache: &Path, steps: &Steps<'_>) -> Result<TempDir, Failure> {
     steps.tell("preparing Python for the first run: making a virtual environment");
@@ -184,8 +219,8 @@ async fn make(base: &Interpreter, cache: &Path, steps: &Steps<'_>) -> Result<Tem
     let folder = folder.map_err(|error| uncached(cache, &error))?;
     let mut venv = Command::new(&base.path);
     venv.args(["-I", "-m", "venv"]).arg(folder.path());
-    succeed(&mut venv, MAKE_LIMIT, "cannot make a virtual environment").await.map_err(|failure| {
-        failure.help(format!(
+    succeed(&mut venv, MAKE_LIMIT).await.map_err(|reason| {
+        Failure::new(format!("cannot make a virtual environment: {reason}")).help(format!(
             "{} needs its modules venv and ensurepip, e.g. `sudo apt install python3-venv`; or name another Python by \
              --python PATH",
             base.path.display()
@@ -196,13 +231,9 @@ async fn make(base: &Interpreter, cache: &Path, steps: &Steps<'_>) -> Result<Tem
     fs::write(&requirements, REQUIREMENTS).map_err(|error| uncached(&requirements, &error))?;
     let mut pip = Command::new(python_in(folder.path()));
     pip.args(["-I", "-m", "pip", "install", "--quiet", "--no-input", "--disable-pip-version-check"]);
-    pip.arg("--requirement").arg(&requirements);
-    succeed(&mut pip, INSTALL_LIMIT, "cannot install what scripts need").await.map_err(|failure| {
-        failure.help(
-            "the first run needs PyPI: check the network, or tell pip of a proxy or mirror by HTTPS_PROXY or \
-             PIP_INDEX_URL",
-        )
-    })?;
+    // It was there a moment ago.
+    pip.args(["--retries", "1"]).arg("--requirement").arg(&requirements);
+    succeed(&mut pip, INSTALL_LIMIT).await.map_err(|reason| uninstalled(&reason))?;
     Ok(folder)
 }
 
@@ -223,10 +254,9 @@ fn keep(made: TempDir, home: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Runs a command that has to succeed.
-async fn succeed(command: &mut Command, limit: Duration, what_if_not: &str) -> Result<(), Failure> {
-    let output =
-        output(command, limit).await.map_err(|error| Failure::new(format!("{what_if_not}: {error}")))?;
+/// Runs a command that has to succeed, or says why it did not.
+async fn succeed(command: &mut Command, limit: Duration) -> Result<(), String> {
+    let output = output(command, limit).await.map_err(|error| error.to_string())?;
     if output.status.success() {
         return Ok(());
     }
@@ -235,8 +265,8 @@ async fn succeed(command: &mut Command, limit: Duration, what_if_not: &str) -> R
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
     // Tools say at the end what it was all about, and pip marks it.
     let reason = lines.clone().find(|line| line.starts_with("ERROR:")).or_else(|| lines.next_back());
-    let reason = reason.unwrap_or("it failed without a word");
-    Err(Failure::new(format!("{what_if_not}: {}", reason.trim_start_matches("ERROR: "))))
+    let reason = reason.unwrap_or("it exited without output");
+    Err(reason.trim_start_matches("ERROR: ").to_owned())
 }
 
 /// What a command printed; it is ended where nobody waits for it any more.

@@ -51,8 +51,8 @@ fn level(severity: Severity) -> Level<'static> {
     match severity {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
-        Severity::Information => Level::INFO,
-        Severity::Hint => Level::NOTE.with_name("hint"),
+        Severity::Information => Level::INFO.with_name(severity.word()),
+        Severity::Hint => Level::NOTE.with_name(severity.word()),
     }
 }
 

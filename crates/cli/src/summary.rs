@@ -15,8 +15,8 @@ pub(crate) fn summary(sources: &Sources, diagnostics: &[Diagnostic], mistakes: &
         [Severity::Error, Severity::Warning, Severity::Information, Severity::Hint].map(|severity| {
             let number = found.iter().filter(|(found, _)| *found == severity).count();
             (number > 0).then(|| match severity {
-                // Nobody counts informations.
-                Severity::Information => count(number, "remark"),
+                // The word itself cannot be counted.
+                Severity::Information => count(number, "information message"),
                 _ => count(number, severity.word()),
             })
         });

@@ -85,10 +85,31 @@ pub struct UnknownWord {
 /// When there is none.
 pub fn find_rule(code: &str) -> Result<&'static Rule, UnknownWord> {
     rule(code).ok_or_else(|| {
-        let near = closest(code, CATALOGUE.into_iter().map(|rule| rule.code));
-        let help = near.map_or_else(|| "`pydslrep explain` lists them all".to_owned(), did_you_mean);
+        let near = near_codes(code);
+        let help = match near.as_slice() {
+            [] => "`pydslrep explain` lists them all".to_owned(),
+            [one] => did_you_mean(one),
+            [several @ .., last] => format!("did you mean `{}` or `{last}`?", several.join("`, `")),
+        };
+        let near = near.first().copied().filter(|_| near.len() == 1);
         UnknownWord { message: format!("there is no diagnostic `{code}`"), near, help }
     })
+}
+
+/// The codes that may have been meant: one that is nearly the same, else those with the same words in them.
+fn near_codes(code: &str) -> Vec<&'static str> {
+    /// Shorter words are in too many codes.
+    const SHORTEST: usize = 3;
+    let codes = || CATALOGUE.into_iter().map(|rule| rule.code);
+    if let Some(near) = closest(code, codes()) {
+        return vec![near];
+    }
+    let code = code.to_lowercase();
+    let words = || code.split(|c: char| !c.is_alphanumeric()).filter(|word| word.len() >= SHORTEST);
+    let shared =
+        |known: &&str| words().filter(|word| known.split('-').any(|other| other.starts_with(word))).count();
+    let most = codes().map(|code| shared(&code)).max().unwrap_or(0);
+    codes().filter(|code| most > 0 && shared(code) == most).collect()
 }
 
 /// Levels in place of the severities of the catalogue.

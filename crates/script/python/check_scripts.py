@@ -2,7 +2,7 @@
 
 Run it from anywhere with a Python that has tests/requirements.txt installed, and with cargo on the path:
 
-    python crates/script/python/check_scripts.py
+    python3 crates/script/python/check_scripts.py
 """
 
 import subprocess
@@ -34,7 +34,7 @@ def check_scripts(folder: Path) -> None:
     for path in sorted(folder.glob("*.py")):
         # Scripts whose names have another length only are alike to mypy.
         if "_names_" not in path.stem or path.stem.endswith("_names_150"):
-            tool("mypy", "--strict", "--python-version", "3.10", "--config-file=", path)
+            tool("mypy", "--strict", "--python-version", "3.11", "--config-file=", path)
 
 
 def main() -> None:

@@ -17,6 +17,8 @@ const LONGEST_NAME_IN_IDENTIFIER: usize = 40;
 pub(crate) struct Script {
     name: String,
     simulator: &'static str,
+    /// The oldest Python that runs the script: major and minor version.
+    oldest_python: (u32, u32),
     /// Whether the target is V-REP.
     vrep: bool,
     host: String,
@@ -111,6 +113,7 @@ impl Script {
                 Target::CoppeliaSim => "CoppeliaSim",
                 Target::VRep => "V-REP",
             },
+            oldest_python: crate::OLDEST_PYTHON,
             vrep: target == Target::VRep,
             host: environment.host.unwrap_or(Ipv4Addr::LOCALHOST).to_string(),
             drives: drives.into_iter().filter(|&drive| has(drive)).map(class).collect(),

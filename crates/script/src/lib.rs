@@ -21,6 +21,9 @@ pub use pydslrep_analysis::Target;
 /// What a script for `CoppeliaSim` needs from PyPI, and one for V-REP does not: a requirements file for pip, every version fixed.
 pub const REQUIREMENTS: &str = include_str!("../python/requirements.txt");
 
+/// The oldest Python that scripts run on. The documents say the same.
+pub const OLDEST_PYTHON: (u32, u32) = (3, 11);
+
 /// V-REP's client for Python: a script for V-REP needs one of these modules beside it or on Python's path.
 pub const VREP_CLIENTS: [&str; 2] = ["sim.py", "vrep.py"];
 

@@ -111,15 +111,21 @@ fn folder(
     project: &Project,
     arguments: &Arguments,
 ) -> Result<PathBuf, Failure> {
-    if let Some(folder) = arguments.output.clone().or_else(|| project.output()) {
-        return Ok(folder);
-    }
-    match sources.place(file) {
-        Some(_) => Ok(Path::new(sources.shown(file)).parent().unwrap_or(Path::new("")).to_owned()),
+    match arguments.output.clone().or_else(|| usual_folder(sources, file, project)) {
+        Some(folder) => Ok(folder),
         None if arguments.stdout => Ok(PathBuf::new()),
         None => Err(Failure::new("a program from standard input has no place for its script")
             .help("choose one by -o DIR, or use --stdout")),
     }
+}
+
+/// Where scripts of a program go that nobody chose a folder for; `None` for one from standard input.
+pub(crate) fn usual_folder(sources: &Sources, file: FileId, project: &Project) -> Option<PathBuf> {
+    let beside = || {
+        sources.place(file)?;
+        Some(Path::new(sources.shown(file)).parent().unwrap_or(Path::new("")).to_owned())
+    };
+    project.output().or_else(beside)
 }
 
 fn print(scripts: &[Script]) -> Result<(), Failure> {

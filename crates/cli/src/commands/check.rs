@@ -22,7 +22,7 @@ Examples:
   pydslrep check                         all programs in this folder and below
   pydslrep check patrol.pyr rooms/       one program, and all in a folder
   pydslrep check --format json - < x.pyr
-  pydslrep check --fix                   the same, and mend what leaves nothing to decide
+  pydslrep check --fix                   apply all safe fixes, and show what is left
   pydslrep check --watch                 look again whenever something changes
   pydslrep check --deny warnings         for use in CI
   pydslrep check --format github         the same, with marks beside the lines of a pull request
@@ -33,7 +33,7 @@ The nearest pydslrep.toml above a program sets severities for good:
   [severity]
   unused-declaration = \"off\"";
 
-/// Show what is wrong with programs, and how to mend it
+/// Check programs for errors, and show how to fix them
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
@@ -43,11 +43,10 @@ pub(crate) struct Arguments {
     /// How to show problems
     #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
     format: Format,
-    /// Apply fixes that leave nothing to decide, and show what is left; a program from standard input goes to
-    /// standard output
+    /// Apply all safe fixes, and show what is left; a program from standard input goes to standard output
     #[arg(long)]
     fix: bool,
-    /// Check again whenever a program, an import, a scene or a pydslrep.toml changes, until Ctrl-C
+    /// Check again whenever a program, an import, a scene or a pydslrep.toml changes, until Ctrl+C
     #[arg(long, conflicts_with_all = ["fix", "deny"])]
     watch: bool,
     /// How bad problems of a code are: off, hint, information, warning or error; for each code once
@@ -165,10 +164,10 @@ fn summary(
         return (!files.is_empty()).then(|| format!("No problems in {}.", count_files(files)));
     }
     let summary = summary::summary(sources, diagnostics, mistakes);
-    let is_mendable = |diagnostic: &&Diagnostic| diagnostic.fixes.iter().any(|fix| fix.safe);
-    Some(match diagnostics.iter().filter(is_mendable).count() {
+    let is_fixable = |diagnostic: &&Diagnostic| diagnostic.fixes.iter().any(|fix| fix.safe);
+    Some(match diagnostics.iter().filter(is_fixable).count() {
         0 => format!("{summary}."),
-        some => format!("{summary}; `--fix` mends {some}."),
+        some => format!("{summary}; {some} fixable with `--fix`."),
     })
 }
 
@@ -176,7 +175,7 @@ fn summary(
 fn told(fixed: &Fixed, left: &[Diagnostic]) -> String {
     match (fixed.count(), left) {
         (0, []) => String::new(),
-        (0, _) => "Nothing was fixed: what to do about these problems is for you to decide.\n".to_owned(),
+        (0, _) => "Nothing was fixed: each of these problems needs a decision.\n".to_owned(),
         (some, _) => {
             format!("Fixed {} in {}.\n", count(some, "problem"), count(fixed.problems.len(), "file"))
         }

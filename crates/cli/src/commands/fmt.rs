@@ -20,7 +20,7 @@ Examples:
   pydslrep fmt --check             for use in CI: exit code 1 if anything would
   pydslrep fmt - < patrol.pyr      from standard input to standard output";
 
-/// Lay programs out: indentation, blank lines, spaces, commas
+/// Format programs: indentation, blank lines, spaces, commas
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
@@ -150,6 +150,6 @@ fn say_what_stayed(program: &Formatted) {
     let path = if place.is_some() { shown } else { "-" };
     output::error(
         &format!("{shown} has syntax errors: the entities they are in were left as they are"),
-        Some(&format!("`pydslrep check {path}` says how to mend them")),
+        Some(&format!("`pydslrep check {path}` shows how to fix them")),
     );
 }

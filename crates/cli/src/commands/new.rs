@@ -36,7 +36,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
                 .help("use letters, digits and `_`, with no digit in front: `pydslrep new patrol_1`")
         })?;
     if folder.exists() {
-        return Err(Failure::new(format!("{} exists already", folder.display())).help("choose another name"));
+        return Err(Failure::new(format!("{} already exists", folder.display())).help("choose another name"));
     }
     let program = folder.join(format!("{name}.{EXTENSION}"));
     fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, &error))?;
@@ -53,7 +53,7 @@ fn is_name(name: &str) -> bool {
         && !name.starts_with(|c: char| c.is_ascii_digit())
 }
 
-/// The program. The ending of its environment's name keeps it from being a word of the language or hiding a module of
+/// The program. The ending of its environment's name keeps it from being a keyword or hiding a module of
 /// Python's.
 fn text(name: &str) -> String {
     format!(

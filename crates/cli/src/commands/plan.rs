@@ -4,9 +4,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
+use comfy_table::ContentArrangement;
 use pydslrep_analysis::environment::{Environment, Movement};
 use pydslrep_config::Config;
-use pydslrep_kinematics::{ActionIndex, Leg, Plan, Pose, heading_degrees};
+use pydslrep_kinematics::{ActionIndex, Leg, Plan, Pose, RobotPath, heading_degrees};
 use pydslrep_picture::{Picture, Route};
 use pydslrep_record::Map;
 use pydslrep_scene::{Collision, Scene, Thing, collisions};
@@ -154,77 +155,92 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     Ok(ExitCode::from(u8::from(prepared.has_errors)))
 }
 
+/// The cells of a row: what happens, when that ends, where the robot is then, and how its wheels turned.
+type Row = [String; 6];
+
+const HEAD: [&str; 6] = ["action", "at s", "x m", "y m", "heading °", "wheels rad/s"];
+
+/// Between two columns.
+const GAP: usize = 2;
+
+/// Narrower than this, words are hard to read.
+const FEWEST_COLUMNS: usize = 16;
+
+/// Two robots or actions begin at the same time where they do so within this many seconds.
+const AT_ONCE: f64 = 0.005;
+
 fn table(planned: &Planned) -> String {
-    let mut table = output::table([
-        "robot",
-        "movement",
-        "action",
-        "from s",
-        "to s",
-        "x m",
-        "y m",
-        "heading °",
-        "wheels rad/s",
-    ]);
-    for (robot, path) in planned.scene.robots.iter().zip(&planned.plan.robots) {
-        let start = path.start;
-        let pose = |pose: Pose| [fixed(pose.x, 3), fixed(pose.y, 3), heading(pose.theta)];
-        let [x, y, heading] = pose(start);
-        let blank = String::new;
-        table.add_row([
-            robot.name.clone(),
-            blank(),
-            "start".to_owned(),
-            blank(),
-            blank(),
-            x,
-            y,
-            heading,
-            blank(),
-        ]);
-        for leg in &path.legs {
-            let (movement, action) = planned.words(leg.index);
-            let [x, y, heading] = pose(leg.to);
-            let rates: Vec<String> = leg.rates.iter().map(|rate| format!("{:>5}", fixed(*rate, 2))).collect();
-            table.add_row([
-                blank(),
-                movement,
-                action,
-                time(leg.start),
-                time(leg.end()),
-                x,
-                y,
-                heading,
-                rates.join(" "),
-            ]);
-        }
-        if let Some(index) = path.unknown_after {
-            let (movement, action) = planned.words(index);
-            let unknown = || "?".to_owned();
-            table.add_row([
-                blank(),
-                movement,
-                action,
-                unknown(),
-                unknown(),
-                unknown(),
-                unknown(),
-                unknown(),
-                blank(),
-            ]);
-        }
-    }
-    output::align_right(&mut table, &[3, 4, 5, 6, 7]);
     let duration = match planned.plan.duration {
         Some(seconds) => format!("{} s", fixed(seconds, 2)),
-        None => "as long as the world makes it: what is marked ? depends on what the robot meets".to_owned(),
+        None => "duration unknown until it runs: what is marked ? depends on what the robot meets".to_owned(),
     };
+    let title = output::wrapped(&format!("{}: {duration}", planned.environment.name));
+    let robots = planned.scene.robots.iter().zip(&planned.plan.robots);
+    let rows: Vec<Row> = robots.flat_map(|(robot, path)| rows(planned, &robot.name, path)).collect();
+    let width = |column: usize| {
+        let cells = rows.iter().map(|row| row[column].chars().count());
+        cells.chain([HEAD[column].chars().count()]).max().unwrap_or(0) + GAP
+    };
+    let others: usize = (1..HEAD.len()).map(width).sum();
+    let options = output::columns().saturating_sub(others + 1).max(FEWEST_COLUMNS);
+    let mut table = output::table(HEAD);
+    table.set_content_arrangement(ContentArrangement::Disabled);
+    for row in rows {
+        let [what, at, x, y, heading, rates] = row;
+        table.add_row([indented(&what, options), at, x, y, heading, rates]);
+    }
+    output::align_right(&mut table, &[1, 2, 3, 4, 5]);
     let met: String = collisions(&planned.scene, &planned.plan)
         .iter()
-        .map(|collision| meeting(planned, collision) + "\n")
+        .map(|collision| output::wrapped(&meeting(planned, collision)) + "\n")
         .collect();
     let met = if met.is_empty() { met } else { met + "\n" };
-    format!("{}: {duration}\n\n{}\n\n{met}", planned.environment.name, table.trim_fmt())
+    format!("{title}\n\n{}\n\n{met}", table.trim_fmt())
+}
+
+/// Text in lines of so many columns, which all begin where the first does, and later ones a little further.
+fn indented(text: &str, columns: usize) -> String {
+    let words = text.trim_start();
+    let indentation = " ".repeat(text.len() - words.len());
+    let later = format!("{indentation}  ");
+    let options = textwrap::Options::new(columns).initial_indent(&indentation).subsequent_indent(&later);
+    textwrap::fill(words, options)
+}
+
+/// What a robot does, from where it starts: its movements, and below each what it is made of.
+fn rows(planned: &Planned, robot: &str, path: &RobotPath) -> Vec<Row> {
+    let row = |what: String, at: String, pose: Pose, rates: String| {
+        [what, at, fixed(pose.x, 3), fixed(pose.y, 3), heading(pose.theta), rates]
+    };
+    let title =
+        |what: String| [what, String::new(), String::new(), String::new(), String::new(), String::new()];
+    let mut rows = vec![row(robot.to_owned(), fixed(0.0, 2), path.start, String::new())];
+    let mut run = None;
+    let mut begin = |rows: &mut Vec<Row>, index: ActionIndex| {
+        let (movement, action) = planned.words(index);
+        if run.replace((index.group, index.run)) != Some((index.group, index.run)) {
+            rows.push(title(format!("  {movement}")));
+        }
+        action
+    };
+    let mut ended = Some(0.0);
+    for leg in &path.legs {
+        if let (Some(start), Some(end)) = (leg.start, ended)
+            && start - end > AT_ONCE
+        {
+            rows.push(row("  (waits for others)".to_owned(), fixed(start, 2), leg.from, String::new()));
+        }
+        ended = leg.end();
+        let action = begin(&mut rows, leg.index);
+        let rates: Vec<String> = leg.rates.iter().map(|rate| format!("{:>5}", fixed(*rate, 2))).collect();
+        rows.push(row(format!("    {action}"), time(leg.end()), leg.to, rates.join(" ")));
+    }
+    if let Some(index) = path.unknown_after {
+        let action = begin(&mut rows, index);
+        let [at, x, y, heading] = ["?"; 4].map(str::to_owned);
+        rows.push([format!("    {action}"), at, x, y, heading, String::new()]);
+    }
+    rows
 }
 
 /// What a robot would run into, in words.

@@ -37,7 +37,7 @@ Examples:
   pydslrep run patrol.pyr --target vrep            by V-REP's legacy remote API
 
 The first run makes a virtual environment for Python in the user's cache folder and installs
-the client of CoppeliaSim's remote API into it, which needs Python 3.10 or later and network.
+the client of CoppeliaSim's remote API into it, which needs Python 3.11 or later and network.
 With --target vrep the user's own Python runs the script, with V-REP's client (sim.py or vrep.py
 and its library) from beside the program or from Python's path.";
 

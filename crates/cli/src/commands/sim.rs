@@ -8,8 +8,10 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::Args;
+use pydslrep_analysis::environment::Environment;
 use pydslrep_config::Config;
 use pydslrep_record::TraceRecord;
+use pydslrep_script::file_name;
 use pydslrep_simulator::{Options, Simulator};
 use tokio::time::{MissedTickBehavior, interval};
 
@@ -21,8 +23,8 @@ use crate::{output, program, scenes};
 
 const EXAMPLES: &str = "\
 Examples:
-  pydslrep sim patrol.pyr                          serves the port of each robot, until Ctrl-C
-  python yard.py                                   beside it: the script that build has written
+  pydslrep sim patrol.pyr                          serves the port of each robot, until Ctrl+C
+  python3 yard.py                                  in another terminal: the script of the program
   pydslrep sim patrol.pyr --trace driven.jsonl     writes where the robots are, step by step
 
 Scripts of both targets can drive at the same time: what a client says first tells which remote
@@ -71,6 +73,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     else {
         return Ok(ExitCode::FAILURE);
     };
+    let script = super::build::usual_folder(&sources, file, projects.of(file));
+    let script = script.map(|folder| folder.join(file_name(&environment)));
     let mut scene = scenes::scene(&environment, sources.place(file), arguments.scene.as_deref())?;
     scene.seed = arguments.seed.unwrap_or(scene.seed);
     let mut trace = arguments.trace.as_deref().map(Trace::create).transpose()?;
@@ -89,7 +93,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         for robot in &environment.robots {
             places.add_row([robot.name.clone(), arguments.listen.to_string(), robot.port.to_string()]);
         }
-        output::print(&format!("{}\n", places.trim_fmt()))?;
+        let next = next_steps(arguments, &environment, script.as_deref());
+        output::print(&format!("{}\n\n{next}", places.trim_fmt()))?;
         let mut writes = interval(WRITE_PERIOD);
         writes.set_missed_tick_behavior(MissedTickBehavior::Delay);
         loop {
@@ -104,6 +109,30 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         trace.map_or(Ok(()), |mut trace| trace.write(&rest))
     })?;
     Ok(ExitCode::from(interrupt::EXIT_CODE))
+}
+
+/// How to end it, and how to drive: `script` is where `build` writes it.
+fn next_steps(arguments: &Arguments, environment: &Environment, script: Option<&Path>) -> String {
+    let ready = "Ready. Press Ctrl+C to stop.\n";
+    let Some(script) = script else { return ready.to_owned() };
+    let at = match arguments.listen {
+        any if any.is_unspecified() => Ipv4Addr::LOCALHOST.into(),
+        address => address,
+    };
+    // The script's own place for the simulator, unless the program names another one.
+    let usual: IpAddr = environment.host.unwrap_or(Ipv4Addr::LOCALHOST).into();
+    let host = if at == usual { String::new() } else { format!(" --host {at}") };
+    format!(
+        "{ready}To drive in it, run this in another terminal:\n\n    pydslrep build {}\n    python3 {}{host}\n",
+        quoted(&arguments.program),
+        quoted(script),
+    )
+}
+
+/// A path as shells take it.
+fn quoted(path: &Path) -> String {
+    let path = path.display().to_string();
+    if path.contains(char::is_whitespace) { format!("\"{path}\"") } else { path }
 }
 
 fn unstarted(error: &dyn std::fmt::Display) -> Failure {

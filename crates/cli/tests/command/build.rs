@@ -47,7 +47,7 @@ fn a_broken_environment_does_not_keep_the_others() {
     assert_eq!(done.code, Some(1));
     assert!(place.path("one.py").exists() && !place.path("two.py").exists());
     assert!(done.err.contains("error[unresolved-reference]: there is no movement called `nothing`"));
-    assert!(done.err.contains("`two` is left out"), "{}", done.err);
+    assert!(done.err.contains("`two` is skipped"), "{}", done.err);
 }
 
 #[test]

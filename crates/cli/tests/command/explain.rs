@@ -72,6 +72,15 @@ fn unknown_codes_get_a_suggestion() {
          = help: did you mean `invalid-radius`?
     "#]]
     .assert_eq(&done.err);
+    for (word, meant) in [
+        ("unused", "did you mean `unused-declaration`?"),
+        ("unused-variable", "did you mean `unused-declaration`?"),
+        ("Port", "did you mean `invalid-port`, `legacy-port` or `duplicate-port`?"),
+    ] {
+        let done = Place::new().run(&["explain", word]);
+        assert_eq!(done.code, Some(2), "{word}");
+        assert!(done.err.contains(meant), "{}", done.err);
+    }
     let done = Place::new().run(&["explain", "E0308"]);
     assert_eq!(done.code, Some(2));
     assert!(done.err.contains("`pydslrep explain` lists them all"), "{}", done.err);

@@ -5,12 +5,16 @@ use std::os::unix::fs::PermissionsExt;
 use std::process::{ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 
+use expect_test::expect;
+
 use crate::process::{Done, Place, paper};
 
-/// Answers like a Python, makes environments of copies of itself, and runs `behave` in place of scripts.
+/// Answers like a Python, asks no package index, makes environments of copies of itself, and runs `behave` in place of
+/// scripts.
 const PYTHON: &str = r#"#!/bin/sh
 case "$*" in
   "-c "*) echo 3.12.0; echo "$0" ;;
+  "-I -c "*) . "$INDEX" ;;
   "-I -m venv "*) mkdir -p "$4/bin"; cp "$0" "$4/bin/python" ;;
   "-I -m pip "*) exit ${PIP_CODE:-0} ;;
   *) . "$BEHAVIOUR" ;;
@@ -34,6 +38,7 @@ fn command(place: &Place) -> Command {
     let program = paper("table2_two_wheels");
     let mut command = place.command(&["run", &program, "--python", place.path("python").to_str().unwrap()]);
     command.env("XDG_CACHE_HOME", place.path("cache")).env("BEHAVIOUR", place.path("behaviour"));
+    command.env("INDEX", "/dev/null");
     command
 }
 
@@ -90,9 +95,43 @@ fn what_cannot_be_installed_is_explained() {
     let place = place("");
     let done: Done = command(&place).env("PIP_CODE", "1").output().unwrap().into();
     assert_eq!(done.code, Some(2));
-    assert!(done.err.contains("cannot install what scripts need"), "{}", done.err);
-    assert!(done.err.contains("check the network"), "{}", done.err);
+    assert!(done.err.contains("cannot install the CoppeliaSim client library"), "{}", done.err);
+    assert!(done.err.contains("needs network access to PyPI"), "{}", done.err);
     assert_eq!(fs::read_dir(place.path("cache/pydslrep")).unwrap().count(), 0, "nothing half made is left");
+}
+
+/// A first run where the package index behaves like this.
+fn first_run(index: &str) -> (Place, Done) {
+    let place = place("");
+    place.write("index", index);
+    let done = command(&place).env("INDEX", place.path("index")).output().unwrap().into();
+    (place, done)
+}
+
+#[test]
+fn without_network_nothing_is_begun() {
+    let (place, done) = first_run("echo 'pypi.org cannot be reached: no such name'; exit 3");
+    assert_eq!((done.code, done.out.as_str()), (Some(2), ""));
+    expect![[r#"
+        error: cannot install the CoppeliaSim client library: pypi.org cannot be reached: no such name
+         |
+         = help: the first run needs network access to PyPI; behind a proxy or with a mirror, set HTTPS_PROXY or PIP_INDEX_URL
+    "#]].assert_eq(&done.err);
+    assert_eq!(fs::read_dir(place.path("cache/pydslrep")).unwrap().count(), 0);
+}
+
+#[test]
+fn an_index_that_hangs_is_not_waited_for() {
+    let (_, done) = first_run("exec tail -f /dev/null");
+    assert_eq!(done.code, Some(2));
+    let reason = "cannot install the CoppeliaSim client library: the package index does not answer";
+    assert!(done.err.contains(reason), "{}", done.err);
+}
+
+#[test]
+fn what_cannot_be_asked_is_left_to_pip() {
+    let (_, done) = first_run("echo 'no module named asyncio' >&2; exit 1");
+    assert_eq!(done.code, Some(0), "{}", done.err);
 }
 
 #[test]

@@ -173,7 +173,7 @@ fn a_file_that_cannot_be_written_does_not_keep_the_others() {
     assert_eq!((done.code, place.read("x.pyr")), (Some(2), turned()));
     assert!(place.read("y.pyr").contains("turn right 90"));
     assert!(
-        done.out.contains("x.pyr:3:") && done.out.ends_with("1 warning in 1 file; `--fix` mends 1.\n"),
+        done.out.contains("x.pyr:3:") && done.out.ends_with("1 warning in 1 file; 1 fixable with `--fix`.\n"),
         "{}",
         done.out
     );

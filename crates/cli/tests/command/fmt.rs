@@ -73,7 +73,7 @@ fn what_is_broken_stays_and_is_told() {
     expect![[r#"
         error: a.pyr has syntax errors: the entities they are in were left as they are
          |
-         = help: `pydslrep check a.pyr` says how to mend them
+         = help: `pydslrep check a.pyr` shows how to fix them
     "#]]
     .assert_eq(&done.err);
     assert_eq!(place.read("a.pyr"), "wheel a with radius 3\nwheel  b radius 3\n");

@@ -11,8 +11,11 @@ mod fake_python;
 mod fix;
 mod fmt;
 mod new;
+mod newcomer;
 mod plan;
 mod process;
 mod project;
 mod run;
+#[cfg(unix)]
+mod sim;
 mod stats;

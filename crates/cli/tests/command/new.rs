@@ -24,7 +24,7 @@ fn nothing_is_overwritten() {
     let place = Place::with("patrol/notes.txt", "mine");
     let done = place.run(&["new", "patrol"]);
     assert_eq!(done.code, Some(2));
-    assert!(done.err.contains("patrol exists already"), "{}", done.err);
+    assert!(done.err.contains("patrol already exists"), "{}", done.err);
     assert!(!place.path("patrol/patrol.pyr").exists());
 }
 

@@ -51,11 +51,12 @@ environment e has { r } robots with { m } moves";
     expect![[r#"
         e: 11.67 s
 
-         robot   movement   action                from s    to s     x m     y m   heading °   wheels rad/s
-        ────────────────────────────────────────────────────────────────────────────────────────────────────
-         r                  start                                  0.000   0.000         0.0
-                 m          move 90 centimeters     0.00   10.18   0.900   0.000         0.0    2.00  1.00
-                 m          turn left 45           10.18   11.67   0.900   0.000        45.0   -2.00  1.00
+        action                    at s    x m    y m  heading °  wheels rad/s
+        ──────────────────────────────────────────────────────────────────────
+        r                         0.00  0.000  0.000        0.0
+          m
+            move 90 centimeters  10.18  0.900  0.000        0.0    2.00  1.00
+            turn left 45         11.67  0.900  0.000       45.0   -2.00  1.00
 
     "#]]
     .assert_eq(&done.out);
@@ -137,16 +138,22 @@ fn what_is_in_the_way_is_told() {
     expect![[r#"
         hall: 14.09 s
 
-         robot    movement   action          from s    to s     x m      y m   heading °   wheels rad/s
-        ────────────────────────────────────────────────────────────────────────────────────────────────
-         first               start                            0.000    0.000         0.0
-                  m          move 1 meters     0.00   11.29   1.000    0.000         0.0    2.00  2.00
-         second              start                            1.100   -0.360        30.0
-                  n          turn left        11.29   14.09   1.100   -0.360       120.0   -2.00  2.00
+        action                 at s    x m     y m  heading °  wheels rad/s
+        ────────────────────────────────────────────────────────────────────
+        first                  0.00  0.000   0.000        0.0
+          m
+            move 1 meters     11.29  1.000   0.000        0.0    2.00  2.00
+        second                 0.00  1.100  -0.360       30.0
+          (waits for others)  11.29  1.100  -0.360       30.0
+          n
+            turn left         14.09  1.100  -0.360      120.0   -2.00  2.00
 
-        first runs into `crate` after 5.08 s: `move 1 meters` of `m`, at x 0.450 m, y 0.000 m
-        second runs into `first` after 11.53 s: `turn left` of `n`, at x 1.100 m, y -0.360 m
-        second runs into `crate` after 12.51 s: `turn left` of `n`, at x 1.100 m, y -0.360 m
+        first runs into `crate` after 5.08 s: `move 1 meters` of `m`, at x 0.450 m, y
+          0.000 m
+        second runs into `first` after 11.53 s: `turn left` of `n`, at x 1.100 m, y
+          -0.360 m
+        second runs into `crate` after 12.51 s: `turn left` of `n`, at x 1.100 m, y
+          -0.360 m
 
     "#]]
     .assert_eq(&done.out);

@@ -173,7 +173,8 @@ fn what_keeps_a_script_from_being_made_is_shown_as_an_error() {
 #[test]
 fn programs_without_one_are_as_ever() {
     let place = Place::new();
-    assert_eq!(told(&place, &[&paper("table4_holonomic")]), ["wheel-kind-mismatch warning"]);
+    let usual = ["wheel-kind-mismatch warning", "legacy-port hint"];
+    assert_eq!(told(&place, &[&paper("table4_holonomic")]), usual);
 }
 
 #[test]

@@ -27,6 +27,7 @@ fn ends(program: &str) -> BTreeMap<String, End> {
     let place = Place::new();
     let done = run(&place, &[program, "--trace", "trace.jsonl"]);
     assert_eq!(done.code, Some(0), "{}\n{}", done.out, done.err);
+    assert!(done.out.lines().all(|line| line.chars().count() <= 80), "{}", done.out);
     let mut ends = BTreeMap::new();
     for line in place.read("trace.jsonl").lines() {
         let row: Value = serde_json::from_str(line).unwrap();
@@ -125,7 +126,7 @@ fn a_missing_python_is_explained() {
     let done = run(&Place::new(), &[&paper("table2_two_wheels"), "--python", "./no/python"]);
     assert_eq!(done.code, Some(2));
     assert!(done.err.contains("no Python at ./no/python"), "{}", done.err);
-    assert!(done.err.contains("install Python 3.10 or later"), "{}", done.err);
+    assert!(done.err.contains("install Python 3.11 or later"), "{}", done.err);
 }
 
 const SCOUT: &str = "\

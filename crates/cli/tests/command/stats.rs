@@ -68,7 +68,7 @@ fn build_says_the_same() {
 fn a_broken_environment_is_left_out() {
     let done = place("nothing").run(&["stats", "x.pyr"]);
     assert_eq!(done.code, Some(1));
-    assert!(done.err.contains("`two` is left out") && done.out.contains("one"), "{}", done.err);
+    assert!(done.err.contains("`two` is skipped") && done.out.contains("one"), "{}", done.err);
 }
 
 #[test]

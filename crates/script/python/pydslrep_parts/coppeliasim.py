@@ -18,6 +18,8 @@ from .settings import CONNECT_TIMEOUT, REPLY_TIMEOUT, STOP_TIMEOUT
 
 
 SIMULATOR = "CoppeliaSim"
+USUAL_PORT = 23000  # where its remote API listens
+LEGACY_PORT = 19999  # where that of the older V-REP does
 PORT_HELP = "port of the ZeroMQ remote API, for all robots or for one; may be repeated"
 REALTIME_HELP = "run no faster than the robots would"
 
@@ -83,6 +85,12 @@ class Body:
             self._socket.limit = REPLY_TIMEOUT
             self._find_objects()
         except (SimulatorError, zmq.ZMQError) as error:
+            if port == LEGACY_PORT and self._in_call:
+                raise SetupError(
+                    f"robot {model.name}: nothing answers on port {port}; CoppeliaSim's ZeroMQ "
+                    f"remote API listens on {USUAL_PORT}: change the port in the program, or "
+                    f"start with --port {USUAL_PORT}"
+                ) from error
             raise SetupError(
                 f"robot {model.name}: {error}. Is CoppeliaSim running there, with its ZeroMQ "
                 "remote API on that port? --host and --port choose another place."

@@ -2,6 +2,7 @@
 
 import math
 import re
+import socket
 import threading
 from collections.abc import Iterator
 
@@ -217,6 +218,19 @@ def connect(port: int) -> None:
 def test_nobody_there() -> None:
     with pytest.raises(SetupError, match=r"no answer from 127\.0\.0\.1:9 for 0\.2 s"):
         connect(9)
+
+
+@pytest.mark.usefixtures("short_wait")
+def test_nobody_on_the_port_of_vrep(monkeypatch: pytest.MonkeyPatch) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        port = silent.getsockname()[1]
+        monkeypatch.setattr(coppeliasim, "LEGACY_PORT", port)
+        with pytest.raises(SetupError) as error:
+            connect(port)
+    assert str(error.value) == (
+        f"robot r: nothing answers on port {port}; CoppeliaSim's ZeroMQ remote API listens on 23000: "
+        "change the port in the program, or start with --port 23000"
+    )
 
 
 @pytest.mark.usefixtures("short_wait")

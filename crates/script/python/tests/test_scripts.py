@@ -3,6 +3,7 @@
 import importlib.util
 import json
 import math
+import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -144,6 +145,39 @@ def test_interruption_is_exit_code_130(run: Callable[..., int]) -> None:
     assert run("area_1", world) == 130
     assert not world.running
     assert all(joint.target == 0.0 for joint in world.robots["robot_1"].joints)
+
+
+def bare(name: str, version: str = "") -> tuple[int, str]:
+    """What a script does on a Python without packages, and says; of another version, if that is said."""
+    old = f"sys.version_info = {version}; " if version else ""
+    path = str(SNAPSHOTS / f"{name}.py")
+    done = subprocess.run(
+        [
+            sys.executable,
+            "-I",
+            "-S",
+            "-c",
+            f"import runpy, sys; {old}runpy.run_path({path!r})",
+        ],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+def test_a_missing_library_is_told_in_a_sentence() -> None:
+    assert bare("area_1") == (
+        2,
+        "error: the Python module zmq is missing, install it by: "
+        "python3 -m pip install coppeliasim-zmqremoteapi-client cbor2\n",
+    )
+
+
+@pytest.mark.parametrize("name", ["area_1", "area_1_vrep"])
+def test_an_old_python_is_told_before_anything_else(name: str) -> None:
+    told = (2, "error: this script needs Python 3.11 or later\n")
+    assert bare(name, version="(3, 9, 2)") == told
 
 
 def test_an_unwritable_trace_is_exit_code_2(

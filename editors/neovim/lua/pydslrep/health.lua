@@ -79,7 +79,7 @@ end
 
 local function python()
   vim.health.start('Python')
-  local advice = 'runs need Python 3.10 or later with venv: `pydslrep run --help`'
+  local advice = 'runs need Python 3.11 or later with venv: `pydslrep run --help`'
   for _, name in ipairs({ 'python3', 'python' }) do
     local version = ask({ name, '--version' })
     if version then

@@ -100,7 +100,7 @@ impl Look {
         self.failures.iter().for_each(output::fail);
         let time = jiff::Zoned::now().strftime("%H:%M:%S");
         let summary = self.summary.as_deref().unwrap_or("Nothing was checked.");
-        output::print(&format!("[{time}] {summary} Watching for changes; Ctrl-C ends.\n"))
+        output::print(&format!("[{time}] {summary} Watching for changes; Ctrl+C ends.\n"))
     }
 }
 

@@ -1,0 +1,125 @@
+"""Whether there is a package index to install from, before pip tries for minutes."""
+
+from __future__ import annotations
+
+import http.server
+import os
+import pathlib
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+
+import pytest
+
+ASK = pathlib.Path(__file__).parents[2] / "crates/cli/python/ask_index.py"
+ABSENT = 3
+
+
+@pytest.fixture(name="home")
+def fixture_home(tmp_path: pathlib.Path) -> pathlib.Path:
+    """Somebody without any settings of pip's."""
+    return tmp_path
+
+
+def ask(home: pathlib.Path, **settings: str) -> tuple[int, str]:
+    """What comes of it with such an environment."""
+    kept = {
+        name: os.environ[name] for name in ("PATH", "SYSTEMROOT") if name in os.environ
+    }
+    environment = kept | {
+        "HOME": str(home),
+        "NO_PROXY": "*",
+        "PIP_CONFIG_FILE": os.devnull,
+    }
+    done = subprocess.run(
+        [sys.executable, "-I", str(ASK)],
+        env=environment | settings,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.stderr == ""
+    return done.returncode, done.stdout
+
+
+@pytest.fixture(name="answering")
+def fixture_answering() -> Iterator[str]:
+    """An index that answers, if only that it knows nothing."""
+    with http.server.HTTPServer(
+        ("127.0.0.1", 0), http.server.BaseHTTPRequestHandler
+    ) as server:
+        server.RequestHandlerClass.log_message = lambda *_: None  # type: ignore[method-assign]
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        yield f"http://127.0.0.1:{server.server_port}/simple"
+        server.shutdown()
+        thread.join()
+
+
+@pytest.fixture(name="silent")
+def fixture_silent() -> Iterator[int]:
+    """The port of an index that takes connections and never says a word."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        yield server.getsockname()[1]
+
+
+@pytest.fixture(name="closed")
+def fixture_closed() -> int:
+    """A port that nobody listens on."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port: int = server.getsockname()[1]
+    return port
+
+
+def test_an_index_that_answers_is_there(home: pathlib.Path, answering: str) -> None:
+    assert ask(home, PIP_INDEX_URL=answering) == (0, "")
+
+
+@pytest.mark.parametrize("scheme", ["http", "https"])
+def test_one_that_never_answers_is_not(
+    home: pathlib.Path, silent: int, scheme: str
+) -> None:
+    told = ask(home, PIP_INDEX_URL=f"{scheme}://127.0.0.1:{silent}/simple")
+    assert told == (ABSENT, "127.0.0.1 cannot be reached: no answer for 2 s\n")
+
+
+def test_one_that_nobody_serves_is_not(home: pathlib.Path, closed: int) -> None:
+    told = ask(home, PIP_INDEX_URL=f"https://user:secret@127.0.0.1:{closed}/simple")
+    assert told == (ABSENT, "127.0.0.1 cannot be reached: Connection refused\n")
+
+
+def test_nor_is_one_without_a_place(home: pathlib.Path) -> None:
+    code, told = ask(home, PIP_INDEX_URL="https://index.invalid/simple")
+    assert code == ABSENT
+    assert told.startswith("index.invalid cannot be reached: ")
+
+
+def test_files_of_pip_count(home: pathlib.Path, answering: str, closed: int) -> None:
+    file = home / "pip.conf"
+    file.write_text(f"[global]\nindex-url = {answering}\n", encoding="utf-8")
+    assert ask(home, PIP_CONFIG_FILE=str(file)) == (0, "")
+    away = f"http://127.0.0.1:{closed}/simple"
+    assert ask(home, PIP_CONFIG_FILE=str(file), PIP_INDEX_URL=away)[0] == ABSENT
+
+
+def test_a_proxy_is_asked_in_its_place(home: pathlib.Path, closed: int) -> None:
+    proxy = f"http://127.0.0.1:{closed}"
+    told = ask(
+        home, NO_PROXY="", HTTPS_PROXY=proxy, PIP_INDEX_URL="https://index.invalid"
+    )
+    reason = (
+        "index.invalid cannot be reached by the proxy 127.0.0.1: Connection refused\n"
+    )
+    assert told == (ABSENT, reason)
+
+
+def test_packages_from_elsewhere_need_no_index(home: pathlib.Path, closed: int) -> None:
+    away = f"http://127.0.0.1:{closed}/simple"
+    wheels = home / "wheels"
+    wheels.mkdir()
+    assert ask(home, PIP_INDEX_URL=away, PIP_FIND_LINKS=str(wheels))[0] == ABSENT
+    (wheels / "coppeliasim_zmqremoteapi_client-2.0.4-py3-none-any.whl").touch()
+    assert ask(home, PIP_INDEX_URL=away, PIP_FIND_LINKS=str(wheels)) == (0, "")
+    assert ask(home, PIP_INDEX_URL=away, PIP_NO_INDEX="1") == (0, "")
