@@ -169,8 +169,8 @@ def bare(name: str, version: str = "") -> tuple[int, str]:
 def test_a_missing_library_is_told_in_a_sentence() -> None:
     assert bare("area_1") == (
         2,
-        "error: the Python module zmq is missing, install it by: "
-        "python3 -m pip install coppeliasim-zmqremoteapi-client cbor2\n",
+        "error: the Python module zmq is not installed; install it with "
+        "`python3 -m pip install coppeliasim-zmqremoteapi-client cbor2`\n",
     )
 
 
