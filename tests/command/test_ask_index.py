@@ -44,13 +44,17 @@ def ask(home: pathlib.Path, **settings: str) -> tuple[int, str]:
     return done.returncode, done.stdout
 
 
+class Quiet(http.server.BaseHTTPRequestHandler):
+    """An index that knows nothing, and says so."""
+
+    def log_message(self, format: str, *args: object) -> None:  # noqa: A002
+        """Nobody reads it."""
+
+
 @pytest.fixture(name="answering")
 def fixture_answering() -> Iterator[str]:
-    """An index that answers, if only that it knows nothing."""
-    with http.server.HTTPServer(
-        ("127.0.0.1", 0), http.server.BaseHTTPRequestHandler
-    ) as server:
-        server.RequestHandlerClass.log_message = lambda *_: None  # type: ignore[method-assign]
+    """The address of an index that answers."""
+    with http.server.HTTPServer(("127.0.0.1", 0), Quiet) as server:
         thread = threading.Thread(target=server.serve_forever)
         thread.start()
         yield f"http://127.0.0.1:{server.server_port}/simple"
