@@ -154,7 +154,7 @@ fn a_blocked_robot_fails_its_action() {
     assert_eq!(done.code, Some(1), "{}", done.err);
     let message = "action 1: move 2 m: came no nearer to its goal for 5 s, 1.201 m before it; something may be in its way";
     assert!(done.err.contains(message), "{}", done.err);
-    assert!(done.out.contains("stopped   0.799   0.000"), "{}", done.out);
+    assert!(done.out.contains("stopped  0.799  0.000"), "{}", done.out);
 }
 
 #[test]
