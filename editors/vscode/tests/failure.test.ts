@@ -28,8 +28,8 @@ test("anything may be thrown", () => {
 });
 
 test("a message has the headline and the help, and nothing of a terminal's lines", () => {
-  const printed = "error: there is no Python on this machine's PATH\n  |\n  = help: install Python 3.10 or later\n";
-  assert.equal(sentence(printed), "There is no Python on this machine's PATH. Install Python 3.10 or later.");
+  const printed = "error: there is no Python on this machine's PATH\n  |\n  = help: install Python 3.11 or later\n";
+  assert.equal(sentence(printed), "There is no Python on this machine's PATH. Install Python 3.11 or later.");
   assert.equal(sentence("error[invalid-radius]: no"), "No.");
   assert.equal(sentence("rover does not move"), "Rover does not move.");
   assert.equal(sentence(""), "");
