@@ -17,14 +17,18 @@ ROBOT = "/* 🤖é */ robot rover with port 23000 has { wh"
 
 
 async def offered(
-    client: LanguageClient, uri: str, text: str
+    client: LanguageClient,
+    uri: str,
+    text: str,
+    context: types.CompletionContext | None = None,
 ) -> list[types.CompletionItem]:
     place = types.TextDocumentIdentifier(uri)
     found = await client.text_document_completion_async(
-        types.CompletionParams(place, position(text, len(text)))
+        types.CompletionParams(place, position(text, len(text)), context)
     )
     assert isinstance(found, types.CompletionList)
-    assert not found.is_incomplete
+    # Editors ask again after each character.
+    assert found.is_incomplete
     return list(found.items)
 
 
@@ -65,3 +69,44 @@ async def test_a_name_brings_its_import(
     edits = [wheel.text_edit, *(wheel.additional_text_edits or [])]
     done = apply_edits(ROBOT, edits)
     assert done == 'import "wheels.pyr"\n\n' + ROBOT.removesuffix("wh") + "wheelL"
+
+
+async def test_a_complete_word_is_left_alone(
+    client: LanguageClient, tmp_path: pathlib.Path
+) -> None:
+    """What an editor asks for while `meters` is typed: the last answer is empty, so that Enter ends the line."""
+    editor = Editor(client, tmp_path)
+    begun = "movement m of rover {\n  move 2 "
+    uri = editor.open("a.pyr", begun + "\n")
+    again = types.CompletionContext(
+        types.CompletionTriggerKind.TriggerForIncompleteCompletions
+    )
+    for letter in "meters":
+        editor.replace(uri, begun, begun + letter)
+        begun += letter
+        found = await offered(client, uri, begun, again)
+        labels = [item.label for item in found]
+        assert labels == ([] if begun.endswith("meters") else ["meters"])
+
+
+@pytest.mark.parametrize(
+    ("typed", "labels"),
+    [
+        ("movement m of ", ["rover"]),
+        ("movement m of rover {", []),
+        ("movement m of rover { ", []),
+        ("movement m of rover { move 2 ", []),
+        ("movement m of rover { move 2 meters ", []),
+        ("movement m of rover { turn ", []),
+    ],
+)
+async def test_a_blank_opens_the_list_only_where_a_name_must_follow(
+    client: LanguageClient, tmp_path: pathlib.Path, typed: str, labels: list[str]
+) -> None:
+    text = "robot rover with port 23000 has { } wheels\n" + typed
+    uri = Editor(client, tmp_path).open("a.pyr", text)
+    typed_last = types.CompletionContext(
+        types.CompletionTriggerKind.TriggerCharacter, text[-1]
+    )
+    found = await offered(client, uri, text, typed_last)
+    assert [item.label for item in found] == labels

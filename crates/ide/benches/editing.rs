@@ -92,7 +92,7 @@ fn completion(bencher: Bencher, lines: usize) {
     let text = program(lines);
     let (database, file) = opened(&text);
     let position = ide::FilePosition { file, offset: behind(&text, " of ") };
-    bencher.bench_local(|| ide::completions(&database, position, 9.0));
+    bencher.bench_local(|| ide::completions(&database, position, ide::CompletionTrigger::Invoked, 9.0));
 }
 
 #[divan::bench(args = LINES)]

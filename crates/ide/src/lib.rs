@@ -41,7 +41,7 @@ mod fixture;
 pub use call_hierarchy::{Call, CallItem, call_item, call_items, incoming_calls, outgoing_calls};
 pub use code_lenses::{CodeLens, code_lenses};
 pub use completion::{
-    Completion, CompletionKind, Completions, Documentation, completion_documentation, completions,
+    Completion, CompletionKind, CompletionTrigger, Documentation, completion_documentation, completions,
 };
 pub use definition::{Definition, Target, goto_definition};
 pub use document_links::{DocumentLink, document_links};

@@ -6,7 +6,9 @@ use std::collections::{BTreeSet, HashSet};
 use std::path::Path;
 
 use pydslrep_analysis::{Database, FileId};
-use pydslrep_ide::{Completion, CompletionKind, Definition, FilePosition, completions, goto_definition};
+use pydslrep_ide::{
+    Completion, CompletionKind, CompletionTrigger, Definition, FilePosition, completions, goto_definition,
+};
 use pydslrep_syntax::{Found, KEYWORDS, Lexeme, Span, SyntaxErrorKind, Token, cut, lex, parse};
 
 /// The article's programs, and those made from them.
@@ -32,7 +34,7 @@ fn length(text: &str) -> u32 {
 }
 
 fn offered(database: &Database, file: FileId, offset: u32) -> Vec<Completion> {
-    completions(database, FilePosition { file, offset }, 9.0).items
+    completions(database, FilePosition { file, offset }, CompletionTrigger::Invoked, 9.0)
 }
 
 /// The words and signs that a list of completions begins with; a comma is never offered.
@@ -56,6 +58,13 @@ fn is_beginning(text: &str) -> bool {
         piece.errors.iter().all(|error| {
             index == last && matches!(&error.kind, SyntaxErrorKind::Missing { found: Found::End, .. })
         })
+    })
+}
+
+/// With a name wherever a person has to give one: nothing is declared that could be suggested.
+fn filled_in(insert: &str) -> String {
+    (1..9).fold(insert.to_owned(), |text, number| {
+        text.replace(&format!("${number} "), "x ").replace(&format!("${number}\n"), "x\n")
     })
 }
 
@@ -104,10 +113,9 @@ fn check_while_typed(text: &str, seen: &mut HashSet<(Vec<Token>, bool)>) {
         let beginning = if imports { typed.clone() } else { format!("sensor s {begun}") };
         assert_eq!(words(&items), allowed(&beginning), "behind {begun:?}");
         for mut item in items.into_iter().filter(|item| !matches!(item.kind, CompletionKind::Reference(_))) {
-            // A person fills in the list.
-            item.insert = item.insert.replace("{ $0 }", "{ x }");
+            item.insert = filled_in(&item.insert);
             let whole = format!("{begun} {}", item.plain());
-            // Without a name behind it, `} wheel` is a slip for `} wheels`.
+            // Without a name after it, `} wheel` is a slip for `} wheels`.
             assert!(is_beginning(&whole) || is_beginning(&format!("{whole} x")), "{whole:?}");
         }
     }
@@ -172,6 +180,10 @@ fn a_half_typed_word_is_replaced_by_what_it_was_going_to_be() {
             // Right behind a word it is that one which is being typed.
             let touches = text[..start].ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
             for typed in usize::from(touches)..word.len() {
+                // `wheel` may be meant as it is, and is left alone.
+                if !token.is_name() && KEYWORDS.iter().any(|(_, keyword)| *keyword == &word[..typed]) {
+                    continue;
+                }
                 check_half_typed(&text[..start], word, typed, &text[end..]);
                 if !token.is_name() {
                     check_half_typed(&text[..start], word, typed, "");

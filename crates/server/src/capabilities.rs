@@ -52,8 +52,8 @@ fn server_capabilities(client: &ClientFeatures) -> ServerCapabilities {
             file_operations: Some(file_operations::capabilities()),
         }),
         completion_provider: Some(CompletionOptions {
-            // `[` is for settings files.
-            trigger_characters: Some([" ", "{", "[", "\"", "/", "^"].map(str::to_owned).to_vec()),
+            // `[` is for settings files. Letters need no mention: editors ask after them anyway.
+            trigger_characters: Some([" ", "[", "\"", "/", "^"].map(str::to_owned).to_vec()),
             resolve_provider: Some(true),
             ..CompletionOptions::default()
         }),

@@ -19,7 +19,7 @@ mod token;
 
 pub use cut::cut;
 pub use error::{Expected, Found, SyntaxError, SyntaxErrorKind};
-pub use format::{TextEdit, apply_edits, format, format_edits};
+pub use format::{COLUMNS, TextEdit, apply_edits, format, format_edits};
 pub use lexer::{Lexeme, lex};
 pub use parser::{Parse, expected_after, parse, parse_cut, parse_each};
 pub use span::Span;

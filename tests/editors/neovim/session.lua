@@ -64,7 +64,7 @@ local function completion()
   local place = 0
   for index, label in ipairs(actions) do if label == 'move … meters' then place = index end end
   vim.api.nvim_input(('<C-n>'):rep(place) .. '<C-y>')
-  becomes('a whole action is expanded', '  move 1.0 meters', vim.api.nvim_get_current_line)
+  becomes('a whole action is expanded', '  move 4.0 meters', vim.api.nvim_get_current_line)
   becomes('with its first place selected', 's', function() return vim.api.nvim_get_mode().mode end)
   vim.api.nvim_input('2.5<Esc>')
   becomes('and overtyped', '  move 2.5 meters', vim.api.nvim_get_current_line)

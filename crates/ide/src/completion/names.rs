@@ -7,36 +7,35 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use pydslrep_analysis::{Database, EntityId, FileId};
-use pydslrep_syntax::ast::{DriveWord, Entity, Movement, Robot};
+use pydslrep_syntax::ast::{DriveWord, Entity, Robot};
 use pydslrep_syntax::{EntityKind, TextEdit, as_written};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
+use super::defaults::robot_of;
+use super::offers::starts_with;
 use super::place::Place;
 use super::words::is_mecanum;
-use super::{Completion, CompletionKind, Completions, Documentation, MOST, Rank, paths};
+use super::{Completion, CompletionKind, Documentation, MOST, Rank, paths};
 
 /// Of so many names each is weighed.
-const FEW: usize = 1_000;
+pub(super) const FEW: usize = 1_000;
 
 /// Of more, those of so many entities on either side of the cursor are.
-const NEAR: usize = 200;
+pub(super) const NEAR: usize = 200;
 
 /// So many names of files that are not imported are offered.
 const MOST_ELSEWHERE: usize = 50;
 
 /// The names of a kind that fit.
-pub(super) fn names(place: &Place<'_>, kind: EntityKind, found: &mut Completions) {
+pub(super) fn names(place: &Place<'_>, kind: EntityKind) -> Vec<Completion> {
     let wanted = Wanted::at(place, kind);
-    let (chosen, mut is_incomplete) = match wanted.only(place) {
-        Some(names) => (names, false),
-        None => in_sight(place, &wanted),
-    };
-    found.items.extend(chosen.iter().filter_map(|name| reference(place, kind, name)));
+    let chosen = wanted.only(place).unwrap_or_else(|| in_sight(place, &wanted));
+    let mut found: Vec<Completion> = chosen.iter().filter_map(|name| reference(place, kind, name)).collect();
     if !matches!(wanted.for_, For::Turn(_)) {
-        is_incomplete |= elsewhere(place, &wanted, &mut found.items);
+        found.extend(elsewhere(place, &wanted));
     }
-    found.is_incomplete |= is_incomplete;
+    found
 }
 
 /// What a name has to be like.
@@ -142,8 +141,11 @@ impl<'a> Wanted<'a> {
             }
             _ => false,
         };
-        let exclusive = matches!(self.kind, EntityKind::Wheel | EntityKind::Sensor);
-        let is_used = exclusive && !place.database.users(place.file, self.kind, name).is_empty();
+        // A robot without a movement is the one that gets the next.
+        let is_used_once = matches!(self.kind, EntityKind::Wheel | EntityKind::Sensor | EntityKind::Robot);
+        let is_used = is_used_once
+            && !matches!(place.tree, Some(Entity::Environment(_)))
+            && !place.database.users(place.file, self.kind, name).is_empty();
         let is_listed = self.kind == EntityKind::Movement && self.listed.contains(name);
         let is_imported = place.database.file_of(id) != Some(place.file);
         4 * u8::from(other_radius) + 2 * u8::from(is_used || is_listed) + u8::from(is_imported)
@@ -174,18 +176,8 @@ fn wheels_of<'a>(place: &Place<'a>, robot: &Robot, listed: &[SmolStr]) -> For<'a
     For::Robot(first.map(|(_, mecanum)| mecanum).or(by_type), radius)
 }
 
-/// The robot of a movement, unless it cannot be said what it carries.
-fn robot_of<'a>(place: &Place<'a>, movement: &Movement) -> Option<&'a Robot> {
-    let name = &movement.robot.as_ref()?.text;
-    let id = place.database.resolve(place.file, EntityKind::Robot, name).entity()?;
-    match place.database.tree(id)? {
-        Entity::Robot(robot) if robot.sensors.is_some() || robot.wheels.is_some() => Some(robot),
-        _ => None,
-    }
-}
-
-/// The best names of a kind that the file sees, and whether there are more.
-fn in_sight(place: &Place<'_>, wanted: &Wanted<'_>) -> (Vec<SmolStr>, bool) {
+/// The best names of a kind that the file sees.
+fn in_sight(place: &Place<'_>, wanted: &Wanted<'_>) -> Vec<SmolStr> {
     let mut all: Vec<&SmolStr> = place
         .database
         .names_in_sight(place.file, wanted.kind)
@@ -210,13 +202,11 @@ fn in_sight(place: &Place<'_>, wanted: &Wanted<'_>) -> (Vec<SmolStr>, bool) {
     weighed.sort_unstable();
     weighed.dedup();
     let mut chosen: Vec<SmolStr> = weighed.iter().take(MOST).map(|(_, _, name)| (*name).clone()).collect();
-    let mut is_incomplete = weighed.len() > MOST;
     if all.len() > FEW {
         let others = all.iter().copied().filter(|name| !near.contains(name));
         let mut others: BinaryHeap<_> = others.map(|name| Reverse((order(place, name), name))).collect();
         while let Some(Reverse((_, name))) = others.pop() {
             if chosen.len() == MOST {
-                is_incomplete = true;
                 break;
             }
             // An imported file may declare it as well.
@@ -225,16 +215,12 @@ fn in_sight(place: &Place<'_>, wanted: &Wanted<'_>) -> (Vec<SmolStr>, bool) {
             }
         }
     }
-    (chosen, is_incomplete)
+    chosen
 }
 
 /// What begins as it is typed comes before what only has the letters.
 fn order(place: &Place<'_>, name: &str) -> bool {
-    !starts_like(name, &place.typed)
-}
-
-fn starts_like(name: &str, typed: &str) -> bool {
-    name.get(..typed.len()).is_some_and(|start| start.eq_ignore_ascii_case(typed))
+    !starts_with(name, &place.typed)
 }
 
 /// Whether a name has the typed letters in this order, small or capital: so much any editor's own filter asks.
@@ -265,9 +251,9 @@ fn reference(place: &Place<'_>, kind: EntityKind, name: &SmolStr) -> Option<Comp
     })
 }
 
-/// Names of files that are not imported yet, each with what imports its file; says whether there are more.
-fn elsewhere(place: &Place<'_>, wanted: &Wanted<'_>, items: &mut Vec<Completion>) -> bool {
-    let mut left = MOST_ELSEWHERE;
+/// Names of files that are not imported yet, each with what imports its file.
+fn elsewhere(place: &Place<'_>, wanted: &Wanted<'_>) -> Vec<Completion> {
+    let mut items = Vec::new();
     for (path, file) in paths::not_imported(place.database, place.file) {
         let names = place.database.names(file, wanted.kind).filter(|name| is_like(name, &place.typed));
         let mut names: Vec<(&SmolStr, EntityId)> = names
@@ -282,10 +268,9 @@ fn elsewhere(place: &Place<'_>, wanted: &Wanted<'_>, items: &mut Vec<Completion>
         names.sort_unstable();
         let (span, text) = paths::import_line(place.database, place.file, &path);
         for (name, _) in names {
-            if left == 0 {
-                return true;
+            if items.len() == MOST_ELSEWHERE {
+                return items;
             }
-            left -= 1;
             items.push(Completion {
                 detail: format!("{} from {path}, adds the import", wanted.kind.noun()),
                 documentation: Documentation::Of(file, wanted.kind),
@@ -296,5 +281,5 @@ fn elsewhere(place: &Place<'_>, wanted: &Wanted<'_>, items: &mut Vec<Completion>
             });
         }
     }
-    false
+    items
 }

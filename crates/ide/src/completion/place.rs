@@ -1,7 +1,7 @@
 //! Where something is completed: the entity before the cursor, as far as it is written.
 
-use pydslrep_analysis::{Database, EntityRef, FileId};
-use pydslrep_syntax::ast::Entity;
+use pydslrep_analysis::{Database, EntityId, EntityRef, FileId};
+use pydslrep_syntax::ast::{DriveWord, Entity, Movement};
 use pydslrep_syntax::{Lexeme, Span, Token};
 use smol_str::SmolStr;
 
@@ -11,15 +11,19 @@ use crate::FilePosition;
 pub(super) struct Place<'a> {
     pub(super) database: &'a Database,
     pub(super) file: FileId,
-    /// The entity that the cursor continues; `None` at the start of a file.
+    /// The entity that the cursor continues; `None` where it continues none.
+    pub(super) entity: Option<EntityId>,
+    /// Its tree; `None` at the start of a file.
     pub(super) tree: Option<&'a Entity>,
+    /// Where it starts in the file.
+    pub(super) start: u32,
     /// Its text.
     pub(super) text: String,
     /// Its tokens before the word at the cursor.
     pub(super) before: Vec<Lexeme>,
-    /// The tokens behind that word, in the file, as far as the next entity.
-    behind: Vec<Lexeme>,
-    /// Whether nothing of the entity is written behind that word.
+    /// The tokens after that word, in the file, as far as the next entity.
+    after: Vec<Lexeme>,
+    /// Whether nothing of the entity is written after that word.
     pub(super) at_end: bool,
     /// The speed in patterns, centimetres per second.
     pub(super) speed: f64,
@@ -29,8 +33,6 @@ pub(super) struct Place<'a> {
     pub(super) typed: String,
     /// Whether it begins with `^`.
     pub(super) is_escaped: bool,
-    /// Whether something that is no word ends right at the cursor, and would run into one.
-    pub(super) needs_space: bool,
 }
 
 impl<'a> Place<'a> {
@@ -46,24 +48,28 @@ impl<'a> Place<'a> {
         let at_end = !significant.iter().any(|(_, span)| span.start + start >= word.end);
         let before: Vec<Lexeme> =
             significant.into_iter().take_while(|(_, span)| span.end + start <= word.start).collect();
-        let number =
+        let ends_number =
             before.last().is_some_and(|(token, span)| token.is_number() && span.end + start == word.start);
-        let behind =
+        if ends_number {
+            return None;
+        }
+        let after =
             self::significant(&own).into_iter().map(|(token, span)| (token, span.shifted(own.span.start)));
         let typed = database.slice(position.file, Span::new(word.start, position.offset));
         Some(Self {
             database,
             file: position.file,
+            entity: at.parse.entity.as_ref().map(|_| at.id),
             tree: at.parse.entity.as_ref(),
+            start,
             text: database.slice(position.file, at.span),
             before,
-            behind: behind.filter(|(_, span)| span.start >= word.end).collect(),
+            after: after.filter(|(_, span)| span.start >= word.end).collect(),
             at_end,
             speed,
             word,
             is_escaped: typed.starts_with('^'),
             typed: typed.trim_start_matches('^').to_lowercase(),
-            needs_space: number,
         })
     }
 
@@ -72,12 +78,50 @@ impl<'a> Place<'a> {
         let in_list = |token: Token| token == Token::Comma || token.is_name();
         let before = self.before.iter().rev().take_while(|(token, _)| in_list(*token));
         let before = before.filter(|(token, _)| token.is_name()).map(|(_, span)| name(span.text(&self.text)));
-        let behind = self.behind.iter().take_while(|(token, _)| in_list(*token));
-        let behind = behind.filter(|(token, _)| token.is_name());
+        let after = self.after.iter().take_while(|(token, _)| in_list(*token));
+        let after = after.filter(|(token, _)| token.is_name());
         let mut listed: Vec<SmolStr> = before.collect();
         listed.reverse();
-        listed.extend(behind.map(|(_, span)| name(&self.database.slice(self.file, *span))));
+        listed.extend(after.map(|(_, span)| name(&self.database.slice(self.file, *span))));
         listed
+    }
+
+    /// The movement that is being written.
+    pub(super) fn movement(&self) -> Option<&'a Movement> {
+        match self.tree {
+            Some(Entity::Movement(movement)) => Some(movement),
+            _ => None,
+        }
+    }
+
+    /// Whether the word at the cursor is on another line than what is before it.
+    pub(super) fn begins_line(&self) -> bool {
+        let end = self.before.last().map_or(0, |(_, span)| self.start + span.end);
+        self.database.slice(self.file, Span::new(end, self.word.start)).contains(['\n', '\r'])
+    }
+
+    /// Whether nothing but a name can come next: after `of` and `ip`, and in a list that is empty, that goes on after a
+    /// comma, or that has fewer wheels than its robot needs.
+    pub(super) fn needs_name(&self) -> bool {
+        let is_there = self.after.first().is_some_and(|(token, _)| token.is_name());
+        let Some((last, _)) = self.before.last().filter(|_| !is_there) else { return false };
+        match last {
+            Token::Of | Token::Ip | Token::Comma => true,
+            Token::OpenBrace => self.listed().is_empty(),
+            token if token.is_name() => self.lacks_wheels(),
+            _ => false,
+        }
+    }
+
+    /// Whether the cursor is in the list of a robot's wheels, which needs another one.
+    fn lacks_wheels(&self) -> bool {
+        let Some(Entity::Robot(robot)) = self.tree else { return false };
+        let in_wheels = !self.before.iter().any(|(token, _)| matches!(token, Token::Wheels | Token::Sensors));
+        let wanted = match robot.drive.and_then(|clause| clause.word) {
+            Some(DriveWord::Tw) | None => 2,
+            Some(DriveWord::Fw | DriveWord::Fwh) => 4,
+        };
+        in_wheels && self.listed().len() < wanted
     }
 
     /// Whether no entity stands before the cursor that an import must not follow.
@@ -98,12 +142,12 @@ fn significant(entity: &EntityRef<'_>) -> Vec<Lexeme> {
     entity.parse.lexemes.iter().filter(|(token, _)| !token.is_comment()).copied().collect()
 }
 
-/// The word before and behind the cursor; `None` inside comments, strings and numbers, where nothing is completed.
+/// The word around the cursor; `None` inside comments, strings and numbers, where nothing is completed.
 fn word_at(database: &Database, position: FilePosition) -> Option<Span> {
     let entity = database.entity_at(position.file, position.offset)?;
     let start = entity.span.start;
     let offset = position.offset - start;
-    // A keyword right behind the cursor begins an entity, and a word right before it belongs to the one before.
+    // A keyword right after the cursor begins an entity, and a word right before it belongs to the one before.
     let before = position.offset.checked_sub(1).filter(|_| offset == 0);
     if let Some(before) = before.and_then(|before| database.entity_at(position.file, before)) {
         return word_in(database, &before, position.offset);

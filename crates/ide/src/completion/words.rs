@@ -1,11 +1,14 @@
-//! Words of the language, whole patterns of them, and values.
+//! Keywords, with those that must follow them, and values.
 
+use pydslrep_analysis::{EntityId, Target};
 use pydslrep_syntax::ast::{DriveWord, Entity};
 use pydslrep_syntax::{EntityKind, Expected, Span, Token, expected_after};
 use smol_str::SmolStr;
 
+use super::defaults::likely_list;
+use super::names::{FEW, NEAR};
+use super::patterns::stop;
 use super::place::Place;
-use super::snippets::{Snippet, without_stops};
 use super::{Completion, CompletionKind, Documentation, Rank};
 use crate::reference::{KeywordPage, keyword_page};
 
@@ -13,25 +16,18 @@ impl Place<'_> {
     /// A completion of the word at the cursor.
     pub(super) fn item(&self, label: &str, kind: CompletionKind, rank: Rank) -> Completion {
         Completion {
-            insert: self.apart(label),
+            insert: label.to_owned(),
             is_escaped: self.is_escaped,
             rank,
             ..Completion::new(label, kind, self.word)
         }
-    }
-
-    /// Text to insert so that it does not run into what stands before it.
-    fn apart(&self, text: &str) -> String {
-        if self.needs_space { format!(" {text}") } else { text.to_owned() }
     }
 }
 
 /// A word, followed by those that can only follow it; `None` for the comma, which is never needed.
 pub(super) fn word(place: &Place<'_>, word: Token) -> Option<Completion> {
     let spelling = word.spelling().filter(|_| word != Token::Comma)?;
-    let Continued { insert, is_snippet, last } = continued(place, word);
-    let label =
-        insert.replace(" $0 ", " … ").replace("$0", "…").split_whitespace().collect::<Vec<_>>().join(" ");
+    let Continued { insert, label, last } = continued(place, word);
     let label = if word == Token::OpenBrace { &label } else { label.trim_end_matches(" …") };
     // `with` and braces say little by themselves; the word they lead to says it.
     let leads = matches!(word, Token::With | Token::Has | Token::OpenBrace | Token::CloseBrace);
@@ -46,8 +42,8 @@ pub(super) fn word(place: &Place<'_>, word: Token) -> Option<Completion> {
         documentation: Documentation::Text(
             page.map_or_else(|| format!("`{spelling}`"), |page| page.markdown()),
         ),
-        insert: place.apart(&insert),
-        is_snippet,
+        is_snippet: insert.contains('$'),
+        insert,
         ..place.item(label, CompletionKind::Keyword, rank)
     })
 }
@@ -89,33 +85,40 @@ pub(super) fn is_mecanum(place: &Place<'_>, name: &SmolStr) -> Option<bool> {
 /// A word with those that can only follow it.
 struct Continued {
     insert: String,
-    is_snippet: bool,
+    /// The same with `…` for what the person fills in.
+    label: String,
     /// The last of the words.
     last: Token,
 }
 
-/// `with` continues to `with port`, `has` to `has { $0 } wheels`: as long as only one word can follow, and nothing
+impl Continued {
+    fn push(&mut self, insert: &str, label: &str) {
+        self.insert.extend([" ", insert]);
+        self.label.extend([" ", label]);
+    }
+}
+
+/// `with` continues to `with port`, `has` to `has { … } wheels`: as long as only one word can follow, and nothing
 /// is written there yet.
 fn continued(place: &Place<'_>, word: Token) -> Continued {
     const MOST: usize = 6;
     let mut before = place.before.clone();
-    let insert = word.spelling().unwrap_or_default().to_owned();
-    let mut continued = Continued { insert, is_snippet: false, last: word };
+    let spelling = word.spelling().unwrap_or_default().to_owned();
+    let mut continued = Continued { insert: spelling.clone(), label: spelling, last: word };
     for _ in 0..if place.at_end { MOST } else { 0 } {
         let end = Span::at(before.last().map_or(0, |(_, span)| span.end));
         before.push((continued.last, end));
         let mut expected = expected_after(&place.text, &before);
-        if continued.last == Token::OpenBrace
-            && expected.iter().any(|expected| matches!(expected, Expected::ReferenceTo(_)))
-        {
-            continued.insert += " $0 }";
-            continued.is_snippet = true;
+        if let Some(kind) = listed_kind(continued.last, &expected) {
+            continued.push(&stop(1, &likely_list(place, kind)), "…");
+            continued.push("}", "}");
             before.extend([(Token::Name, end), (Token::CloseBrace, end)]);
             expected = expected_after(&place.text, &before);
         }
         match expected[..] {
             [Expected::Word(word)] if word != Token::Comma && word != Token::CloseBrace => {
-                continued.insert = format!("{} {}", continued.insert, word.spelling().unwrap_or_default());
+                let spelling = word.spelling().unwrap_or_default();
+                continued.push(spelling, spelling);
                 continued.last = word;
             }
             _ => break,
@@ -124,7 +127,16 @@ fn continued(place: &Place<'_>, word: Token) -> Continued {
     continued
 }
 
-/// Words behind which a person goes on.
+/// What a list that begins here has references to.
+fn listed_kind(last: Token, expected: &[Expected]) -> Option<EntityKind> {
+    let kind = expected.iter().find_map(|expected| match expected {
+        Expected::ReferenceTo(kind) => Some(*kind),
+        _ => None,
+    });
+    kind.filter(|_| last == Token::OpenBrace)
+}
+
+/// Words after which a person goes on.
 pub(super) fn plain_words(place: &Place<'_>, words: &[Token]) -> Vec<Completion> {
     let word = |word: &Token| {
         let page = keyword_page(*word)?;
@@ -137,42 +149,35 @@ pub(super) fn plain_words(place: &Place<'_>, words: &[Token]) -> Vec<Completion>
     words.iter().filter_map(word).collect()
 }
 
-/// Whole patterns.
-pub(super) fn patterns(place: &Place<'_>, snippets: &[Snippet]) -> Vec<Completion> {
-    let pattern = |snippet: &Snippet| {
-        let insert = snippet.filled_in(place.speed);
-        Completion {
-            detail: snippet.detail.to_owned(),
-            documentation: Documentation::Text(format!("```pydslrep\n{}\n```", without_stops(&insert))),
-            insert: place.apart(&insert),
-            is_snippet: true,
-            ..place.item(snippet.label, CompletionKind::Snippet, Rank::Pattern)
-        }
-    };
-    snippets.iter().map(pattern).collect()
-}
-
 /// A number or an address.
 pub(super) fn value(place: &Place<'_>, text: &str, detail: &str) -> Completion {
     Completion { detail: detail.to_owned(), ..place.item(text, CompletionKind::Value, Rank::Fitting) }
 }
 
-/// The first port offered: V-REP's.
-const FIRST_PORT: u16 = 19999;
-
-/// A port that no robot in sight has: behind the highest, else the first that is free.
-pub(super) fn free_port(place: &Place<'_>) -> Option<String> {
-    let robots = place.database.names_in_sight(place.file, EntityKind::Robot);
-    let port = |name: &SmolStr| {
-        let id = place.database.resolve(place.file, EntityKind::Robot, name).entity()?;
-        match place.database.tree(id)? {
-            Entity::Robot(robot) => robot.port.as_ref()?.value,
-            _ => None,
-        }
+/// A port for another robot. Where all robots share one port, as they may in CoppeliaSim, it is theirs; else it is the one
+/// after the highest, or the first that is free.
+pub(super) fn port(place: &Place<'_>) -> Option<String> {
+    let target = place.database.target(place.file);
+    let port = |id: EntityId| match place.database.tree(id)? {
+        Entity::Robot(robot) if Some(id) != place.entity => robot.port.as_ref()?.value,
+        _ => None,
     };
-    let mut taken: Vec<u16> = robots.filter_map(port).collect();
+    let mut taken: Vec<u16> = if place.database.count(place.file, EntityKind::Robot) as usize > FEW {
+        let near = place.database.entities_around(place.file, place.word.start, NEAR);
+        near.filter_map(port).collect()
+    } else {
+        let robots = place.database.names_in_sight(place.file, EntityKind::Robot);
+        let found = |name| place.database.resolve(place.file, EntityKind::Robot, name).entity();
+        robots.filter_map(found).filter_map(port).collect()
+    };
     taken.sort_unstable();
-    let next = taken.last().map_or(Some(FIRST_PORT), |highest| highest.checked_add(1));
+    taken.dedup();
+    let first = target.default_port();
+    let port = match taken[..] {
+        [] => Some(first),
+        [shared] if target == Target::CoppeliaSim => Some(shared),
+        [.., highest] => highest.checked_add(1),
+    };
     let free = |port: &u16| taken.binary_search(port).is_err();
-    next.or_else(|| (FIRST_PORT..=u16::MAX).chain(1..FIRST_PORT).find(free)).map(|port| port.to_string())
+    port.or_else(|| (first..=u16::MAX).chain(1..first).find(free)).map(|port| port.to_string())
 }

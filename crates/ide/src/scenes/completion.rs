@@ -7,7 +7,8 @@ use smol_str::SmolStr;
 
 use super::{Meaning, meaning, robots};
 use crate::completion::Rank;
-use crate::{Completion, CompletionKind, Documentation};
+use crate::completion::offers::narrowed_in_toml;
+use crate::{Completion, CompletionKind, CompletionTrigger, Documentation};
 
 /// What fits at an offset in the text of a scene file. Keys and tables that are there already do not, except for tables
 /// that may stand any number of times.
@@ -16,8 +17,15 @@ pub fn scene_completions(
     environment: Option<EntityId>,
     text: &str,
     offset: u32,
+    trigger: CompletionTrigger,
 ) -> Vec<Completion> {
-    let Some(place) = place_at(text, offset) else { return Vec::new() };
+    let Some(place) = place_at(text, offset).filter(|place| trigger.opens_in_toml(place)) else {
+        return Vec::new();
+    };
+    narrowed_in_toml(fitting(database, environment, text, &place), text, offset)
+}
+
+fn fitting(database: &Database, environment: Option<EntityId>, text: &str, place: &Place) -> Vec<Completion> {
     let mut others = names(text);
     others.retain(|named| named.span != place.word);
     let robots = robots(database, environment);
@@ -28,22 +36,22 @@ pub fn scene_completions(
             let names = segments(&robots, outer).into_iter();
             let names = names.map(|(name, table)| (as_key(&name), table));
             names
-                .map(|(name, table)| offer(&place, &name, name.clone(), &table.markdown(), Rank::Fitting))
+                .map(|(name, table)| offer(place, &name, name.clone(), &table.markdown(), Rank::Fitting))
                 .collect()
         }
-        Slot::Table { .. } => free.iter().filter_map(|header| header.in_brackets(&place)).collect(),
+        Slot::Table { .. } => free.iter().filter_map(|header| header.in_brackets(place)).collect(),
         Slot::Key { table, has_value, begins_line } => {
-            let mut found = keys(&place, table, *has_value, &others);
+            let mut found = keys(place, table, *has_value, &others);
             found.extend(segments(&robots, table).into_iter().map(|(name, table)| {
                 let written = format!("{}.", as_key(&name));
-                offer(&place, &written, written.clone(), &table.markdown(), Rank::Fitting)
+                offer(place, &written, written.clone(), &table.markdown(), Rank::Fitting)
             }));
             if *begins_line && !has_value {
-                found.extend(free.iter().map(|header| header.on_a_line(&place)));
+                found.extend(free.iter().map(|header| header.on_a_line(place)));
             }
             found
         }
-        Slot::Value { key } => values(&place, key),
+        Slot::Value { key } => values(place, key),
     }
 }
 
@@ -194,10 +202,8 @@ mod tests {
         let (text, offset) = at_cursor(fixture);
         let (database, environment) = program();
         let mut out = String::new();
-        for found in scene_completions(&database, environment, &text, offset) {
-            if found.label.contains(found.replace.text(&text)) {
-                out += &format!("{} | {} | {:?}\n", found.label, found.detail, found.insert);
-            }
+        for found in scene_completions(&database, environment, &text, offset, CompletionTrigger::Invoked) {
+            out += &format!("{} | {} | {:?}\n", found.label, found.detail, found.insert);
         }
         expected.assert_eq(&out);
     }
@@ -262,12 +268,7 @@ mod tests {
             back | a table | "back"
         "#]],
         );
-        check(
-            "[robots.ro$0ver.sensors.front]",
-            &expect![[r#"
-            rover | a table | "rover"
-        "#]],
-        );
+        check("[robots.ro$0ver.sensors.front]", &expect![""]);
         check(
             "robots.$0",
             &expect![[r#"
@@ -304,31 +305,20 @@ mod tests {
             rim-acceleration | default: 1.0 | "rim-acceleration = $0"
         "#]],
         );
-        check(
-            "[robots.rover.sensors.front]\nco$0ne = 1",
-            &expect![[r#"
-            cone | default: 20 | "cone"
-        "#]],
-        );
+        check("[robots.rover.sensors.front]\nco$0ne = 1", &expect![""]);
         check(
             "world = { s$0 }",
             &expect![[r#"
-            size | default: without end | "size = $0"
-            walls | default: true | "walls = $0"
-            collisions | default: true | "collisions = $0"
-            seed | default: 1 | "seed = $0"
-        "#]],
+                size | default: without end | "size = $0"
+                seed | default: 1 | "seed = $0"
+            "#]],
         );
         check(
             "[[polygon]]\ncorners = [\n  [0, 1],\n  [1, 1]\n]\nn$0",
             &expect![[r#"
-            name | default: the table's name and a number: box_1 | "name = $0"
-            [noise] | a table | "[noise]\n$0"
-            [[cylinder]] | a table | "[[cylinder]]\n$0"
-            [[polygon]] | a table | "[[polygon]]\n$0"
-            [robots.rover.sensors.front] | a table | "[robots.rover.sensors.front]\n$0"
-            [robots.rover.sensors.back] | a table | "[robots.rover.sensors.back]\n$0"
-        "#]],
+                name | default: the table's name and a number: box_1 | "name = $0"
+                [noise] | a table | "[noise]\n$0"
+            "#]],
         );
     }
 
@@ -355,8 +345,10 @@ mod tests {
     fn every_offer_is_understood() {
         let (database, environment) = program();
         let floor = database.floor(environment.unwrap()).unwrap();
-        let at_end =
-            |text: &str| scene_completions(&database, environment, text, u32::try_from(text.len()).unwrap());
+        let at_end = |text: &str| {
+            let end = u32::try_from(text.len()).unwrap();
+            scene_completions(&database, environment, text, end, CompletionTrigger::Invoked)
+        };
         let tables = at_end("");
         assert_eq!(tables.len(), 6 + 2 + 2);
         for table in tables {

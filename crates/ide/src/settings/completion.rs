@@ -6,11 +6,18 @@ use pydslrep_notation::{Place, Slot, names, place_at};
 
 use super::{Meaning, documentation, meaning};
 use crate::completion::Rank;
-use crate::{Completion, CompletionKind, Documentation};
+use crate::completion::offers::narrowed_in_toml;
+use crate::{Completion, CompletionKind, CompletionTrigger, Documentation};
 
 /// What fits at an offset in the text of a settings file. Keys and tables that are there already do not.
-pub fn settings_completions(text: &str, offset: u32) -> Vec<Completion> {
-    let Some(place) = place_at(text, offset) else { return Vec::new() };
+pub fn settings_completions(text: &str, offset: u32, trigger: CompletionTrigger) -> Vec<Completion> {
+    let Some(place) = place_at(text, offset).filter(|place| trigger.opens_in_toml(place)) else {
+        return Vec::new();
+    };
+    narrowed_in_toml(fitting(text, &place), text, offset)
+}
+
+fn fitting(text: &str, place: &Place) -> Vec<Completion> {
     let others = names(text).into_iter().filter(|named| named.span != place.word);
     let taken: Vec<String> = others.map(|named| named.name).collect();
     let is_free = |name: &str| !taken.iter().any(|taken| taken == name);
@@ -20,21 +27,21 @@ pub fn settings_completions(text: &str, offset: u32) -> Vec<Completion> {
         Slot::Table { is_closed, .. } => {
             let end = if *is_closed { "" } else { "]" };
             let free = tables().into_iter().filter(|table| is_free(table));
-            free.map(|table| setting(&place, table, table, format!("{table}{end}"), Rank::Fitting)).collect()
+            free.map(|table| setting(place, table, table, format!("{table}{end}"), Rank::Fitting)).collect()
         }
         Slot::Key { table, has_value, begins_line } => {
             let free = keys_in(table).into_iter().filter(|name| is_free(name));
-            let mut found: Vec<Completion> = free.map(|name| key(&place, table, &name, *has_value)).collect();
+            let mut found: Vec<Completion> = free.map(|name| key(place, table, &name, *has_value)).collect();
             if *begins_line && !has_value {
                 let free = tables().into_iter().filter(|table| is_free(table));
                 found.extend(free.map(|table| {
                     let header = format!("[{table}]");
-                    setting(&place, table, &header, format!("{header}\n$0"), Rank::Word)
+                    setting(place, table, &header, format!("{header}\n$0"), Rank::Word)
                 }));
             }
             found
         }
-        Slot::Value { key } => values(&place, key),
+        Slot::Value { key } => values(place, key),
     }
 }
 
@@ -125,11 +132,8 @@ mod tests {
     fn check(fixture: &str, expected: &Expect) {
         let (text, offset) = at_cursor(fixture);
         let mut out = String::new();
-        for found in settings_completions(&text, offset) {
-            let typed = found.replace.text(&text).trim_matches('"');
-            if found.label.contains(typed) {
-                out += &format!("{} | {} | {:?}\n", found.label, found.detail, found.insert);
-            }
+        for found in settings_completions(&text, offset, CompletionTrigger::Invoked) {
+            out += &format!("{} | {} | {:?}\n", found.label, found.detail, found.insert);
         }
         expected.assert_eq(&out);
     }
@@ -205,12 +209,7 @@ mod tests {
             slam-sensors | default: "error" | "slam-sensors = \"$0\""
         "#]],
         );
-        check(
-            "[severity]\nslam-rob$0ot = 'off'",
-            &expect![[r#"
-            slam-robot | default: "error" | "slam-robot"
-        "#]],
-        );
+        check("[severity]\nslam-rob$0ot = 'off'", &expect![""]);
     }
 
     #[test]
@@ -265,7 +264,7 @@ mod tests {
     #[test]
     fn documentation_says_what_a_key_does() {
         let (text, offset) = at_cursor("tar$0");
-        let found = settings_completions(&text, offset).remove(0);
+        let found = settings_completions(&text, offset, CompletionTrigger::Invoked).remove(0);
         let Documentation::Text(text) = &found.documentation else { panic!("{found:?}") };
         expect![[r#"
             **`target`**: `"coppeliasim"` or `"vrep"`
@@ -284,10 +283,12 @@ mod tests {
     #[test]
     fn every_offer_is_understood() {
         for table in ["", "[severity]\n", "[inlay-hints]\n"] {
-            let offered = settings_completions(table, u32::try_from(table.len()).unwrap());
+            let offered =
+                settings_completions(table, u32::try_from(table.len()).unwrap(), CompletionTrigger::Invoked);
             for key in offered.into_iter().filter(|key| !key.label.starts_with('[')) {
                 let key = format!("{table}{}", key.insert.replace("\"$0\"", "").replace("$0", ""));
-                let values = settings_completions(&key, u32::try_from(key.len()).unwrap());
+                let values =
+                    settings_completions(&key, u32::try_from(key.len()).unwrap(), CompletionTrigger::Invoked);
                 assert!(!values.is_empty(), "{key}");
                 for value in values {
                     let text = format!("{key}{}", value.insert);

@@ -281,7 +281,9 @@ fn calls(database: &Database, position: FilePosition) -> Vec<(Item, Calls)> {
 
 fn at_edit(pair: &Pair<'_>, offset: u32) -> Result<(), String> {
     let position = FilePosition { file: pair.file, offset };
-    pair.same("completions", |database| ide::completions(database, position, 9.0))?;
+    pair.same("completions", |database| {
+        ide::completions(database, position, ide::CompletionTrigger::Invoked, 9.0)
+    })?;
     pair.same("signature help", |database| ide::signature_help(database, position))?;
     pair.same("selection", |database| ide::selection_ranges(database, position.file, &[offset]))?;
     pair.same("formatting behind a brace", |database| ide::format_after_brace(database, position))?;

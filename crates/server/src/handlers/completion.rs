@@ -6,8 +6,9 @@ use pydslrep_syntax::EntityKind;
 use serde::{Deserialize, Serialize};
 use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::{
-    CompletionItem, CompletionItemKind, CompletionList, CompletionParams, CompletionResponse,
-    CompletionTextEdit, Documentation, InsertTextFormat, MarkupContent, TextEdit,
+    CompletionContext, CompletionItem, CompletionItemKind, CompletionList, CompletionParams,
+    CompletionResponse, CompletionTextEdit, CompletionTriggerKind, Documentation, InsertTextFormat,
+    MarkupContent, TextEdit,
 };
 
 use crate::documents::{Document, Sort, key};
@@ -30,35 +31,40 @@ struct CompletionOf {
 /// What the grammar allows at a position, and which names make sense there; in a settings file or a scene, which keys.
 pub(crate) fn completion(state: &State, params: &CompletionParams) -> Option<CompletionResponse> {
     let at = &params.text_document_position;
+    let trigger = trigger(params.context.as_ref());
     if let Some((document, text)) = state.keyed_text(&at.text_document.uri) {
         let offset = state.offset(document, at.position);
         let items = if document.sort() == Sort::Scene {
             let environment = state.environment_in(&key(&document.uri));
-            ide::scene_completions(&state.database, environment, &text, offset)
+            ide::scene_completions(&state.database, environment, &text, offset, trigger)
         } else {
-            ide::settings_completions(&text, offset)
+            ide::settings_completions(&text, offset, trigger)
         };
-        return Some(list(state, document, items, false));
+        return Some(list(state, document, items));
     }
     let place = state.place(at)?;
-    let mut found =
-        ide::completions(&state.database, place.position(), place.document.settings.default_speed);
-    found.items.retain(|item| {
+    let speed = place.document.settings.default_speed;
+    let mut found = ide::completions(&state.database, place.position(), trigger, speed);
+    found.retain(|item| {
         let path = |file: FileId| state.database.path(file);
         item.imports.is_none_or(|imported| state.may_import(path(place.file), path(imported)))
     });
-    Some(list(state, place.document, found.items, found.is_incomplete))
+    Some(list(state, place.document, found))
 }
 
-fn list(
-    state: &State,
-    document: &Document,
-    found: Vec<ide::Completion>,
-    is_incomplete: bool,
-) -> CompletionResponse {
+fn trigger(context: Option<&CompletionContext>) -> ide::CompletionTrigger {
+    let character = context
+        .filter(|context| context.trigger_kind == CompletionTriggerKind::TRIGGER_CHARACTER)
+        .and_then(|context| context.trigger_character.as_ref()?.chars().next());
+    character.map_or(ide::CompletionTrigger::Invoked, ide::CompletionTrigger::Character)
+}
+
+/// Editors are to ask again after each character: a list that they filter themselves goes on showing what is
+/// written in full by now, and Enter takes it instead of ending the line.
+fn list(state: &State, document: &Document, found: Vec<ide::Completion>) -> CompletionResponse {
     let items = found.into_iter().zip(0..);
     let items = items.map(|(completion, at)| convert(state, document, completion, at)).collect();
-    CompletionResponse::List(CompletionList { is_incomplete, items })
+    CompletionResponse::List(CompletionList { is_incomplete: true, items })
 }
 
 /// `completionItem/resolve`: says more of the one that is looked at.

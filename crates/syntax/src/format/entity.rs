@@ -6,7 +6,7 @@ use super::writer::Writer;
 use crate::{EntityKind, Lexeme, Token};
 
 /// The longest line, in characters, that a list may stand on.
-const COLUMNS: usize = 100;
+pub const COLUMNS: usize = 100;
 
 const SPACES: &str = "          ";
 

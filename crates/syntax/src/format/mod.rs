@@ -9,6 +9,7 @@ mod gap;
 mod piece;
 mod writer;
 
+pub use self::entity::COLUMNS;
 use self::entity::lay_out;
 use self::gap::{Blank, Gap, Place};
 use self::piece::{Item, items};

@@ -1,0 +1,90 @@
+//! What of all that fits is offered: nothing that would get in the way of typing.
+
+use pydslrep_notation::{Place, Slot};
+use pydslrep_syntax::Span;
+
+use super::{Completion, CompletionTrigger};
+
+/// Of what fits, that which the typed beginning of the word can become; nothing where the word is complete already, so
+/// that Enter ends the line.
+///
+/// `before` and `after` are the parts of the word on either side of the cursor.
+pub(crate) fn narrowed(items: Vec<Completion>, before: &str, after: &str) -> Vec<Completion> {
+    if before.is_empty() && after.is_empty() {
+        return items;
+    }
+    if after.is_empty() && items.iter().any(|item| item.plain() == before) {
+        return Vec::new();
+    }
+    let typed = bare(before).to_lowercase();
+    let is_there = |item: &Completion| item.plain() == [before, after].concat();
+    let mut found: Vec<(bool, Completion)> = items
+        .into_iter()
+        .filter(|item| !is_there(item))
+        .filter_map(|item| Some((!fit(&item, &typed)?, item)))
+        .collect();
+    found.sort_by_key(|(is_inside, item)| (*is_inside, item.rank));
+    found.into_iter().map(|(_, item)| item).collect()
+}
+
+/// Whether the typed letters, in small letters, begin what is offered (true) or one of the words inside it (false).
+fn fit(item: &Completion, typed: &str) -> Option<bool> {
+    let label = bare(&item.label);
+    if starts_with(label, typed) {
+        return Some(true);
+    }
+    if label.starts_with(['{', '}']) {
+        // Whoever types a letter in a list means a name.
+        return None;
+    }
+    humps(label).any(|word| has_letters(word, typed)).then_some(false)
+}
+
+/// Without what marks a text or an escaped name.
+fn bare(text: &str) -> &str {
+    text.trim_start_matches(['^', '"', '\''])
+}
+
+pub(super) fn starts_with(text: &str, typed: &str) -> bool {
+    text.get(..typed.len()).is_some_and(|start| start.to_lowercase() == typed)
+}
+
+/// The words that a name consists of, each with all that follows it: `wheelLeft` has `wheelLeft` and `Left`.
+fn humps(name: &str) -> impl Iterator<Item = &str> {
+    let mut previous = '_';
+    name.char_indices().filter_map(move |(at, character)| {
+        let is_start = character.is_alphanumeric()
+            && (!previous.is_alphanumeric()
+                || (previous.is_lowercase() && character.is_uppercase())
+                || (previous.is_alphabetic() && character.is_ascii_digit()));
+        previous = character;
+        is_start.then(|| &name[at..])
+    })
+}
+
+/// Whether a word begins with the first letter and has the others in this order, small or capital.
+fn has_letters(word: &str, typed: &str) -> bool {
+    let mut wanted = typed.chars();
+    let mut letters = word.chars().flat_map(char::to_lowercase);
+    wanted.next().is_none_or(|first| letters.next() == Some(first))
+        && wanted.all(|wanted| letters.any(|letter| letter == wanted))
+}
+
+/// The same in a TOML file, all of whose completions at a place replace the same word.
+pub(crate) fn narrowed_in_toml(items: Vec<Completion>, text: &str, offset: u32) -> Vec<Completion> {
+    let Some(word) = items.first().map(|item| item.replace) else { return items };
+    let cut = offset.clamp(word.start, word.end);
+    narrowed(items, Span::new(word.start, cut).text(text), Span::new(cut, word.end).text(text))
+}
+
+impl CompletionTrigger {
+    /// Whether the list opens at this place of a TOML file: by itself where a value must come, and in a table's brackets.
+    pub(crate) fn opens_in_toml(self, place: &Place) -> bool {
+        match self {
+            Self::Invoked => true,
+            Self::Character('[') => matches!(place.slot, Slot::Table { .. }),
+            Self::Character(' ' | '"') => matches!(place.slot, Slot::Value { .. }),
+            Self::Character(_) => false,
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! The fewest keys a program can be typed with.
+//!
+//! The keys are those of an editor in its default settings: the list opens by itself after a letter, and after a blank
+//! where the server says so; Ctrl+Space opens it anywhere; Down goes to the next item, Tab accepts the one that is
+//! selected and goes to the next stop of a snippet, End leaves it. Enter indents the next line, and closes a brace that was
+//! opened at the end of the line before.
+
+use pydslrep_analysis::{Database, FileId};
+use pydslrep_ide::{Completion, CompletionTrigger, FilePosition, completions};
+use pydslrep_syntax::Span;
+
+use crate::snippet::{Filled, matched};
+
+/// A program that is being typed.
+struct Typed {
+    database: Database,
+    file: FileId,
+    length: usize,
+}
+
+impl Typed {
+    fn new() -> Self {
+        let mut database = Database::new();
+        let file = database.open("a.pyr", "");
+        Self { database, file, length: 0 }
+    }
+
+    fn type_to(&mut self, program: &str, end: usize) {
+        self.database.edit(self.file, Span::at(offset(self.length)), &program[self.length..end]);
+        self.length = end;
+    }
+
+    fn offered(&self, trigger: CompletionTrigger) -> Vec<Completion> {
+        let position = FilePosition { file: self.file, offset: offset(self.length) };
+        completions(&self.database, position, trigger, 9.0)
+    }
+}
+
+fn offset(length: usize) -> u32 {
+    u32::try_from(length).unwrap()
+}
+
+/// How many keys it takes at least.
+pub(crate) fn keys(program: &str) -> usize {
+    let mut fewest = vec![usize::MAX; program.len() + 1];
+    fewest[0] = 0;
+    let mut typed = Typed::new();
+    for at in 0..program.len() {
+        let so_far = fewest[at];
+        if so_far == usize::MAX {
+            continue;
+        }
+        typed.type_to(program, at);
+        let next = next_key(program, at);
+        fewest[next] = fewest[next].min(so_far + 1);
+        for (end, keys) in accepted(&typed, program) {
+            fewest[end] = fewest[end].min(so_far + keys);
+        }
+    }
+    fewest[program.len()]
+}
+
+/// Where one key leads: a character, or a line break with the blanks that the editor adds.
+fn next_key(program: &str, at: usize) -> usize {
+    let rest = &program[at..];
+    let first = rest.chars().next().map_or(0, char::len_utf8);
+    if !rest.starts_with('\n') {
+        return at + first;
+    }
+    let blanks = rest[1..].len() - rest[1..].trim_start_matches(' ').len();
+    // Down, to the brace that was closed when it was opened.
+    let closes = usize::from(rest[1 + blanks..].starts_with('}'));
+    at + 1 + blanks + closes
+}
+
+/// What can be accepted, by where it leads and by how many keys.
+fn accepted(typed: &Typed, program: &str) -> Vec<(usize, usize)> {
+    let before = program[..typed.length].chars().last();
+    let opened = match before {
+        Some(letter) if letter.is_ascii_alphanumeric() || letter == '_' => {
+            typed.offered(CompletionTrigger::Invoked)
+        }
+        Some(other) => typed.offered(CompletionTrigger::Character(other)),
+        None => Vec::new(),
+    };
+    let (items, open) =
+        if opened.is_empty() { (typed.offered(CompletionTrigger::Invoked), 1) } else { (opened, 0) };
+    let items = items.iter().enumerate().filter(|(_, item)| item.import_edit.is_none());
+    items
+        .filter_map(|(rank, item)| {
+            let start = item.replace.start as usize;
+            let (end, stops) = if item.is_snippet {
+                matched(&item.insert, program, start)?
+            } else {
+                (program[start..].starts_with(&item.insert).then_some(start + item.insert.len())?, Vec::new())
+            };
+            let is_whole = !program[end..].starts_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
+            let ends_line = program[end..].starts_with('\n') && !item.insert.contains("$0");
+            (is_whole && end > typed.length).then(|| (end, open + rank + 1 + filled_in(&stops, ends_line)))
+        })
+        .collect()
+}
+
+/// The keys to fill in the stops: what is there from the start stays, everything else is typed in full.
+fn filled_in(stops: &[Filled], ends_line: bool) -> usize {
+    let mut numbers: Vec<u32> = stops.iter().map(|stop| stop.number).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    let first = |number: &u32| stops.iter().find(|stop| stop.number == *number);
+    let changed: Vec<Option<&Filled>> =
+        numbers.iter().map(|number| first(number).filter(|stop| !stop.is_default)).collect();
+    let typed: usize = changed.iter().flatten().map(|stop| stop.end - stop.start).sum();
+    let last_changed = changed.iter().rposition(Option::is_some).unwrap_or(0);
+    let to_the_end = match numbers.len() {
+        0 => 0,
+        // End leaves what remains as it is.
+        _ if ends_line => 1,
+        count => count - last_changed,
+    };
+    last_changed + typed + to_the_end
+}

@@ -1,0 +1,84 @@
+//! Where in the list the word is that was written next, when the list opens by itself.
+
+use pydslrep_analysis::Database;
+use pydslrep_ide::{CompletionTrigger, FilePosition, completions};
+use pydslrep_syntax::{Lexeme, Span, Token, lex};
+
+/// Of places where a keyword or a name was due.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Ranks {
+    pub(crate) places: usize,
+    /// Where it came first.
+    pub(crate) first: usize,
+}
+
+impl Ranks {
+    pub(crate) fn and(self, other: &Self) -> Self {
+        Self { places: self.places + other.places, first: self.first + other.first }
+    }
+}
+
+/// Asks at each keyword and each name that was declared before: after a blank where the list opens then, else after the
+/// first letter.
+pub(crate) fn ranks(program: &str) -> Ranks {
+    let mut ranks = Ranks::default();
+    let tokens: Vec<Lexeme> = lex(program).into_iter().filter(|(token, _)| !token.is_comment()).collect();
+    for (index, (token, span)) in tokens.iter().enumerate() {
+        let is_due = token.is_keyword() || (token.is_name() && is_known(program, &tokens, index));
+        if is_due && let Some(rank) = rank(program, *span) {
+            ranks.places += 1;
+            ranks.first += usize::from(rank == Some(0));
+        }
+    }
+    ranks
+}
+
+/// Whether a name refers to what is written already: what is not cannot be suggested.
+fn is_known(program: &str, tokens: &[Lexeme], index: usize) -> bool {
+    let name = |index: usize| tokens[index].1.text(program);
+    let is_declared = |other: usize| name(other) == name(index) && declares(&tokens[..other]);
+    !declares(&tokens[..index]) && (0..index).any(is_declared)
+}
+
+/// Whether the next word is a new name.
+fn declares(before: &[Lexeme]) -> bool {
+    let declaring = [
+        Token::Wheel,
+        Token::WheelH,
+        Token::Sensor,
+        Token::Ip,
+        Token::Robot,
+        Token::Movement,
+        Token::Environment,
+    ];
+    // `with ip lab` refers to one.
+    let is_reference = matches!(before, [.., (Token::With, _), (Token::Ip, _)]);
+    before.last().is_some_and(|(token, _)| declaring.contains(token)) && !is_reference
+}
+
+/// Its place among the different words that are offered; `None` where no list opens, as for a word of one letter.
+fn rank(program: &str, span: Span) -> Option<Option<usize>> {
+    let word = span.text(program);
+    let blank = program[..span.start as usize].chars().last();
+    let by_blank = blank.and_then(|blank| asked(program, span.start, CompletionTrigger::Character(blank)));
+    let words = by_blank.or_else(|| {
+        (word.len() > 1)
+            .then(|| asked(program, span.start + 1, CompletionTrigger::Invoked).unwrap_or_default())
+    })?;
+    Some(words.iter().position(|offered| offered == word))
+}
+
+/// The words that are offered where the program is written so far.
+fn asked(program: &str, offset: u32, trigger: CompletionTrigger) -> Option<Vec<String>> {
+    let mut database = Database::new();
+    let file = database.open("a.pyr", &program[..offset as usize]);
+    let items = completions(&database, FilePosition { file, offset }, trigger, 9.0);
+    let mut words: Vec<String> = Vec::new();
+    for item in items {
+        let word = item.insert.split_whitespace().next().unwrap_or_default().to_owned();
+        if !words.contains(&word) {
+            words.push(word);
+        }
+    }
+    (!words.is_empty()).then_some(words)
+}
