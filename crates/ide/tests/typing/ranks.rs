@@ -25,9 +25,9 @@ pub(crate) fn ranks(program: &str) -> Ranks {
     let tokens: Vec<Lexeme> = lex(program).into_iter().filter(|(token, _)| !token.is_comment()).collect();
     for (index, (token, span)) in tokens.iter().enumerate() {
         let is_due = token.is_keyword() || (token.is_name() && is_known(program, &tokens, index));
-        if is_due && let Some(rank) = rank(program, *span) {
+        if is_due && let Some(words) = offered(program, *span) {
             ranks.places += 1;
-            ranks.first += usize::from(rank == Some(0));
+            ranks.first += usize::from(words.first().is_some_and(|first| first == span.text(program)));
         }
     }
     ranks
@@ -56,20 +56,19 @@ fn declares(before: &[Lexeme]) -> bool {
     before.last().is_some_and(|(token, _)| declaring.contains(token)) && !is_reference
 }
 
-/// Its place among the different words that are offered; `None` where no list opens, as for a word of one letter.
-fn rank(program: &str, span: Span) -> Option<Option<usize>> {
-    let word = span.text(program);
-    let blank = program[..span.start as usize].chars().last();
-    let by_blank = blank.and_then(|blank| asked(program, span.start, CompletionTrigger::Character(blank)));
-    let words = by_blank.or_else(|| {
-        (word.len() > 1)
-            .then(|| asked(program, span.start + 1, CompletionTrigger::Invoked).unwrap_or_default())
-    })?;
-    Some(words.iter().position(|offered| offered == word))
+/// The different words that are offered when the list opens, the best first; `None` where no list opens, as for a word
+/// of one letter.
+fn offered(program: &str, word: Span) -> Option<Vec<String>> {
+    let blank = program[..word.start as usize].chars().last();
+    let by_blank = blank.map(|blank| asked(program, word.start, CompletionTrigger::Character(blank)));
+    by_blank.filter(|words| !words.is_empty()).or_else(|| {
+        let is_longer = word.end - word.start > 1;
+        is_longer.then(|| asked(program, word.start + 1, CompletionTrigger::Invoked))
+    })
 }
 
 /// The words that are offered where the program is written so far.
-fn asked(program: &str, offset: u32, trigger: CompletionTrigger) -> Option<Vec<String>> {
+fn asked(program: &str, offset: u32, trigger: CompletionTrigger) -> Vec<String> {
     let mut database = Database::new();
     let file = database.open("a.pyr", &program[..offset as usize]);
     let items = completions(&database, FilePosition { file, offset }, trigger, 9.0);
@@ -80,5 +79,5 @@ fn asked(program: &str, offset: u32, trigger: CompletionTrigger) -> Option<Vec<S
             words.push(word);
         }
     }
-    (!words.is_empty()).then_some(words)
+    words
 }
