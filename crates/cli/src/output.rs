@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{Group, Level, Renderer};
-use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, presets};
+use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, Width, presets};
 
 use crate::failure::Failure;
 
@@ -91,12 +91,15 @@ pub(crate) fn table<const COLUMNS: usize>(head: [&str; COLUMNS]) -> Table {
     table
 }
 
-/// Aligns columns of numbers, and keeps them whole.
+/// Aligns columns of numbers, and keeps the numbers whole; their titles may be wrapped.
 pub(crate) fn align_right(table: &mut Table, columns: &[usize]) {
-    for column in columns {
-        if let Some(column) = table.column_mut(*column) {
+    for index in columns {
+        let cells = table.row_iter().filter_map(|row| row.cell_iter().nth(*index));
+        let longest = cells.map(|cell| cell.content().chars().count()).max().unwrap_or(0);
+        if let Some(column) = table.column_mut(*index) {
             column.set_cell_alignment(CellAlignment::Right);
-            column.set_constraint(ColumnConstraint::ContentWidth);
+            let whole = u16::try_from(longest + 1).unwrap_or(u16::MAX);
+            column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(whole)));
         }
     }
 }

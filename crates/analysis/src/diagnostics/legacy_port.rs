@@ -52,10 +52,10 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         return;
     }
     if let Some(port) = robot.port.as_ref().filter(|port| port.value == Some(LEGACY)) {
-        let message = format!("{LEGACY} is V-REP's port; CoppeliaSim's ZeroMQ remote API listens on {USUAL}");
+        let message = format!("{LEGACY} is V-REP's port; CoppeliaSim listens on {USUAL}");
         problems.push(
             RULE.problem(port.span, message)
-                .help("for V-REP, write `target = \"vrep\"` into pydslrep.toml; else change the port"),
+                .help("change the port, or write `target = \"vrep\"` into pydslrep.toml"),
         );
     }
 }
@@ -114,10 +114,10 @@ mod tests {
         check(
             &robots(&["19999"]),
             &expect![[r#"
-            hint[legacy-port] 3:20 "19999" 19999 is V-REP's port; CoppeliaSim's ZeroMQ remote API listens on 23000
-              help: for V-REP, write `target = "vrep"` into pydslrep.toml; else change the port
-              suggestion: change the port to 23000 -> robot r0 with port 23000 has { a b } wheels
-        "#]],
+                hint[legacy-port] 3:20 "19999" 19999 is V-REP's port; CoppeliaSim listens on 23000
+                  help: change the port, or write `target = "vrep"` into pydslrep.toml
+                  suggestion: change the port to 23000 -> robot r0 with port 23000 has { a b } wheels
+            "#]],
         );
         check_clean(&robots(&["19998"]));
         check_clean(&robots(&["23000"]));
@@ -128,16 +128,16 @@ mod tests {
         check(
             &robots(&["19999", "23001", "19999", "23000", "019999"]),
             &expect![[r#"
-            hint[legacy-port] 3:20 "19999" 19999 is V-REP's port; CoppeliaSim's ZeroMQ remote API listens on 23000
-              help: for V-REP, write `target = "vrep"` into pydslrep.toml; else change the port
-              suggestion: change the port to 23002 -> robot r0 with port 23002 has { a b } wheels
-            hint[legacy-port] 5:20 "19999" 19999 is V-REP's port; CoppeliaSim's ZeroMQ remote API listens on 23000
-              help: for V-REP, write `target = "vrep"` into pydslrep.toml; else change the port
-              suggestion: change the port to 23003 -> robot r2 with port 23003 has { a b } wheels
-            hint[legacy-port] 7:20 "019999" 19999 is V-REP's port; CoppeliaSim's ZeroMQ remote API listens on 23000
-              help: for V-REP, write `target = "vrep"` into pydslrep.toml; else change the port
-              suggestion: change the port to 23004 -> robot r4 with port 23004 has { a b } wheels
-        "#]],
+                hint[legacy-port] 3:20 "19999" 19999 is V-REP's port; CoppeliaSim listens on 23000
+                  help: change the port, or write `target = "vrep"` into pydslrep.toml
+                  suggestion: change the port to 23002 -> robot r0 with port 23002 has { a b } wheels
+                hint[legacy-port] 5:20 "19999" 19999 is V-REP's port; CoppeliaSim listens on 23000
+                  help: change the port, or write `target = "vrep"` into pydslrep.toml
+                  suggestion: change the port to 23003 -> robot r2 with port 23003 has { a b } wheels
+                hint[legacy-port] 7:20 "019999" 19999 is V-REP's port; CoppeliaSim listens on 23000
+                  help: change the port, or write `target = "vrep"` into pydslrep.toml
+                  suggestion: change the port to 23004 -> robot r4 with port 23004 has { a b } wheels
+            "#]],
         );
     }
 

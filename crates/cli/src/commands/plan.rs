@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use comfy_table::ContentArrangement;
+use comfy_table::{ColumnConstraint, ContentArrangement};
 use pydslrep_analysis::environment::{Environment, Movement};
 use pydslrep_config::Config;
 use pydslrep_kinematics::{ActionIndex, Leg, Plan, Pose, RobotPath, heading_degrees};
@@ -182,14 +182,25 @@ fn table(planned: &Planned) -> String {
         cells.chain([HEAD[column].chars().count()]).max().unwrap_or(0) + GAP
     };
     let others: usize = (1..HEAD.len()).map(width).sum();
-    let options = output::columns().saturating_sub(others + 1).max(FEWEST_COLUMNS);
+    let last = HEAD.len() - 1;
+    let left = |others: usize| output::columns().saturating_sub(others + 1);
+    // On a narrow terminal the wheels stand below their action.
+    let is_narrow = left(others) < FEWEST_COLUMNS;
+    let columns = if is_narrow { left(others - width(last)) } else { left(others) }.max(FEWEST_COLUMNS);
     let mut table = output::table(HEAD);
     table.set_content_arrangement(ContentArrangement::Disabled);
-    for row in rows {
-        let [what, at, x, y, heading, rates] = row;
-        table.add_row([indented(&what, options), at, x, y, heading, rates]);
+    for [what, at, x, y, heading, rates] in rows {
+        let mut action = indented(&what, columns);
+        if is_narrow && !rates.is_empty() {
+            let rates: Vec<&str> = rates.split_whitespace().collect();
+            action += &format!("\n{}", indented(&format!("      {} rad/s", rates.join(" ")), columns));
+        }
+        table.add_row([action, at, x, y, heading, rates]);
     }
-    output::align_right(&mut table, &[1, 2, 3, 4, 5]);
+    output::align_right(&mut table, &[1, 2, 3, 4]);
+    if let Some(wheels) = table.column_mut(last).filter(|_| is_narrow) {
+        wheels.set_constraint(ColumnConstraint::Hidden);
+    }
     let met: String = collisions(&planned.scene, &planned.plan)
         .iter()
         .map(|collision| output::wrapped(&meeting(planned, collision)) + "\n")

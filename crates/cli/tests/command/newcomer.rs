@@ -70,7 +70,7 @@ environment e has { a_robot_with_a_long_name } robots with { a_movement_with_a_l
     expect![[r#"
         e: 12.86 s
 
-        action                  at s     x m    y m  heading °             wheels rad/s
+        action                  at s     x m    y m  heading °  wheels rad/s
         ────────────────────────────────────────────────────────────────────────────────
         a_robot_with_a_long     0.00   0.000  0.000        0.0
           _name
@@ -99,14 +99,14 @@ environment e has { r q } robots with { m n m } moves";
         ───────────────────────────────────────────────────────────────────────
         r                         0.00  0.000   0.000        0.0
           m
-            move 90 centimeters  10.18  0.900   0.000        0.0    2.00  2.00
+            move 90 centimeters  10.18  0.900   0.000        0.0   2.00  2.00
           (waits for others)     12.98  0.900   0.000        0.0
           m
-            move 90 centimeters  23.16  1.800   0.000        0.0    2.00  2.00
+            move 90 centimeters  23.16  1.800   0.000        0.0   2.00  2.00
         q                         0.00  0.000  -1.000        0.0
           (waits for others)     10.18  0.000  -1.000        0.0
           n
-            turn left            12.98  0.000  -1.000       90.0   -2.00  2.00
+            turn left            12.98  0.000  -1.000       90.0  -2.00  2.00
 
     "#]]
     .assert_eq(&done.out);
