@@ -23,10 +23,9 @@ def server() -> str:
 
 @pytest.fixture
 def table_2() -> str:
-    """The article's first program: two wheels, three straight lines, two turns."""
-    return (ROOT / "tests" / "paper" / "table2_two_wheels.pyr").read_text(
-        encoding="utf-8"
-    )
+    """The article's first program on CoppeliaSim's port: nothing is wrong with it."""
+    path = ROOT / "tests" / "paper" / "table2_two_wheels.pyr"
+    return path.read_text(encoding="utf-8").replace("19999", "23000")
 
 
 @pytest_lsp.fixture(config=ClientServerConfig(server_command=[SERVER, "--stdio"]))  # type: ignore[untyped-decorator]
