@@ -319,12 +319,6 @@ mod tests {
                 fwh [Mecanum drive] "" -> "fwh"
             "#]],
         );
-        check(
-            &format!("{PARTS}robot r with port 1 h$0 {{ wheelL wheelR }} wheels"),
-            &expect![[r#"
-            has [has { … }] "h" -> "has"
-        "#]],
-        );
     }
 
     #[test]
@@ -415,9 +409,8 @@ mod tests {
         check(
             "wheel w with radius 4\nrob$0",
             &expect![[r#"
-            robot … [a complete robot declaration] "rob" -> "robot ${1:rover} type ${5:tw} with port ${4:23000} has { $2 } wheels"
-            robot [robot NAME [type tw | fw | fwh] with port PORT has { WHEELS } wheels [with sensors { SENSORS }]] "rob" -> "robot"
-        "#]],
+                robot … [a complete robot declaration] "rob" -> "robot ${1:rover} type ${5:tw} with port ${4:23000} has { $2 } wheels"
+            "#]],
         );
     }
 
@@ -503,6 +496,14 @@ mod tests {
     }
 
     #[test]
+    fn the_list_is_gone_before_the_word_is_complete() {
+        let fixture = |typed: &str| format!("{PARTS}movement m of rover {{ move 2 {typed}$0");
+        assert_eq!(opens(&fixture("met")), ["meters"]);
+        assert_eq!(opens(&fixture("mete")), [""; 0]);
+        assert_eq!(opens(&fixture("meter")), [""; 0]);
+    }
+
+    #[test]
     fn a_word_inside_a_name_is_found_and_what_begins_as_typed_comes_first() {
         let wheels = "wheel bigWheel with radius 9 wheel wheel_right with radius 9 wheel left with radius 9";
         assert_eq!(opens(&format!("{wheels} robot r with port 1 has {{ w$0")), ["wheel_right", "bigWheel"]);
@@ -544,9 +545,9 @@ mod tests {
             "#]],
         );
         check_in(
-            &[wheels, more, ("a.pyr", "// head\nimport \"more.pyr\"\nrobot r with port 1 has { rou$0")],
+            &[wheels, more, ("a.pyr", "// head\nimport \"more.pyr\"\nrobot r with port 1 has { ro$0")],
             &expect![[r#"
-                round [wheel from lib/wheels.pyr, adds the import] "rou" -> "round" and "import \"lib/wheels.pyr\"\n" at 8
+                round [wheel from lib/wheels.pyr, adds the import] "ro" -> "round" and "import \"lib/wheels.pyr\"\n" at 8
             "#]],
         );
         check_in(
@@ -666,7 +667,7 @@ mod tests {
         assert_eq!(labels.len(), MOST);
         assert!(labels.contains(&"near".to_owned()), "what is declared right before");
         assert_eq!(found("s4321").len(), 0, "it is there in full");
-        assert_eq!(found("s432").len(), 32, "ten of them begin so");
+        assert!(found("s4").contains(&"s4321".to_owned()));
         assert_eq!(found("Z"), ["zz"]);
     }
 

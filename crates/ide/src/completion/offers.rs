@@ -5,8 +5,12 @@ use pydslrep_syntax::Span;
 
 use super::{Completion, CompletionTrigger};
 
-/// Of what fits, that which the typed beginning of the word can become; nothing where the word is complete already, so
-/// that Enter ends the line.
+/// So few letters are typed faster than a list is read. Without this, a list would still be open when Enter ends the line
+/// right after the word, for as long as the editor waits for the answer to the last letter.
+const FEW_LETTERS: usize = 2;
+
+/// Of what fits, that which the typed beginning of the word can become and which is longer by more than a few letters;
+/// nothing where the word is complete already.
 ///
 /// `before` and `after` are the parts of the word on either side of the cursor.
 pub(crate) fn narrowed(items: Vec<Completion>, before: &str, after: &str) -> Vec<Completion> {
@@ -17,7 +21,11 @@ pub(crate) fn narrowed(items: Vec<Completion>, before: &str, after: &str) -> Vec
         return Vec::new();
     }
     let typed = bare(before).to_lowercase();
-    let is_there = |item: &Completion| item.plain() == [before, after].concat();
+    let is_there = |item: &Completion| {
+        let plain = item.plain();
+        let is_nearly = after.is_empty() && plain.len() <= before.len() + FEW_LETTERS;
+        plain == [before, after].concat() || (is_nearly && starts_with(&plain, &before.to_lowercase()))
+    };
     let mut found: Vec<(bool, Completion)> = items
         .into_iter()
         .filter(|item| !is_there(item))

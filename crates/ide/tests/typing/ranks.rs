@@ -56,14 +56,14 @@ fn declares(before: &[Lexeme]) -> bool {
     before.last().is_some_and(|(token, _)| declaring.contains(token)) && !is_reference
 }
 
-/// The different words that are offered when the list opens, the best first; `None` where no list opens, as for a word
-/// of one letter.
+/// The different words that are offered when the list opens, the best first; `None` where no list opens: of a short word,
+/// what is missing after the first letter is typed faster.
 fn offered(program: &str, word: Span) -> Option<Vec<String>> {
     let blank = program[..word.start as usize].chars().last();
     let by_blank = blank.map(|blank| asked(program, word.start, CompletionTrigger::Character(blank)));
     by_blank.filter(|words| !words.is_empty()).or_else(|| {
-        let is_longer = word.end - word.start > 1;
-        is_longer.then(|| asked(program, word.start + 1, CompletionTrigger::Invoked))
+        let is_long = word.end - word.start > 3;
+        is_long.then(|| asked(program, word.start + 1, CompletionTrigger::Invoked))
     })
 }
 
