@@ -74,7 +74,7 @@ async def test_a_name_brings_its_import(
 async def test_a_complete_word_is_left_alone(
     client: LanguageClient, tmp_path: pathlib.Path
 ) -> None:
-    """What an editor asks for while `meters` is typed: the last answer is empty, so that Enter ends the line."""
+    """What an editor asks for while `meters` is typed: the last answers are empty, so that Enter ends the line."""
     editor = Editor(client, tmp_path)
     begun = "movement m of rover {\n  move 2 "
     uri = editor.open("a.pyr", begun + "\n")
@@ -86,7 +86,9 @@ async def test_a_complete_word_is_left_alone(
         begun += letter
         found = await offered(client, uri, begun, again)
         labels = [item.label for item in found]
-        assert labels == ([] if begun.endswith("meters") else ["meters"])
+        # It is gone early, so that it is not open any more when Enter comes.
+        is_short = begun.endswith(("m", "me", "met"))
+        assert labels == (["meters"] if is_short else [])
 
 
 @pytest.mark.parametrize(
