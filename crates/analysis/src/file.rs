@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use pydslrep_syntax::{Parse, Span, Token, cut, lex, parse, parse_cut};
+use pydslrep_syntax::{LOOKAHEAD, Parse, Span, Token, cut, lex, parse, parse_cut};
 use ropey::Rope;
 
 use crate::EntityId;
@@ -82,8 +82,8 @@ impl File {
     }
 
     /// Reads from `start` to `boundary`, if the old boundary there still holds: a token begins on it and still begins
-    /// an entity. Whether it does depends on nothing behind the next token, which the two pieces after it contain;
-    /// from there on nothing can have changed.
+    /// an entity. Whether it does depends on that token and the few after it, and each piece has at least one; from
+    /// there on nothing can have changed.
     fn read_up_to(
         &self,
         start: u32,
@@ -93,11 +93,11 @@ impl File {
         end_offset: u32,
         relexed: &mut usize,
     ) -> Option<Vec<(Span, Parse)>> {
-        let ahead: u32 = self.pieces[end..].iter().take(2).map(|piece| piece.len).sum();
+        let ahead: u32 = self.pieces[end..].iter().take(1 + LOOKAHEAD).map(|piece| piece.len).sum();
         let text = self.slice(Span::new(start, shift(end_offset + ahead, grown)));
         let lexemes = lex(&text);
         *relexed += lexemes.len();
-        let starts = cut(&lexemes);
+        let starts = cut(&text, &lexemes);
         let last = starts.iter().position(|&index| lexemes[index].1.start + start == boundary)?;
         let mut parses = Vec::with_capacity(last + 1);
         let text = Span::new(0, boundary - start).text(&text);
@@ -105,19 +105,20 @@ impl File {
         Some(parses)
     }
 
-    /// The first piece to read again. Whether a piece begins where it does depends on its first token, the one behind
-    /// it and what stands before; so two of its tokens must lie wholly before the edit.
+    /// The first piece to read again. Whether a piece begins where it does depends on its first token, those few after
+    /// it and what stands before; so that many of its tokens must lie wholly before the edit.
     fn window_start<'a>(
         &self,
         offset: u32,
         lexemes_of: impl Fn(EntityId) -> &'a [(Token, Span)],
     ) -> (usize, u32) {
+        const NEEDED: usize = 1 + LOOKAHEAD;
         let (mut index, mut start) = self.pieces.at(offset);
         let mut untouched = 0;
         loop {
             let before = |(token, span): &&(Token, Span)| !token.is_comment() && span.end + start < offset;
-            untouched += lexemes_of(self.pieces[index].entity).iter().filter(before).take(2).count();
-            if index == 0 || untouched >= 2 {
+            untouched += lexemes_of(self.pieces[index].entity).iter().filter(before).take(NEEDED).count();
+            if index == 0 || untouched >= NEEDED {
                 return (index, start);
             }
             index -= 1;

@@ -30,4 +30,4 @@ pub use plan::{plan, plan_movement, scene};
 pub use resolve::{Blocked, MadeOf};
 pub use snapshot::Snapshot;
 pub use target::Target;
-pub use trial::Trial;
+pub use trial::{Offers, Trial};

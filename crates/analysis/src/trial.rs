@@ -4,6 +4,42 @@ use std::collections::BTreeMap;
 
 use crate::{Database, Diagnostic, Edit, FileId, Fix, Severity};
 
+/// Which fixes are offered to people: safe ones, and suggestions that hold when they are tried. Trying takes its time, so
+/// that only so many suggestions are tried, and those beyond are not offered.
+#[derive(Debug)]
+pub struct Offers<'a> {
+    database: &'a Database,
+    trial: Option<Trial>,
+    left: usize,
+}
+
+impl<'a> Offers<'a> {
+    /// Offers for a database as it is now, of at most so many suggestions.
+    pub fn new(database: &'a Database, most_suggestions: usize) -> Self {
+        Self { database, trial: None, left: most_suggestions }
+    }
+
+    /// Whether a fix is offered.
+    pub fn include(&mut self, problem: &Diagnostic, fix: &Fix) -> bool {
+        if fix.safe {
+            return true;
+        }
+        if self.left == 0 {
+            return false;
+        }
+        self.left -= 1;
+        self.trial.get_or_insert_with(|| Trial::new(self.database)).holds(problem, fix)
+    }
+
+    /// Leaves of each problem only the fixes that are offered.
+    pub fn retain(&mut self, problems: &mut [Diagnostic]) {
+        for problem in problems {
+            let fixes = std::mem::take(&mut problem.fixes);
+            problem.fixes = fixes.into_iter().filter(|fix| self.include(problem, fix)).collect();
+        }
+    }
+}
+
 /// A database to try fixes in; the one it was made of stays as it is.
 #[derive(Debug)]
 pub struct Trial {

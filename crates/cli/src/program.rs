@@ -108,6 +108,8 @@ fn add(problems: &mut Vec<Diagnostic>, more: &[Diagnostic]) {
 
 fn show(sources: &Sources, problems: &[Diagnostic]) {
     if !problems.is_empty() {
-        say(&format!("{}{}.\n", render::diagnostics(sources, problems), summary(sources, problems, &[])));
+        let mut problems = problems.to_vec();
+        sources.retain_offered(&mut problems);
+        say(&format!("{}{}.\n", render::diagnostics(sources, &problems), summary(sources, &problems, &[])));
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use pydslrep_analysis::{Absence, Database, Diagnostic, EntityId, FileId};
+use pydslrep_analysis::{Absence, Database, Diagnostic, EntityId, FileId, Offers};
 use pydslrep_files::{EXTENSION, Found, Unread, find, import_bound, read, without_mark};
 
 use crate::failure::Failure;
@@ -97,6 +97,13 @@ impl Sources {
         let mut diagnostics = self.database.diagnostics(file);
         diagnostics.sort_by_key(|diagnostic| (diagnostic.span.start, diagnostic.span.end));
         diagnostics
+    }
+
+    /// Leaves of each problem only the fixes that an editor offers, too.
+    pub(crate) fn retain_offered(&self, diagnostics: &mut [Diagnostic]) {
+        /// Nobody reads more, and each takes as long as looking for all problems of a file.
+        const MOST_SUGGESTIONS: usize = 1000;
+        Offers::new(&self.database, MOST_SUGGESTIONS).retain(diagnostics);
     }
 
     /// Tells the database of the scene that was named for one environment. One that cannot be read is told of later.

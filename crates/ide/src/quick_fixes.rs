@@ -1,12 +1,12 @@
-//! Quick fixes: the edits that mend the problems at a place.
+//! Quick fixes: the edits that fix the problems at a place.
 
-use pydslrep_analysis::{Database, Diagnostic, FileId, Fix, Trial};
+use pydslrep_analysis::{Database, Diagnostic, FileId, Fix, Offers};
 use pydslrep_syntax::Span;
 
-/// A fix with the problem it mends.
+/// A fix with the problem it is for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct QuickFix {
-    /// What it mends.
+    /// What it fixes.
     pub diagnostic: Diagnostic,
     /// How.
     pub fix: Fix,
@@ -17,24 +17,16 @@ pub struct QuickFix {
 /// Suggestions are tried out, which takes its time: those beyond are not offered. Nobody chooses among more.
 const MOST_SUGGESTIONS: usize = 64;
 
-/// The fixes of all problems that touch a range. What is only a suggestion is tried out, and offered where it mends its
-/// problem and brings no other.
+/// The fixes of all problems that touch a range: those that the command offers, too ([`Offers`]).
 pub fn quick_fixes(database: &Database, file: FileId, range: Span) -> Vec<QuickFix> {
     let touching =
         |diagnostic: &Diagnostic| diagnostic.span.start <= range.end && range.start <= diagnostic.span.end;
     let diagnostics = database.diagnostics(file).into_iter().filter(touching);
-    let mut trial = None;
-    let mut suggestions = 0;
-    let mut is_offered = |diagnostic: &Diagnostic, fix: &Fix| {
-        suggestions += usize::from(!fix.safe);
-        fix.safe
-            || suggestions <= MOST_SUGGESTIONS
-                && trial.get_or_insert_with(|| Trial::new(database)).holds(diagnostic, fix)
-    };
+    let mut offers = Offers::new(database, MOST_SUGGESTIONS);
     let mut found = Vec::new();
     for diagnostic in diagnostics {
         let mut fixes = diagnostic.fixes.clone();
-        fixes.retain(|fix| is_offered(&diagnostic, fix));
+        fixes.retain(|fix| offers.include(&diagnostic, fix));
         let is_only = fixes.len() == 1;
         found.extend(fixes.into_iter().map(|fix| QuickFix {
             diagnostic: diagnostic.clone(),

@@ -88,7 +88,7 @@ fn check_while_typed(text: &str, seen: &mut HashSet<(Vec<Token>, bool)>) {
     let mut database = Database::new();
     let file = database.open("a.pyr", " ");
     let tokens = tokens(text);
-    let starts = cut(&tokens);
+    let starts = cut(text, &tokens);
     let (mut typed, mut entity, mut imports) = (String::new(), Vec::new(), true);
     for index in 0..=tokens.len() {
         let end = if index == 0 { 0 } else { tokens[index - 1].1.end as usize };
@@ -190,6 +190,34 @@ fn a_half_typed_word_is_replaced_by_what_it_was_going_to_be() {
                     check_half_typed(&text[..start], word, typed, "");
                 }
             }
+        }
+    }
+}
+
+/// The labels of what is offered at `$0`.
+fn labels(fixture: &str) -> Vec<String> {
+    let offset = fixture.find("$0").unwrap();
+    let mut database = Database::new();
+    let file = database.open("a.pyr", &fixture.replace("$0", ""));
+    offered(&database, file, u32::try_from(offset).unwrap()).into_iter().map(|item| item.label).collect()
+}
+
+#[test]
+fn the_body_of_a_misspelt_declaration_completes() {
+    const BEFORE: &str = "wheel a with radius 4\nwheel b with radius 4\nsensor s\n\
+                          robot r with port 1 has { a b } wheels with sensors { s }\n";
+    for (misspelt, right) in [
+        ("movment m of r {\n  m$0\n}", "movement m of r {\n  m$0\n}"),
+        ("Movement m of r {\n  move 2 $0\n}", "movement m of r {\n  move 2 $0\n}"),
+        ("movemnet m of $0", "movement m of $0"),
+        ("enviroment e has { $0 } robots", "environment e has { $0 } robots"),
+        ("robbot q type $0 with port 2 has { } wheels", "robot q type $0 with port 2 has { } wheels"),
+    ] {
+        // Though there are other errors.
+        for before in [BEFORE.to_owned(), format!("{BEFORE}wheel c radius 4\n")] {
+            let found = labels(&format!("{before}{misspelt}"));
+            assert!(!found.is_empty(), "{misspelt}");
+            assert_eq!(found, labels(&format!("{before}{right}")), "{misspelt}");
         }
     }
 }

@@ -8,8 +8,8 @@ use std::ops::Range;
 
 use pydslrep_analysis::{Database, Diagnostic, Edit, FileId, Severity};
 use pydslrep_ide::{QuickFix, quick_fixes};
-use pydslrep_naive::Recipe;
-use pydslrep_syntax::{Span, lex};
+use pydslrep_naive::{Recipe, declarations};
+use pydslrep_syntax::{Span, lex, parse};
 
 /// Problems of text that is not understood; mending one shows what it hid.
 const OF_TEXT: [&str; 4] =
@@ -148,4 +148,82 @@ fn every_fix_mends_its_problem_and_nothing_else_changes() {
         }
     }
     assert!(tried.len() > 15 && tried.values().sum::<usize>() > 500, "{tried:?}");
+}
+
+/// What people do to a word.
+fn slips(word: &str) -> Vec<String> {
+    let letters: Vec<char> = word.chars().collect();
+    let swapped: String = letters.iter().take(2).rev().chain(letters.iter().skip(2)).collect();
+    let last_missing: String = letters.iter().take(letters.len() - 1).collect();
+    let capitalised: String =
+        letters.iter().take(1).map(char::to_ascii_uppercase).chain(letters.iter().skip(1).copied()).collect();
+    let alike =
+        [swapped, last_missing, capitalised, format!("{word}-1"), format!("{word}x"), format!("\"{word}\"")];
+    let others = [
+        String::new(),
+        format!("{word} {word}"),
+        "=".to_owned(),
+        "(".to_owned(),
+        "{".to_owned(),
+        "}".to_owned(),
+    ];
+    alike.into_iter().chain(others).collect()
+}
+
+/// A program with some words wrong, and where its entities are.
+fn broken(seed: u64) -> (String, Vec<Range<usize>>) {
+    let mut text = Recipe { lines: 10, ..Recipe::default() }.seeded(seed);
+    let mut entities: Vec<_> = declarations(&text).unwrap().into_iter().map(|entity| entity.range).collect();
+    for turn in 0..=seed % 3 {
+        let lexemes: Vec<_> = lex(&text).into_iter().filter(|(token, _)| !token.is_comment()).collect();
+        let chosen = usize::try_from(seed * 7919 + turn * 104_729).unwrap();
+        let Some((_, span)) = lexemes.get(chosen % lexemes.len().max(1)) else { continue };
+        let slips = slips(span.text(&text));
+        let slip = &slips[chosen / lexemes.len() % slips.len()];
+        let range = Range::<usize>::from(*span);
+        text.replace_range(range.clone(), slip);
+        let moved =
+            |offset: usize| if offset >= range.end { offset + slip.len() - range.len() } else { offset };
+        for entity in &mut entities {
+            *entity = moved(entity.start)..moved(entity.end);
+        }
+    }
+    (text, entities)
+}
+
+/// Where a fix may change another entity than the one that its problem is in: a robot does not carry the sensor.
+const CONCERN_OTHERS: [&str; 1] = ["sensor-not-on-robot"];
+
+#[test]
+fn a_fix_never_lands_inside_another_entity() {
+    let (mut declared, mut inserted) = (0, 0);
+    for seed in 0..600 {
+        let (text, entities) = broken(seed);
+        let (database, file) = opened(&text);
+        for problem in database.diagnostics(file) {
+            let concerned = |entity: &Range<usize>| {
+                entity.start <= problem.span.end as usize && problem.span.start as usize <= entity.end
+            };
+            for edit in problem.fixes.iter().flat_map(|fix| &fix.edits) {
+                let at = edit.span.start as usize;
+                let declares = edit.span.is_empty()
+                    && edit.text.ends_with('\n')
+                    && parse(&edit.text)
+                        .iter()
+                        .all(|(_, piece)| piece.entity.is_some() && piece.errors.is_empty());
+                declared += usize::from(declares);
+                inserted += usize::from(edit.span.is_empty());
+                for entity in entities.iter().filter(|entity| entity.start < at && at < entity.end) {
+                    assert!(
+                        !declares && (concerned(entity) || CONCERN_OTHERS.contains(&problem.code())),
+                        "{}: {:?} at {at} is inside of {:?} in\n{text}",
+                        problem.message,
+                        edit.text,
+                        &text[entity.clone()]
+                    );
+                }
+            }
+        }
+    }
+    assert!(declared > 50 && inserted > 200, "{declared} declarations, {inserted} insertions");
 }

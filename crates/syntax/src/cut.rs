@@ -2,16 +2,19 @@
 //!
 //! Entities tile the file: each begins at its keyword and reaches to the next one's; what stands before the first is
 //! a piece of its own. A mistake inside an entity, such as a brace that is never closed, therefore never reaches the
-//! next one.
+//! next one. A word that is nearly a keyword begins an entity, too, where what follows it leaves no doubt.
 //!
-//! Whether a token begins an entity depends on the entity it stands in, the token before it and the token behind it
-//! and on nothing else. That bound is what incremental analysis relies on; widen it only together with
+//! Whether a token begins an entity depends on the entity it stands in, the token before it and the [`LOOKAHEAD`] tokens
+//! after it and on nothing else. That bound is what incremental analysis relies on; widen it only together with
 //! `pydslrep-analysis`'s rule for growing the window of an edit.
 
-use crate::{EntityKind, Lexeme, Token};
+use crate::{EntityKind, Lexeme, Token, TokenSet, is_similar};
 
-/// The indices into `lexemes` at which entities (and imports) begin.
-pub fn cut(lexemes: &[Lexeme]) -> Vec<usize> {
+/// How many tokens after one can matter for whether it begins an entity.
+pub const LOOKAHEAD: usize = 2;
+
+/// The indices into `lexemes`, which are places in `text`, at which entities (and imports) begin.
+pub fn cut(text: &str, lexemes: &[Lexeme]) -> Vec<usize> {
     let mut starts = Vec::new();
     let mut inside = None;
     let mut previous = None;
@@ -19,20 +22,120 @@ pub fn cut(lexemes: &[Lexeme]) -> Vec<usize> {
         if token.is_comment() {
             continue;
         }
-        if could_begin(token) {
+        let keyword = if could_begin(token) {
             let next = lexemes[index + 1..].iter().map(|(token, _)| *token).find(|token| !token.is_comment());
-            if begins_entity(token, previous, next, inside) {
-                starts.push(index);
-                inside = token.entity_kind();
-            }
+            begins_entity(token, previous, next, inside).then_some(token)
+        } else {
+            Some(token)
+                .filter(|token| could_be_misspelt(*token) && may_end(previous, *token, inside))
+                .and_then(|_| misspelt_beginning(text, &lexemes[index..]))
+        };
+        if let Some(keyword) = keyword {
+            starts.push(index);
+            inside = keyword.entity_kind();
         }
-        previous = Some(token);
+        previous = Some(keyword.unwrap_or(token));
     }
     starts
 }
 
 fn could_begin(token: Token) -> bool {
     token == Token::Import || token.entity_kind().is_some()
+}
+
+/// Names, and the plurals that are keywords of their own.
+fn could_be_misspelt(token: Token) -> bool {
+    matches!(token, Token::Name | Token::Wheels | Token::Sensors | Token::Robots)
+}
+
+/// Whether the entity before `token` may be over after `previous`, so that a misspelt keyword may follow.
+fn may_end(previous: Option<Token>, token: Token, inside: Option<EntityKind>) -> bool {
+    let Some(previous) = previous else { return true };
+    match previous {
+        // `{ a b } wheels`
+        Token::CloseBrace => token == Token::Name,
+        Token::Wheels | Token::Sensors | Token::Robots | Token::Moves => true,
+        Token::String | Token::UnterminatedString | Token::Slam | Token::Meters | Token::Centimeters => true,
+        Token::Distance | Token::Bumper => inside == Some(EntityKind::Sensor),
+        // A port never ends a robot, and a list may stand without its braces.
+        _ if previous.is_number() => inside != Some(EntityKind::Robot),
+        Token::Name | Token::MalformedName => {
+            !matches!(inside, Some(EntityKind::Robot | EntityKind::Environment | EntityKind::Movement))
+        }
+        _ => false,
+    }
+}
+
+/// The keyword of an entity that the first of these tokens is a slip for, where the next tokens are those of such an
+/// entity.
+pub(crate) fn misspelt_beginning(text: &str, lexemes: &[Lexeme]) -> Option<Token> {
+    let mut tokens = lexemes.iter().filter(|(token, _)| !token.is_comment());
+    let &(first, span) = tokens.next()?;
+    if !could_be_misspelt(first) {
+        return None;
+    }
+    let &(next, _) = tokens.next()?;
+    let after = tokens.next();
+    let follows = |keyword: &Token| match *keyword {
+        Token::Import => is_string(next),
+        Token::Parallel => next == Token::Movement,
+        // A sensor may be over after its name.
+        Token::Sensor => {
+            next.is_name()
+                && after.is_none_or(|(after, _)| {
+                    *after == Token::Colon || *after == Token::Name || could_begin(*after)
+                })
+        }
+        keyword => next.is_name() && after.is_some_and(|after| is_one_of(text, *after, clauses(keyword))),
+    };
+    let written = span.text(text);
+    let near = BEGINNINGS.into_iter().filter(|keyword| is_slip(written, *keyword) && follows(keyword));
+    near.min_by_key(|keyword| distance(written, *keyword))
+}
+
+/// All that begin an entity.
+pub(crate) const BEGINNINGS: [Token; 9] = [
+    Token::Wheel,
+    Token::WheelH,
+    Token::Sensor,
+    Token::Ip,
+    Token::Robot,
+    Token::Parallel,
+    Token::Movement,
+    Token::Environment,
+    Token::Import,
+];
+
+/// What can stand after the name of an entity with such a keyword, also where a word is missing.
+const fn clauses(keyword: Token) -> TokenSet {
+    const NUMBER: TokenSet =
+        TokenSet::of(&[Token::Integer, Token::Float, Token::Ipv4, Token::MalformedNumber]);
+    match keyword {
+        Token::Wheel | Token::WheelH => TokenSet::of(&[Token::With, Token::Radius]).or(NUMBER),
+        Token::Ip => NUMBER,
+        Token::Robot => TokenSet::of(&[Token::With, Token::Type, Token::Port, Token::Has]),
+        Token::Movement => TokenSet::of(&[Token::Of, Token::OpenBrace]),
+        _ => TokenSet::of(&[Token::With, Token::Has, Token::Comma]),
+    }
+}
+
+/// Whether a token is one of `set`, or a word that is nearly one of its keywords.
+fn is_one_of(text: &str, (token, span): Lexeme, set: TokenSet) -> bool {
+    let words = [Token::With, Token::Radius, Token::Type, Token::Port, Token::Has, Token::Of];
+    set.has(token)
+        || token == Token::Name
+            && words.into_iter().any(|word| set.has(word) && is_slip(span.text(text), word))
+}
+
+/// Whether a word is a slip for a keyword.
+pub(crate) fn is_slip(written: &str, keyword: Token) -> bool {
+    keyword.spelling().is_some_and(|spelling| is_similar(written, spelling))
+}
+
+/// How far a word is from a keyword: whether in more than case, and by how many edits.
+pub(crate) fn distance(written: &str, keyword: Token) -> (bool, usize) {
+    let spelling = keyword.spelling().unwrap_or_default();
+    (!written.eq_ignore_ascii_case(spelling), strsim::osa_distance(written, spelling))
 }
 
 fn begins_entity(
@@ -96,7 +199,8 @@ mod tests {
 
     fn check(text: &str, expected: &Expect) {
         let lexemes = lex(text);
-        let mut ends: Vec<usize> = cut(&lexemes).into_iter().map(|i| lexemes[i].1.start as usize).collect();
+        let mut ends: Vec<usize> =
+            cut(text, &lexemes).into_iter().map(|i| lexemes[i].1.start as usize).collect();
         ends.push(text.len());
         let pieces: Vec<&str> = ends.windows(2).map(|pair| text[pair[0]..pair[1]].trim()).collect();
         expected.assert_eq(&pieces.join("\n"));
@@ -125,6 +229,40 @@ mod tests {
             &expect![[r"
                 environment e with /* */ ip i has { r } robots
                 wheel import with radius 3"]],
+        );
+    }
+
+    #[test]
+    fn misspelt_keywords_cut_where_they_are_followed_as_theirs() {
+        check(
+            "Wheel a with radius 3 weel b radius 4 sensr s : bumper Sensor t sensor u senor v Robot r Type tw
+parallell movement m of r { move 2 meters movment n of r { } enviroment e has { r } robots Imprt \"x\"",
+            &expect![[r#"
+                Wheel a with radius 3
+                weel b radius 4
+                sensr s : bumper
+                Sensor t
+                sensor u
+                senor v
+                Robot r Type tw
+                parallell
+                movement m of r { move 2 meters
+                movment n of r { }
+                enviroment e has { r } robots
+                Imprt "x""#]],
+        );
+    }
+
+    #[test]
+    fn names_like_keywords_do_not_cut() {
+        check(
+            "robot r with port 1 wheel1 wheel2 with sensors { s } robot q with port 1 has { wheel1 with }
+environment robot1 has { robot1 robot2 } robots with { movement1 of } moves wheels a with radius 4",
+            &expect![[r#"
+                robot r with port 1 wheel1 wheel2 with sensors { s }
+                robot q with port 1 has { wheel1 with }
+                environment robot1 has { robot1 robot2 } robots with { movement1 of } moves
+                wheels a with radius 4"#]],
         );
     }
 

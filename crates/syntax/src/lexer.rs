@@ -21,20 +21,42 @@ pub fn lex(text: &str) -> Vec<Lexeme> {
         else {
             break;
         };
-        push(&mut lexemes, token.unwrap_or(Token::Invalid), Span::new(from, to));
+        push(text, &mut lexemes, token.unwrap_or(Token::Invalid), Span::new(from, to));
     }
     lexemes
 }
 
-/// Characters that begin no token come one by one; adjacent ones are one mistake.
-fn push(lexemes: &mut Vec<Lexeme>, token: Token, span: Span) {
-    if let (Token::Invalid, Some((Token::Invalid, last))) = (token, lexemes.last_mut())
+/// Characters that begin no token come one by one; adjacent ones are one mistake, and so is `robot-1`.
+fn push(text: &str, lexemes: &mut Vec<Lexeme>, token: Token, span: Span) {
+    if let [before @ .., (last_token, last)] = &mut lexemes[..]
         && last.end == span.start
     {
-        last.end = span.end;
-        return;
+        let goes_on = match (*last_token, token) {
+            (Token::Invalid, Token::Invalid) => true,
+            (name, Token::Integer | Token::Float | Token::MalformedNumber) => {
+                let exponent =
+                    before.last().is_some_and(|(token, span)| token.is_number() && span.end == last.start);
+                may_begin_name(name) && !exponent && span.text(text).starts_with('-')
+            }
+            // `robot-1a`
+            (Token::MalformedName, word) => {
+                let after_digit = last.text(text).ends_with(|c: char| c.is_ascii_digit());
+                (word.is_name() || word.is_keyword()) && after_digit && !span.text(text).starts_with('^')
+            }
+            _ => false,
+        };
+        if goes_on {
+            *last_token = if token == Token::Invalid { token } else { Token::MalformedName };
+            last.end = span.end;
+            return;
+        }
     }
     lexemes.push((token, span));
+}
+
+/// What no number follows, so that one right after it is meant to be a part of the name. (`move-4` is a move.)
+fn may_begin_name(token: Token) -> bool {
+    token.is_name() || token.entity_kind().is_some()
 }
 
 #[cfg(test)]
@@ -125,20 +147,28 @@ mod tests {
     #[test]
     fn names_that_are_none() {
         check(
-            "left-wheel räder rover.left it's ^ö-1 move-4 a- b1.5",
+            "left-wheel räder rover.left it's ^ö-1 move-4 a- b1.5 robot-1 r-1-2.5a at-9 1e-5 ip-1^a",
             &expect![[r#"
                 MalformedName "left-wheel"
                 MalformedName "räder"
                 MalformedName "rover.left"
                 MalformedName "it's"
-                MalformedName "^ö"
-                Integer "-1"
+                MalformedName "^ö-1"
                 Move "move"
                 Integer "-4"
                 Name "a"
                 Invalid "-"
                 Name "b1"
-                MalformedNumber ".5""#]],
+                MalformedNumber ".5"
+                MalformedName "robot-1"
+                MalformedName "r-1-2.5a"
+                At "at"
+                Integer "-9"
+                Integer "1"
+                Name "e"
+                Integer "-5"
+                MalformedName "ip-1"
+                Name "^a""#]],
         );
     }
 

@@ -17,7 +17,7 @@ mod span;
 mod spelling;
 mod token;
 
-pub use cut::cut;
+pub use cut::{LOOKAHEAD, cut};
 pub use error::{Expected, Found, SyntaxError, SyntaxErrorKind};
 pub use format::{COLUMNS, TextEdit, apply_edits, format, format_edits};
 pub use lexer::{Lexeme, lex};

@@ -7,6 +7,7 @@ use smol_str::SmolStr;
 pub(crate) use pydslrep_syntax::as_written;
 
 use super::Rule;
+use super::syntax_error::{self, Rewrite};
 use crate::{Database, EntityId, FileId, Resolution, Severity};
 
 /// A problem whose places count from the start of the entities they are in, so that it stays true wherever those
@@ -68,12 +69,14 @@ pub(crate) struct ProblemEdit {
     pub(crate) text: String,
     /// Whether what stands on its sides is to become one word; else words are kept apart.
     pub(crate) joins: bool,
+    /// Whether it is a declaration to put before the entity: at the nearest place where no other one is cut in two.
+    pub(crate) declares: bool,
 }
 
 impl ProblemEdit {
     /// A replacement that keeps words apart.
     pub(super) fn new(entity: EntityId, span: Span, text: impl Into<String>) -> Self {
-        Self { entity, span, text: text.into(), joins: false }
+        Self { entity, span, text: text.into(), joins: false, declares: false }
     }
 }
 
@@ -163,20 +166,30 @@ pub(super) struct Context<'a> {
     pub(super) tree: Option<&'a Entity>,
     pub(super) errors: &'a [SyntaxError],
     pub(super) lexemes: &'a [Lexeme],
+    /// The statements that are one problem each, whatever their syntax errors are.
+    pub(super) rewrites: Vec<Rewrite>,
 }
 
 impl<'a> Context<'a> {
     pub(super) fn new(database: &'a Database, id: EntityId) -> Option<Self> {
         let parse = database.parse(id)?;
         let file = database.file_of(id)?;
-        Some(Self {
+        let mut context = Self {
             database,
             file,
             id,
             tree: parse.entity.as_ref(),
             errors: &parse.errors,
             lexemes: &parse.lexemes,
-        })
+            rewrites: Vec::new(),
+        };
+        context.rewrites = syntax_error::rewrites(&context);
+        Some(context)
+    }
+
+    /// Whether a place is in a statement that is one problem as a whole.
+    pub(super) fn is_rewritten(&self, span: Span) -> bool {
+        self.rewrites.iter().any(|rewrite| rewrite.covers(span))
     }
 
     /// What a reference in this entity leads to.
@@ -241,6 +254,11 @@ impl<'a> Context<'a> {
     /// A replacement that makes one word of what stands on its sides.
     pub(super) fn join(&self, span: Span, text: impl Into<String>) -> ProblemEdit {
         ProblemEdit { joins: true, ..self.replace(span, text) }
+    }
+
+    /// A declaration before this entity.
+    pub(super) fn declare(&self, text: impl Into<String>) -> ProblemEdit {
+        ProblemEdit { declares: true, ..self.replace(Span::at(0), text) }
     }
 
     /// The smallest edit that removes `span` and the white space around it that would be left over. A comment that the
@@ -351,12 +369,14 @@ impl<'a> Context<'a> {
         Some(self.replace(Span::new(0, end), ""))
     }
 
-    /// The visible name of a kind that `name` is most likely a slip for: a near one, else the only one there is.
-    pub(super) fn nearest(&self, kind: EntityKind, name: &Name) -> Option<SmolStr> {
+    /// The visible name of a kind that `name` is most likely a slip for: a near one, else the only one there is. None of
+    /// those `taken` already.
+    pub(super) fn nearest(&self, kind: EntityKind, name: &Name, taken: &[&str]) -> Option<SmolStr> {
         let names = || self.database.names_in_sight(self.file, kind);
-        let near = closest_of_any_order(&name.text, names().map(SmolStr::as_str)).map(SmolStr::new);
+        let free = names().map(SmolStr::as_str).filter(|other| !taken.contains(other));
+        let near = closest_of_any_order(&name.text, free).map(SmolStr::new);
         near.or_else(|| {
-            let first = names().next()?;
+            let first = names().next().filter(|first| !taken.contains(&first.as_str()))?;
             names().all(|other| other == first).then(|| first.clone())
         })
     }

@@ -1,6 +1,6 @@
-//! `implausible-radius`: a wheel taller than a person was probably measured in millimetres.
+//! `implausible-radius`: a radius that was probably measured in millimetres, or in metres.
 
-use pydslrep_syntax::ast::Entity;
+use pydslrep_syntax::ast::{Entity, Number};
 
 use super::context::{Context, Problem};
 use super::{Page, Remedy, Rule};
@@ -9,7 +9,7 @@ use crate::Severity;
 pub(super) static RULE: Rule = Rule {
     code: "implausible-radius",
     severity: Severity::Warning,
-    summary: "a wheel's radius is above 100 cm, so it was probably measured in millimetres",
+    summary: "a wheel's radius is above 100 cm or below 0.5 cm, so it was probably measured in another unit",
     tag: None,
     remedy: Remedy::Suggested,
     seeks_names: false,
@@ -18,31 +18,57 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "A wheel's radius is more than 100 centimetres, so that the wheel would be taller than a person.",
-    why: "A radius is written in centimetres, but many data sheets give millimetres. A number copied from \
-        there makes the wheel ten times too large. The script would then turn it ten times too slowly, and \
-        the robot would only creep.",
+    what: "A wheel's radius is more than 100 centimetres, so that the wheel would be taller than a person, or less \
+        than half a centimetre, so that it would be smaller than a pea.",
+    why: "A radius is written in centimetres, but many data sheets give millimetres, and the simulator metres. A \
+        number copied from there makes the wheel ten times too large or a hundred times too small. The script \
+        would then turn it at the wrong speed, and the robot would creep or race.",
     imports: &[],
-    example: "wheel wheelL with radius 225",
-    fixed: "wheel wheelL with radius 22.5",
+    example: "wheel wheelL with radius 0.045",
+    fixed: "wheel wheelL with radius 4.5",
 };
 
 /// Centimetres.
+const SMALLEST: f64 = 0.5;
 const LARGEST: f64 = 100.0;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Wheel(wheel)) = context.tree else { return };
     let Some(radius) = &wheel.radius else { return };
-    let Some(value) = radius.value.filter(|value| value.is_finite() && *value > LARGEST) else { return };
-    let problem = RULE
-        .problem(radius.span, format!("with a radius of {value} cm this wheel is taller than a person"))
-        .note("a radius is in centimetres; was this one measured in millimetres?");
-    let tenth = value / 10.0;
-    problems.push(if tenth <= LARGEST {
-        problem.suggestion(format!("change to {tenth}"), [context.replace(radius.span, tenth.to_string())])
-    } else {
-        problem
-    });
+    let Some(value) = radius.value.filter(|value| value.is_finite()) else { return };
+    if value > LARGEST {
+        let problem = RULE
+            .problem(radius.span, format!("with a radius of {value} cm this wheel is taller than a person"));
+        let note = "a radius is in centimetres; was this one measured in millimetres?";
+        problems.push(converted(context, problem.note(note), radius, value / 10.0));
+    } else if value > 0.0 && value < SMALLEST {
+        let meant = rounded(value * 100.0);
+        let problem = if is_plausible(meant) {
+            RULE.problem(radius.span, format!("did you mean {meant} cm? radii are in centimetres"))
+        } else {
+            RULE.problem(radius.span, format!("with a radius of {value} cm this wheel is smaller than a pea"))
+        };
+        let note = "a radius is in centimetres; was this one measured in metres?";
+        problems.push(converted(context, problem.note(note), radius, meant));
+    }
+}
+
+fn is_plausible(value: f64) -> bool {
+    (SMALLEST..=LARGEST).contains(&value)
+}
+
+/// Without what a multiplication of binary fractions adds: 0.07 · 100 is 7.000000000000001.
+fn rounded(value: f64) -> f64 {
+    const DIGITS: f64 = 1e9;
+    (value * DIGITS).round() / DIGITS
+}
+
+/// Offers the value that is meant, where it would be a plausible one.
+fn converted(context: &Context<'_>, problem: Problem, radius: &Number, meant: f64) -> Problem {
+    if !is_plausible(meant) {
+        return problem;
+    }
+    problem.suggestion(format!("change to {meant}"), [context.replace(radius.span, meant.to_string())])
 }
 
 #[cfg(test)]
@@ -64,5 +90,23 @@ mod tests {
             "#]],
         );
         check_clean("wheel a with radius 100");
+    }
+
+    #[test]
+    fn metres_are_suspected() {
+        check(
+            "wheel a with radius 0.045\nwheel b with radius 0.07\nwheel c with radius 0.001",
+            &expect![[r#"
+                warning[implausible-radius] 1:21 "0.045" did you mean 4.5 cm? radii are in centimetres
+                  note: a radius is in centimetres; was this one measured in metres?
+                  suggestion: change to 4.5 -> wheel a with radius 4.5
+                warning[implausible-radius] 2:21 "0.07" did you mean 7 cm? radii are in centimetres
+                  note: a radius is in centimetres; was this one measured in metres?
+                  suggestion: change to 7 -> wheel b with radius 7
+                warning[implausible-radius] 3:21 "0.001" with a radius of 0.001 cm this wheel is smaller than a pea
+                  note: a radius is in centimetres; was this one measured in metres?
+            "#]],
+        );
+        check_clean("wheel a with radius 0.5");
     }
 }

@@ -31,7 +31,7 @@ const PAGE: Page = Page {
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let mut closed = Vec::new();
-    for error in context.errors {
+    for error in context.errors.iter().filter(|error| !is_said(context, error)) {
         match &error.kind {
             SyntaxErrorKind::InvalidName { written } => problems.push(name(context, error.span, written)),
             SyntaxErrorKind::ForeignComment { written } => {
@@ -48,6 +48,17 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
             _ => {}
         }
     }
+}
+
+/// Whether the problem of the whole statement says it, too. A name that is none stays one in it.
+fn is_said(context: &Context<'_>, error: &SyntaxError) -> bool {
+    let stays = match &error.kind {
+        SyntaxErrorKind::InvalidName { written } => {
+            context.rewrites.iter().any(|rewrite| rewrite.keeps(written))
+        }
+        _ => false,
+    };
+    context.is_rewritten(error.span) && !stays
 }
 
 /// `left-wheel`

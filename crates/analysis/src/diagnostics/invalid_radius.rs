@@ -56,6 +56,6 @@ mod tests {
               help: write the radius in centimetres, such as `4.5`
         "#]],
         );
-        check_clean("wheel a with radius 0.1");
+        check_clean("wheel a with radius 0.5");
     }
 }

@@ -48,6 +48,7 @@ mod zero_distance;
 mod testing;
 
 use pydslrep_syntax::Span;
+use pydslrep_syntax::ast::Entity;
 
 use self::consequences::Consequences;
 use self::context::{Brace, Context};
@@ -270,12 +271,37 @@ fn located(database: &Database, file: FileId, start: u32, problem: &Problem) -> 
 
 fn located_fix(database: &Database, fix: &ProblemFix) -> Option<Fix> {
     let edits = fix.edits.iter().map(|edit| {
-        let (file, span) = absolute(database, edit.entity, edit.span)?;
+        let entity = if edit.declares { declared_before(database, edit.entity)? } else { edit.entity };
+        let (file, span) = absolute(database, entity, edit.span)?;
         let span = if edit.text.is_empty() { tidy_removal(database, file, span) } else { span };
         let text = if edit.joins { edit.text.clone() } else { kept_apart(database, file, span, &edit.text) };
         Some(Edit { file, span, text: text.replace('\n', database.line_ending(file)) })
     });
     Some(Fix { title: fix.title.clone(), safe: fix.safe, edits: edits.collect::<Option<_>>()? })
+}
+
+/// The entity, it or one before it, that a declaration can stand before without cutting another one in two: what comes
+/// before it is complete, and ends on a line before.
+fn declared_before(database: &Database, id: EntityId) -> Option<EntityId> {
+    /// A text that is broken for longer is no place for a declaration.
+    const FARTHEST: usize = 64;
+    let entity = database.entity(id)?;
+    let (index, _) = database.piece_at(entity.file, entity.span.start);
+    let pieces = database.pieces(entity.file).get(..=index)?;
+    let is_free =
+        |at: &usize| *at == 0 || pieces.get(at - 1).is_some_and(|before| is_over(database, before.entity));
+    let at = (index.saturating_sub(FARTHEST)..=index).rev().find(is_free)?;
+    pieces.get(at).map(|piece| piece.entity)
+}
+
+/// Whether an entity is complete, and the next one starts on another line.
+fn is_over(database: &Database, id: EntityId) -> bool {
+    let Some(entity) = database.entity(id) else { return false };
+    let last = entity.parse.lexemes.iter().rev().find(|(token, _)| !token.is_comment());
+    let Some((_, last)) = last else { return true };
+    let rest = database.slice(entity.file, Span::new(entity.span.start + last.end, entity.span.end));
+    let is_import = matches!(entity.parse.entity, Some(Entity::Import(_)));
+    (is_import || entity.parse.errors.is_empty()) && rest.contains(['\n', '\r'])
 }
 
 fn absolute(database: &Database, id: EntityId, span: Span) -> Option<(FileId, Span)> {

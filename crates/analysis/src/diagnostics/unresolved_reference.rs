@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::{DriveWord, Entity, Name, Robot};
-use pydslrep_syntax::{EntityKind, Span};
 
 use super::context::{Context, Problem, ProblemEdit, as_written};
 use super::{Page, Remedy, Rule};
@@ -12,7 +12,7 @@ use crate::{Resolution, Severity};
 pub(super) static RULE: Rule = Rule {
     code: "unresolved-reference",
     severity: Severity::Error,
-    summary: "a name that nothing of that kind is declared under",
+    summary: "a name that is not declared",
     tag: None,
     remedy: Remedy::Suggested,
     seeks_names: true,
@@ -44,7 +44,8 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let is_name = |name: &Name| !context.errors.iter().any(|error| error.span == name.span);
     for (kind, name) in references.iter().filter(|(_, name)| is_name(name)) {
         if context.resolve(*kind, name) == Resolution::Nothing {
-            let taken: Vec<&str> = references.iter().map(|(_, other)| other.text.as_str()).collect();
+            let alike = references.iter().filter(|(other, _)| other == kind);
+            let taken: Vec<&str> = alike.map(|(_, other)| other.text.as_str()).collect();
             problems.push(problem(context, tree, *kind, name, &taken));
         }
     }
@@ -58,8 +59,7 @@ fn problem(context: &Context<'_>, tree: &Entity, kind: EntityKind, name: &Name, 
             .suggestion(format!("remove `{}`", name.text), context.remove_item(name.span));
     }
     // A name that the list has already would only make another problem.
-    let nearest = context.nearest(kind, name).filter(|nearest| !taken.contains(&nearest.as_str()));
-    if let Some(nearest) = nearest {
+    if let Some(nearest) = context.nearest(kind, name, taken) {
         let edit = context.replace(name.span, as_written(&nearest));
         problem = problem
             .help(format!("did you mean `{nearest}`?"))
@@ -102,7 +102,7 @@ fn known(context: &Context<'_>, kind: EntityKind) -> Option<String> {
     })
 }
 
-/// The declaration of a part, right before the entity that wants it. Robots and movements are more than a line and
+/// The declaration of a part, before the entity that wants it. Robots and movements are more than a line and
 /// are left to the person.
 fn declaration(context: &Context<'_>, tree: &Entity, kind: EntityKind, name: &Name) -> Option<ProblemEdit> {
     let name = as_written(&name.text);
@@ -112,7 +112,7 @@ fn declaration(context: &Context<'_>, tree: &Entity, kind: EntityKind, name: &Na
         (EntityKind::Ip, _) => format!("ip {name} 127.0.0.1"),
         _ => return None,
     };
-    Some(context.replace(Span::at(0), format!("{line}\n")))
+    Some(context.declare(format!("{line}\n")))
 }
 
 /// A wheel like the robot's other wheels.

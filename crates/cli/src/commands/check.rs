@@ -101,7 +101,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     } else {
         None
     };
-    let diagnostics = find(&sources);
+    let mut diagnostics = find(&sources);
+    sources.retain_offered(&mut diagnostics);
     let (mistakes, unread) = mistakes::find(&sources, &files);
     failures.extend(unread);
     let report = report(arguments.format, &sources, &files, &diagnostics, &mistakes)?;

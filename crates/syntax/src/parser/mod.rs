@@ -19,6 +19,7 @@ use smol_str::SmolStr;
 
 use self::slot::Fault;
 use crate::ast::Entity;
+use crate::cut::misspelt_beginning;
 use crate::{EntityKind, Expected, Lexeme, Span, SyntaxError, Token, cut, lex};
 
 type Input<'s> = MappedInput<'s, Token, Span, &'s [Lexeme]>;
@@ -54,7 +55,7 @@ pub fn parse(text: &str) -> Vec<(Span, Parse)> {
 /// As [`parse`], handing over one piece after the other.
 pub fn parse_each(text: &str, emit: impl FnMut(Span, Parse)) {
     let lexemes = lex(text);
-    parse_cut(text, &lexemes, &cut(&lexemes), emit);
+    parse_cut(text, &lexemes, &cut(text, &lexemes), emit);
 }
 
 /// As [`parse_each`], of a text that is lexed and cut already.
@@ -85,6 +86,7 @@ pub fn expected_after(text: &str, lexemes: &[Lexeme]) -> Vec<Expected> {
     if tokens.is_empty() {
         return vec![Expected::Declaration];
     }
+    correct_beginning(text, lexemes, &mut tokens);
     let cursor = tokens.last().map_or(0, |(_, span)| span.end);
     tokens.push((Token::Cursor, Span::at(cursor)));
     let (_, faults) = Parser::new().run(text, &tokens);
@@ -113,23 +115,56 @@ fn must_not_close(text: &str, tokens: &[Lexeme]) -> bool {
 fn parse_batch(text: &str, bounds: &[(&[Lexeme], Span)], emit: &mut impl FnMut(Span, Parse)) {
     let relative: Vec<Box<[Lexeme]>> =
         bounds.iter().map(|(lexemes, span)| relocate(lexemes, span.start)).collect();
-    let without_trivia: Vec<Option<Vec<Lexeme>>> =
-        relative.iter().map(|lexemes| has_trivia(lexemes).then(|| without_trivia(lexemes))).collect();
+    let changed: Vec<Option<Vec<Lexeme>>> = bounds
+        .iter()
+        .zip(&relative)
+        .map(|((_, span), lexemes)| tokens_to_parse(span.text(text), lexemes))
+        .collect();
     let mut parser = Parser::new();
     let trees: Vec<_> = bounds
         .iter()
-        .zip(relative.iter().zip(&without_trivia))
+        .zip(relative.iter().zip(&changed))
         .map(|((_, span), (all, some))| parser.run(span.text(text), some.as_deref().unwrap_or(all)))
         .collect();
     drop(parser);
-    let tokens = relative.into_iter().zip(&without_trivia);
+    let tokens = relative.into_iter().zip(&changed);
     for (((_, span), (lexemes, some)), (entity, faults)) in bounds.iter().zip(tokens).zip(trees) {
         let piece = span.text(text);
         let tokens = some.as_deref().unwrap_or(&lexemes);
+        let faults = with_beginning(&lexemes, tokens, faults);
         let errors = tidy::tidy(piece, entity.as_ref().and_then(Entity::kind), tokens, &lexemes, &faults);
         let skipped_names = tidy::skipped_names(piece, tokens, &faults);
         emit(*span, Parse { entity, errors, lexemes, skipped_names });
     }
+}
+
+/// The tokens the parser sees, where these are not the lexer's: no comments, and a misspelt keyword at the beginning is
+/// the one that is meant.
+fn tokens_to_parse(piece: &str, lexemes: &[Lexeme]) -> Option<Vec<Lexeme>> {
+    let is_misspelt = misspelt_beginning(piece, lexemes).is_some();
+    (is_misspelt || has_trivia(lexemes)).then(|| {
+        let mut tokens = without_trivia(lexemes);
+        correct_beginning(piece, lexemes, &mut tokens);
+        tokens
+    })
+}
+
+/// Writes the keyword that is meant for a misspelt one that begins an entity.
+fn correct_beginning(text: &str, lexemes: &[Lexeme], tokens: &mut [Lexeme]) {
+    if let (Some(keyword), Some((first, _))) = (misspelt_beginning(text, lexemes), tokens.first_mut()) {
+        *first = keyword;
+    }
+}
+
+/// The faults, and the one of a misspelt keyword at the beginning.
+fn with_beginning(lexemes: &[Lexeme], tokens: &[Lexeme], mut faults: Vec<Fault>) -> Vec<Fault> {
+    let written = lexemes.iter().find(|lexeme| !is_trivia(lexeme));
+    if let (Some((written, span)), Some((meant, _))) = (written, tokens.first())
+        && written != meant
+    {
+        faults.insert(0, Fault::TakenForKeyword(*span, *meant));
+    }
+    faults
 }
 
 fn relocate(lexemes: &[Lexeme], start: u32) -> Box<[Lexeme]> {

@@ -166,6 +166,7 @@ weel v with radius 3 environment e has { r } robot with { m } move",
               104..108 Misspelt { written: "mvoe", keyword: Move }
               123..128 Misspelt { written: "lefft", keyword: Left }
               141..144 Misspelt { written: "slm", keyword: Slam }
+            wheel v Some(3.0)
               147..151 Misspelt { written: "weel", keyword: Wheel }
             environment e None {r} {m}
               192..197 Misspelt { written: "robot", keyword: Robots }
@@ -351,6 +352,8 @@ fn the_grammar_says_what_can_follow() {
         &expect!["[Word(CloseBrace), ReferenceTo(Movement)]"],
     );
     // A mistake before the cursor does not change what fits at it.
+    check_expected("movment m of r {", &expect!["[Word(CloseBrace), Action]"]);
+    check_expected("Wheel a with radius", &expect!["[Radius]"]);
     check_expected("robot r tpye tw with port has { a } wheel with", &expect!["[Word(Sensors)]"]);
 }
 
@@ -385,7 +388,7 @@ fn any_text() -> impl Strategy<Value = String> {
     let word = prop_oneof![
         6 => proptest::sample::select(crate::KEYWORDS.map(|(_, word)| word).to_vec()).prop_map(str::to_owned),
         4 => proptest::sample::select(vec![
-            "{", "}", ",", ":", "/*", "*/", "//", "\"", "\n", "\r", "^", "-", ".", "a", "b1", "4.5", "90", "1.2.3.4", "é", "🤖", "\u{feff}",
+            "{", "}", ",", ":", "/*", "*/", "//", "\"", "\n", "\r", "^", "-", ".", "a", "b1", "4.5", "90", "1.2.3.4", "movment", "Wheel", "sensr", "Import", "a-1", "robot-1", "-1a", "é", "🤖", "\u{feff}",
         ])
         .prop_map(str::to_owned),
         1 => ".{0,4}",

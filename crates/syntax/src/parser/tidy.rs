@@ -7,7 +7,8 @@ use smol_str::SmolStr;
 
 use super::pairs;
 use super::slot::Fault;
-use crate::{EntityKind, Expected, Found, Lexeme, Span, SyntaxError, SyntaxErrorKind, Token, is_similar};
+use crate::cut::{BEGINNINGS, distance, is_slip};
+use crate::{EntityKind, Expected, Found, Lexeme, Span, SyntaxError, SyntaxErrorKind, Token};
 
 /// The errors behind `faults`. `tokens` is what the parser saw, `lexemes` everything that stands in the text.
 pub(super) fn tidy(
@@ -250,17 +251,6 @@ impl Piece<'_> {
 
 /// The expected keyword that `written` is a slip for.
 fn meant(token: Token, written: &str, expected: &[Expected]) -> Option<Token> {
-    const BEGINNINGS: [Token; 9] = [
-        Token::Wheel,
-        Token::WheelH,
-        Token::Sensor,
-        Token::Ip,
-        Token::Robot,
-        Token::Parallel,
-        Token::Movement,
-        Token::Environment,
-        Token::Import,
-    ];
     const ACTIONS: [Token; 3] = [Token::Move, Token::Turn, Token::Slam];
     if !token.is_name() && !token.is_keyword() {
         return None;
@@ -271,10 +261,5 @@ fn meant(token: Token, written: &str, expected: &[Expected]) -> Option<Token> {
         Expected::Declaration => BEGINNINGS.to_vec(),
         _ => Vec::new(),
     });
-    words.filter(|word| word.spelling().is_some_and(|spelling| is_similar(written, spelling))).min_by_key(
-        |word| {
-            let spelling = word.spelling().unwrap_or_default();
-            (!written.eq_ignore_ascii_case(spelling), strsim::osa_distance(written, spelling))
-        },
-    )
+    words.filter(|word| is_slip(written, *word)).min_by_key(|word| distance(written, *word))
 }

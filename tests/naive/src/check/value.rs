@@ -39,9 +39,8 @@ fn judge(number: &Number, code: impl Fn(f64) -> Option<&'static str>) -> Option<
 fn radius(number: &Number) -> Option<Finding> {
     judge(number, |centimetres| match centimetres {
         ..=0.0 => Some("invalid-radius"),
-        100.0 => None,
-        100.0.. => Some("implausible-radius"),
-        _ => None,
+        0.5..=100.0 => None,
+        _ => Some("implausible-radius"),
     })
 }
 

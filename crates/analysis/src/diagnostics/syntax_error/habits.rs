@@ -123,7 +123,7 @@ fn needless_unit(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
         ["cm", "cms", "centimeter", "centimeters", "centimetre", "centimetres", "centi"];
     const OTHERS: [&str; 8] = ["mm", "m", "meter", "meters", "metres", "inch", "inches", "s"];
     const DEGREES: [&str; 5] = ["degrees", "degree", "deg", "degs", "grad"];
-    let (number, _) = place.before(1)?;
+    let (number, number_span) = place.before(1)?;
     if !number.is_number() {
         return None;
     }
@@ -146,7 +146,31 @@ fn needless_unit(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
         return None;
     }
     let edit = place.context.remove(whole);
-    Some(if own.contains(&found) { problem.fix(format!("remove `{written}`"), [edit]) } else { problem })
+    if own.contains(&found) {
+        return Some(problem.fix(format!("remove `{written}`"), [edit]));
+    }
+    let length = matches!(place.before(2), Some((Token::Radius | Token::At, _)));
+    let factor = match found {
+        "mm" => 0.1,
+        "m" | "meter" | "meters" | "metres" => 100.0,
+        _ => return Some(problem),
+    };
+    let converted = converted(&place.context.text(number_span), factor).filter(|_| length);
+    Some(match converted {
+        Some(value) => {
+            let edit = place.context.replace(number_span.to(whole), value.clone());
+            problem.suggestion(format!("change to `{value}`"), [edit])
+        }
+        None => problem,
+    })
+}
+
+/// A number times another one, as it is written.
+fn converted(number: &str, factor: f64) -> Option<String> {
+    /// Without what a multiplication of binary fractions adds.
+    const DIGITS: f64 = 1e9;
+    let value = number.parse::<f64>().ok().filter(|value| value.is_finite())?;
+    Some(((value * factor * DIGITS).round() / DIGITS).to_string())
 }
 
 /// The token with what follows it without a space: `cm/s`.

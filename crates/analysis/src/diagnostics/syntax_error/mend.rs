@@ -7,7 +7,7 @@ use crate::diagnostics::context::{Context, Problem, ProblemEdit};
 
 /// Trying costs as much as reading the entity again, so it ends where an entity is a mess or very long.
 const MOST_ERRORS: usize = 4;
-const LONGEST: u32 = 16 * 1024;
+pub(super) const LONGEST: u32 = 16 * 1024;
 
 /// Whether the entity has fewer errors after the edits, and is still one entity.
 pub(super) fn is_mended(context: &Context<'_>, edits: &[ProblemEdit]) -> bool {
@@ -62,9 +62,13 @@ pub(super) fn insert(context: &Context<'_>, problem: Problem, span: Span, expect
             .find(|text| is_mended(context, &[edit(text)])),
         _ => None,
     };
-    match text {
-        Some(text) => problem.fix(format!("insert `{text}`"), [edit(text)]),
-        None => problem,
+    match (text, &mending[..]) {
+        (Some(text), _) => problem.fix(format!("insert `{text}`"), [edit(text)]),
+        // `meters` or `centimeters`, `left` or `right`
+        (None, choices @ [_, _]) => choices
+            .iter()
+            .fold(problem, |problem, text| problem.suggestion(format!("insert `{text}`"), [edit(text)])),
+        (None, _) => problem,
     }
 }
 

@@ -1,15 +1,17 @@
 //! `syntax-error`: the text does not follow the grammar.
 //!
-//! [`words`] holds how what was expected is said, [`habits`] what people bring along from elsewhere, [`mend`] how a
-//! fix is found: by trying what could mend it.
+//! [`words`] holds how what was expected is said, [`habits`] what people bring along from elsewhere, [`rewrite`] whole
+//! statements of that sort, [`mend`] how a fix is found: by trying what could be one.
 
 mod habits;
 mod mend;
+mod rewrite;
 mod words;
 
 use pydslrep_syntax::ast::{Entity, Name};
 use pydslrep_syntax::{EntityKind, Expected, Found, Span, SyntaxError, SyntaxErrorKind, Token};
 
+pub(super) use self::rewrite::{Rewrite, find as rewrites};
 use self::words::{listed, shape, telling};
 use super::context::{Brace, Context, Problem};
 use super::{Page, Remedy, Rule};
@@ -37,7 +39,10 @@ const PAGE: Page = Page {
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
-    problems.extend(context.errors.iter().filter_map(|error| problem(context, error)));
+    let errors = context.errors.iter().filter(|error| !context.is_rewritten(error.span));
+    let others = errors.filter_map(|error| problem(context, error));
+    problems.extend(others.map(|problem| rewrite::with_fallback(context, problem)));
+    problems.extend(context.rewrites.iter().filter_map(|rewrite| rewrite.problem(context)));
     problems.extend(late_import(context));
 }
 
@@ -354,8 +359,12 @@ mod tests {
             &expect![[r#"
                 error[syntax-error] 6:9 "" missing `meters` or `centimeters` before `turn`
                   help: a move is written `move 4.0 meters` or `move 40 centimeters at 9.0`
+                  suggestion: insert `meters` ->   move 4 meters
+                  suggestion: insert `centimeters` ->   move 4 centimeters
                 error[syntax-error] 7:7 "" missing `left` or `right` before `90`
                   help: a turn is written `turn left 90` or `turn right until { SENSORS }`
+                  suggestion: insert `left` ->   turn left 90
+                  suggestion: insert `right` ->   turn right 90
                 error[syntax-error] 7:10 "" missing `}` at the end of this movement
                   help: a movement is written `movement NAME of ROBOT { ACTIONS }`
                   fix: insert `}` -> }

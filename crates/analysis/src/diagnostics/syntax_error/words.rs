@@ -5,8 +5,8 @@ use pydslrep_syntax::{EntityKind, Expected, Token};
 
 use crate::diagnostics::context::Context;
 
-const MOVE: &str = "a move is written `move 4.0 meters` or `move 40 centimeters at 9.0`";
-const TURN: &str = "a turn is written `turn left 90` or `turn right until { SENSORS }`";
+pub(super) const MOVE: &str = "a move is written `move 4.0 meters` or `move 40 centimeters at 9.0`";
+pub(super) const TURN: &str = "a turn is written `turn left 90` or `turn right until { SENSORS }`";
 pub(super) const ACTIONS: &str = "an action is written `move 4.0 meters`, `move 40 centimeters at 9.0`, `turn left 90`, \
     `turn right until { SENSORS }` or `slam`";
 

@@ -75,7 +75,8 @@ impl Look {
         let (mut sources, files, mut failures) = Sources::open(paths);
         let (problems, summary) = match Projects::open(&mut sources, &files, options) {
             Ok(projects) => {
-                let found = diagnostics(&sources, &files, &projects);
+                let mut found = diagnostics(&sources, &files, &projects);
+                sources.retain_offered(&mut found);
                 let (mistakes, unread) = mistakes::find(&sources, &files);
                 failures.extend(unread);
                 let problems = render::diagnostics(&sources, &found) + &mistakes::render(&mistakes);

@@ -1,0 +1,238 @@
+//! Statements written as in another language, such as `radius = 4.5`, `move(2)` or `robot r wheels { a b }`: one problem
+//! for each, with the whole statement as its fix.
+//!
+//! What is meant is read off the names, numbers and keywords that are there; where anything else stands among them,
+//! nothing is guessed.
+
+mod actions;
+mod entities;
+
+use pydslrep_syntax::ast::Entity;
+use pydslrep_syntax::{EntityKind, Lexeme, Span, SyntaxErrorKind, Token, is_similar, lex, parse};
+
+use super::{RULE, words};
+use crate::diagnostics::context::{Context, Problem};
+
+/// Longer statements are not looked at.
+const MOST_TOKENS: usize = 64;
+
+/// A statement and how the language has it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Rewrite {
+    /// From its first token to its last.
+    span: Span,
+    /// How it is written.
+    text: String,
+    /// What is missing and what does not belong there.
+    message: String,
+    /// What the fix is called.
+    title: String,
+    /// The pattern to follow.
+    help: String,
+    /// Whether it is only a fix for a problem that has no other.
+    is_fallback: bool,
+}
+
+impl Rewrite {
+    /// Whether it takes the place of what else there is to say of a place.
+    pub(crate) fn covers(&self, span: Span) -> bool {
+        !self.is_fallback && self.reaches(span)
+    }
+
+    /// Whether a name is written in it as it was.
+    pub(crate) fn keeps(&self, name: &str) -> bool {
+        self.text.split(' ').any(|word| word == name)
+    }
+
+    fn reaches(&self, span: Span) -> bool {
+        self.span.start <= span.start && span.end <= self.span.end
+    }
+
+    pub(super) fn problem(&self, context: &Context<'_>) -> Option<Problem> {
+        if self.is_fallback {
+            return None;
+        }
+        let problem = RULE.problem(self.span, self.message.clone()).help(self.help.clone());
+        Some(self.offer(context, problem))
+    }
+
+    fn offer(&self, context: &Context<'_>, problem: Problem) -> Problem {
+        problem.suggestion(self.title.clone(), [context.replace(self.span, self.text.clone())])
+    }
+}
+
+/// The statements of an entity that are one problem each.
+pub(crate) fn find(context: &Context<'_>) -> Vec<Rewrite> {
+    let end = context.lexemes.last().map_or(0, |(_, last)| last.end);
+    if context.errors.is_empty() || end > super::mend::LONGEST {
+        return Vec::new();
+    }
+    match context.tree {
+        None | Some(Entity::Import(_)) => Vec::new(),
+        Some(Entity::Movement(_)) => actions::find(context),
+        Some(tree) => tree.kind().and_then(|kind| entities::find(context, kind)).into_iter().collect(),
+    }
+}
+
+/// A problem that has no fix with that of the statement it is in.
+pub(super) fn with_fallback(context: &Context<'_>, problem: Problem) -> Problem {
+    if !problem.fixes.is_empty() {
+        return problem;
+    }
+    match context.rewrites.iter().find(|rewrite| rewrite.is_fallback && rewrite.reaches(problem.span)) {
+        Some(rewrite) => rewrite.offer(context, problem),
+        None => problem,
+    }
+}
+
+/// A token with its text; a number with a comma is one, and so is what stands in quotes.
+#[derive(Debug, Clone, PartialEq)]
+struct Word {
+    token: Token,
+    span: Span,
+    text: String,
+}
+
+impl Word {
+    fn is_number(&self) -> bool {
+        matches!(self.token, Token::Integer | Token::Float)
+    }
+
+    /// Signs that other languages put between or around values.
+    fn is_noise(&self) -> bool {
+        match self.token {
+            Token::Colon | Token::Comma => true,
+            Token::Invalid => self.text.chars().all(|c| "()[]=;.".contains(c)),
+            _ => false,
+        }
+    }
+}
+
+/// The words among some tokens; `None` where a comment stands among them, which would be lost.
+fn words_of(context: &Context<'_>, lexemes: &[Lexeme]) -> Option<Vec<Word>> {
+    let is_word = |(token, _): &Lexeme| !token.is_comment();
+    let last = lexemes.iter().rposition(is_word)?;
+    let first = lexemes.iter().position(is_word)?;
+    let lexemes = &lexemes[first..=last];
+    if lexemes.len() > MOST_TOKENS || !lexemes.iter().all(is_word) {
+        return None;
+    }
+    let mut words: Vec<Word> = Vec::new();
+    for &(token, span) in lexemes {
+        let text = context.text(span);
+        match (token, &mut words[..]) {
+            (Token::Integer, [.., whole, comma])
+                if whole.token == Token::Integer
+                    && comma.token == Token::Comma
+                    && whole.span.end == comma.span.start
+                    && comma.span.end == span.start =>
+            {
+                whole.token = Token::Float;
+                whole.span = whole.span.to(span);
+                whole.text = format!("{}.{text}", whole.text);
+                words.pop();
+            }
+            (Token::String, _) => {
+                let text = text.trim_matches('"').to_owned();
+                let token = lex(&text).first().map_or(Token::String, |(token, _)| *token);
+                words.push(Word { token, span, text });
+            }
+            _ => words.push(Word { token, span, text }),
+        }
+    }
+    Some(words)
+}
+
+/// The statement `text` in place of these words.
+fn rewrite(words: &[Word], text: String, help: String, is_fallback: bool) -> Option<Rewrite> {
+    let span = words.first()?.span.to(words.last()?.span);
+    let message = Difference::between(words, &text).message();
+    let title = format!("write `{text}`");
+    Some(Rewrite { span, text, message, title, help, is_fallback })
+}
+
+/// What tells words from a statement.
+struct Difference {
+    /// Runs of words that are missing.
+    missing: Vec<String>,
+    /// Words that do not belong there, each once.
+    extra: Vec<String>,
+    /// Words that are nearly the right ones, with those.
+    respelt: Vec<(String, String)>,
+}
+
+impl Difference {
+    fn between(words: &[Word], text: &str) -> Self {
+        let mut left: Vec<&Word> = words.iter().collect();
+        let mut runs: Vec<Vec<&str>> = vec![Vec::new()];
+        for (_, span) in lex(text) {
+            let word = span.text(text);
+            if let Some(index) = left.iter().position(|other| other.text == word) {
+                left.remove(index);
+                runs.push(Vec::new());
+            } else if let Some(run) = runs.last_mut() {
+                run.push(word);
+            }
+        }
+        runs.retain(|run| !run.is_empty());
+        let mut respelt = Vec::new();
+        left.retain(|word| {
+            let is_meant = |meant: &&str| is_similar(&word.text, meant);
+            let run = runs.iter_mut().find(|run| run.iter().any(|meant| is_meant(&meant)));
+            let meant = run.and_then(|run| Some(run.remove(run.iter().position(|meant| is_meant(&meant))?)));
+            respelt.extend(meant.map(|meant| (word.text.clone(), meant.to_owned())));
+            meant.is_none()
+        });
+        runs.retain(|run| !run.is_empty());
+        // Commas between names may stay.
+        let listed = text.contains('{');
+        let mut extra: Vec<String> = Vec::new();
+        for word in left.into_iter().filter(|word| !(listed && word.token == Token::Comma)) {
+            if !extra.contains(&word.text) {
+                extra.push(word.text.clone());
+            }
+        }
+        Self { missing: runs.iter().map(|run| run.join(" ")).collect(), extra, respelt }
+    }
+
+    /// What is wrong, in words.
+    fn message(&self) -> String {
+        let (written, meant): (Vec<_>, Vec<_>) = self.respelt.iter().cloned().unzip();
+        let clause = |words: &[String], one: &str, many: &str| match words.len() {
+            0 => None,
+            1 => Some(format!("{} {one}", quoted(words))),
+            _ => Some(format!("{} {many}", quoted(words))),
+        };
+        let is = clause(&written, "is", "are").map(|written| format!("{written} written {}", quoted(&meant)));
+        let missing = clause(&self.missing, "is missing", "are missing");
+        let extra = clause(&self.extra, "does not belong here", "do not belong here");
+        let clauses: Vec<String> = [is, missing, extra].into_iter().flatten().collect();
+        match &clauses[..] {
+            [] => "the words belong in another order".to_owned(),
+            [_] if !self.missing.is_empty() => format!("missing {}", quoted(&self.missing)),
+            [only] => only.clone(),
+            [others @ .., last] => format!("{}, and {last}", others.join(", ")),
+        }
+    }
+}
+
+/// `a`, `b` and `c`
+fn quoted(words: &[String]) -> String {
+    let quoted: Vec<String> = words.iter().map(|word| format!("`{word}`")).collect();
+    match quoted.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
+        _ => quoted.concat(),
+    }
+}
+
+/// Whether texts are one entity each without a mistake, but for names that cannot be ones.
+fn are_sound(texts: &[&str]) -> bool {
+    let pieces = parse(&texts.join("\n"));
+    let is_name = |kind: &SyntaxErrorKind| matches!(kind, SyntaxErrorKind::InvalidName { .. });
+    pieces.len() == texts.len()
+        && pieces.iter().all(|(_, parse)| parse.errors.iter().all(|error| is_name(&error.kind)))
+}
+
+fn shape(context: &Context<'_>, kind: EntityKind) -> String {
+    words::shape(context, Some(kind), &[]).unwrap_or_default()
+}

@@ -1,0 +1,234 @@
+//! Movements: their actions and what stands before them.
+
+use pydslrep_syntax::{EntityKind, Lexeme, Span, Token};
+
+use super::{Rewrite, Word, are_sound, rewrite, shape, words, words_of};
+use crate::diagnostics::context::Context;
+
+/// More are not looked at.
+const MOST_STATEMENTS: usize = 64;
+
+pub(super) fn find(context: &Context<'_>) -> Vec<Rewrite> {
+    let is_open = |(token, _): &Lexeme| *token == Token::OpenBrace;
+    let Some(open) = context.lexemes.iter().position(is_open) else { return Vec::new() };
+    let (head, body) = (&context.lexemes[..open], &context.lexemes[open + 1..]);
+    let mut found: Vec<(Rewrite, String)> = header(context, head).into_iter().collect();
+    let mut follows = false;
+    for statement in statements(context, body).iter().take(MOST_STATEMENTS) {
+        let action = statement_as_action(context, statement, follows);
+        follows = action.is_some() && !begins_action(statement);
+        found.extend(action);
+    }
+    if found.is_empty() {
+        return Vec::new();
+    }
+    let texts: Vec<&str> = found.iter().map(|(_, whole)| whole.as_str()).collect();
+    let all_sound = are_sound(&texts);
+    found.retain(|(_, whole)| all_sound || are_sound(&[whole.as_str()]));
+    found.into_iter().map(|(rewrite, _)| rewrite).collect()
+}
+
+/// How many mistakes there are in a range.
+fn errors_in(context: &Context<'_>, span: Span) -> usize {
+    let inside =
+        |error: &&pydslrep_syntax::SyntaxError| span.start <= error.span.start && error.span.end <= span.end;
+    context.errors.iter().filter(inside).count()
+}
+
+fn span_of(words: &[Word]) -> Option<Span> {
+    Some(words.first()?.span.to(words.last()?.span))
+}
+
+/// `movement patrol(rover) {`
+fn header(context: &Context<'_>, lexemes: &[Lexeme]) -> Option<(Rewrite, String)> {
+    let words = words_of(context, lexemes)?;
+    let errors = errors_in(context, span_of(&words)?);
+    if errors == 0 {
+        return None;
+    }
+    let is_parallel = words.iter().any(|word| word.token == Token::Parallel || word.text == "parallel");
+    let names: Vec<&Word> =
+        words.get(1..)?.iter().filter(|word| word.token.is_name() && !joins(&word.text)).collect();
+    let known = |word: &Word| {
+        word.token.is_name()
+            || word.is_noise()
+            || matches!(word.token, Token::Movement | Token::Parallel | Token::Of | Token::With | Token::Has)
+    };
+    let [name, robot] = names[..] else { return None };
+    if !words.iter().all(known) {
+        return None;
+    }
+    let text =
+        format!("{}movement {} of {}", if is_parallel { "parallel " } else { "" }, name.text, robot.text);
+    let whole = format!("{text} {{ }}");
+    let rewrite = rewrite(&words, text, shape(context, EntityKind::Movement), errors < 2)?;
+    Some((rewrite, whole))
+}
+
+/// Words that people put between a movement and its robot.
+fn joins(word: &str) -> bool {
+    ["for", "by", "from", "using", "on", "off", "fo", "robot"].contains(&word)
+}
+
+/// The tokens of a movement's body by statements: one on each line, or more where one ends or the next begins.
+fn statements<'a>(context: &Context<'_>, body: &'a [Lexeme]) -> Vec<&'a [Lexeme]> {
+    let (mut starts, mut depth, mut previous): (Vec<usize>, usize, Option<Lexeme>) = (vec![0], 0, None);
+    for (index, &(token, span)) in body.iter().enumerate() {
+        let gap = previous.map(|(_, before)| context.text(Span::new(before.end, span.start)));
+        let is_new_line = gap.is_some_and(|gap| gap.contains(['\n', '\r']));
+        let is_over = previous.is_some_and(|(token, span)| {
+            token == Token::Invalid && context.text(span).contains(';') || token == Token::CloseBrace
+        });
+        let is_action = matches!(token, Token::Move | Token::Turn | Token::Slam) && depth == 0;
+        if index > 0 && (is_new_line || is_over || is_action || token == Token::CloseBrace) {
+            starts.push(index);
+        }
+        if token == Token::Invalid {
+            let text = context.text(span);
+            let count = |bracket: char| text.matches(bracket).count();
+            depth = (depth + count('(')).saturating_sub(count(')'));
+        }
+        if is_new_line {
+            depth = 0;
+        }
+        previous = Some((token, span));
+    }
+    starts.push(body.len());
+    starts.windows(2).map(|pair| &body[pair[0]..pair[1]]).filter(|part| !part.is_empty()).collect()
+}
+
+/// Whether the parser takes a statement for an action; it has passed over what follows one that it does not.
+fn begins_action(statement: &[Lexeme]) -> bool {
+    let first = statement.iter().find(|(token, _)| !token.is_comment());
+    first.is_some_and(|(token, _)| matches!(token, Token::Move | Token::Turn | Token::Slam))
+}
+
+/// A statement as an action with a movement around it; `follows` where the one before begins with no action.
+fn statement_as_action(
+    context: &Context<'_>,
+    statement: &[Lexeme],
+    follows: bool,
+) -> Option<(Rewrite, String)> {
+    let words = words_of(context, statement)?;
+    let errors = errors_in(context, span_of(&words)?);
+    let first = words.first()?;
+    let passed_over = follows && !begins_action(statement);
+    if errors == 0 && !passed_over {
+        return None;
+    }
+    let (text, help) = action(&words)?;
+    let is_call = words.iter().any(|word| word.token == Token::Invalid && word.text.contains('('))
+        || first.token == Token::MalformedName;
+    let is_only_begun = errors < 2 && !is_call && !passed_over;
+    let is_fallback = is_only_begun && (begins_action(statement) || is_one_word_away(&words, &text));
+    let whole = format!("movement m of r {{ {text} }}");
+    let rewrite = rewrite(&words, text, help.to_owned(), is_fallback)?;
+    Some((rewrite, whole))
+}
+
+/// Whether another first word is all that it takes.
+fn is_one_word_away(words: &[Word], text: &str) -> bool {
+    let rest = words.iter().skip(1).map(|word| word.text.as_str());
+    rest.eq(text.split(' ').skip(1))
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Verb {
+    Move { backwards: bool },
+    Turn { direction: Option<&'static str> },
+    Slam,
+}
+
+/// What a word asks for: `move`, `drive`, `rover.turn_left`.
+fn verb(written: &str) -> Option<Verb> {
+    let word = written.rsplit('.').next()?.to_lowercase().replace('_', "");
+    let ways = ["", "move", "go", "drive", "walk", "run"];
+    let is_any = |ends: &[&str]| ways.iter().any(|way| ends.iter().any(|end| word == format!("{way}{end}")));
+    Some(match word.as_str() {
+        "move" | "go" | "drive" | "walk" | "run" | "advance" | "fd" => Verb::Move { backwards: false },
+        _ if is_any(&["forward", "forwards", "ahead", "straight"]) => Verb::Move { backwards: false },
+        "reverse" | "bk" => Verb::Move { backwards: true },
+        _ if is_any(&["back", "backward", "backwards"]) => Verb::Move { backwards: true },
+        "turn" | "rotate" | "spin" => Verb::Turn { direction: None },
+        "left" | "turnleft" | "rotateleft" | "spinleft" | "lt" => Verb::Turn { direction: Some("left") },
+        "right" | "turnright" | "rotateright" | "spinright" | "rt" => Verb::Turn { direction: Some("right") },
+        "slam" => Verb::Slam,
+        _ => return None,
+    })
+}
+
+/// What a statement says beside its verb.
+#[derive(Debug, Default)]
+struct Said<'a> {
+    numbers: Vec<&'a str>,
+    speed: Option<&'a str>,
+    unit: Option<&'static str>,
+    direction: Option<&'static str>,
+    backwards: bool,
+}
+
+fn said(words: &[Word]) -> Option<Said<'_>> {
+    let mut said = Said::default();
+    let mut speed_follows = false;
+    for word in words {
+        if word.is_number() {
+            if !speed_follows {
+                said.numbers.push(&word.text);
+            } else if said.speed.replace(&word.text).is_some() {
+                return None;
+            }
+            speed_follows = false;
+            continue;
+        }
+        match word.text.to_lowercase().as_str() {
+            "at" | "speed" | "velocity" => speed_follows = true,
+            "m" | "meter" | "meters" | "metre" | "metres" if said.speed.is_none() => {
+                said.unit = Some("meters")
+            }
+            "cm" | "centimeter" | "centimeters" | "centimetre" | "centimetres" => {
+                said.unit = said.unit.or(said.speed.is_none().then_some("centimeters"));
+            }
+            "left" => said.direction = Some("left"),
+            "right" => said.direction = Some("right"),
+            "back" | "backward" | "backwards" => said.backwards = true,
+            "forward" | "forwards" | "ahead" | "straight" | "degrees" | "degree" | "deg" | "°" | "by"
+            | "for" | "to" | "the" | "a" | "distance" | "angle" | "direction" | "unit" | "of" => {}
+            "/" | "s" if said.speed.is_some() => {}
+            _ if word.is_noise() => {}
+            _ => return None,
+        }
+    }
+    Some(said)
+}
+
+/// The action that a statement is meant to be, and how such are written.
+fn action(words: &[Word]) -> Option<(String, &'static str)> {
+    let (first, rest) = words.split_first()?;
+    let verb = verb(&first.text)?;
+    let said = said(rest)?;
+    match verb {
+        Verb::Move { backwards } => {
+            let [distance] = said.numbers[..] else { return None };
+            let backwards = backwards || said.backwards;
+            if said.direction.is_some() || backwards && distance.starts_with('-') {
+                return None;
+            }
+            let sign = if backwards { "-" } else { "" };
+            let speed = said.speed.map_or(String::new(), |speed| format!(" at {speed}"));
+            let unit = said.unit.unwrap_or("meters");
+            Some((format!("move {sign}{distance} {unit}{speed}"), words::MOVE))
+        }
+        Verb::Turn { direction } => {
+            let direction = direction.or(said.direction)?;
+            if said.unit.is_some() || said.speed.is_some() || said.backwards || said.numbers.len() > 1 {
+                return None;
+            }
+            let angle = said.numbers.first().map_or(String::new(), |angle| format!(" {angle}"));
+            Some((format!("turn {direction}{angle}"), words::TURN))
+        }
+        Verb::Slam => {
+            let is_plain = said.numbers.is_empty() && said.unit.is_none() && said.direction.is_none();
+            (is_plain && said.speed.is_none()).then(|| ("slam".to_owned(), words::ACTIONS))
+        }
+    }
+}
