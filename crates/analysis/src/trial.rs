@@ -56,21 +56,34 @@ impl Trial {
         Self { tried: database.clone() }
     }
 
-    /// Whether a fix mends its problem and brings no other into the files it changes. What is said of the meaning of
-    /// text that was not understood before was hidden, and is not brought.
+    /// Whether a fix solves its problem and brings no other into the files it changes. What is said of the meaning of
+    /// text that was not understood before was hidden, and is not brought; nor is a mistake that comes to light behind
+    /// it, because more of the text is understood.
     pub fn holds(&mut self, problem: &Diagnostic, fix: &Fix) -> bool {
         let mut files: Vec<FileId> = fix.edits.iter().map(|edit| edit.file).collect();
         files.push(problem.file);
         files.sort_unstable();
         files.dedup();
-        let before = self.counts(&files, problem);
+        let before = (self.counts(&files, problem), self.understood(problem));
         let back = self.apply(&fix.edits);
-        let after = self.counts(&files, problem);
+        let after = (self.counts(&files, problem), self.understood(problem));
         self.apply(&back);
         let count = |counts: &Counts, key: &(FileId, &'static str)| counts.get(key).copied().unwrap_or(0);
         let key = (problem.file, problem.code());
-        let is_brought = |key: &(FileId, &'static str)| count(&after, key) > count(&before, key);
-        count(&after, &key) < count(&before, &key) && !after.keys().any(is_brought)
+        let is_brought = |key: &(FileId, &'static str)| count(&after.0, key) > count(&before.0, key);
+        let is_solved = count(&after.0, &key) < count(&before.0, &key) || after.1 < before.1;
+        is_solved && !after.0.keys().any(is_brought)
+    }
+
+    /// How many mistakes there are in a text up to the one that a problem is about; none of other problems.
+    fn understood(&self, problem: &Diagnostic) -> usize {
+        if !problem.rule.is_of_text() {
+            return 0;
+        }
+        let problems = self.tried.diagnostics(problem.file);
+        let is_before =
+            |other: &&Diagnostic| other.span.start <= problem.span.start && other.rule.is_of_text();
+        problems.iter().filter(is_before).count()
     }
 
     fn counts(&self, files: &[FileId], problem: &Diagnostic) -> Counts {

@@ -8,9 +8,9 @@ mod actions;
 mod entities;
 
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{EntityKind, Lexeme, Span, SyntaxErrorKind, Token, is_similar, lex, parse};
+use pydslrep_syntax::{EntityKind, KEYWORDS, Lexeme, Span, SyntaxErrorKind, Token, is_similar, lex, parse};
 
-use super::{RULE, words};
+use super::{RULE, mend, words};
 use crate::diagnostics::context::{Context, Problem};
 
 /// Longer statements are not looked at.
@@ -64,7 +64,7 @@ impl Rewrite {
 /// The statements of an entity that are one problem each.
 pub(crate) fn find(context: &Context<'_>) -> Vec<Rewrite> {
     let end = context.lexemes.last().map_or(0, |(_, last)| last.end);
-    if context.errors.is_empty() || end > super::mend::LONGEST {
+    if context.errors.is_empty() || end > mend::LONGEST {
         return Vec::new();
     }
     match context.tree {
@@ -74,15 +74,17 @@ pub(crate) fn find(context: &Context<'_>) -> Vec<Rewrite> {
     }
 }
 
-/// A problem that has no fix with that of the statement it is in.
+/// A problem that has no fix that helps with that of the statement it is in.
 pub(super) fn with_fallback(context: &Context<'_>, problem: Problem) -> Problem {
-    if !problem.fixes.is_empty() {
+    let Some(rewrite) =
+        context.rewrites.iter().find(|rewrite| rewrite.is_fallback && rewrite.reaches(problem.span))
+    else {
+        return problem;
+    };
+    if problem.fixes.iter().any(|fix| fix.safe || mend::is_split(context, &fix.edits)) {
         return problem;
     }
-    match context.rewrites.iter().find(|rewrite| rewrite.is_fallback && rewrite.reaches(problem.span)) {
-        Some(rewrite) => rewrite.offer(context, problem),
-        None => problem,
-    }
+    rewrite.offer(context, Problem { fixes: Vec::new(), ..problem })
 }
 
 /// A token with its text; a number with a comma is one, and so is what stands in quotes.
@@ -146,7 +148,12 @@ fn words_of(context: &Context<'_>, lexemes: &[Lexeme]) -> Option<Vec<Word>> {
 /// The statement `text` in place of these words.
 fn rewrite(words: &[Word], text: String, help: String, is_fallback: bool) -> Option<Rewrite> {
     let span = words.first()?.span.to(words.last()?.span);
-    let message = Difference::between(words, &text).message();
+    let difference = Difference::between(words, &text);
+    if is_fallback && difference.only_removes_keywords() {
+        // Somebody is about to write what follows them.
+        return None;
+    }
+    let message = difference.message();
     let title = format!("write `{text}`");
     Some(Rewrite { span, text, message, title, help, is_fallback })
 }
@@ -193,6 +200,11 @@ impl Difference {
             }
         }
         Self { missing: runs.iter().map(|run| run.join(" ")).collect(), extra, respelt }
+    }
+
+    fn only_removes_keywords(&self) -> bool {
+        let is_keyword = |word: &String| KEYWORDS.iter().any(|(_, keyword)| keyword == word);
+        self.missing.is_empty() && self.respelt.is_empty() && self.extra.iter().any(is_keyword)
     }
 
     /// What is wrong, in words.

@@ -43,7 +43,9 @@ pub(super) fn find(context: &Context<'_>, kind: EntityKind) -> Option<Rewrite> {
     }
     let difference = Difference::between(&words, &text);
     let is_part = matches!(kind, EntityKind::Wheel | EntityKind::Sensor | EntityKind::Ip);
-    let is_one = foreign > 0 && !difference.missing.is_empty()
+    let lacks_words =
+        difference.missing.iter().any(|missing| missing.contains(char::is_alphabetic) || missing == ":");
+    let is_one = foreign > 0 && lacks_words
         || is_part && count > 1 && !difference.extra.is_empty()
         || is_short(&words, kind, count);
     rewrite(&words, text.clone(), help, !is_one)
@@ -95,13 +97,13 @@ fn wheel(words: &[Word]) -> Option<String> {
     for (before, word) in words.iter().zip(words.get(1..)?) {
         match word.token {
             Token::With | Token::Radius | Token::Has => {}
-            _ if says_nothing(word) => {}
-            token if token.is_name() => {
+            token if token.is_name() && (names.is_empty() || !says_nothing(word)) => {
                 // `wheel my wheel with …` is another mistake.
                 is_listed &= names.is_empty() || before.token == Token::Comma || before.text == "and";
                 names.push(&word.text);
             }
             _ if word.is_number() && radius.is_none() => radius = Some(&word.text),
+            _ if says_nothing(word) => {}
             _ => return None,
         }
     }
@@ -118,8 +120,8 @@ fn sensor(words: &[Word]) -> Option<String> {
         let slot = match word.token {
             Token::Type | Token::With | Token::Has => continue,
             Token::Distance | Token::Bumper if name.is_some() => &mut kind,
+            token if token.is_name() && name.is_none() => &mut name,
             _ if says_nothing(word) => continue,
-            token if token.is_name() => &mut name,
             _ => return None,
         };
         if slot.replace(&word.text).is_some() {
@@ -135,8 +137,8 @@ fn ip(words: &[Word]) -> Option<String> {
         let slot = match word.token {
             Token::With | Token::Has => continue,
             Token::Ipv4 => &mut address,
+            token if token.is_name() && name.is_none() => &mut name,
             _ if says_nothing(word) => continue,
-            token if token.is_name() => &mut name,
             _ => return None,
         };
         if slot.replace(&word.text).is_some() {
@@ -169,86 +171,110 @@ fn list(words: &[Word]) -> Option<(Vec<&str>, usize)> {
     (opened == 0).then_some((names, words.len()))
 }
 
-/// Whether a list begins at a word.
-fn begins_list(word: &Word, is_expected: bool) -> bool {
-    match word.token {
-        Token::OpenBrace => true,
-        Token::Invalid => word.text.ends_with(['(', '[']),
-        token => is_expected && token.is_name(),
+/// The names of a list, and what the words before and after it call them.
+struct List<'a> {
+    names: Vec<&'a str>,
+    before: Option<Token>,
+    after: Option<Token>,
+}
+
+impl List<'_> {
+    /// Whether it is called so.
+    fn is(&self, word: Token) -> bool {
+        self.before == Some(word)
+            || self.before.is_none_or(|before| before == Token::Has) && self.after == Some(word)
+    }
+}
+
+/// The lists among some words and the other words; `of` are the words for what is listed.
+fn lists<'a>(words: &'a [Word], of: [Token; 2]) -> Option<(Vec<List<'a>>, Vec<&'a Word>)> {
+    let (mut lists, mut others): (Vec<List<'a>>, Vec<&Word>) = (Vec::new(), Vec::new());
+    let (mut index, mut label, mut is_after_list) = (0, None, false);
+    while let Some(word) = words.get(index) {
+        let begins = match word.token {
+            Token::OpenBrace => true,
+            Token::Invalid => word.text.ends_with(['(', '[']),
+            token => label.is_some() && token.is_name(),
+        };
+        if begins {
+            let (names, taken) = list(&words[index..])?;
+            lists.push(List { names, before: label, after: None });
+            (index, label, is_after_list) = (index + taken, None, true);
+            continue;
+        }
+        let last = lists.last_mut().filter(|_| is_after_list);
+        match (last, of.contains(&word.token)) {
+            (Some(last), true) => last.after = Some(word.token),
+            (_, true) => label = Some(word.token),
+            _ if word.token == Token::Has => label = Some(Token::Has),
+            _ => others.push(word),
+        }
+        (index, is_after_list) = (index + 1, false);
+    }
+    Some((lists, others))
+}
+
+/// The lists of both kinds, the first of which must be there; what no word says is said by the order.
+fn in_order<'a>(lists: &[List<'a>], of: [Token; 2]) -> Option<(String, Option<String>)> {
+    let joined = |list: &List<'a>| list.names.join(" ");
+    match lists {
+        [only] => (!only.is(of[1])).then(|| (joined(only), None)),
+        [first, second] if first.is(of[1]) && !second.is(of[1]) => {
+            Some((joined(second), Some(joined(first))))
+        }
+        [first, second] if !first.is(of[1]) && !second.is(of[0]) => {
+            Some((joined(first), Some(joined(second))))
+        }
+        _ => None,
     }
 }
 
 fn robot(words: &[Word], default_port: u16) -> Option<String> {
+    const LISTED: [Token; 2] = [Token::Wheels, Token::Sensors];
+    let (lists, others) = lists(words.get(1..)?, LISTED)?;
     let (mut name, mut drive, mut port) = (None, None, None);
-    let (mut wheels, mut sensors): (Option<Vec<&str>>, Option<Vec<&str>>) = (None, None);
-    let (mut index, mut label) = (1, None);
-    while let Some(word) = words.get(index) {
-        if begins_list(word, label.is_some()) {
-            let (names, taken) = list(&words[index..])?;
-            let slot =
-                if label == Some(Token::Sensors) || wheels.is_some() { &mut sensors } else { &mut wheels };
-            if slot.replace(names).is_some() {
-                return None;
-            }
-            (index, label) = (index + taken, None);
-            continue;
-        }
-        index += 1;
+    for word in others {
         let slot = match word.token {
-            Token::Has | Token::Wheels | Token::Sensors => {
-                label = Some(word.token);
-                continue;
-            }
             Token::With | Token::Type | Token::Port => continue,
             Token::Tw | Token::Fw | Token::Fwh => &mut drive,
             Token::Integer => &mut port,
+            token if token.is_name() && name.is_none() => &mut name,
             _ if says_nothing(word) => continue,
-            token if token.is_name() => &mut name,
             _ => return None,
         };
         if slot.replace(word.text.as_str()).is_some() {
             return None;
         }
     }
+    let (wheels, sensors) = in_order(&lists, LISTED)?;
     let drive = drive.map_or(String::new(), |drive| format!(" type {drive}"));
     let port = port.map_or(default_port.to_string(), str::to_owned);
-    let sensors = sensors.map_or(String::new(), |names| format!(" with sensors {{ {} }}", names.join(" ")));
-    let wheels = wheels?.join(" ");
+    let sensors = sensors.map_or(String::new(), |names| format!(" with sensors {{ {names} }}"));
     Some(format!("robot {}{drive} with port {port} has {{ {wheels} }} wheels{sensors}", name?))
 }
 
 fn environment(words: &[Word]) -> Option<String> {
-    let (mut name, mut ip) = (None, None);
-    let (mut robots, mut movements): (Option<Vec<&str>>, Option<Vec<&str>>) = (None, None);
-    let (mut index, mut label) = (1, None);
-    while let Some(word) = words.get(index) {
-        if begins_list(word, matches!(label, Some(Token::Has | Token::Robots | Token::Moves))) {
-            let (names, taken) = list(&words[index..])?;
-            let slot =
-                if label == Some(Token::Moves) || robots.is_some() { &mut movements } else { &mut robots };
-            if slot.replace(names).is_some() {
-                return None;
-            }
-            (index, label) = (index + taken, None);
-            continue;
-        }
-        index += 1;
+    const LISTED: [Token; 2] = [Token::Robots, Token::Moves];
+    let (lists, others) = lists(words.get(1..)?, LISTED)?;
+    let (mut name, mut ip, mut is_ip) = (None, None, false);
+    for word in others {
         let slot = match word.token {
-            Token::Has | Token::Robots | Token::Moves | Token::Ip => {
-                label = Some(word.token);
+            Token::Ip => {
+                is_ip = true;
                 continue;
             }
             Token::With => continue,
+            token if token.is_name() && is_ip => &mut ip,
+            token if token.is_name() && name.is_none() => &mut name,
             _ if says_nothing(word) => continue,
-            token if token.is_name() && label == Some(Token::Ip) => &mut ip,
-            token if token.is_name() => &mut name,
             _ => return None,
         };
         if slot.replace(word.text.as_str()).is_some() {
             return None;
         }
     }
+    let (robots, movements) = in_order(&lists, LISTED)?;
     let ip = ip.map_or(String::new(), |ip| format!(" with ip {ip}"));
-    let movements = movements.map_or(String::new(), |names| format!(" with {{ {} }} moves", names.join(" ")));
-    Some(format!("environment {}{ip} has {{ {} }} robots{movements}", name?, robots?.join(" ")))
+    let movements = movements.map_or(String::new(), |names| format!(" with {{ {names} }} moves"));
+    Some(format!("environment {}{ip} has {{ {robots} }} robots{movements}", name?))
 }
