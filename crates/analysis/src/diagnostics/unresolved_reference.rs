@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::{DriveWord, Entity, Name, Robot};
+use pydslrep_syntax::{EntityKind, SyntaxError, SyntaxErrorKind};
 
 use super::context::{Context, Problem, ProblemEdit, as_written};
 use super::{Page, Remedy, Rule};
@@ -41,7 +41,13 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(tree) = context.tree else { return };
     let references = tree.references();
     // A word that cannot be a name has been reported as that.
-    let is_name = |name: &Name| !context.errors.iter().any(|error| error.span == name.span);
+    let is_about = |error: &SyntaxError, name: &Name| match error.kind {
+        SyntaxErrorKind::InvalidName { .. } => {
+            name.span.start <= error.span.start && error.span.end <= name.span.end
+        }
+        _ => error.span == name.span,
+    };
+    let is_name = |name: &Name| !context.errors.iter().any(|error| is_about(error, name));
     for (kind, name) in references.iter().filter(|(_, name)| is_name(name)) {
         if context.resolve(*kind, name) == Resolution::Nothing {
             let alike = references.iter().filter(|(other, _)| other == kind);

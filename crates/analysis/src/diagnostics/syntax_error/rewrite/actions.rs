@@ -1,6 +1,6 @@
 //! Movements: their actions and what stands before them.
 
-use pydslrep_syntax::{EntityKind, Lexeme, Span, Token};
+use pydslrep_syntax::{EntityKind, Lexeme, Span, Token, is_similar};
 
 use super::{Rewrite, Word, are_sound, rewrite, shape, words, words_of};
 use crate::diagnostics::context::Context;
@@ -122,8 +122,14 @@ fn statement_as_action(
     let is_only_begun = errors < 2 && !is_call && !passed_over;
     let is_fallback = is_only_begun && (begins_action(statement) || is_one_word_away(&words, &text));
     let whole = format!("movement m of r {{ {text} }}");
+    let is_other_word = !text.split(' ').next().is_some_and(|verb| is_nearly(&first.text, verb));
+    let message = format!("there is no action `{}`; did you mean `{text}`?", first.text);
     let rewrite = rewrite(&words, text, help.to_owned(), is_fallback)?;
-    Some((rewrite, whole))
+    Some((if is_other_word { Rewrite { message, ..rewrite } } else { rewrite }, whole))
+}
+
+fn is_nearly(written: &str, verb: &str) -> bool {
+    written == verb || is_similar(written, verb)
 }
 
 /// Whether another first word is all that it takes.

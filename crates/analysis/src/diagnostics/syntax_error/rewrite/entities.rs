@@ -47,19 +47,19 @@ pub(super) fn find(context: &Context<'_>, kind: EntityKind) -> Option<Rewrite> {
         difference.missing.iter().any(|missing| missing.contains(char::is_alphabetic) || missing == ":");
     let is_one = foreign > 0 && lacks_words
         || is_part && count > 1 && !difference.extra.is_empty()
-        || is_short(&words, kind, count);
+        || is_short(&words, kind, count, foreign > 0);
     rewrite(&words, text.clone(), help, !is_one)
 }
 
 /// Whether most of the entity's keywords are missing, so that it is one mistake and not several.
-fn is_short(words: &[Word], kind: EntityKind, mistakes: usize) -> bool {
+fn is_short(words: &[Word], kind: EntityKind, mistakes: usize, has_brackets: bool) -> bool {
     let lacks = |token: Token| !words.iter().any(|word| word.token == token);
+    let lacks_braces = lacks(Token::OpenBrace) && !has_brackets;
     match kind {
         EntityKind::Robot => {
-            lacks(Token::Has) && (lacks(Token::Port) || mistakes > 1)
-                || lacks(Token::OpenBrace) && mistakes > 1
+            lacks(Token::Has) && (lacks(Token::Port) || mistakes > 1) || lacks_braces && mistakes > 1
         }
-        EntityKind::Environment => mistakes > 1 && (lacks(Token::Has) || lacks(Token::OpenBrace)),
+        EntityKind::Environment => mistakes > 1 && (lacks(Token::Has) || lacks_braces),
         _ => false,
     }
 }
