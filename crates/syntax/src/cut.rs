@@ -54,8 +54,15 @@ fn may_end(previous: Option<Token>, token: Token, inside: Option<EntityKind>) ->
     match previous {
         // `{ a b } wheels`
         Token::CloseBrace => token == Token::Name,
-        Token::Wheels | Token::Sensors | Token::Robots | Token::Moves => true,
-        Token::String | Token::UnterminatedString | Token::Slam | Token::Meters | Token::Centimeters => true,
+        Token::Wheels
+        | Token::Sensors
+        | Token::Robots
+        | Token::Moves
+        | Token::String
+        | Token::UnterminatedString
+        | Token::Slam
+        | Token::Meters
+        | Token::Centimeters => true,
         Token::Distance | Token::Bumper => inside == Some(EntityKind::Sensor),
         // A port never ends a robot, and a list may stand without its braces.
         _ if previous.is_number() => inside != Some(EntityKind::Robot),

@@ -69,7 +69,19 @@ pub(super) const ENDLESS: &str = "endless";
 
 pub(super) const RADII: Numbers = Numbers {
     usual: &["4.5", "4.5", "4.5", "5", "12.25", "99.9"],
-    doubtful: &["0", "-4.5", "-0.0", "100", "100.01", "450", "0.5", "0.499", "0.045", "0.0000000001", ENDLESS],
+    doubtful: &[
+        "0",
+        "-4.5",
+        "-0.0",
+        "100",
+        "100.01",
+        "450",
+        "0.5",
+        "0.499",
+        "0.045",
+        "0.0000000001",
+        ENDLESS,
+    ],
 };
 
 pub(super) const DISTANCES: Numbers = Numbers {

@@ -185,8 +185,8 @@ impl Difference {
         let mut respelt = Vec::new();
         left.retain(|word| {
             let is_meant = |meant: &&str| is_similar(&word.text, meant);
-            let run = runs.iter_mut().find(|run| run.iter().any(|meant| is_meant(&meant)));
-            let meant = run.and_then(|run| Some(run.remove(run.iter().position(|meant| is_meant(&meant))?)));
+            let run = runs.iter_mut().find(|run| run.iter().any(&is_meant));
+            let meant = run.and_then(|run| Some(run.remove(run.iter().position(is_meant)?)));
             respelt.extend(meant.map(|meant| (word.text.clone(), meant.to_owned())));
             meant.is_none()
         });

@@ -189,7 +189,7 @@ fn said(words: &[Word]) -> Option<Said<'_>> {
         match word.text.to_lowercase().as_str() {
             "at" | "speed" | "velocity" => speed_follows = true,
             "m" | "meter" | "meters" | "metre" | "metres" if said.speed.is_none() => {
-                said.unit = Some("meters")
+                said.unit = Some("meters");
             }
             "cm" | "centimeter" | "centimeters" | "centimetre" | "centimetres" => {
                 said.unit = said.unit.or(said.speed.is_none().then_some("centimeters"));

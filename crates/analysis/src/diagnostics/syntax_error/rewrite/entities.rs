@@ -18,9 +18,6 @@ pub(super) fn find(context: &Context<'_>, kind: EntityKind) -> Option<Rewrite> {
     let mistakes = context.errors.iter().filter(|error| !is_slip(&error.kind));
     let (count, foreign) =
         (mistakes.clone().count(), mistakes.filter(|error| is_foreign(&error.kind)).count());
-    if count == 0 {
-        return None;
-    }
     let words = words_of(context, context.lexemes)?;
     let words: Vec<Word> = words.into_iter().map(|word| corrected(word, kind)).collect();
     let text = match kind {
@@ -45,9 +42,10 @@ pub(super) fn find(context: &Context<'_>, kind: EntityKind) -> Option<Rewrite> {
     let is_part = matches!(kind, EntityKind::Wheel | EntityKind::Sensor | EntityKind::Ip);
     let lacks_words =
         difference.missing.iter().any(|missing| missing.contains(char::is_alphabetic) || missing == ":");
+    // Keywords that are only misspelt are one mistake each.
     let is_one = foreign > 0 && lacks_words
         || is_part && count > 1 && !difference.extra.is_empty()
-        || is_short(&words, kind, count, foreign > 0);
+        || count > 0 && is_short(&words, kind, count, foreign > 0);
     rewrite(&words, text.clone(), help, !is_one)
 }
 

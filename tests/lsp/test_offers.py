@@ -1,0 +1,82 @@
+"""Whatever fix the command shows an editor offers, and the other way round: for every program of `tests/recovery`."""
+
+from __future__ import annotations
+
+import json
+import pathlib
+import re
+import subprocess
+
+import pytest
+from editor import Editor
+from lsprotocol import types
+from pytest_lsp import LanguageClient
+
+pytestmark = pytest.mark.asyncio
+
+RECOVERY = pathlib.Path(__file__).parents[1] / "recovery"
+FENCE = re.compile(r"^```pyr(?P<kind> behind)?\n(?P<text>.*?)^```$", re.M | re.S)
+
+
+def programs(page: pathlib.Path) -> list[str]:
+    """The programs of a page, with what stands behind each of them."""
+    found = list(FENCE.finditer(page.read_text(encoding="utf-8")))
+    behind = "".join(match["text"] for match in found if match["kind"])
+    return [match["text"] + behind for match in found if not match["kind"]]
+
+
+def shown(command: str, path: pathlib.Path) -> list[str]:
+    """The titles of the fixes that the command shows for people."""
+    done = subprocess.run(
+        [command, "check", "--format", "sarif", path],
+        capture_output=True,
+        encoding="utf-8",
+        check=False,
+    )
+    results = json.loads(done.stdout)["runs"][0]["results"]
+    titles = [
+        fix["description"]["text"] for found in results for fix in found["fixes"]
+    ]
+    return sorted(titles)
+
+
+async def offered(client: LanguageClient, uri: str, text: str) -> list[str]:
+    """The titles of the quick fixes that an editor offers anywhere in a program."""
+    lines = text.splitlines()
+    end = types.Position(len(lines), 0)
+    everywhere = types.Range(types.Position(0, 0), end)
+    context = types.CodeActionContext(
+        diagnostics=[], only=[types.CodeActionKind.QuickFix]
+    )
+    params = types.CodeActionParams(
+        types.TextDocumentIdentifier(uri), everywhere, context
+    )
+    actions = await client.text_document_code_action_async(params) or []
+    titles = [
+        action.title
+        for action in actions
+        # Those for many problems at once are the editor's own.
+        if isinstance(action, types.CodeAction) and action.edit
+    ]
+    return sorted(title[0].lower() + title[1:] for title in titles)
+
+
+@pytest.mark.parametrize(
+    "page",
+    sorted(path for path in RECOVERY.glob("*.md") if path.stem != "README"),
+    ids=lambda page: page.stem,
+)
+async def test_command_and_editor_offer_the_same(
+    client: LanguageClient, tmp_path: pathlib.Path, command: str, page: pathlib.Path
+) -> None:
+    editor = Editor(client, tmp_path)
+    cases = programs(page)
+    assert len(cases) > 5
+    for number, text in enumerate(cases):
+        path = tmp_path / f"case_{number}.pyr"
+        path.write_text(text, encoding="utf-8", newline="")
+        uri = editor.open(path.name, text)
+        told = shown(command, path)
+        assert await offered(client, uri, text) == sorted(
+            title[0].lower() + title[1:] for title in told
+        ), text
