@@ -55,7 +55,9 @@ function offerEnvironment(program: vscode.TextDocument): void {
 
 /** Adds an environment: the one that the server offers, with all robots and movements, else one to fill in. */
 export async function addEnvironment(program: vscode.TextDocument): Promise<void> {
-  const editor = await vscode.window.showTextDocument(program);
+  // Not over the preview, whose button asks for it, too.
+  const visible = vscode.window.visibleTextEditors.find(({ document }) => document === program);
+  const editor = await vscode.window.showTextDocument(program, { viewColumn: visible?.viewColumn ?? vscode.ViewColumn.One });
   const problem = vscode.languages.getDiagnostics(program.uri).find(({ code }) => (typeof code === "object" ? code.value : code) === "no-environment");
   if (problem !== undefined) {
     const kind = vscode.CodeActionKind.QuickFix.value;

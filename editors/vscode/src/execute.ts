@@ -25,23 +25,55 @@ export async function execute(around: Surroundings, command: string, chosen: Cho
   }
 }
 
-/** Carries out a command that takes a while: with its progress, and until somebody stops it. */
+/** Carries out a command that takes a while: with its progress once it has begun, and until somebody stops it. */
 export async function executeLong(
   around: Surroundings,
   command: string,
   chosen: ChosenEnvironment,
   stop: vscode.CancellationTokenSource,
 ): Promise<unknown> {
-  const title = `Running ${chosen.environment}`;
-  const options = { location: vscode.ProgressLocation.Notification, title, cancellable: true };
+  const shown = new Shown(`Running ${chosen.environment}`, stop);
   try {
-    return await vscode.window.withProgress(options, (progress, pressed) => {
-      pressed.onCancellationRequested(() => stop.cancel());
-      return request(around.client, command, chosen, (message) => progress.report({ message }), stop.token);
-    });
+    return await request(around.client, command, chosen, (message) => shown.report(message), stop.token);
   } catch (error) {
+    shown.end();
     explain(around, command, chosen, error);
     return undefined;
+  } finally {
+    shown.end();
+  }
+}
+
+/** Progress as a message that stops what it is about; what fails before it begins has none. */
+class Shown {
+  private progress: vscode.Progress<{ message?: string }> | undefined;
+  private finish: () => void = () => undefined;
+
+  constructor(
+    private readonly title: string,
+    private readonly stop: vscode.CancellationTokenSource,
+  ) {}
+
+  report(message: string | undefined): void {
+    if (this.progress === undefined) {
+      this.begin();
+    }
+    if (message !== undefined) {
+      this.progress?.report({ message });
+    }
+  }
+
+  end(): void {
+    this.finish();
+  }
+
+  private begin(): void {
+    const options = { location: vscode.ProgressLocation.Notification, title: this.title, cancellable: true };
+    void vscode.window.withProgress(options, (progress, pressed) => {
+      this.progress = progress;
+      pressed.onCancellationRequested(() => this.stop.cancel());
+      return new Promise<void>((resolve) => (this.finish = resolve));
+    });
   }
 }
 
@@ -49,7 +81,7 @@ async function request(
   client: LanguageClient | undefined,
   command: string,
   chosen: ChosenEnvironment,
-  report?: (message: string) => void,
+  report?: (message: string | undefined) => void,
   token?: vscode.CancellationToken,
 ): Promise<unknown> {
   if (client === undefined) {
@@ -61,7 +93,7 @@ async function request(
   }
   const workDoneToken = `pydslrep command ${++requests}`;
   const following = client.onProgress(WorkDoneProgress.type, workDoneToken, (value) => {
-    if (value.kind !== "end" && value.message !== undefined) {
+    if (value.kind !== "end") {
       report(value.message);
     }
   });

@@ -42,6 +42,37 @@ test("a server that is killed comes back, with what is open", async () => {
   });
 });
 
+test("a run that is stopped says nothing, and one that a restart ends says so", async () => {
+  // A robot that explores takes a while.
+  const scene = program("examples/rooms.scene.toml");
+  const files = { "rooms.pyr": program("examples/rooms.pyr"), "rooms.scene.toml": scene };
+  await Stage.with({ files, open: "rooms.pyr" }, async (stage) => {
+    const running = stage.toasts.filter({ hasText: "Running rooms" });
+    await stage.page.locator(".view-line").first().click();
+    await until("the server runs", async () => /running/.test(await status(stage)));
+    await stage.page.keyboard.press("F5");
+    await running.waitFor();
+    await stage.call("PyDSLRep: Stop Run");
+    await running.waitFor({ state: "detached" });
+    assert.equal(await stage.toasts.count(), 0);
+
+    await stage.page.keyboard.press("F5");
+    await running.waitFor();
+    await stage.call("PyDSLRep: Restart Server");
+    await stage.toasts.filter({ hasText: "The run of rooms ended because the language server was restarted." }).waitFor();
+    await running.waitFor({ state: "detached" });
+    await until("it runs again", async () => /running/.test(await status(stage)));
+    await stage.toast("The run of rooms ended", "Run Again");
+    await running.waitFor();
+
+    const [server] = stage.servers();
+    process.kill(server, "SIGKILL");
+    await stage.toasts.filter({ hasText: "The run of rooms ended because the language server was restarted." }).waitFor();
+    await running.waitFor({ state: "detached" });
+    assert.equal(await stage.toasts.count(), 1);
+  });
+});
+
 test("a program that never answers keeps nobody from another one", async () => {
   const silent = "#!/bin/sh\nwhile :; do sleep 1; done\n";
   await Stage.with({

@@ -1,18 +1,37 @@
-// The first minutes of somebody who opens an empty file: default settings, nothing known.
+// The first hour of somebody who opens an empty file: default settings, nothing known, and all that goes wrong at first.
 import assert from "node:assert/strict";
+import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
+import os from "node:os";
+import path from "node:path";
 import { after, afterEach, before, test } from "node:test";
 
-import { Stage, spaced, until } from "./stage.mjs";
+import { Stage, program, spaced, until } from "./stage.mjs";
+
+const SQUARE = program("examples/square.pyr");
+const NO_ENVIRONMENT = SQUARE.slice(0, SQUARE.indexOf("// The environment says"));
+
+const cache = mkdtempSync(path.join(os.tmpdir(), "pyr-cache-"));
 
 let stage;
 before(async () => {
   stage = await Stage.open({
-    files: { "empty.pyr": "", "wide.pyr": "movement m of r {\n    move 1 meters\n}\n" },
+    files: {
+      "empty.pyr": "",
+      "wide.pyr": "movement m of r {\n    move 1 meters\n}\n",
+      "none.pyr": NO_ENVIRONMENT,
+      "two.pyr": `${SQUARE}\nenvironment hall has { scout } robots with { left_square } moves\n`,
+      "unopened.pyr": "wheel w with radius -1\n",
+    },
     open: "empty.pyr",
+    // Nothing is there from earlier runs.
+    env: { XDG_CACHE_HOME: cache },
   });
 });
 afterEach((t) => t.passed || stage?.keepPicture());
-after(() => stage?.close());
+after(async () => {
+  await stage?.close();
+  rmSync(cache, { recursive: true, force: true });
+});
 
 /** What the status bar says. */
 const bar = async () => spaced(await stage.page.locator(".statusbar").innerText());
@@ -21,20 +40,167 @@ test("an empty file that was open before the extension was known is indented by 
   await until("the status bar says it", async () => /Spaces: 2/.test(await bar()));
 });
 
+test("an empty file says what to do, until the first character", async () => {
+  await until("it says so", async () => (await ghost()).includes("press Ctrl+Space"));
+  await stage.line("").first().click();
+  await stage.type("r");
+  await until("it is gone", async () => (await ghost()) === "");
+  await stage.page.keyboard.press("Backspace");
+  await until("it is back", async () => (await ghost()).includes("Type a program"));
+});
+
+/** The text that is shown in the editor without being in the file. */
+function ghost() {
+  return stage.page.evaluate(() => {
+    const shown = [...document.querySelectorAll(".view-line span")].map((span) => getComputedStyle(span, "::after").content);
+    return shown.filter((text) => text !== "none" && text !== "normal").join("").replaceAll("\u00a0", " ");
+  });
+}
+
 test("whatever a file has, two is what is typed", async () => {
   await stage.openFile("wide.pyr");
   await until("the status bar says it", async () => /Spaces: 2/.test(await bar()));
   await stage.openFile("empty.pyr");
 });
 
-test("enter after a brace indents, and the brace that came with it is typed over", async () => {
+test("enter after a brace indents", async () => {
   await stage.line("").first().click();
   await stage.type("robot r has { a } wheels");
   await stage.page.keyboard.press("Enter");
   await stage.type("movement m of r {");
+  await stage.page.keyboard.press("Escape");
   await stage.page.keyboard.press("Enter");
   await stage.type("turn left");
   await stage.page.keyboard.press("Control+S");
   await until("it is saved", () => stage.read("empty.pyr") !== "");
   assert.equal(stage.read("empty.pyr"), "robot r has { a } wheels\nmovement m of r {\n  turn left\n}");
+});
+
+test("the packaged server is stripped", () => {
+  const [name] = readdirSync(path.join(stage.scratch, "extensions")).filter((folder) => folder.startsWith("pydslrep."));
+  const server = readFileSync(path.join(stage.scratch, "extensions", name, "server/pydslrep"));
+  for (const section of [".symtab", ".debug_line", ".debug_info"]) {
+    assert.ok(!server.includes(`${section}\0`), `it has no ${section}`);
+  }
+});
+
+test("without an environment F5 says so once, and adds one", async () => {
+  await stage.openFile("none.pyr");
+  await stage.page.locator(".squiggly-info").first().waitFor();
+  await stage.page.keyboard.press("F5");
+  await stage.toast("has no environment yet", "Add Environment");
+  await until("there is one", async () => /area/.test(await bracesOf("environment")));
+  await stage.page.keyboard.press("Control+Z");
+});
+
+/** The lines of the editor that begin with a word. */
+async function bracesOf(word) {
+  const lines = await stage.line(word).allInnerTexts();
+  return lines.map(spaced).join("\n");
+}
+
+test("of two environments F5 runs the one at the cursor", async () => {
+  await stage.openFile("two.pyr");
+  await stage.page.keyboard.press("Control+End");
+  await stage.page.locator(".codelens-decoration", { hasText: "Run" }).first().waitFor();
+  await stage.page.keyboard.press("ArrowUp");
+  await stage.page.keyboard.press("F5");
+  const progress = stage.page.locator(".notification-toast", { hasText: "Running hall" });
+  // The first run puts the client library into place, and says so.
+  await progress.filter({ hasText: "preparing Python" }).waitFor();
+  await stage.page.locator(".notification-toast", { hasText: /hall: .* simulated in/ }).waitFor();
+  assert.equal(await progress.count(), 0);
+  assert.equal(await stage.toasts.count(), 1);
+  await stage.toast(/hall: .* simulated in/, "Show Path");
+  const frame = await stage.webview("main.preview");
+  await frame.locator('main.preview[data-driven="hall"]').waitFor();
+});
+
+test("where both use what is at the cursor it asks which", async () => {
+  await stage.page.locator('.tab[data-resource-name="two.pyr"]').click();
+  await stage.page.keyboard.press("Control+Home");
+  await stage.page.keyboard.press("Control+F5");
+  const rows = stage.page.locator(".quick-input-widget .monaco-list-row");
+  await until("both are offered", async () => (await rows.allInnerTexts()).map((text) => text.trim()).join() === "yard,hall");
+  await stage.page.keyboard.press("Escape");
+});
+
+test("beside a program without an environment there is no other program's path", async () => {
+  const frame = await stage.webview("main.preview");
+  await frame.locator('main.preview[data-state="ready"]').waitFor();
+  await stage.openFile("none.pyr");
+  await frame.getByText("The program has no environment yet").waitFor();
+  assert.equal(await frame.locator("main.preview").getAttribute("data-state"), "empty");
+  assert.equal(await frame.locator("aside.legend").isVisible(), false);
+  await frame.locator('[data-part="remedy"]').click();
+  await frame.locator('main.preview[data-state="ready"][data-environment="area"]').waitFor();
+});
+
+test("the preview fits beside the program in a window of 700 pixels", async () => {
+  await stage.page.setViewportSize({ width: 700, height: 560 });
+  const frame = await stage.webview("main.preview");
+  await until("nothing is outside", () =>
+    frame.evaluate(() => {
+      const parts = [...document.querySelectorAll("button, select, input, output, canvas")].filter((part) => part.checkVisibility());
+      return innerWidth < 400 && parts.every((part) => part.getBoundingClientRect().right <= innerWidth + 0.5);
+    }),
+  );
+  await stage.picture("preview-narrow");
+  await stage.page.setViewportSize({ width: 1100, height: 680 });
+});
+
+test("the check task doubles no problem", async () => {
+  const problems = async () => spaced((await stage.page.locator("#status\\.problems").getAttribute("aria-label")) ?? "");
+  await until("the unopened file has its problem", async () => /[1-9]/.test(await problems()));
+  await stage.page.keyboard.press("Control+Shift+M");
+  await stage.page.locator(".viewpane-filter input, .markers-panel-action-filter input").first().fill("above zero");
+  const rows = stage.page.locator(".markers-panel .monaco-list-row", { hasText: "must be above zero" });
+  await until("it is listed", async () => (await rows.count()) === 1);
+  await stage.call("Tasks: Run Build Task");
+  await stage.page.locator(".quick-input-widget .monaco-list-row", { hasText: "check" }).first().click();
+  // It ends with an exit code, as there are errors.
+  await stage.page.locator(".single-terminal-tab .codicon-error").waitFor();
+  await stage.page.keyboard.press("Control+Shift+M");
+  await rows.first().waitFor();
+  assert.equal(await rows.count(), 1);
+  await stage.page.keyboard.press("Control+J");
+});
+
+test("statistics and versions are told", async () => {
+  await stage.openFile("two.pyr");
+  await stage.call("PyDSLRep: Statistics");
+  await stage.toast(/2 environments: \d+ lines of program stand for \d+ lines of Python \(\d\d % fewer\)/);
+  await stage.call("PyDSLRep: Show Version");
+  await stage.toast(/PyDSLRep \d+\.\d+\.\d+, server \d+\.\d+\.\d+/);
+});
+
+test("a new file is a program, and its script asks for a place", async () => {
+  await stage.call("Create: New File...");
+  await stage.page.locator(".quick-input-widget .monaco-list-row", { hasText: "PyDSLRep Program" }).click();
+  await stage.tab("Untitled-1").waitFor();
+  await until("it is indented by two", async () => /Spaces: 2 .*PyDSLRep|PyDSLRep.* Spaces: 2/.test(await bar()));
+  const [head, environment] = [NO_ENVIRONMENT, SQUARE.slice(NO_ENVIRONMENT.length)];
+  await stage.page.keyboard.insertText(`${head}${environment}`);
+  await stage.page.locator(".codelens-decoration", { hasText: "Generate script" }).first().waitFor({ state: "attached" });
+  await stage.page.keyboard.press("Control+End");
+  await stage.call("PyDSLRep: Generate Script");
+  await stage.toast("Save the file first; the script is written next to it.", "Save As…");
+  const input = stage.page.locator(".quick-input-widget input").first();
+  await input.fill(path.join(stage.folder, "mine.pyr"));
+  await stage.page.keyboard.press("Enter");
+  await until("program and script are written", () => existsSync(path.join(stage.folder, "mine.pyr")) && existsSync(path.join(stage.folder, "yard.py")));
+  await stage.toast("Script written: yard.py");
+  await stage.tab("yard.py").waitFor();
+});
+
+test("steps of the walkthrough are done that were done", async () => {
+  await stage.call("Welcome: Open Walkthrough...");
+  const input = stage.page.locator(".quick-input-widget input").first();
+  await input.fill("Get started with PyDSLRep");
+  await stage.page.locator(".quick-input-widget .monaco-list-row", { hasText: "PyDSLRep" }).first().waitFor();
+  await stage.page.keyboard.press("Enter");
+  const done = stage.page.locator('button.getting-started-step[aria-checked="true"]');
+  await until("four steps are", async () => (await done.count()) === 4);
+  const open = stage.page.locator('button.getting-started-step[aria-checked="false"]');
+  assert.match(await open.innerText(), /Settings/);
 });

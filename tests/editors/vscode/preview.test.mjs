@@ -1,5 +1,7 @@
 // The path preview in the real editor: opens beside the program, and follows what is typed.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import path from "node:path";
 import { after, afterEach, before, test } from "node:test";
 
 import { Stage, program, until } from "./stage.mjs";
@@ -48,6 +50,20 @@ test("a mistake keeps the last picture, and says so", async () => {
   await until("it says that it is old", async () => (await frame.locator("main.preview").getAttribute("data-state")) === "stale");
   await stage.type("2");
   await until("it is new", async () => (await frame.locator("main.preview").getAttribute("data-state")) === "ready");
+});
+
+test("the path is exported as SVG, PNG and replay", async () => {
+  for (const [format, name, begins] of [["SVG", "convoy.svg", "<svg"], ["PNG", "convoy.png", "\x89PNG"], ["Replay", "convoy-replay.svg", "<svg"]]) {
+    await stage.call("PyDSLRep: Export Path…");
+    await stage.page.locator(".quick-input-widget .monaco-list-row", { hasText: format }).first().click();
+    const input = stage.page.locator(".quick-input-widget input").first();
+    await until("a file is asked for", async () => (await input.inputValue().catch(() => "")).endsWith(name));
+    await stage.page.keyboard.press("Enter");
+    await stage.toast(`Path exported: ${name}`);
+    const content = readFileSync(path.join(stage.folder, name), "latin1");
+    assert.ok(content.startsWith(begins) || content.includes(begins), content.slice(0, 80));
+    assert.equal(content.includes("<animate"), format === "Replay");
+  }
 });
 
 test("from a key to the picture on the screen", async (t) => {

@@ -20,8 +20,8 @@ export const repository = path.resolve(import.meta.dirname, "../../..");
 /** The extension that changes settings for the tests. */
 const HELPER = path.join(import.meta.dirname, "api");
 
-/** How long anything may take that is waited for. */
-const PATIENCE = 90_000;
+/** How long anything may take that is waited for, milliseconds. */
+const PATIENCE = Number(process.env.PATIENCE ?? 90_000);
 
 /** Nothing on the screen that is not the extension's. */
 const SETTINGS = {
@@ -213,6 +213,29 @@ export class Stage {
   /** Types at the cursor, as a person does: key by key. */
   async type(text) {
     await this.page.keyboard.type(text, { delay: 15 });
+  }
+
+  /** The messages on the screen. */
+  get toasts() {
+    return this.page.locator(".notification-toast");
+  }
+
+  /** Waits for a message, which has to be the only one, and presses its button or takes it away. */
+  async toast(text, button) {
+    const message = this.toasts.filter({ hasText: text });
+    await message.first().waitFor();
+    // A message that is pointed at stays.
+    await message.first().hover();
+    const all = await this.toasts.allInnerTexts();
+    if (all.length !== 1) {
+      throw new Error(`one message was expected, not ${all.length}: ${spaced(all.join(" | "))}`);
+    }
+    if (button === undefined) {
+      await message.locator(".codicon-notifications-clear, .codicon-notifications-hide").first().click();
+    } else {
+      await message.getByRole("button", { name: button }).click();
+    }
+    await message.waitFor({ state: "detached" });
   }
 
   /** The frame of a webview that has an element like this. */

@@ -42,6 +42,39 @@ test("lenses are shown above declarations", async () => {
   await stage.page.locator(".codelens-decoration", { hasText: /^1 reference$/ }).nth(2).waitFor();
 });
 
+test("a run with errors says so once, and leads to the first", async () => {
+  await stage.page.locator(".view-line").first().click();
+  await stage.page.keyboard.press("F5");
+  await stage.toast(/`yard` has errors: .*rovr/, "Show Problem");
+  await until("the cursor is there", async () => /Ln 6, Col/.test(spaced(await stage.page.locator(".statusbar").innerText())));
+  await stage.page.keyboard.press("Escape");
+  await stage.call("PyDSLRep: Generate Script");
+  await stage.toast(/`yard` has errors: .*rovr/);
+});
+
+test("the code of a problem leads to its page, and so do the light bulb and the command", async () => {
+  const page = stage.page.locator('.tab[data-resource-name="unresolved-reference.md"]');
+  const close = async () => {
+    await page.waitFor();
+    // Laid out, not as Markdown.
+    const frame = await stage.webview("h2:has-text('Why it matters')");
+    assert.equal(await frame.locator("h1").innerText(), "unresolved-reference");
+    await page.click({ button: "middle" });
+    await page.waitFor({ state: "detached" });
+  };
+  await stage.line("movement patrol of").first().locator("span span", { hasText: "rovr" }).first().hover();
+  await stage.page.locator(".monaco-hover a.code-link", { hasText: "unresolved-reference" }).first().click();
+  await close();
+  await stage.clickWord("movement patrol of", "rovr");
+  await stage.call("PyDSLRep: Explain This Problem");
+  await close();
+  await stage.clickWord("movement patrol of", "rovr");
+  const offered = stage.page.locator(".action-widget .monaco-list-row", { hasText: "Explain this problem: unresolved-reference" });
+  await stage.summon("Control+.", offered.first());
+  await offered.first().click();
+  await close();
+});
+
 test("a quick fix mends the mistake", async () => {
   await stage.page.locator(".squiggly-error").first().waitFor();
   await stage.clickWord("movement patrol of", "rovr");
@@ -95,6 +128,10 @@ test("the program runs in the simulator, and a message says how it went", async 
   // A message that is pointed at stays.
   await message.hover();
   assert.match(spaced(await message.innerText()), /yard: [\d.]+ s \(planned: [\d.]+ s\) simulated in [\d.]+ s/);
+});
+
+test("the message leads to the path", async () => {
+  assert.deepEqual(await driven().getByRole("button").filter({ hasText: "Show" }).allInnerTexts(), ["Show Path", "Show Table"]);
 });
 
 test("the preview shows what was driven", async () => {
