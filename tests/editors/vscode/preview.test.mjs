@@ -53,7 +53,7 @@ test("a mistake keeps the last picture, and says so", async () => {
 });
 
 test("the path is exported as SVG, PNG and replay", async () => {
-  for (const [format, name, begins] of [["SVG", "convoy.svg", "<svg"], ["PNG", "convoy.png", "\x89PNG"], ["Replay", "convoy-replay.svg", "<svg"]]) {
+  for (const [format, name, begins] of [["SVG", "road.svg", "<svg"], ["PNG", "road.png", "\x89PNG"], ["Replay", "road-replay.svg", "<svg"]]) {
     await stage.call("PyDSLRep: Export Path…");
     await stage.page.locator(".quick-input-widget .monaco-list-row", { hasText: format }).first().click();
     const input = stage.page.locator(".quick-input-widget input").first();
