@@ -66,7 +66,7 @@ ${readFileSync(path.join(repository, "examples/square.pyr"), "utf8")}`,
     range: { start: { line: number; column: number } };
   }[];
   const wanted = json.map(({ file, code, severity, range: { start } }) =>
-    [severity === "information" ? "info" : severity, code, file, start.line, start.column].join(" "),
+    [severity, code, file, start.line, start.column].join(" "),
   );
   assert.deepEqual(found, wanted);
   const levels = new Set(json.map(({ severity }) => severity));
