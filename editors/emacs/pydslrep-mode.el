@@ -85,7 +85,8 @@
 (defun pydslrep-indent-line ()
   "Indents by two for each open brace."
   (let* ((state (save-excursion (syntax-ppss (line-beginning-position))))
-         (depth (- (car state) (if (looking-at-p "[ \t]*}") 1 0))))
+         (closes (save-excursion (back-to-indentation) (eq (char-after) ?})))
+         (depth (- (car state) (if closes 1 0))))
     (unless (or (nth 3 state) (nth 4 state))
       (if (<= (current-column) (current-indentation))
           (indent-line-to (* 2 (max 0 depth)))

@@ -13,11 +13,13 @@ from typing import Any, cast
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from keyboard import Keyboard
-from person import Habits
+from person import Habits, same_leader, usual_leader
 from session import MESSAGE, PROGRAM, ROOT, Session
 from terminal import Terminal
 
 HERE = Path(__file__).resolve().parent
+# For VS Code: what it has by default, unless the extension asks for something else.
+ENTER_ACCEPTS = {"[pydslrep]": {"editor.acceptSuggestionOnEnter": "on"}}
 # Variables that name the folders of plugins.
 CMP = ("NVIM_CMP", "CMP_NVIM_LSP")
 BLINK = ("BLINK_CMP",)
@@ -123,7 +125,7 @@ class Modal(InTerminal):
 class Neovim(Modal):
     """Neovim with a completion plugin, or with its own completion."""
 
-    habits = Habits(continues_comments=True, ends_last_line=True)
+    habits = Habits(leader=same_leader, ends_last_line=True)
     insert = "-- INSERT --"
     normal = r"(?s)\A(?!.*-- INSERT --)"
     mistake = "(?m)^E "
@@ -166,7 +168,7 @@ class Neovim(Modal):
 class Helix(Modal):
     """Helix as it comes: completion and auto-closing brackets are on."""
 
-    habits = Habits(closes_braces=True)
+    habits = Habits(leader=usual_leader, closes_braces=True)
     mistake = "● 1"
     insert = "(?m)^ INS"
     normal = "(?m)^ NOR"
@@ -200,10 +202,14 @@ QUIET = """
 
 
 class Emacs(InTerminal):
-    """Emacs with eglot and company, which completes from the first letter on and without delay."""
+    """Emacs with eglot and a package that completes while one types."""
 
     habits = Habits(closes_braces=True)
     mistake = r"\[eglot:"
+
+    def __init__(self, made: Session, package: str) -> None:
+        self.package = package
+        super().__init__(made)
 
     def set_up(self) -> None:
         readme = (ROOT / "editors" / "emacs" / "README.md").read_text()
@@ -211,7 +217,9 @@ class Emacs(InTerminal):
         assert block, "the readme has no elisp"
         settings = self.made.home / ".emacs.d" / "init.el"
         settings.parent.mkdir()
-        own = (HERE / "emacs.el").read_text().replace("COMPANY", os.environ["COMPANY"])
+        found = '(file-expand-wildcards (concat (getenv "ELPA") "/*"))'
+        packages = f"(setq load-path (append {found} load-path))\n"
+        own = packages + (HERE / "emacs" / f"{self.package}.el").read_text()
         text = QUIET + block[1].replace("/path/to/pydslrep", str(ROOT)) + own
         settings.write_text(text)
         self.made.set_up()
@@ -235,7 +243,8 @@ class VsCode(Editor):
 
     habits = Habits(closes_braces=True)
 
-    def __init__(self, made: Session) -> None:
+    def __init__(self, made: Session, **settings: object) -> None:
+        self.file = ""
         self.node = subprocess.Popen(
             ["node", str(HERE / "vscode.mjs")],
             stdin=subprocess.PIPE,
@@ -243,7 +252,9 @@ class VsCode(Editor):
             text=True,
         )
         self.found: list[str] = []
-        self.work = Path(self.ask("start", program=PROGRAM)["folder"])
+        self.work = Path(
+            self.ask("start", program=PROGRAM, settings=settings)["folder"]
+        )
 
     def ask(self, action: str, **details: object) -> dict[str, Any]:
         """Has something done, and waits for it."""
@@ -257,10 +268,13 @@ class VsCode(Editor):
         return cast("dict[str, Any]", json.loads(answer))
 
     def open(self, file: Path) -> None:
+        self.file = file.stem
         self.ask("open", name=file.name)
 
     def type(self, keys: list[str], pace: float) -> float:
-        typed = self.ask("type", keys=keys, pace=pace, frames=os.environ.get("FRAMES"))
+        kept = os.environ.get("FRAMES")
+        frames = str(Path(kept, self.file)) if kept else None
+        typed = self.ask("type", keys=keys, pace=pace, frames=frames)
         self.found = typed["covered"]
         return float(typed["seconds"])
 
@@ -278,12 +292,14 @@ class VsCode(Editor):
 
 EDITORS: dict[str, Callable[[Session], Editor]] = {
     "vscode": VsCode,
+    "vscode-enter": lambda made: VsCode(made, **ENTER_ACCEPTS),
     "neovim": Neovim,
     "neovim-cmp": lambda made: Neovim(made, "cmp", "", CMP),
     "neovim-cmp-select": lambda made: Neovim(made, "cmp", "select", CMP),
     "neovim-blink": lambda made: Neovim(made, "blink", "default", BLINK),
     "neovim-blink-enter": lambda made: Neovim(made, "blink", "enter", BLINK),
     "helix": Helix,
-    "emacs": Emacs,
+    "emacs-company": lambda made: Emacs(made, "company"),
+    "emacs-corfu": lambda made: Emacs(made, "corfu"),
     "kakoune": Kakoune,
 }

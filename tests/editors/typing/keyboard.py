@@ -8,8 +8,6 @@ from collections.abc import Iterable
 
 from terminal import Terminal
 
-TMUX_NAMES = {"Backspace": "BSpace"}
-
 
 class Keyboard:
     """A connection that presses keys in a terminal."""
@@ -36,7 +34,7 @@ class Keyboard:
             quoted = '"\'"' if key == "'" else f"'{key}'"
             command = f"send-keys -l -- {quoted}"
         else:
-            command = f"send-keys {TMUX_NAMES.get(key, key)}"
+            command = f"send-keys {key}"
         self.tmux.stdin.write(command + "\n")
         self.tmux.stdin.flush()
 

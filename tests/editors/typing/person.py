@@ -1,16 +1,27 @@
 """How a person types a program: one key after the other, and nothing that the editor has put there already.
 
-Keys are characters, and these names: Enter, Tab, Backspace, Down, End.
+Keys are characters, and these names: Enter, Tab, Down, End, C-u (which deletes what is before the cursor).
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 
 STEP = 2
-LEADER = "// "
 COMMENT = re.compile(r"//.*|/\*.*?\*/")
+
+
+def same_leader(comment: str) -> str:
+    """That of the comment before."""
+    found = re.match(r"//\s*", comment)
+    return found[0] if found else ""
+
+
+def usual_leader(_comment: str) -> str:
+    """One blank, whatever the comment before has."""
+    return "// "
 
 
 @dataclass(frozen=True)
@@ -21,8 +32,9 @@ class Habits:
     indents: bool = True
     # After `{` there is a `}`. Enter between them puts it on a line of its own, where one goes down to it.
     closes_braces: bool = False
-    # After a line comment, Enter begins another one. Where none is wanted, one deletes it.
-    continues_comments: bool = False
+    # After a line comment, Enter begins another one with the `//` and the blanks that this gives. Where another beginning
+    # is wanted, one deletes it.
+    leader: Callable[[str], str] = lambda _comment: ""
     # The last line of a file ends without Enter.
     ends_last_line: bool = False
 
@@ -48,21 +60,19 @@ def strokes(program: str, habits: Habits) -> list[Stroke]:
             keys = ["Down", "End", *text.removeprefix("}")]
         else:
             steps = 0 if habits.indents else (len(line) - len(text)) // STEP
-            is_after_comment = lines[number - 1].lstrip().startswith("//")
-            goes_on = habits.continues_comments and is_after_comment
-            keys = ["Enter", *["Tab"] * steps, *_after_leader(text, goes_on)]
+            before = lines[number - 1].lstrip()
+            leader = habits.leader(before) if before.startswith("//") else ""
+            keys = ["Enter", *["Tab"] * steps, *_after_leader(text, leader)]
         typed += [Stroke(key, number) for key in keys]
         open_braces = _opened(open_braces, line)
     return typed
 
 
-def _after_leader(text: str, is_there: bool) -> list[str]:
-    """The keys for a line that begins as a comment, if that is there."""
-    if not is_there:
-        return list(text)
-    if text.startswith(LEADER):
-        return list(text.removeprefix(LEADER))
-    return ["Backspace"] * len(LEADER) + list(text)
+def _after_leader(text: str, leader: str) -> list[str]:
+    """The keys for a line that begins as a comment already."""
+    if text.startswith(leader):
+        return list(text.removeprefix(leader))
+    return ["C-u", *text]
 
 
 def _opened(before: list[bool], line: str) -> list[bool]:

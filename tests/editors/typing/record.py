@@ -30,7 +30,7 @@ SIGNS = {
     " ": "␣",
     "Enter": "⏎\n        ",
     "Tab": "⇥",
-    "Backspace": "⌫",
+    "C-u": "⌫",
     "Down": "↓",
     "End": "⇲",
 }
@@ -109,7 +109,7 @@ def record(name: str, share: list[Task]) -> list[Outcome]:
     outcomes: list[Outcome] = []
     left = list(share)
     while left:
-        with session("neovim" if name.startswith("neovim") else name) as made:
+        with session(name.partition("-")[0]) as made:
             editor = EDITORS[name](made)
             try:
                 prepare(editor.work, left)

@@ -23,7 +23,7 @@ failed=0
 for editor in "${editors[@]}"; do
   record=(python3 "$typing/record.py" --editor "$editor" "${options[@]}")
   case $editor in
-    vscode) record=("$repository/tests/editors/vscode/run.sh" --then "${record[@]}") ;;
+    vscode*) record=("$repository/tests/editors/vscode/run.sh" --then "${record[@]}") ;;
     *) need tmux tmux ;;
   esac
   case $editor in
@@ -34,10 +34,12 @@ for editor in "${editors[@]}"; do
       ;;
     helix) find_helix ;;
     kakoune) find_kakoune ;;
-    emacs)
+    emacs-*)
       find_emacs
-      COMPANY=${COMPANY:-$(echo "$(unpacked trixie elpa-company)"/usr/share/emacs/site-lisp/elpa-src/company-*)}
-      export COMPANY
+      # With what it needs: corfu alone is for windows.
+      case $editor in *corfu) package=elpa-corfu-terminal ;; *) package=elpa-company ;; esac
+      ELPA=$(unpacked trixie $package)/usr/share/emacs/site-lisp/elpa-src
+      export ELPA
       ;;
   esac
   "${record[@]}" || failed=1

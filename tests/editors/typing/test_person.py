@@ -9,7 +9,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from corpus import FEW, Program, programs
-from person import COMMENT, LEADER, STEP, Habits, strokes
+from person import COMMENT, STEP, Habits, same_leader, strokes, usual_leader
 
 
 @pytest.fixture(scope="session", name="everything")
@@ -22,7 +22,8 @@ KINDS = [
     Habits(indents=False),
     Habits(closes_braces=True),
     Habits(ends_last_line=True),
-    Habits(continues_comments=True, ends_last_line=True),
+    Habits(leader=same_leader, ends_last_line=True),
+    Habits(leader=usual_leader, closes_braces=True),
 ]
 
 
@@ -34,8 +35,9 @@ class Ideal:
         self.before, self.after = "", ""
 
     def press(self, key: str) -> None:
-        if hasattr(self, f"_{key}"):
-            getattr(self, f"_{key}")()
+        action = "_" + key.replace("-", "_")
+        if hasattr(self, action):
+            getattr(self, action)()
         elif key == "}" and self.after.startswith("}"):
             self.before, self.after = self.before + key, self.after[1:]
         else:
@@ -63,14 +65,16 @@ class Ideal:
         if not line.strip():
             self.before = self.before.removesuffix(line)
         self.before += "\n" + " " * (self._depth() if self.habits.indents else 0)
-        if self.habits.continues_comments and line.lstrip().startswith("//"):
-            self.before += LEADER
+        if line.lstrip().startswith("//"):
+            self.before += self.habits.leader(line.lstrip())
 
     def _Tab(self) -> None:  # noqa: N802
         self.before += " " * STEP
 
-    def _Backspace(self) -> None:  # noqa: N802
-        self.before = self.before[:-1]
+    def _C_u(self) -> None:  # noqa: N802
+        line = self._line()
+        blank = line[: len(line) - len(line.lstrip())]
+        self.before = self.before.removesuffix(line) + blank
 
     def _Down(self) -> None:  # noqa: N802
         gone, _, self.after = self.after.partition("\n")

@@ -9,8 +9,8 @@ import { Stage } from "../vscode/stage.mjs";
 let stage;
 
 const ACTIONS = {
-  async start({ program }) {
-    stage = await Stage.open({ files: { "patrol.pyr": program }, open: "patrol.pyr" });
+  async start({ program, settings }) {
+    stage = await Stage.open({ files: { "patrol.pyr": program }, open: "patrol.pyr", settings });
     // The server is there once it has found the mistake.
     await stage.page.locator(".squiggly-error").first().waitFor();
     await stage.page.evaluate(watch);
@@ -50,7 +50,7 @@ const ACTIONS = {
   },
 };
 
-const NAMES = { Down: "ArrowDown", End: "End", Enter: "Enter", Tab: "Tab", Backspace: "Backspace" };
+const NAMES = { Down: "ArrowDown", End: "End", Enter: "Enter", Tab: "Tab" };
 
 async function press(key) {
   await stage.page.keyboard.press(NAMES[key] ?? (key === " " ? "Space" : key));
