@@ -19,7 +19,13 @@ from terminal import Terminal
 
 HERE = Path(__file__).resolve().parent
 # For VS Code: what it has by default, unless the extension asks for something else.
-ENTER_ACCEPTS = {"[pydslrep]": {"editor.acceptSuggestionOnEnter": "on"}}
+ENTER_ACCEPTS: dict[str, object] = {
+    "[pydslrep]": {"editor.acceptSuggestionOnEnter": "on"}
+}
+# Nothing indents, so one does it oneself.
+TAB_INDENTS: dict[str, object] = {
+    "[pydslrep]": {"editor.autoIndent": "none", "editor.formatOnType": False}
+}
 # Variables that name the folders of plugins.
 CMP = ("NVIM_CMP", "CMP_NVIM_LSP")
 BLINK = ("BLINK_CMP",)
@@ -241,9 +247,13 @@ class Emacs(InTerminal):
 class VsCode(Editor):
     """Visual Studio Code with default settings; vscode.mjs drives it."""
 
-    habits = Habits(closes_braces=True)
-
-    def __init__(self, made: Session, **settings: object) -> None:
+    def __init__(
+        self,
+        _: Session,
+        settings: dict[str, object] | None = None,
+        indents: bool = True,
+    ) -> None:
+        self.habits = Habits(closes_braces=True, indents=indents)
         self.file = ""
         self.node = subprocess.Popen(
             ["node", str(HERE / "vscode.mjs")],
@@ -253,7 +263,7 @@ class VsCode(Editor):
         )
         self.found: list[str] = []
         self.work = Path(
-            self.ask("start", program=PROGRAM, settings=settings)["folder"]
+            self.ask("start", program=PROGRAM, settings=settings or {})["folder"]
         )
 
     def ask(self, action: str, **details: object) -> dict[str, Any]:
@@ -292,7 +302,8 @@ class VsCode(Editor):
 
 EDITORS: dict[str, Callable[[Session], Editor]] = {
     "vscode": VsCode,
-    "vscode-enter": lambda made: VsCode(made, **ENTER_ACCEPTS),
+    "vscode-enter": lambda made: VsCode(made, ENTER_ACCEPTS),
+    "vscode-tab": lambda made: VsCode(made, TAB_INDENTS, indents=False),
     "neovim": Neovim,
     "neovim-cmp": lambda made: Neovim(made, "cmp", "", CMP),
     "neovim-cmp-select": lambda made: Neovim(made, "cmp", "select", CMP),

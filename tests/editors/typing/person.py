@@ -30,7 +30,8 @@ class Habits:
 
     # After Enter, the line is indented as far as it should be. Elsewhere one presses Tab.
     indents: bool = True
-    # After `{` there is a `}`. Enter between them puts it on a line of its own, where one goes down to it.
+    # After `{` there is a `}`. Where lines are indented, Enter between them puts it on a line of its own, and one goes down
+    # to it.
     closes_braces: bool = False
     # After a line comment, Enter begins another one with the `//` and the blanks that this gives. Where another beginning
     # is wanted, one deletes it.
@@ -56,7 +57,8 @@ def strokes(program: str, habits: Habits) -> list[Stroke]:
     open_braces = _opened([], lines[0])
     for number, line in enumerate(lines[1:], 1):
         text = line.lstrip(" ")
-        if habits.closes_braces and text.startswith("}") and open_braces[-1]:
+        goes_down = habits.closes_braces and habits.indents
+        if goes_down and text.startswith("}") and open_braces[-1]:
             keys = ["Down", "End", *text.removeprefix("}")]
         else:
             steps = 0 if habits.indents else (len(line) - len(text)) // STEP

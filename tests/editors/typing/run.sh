@@ -19,9 +19,9 @@ done
 built=$(realpath "${CARGO_TARGET_DIR:-$repository/target}/debug")
 export PYDSLREP=${PYDSLREP:-$built/pydslrep} PYDSLREP_LSP=${PYDSLREP_LSP:-$built/pydslrep-lsp} RANDOM_PROGRAMS=$built/random-programs
 
-failed=0
-for editor in "${editors[@]}"; do
-  record=(python3 "$typing/record.py" --editor "$editor" "${options[@]}")
+type_into() { # editor
+  local editor=$1 package
+  local record=(python3 "$typing/record.py" --editor "$editor" "${options[@]}")
   case $editor in
     vscode*) record=("$repository/tests/editors/vscode/run.sh" --then "${record[@]}") ;;
     *) need tmux tmux ;;
@@ -42,6 +42,15 @@ for editor in "${editors[@]}"; do
       export ELPA
       ;;
   esac
-  "${record[@]}" || failed=1
+  "${record[@]}"
+}
+
+# Side by side: most of the time they wait for the next key.
+running=()
+for editor in "${editors[@]}"; do
+  type_into "$editor" 2>&1 | sed "s/^/$editor: /" &
+  running+=($!)
 done
+failed=0
+for job in "${running[@]}"; do wait "$job" || failed=1; done
 exit $failed

@@ -21,6 +21,7 @@ KINDS = [
     Habits(),
     Habits(indents=False),
     Habits(closes_braces=True),
+    Habits(closes_braces=True, indents=False),
     Habits(ends_last_line=True),
     Habits(leader=same_leader, ends_last_line=True),
     Habits(leader=usual_leader, closes_braces=True),
@@ -60,7 +61,7 @@ class Ideal:
 
     def _Enter(self) -> None:  # noqa: N802
         line = self._line()
-        if self.after.startswith("}"):
+        if self.after.startswith("}") and self.habits.indents:
             self.after = "\n" + " " * (self._depth() - STEP) + self.after
         if not line.strip():
             self.before = self.before.removesuffix(line)
