@@ -18,3 +18,4 @@ vim.b.undo_ftplugin = 'setlocal commentstring< comments< formatoptions< expandta
 local has_parser = require('pydslrep.parser').highlight(buffer)
 require('pydslrep.folding').open(buffer, has_parser)
 require('pydslrep.server').look_for_it()
+require('pydslrep.completion').narrow(buffer)
