@@ -151,7 +151,8 @@ def saved(file: Path, expected: str) -> str:
     """What is in a file once it is written; it is waited for what is expected."""
     until = time.monotonic() + PATIENCE
     while True:
-        text = file.read_text()
+        # Helix has it elsewhere while it writes.
+        text = file.read_text() if file.exists() else ""
         if text == expected or time.monotonic() > until:
             return text
         time.sleep(0.02)
