@@ -162,7 +162,7 @@ def test_the_target(editor: Editor, *, at_start: bool) -> None:
 def test_the_port_of_the_other_target(editor: Editor, *, at_start: bool) -> None:
     editor.program = PROGRAM.replace("23000", "19999")
     editor.start({"target": "coppeliasim"}, at_start=at_start)
-    assert editor.severities() == {"unused-declaration": 4, "legacy-port": 4}
+    assert editor.severities() == {"unused-declaration": 4, "port-of-other-target": 4}
     editor.set({"target": "vrep"})
     assert editor.severities() == {"unused-declaration": 4, "duplicate-port": 2}
 

@@ -47,13 +47,13 @@ const MEANING: [&str; 32] = [
     "invalid-port",
     "invalid-radius",
     "invalid-speed",
-    "legacy-port",
     "misplaced-type",
     "mixed-radii",
     "movement-robot-missing",
     "no-environment",
     "number-out-of-range",
     "parallel-conflict",
+    "port-of-other-target",
     "repeated-robot",
     "repeated-sensor",
     "repeated-wheel",
@@ -79,7 +79,7 @@ fn programs_without_mistakes_have_no_errors() {
         "wheel-order",
         "script-name",
         "no-environment",
-        "legacy-port",
+        "port-of-other-target",
     ];
     for seed in 0..300 {
         let text = careful.seeded(seed);

@@ -25,8 +25,8 @@ const PAGE: Page = Page {
     example: "\
 wheel wheelL with radius 4.5
 wheel wheelR with radius 4.5
-robot rover with port 19997 has { wheelL wheelR } wheels
-robot scout with port 19997 has { wheelL wheelR } wheels
+robot rover with port 20000 has { wheelL wheelR } wheels
+robot scout with port 20000 has { wheelL wheelR } wheels
 
 movement trip of rover { move 1 meters }
 movement walk of scout { move 1 meters }
@@ -35,8 +35,8 @@ environment yard has { rover scout } robots with { trip walk } moves",
     fixed: "\
 wheel wheelL with radius 4.5
 wheel wheelR with radius 4.5
-robot rover with port 19997 has { wheelL wheelR } wheels
-robot scout with port 19998 has { wheelL wheelR } wheels
+robot rover with port 20000 has { wheelL wheelR } wheels
+robot scout with port 20001 has { wheelL wheelR } wheels
 
 movement trip of rover { move 1 meters }
 movement walk of scout { move 1 meters }

@@ -16,7 +16,6 @@ mod invalid_ip;
 mod invalid_port;
 mod invalid_radius;
 mod invalid_speed;
-mod legacy_port;
 mod manual;
 mod misplaced_type;
 mod mixed_radii;
@@ -25,6 +24,7 @@ mod no_environment;
 mod number_out_of_range;
 mod parallel_conflict;
 mod planned_collision;
+mod port_of_other_target;
 mod repeated_robot;
 mod repeated_sensor;
 mod repeated_wheel;
@@ -117,7 +117,7 @@ pub const CATALOGUE: [&Rule; 40] = [
     &invalid_radius::RULE,
     &implausible_radius::RULE,
     &invalid_port::RULE,
-    &legacy_port::RULE,
+    &port_of_other_target::RULE,
     &invalid_ip::RULE,
     &invalid_speed::RULE,
     &zero_distance::RULE,
@@ -191,7 +191,6 @@ pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
         }
         diagnostics.push(located(database, file, start, problem));
     }
-    legacy_port::offer_ports(database, file, &mut diagnostics);
     diagnostics.extend(no_environment::in_file(database, file));
     diagnostics.extend(planned_collision::in_file(database, file));
     diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);

@@ -26,7 +26,11 @@ fn programs_of_the_article_and_examples_are_clean() {
         let (problems, code) = json(&[&paper(name)]);
         let found: Vec<(&Value, &Value)> =
             problems.iter().map(|problem| (&problem["code"], &problem["severity"])).collect();
-        assert_eq!((found, code), (vec![(&json!("legacy-port"), &json!("hint"))], Some(0)), "{name}");
+        assert_eq!(
+            (found, code),
+            (vec![(&json!("port-of-other-target"), &json!("hint"))], Some(0)),
+            "{name}"
+        );
         assert_eq!(Place::new().run(&["check", "--deny", "warnings", &paper(name)]).code, Some(0), "{name}");
     }
     let done = Place::new().run(&["check", "--deny", "warnings", &repository("examples")]);
@@ -38,7 +42,7 @@ fn table_4_is_a_mecanum_robot() {
     let (problems, code) = json(&[&paper("table4_holonomic")]);
     assert_eq!(code, Some(0));
     let [problem, port] = problems.as_slice() else { panic!("{problems:?}") };
-    assert_eq!(port["code"], json!("legacy-port"));
+    assert_eq!(port["code"], json!("port-of-other-target"));
     assert_eq!((&problem["code"], &problem["severity"]), (&json!("wheel-kind-mismatch"), &json!("warning")));
     assert!(problem["fix"]["edits"][0]["text"].as_str().unwrap().contains("fwh"), "{problem}");
     let done = Place::new().run(&["check", "--deny", "warnings", &paper("table4_holonomic")]);

@@ -75,7 +75,7 @@ fn unknown_codes_get_a_suggestion() {
     for (word, meant) in [
         ("unused", "did you mean `unused-declaration`?"),
         ("unused-variable", "did you mean `unused-declaration`?"),
-        ("Port", "did you mean `invalid-port`, `legacy-port` or `duplicate-port`?"),
+        ("Port", "did you mean `invalid-port`, `port-of-other-target` or `duplicate-port`?"),
     ] {
         let done = Place::new().run(&["explain", word]);
         assert_eq!(done.code, Some(2), "{word}");

@@ -173,7 +173,7 @@ fn what_keeps_a_script_from_being_made_is_shown_as_an_error() {
 #[test]
 fn programs_without_one_are_as_ever() {
     let place = Place::new();
-    let usual = ["wheel-kind-mismatch warning", "legacy-port hint"];
+    let usual = ["wheel-kind-mismatch warning", "port-of-other-target hint"];
     assert_eq!(told(&place, &[&paper("table4_holonomic")]), usual);
 }
 

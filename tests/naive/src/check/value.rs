@@ -49,7 +49,7 @@ fn port(number: &Number) -> Option<Finding> {
     let digits = number.text.trim_start_matches('0');
     let code = match digits.parse().ok().filter(|_| digits.len() <= 5) {
         // V-REP's, where the scripts are for CoppeliaSim.
-        Some(19999) => "legacy-port",
+        Some(19997..=19999) => "port-of-other-target",
         Some(1..=65535_u32) => return None,
         _ => "invalid-port",
     };

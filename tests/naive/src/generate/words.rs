@@ -98,7 +98,7 @@ pub(super) const ANGLES: Numbers = Numbers {
 };
 
 pub(super) const PORTS: Numbers = Numbers {
-    usual: &["19999", "20000", "19997", "23000", "1", "65535"],
+    usual: &["23000", "20000", "19997", "23001", "1", "65535"],
     doubtful: &["0", "65536", "70000", "99999999999999999999999", "00000"],
 };
 
