@@ -101,6 +101,8 @@ async function bracesOf(word) {
 
 test("of two environments F5 runs the one at the cursor", async () => {
   await stage.openFile("two.pyr");
+  // A file that has just been opened may not have the focus yet.
+  await stage.line("wheel wheelL with").first().click();
   await stage.page.keyboard.press("Control+End");
   await stage.page.locator(".codelens-decoration", { hasText: "Run" }).first().waitFor();
   await stage.page.keyboard.press("ArrowUp");
