@@ -33,7 +33,8 @@ function offered(folder: vscode.WorkspaceFolder): Definition[] {
 function task(definition: Definition, folder: vscode.WorkspaceFolder, session: Session): vscode.Task {
   const command = findCommand(session.places()) ?? "pydslrep";
   const execution = new vscode.ProcessExecution(command, argumentsOf(definition), { cwd: folder.uri.fsPath });
-  const made = new vscode.Task(definition, folder, nameOf(definition), TYPE, execution, "$pydslrep");
+  // The server reports the problems of a workspace by itself: a matcher would double them.
+  const made = new vscode.Task(definition, folder, nameOf(definition), TYPE, execution, []);
   if (definition.action !== "run") {
     made.group = vscode.TaskGroup.Build;
   }

@@ -194,15 +194,3 @@ test("a new file is a program, and its script asks for a place", async () => {
   await stage.toast("Script written: yard.py");
   await stage.tab("yard.py").waitFor();
 });
-
-test("steps of the walkthrough are done that were done", async () => {
-  await stage.call("Welcome: Open Walkthrough...");
-  const input = stage.page.locator(".quick-input-widget input").first();
-  await input.fill("Get started with PyDSLRep");
-  await stage.page.locator(".quick-input-widget .monaco-list-row", { hasText: "PyDSLRep" }).first().waitFor();
-  await stage.page.keyboard.press("Enter");
-  const done = stage.page.locator('button.getting-started-step[aria-checked="true"]');
-  await until("four steps are", async () => (await done.count()) === 4);
-  const open = stage.page.locator('button.getting-started-step[aria-checked="false"]');
-  assert.match(await open.innerText(), /Settings/);
-});
