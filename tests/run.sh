@@ -5,7 +5,7 @@
 set -euo pipefail
 case ${1:-} in
   '') editors='' ;;
-  --editors) editors='neovim preview vscode' ;;
+  --editors) editors='neovim preview vscode typing' ;;
   *) echo "usage: run.sh [--editors]" >&2; exit 2 ;;
 esac
 cd "$(dirname "$0")/.."
@@ -67,6 +67,11 @@ step "Python: format, lints, types and tests"
 
 built=$(realpath "${CARGO_TARGET_DIR:-target}/debug")
 export PYDSLREP=$built/pydslrep PYDSLREP_LSP=$built/pydslrep-lsp
+if [ -n "$editors" ]; then
+  step "Editors: the extension"
+  VSIX=$(editors/vscode/package.sh --command "$PYDSLREP")
+  export VSIX
+fi
 for editor in $editors; do
   step "Editors: $editor"
   tests/editors/run.sh "$editor"

@@ -102,7 +102,10 @@ def session(editor: str) -> Iterator[Session]:
         sys.exit(
             f"{server} is missing: cargo build, or say where the server is in PYDSLREP_LSP"
         )
-    with tempfile.TemporaryDirectory(prefix="pydslrep-") as folder:
+    # An editor that has just been ended may still be writing its own files.
+    with tempfile.TemporaryDirectory(
+        prefix="pydslrep-", ignore_cleanup_errors=True
+    ) as folder:
         made = Session(editor, Path(folder))
         for name in ("bin", "work", ".config"):
             (made.home / name).mkdir()
