@@ -114,7 +114,7 @@ def test_inlay_hints(editor: Editor, spelling: str, *, at_start: bool) -> None:
     def shown() -> tuple[bool, bool, bool]:
         labels = editor.hints()
         return (
-            any("→ (1 m, 0 m, 0°)" in label for label in labels),
+            any("→ 1.00, 0.00, 0°" in label for label in labels),
             any(" s" in label for label in labels),
             "at 9.0" in labels,
         )

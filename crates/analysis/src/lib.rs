@@ -26,7 +26,7 @@ mod trial;
 pub use database::{Absence, Database, EditCounts, EntityId, EntityRef, FileId, Place, Resolution};
 pub use diagnostic::{Diagnostic, Edit, Fix, Related, Severity};
 pub use fixing::Fixing;
-pub use plan::{plan, plan_movement, scene};
+pub use plan::{Driver, plan, plan_movement, scene};
 pub use resolve::{Blocked, MadeOf};
 pub use snapshot::Snapshot;
 pub use target::Target;

@@ -54,6 +54,25 @@ pub fn plan_movement(
     Ok(kinematics::plan_movement(&model, kinematics::Pose::default(), &run(movement).actions))
 }
 
+/// A robot of default size, to be driven one action at a time.
+#[derive(Debug)]
+pub struct Driver(kinematics::Model);
+
+impl Driver {
+    /// One of a robot.
+    ///
+    /// # Errors
+    /// When the robot cannot drive, because a radius is not above zero.
+    pub fn new(driven: &Robot) -> Result<Self, kinematics::ModelError> {
+        robot(driven).model().map(Self)
+    }
+
+    /// The drive of one action; `None` where only the world decides when it ends.
+    pub fn drive(&self, from: kinematics::Pose, action: &ActionKind) -> Option<kinematics::Leg> {
+        kinematics::plan_movement(&self.0, from, &[step(action)]).legs.pop()
+    }
+}
+
 fn run(movement: &Movement) -> kinematics::Run {
     let actions = movement.actions.iter().map(|action| step(&action.kind)).collect();
     kinematics::Run { robot: movement.robot, actions }

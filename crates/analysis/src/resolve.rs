@@ -144,6 +144,31 @@ impl Database {
         Some((robot, Movement { name, robot: 0, actions, source: parts.source(&entity, 0)? }))
     }
 
+    /// The robot that a movement names; `None` where it is missing or broken.
+    pub fn robot_of(&self, movement: EntityId) -> Option<Robot> {
+        let parts = Parts { database: self, file: self.file_of(movement) };
+        let Entity::Movement(tree) = self.tree(movement)? else { return None };
+        parts.robot(parts.resolve(movement, EntityKind::Robot, tree.robot.as_ref()?)?)
+    }
+
+    /// What each action of a movement does, of a robot with these sensors; `None` where one is broken.
+    pub fn action_kinds(&self, movement: EntityId, sensors: &[Sensor]) -> Vec<Option<ActionKind>> {
+        let Some(Entity::Movement(tree)) = self.tree(movement) else { return Vec::new() };
+        tree.actions.iter().map(|action| action_kind(&action.kind, sensors)).collect()
+    }
+
+    /// An action as the program writes it, on one line, without comments; its place counts from its entity's start.
+    pub fn action_text(&self, entity: &EntityRef<'_>, action: Span) -> String {
+        Parts { database: self, file: None }.folded_text(entity, action)
+    }
+
+    /// Where the errors of an entity stand in its file.
+    pub fn errors(&self, entity: &EntityRef<'_>) -> impl Iterator<Item = Span> {
+        let errors = self.problems(entity.id).iter().filter(|problem| problem.severity == Severity::Error);
+        let start = entity.span.start;
+        errors.map(move |problem| problem.span.shifted(start))
+    }
+
     /// The wheel layout of a robot: its type, else what its wheels make it. Four mecanum wheels are never `fw`.
     pub fn drive(&self, robot: EntityId) -> Option<Drive> {
         let file = self.file_of(robot)?;
@@ -307,9 +332,10 @@ impl<'a> Parts<'a> {
 
     /// The tokens of a range with single spaces between them and no comments.
     fn folded_text(&self, entity: &EntityRef<'_>, span: Span) -> String {
-        let tokens = entity.parse.lexemes.iter().filter(|(token, place)| {
-            !token.is_comment() && span.start <= place.start && place.end <= span.end
-        });
+        let lexemes = &entity.parse.lexemes;
+        let first = lexemes.partition_point(|(_, place)| place.start < span.start);
+        let within = lexemes.iter().skip(first).take_while(|(_, place)| place.end <= span.end);
+        let tokens = within.filter(|(token, _)| !token.is_comment());
         let mut text = String::new();
         for (token, place) in tokens {
             if !text.is_empty() && *token != Token::Comma {

@@ -22,6 +22,8 @@ pub struct Config {
     pub default_speed: Option<f64>,
     /// What an editor shows between the words of a program.
     pub inlay_hints: InlayHintsConfig,
+    /// What an editor shows above declarations.
+    pub code_lens: CodeLensConfig,
 }
 
 /// Which inlay hints one place wants.
@@ -50,6 +52,8 @@ pub struct Settings {
     pub default_speed: f64,
     /// What an editor shows between the words of a program.
     pub inlay_hints: InlayHints,
+    /// What an editor shows above declarations.
+    pub code_lens: CodeLens,
 }
 
 /// Which inlay hints are shown.
@@ -61,6 +65,75 @@ pub struct InlayHints {
     pub duration: bool,
     /// Speeds and angles that are left out.
     pub defaults: bool,
+}
+
+/// What an editor can show above a declaration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LensKind {
+    /// *Generate script*, above an environment.
+    GenerateScript,
+    /// *Run*, above an environment.
+    Run,
+    /// *Preview*, above an environment.
+    Preview,
+    /// How often a wheel is used.
+    Wheels,
+    /// How often a sensor is used.
+    Sensors,
+    /// How often an address is used.
+    Ips,
+    /// How often a robot is used.
+    Robots,
+    /// How often a movement is used.
+    Movements,
+}
+
+impl LensKind {
+    /// All of them, in the order of their declaration.
+    pub const ALL: [Self; 8] = [
+        Self::GenerateScript,
+        Self::Run,
+        Self::Preview,
+        Self::Wheels,
+        Self::Sensors,
+        Self::Ips,
+        Self::Robots,
+        Self::Movements,
+    ];
+
+    /// Whether it is shown where nothing is said: what has many declarations, each used once, would fill the screen.
+    fn is_shown_by_default(self) -> bool {
+        !matches!(self, Self::Wheels | Self::Sensors)
+    }
+}
+
+/// Which code lenses one place wants, by [`LensKind`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct CodeLensConfig([Option<bool>; LensKind::ALL.len()]);
+
+impl CodeLensConfig {
+    pub(crate) fn set(&mut self, kind: LensKind, is_shown: bool) {
+        self.0[kind as usize] = Some(is_shown);
+    }
+
+    fn merged_over(self, base: Self) -> Self {
+        Self(LensKind::ALL.map(|kind| self.0[kind as usize].or(base.0[kind as usize])))
+    }
+
+    fn settings(self) -> CodeLens {
+        CodeLens(LensKind::ALL.map(|kind| self.0[kind as usize].unwrap_or(kind.is_shown_by_default())))
+    }
+}
+
+/// Which code lenses are shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CodeLens([bool; LensKind::ALL.len()]);
+
+impl CodeLens {
+    /// Whether those of a kind are.
+    pub fn shows(self, kind: LensKind) -> bool {
+        self.0[kind as usize]
+    }
 }
 
 impl Config {
@@ -78,6 +151,7 @@ impl Config {
                 duration: hints.duration.or(base_hints.duration),
                 defaults: hints.defaults.or(base_hints.defaults),
             },
+            code_lens: self.code_lens.merged_over(base.code_lens),
         }
     }
 
@@ -95,6 +169,7 @@ impl Config {
                 duration: hints.duration.unwrap_or(true),
                 defaults: hints.defaults.unwrap_or(true),
             },
+            code_lens: self.code_lens.settings(),
         }
     }
 }
@@ -114,17 +189,20 @@ mod tests {
     fn what_is_asked_first_wins_and_the_rest_is_kept() {
         let (base, _) = Config::from_toml(
             "target = \"vrep\"\noutput = \"a\"\n[severity]\nwheel-count = \"off\"\nwheel-order = \"error\"\n\
-             [inlay-hints]\npose = false\nduration = false\n",
+             [inlay-hints]\npose = false\nduration = false\n[code-lens]\nwheels = true\nrun = false\n",
         );
         let (over, _) = Config::from_toml(
             "target = \"coppeliasim\"\ngenerate-on-save = true\n[severity]\nwheel-order = \"hint\"\n\
-             [inlay-hints]\nduration = true\n",
+             [inlay-hints]\nduration = true\n[code-lens]\nrun = true\nips = false\n",
         );
         let settings = over.merged_over(base).settings();
         assert_eq!((settings.target, settings.output.as_deref()), (Target::CoppeliaSim, Some("a")));
         assert!(settings.generate_on_save);
         assert!((settings.default_speed - 9.0).abs() < 1e-12);
         assert_eq!(settings.inlay_hints, InlayHints { pose: false, duration: true, defaults: true });
+        let hidden: Vec<LensKind> =
+            LensKind::ALL.into_iter().filter(|kind| !settings.code_lens.shows(*kind)).collect();
+        assert_eq!(hidden, [LensKind::Sensors, LensKind::Ips]);
         assert_eq!(settings.severities.level("wheel-count"), Some(Level::Off));
         assert_eq!(settings.severities.level("wheel-order"), Some(Level::Hint));
     }

@@ -3,7 +3,7 @@
 use pydslrep_notation::Value;
 
 use crate::values::{self, Refusal, Values, Word};
-use crate::{Config, Target};
+use crate::{Config, LensKind, Target};
 
 /// A setting.
 #[derive(Debug)]
@@ -31,7 +31,7 @@ const TARGETS: [Word; Target::ALL.len()] = {
 };
 
 /// All settings, those outside of tables first.
-pub const KEYS: [Key; 8] = [
+pub const KEYS: [Key; 16] = [
     Key {
         name: "target",
         values: Values::Words(&TARGETS),
@@ -79,7 +79,8 @@ pub const KEYS: [Key; 8] = [
     Key {
         name: "inlay-hints.pose",
         values: Values::Flag,
-        summary: "Whether an editor shows the pose after each action.",
+        summary: "Whether an editor shows the pose after each action, counted from where its movement starts: x and y in metres, and \
+                  the heading.",
         default: "`true`",
         example: "false",
         set: |config, value| values::flag(value).map(|flag| config.inlay_hints.pose = Some(flag)),
@@ -99,6 +100,72 @@ pub const KEYS: [Key; 8] = [
         default: "`true`",
         example: "false",
         set: |config, value| values::flag(value).map(|flag| config.inlay_hints.defaults = Some(flag)),
+    },
+    Key {
+        name: "code-lens.generate-script",
+        values: Values::Flag,
+        summary: "Whether an editor shows *Generate script* above an environment.",
+        default: "`true`",
+        example: "false",
+        set: |config, value| {
+            values::flag(value).map(|flag| config.code_lens.set(LensKind::GenerateScript, flag))
+        },
+    },
+    Key {
+        name: "code-lens.run",
+        values: Values::Flag,
+        summary: "Whether an editor shows *Run* above an environment.",
+        default: "`true`",
+        example: "false",
+        set: |config, value| values::flag(value).map(|flag| config.code_lens.set(LensKind::Run, flag)),
+    },
+    Key {
+        name: "code-lens.preview",
+        values: Values::Flag,
+        summary: "Whether an editor shows *Preview* above an environment.",
+        default: "`true`",
+        example: "false",
+        set: |config, value| values::flag(value).map(|flag| config.code_lens.set(LensKind::Preview, flag)),
+    },
+    Key {
+        name: "code-lens.wheels",
+        values: Values::Flag,
+        summary: "Whether an editor shows above a wheel how often it is used.",
+        default: "`false`",
+        example: "true",
+        set: |config, value| values::flag(value).map(|flag| config.code_lens.set(LensKind::Wheels, flag)),
+    },
+    Key {
+        name: "code-lens.sensors",
+        values: Values::Flag,
+        summary: "Whether an editor shows above a sensor how often it is used.",
+        default: "`false`",
+        example: "true",
+        set: |config, value| values::flag(value).map(|flag| config.code_lens.set(LensKind::Sensors, flag)),
+    },
+    Key {
+        name: "code-lens.ips",
+        values: Values::Flag,
+        summary: "Whether an editor shows above an `ip` how often it is used.",
+        default: "`true`",
+        example: "false",
+        set: |config, value| values::flag(value).map(|flag| config.code_lens.set(LensKind::Ips, flag)),
+    },
+    Key {
+        name: "code-lens.robots",
+        values: Values::Flag,
+        summary: "Whether an editor shows above a robot how often it is used.",
+        default: "`true`",
+        example: "false",
+        set: |config, value| values::flag(value).map(|flag| config.code_lens.set(LensKind::Robots, flag)),
+    },
+    Key {
+        name: "code-lens.movements",
+        values: Values::Flag,
+        summary: "Whether an editor shows above a movement how often it is used.",
+        default: "`true`",
+        example: "false",
+        set: |config, value| values::flag(value).map(|flag| config.code_lens.set(LensKind::Movements, flag)),
     },
 ];
 
@@ -157,9 +224,9 @@ mod tests {
     fn tables_follow_what_is_outside_of_tables() {
         assert_eq!(
             parts_behind(""),
-            ["target", "output", "generate-on-save", "default-speed", "severity", "inlay-hints"]
+            ["target", "output", "generate-on-save", "default-speed", "severity", "inlay-hints", "code-lens"]
         );
-        assert_eq!(tables(), ["severity", "inlay-hints"]);
+        assert_eq!(tables(), ["severity", "inlay-hints", "code-lens"]);
         assert_eq!(parts_behind("inlay-hints."), ["pose", "duration", "defaults"]);
     }
 }

@@ -14,7 +14,7 @@ mod read;
 mod severities;
 mod values;
 
-pub use config::{Config, InlayHints, InlayHintsConfig, Settings};
+pub use config::{CodeLens, CodeLensConfig, Config, InlayHints, InlayHintsConfig, LensKind, Settings};
 pub use keys::{KEYS, Key, tables};
 pub use manual::{json_schema, manual};
 pub use pydslrep_analysis::Target;

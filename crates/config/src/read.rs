@@ -252,7 +252,7 @@ mod tests {
                 unknown-key 24 `wheel-count`: there is no setting `wheel-count`
                   help: levels of diagnostics are in the table `severity`: `severity.wheel-count`
                 unknown-key 44 `"機"`: there is no setting `機`
-                  help: the keys here are target, output, generate-on-save, default-speed, severity, inlay-hints
+                  help: the keys here are target, output, generate-on-save, default-speed, severity, inlay-hints, code-lens
                 unknown-key 54 `generateOnSave`: there is no setting `generateOnSave`
                   help: did you mean `generate-on-save`?
                   write: generate-on-save
@@ -265,7 +265,7 @@ mod tests {
                 unknown-key 163 `xyz`: there is no diagnostic `xyz`
                   help: `pydslrep explain` lists them all
                 unknown-key 176 `tool`: there is no setting `tool`
-                  help: the keys here are target, output, generate-on-save, default-speed, severity, inlay-hints
+                  help: the keys here are target, output, generate-on-save, default-speed, severity, inlay-hints, code-lens
             "#]],
         );
         assert_eq!(config.target, Some(Target::VRep), "what is fine holds");
@@ -406,15 +406,15 @@ mod tests {
                   help: did you mean `wheel-count`?
                   write: wheel-count
                 unknown-key at `x`: there is no setting `x`
-                  help: the keys here are target, output, generate-on-save, default-speed, severity, inlay-hints
+                  help: the keys here are target, output, generate-on-save, default-speed, severity, inlay-hints, code-lens
             "#]],
         );
         json(
             &json!(["vrep"]),
             &expect![[r#"
-            invalid-value at ``: the settings are a table of keys and values, not a list
-              help: the keys here are target, output, generate-on-save, default-speed, severity, inlay-hints
-        "#]],
+                invalid-value at ``: the settings are a table of keys and values, not a list
+                  help: the keys here are target, output, generate-on-save, default-speed, severity, inlay-hints, code-lens
+            "#]],
         );
     }
 

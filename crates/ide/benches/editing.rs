@@ -118,8 +118,11 @@ fn hints_of_a_screen(bencher: Bencher, lines: usize) {
     let text = program(lines);
     let (database, file) = opened(&text);
     let at = behind(&text, "movement ");
-    let screen = Span::new(at, at + 2_000);
-    bencher.bench_local(|| ide::inlay_hints(&database, file, screen, ide::InlayHintOptions::default()).len());
+    let places = ide::InlayHintPlaces { file, range: Span::new(at, at + 2_000), typed: &[] };
+    let mut known = ide::KnownMovements::default();
+    bencher.bench_local(|| {
+        ide::inlay_hints(&database, places, ide::InlayHintOptions::default(), &mut known).len()
+    });
 }
 
 #[divan::bench(args = LINES)]

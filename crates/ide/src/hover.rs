@@ -295,7 +295,7 @@ mod tests {
 
                 | from | to | robot | movement |
                 |---|---|---|---|
-                | 0 s | 5.7 s | `rover` | `n` |
+                | 0.0 s | 5.7 s | `rover` | `n` |
                 | 5.7 s | ? | `rover` | `m` |
 
                 Unknown from there in `m` on: `turn right until { front }` ends when the way is free, so where `rover` then is, and when anything after it begins, cannot be planned.

@@ -39,7 +39,7 @@ mod workspace_symbols;
 mod fixture;
 
 pub use call_hierarchy::{Call, CallItem, call_item, call_items, incoming_calls, outgoing_calls};
-pub use code_lenses::{CodeLens, code_lenses};
+pub use code_lenses::{CodeLens, ShownLenses, code_lenses};
 pub use completion::{
     Completion, CompletionKind, CompletionTrigger, Documentation, completion_documentation, completions,
 };
@@ -51,7 +51,7 @@ pub use folding::{Fold, FoldKind, folding_ranges};
 pub use formatting::{format, format_range};
 pub use highlights::{Highlight, highlights};
 pub use hover::{Hover, hover};
-pub use inlay_hints::{InlayHint, InlayHintOptions, inlay_hints};
+pub use inlay_hints::{InlayHint, InlayHintOptions, InlayHintPlaces, KnownMovements, inlay_hints};
 pub use linked_editing::linked_editing_ranges;
 pub use on_type::{format_after_brace, format_after_line_break};
 pub use planned_action::{PlannedAt, action_place, planned_at};
@@ -67,7 +67,7 @@ pub use scenes::{scene_completions, scene_fixes, scene_hover};
 pub use selection::selection_ranges;
 pub use semantic_tokens::{Modifier, SemanticToken, TokenKind, entity_tokens, semantic_tokens};
 pub use settings::{KeyFix, settings_completions, settings_fixes, settings_hover};
-pub use signature::{Signature, SignatureHelp, signature_help};
+pub use signature::{Signature, SignatureHelp, SignatureTrigger, signature_help};
 pub use symbols::{Symbol, SymbolKind, document_symbols};
 pub use type_definition::goto_type_definition;
 pub use workspace_symbols::{WorkspaceSymbol, workspace_symbols};

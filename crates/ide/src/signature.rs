@@ -1,13 +1,35 @@
-//! Signature help: the shape of the statement being typed, with the part that comes next marked.
+//! Signature help: the shape of the statement being typed, with the part that comes next marked, on one line.
 //!
-//! The shapes are those of the keywords' pages; which part is next is asked of the parser itself, so neither can drift
-//! from the language.
+//! It comes by itself only where a list begins, with the shape of that list, and is gone where the list ends. Who asks for
+//! it sees the statement's shape up to where the statement ends. The shapes are those of the keywords' pages; which part
+//! is next is asked of the parser itself, so neither can drift from the language.
+
+mod shape;
 
 use pydslrep_analysis::Database;
 use pydslrep_syntax::{EntityKind, Expected, Lexeme, Span, Token, expected_after};
 
+use self::shape::{clause, window};
 use crate::FilePosition;
 use crate::reference::keyword_page;
+
+/// Why it is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SignatureTrigger {
+    /// Somebody asked for it.
+    Asked,
+    /// It was asked for, and is there still.
+    Again,
+    /// Something was typed.
+    Typed,
+}
+
+impl SignatureTrigger {
+    /// That of an answer to take the place of one that is shown, by its label.
+    pub fn after(shown: Option<&str>) -> Self {
+        if shown.is_some_and(|label| !shape::is_clause(label)) { Self::Again } else { Self::Typed }
+    }
+}
 
 /// The shapes a statement can have.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -21,10 +43,8 @@ pub struct SignatureHelp {
 /// A shape of a statement.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Signature {
-    /// How it is written; ASCII.
-    pub label: &'static str,
-    /// What it means.
-    pub meaning: &'static str,
+    /// How it is written, or as much of that as one line holds; ASCII.
+    pub label: String,
     /// The pieces of `label` that can be current.
     pub parts: Vec<Span>,
     /// Index of the part to be typed; `None` where the text so far fits no part.
@@ -32,20 +52,60 @@ pub struct Signature {
 }
 
 /// The shape of the statement at a place.
-pub fn signature_help(database: &Database, position: FilePosition) -> Option<SignatureHelp> {
+pub fn signature_help(
+    database: &Database,
+    position: FilePosition,
+    trigger: SignatureTrigger,
+) -> Option<SignatureHelp> {
     let typed = Typed::before(database, position)?;
     let expected = expected_after(&typed.text, &typed.lexemes);
+    match trigger {
+        SignatureTrigger::Asked => asked(&typed, &expected),
+        SignatureTrigger::Again => again(&typed, &expected),
+        SignatureTrigger::Typed => list(&typed, &expected),
+    }
+}
+
+fn asked(typed: &Typed, expected: &[Expected]) -> Option<SignatureHelp> {
     let ends = expected.contains(&Expected::Declaration);
     if ends && typed.on_new_line {
         return None;
     }
-    let statement = typed.action().and_then(|action| signatures(action, &expected));
-    let action = statement.filter(|help| help.signatures.iter().any(|signature| signature.current.is_some()));
-    action.or_else(|| {
-        let help = signatures(&typed.lexemes, &expected)?;
-        let marked = help.signatures.iter().any(|signature| signature.current.is_some());
-        (marked || !ends).then_some(help)
+    let action = typed.action().and_then(|action| signatures(action, expected));
+    action.filter(SignatureHelp::is_marked).or_else(|| {
+        let help = signatures(&typed.lexemes, expected)?;
+        (help.is_marked() || !ends).then_some(help)
     })
+}
+
+/// That of the statement at the cursor and of no other, as long as something can follow.
+fn again(typed: &Typed, expected: &[Expected]) -> Option<SignatureHelp> {
+    let ends = expected.iter().any(|next| matches!(next, Expected::Declaration | Expected::Action));
+    if ends && typed.on_new_line {
+        return None;
+    }
+    let statement = match typed.action() {
+        Some(action) => action,
+        None if typed.is_in_body() => return None,
+        None => &typed.lexemes,
+    };
+    signatures(statement, expected).filter(SignatureHelp::is_marked)
+}
+
+/// That of the list that the cursor is in.
+fn list(typed: &Typed, expected: &[Expected]) -> Option<SignatureHelp> {
+    if !typed.is_in_list() {
+        return None;
+    }
+    let all = signatures(typed.action().unwrap_or(&typed.lexemes), expected)?;
+    let label = all.signatures.get(all.active)?;
+    Some(SignatureHelp { signatures: vec![clause(label)?], active: 0 })
+}
+
+impl SignatureHelp {
+    fn is_marked(&self) -> bool {
+        self.signatures.iter().any(|signature| signature.current.is_some())
+    }
 }
 
 /// What is typed of an entity before the word at the cursor.
@@ -86,13 +146,42 @@ impl Typed {
         Some(Self { text, lexemes, on_new_line })
     }
 
+    /// The place of the last brace that nothing closes.
+    fn open_brace(&self) -> Option<usize> {
+        let mut open = Vec::new();
+        for (index, (token, _)) in self.lexemes.iter().enumerate() {
+            match token {
+                Token::OpenBrace => open.push(index),
+                Token::CloseBrace => drop(open.pop()),
+                _ => {}
+            }
+        }
+        open.pop()
+    }
+
+    fn is_movement(&self) -> bool {
+        self.lexemes.first().and_then(|(token, _)| token.entity_kind()) == Some(EntityKind::Movement)
+    }
+
+    /// Whether the cursor is in braces that hold references.
+    fn is_in_list(&self) -> bool {
+        self.open_brace().is_some_and(|open| {
+            let before = open.checked_sub(1).and_then(|before| self.lexemes.get(before));
+            !self.is_movement() || before.is_some_and(|(token, _)| *token == Token::Until)
+        })
+    }
+
+    /// Whether the cursor is among the actions of a movement.
+    fn is_in_body(&self) -> bool {
+        self.is_movement() && self.open_brace().is_some()
+    }
+
     /// The tokens of the last action, in a movement's body.
     fn action(&self) -> Option<&[Lexeme]> {
-        let kind = self.lexemes.first()?.0.entity_kind();
         let body = self.lexemes.iter().position(|(token, _)| *token == Token::OpenBrace)?;
         let begins = |(token, _): &Lexeme| matches!(token, Token::Move | Token::Turn | Token::Slam);
         let last = self.lexemes.iter().rposition(begins)?;
-        (kind == Some(EntityKind::Movement) && last > body).then(|| &self.lexemes[last..])
+        (self.is_movement() && last > body).then(|| &self.lexemes[last..])
     }
 }
 
@@ -112,7 +201,7 @@ fn signatures(typed: &[Lexeme], expected: &[Expected]) -> Option<SignatureHelp> 
             let parts = parts(label);
             let current = current(&parts, typed, expected);
             let parts = parts.iter().map(|part| part.span).collect();
-            Signature { label, meaning: page.meaning, parts, current }
+            window(&Signature { label: label.to_owned(), parts, current })
         })
         .collect();
     let active = signatures.iter().position(|signature| signature.current.is_some()).unwrap_or(0);
@@ -220,11 +309,11 @@ mod tests {
 
     fn render(help: &SignatureHelp) -> String {
         let marked = |signature: &Signature| match signature.current {
-            None => signature.label.to_owned(),
+            None => signature.label.clone(),
             Some(current) => {
                 let span = signature.parts[current];
                 let (start, end) = (span.start as usize, span.end as usize);
-                let label = signature.label;
+                let label = &signature.label;
                 format!("{}«{}»{}", &label[..start], &label[start..end], &label[end..])
             }
         };
@@ -232,9 +321,14 @@ mod tests {
         format!("{} ({} of {})", marked(active), help.active + 1, help.signatures.len())
     }
 
-    fn at(fixture: &str) -> String {
+    fn after(fixture: &str, trigger: SignatureTrigger) -> String {
         let (database, position) = at_cursor(fixture);
-        signature_help(&database, position).map_or_else(|| "nothing".to_owned(), |help| render(&help))
+        let help = signature_help(&database, position, trigger);
+        help.map_or_else(|| "nothing".to_owned(), |help| render(&help))
+    }
+
+    fn at(fixture: &str) -> String {
+        after(fixture, SignatureTrigger::Asked)
     }
 
     fn check(fixtures: &[&str], expected: &Expect) {
@@ -269,14 +363,14 @@ mod tests {
                 sensor NAME [«:» distance | bumper] (1 of 1)
                 import «"FILE.pyr"» (1 of 1)
                 ip NAME «127.0.0.1» (1 of 1)
-                robot NAME [«type» tw | fw | fwh] with port PORT has { WHEELS } wheels [with sensors { SENSORS }] (1 of 1)
-                robot NAME [type «tw | fw | fwh»] with port PORT has { WHEELS } wheels [with sensors { SENSORS }] (1 of 1)
-                robot NAME [type tw | fw | fwh] with port PORT has { «WHEELS» } wheels [with sensors { SENSORS }] (1 of 1)
-                robot NAME [type tw | fw | fwh] with port PORT has { «WHEELS» } wheels [with sensors { SENSORS }] (1 of 1)
-                robot NAME [type tw | fw | fwh] with port PORT has { WHEELS } wheels [«with» sensors { SENSORS }] (1 of 1)
-                robot NAME [type tw | fw | fwh] with port PORT has { WHEELS } wheels [with «sensors» { SENSORS }] (1 of 1)
-                environment NAME [with ip «IP»] has { ROBOTS } robots [with { MOVEMENTS } moves] (1 of 1)
-                environment NAME [with ip IP] has { ROBOTS } robots [with { «MOVEMENTS» } moves] (1 of 1)
+                ... [«type» tw | fw | fwh] with port PORT ... (1 of 1)
+                ... [type «tw | fw | fwh»] with port PORT ... (1 of 1)
+                ... with port PORT has { «WHEELS» } wheels ... (1 of 1)
+                ... with port PORT has { «WHEELS» } wheels ... (1 of 1)
+                ... [«with» sensors { SENSORS }] (1 of 1)
+                ... [with «sensors» { SENSORS }] (1 of 1)
+                ... [with ip «IP»] has { ROBOTS } robots ... (1 of 1)
+                ... [with { «MOVEMENTS» } moves] (1 of 1)
                 [parallel] movement NAME of «ROBOT» { ACTIONS } (1 of 1)
                 [parallel] movement NAME of ROBOT { «ACTIONS» } (1 of 1)
             "#]],
@@ -319,12 +413,122 @@ mod tests {
                 "environment e has { robot$0",
             ],
             &expect![[r#"
-                robot NAME [type tw | fw | fwh] with port «PORT» has { WHEELS } wheels [with sensors { SENSORS }] (1 of 1)
+                ... with port «PORT» has { WHEELS } wheels ... (1 of 1)
                 wheel NAME with «radius» CENTIMETRES (1 of 1)
                 move DISTANCE meters | centimeters [«at» SPEED] (1 of 1)
-                environment NAME [with ip IP] has { «ROBOTS» } robots [with { MOVEMENTS } moves] (1 of 1)
+                ... [with ip IP] has { «ROBOTS» } robots ... (1 of 1)
             "#]],
         );
+    }
+
+    #[test]
+    fn by_itself_it_comes_in_lists_only() {
+        let typed = |fixture: &&str| format!("{fixture}: {}\n", after(fixture, SignatureTrigger::Typed));
+        let shown: String = [
+            "robot r with port 1 has {$0",
+            "robot r with port 1 has { a $0 } wheels",
+            "robot r with port 1 has { a } $0",
+            "robot r with port 1 has { a } wheels with sensors {$0}",
+            "robot r with port $0",
+            "environment e has {$0",
+            "environment e has { r } robots with { m $0",
+            "movement m of r {$0",
+            "movement m of r { move $0",
+            "movement m of r { slam turn left until { s, $0",
+            "movement m of r { turn left until { s } $0",
+            "wheel $0",
+        ]
+        .iter()
+        .map(typed)
+        .collect();
+        expect![[r#"
+            robot r with port 1 has {$0: has { «WHEELS» } wheels (1 of 1)
+            robot r with port 1 has { a $0 } wheels: has { «WHEELS» } wheels (1 of 1)
+            robot r with port 1 has { a } $0: nothing
+            robot r with port 1 has { a } wheels with sensors {$0}: with sensors { «SENSORS» } (1 of 1)
+            robot r with port $0: nothing
+            environment e has {$0: has { «ROBOTS» } robots (1 of 1)
+            environment e has { r } robots with { m $0: with { «MOVEMENTS» } moves (1 of 1)
+            movement m of r {$0: nothing
+            movement m of r { move $0: nothing
+            movement m of r { slam turn left until { s, $0: until { «SENSORS» } (1 of 1)
+            movement m of r { turn left until { s } $0: nothing
+            wheel $0: nothing
+        "#]]
+        .assert_eq(&shown);
+    }
+
+    #[test]
+    fn what_was_asked_for_is_gone_at_the_end_of_the_statement() {
+        let again = |fixture: &&str| format!("{fixture:?}: {}\n", after(fixture, SignatureTrigger::Again));
+        let shown: String = [
+            "wheel a with radius $0",
+            "wheel a with radius 4 $0",
+            "robot r with port 1 has { a } wheels $0",
+            "robot r with port 1 has { a } wheels\n$0",
+            "movement m of r $0",
+            "movement m of r { $0",
+            "movement m of r { move 4 $0",
+            "movement m of r { move 4 meters $0",
+            "movement m of r {\n  move 4 meters\n  $0",
+            "movement m of r { move 4 meters at 9 $0",
+            "movement m of r { turn left $0",
+            "movement m of r { turn left 90 $0",
+            "movement m of r { turn left until { s $0",
+            "movement m of r { turn left until { s } $0",
+            "movement m of r { turn left } $0",
+        ]
+        .iter()
+        .map(again)
+        .collect();
+        expect![[r#"
+            "wheel a with radius $0": wheel NAME with radius «CENTIMETRES» (1 of 1)
+            "wheel a with radius 4 $0": nothing
+            "robot r with port 1 has { a } wheels $0": ... [«with» sensors { SENSORS }] (1 of 1)
+            "robot r with port 1 has { a } wheels\n$0": nothing
+            "movement m of r $0": [parallel] movement NAME of ROBOT { «ACTIONS» } (1 of 1)
+            "movement m of r { $0": nothing
+            "movement m of r { move 4 $0": move DISTANCE «meters | centimeters» [at SPEED] (1 of 1)
+            "movement m of r { move 4 meters $0": move DISTANCE meters | centimeters [«at» SPEED] (1 of 1)
+            "movement m of r {\n  move 4 meters\n  $0": nothing
+            "movement m of r { move 4 meters at 9 $0": nothing
+            "movement m of r { turn left $0": turn left | right [«DEGREES»] (1 of 2)
+            "movement m of r { turn left 90 $0": nothing
+            "movement m of r { turn left until { s $0": turn left | right until { «SENSORS» } (2 of 2)
+            "movement m of r { turn left until { s } $0": nothing
+            "movement m of r { turn left } $0": nothing
+        "#]]
+        .assert_eq(&shown);
+    }
+
+    #[test]
+    fn what_takes_the_place_of_a_list_is_a_list() {
+        let (database, position) = at_cursor("robot r with port 1 has {$0");
+        for trigger in [SignatureTrigger::Asked, SignatureTrigger::Typed] {
+            let help = signature_help(&database, position, trigger).unwrap();
+            let next = SignatureTrigger::after(Some(&help.signatures[0].label));
+            let kept = if trigger == SignatureTrigger::Asked { SignatureTrigger::Again } else { trigger };
+            assert_eq!(next, kept);
+        }
+        assert_eq!(SignatureTrigger::after(None), SignatureTrigger::Typed);
+    }
+
+    #[test]
+    fn every_shape_fits_a_line() {
+        for (token, _) in pydslrep_syntax::KEYWORDS {
+            let Some(page) = keyword_page(token).filter(|_| is_statement(token)) else { continue };
+            for label in page.syntax.lines() {
+                let parts: Vec<Span> = parts(label).iter().map(|part| part.span).collect();
+                for current in 0..parts.len() {
+                    let whole =
+                        Signature { label: label.to_owned(), parts: parts.clone(), current: Some(current) };
+                    let shown = window(&whole);
+                    assert!(shown.label.len() <= 48, "{}", shown.label);
+                    let text = |of: &Signature| of.parts[of.current.unwrap()].text(&of.label).to_owned();
+                    assert_eq!(text(&shown), text(&whole), "{}", shown.label);
+                }
+            }
+        }
     }
 
     #[test]

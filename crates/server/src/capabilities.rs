@@ -58,7 +58,8 @@ fn server_capabilities(client: &ClientFeatures) -> ServerCapabilities {
             ..CompletionOptions::default()
         }),
         signature_help_provider: Some(SignatureHelpOptions {
-            trigger_characters: Some([" ", "{"].map(str::to_owned).to_vec()),
+            trigger_characters: Some(vec!["{".to_owned()]),
+            retrigger_characters: Some([" ", ",", "}"].map(str::to_owned).to_vec()),
             ..SignatureHelpOptions::default()
         }),
         hover_provider: Some(HoverProviderCapability::Simple(true)),

@@ -47,8 +47,6 @@ pub(crate) struct ClientFeatures {
     pub(crate) symbol_tree: bool,
     /// Parts of a signature may be told by where they stand in it.
     pub(crate) label_offsets: bool,
-    /// It shows Markdown beside a signature.
-    pub(crate) signature_markdown: bool,
     /// It has the command that lists references.
     pub(crate) show_references: bool,
     /// It folds whole lines only.
@@ -77,6 +75,8 @@ pub(crate) struct ClientFeatures {
     pub(crate) refreshes_diagnostics: bool,
     /// It can be told to ask for inlay hints again.
     pub(crate) refreshes_inlay_hints: bool,
+    /// It can be told to ask for code lenses again.
+    pub(crate) refreshes_code_lenses: bool,
     /// It can be asked to show a file.
     pub(crate) show_document: bool,
     /// It shows the pages of diagnostics itself, under addresses of this scheme.
@@ -119,6 +119,8 @@ impl ClientFeatures {
             .is_some_and(|settings| settings.dynamic_registration == Some(true));
         self.refreshes_inlay_hints =
             workspace.inlay_hint.as_ref().is_some_and(|hints| hints.refresh_support == Some(true));
+        self.refreshes_code_lenses =
+            workspace.code_lens.as_ref().is_some_and(|lenses| lenses.refresh_support == Some(true));
         self.refreshes_diagnostics =
             workspace.diagnostics.as_ref().is_some_and(|pulled| pulled.refresh_support == Some(true));
         let Some(edit) = &workspace.workspace_edit else { return };
@@ -179,8 +181,6 @@ impl ClientFeatures {
         if let Some(signature) =
             document.signature_help.as_ref().and_then(|help| help.signature_information.as_ref())
         {
-            self.signature_markdown =
-                best(signature.documentation_format.as_ref()) == Some(MarkupKind::Markdown);
             let parameter = signature.parameter_information.as_ref();
             self.label_offsets =
                 parameter.is_some_and(|parameter| parameter.label_offset_support == Some(true));

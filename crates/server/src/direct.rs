@@ -50,10 +50,10 @@ impl Server {
             "textDocument/formatting" => self.work_on(request, formatting::document),
             "textDocument/semanticTokens/full" => self.work_on(request, semantic_tokens::full),
             "textDocument/semanticTokens/full/delta" => self.work_on(request, semantic_tokens::delta),
-            "textDocument/codeLens" => self.answer_now(request, code_lenses::code_lenses),
+            "textDocument/codeLens" => self.answer_and_keep(request, code_lenses::code_lenses),
             "textDocument/completion" => self.answer_now(request, completion::completion),
             "textDocument/diagnostic" => self.answer_now(request, diagnostics::pull),
-            "textDocument/inlayHint" => self.answer_now(request, inlay_hints::inlay_hints),
+            "textDocument/inlayHint" => self.answer_and_keep(request, inlay_hints::inlay_hints),
             "textDocument/references" => self.answer_now(request, references::references),
             "textDocument/semanticTokens/range" => self.answer_now(request, semantic_tokens::range),
             _ => Direct::Other,
@@ -67,6 +67,18 @@ impl Server {
     {
         let Some((id, params)) = read(request) else { return Direct::Other };
         let result = handler(&self.state(), &params);
+        self.outbox.answer(&id, &result);
+        Direct::Answered
+    }
+
+    /// As [`Self::answer_now`], where the state remembers what it was asked.
+    fn answer_and_keep<P, R>(&self, request: &Request, handler: fn(&mut State, &P) -> R) -> Direct
+    where
+        P: for<'a> Deserialize<'a>,
+        R: WriteJson,
+    {
+        let Some((id, params)) = read(request) else { return Direct::Other };
+        let result = handler(&mut self.state(), &params);
         self.outbox.answer(&id, &result);
         Direct::Answered
     }

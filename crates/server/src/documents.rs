@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use pydslrep_analysis::{FileId, Snapshot};
 use pydslrep_config::{FILE_NAME, Settings};
+use pydslrep_ide::{KnownMovements, ShownLenses};
 use pydslrep_scene::ENDING;
 use pydslrep_syntax::Span;
 use ropey::Rope;
@@ -34,6 +35,10 @@ pub(crate) struct Document {
     pub(crate) settings: Arc<Settings>,
     /// Set once the text is no longer this one.
     pub(crate) outdated: Arc<AtomicBool>,
+    /// What was last known of its movements.
+    pub(crate) movements: KnownMovements,
+    /// The lenses the client was last told of.
+    pub(crate) lenses: ShownLenses,
     /// The semantic tokens the client has, if it takes changes of them.
     pub(crate) tokens: Option<SentTokens>,
 }
@@ -65,6 +70,8 @@ impl Document {
             imports: Vec::new(),
             settings: Arc::default(),
             outdated: Arc::default(),
+            movements: KnownMovements::default(),
+            lenses: ShownLenses::default(),
             tokens: None,
         }
     }

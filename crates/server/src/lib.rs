@@ -39,6 +39,7 @@ mod running;
 mod server;
 mod session;
 mod state;
+mod typing;
 mod work;
 mod workspace;
 

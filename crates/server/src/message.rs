@@ -7,6 +7,9 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use tower_lsp::jsonrpc::{Error, ErrorCode, Id, Request, Response};
 
+/// Begins the ids of requests whose answers nobody waits for.
+pub(crate) const IN_PASSING: &str = "pydslrep: in passing ";
+
 /// What a client may send.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Incoming {
@@ -179,6 +182,17 @@ impl Outbox {
             params: &'a P,
         }
         self.send_unasked(&Notification { jsonrpc: "2.0", method, params });
+    }
+
+    /// Sends a request whose answer nobody waits for; `number` tells it from the others.
+    pub(crate) fn ask_in_passing(&self, method: &'static str, number: u64) {
+        #[derive(Serialize)]
+        struct InPassing {
+            jsonrpc: &'static str,
+            id: String,
+            method: &'static str,
+        }
+        self.send_unasked(&InPassing { jsonrpc: "2.0", id: format!("{IN_PASSING}{number}"), method });
     }
 
     /// Answers a request.

@@ -130,7 +130,9 @@ impl LanguageServer for Server {
     }
 
     async fn did_save(&self, params: DidSaveTextDocumentParams) {
-        scripts::save(&mut self.state(), &params.text_document.uri, &self.outbox);
+        let mut state = self.state();
+        state.saved(&params.text_document.uri);
+        scripts::save(&mut state, &params.text_document.uri, &self.outbox);
     }
 
     async fn did_close(&self, params: DidCloseTextDocumentParams) {
@@ -210,7 +212,12 @@ impl LanguageServer for Server {
     }
 
     async fn code_action(&self, params: CodeActionParams) -> Result<Option<CodeActionResponse>> {
-        Ok(code_actions::code_actions(&self.state(), &params))
+        let mut state = self.state();
+        // What the editor asks for on its own accord is about the line of the cursor.
+        if params.context.trigger_kind == Some(CodeActionTriggerKind::AUTOMATIC) {
+            state.cursor_is_at(&params.text_document.uri, params.range);
+        }
+        Ok(code_actions::code_actions(&state, &params))
     }
 
     async fn code_action_resolve(&self, action: CodeAction) -> Result<CodeAction> {
@@ -267,7 +274,9 @@ impl LanguageServer for Server {
         &self,
         params: DocumentHighlightParams,
     ) -> Result<Option<Vec<DocumentHighlight>>> {
-        Ok(references::highlights(&self.state(), &params))
+        let mut state = self.state();
+        state.cursor_is(&params.text_document_position_params);
+        Ok(references::highlights(&state, &params))
     }
 
     async fn symbol(&self, params: WorkspaceSymbolParams) -> Result<Option<WorkspaceSymbolResponse>> {
@@ -388,7 +397,9 @@ impl Server {
     /// A request of ours: see [`planned_action`].
     #[allow(clippy::unused_async, reason = "what the router takes")]
     pub(crate) async fn planned_at(&self, at: TextDocumentPositionParams) -> Result<Option<PlannedAt>> {
-        Ok(planned_action::planned_at(&self.state(), &at))
+        let mut state = self.state();
+        state.cursor_is(&at);
+        Ok(planned_action::planned_at(&state, &at))
     }
 
     /// A request of ours: see [`explain`].
@@ -456,6 +467,7 @@ impl Server {
         if diagnostics::publish(&mut state, &self.outbox) {
             planned_path::announce(&mut state, &self.outbox);
         }
+        state.tell_outdated(&self.outbox);
     }
 
     /// The session is over, in whatever way.

@@ -21,7 +21,7 @@ use crate::handlers::explain::EXPLAIN;
 use crate::handlers::planned_action::{ACTION_LOCATION, PLANNED_AT};
 use crate::handlers::planned_path::PLANNED_PATH;
 use crate::log::log;
-use crate::message::{Incoming, Outbox, parse, refuse};
+use crate::message::{IN_PASSING, Incoming, Outbox, parse, refuse};
 use crate::server::Server;
 
 /// The protocol's code for a request that comes too early.
@@ -234,6 +234,9 @@ impl Session {
     }
 
     fn pass_on(&mut self, response: Response) {
+        if matches!(response.id(), Id::String(id) if id.starts_with(IN_PASSING)) {
+            return;
+        }
         if catch_unwind(AssertUnwindSafe(|| (self.responses)(response))).is_err() {
             log(format_args!("an answer from the client to nothing that was asked"));
         }

@@ -23,7 +23,9 @@ use crate::chosen::Watched;
 use crate::client::ClientFeatures;
 use crate::documents::{Document, Documents, Sort, key};
 use crate::handlers::driven_path::DrivenPaths;
+use crate::message::Outbox;
 use crate::positions::{Encoding, to_offset, to_range, to_span};
+use crate::typing::{Typing, replacements};
 use crate::work::Work;
 
 /// Documents, their analysis, and what the client can do.
@@ -59,8 +61,23 @@ pub(crate) struct State {
     pub(crate) told: FxHashSet<String>,
     /// Planned paths that the client has.
     pub(crate) watched: Vec<Watched>,
+    /// Where somebody is typing, if that is known.
+    pub(crate) typing: Option<Typing>,
+    /// What the client has to ask for again, though it changed nothing there.
+    pub(crate) outdated: Outdated,
+    /// How often the client was told so.
+    refreshes: u64,
     /// Paths that were driven.
     pub(crate) driven: DrivenPaths,
+}
+
+/// What the client shows that is no longer so.
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Outdated {
+    /// Inlay hints.
+    pub(crate) hints: bool,
+    /// Code lenses.
+    pub(crate) lenses: bool,
 }
 
 /// Documents whose diagnostics have to be told again.
@@ -81,6 +98,7 @@ impl State {
         if let Some(mut before) = self.documents.remove(&key) {
             before.set_outdated();
         }
+        self.typing.take_if(|typing| typing.key == key);
         self.openings += 1;
         let mut document = Document::new(opened.uri, Rope::from_str(&opened.text), Some(opened.version));
         document.opening = self.openings;
@@ -106,6 +124,7 @@ impl State {
         let Some(document) = open else { return false };
         document.version = Some(params.text_document.version);
         document.set_outdated();
+        let before = document.text.clone();
         // All of the document before any of the analysis: should that fail, the document is still right.
         let spans: Vec<Option<Span>> =
             params.content_changes.iter().map(|change| document.apply(change, encoding)).collect();
@@ -121,6 +140,14 @@ impl State {
             }
             Sort::Program => {}
         }
+        let changes = &params.content_changes;
+        let replaced = replacements(changes, &spans, &before, &document.text);
+        let are_alike = changes.windows(2).all(|pair| pair[0].text == pair[1].text);
+        let is_elsewhere = self.typing.as_ref().is_some_and(|typing| typing.key != key);
+        self.typing = Typing::after(self.typing.take(), &key, &replaced, are_alike);
+        if is_elsewhere {
+            self.outdated = Outdated { hints: true, lenses: true };
+        }
         let Some(file) = document.file else { return true };
         for (change, span) in params.content_changes.iter().zip(spans) {
             match span {
@@ -134,6 +161,38 @@ impl State {
         self.follow_changed_imports(&key);
         self.follow_scenes();
         true
+    }
+
+    /// Notes that the cursor is at a place.
+    pub(crate) fn cursor_is(&mut self, at: &TextDocumentPositionParams) {
+        self.cursor_is_at(&at.text_document.uri, Range::new(at.position, at.position));
+    }
+
+    /// Notes what a request says about the cursor: who has gone on to another line has done with the one before.
+    pub(crate) fn cursor_is_at(&mut self, uri: &Uri, range: Range) {
+        let key = key(uri);
+        let (Some(typing), Some(document)) = (&self.typing, self.documents.get(&key)) else { return };
+        if typing.is_left(&key, range, &document.text) {
+            self.typing = None;
+            self.outdated = Outdated { hints: true, lenses: true };
+        }
+    }
+
+    /// Has the client ask again for what is no longer so.
+    pub(crate) fn tell_outdated(&mut self, outbox: &Outbox) {
+        let Outdated { hints, lenses } = std::mem::take(&mut self.outdated);
+        let hints = (hints && self.client.refreshes_inlay_hints).then_some("workspace/inlayHint/refresh");
+        let lenses = (lenses && self.client.refreshes_code_lenses).then_some("workspace/codeLens/refresh");
+        for method in hints.into_iter().chain(lenses) {
+            self.refreshes += 1;
+            outbox.ask_in_passing(method, self.refreshes);
+        }
+    }
+
+    /// Notes that a document was saved.
+    pub(crate) fn saved(&mut self, uri: &Uri) {
+        let key = key(uri);
+        self.outdated.lenses |= self.typing.as_mut().is_some_and(|typing| typing.save(&key));
     }
 
     /// Lets go of a document; false if it is not open. From now on its file counts, if there is one.

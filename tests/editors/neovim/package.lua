@@ -255,7 +255,7 @@ local function lenses()
   open_program('square.pyr', PROGRAM)
   if not vim.lsp.codelens.enable then return end
   vim.lsp.codelens.enable(true, { bufnr = 0 })
-  go_to('wheelL with')
+  go_to('mov_1 of')
   local function count()
     return vim.iter(vim.lsp.codelens.get({ bufnr = 0 })):any(function(item)
       return item.lens.command and item.lens.command.title == '1 reference'
@@ -263,7 +263,7 @@ local function lenses()
   end
   wait(count)
   vim.api.nvim_input('grx')
-  becomes('the lens of a wheel lists what uses it', { 4 }, function()
+  becomes('the lens of a movement lists what uses it', { 14 }, function()
     return vim.tbl_map(function(item) return item.lnum end, vim.fn.getqflist())
   end)
   vim.cmd.cclose()

@@ -128,7 +128,7 @@ local function beside_the_program()
   end
   go_to('move 4')
   local line = vim.api.nvim_win_get_cursor(0)[1]
-  local function ends() return (hints()[line] or ''):match('→ %(4 m, 0 m, 0°%)$') end
+  local function ends() return (hints()[line] or ''):match('→ 4%.00, 0%.00, 0°$') end
   check('behind an action stands the pose it ends at', wait(ends), hints())
   vim.lsp.inlay_hint.enable(false, { bufnr = 0 })
 
@@ -144,7 +144,7 @@ local function beside_the_program()
     end
     local wanted = 'Generate script, Run, Preview'
     check('above an environment stands what can be done', wait(function() return titles():find(wanted) end), titles())
-    check('above a wheel how often it is used', wait(function() return titles():find('1 reference') end), titles())
+    check('above a robot how often it is used', wait(function() return titles():find('2 references') end), titles())
     vim.lsp.codelens.enable(false, { bufnr = 0 })
   end
 

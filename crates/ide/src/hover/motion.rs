@@ -17,29 +17,39 @@ pub(super) fn action(database: &Database, id: EntityId, index: usize) -> Option<
 }
 
 /// What there is to say of an action of a movement with its planned path.
-pub(crate) fn action_facts(robot: &Robot, movement: &Movement, path: &RobotPath, index: usize) -> String {
+fn action_facts(robot: &Robot, movement: &Movement, path: &RobotPath, index: usize) -> String {
     let Some(leg) = leg(robot, movement, path, index) else {
         let is_cause = path.unknown_after.is_none_or(|cause| cause.action == index);
         let what = if is_cause { "ends" } else { "starts" };
         return format!("Where it {what} cannot be planned: {}.", why_unknown(movement, path, index));
     };
+    let poses = if index < path.legs.len() {
+        poses_of(&leg)
+    } else {
+        format!("Where it starts cannot be planned: {}.", why_unknown(movement, path, index))
+    };
+    leg_facts(robot, &leg, &poses)
+}
+
+/// What there is to say of a drive, with what there is to say of its poses.
+pub(crate) fn leg_facts(robot: &Robot, leg: &Leg, poses: &str) -> String {
     let rates: Vec<String> = robot
         .wheels
         .iter()
         .zip(&leg.rates)
         .map(|(wheel, rate)| format!("`{}` {} rad/s", wheel.name, number(*rate, 2)))
         .collect();
-    let poses = if index < path.legs.len() {
-        format!("From {} to {}, counted from where the movement starts.", pose(&leg.from), pose(&leg.to))
-    } else {
-        format!("Where it starts cannot be planned: {}.", why_unknown(movement, path, index))
-    };
     format!("Takes {}. {poses}\n\nWheel rates: {}.", time(leg.duration), rates.join(", "))
+}
+
+/// From where to where a drive leads.
+pub(crate) fn poses_of(leg: &Leg) -> String {
+    format!("From {} to {}, counted from where the movement starts.", pose(&leg.from), pose(&leg.to))
 }
 
 /// The drive of an action, planned alone where the movement's path does not reach it: how long it takes is known then
 /// too. `None` where only the world decides when it ends.
-pub(crate) fn leg(robot: &Robot, movement: &Movement, path: &RobotPath, index: usize) -> Option<Leg> {
+fn leg(robot: &Robot, movement: &Movement, path: &RobotPath, index: usize) -> Option<Leg> {
     if let Some(leg) = path.legs.get(index) {
         return Some(leg.clone());
     }
@@ -49,15 +59,20 @@ pub(crate) fn leg(robot: &Robot, movement: &Movement, path: &RobotPath, index: u
 }
 
 /// Why the pose behind an action is unknown.
-pub(crate) fn why_unknown(movement: &Movement, path: &RobotPath, index: usize) -> String {
+fn why_unknown(movement: &Movement, path: &RobotPath, index: usize) -> String {
     let cause = path.unknown_after.map_or(index, |cause| cause.action);
     movement.actions.get(cause).map_or_else(|| "an action before it has an open end".to_owned(), open_end)
 }
 
 fn open_end(action: &Action) -> String {
-    match action.kind {
+    why_open(&action.kind, &action.text)
+}
+
+/// Why only the world decides where an action ends.
+pub(crate) fn why_open(kind: &ActionKind, text: &str) -> String {
+    match kind {
         ActionKind::Slam => "`slam` goes where the world lets it".to_owned(),
-        _ => format!("`{}` ends when the way is free", action.text),
+        _ => format!("`{text}` ends when the way is free"),
     }
 }
 

@@ -143,11 +143,12 @@ mod tests {
         check(
             "output = 'a'\n$0\n[inlay-hints]\npose = true",
             &expect![[r#"
-            target | default: "coppeliasim" | "target = \"$0\""
-            generate-on-save | default: false | "generate-on-save = $0"
-            default-speed | default: 9.0 | "default-speed = $0"
-            [severity] | a table | "[severity]\n$0"
-        "#]],
+                target | default: "coppeliasim" | "target = \"$0\""
+                generate-on-save | default: false | "generate-on-save = $0"
+                default-speed | default: 9.0 | "default-speed = $0"
+                [severity] | a table | "[severity]\n$0"
+                [code-lens] | a table | "[code-lens]\n$0"
+            "#]],
         );
         check(
             "out$0 = 'a'",
@@ -158,9 +159,10 @@ mod tests {
         check(
             "[inlay-hints]\npose = true\n$0\n[severity]",
             &expect![[r#"
-            duration | default: true | "duration = $0"
-            defaults | default: true | "defaults = $0"
-        "#]],
+                duration | default: true | "duration = $0"
+                defaults | default: true | "defaults = $0"
+                [code-lens] | a table | "[code-lens]\n$0"
+            "#]],
         );
         check(
             "inlay-hints.$0",
@@ -179,9 +181,10 @@ mod tests {
         check(
             "[$0",
             &expect![[r#"
-            severity | a table | "severity]"
-            inlay-hints | a table | "inlay-hints]"
-        "#]],
+                severity | a table | "severity]"
+                inlay-hints | a table | "inlay-hints]"
+                code-lens | a table | "code-lens]"
+            "#]],
         );
         check(
             "[sev$0]\n[inlay-hints]",

@@ -57,24 +57,24 @@ mod tests {
         check(
             "[inlay-hints]\n$0pose = true",
             &expect![[r#"
-            pose
-            ---
-            **`inlay-hints.pose`**: `true` or `false`
+                pose
+                ---
+                **`inlay-hints.pose`**: `true` or `false`
 
-            Whether an editor shows the pose after each action.
+                Whether an editor shows the pose after each action, counted from where its movement starts: x and y in metres, and the heading.
 
-            Default: `true`
-        "#]],
+                Default: `true`
+            "#]],
         );
         check(
             "[inlay$0-hints]",
             &expect![[r#"
-            inlay-hints
-            ---
-            * `inlay-hints.pose`: Whether an editor shows the pose after each action.
-            * `inlay-hints.duration`: Whether an editor shows how long each action takes.
-            * `inlay-hints.defaults`: Whether an editor shows speeds and angles that are left out.
-        "#]],
+                inlay-hints
+                ---
+                * `inlay-hints.pose`: Whether an editor shows the pose after each action, counted from where its movement starts: x and y in metres, and the heading.
+                * `inlay-hints.duration`: Whether an editor shows how long each action takes.
+                * `inlay-hints.defaults`: Whether an editor shows speeds and angles that are left out.
+            "#]],
         );
         check(
             "[severity$0]",

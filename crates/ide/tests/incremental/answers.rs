@@ -200,7 +200,9 @@ fn motion(pair: &Pair<'_>) -> Result<(), String> {
         database.entities(file).map(planned).collect::<Vec<_>>()
     })?;
     pair.same("inlay hints", |database| {
-        ide::inlay_hints(database, file, Span::new(0, u32::MAX), ide::InlayHintOptions::default())
+        let places = ide::InlayHintPlaces { file, range: Span::new(0, u32::MAX), typed: &[] };
+        let known = &mut ide::KnownMovements::default();
+        ide::inlay_hints(database, places, ide::InlayHintOptions::default(), known)
     })
 }
 
@@ -208,7 +210,9 @@ fn whole_file(pair: &Pair<'_>, turn: usize) -> Result<(), String> {
     let file = pair.file;
     let end = pair.fresh.text(file).map_or(0, |text| u32::try_from(text.len_bytes()).unwrap());
     let part = Span::new(end / 3, end / 2);
-    pair.same("code lenses", |database| ide::code_lenses(database, file))?;
+    pair.same("code lenses", |database| {
+        ide::code_lenses(database, file, &[], &mut ide::ShownLenses::default())
+    })?;
     pair.same("links", |database| ide::document_links(database, file))?;
     pair.same("quick fixes", |database| ide::quick_fixes(database, file, part))?;
     match turn % 4 {
@@ -284,7 +288,9 @@ fn at_edit(pair: &Pair<'_>, offset: u32) -> Result<(), String> {
     pair.same("completions", |database| {
         ide::completions(database, position, ide::CompletionTrigger::Invoked, 9.0)
     })?;
-    pair.same("signature help", |database| ide::signature_help(database, position))?;
+    pair.same("signature help", |database| {
+        ide::signature_help(database, position, ide::SignatureTrigger::Asked)
+    })?;
     pair.same("selection", |database| ide::selection_ranges(database, position.file, &[offset]))?;
     pair.same("formatting behind a brace", |database| ide::format_after_brace(database, position))?;
     pair.same("formatting behind a line break", |database| ide::format_after_line_break(database, position))

@@ -1,6 +1,7 @@
 //! `textDocument/codeLens`: what can be done with an environment, and how often anything else is used, which is counted
 //! only for the lenses that are seen.
 
+use pydslrep_config::LensKind;
 use pydslrep_ide as ide;
 use pydslrep_syntax::EntityKind;
 use serde::{Deserialize, Serialize};
@@ -9,20 +10,34 @@ use tower_lsp::ls_types::{CodeLens, CodeLensParams, Command, Location, Range, Ur
 
 use crate::chosen::ChosenEnvironment;
 use crate::client::SHOW_REFERENCES;
+use crate::documents::key;
 use crate::handlers::code_actions::GENERATE_SCRIPT;
 #[cfg(feature = "process")]
 use crate::handlers::runs;
 use crate::positions::LineTable;
 use crate::state::State;
+use crate::typing::Typing;
 
 /// What can be done with an environment, with the words on it. Each command takes what [`ChosenEnvironment`] holds.
-const OF_ENVIRONMENTS: &[(&str, &str)] = &[
-    ("Generate script", GENERATE_SCRIPT),
+const OF_ENVIRONMENTS: &[(LensKind, &str, &str)] = &[
+    (LensKind::GenerateScript, "Generate script", GENERATE_SCRIPT),
     #[cfg(feature = "process")]
-    ("Run", runs::RUN),
+    (LensKind::Run, "Run", runs::RUN),
     #[cfg(feature = "process")]
-    ("Preview", runs::PREVIEW_PATH),
+    (LensKind::Preview, "Preview", runs::PREVIEW_PATH),
 ];
+
+/// Which setting the references of a kind have; environments have none.
+fn lens_kind(kind: EntityKind) -> Option<LensKind> {
+    match kind {
+        EntityKind::Wheel => Some(LensKind::Wheels),
+        EntityKind::Sensor => Some(LensKind::Sensors),
+        EntityKind::Ip => Some(LensKind::Ips),
+        EntityKind::Robot => Some(LensKind::Robots),
+        EntityKind::Movement => Some(LensKind::Movements),
+        EntityKind::Environment => None,
+    }
+}
 
 /// Which declaration a lens is about, until it is seen.
 #[derive(Debug, Serialize, Deserialize)]
@@ -33,17 +48,24 @@ struct LensOf {
     name: String,
 }
 
-/// The lenses of a document.
-pub(crate) fn code_lenses(state: &State, params: &CodeLensParams) -> Option<Vec<CodeLens>> {
+/// The lenses of a document, which remembers them.
+pub(crate) fn code_lenses(state: &mut State, params: &CodeLensParams) -> Option<Vec<CodeLens>> {
     let uri = &params.text_document.uri;
-    let (document, file) = state.analysed(uri)?;
+    let key = key(uri);
+    let document = state.documents.get_mut(&key)?;
+    let typing = state.typing.as_ref().filter(|typing| typing.key == key);
+    let typed = typing.map_or(&[][..], Typing::unsaved_places);
+    let found = ide::code_lenses(&state.database, document.file?, typed, &mut document.lenses);
     let table = LineTable::new(&document.text, state.client.encoding);
+    let wanted = document.settings.code_lens;
     let mut lenses = Vec::new();
-    for lens in ide::code_lenses(&state.database, file) {
+    for lens in found {
         let range = table.range(lens.span);
-        if lens.kind == EntityKind::Environment {
-            lenses.extend(of_environment(uri, &lens.name, range));
-        } else {
+        let Some(kind) = lens_kind(lens.kind) else {
+            lenses.extend(of_environment(uri, &lens.name, range, wanted));
+            continue;
+        };
+        if wanted.shows(kind) {
             let data =
                 LensOf { uri: uri.clone(), kind: lens.kind.noun().to_owned(), name: lens.name.to_string() };
             lenses.push(CodeLens { range, command: None, data: serde_json::to_value(&data).ok() });
@@ -52,12 +74,13 @@ pub(crate) fn code_lenses(state: &State, params: &CodeLensParams) -> Option<Vec<
     Some(lenses)
 }
 
-fn of_environment(uri: &Uri, name: &str, range: Range) -> Vec<CodeLens> {
+fn of_environment(uri: &Uri, name: &str, range: Range, wanted: pydslrep_config::CodeLens) -> Vec<CodeLens> {
     let argument = serde_json::to_value(ChosenEnvironment { uri: uri.clone(), environment: name.to_owned() });
     let arguments = argument.ok().map(|argument| vec![argument]);
     OF_ENVIRONMENTS
         .iter()
-        .map(|(title, command)| {
+        .filter(|(kind, ..)| wanted.shows(*kind))
+        .map(|(_, title, command)| {
             let command = Command::new((*title).to_owned(), (*command).to_owned(), arguments.clone());
             CodeLens { range, command: Some(command), data: None }
         })

@@ -1,22 +1,33 @@
 //! `textDocument/inlayHint`.
 
 use pydslrep_ide as ide;
+use pydslrep_syntax::Span;
 use tower_lsp::ls_types::{
-    InlayHint, InlayHintLabel, InlayHintParams, InlayHintTooltip, MarkupContent, MarkupKind, TextEdit,
+    InlayHint, InlayHintLabel, InlayHintParams, InlayHintTooltip, MarkupContent, MarkupKind, Range, TextEdit,
 };
 
+use crate::documents::key;
+use crate::positions::{to_range, to_span};
 use crate::state::State;
 
-/// The hints in a range.
-pub(crate) fn inlay_hints(state: &State, params: &InlayHintParams) -> Option<Vec<InlayHint>> {
-    let (document, file) = state.analysed(&params.text_document.uri)?;
-    let range = state.span(document, params.range);
+/// The hints in a range. The document remembers what it is asked for.
+pub(crate) fn inlay_hints(state: &mut State, params: &InlayHintParams) -> Option<Vec<InlayHint>> {
+    let key = key(&params.text_document.uri);
+    let encoding = state.client.encoding;
+    let document = state.documents.get_mut(&key)?;
+    let typing = state.typing.as_ref().filter(|typing| typing.key == key);
+    let places = ide::InlayHintPlaces {
+        file: document.file?,
+        range: to_span(&document.text, params.range, encoding),
+        typed: &typing.map_or_else(Vec::new, |typing| typing.lines(&document.text)),
+    };
     let wanted = document.settings.inlay_hints;
     let options =
         ide::InlayHintOptions { pose: wanted.pose, duration: wanted.duration, defaults: wanted.defaults };
-    let hints = ide::inlay_hints(&state.database, file, range, options).into_iter().map(|hint| {
-        let position = state.range(document, pydslrep_syntax::Span::at(hint.offset)).start;
-        let edit = |text| vec![TextEdit::new(tower_lsp::ls_types::Range::new(position, position), text)];
+    let hints = ide::inlay_hints(&state.database, places, options, &mut document.movements);
+    let hints = hints.into_iter().map(|hint| {
+        let position = to_range(&document.text, Span::at(hint.offset), encoding).start;
+        let edit = |text| vec![TextEdit::new(Range::new(position, position), text)];
         let tooltip = MarkupContent { kind: MarkupKind::Markdown, value: hint.tooltip };
         InlayHint {
             position,

@@ -2,8 +2,8 @@
 
 use pydslrep_ide as ide;
 use tower_lsp::ls_types::{
-    Documentation, MarkupContent, MarkupKind, ParameterInformation, ParameterLabel, SignatureHelp,
-    SignatureHelpParams, SignatureInformation,
+    ParameterInformation, ParameterLabel, SignatureHelp, SignatureHelpContext, SignatureHelpParams,
+    SignatureHelpTriggerKind, SignatureInformation,
 };
 
 use crate::state::State;
@@ -11,7 +11,8 @@ use crate::state::State;
 /// The shape of the statement at a position.
 pub(crate) fn signature_help(state: &State, params: &SignatureHelpParams) -> Option<SignatureHelp> {
     let place = state.place(&params.text_document_position_params)?;
-    let found = ide::signature_help(&state.database, place.position())?;
+    let trigger = trigger(params.context.as_ref());
+    let found = ide::signature_help(&state.database, place.position(), trigger)?;
     let current = found.signatures.get(found.active).and_then(|signature| signature.current);
     Some(SignatureHelp {
         signatures: found.signatures.iter().map(|signature| convert(state, signature)).collect(),
@@ -20,24 +21,31 @@ pub(crate) fn signature_help(state: &State, params: &SignatureHelpParams) -> Opt
     })
 }
 
+/// Clients that do not say why they ask do so when somebody asks them.
+fn trigger(context: Option<&SignatureHelpContext>) -> ide::SignatureTrigger {
+    let Some(context) = context else { return ide::SignatureTrigger::Asked };
+    if context.trigger_kind == SignatureHelpTriggerKind::INVOKED {
+        return ide::SignatureTrigger::Asked;
+    }
+    let shown = context.active_signature_help.as_ref().filter(|_| context.is_retrigger);
+    let shown = shown.and_then(|help| help.signatures.first());
+    ide::SignatureTrigger::after(shown.map(|signature| signature.label.as_str()))
+}
+
+/// Without documentation: it is one line, beside the one that is typed.
 fn convert(state: &State, signature: &ide::Signature) -> SignatureInformation {
     // Labels are ASCII: an offset is the same in every unit.
     let parameter = |span: &pydslrep_syntax::Span| ParameterInformation {
         label: if state.client.label_offsets {
             ParameterLabel::LabelOffsets([span.start, span.end])
         } else {
-            ParameterLabel::Simple(span.text(signature.label).to_owned())
+            ParameterLabel::Simple(span.text(&signature.label).to_owned())
         },
         documentation: None,
     };
-    let meaning = MarkupContent { kind: MarkupKind::Markdown, value: signature.meaning.to_owned() };
     SignatureInformation {
-        label: signature.label.to_owned(),
-        documentation: Some(if state.client.signature_markdown {
-            Documentation::MarkupContent(meaning)
-        } else {
-            Documentation::String(meaning.value)
-        }),
+        label: signature.label.clone(),
+        documentation: None,
         parameters: Some(signature.parts.iter().map(parameter).collect()),
         active_parameter: Some(index(signature, signature.current)),
     }

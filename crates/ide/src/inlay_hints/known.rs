@@ -1,0 +1,230 @@
+//! What was last known of movements, so that poses stay while something is broken.
+//!
+//! A movement is a list of steps: its actions, and what is broken between them. While an action is broken, the first step
+//! after it goes on from the pose it went on from before; all further ones are planned from there.
+
+use pydslrep_analysis::environment::{ActionKind, Robot};
+use pydslrep_analysis::{Database, Driver, FileId};
+use pydslrep_kinematics::{Leg, Pose};
+use pydslrep_syntax::Span;
+use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
+
+use super::{InlayHint, lines};
+
+/// More than a screen shows: of a whole long file nothing is kept.
+const MOST_HINTS: usize = 2_000;
+
+/// The movements of one file as they were when hints were last asked for, by name. Whoever keeps it beside a text that is
+/// edited and hands it over again gets hints that outlast a mistake.
+#[derive(Debug, Default)]
+pub struct KnownMovements {
+    by_name: FxHashMap<SmolStr, Known>,
+    /// The lines that had hints.
+    lines: Vec<KnownLine>,
+}
+
+/// A line with its hints, whose places count from its start.
+#[derive(Debug)]
+struct KnownLine {
+    text: String,
+    hints: Vec<InlayHint>,
+}
+
+/// A movement as it was.
+#[derive(Debug)]
+struct Known {
+    /// The last one that was complete.
+    robot: Robot,
+    steps: Vec<KnownStep>,
+}
+
+#[derive(Debug)]
+struct KnownStep {
+    step: Step,
+    from: Option<Pose>,
+}
+
+/// A part of a movement's body.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Step {
+    /// An action that is understood.
+    Action(ActionKind),
+    /// Something that is not.
+    Broken,
+}
+
+/// What is known of one step.
+#[derive(Debug)]
+pub(super) struct Planned {
+    /// Its drive; `None` where only the world decides, or nobody knows. Where poses are unknown they count for nothing.
+    pub(super) leg: Option<Leg>,
+    /// What is known of the pose it starts from.
+    pub(super) start: Start,
+}
+
+/// What is known of the pose that a step starts from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Start {
+    /// It is planned, or was before something broke.
+    At { pose: Pose, is_old: bool },
+    /// It depends on the world since the step with this number.
+    Open { since: usize },
+    /// It depends on something that is broken.
+    Broken,
+}
+
+/// How a movement drives.
+#[derive(Debug)]
+pub(super) struct Route {
+    /// Its robot, or the last one that was complete.
+    pub(super) robot: Robot,
+    /// One for each step.
+    pub(super) steps: Vec<Planned>,
+}
+
+impl KnownMovements {
+    /// The robot that a movement had when it last had one.
+    pub(super) fn robot(&self, name: &SmolStr) -> Option<&Robot> {
+        self.by_name.get(name).map(|known| &known.robot)
+    }
+
+    /// Plans a movement; `robot` is `None` while its own is broken. Remembers the outcome.
+    pub(super) fn plan(&mut self, name: &SmolStr, robot: Option<Robot>, steps: Vec<Step>) -> Option<Route> {
+        let before = self.by_name.remove(name);
+        let live = robot.and_then(|robot| Some((Driver::new(&robot).ok()?, robot, false)));
+        let (driver, robot, is_old) = match (live, &before) {
+            (Some(live), _) => live,
+            (None, Some(known)) => (Driver::new(&known.robot).ok()?, known.robot.clone(), true),
+            (None, None) => return None,
+        };
+        let known = before.map_or_else(Vec::new, |known| known.steps);
+        let planned = plan(&driver, &steps, &known, is_old);
+        let remembered = steps.into_iter().zip(&planned).map(|(step, planned)| {
+            let from = match planned.start {
+                Start::At { pose, .. } => Some(pose),
+                Start::Open { .. } | Start::Broken => None,
+            };
+            KnownStep { step, from }
+        });
+        let remembered = Known { robot: robot.clone(), steps: remembered.collect() };
+        self.by_name.insert(name.clone(), remembered);
+        Some(Route { robot, steps: planned })
+    }
+
+    /// Gives the lines that what is typed above them has spoilt the hints that they had. Remembers all hints.
+    pub(super) fn recall(
+        &mut self,
+        database: &Database,
+        file: FileId,
+        spoilt: &[Span],
+        hints: &mut Vec<InlayHint>,
+    ) {
+        if hints.len() > MOST_HINTS {
+            self.lines.clear();
+            return;
+        }
+        let mut now: Vec<(u32, KnownLine)> = Vec::new();
+        for hint in hints.iter() {
+            let line = lines(database, file, Span::at(hint.offset));
+            let hint = InlayHint { offset: hint.offset - line.start, ..hint.clone() };
+            if let Some((_, known)) = now.last_mut().filter(|(start, _)| *start == line.start) {
+                known.hints.push(hint);
+            } else {
+                now.push((line.start, KnownLine { text: database.slice(file, line), hints: vec![hint] }));
+            }
+        }
+        for line in spoilt {
+            let place = now.partition_point(|(start, _)| *start < line.start);
+            if now.get(place).is_some_and(|(start, _)| *start == line.start) {
+                continue;
+            }
+            let text = database.slice(file, *line);
+            let equal = now[..place].iter().filter(|(_, known)| known.text == text).count();
+            if let Some(former) = self.lines.iter().filter(|known| known.text == text).nth(equal) {
+                let back = former.hints.iter();
+                let back = back.map(|hint| InlayHint { offset: hint.offset + line.start, ..hint.clone() });
+                let at = hints.partition_point(|hint| hint.offset < line.start);
+                hints.splice(at..at, back);
+                now.insert(place, (line.start, KnownLine { text, hints: former.hints.clone() }));
+            }
+        }
+        self.lines = now.into_iter().map(|(_, known)| known).collect();
+    }
+
+    #[cfg(test)]
+    pub(super) fn len(&self) -> usize {
+        self.by_name.len()
+    }
+
+    /// Forgets movements that are no longer there, once they are many.
+    pub(super) fn tidy(&mut self, movements: u32, is_there: impl Fn(&SmolStr) -> bool) {
+        if self.by_name.len() > 2 * movements as usize + 16 {
+            self.by_name.retain(|name, _| is_there(name));
+        }
+    }
+}
+
+fn plan(driver: &Driver, steps: &[Step], known: &[KnownStep], is_old: bool) -> Vec<Planned> {
+    let mut start = Start::At { pose: Pose::default(), is_old };
+    let former = Former::new(steps, known);
+    let mut planned = Vec::with_capacity(steps.len());
+    for (index, step) in steps.iter().enumerate() {
+        if start == Start::Broken
+            && let Some(pose) = former.start_of(index)
+        {
+            start = Start::At { pose, is_old: true };
+        }
+        let (leg, next) = match (step, start) {
+            (Step::Broken, Start::At { .. } | Start::Broken) => (None, Start::Broken),
+            (Step::Broken, Start::Open { .. }) => (None, start),
+            (Step::Action(action), _) => drive(driver, action, start, index),
+        };
+        planned.push(Planned { leg, start });
+        start = next;
+    }
+    planned
+}
+
+fn drive(driver: &Driver, action: &ActionKind, start: Start, index: usize) -> (Option<Leg>, Start) {
+    let from = match start {
+        Start::At { pose, .. } => pose,
+        Start::Open { .. } | Start::Broken => Pose::default(),
+    };
+    let leg = driver.drive(from, action);
+    let next = match (&leg, start) {
+        (Some(leg), Start::At { is_old, .. }) => Start::At { pose: leg.to, is_old },
+        (None, Start::At { .. } | Start::Broken) => Start::Open { since: index },
+        (_, start) => start,
+    };
+    (leg, next)
+}
+
+/// Which step was which, as far as the two lists begin and end alike: what was changed since lies in between.
+struct Former<'a> {
+    known: &'a [KnownStep],
+    count: usize,
+    head: usize,
+    tail: usize,
+}
+
+impl<'a> Former<'a> {
+    fn new(steps: &[Step], known: &'a [KnownStep]) -> Self {
+        let is_same = |(step, known): &(&Step, &KnownStep)| **step == known.step;
+        let head = steps.iter().zip(known).take_while(is_same).count();
+        let rest = steps[head..].iter().rev().zip(known[head..].iter().rev());
+        let tail = rest.take_while(is_same).count();
+        Self { known, count: steps.len(), head, tail }
+    }
+
+    /// Where a step started before; also the first of those that were changed, for it goes on from the same step.
+    fn start_of(&self, index: usize) -> Option<Pose> {
+        let former = if index <= self.head {
+            index
+        } else {
+            let from_the_end = self.count - index;
+            (from_the_end <= self.tail).then(|| self.known.len() - from_the_end)?
+        };
+        self.known.get(former)?.from
+    }
+}

@@ -1,0 +1,96 @@
+//! Shapes cut down to one line, clause by clause.
+
+use pydslrep_syntax::Span;
+
+use super::Signature;
+
+/// What a line holds: editors break longer ones.
+const WIDTH: usize = 48;
+
+/// Stands for what is left out.
+const MORE: &str = "...";
+
+/// The words that begin a clause.
+const BEGINNINGS: [&str; 3] = ["type", "with", "has"];
+
+/// As much of a signature as fits a line around its current part.
+pub(super) fn window(signature: &Signature) -> Signature {
+    let label = &signature.label;
+    if label.len() <= WIDTH {
+        return signature.clone();
+    }
+    let clauses = clauses(label, &BEGINNINGS);
+    let place = current_start(signature);
+    let middle = clauses.iter().rposition(|clause| clause.start <= place).unwrap_or(0);
+    let (mut first, mut last) = (middle, middle);
+    let fits = |first: usize, last: usize| {
+        let marks = usize::from(first > 0) + usize::from(last + 1 < clauses.len());
+        let length = (clauses[last].end - clauses[first].start) as usize;
+        length + marks * (MORE.len() + 1) <= WIDTH
+    };
+    loop {
+        if last + 1 < clauses.len() && fits(first, last + 1) {
+            last += 1;
+        } else if first > 0 && fits(first - 1, last) {
+            first -= 1;
+        } else {
+            break;
+        }
+    }
+    let before = if first > 0 { format!("{MORE} ") } else { String::new() };
+    let after = if last + 1 < clauses.len() { format!(" {MORE}") } else { String::new() };
+    cut(signature, clauses[first].to(clauses[last]), &before, &after)
+}
+
+/// The clause of a signature's current part, alone.
+pub(super) fn clause(signature: &Signature) -> Option<Signature> {
+    signature.current?;
+    let place = current_start(signature);
+    let mut beginnings = BEGINNINGS.to_vec();
+    beginnings.push("until");
+    let clauses = clauses(&signature.label, &beginnings);
+    let clause = clauses.into_iter().rfind(|clause| clause.start <= place)?;
+    let text = clause.text(&signature.label);
+    let inner = text.trim_end_matches(MORE).trim_end().trim_matches(['[', ']']);
+    let start = clause.start + u32::from(text.starts_with('['));
+    let clause = Span::new(start, start + Span::of(inner).len());
+    Some(cut(signature, clause, "", ""))
+}
+
+/// Whether a label is of a clause alone.
+pub(super) fn is_clause(label: &str) -> bool {
+    label.split(' ').next().is_some_and(|first| first == "until" || BEGINNINGS.contains(&first))
+}
+
+fn current_start(signature: &Signature) -> u32 {
+    let current = signature.current.and_then(|current| signature.parts.get(current));
+    current.map_or(0, |part| part.start)
+}
+
+/// The clauses of a label, each without the blank after it.
+fn clauses(label: &str, beginnings: &[&str]) -> Vec<Span> {
+    let mut clauses: Vec<Span> = Vec::new();
+    let mut start = 0;
+    for word in label.split(' ') {
+        let span = Span::of(word).shifted(start);
+        start = span.end + 1;
+        match clauses.last_mut() {
+            Some(last) if !beginnings.contains(&word.trim_start_matches('[')) => *last = last.to(span),
+            _ => clauses.push(span),
+        }
+    }
+    clauses
+}
+
+/// A part of a signature's label, with something before and after it.
+fn cut(signature: &Signature, range: Span, before: &str, after: &str) -> Signature {
+    let is_in = |part: &Span| range.start <= part.start && part.end <= range.end;
+    let parts = signature.parts.iter().filter(|part| is_in(part));
+    let skipped = signature.parts.iter().take_while(|part| part.start < range.start).count();
+    let moved = |offset: u32| offset - range.start + Span::of(before).len();
+    Signature {
+        label: format!("{before}{}{after}", range.text(&signature.label)),
+        parts: parts.map(|part| Span::new(moved(part.start), moved(part.end))).collect(),
+        current: signature.current.and_then(|current| current.checked_sub(skipped)),
+    }
+}

@@ -1,0 +1,124 @@
+//! Where somebody is typing. A server knows no cursor; but it is told of each change, and then of what the client asks
+//! about the place where the cursor went.
+//!
+//! A change is taken for typing where it ends: the line that ENTER begins, the last line of what was pasted. One message
+//! with several changes is typing with several cursors if all of them insert the same; else it is layout, or a rename,
+//! and nobody has moved.
+
+use pydslrep_syntax::Span;
+use ropey::Rope;
+use tower_lsp::ls_types::{Range, TextDocumentContentChangeEvent};
+
+/// With more cursors than this nobody types.
+const MOST_CURSORS: usize = 32;
+
+/// Where the last change was made.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Typing {
+    /// In which document, by its key.
+    pub(crate) key: String,
+    /// At which places, in bytes; more than one with several cursors.
+    places: Vec<u32>,
+    /// Whether the document was saved since.
+    is_saved: bool,
+}
+
+/// A change of a text.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Replacement {
+    /// What was replaced in the text before.
+    span: Span,
+    /// How long what was put there is.
+    length: u32,
+}
+
+/// What the changes of one message replaced; `spans` has a place for each, `None` where the whole text was sent.
+pub(crate) fn replacements(
+    changes: &[TextDocumentContentChangeEvent],
+    spans: &[Option<Span>],
+    before: &Rope,
+    after: &Rope,
+) -> Vec<Replacement> {
+    if spans.iter().any(Option::is_none) {
+        return whole(before, after).into_iter().collect();
+    }
+    let each = spans.iter().zip(changes);
+    each.filter_map(|(span, change)| {
+        Some(Replacement { span: (*span)?, length: Span::of(&change.text).len() })
+    })
+    .collect()
+}
+
+/// The difference between two texts, as one change; clients that send whole texts may send one that is the same.
+fn whole(before: &Rope, after: &Rope) -> Option<Replacement> {
+    let head = before.bytes().zip(after.bytes()).take_while(|(a, b)| a == b).count();
+    let rest = before.len_bytes().min(after.len_bytes()) - head;
+    let (old, new) = (before.bytes_at(before.len_bytes()), after.bytes_at(after.len_bytes()));
+    let tail = old.reversed().zip(new.reversed()).take(rest).take_while(|(a, b)| a == b).count();
+    let offset = |byte: usize| u32::try_from(byte).unwrap_or(u32::MAX);
+    let span = Span::new(offset(head), offset(before.len_bytes() - tail));
+    let length = offset(after.len_bytes() - tail - head);
+    (!span.is_empty() || length > 0).then_some(Replacement { span, length })
+}
+
+impl Typing {
+    /// After the changes of one message to a document; `are_alike` if all of them insert the same.
+    pub(crate) fn after(
+        before: Option<Self>,
+        key: &str,
+        changes: &[Replacement],
+        are_alike: bool,
+    ) -> Option<Self> {
+        if changes.is_empty() {
+            return before;
+        }
+        let is_typed = changes.len() == 1 || are_alike && changes.len() <= MOST_CURSORS;
+        let stays = before.filter(|before| before.key == key && !is_typed);
+        if !is_typed && stays.is_none() {
+            return None;
+        }
+        let mut places = stays.map_or_else(Vec::new, |before| before.places);
+        for Replacement { span, length } in changes {
+            for place in &mut places {
+                if *place >= span.end {
+                    *place = *place - span.len() + length;
+                } else if *place > span.start {
+                    *place = span.start + length;
+                }
+            }
+            if is_typed {
+                places.push(span.start + length);
+            }
+        }
+        Some(Self { key: key.to_owned(), places, is_saved: false })
+    }
+
+    /// The lines being typed in, without their endings.
+    pub(crate) fn lines(&self, text: &Rope) -> Vec<Span> {
+        let line = |place: &u32| {
+            let line = text.byte_to_line((*place as usize).min(text.len_bytes()));
+            let start = text.line_to_byte(line);
+            let content = text.line(line).chars().take_while(|c| !matches!(c, '\n' | '\r'));
+            let end = start + content.map(char::len_utf8).sum::<usize>();
+            Span::new(u32::try_from(start).unwrap_or(u32::MAX), u32::try_from(end).unwrap_or(u32::MAX))
+        };
+        self.places.iter().map(line).collect()
+    }
+
+    /// The places; none once the document is saved, for what is saved is meant.
+    pub(crate) fn unsaved_places(&self) -> &[u32] {
+        if self.is_saved { &[] } else { &self.places }
+    }
+
+    /// Notes that a document was saved; whether that changes anything.
+    pub(crate) fn save(&mut self, key: &str) -> bool {
+        self.key == key && !std::mem::replace(&mut self.is_saved, true)
+    }
+
+    /// Whether a cursor in these lines of a document is elsewhere.
+    pub(crate) fn is_left(&self, key: &str, range: Range, text: &Rope) -> bool {
+        let line_of = |place: &u32| text.byte_to_line((*place as usize).min(text.len_bytes()));
+        let cursor = range.start.line as usize..=range.end.line as usize;
+        self.key != key || !self.places.iter().any(|place| cursor.contains(&line_of(place)))
+    }
+}
