@@ -555,7 +555,7 @@ mod tests {
         let before = editor.shown();
         for (old, new) in [
             ("wheelL with radius 4.5", "wheelL with radius "),
-            ("type tw with port 19999", "typ with port"),
+            ("type tw with port 23000", "typ with port"),
             ("movement m of rover", "movement m of r"),
         ] {
             editor.replace(old, new);

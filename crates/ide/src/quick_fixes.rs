@@ -64,7 +64,7 @@ mod tests {
             let fixes = quick_fixes(database, position.file, Span::at(position.offset));
             fixes.into_iter().map(|fix| (fix.fix.title, fix.is_preferred)).collect()
         };
-        assert_eq!(titles(&database), [("change the port to 23001".to_owned(), false)]);
+        assert_eq!(titles(&database), [("change the port to 23000".to_owned(), false)]);
         database.set_target(position.file, pydslrep_analysis::Target::VRep);
         assert_eq!(titles(&database), []);
     }
