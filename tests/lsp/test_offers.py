@@ -15,14 +15,28 @@ from pytest_lsp import LanguageClient
 pytestmark = pytest.mark.asyncio
 
 RECOVERY = pathlib.Path(__file__).parents[1] / "recovery"
-FENCE = re.compile(r"^```pyr(?P<kind> behind)?\n(?P<text>.*?)^```$", re.M | re.S)
+FENCE = re.compile(
+    r"^```pyr(?P<kind> behind| escaped)?\n(?P<text>.*?)^```$", re.M | re.S
+)
+ESCAPES = {r"\r": "\r", r"\n": "\n", r"\t": "\t", r"\u{feff}": "\ufeff"}
 
 
 def programs(page: pathlib.Path) -> list[str]:
-    """The programs of a page, with what stands behind each of them."""
+    """The programs of a page, each with what comes after all of them."""
     found = list(FENCE.finditer(page.read_text(encoding="utf-8")))
-    behind = "".join(match["text"] for match in found if match["kind"])
-    return [match["text"] + behind for match in found if not match["kind"]]
+    after = "".join(match["text"] for match in found if match["kind"] == " behind")
+    programs = [match for match in found if match["kind"] != " behind"]
+    return [
+        (unescaped(match["text"]) if match["kind"] else match["text"]) + after
+        for match in programs
+    ]
+
+
+def unescaped(text: str) -> str:
+    """A text with the signs that a page writes as escapes."""
+    for written, meant in ESCAPES.items():
+        text = text.replace(written, meant)
+    return text
 
 
 def shown(command: str, path: pathlib.Path) -> list[str]:
@@ -34,9 +48,7 @@ def shown(command: str, path: pathlib.Path) -> list[str]:
         check=False,
     )
     results = json.loads(done.stdout)["runs"][0]["results"]
-    titles = [
-        fix["description"]["text"] for found in results for fix in found["fixes"]
-    ]
+    titles = [fix["description"]["text"] for found in results for fix in found["fixes"]]
     return sorted(titles)
 
 

@@ -60,7 +60,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
             .help("change the port, or set `target = \"vrep\"` in pydslrep.toml")
             .suggestion(
                 format!("change the port to {usual}"),
-                [context.replace(port.span, &usual.to_string())],
+                [context.replace(port.span, usual.to_string())],
             ),
     );
 }
