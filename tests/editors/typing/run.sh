@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Types programs key by key into real editors: `run.sh typing [--editor NAME]... [OPTIONS]`, see README.md. Without an
-# editor, a few programs into Neovim.
+# editor, a few programs into VS Code and Neovim.
 set -euo pipefail
 typing=$(cd "$(dirname "$0")" && pwd)
 . "$typing/../debian.sh"
@@ -12,7 +12,7 @@ while [ $# -gt 0 ]; do
     *) options+=("$1"); shift ;;
   esac
 done
-[ ${#editors[@]} -gt 0 ] || { editors=(neovim); options+=(--jobs 4); }
+[ ${#editors[@]} -gt 0 ] || editors=(vscode neovim)
 
 # The generator of programs is no part of what users get.
 (cd "$repository" && cargo build --quiet --locked --bin random-programs --bin pydslrep --bin pydslrep-lsp)
