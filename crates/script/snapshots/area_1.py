@@ -685,12 +685,12 @@ class Robot:
             )
 
     def _report(self, here: Pose) -> None:
-        # Adding zero makes a rounded -0 a 0.
-        x, y = round(here.x, 3) + 0.0, round(here.y, 3) + 0.0
+        # Adding zero makes a rounded -0 a 0. As many digits as the hints of an editor have.
+        x, y = round(here.x, 2) + 0.0, round(here.y, 2) + 0.0
         degrees = round(math.degrees(here.theta), 1) + 0.0
         print(
             f"{self.body.time:8.2f} s  {self.body.model.name}  {self._movement}  "
-            f"{self._action}  at x {x:.3f} m, y {y:.3f} m, {degrees:.1f} deg",
+            f"{self._action}  at x {x:.2f} m, y {y:.2f} m, {degrees:g} deg",
             flush=True,
         )
 

@@ -77,9 +77,7 @@ def test_three_sides_of_a_square(
         "5: move 4 m",
     ]
     out = capsys.readouterr().out.splitlines()
-    assert out[0].endswith(
-        "robot_1  mov_1  1: move 4 m  at x 4.000 m, y 0.000 m, 0.0 deg"
-    )
+    assert out[0].endswith("robot_1  mov_1  1: move 4 m  at x 4.00 m, y 0.00 m, 0 deg")
     # at 9 cm/s, with a ramp at either end
     assert float(out[0].split()[0]) == pytest.approx(4.0 / 0.09 + 0.2, abs=0.3)
     assert len(out) == 5
