@@ -188,7 +188,7 @@ test("the picture follows typing", async () => {
   }
   console.log(`from a keystroke to its picture, 4 robots: ${spread(times)}; of that in the page: ${spread(inPage)}`);
   const ends = await panel.page.locator(".robots small").first().textContent();
-  assert.match(ends, /^→ \(0\.99, −0\.99\) m, 0°$/);
+  assert.match(ends, /^→ \(0\.99, -0\.99\) m, 0°$/);
   await panel.close();
 });
 

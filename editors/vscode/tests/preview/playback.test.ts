@@ -89,8 +89,8 @@ test("keys mean something, unless what has the focus needs them", () => {
 
 test("numbers for people", () => {
   assert.deepEqual([0.04, 59.94, 59.96, 754.2].map(words.time), ["0.0 s", "59.9 s", "1 min 0.0 s", "12 min 34.2 s"]);
-  assert.deepEqual([Math.PI, -Math.PI, Math.PI / 3, -7].map(words.degrees), ["180°", "180°", "60°", "−41.1°"]);
-  assert.deepEqual([words.tickLabel(-0.5, 0.5), words.tickLabel(2, 1), words.tickLabel(0.1 + 0.2, 0.1)], ["−0.5", "2", "0.3"]);
+  assert.deepEqual([Math.PI, -Math.PI, Math.PI / 3, -7].map(words.degrees), ["180°", "180°", "60°", "-41.1°"]);
+  assert.deepEqual([words.tickLabel(-0.5, 0.5), words.tickLabel(2, 1), words.tickLabel(0.1 + 0.2, 0.1)], ["-0.5", "2", "0.3"]);
   assert.deepEqual([0.002, 0.5, 1, 2.5].map(words.length), ["0.2 cm", "50 cm", "1 m", "2.5 m"]);
   assert.equal(words.pose({ x: -0.001, y: 1.5, theta: Math.PI / 2 }), "(0.00, 1.50) m, 90°");
 });

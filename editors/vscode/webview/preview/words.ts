@@ -1,10 +1,10 @@
 // Numbers as people read them.
 import type { Pose } from "./time";
 
-/** A number with fixed decimals, a true minus sign, and no minus before zero. */
+/** A number with fixed decimals, the minus sign that hints and scripts have, and no minus before zero. */
 export function fixed(value: number, decimals: number): string {
   const digits = Math.abs(value).toFixed(decimals);
-  return value < 0 && Number(digits) !== 0 ? `−${digits}` : digits;
+  return value < 0 && Number(digits) !== 0 ? `-${digits}` : digits;
 }
 
 /** A grid line's value with as many decimals as its distance to the next one needs. */
