@@ -81,14 +81,17 @@ mod tests {
 
     #[test]
     fn the_ports_of_vrep_are_not_those_of_coppeliasim() {
-        check(&robots(&["19999", "019997"]), &expect![[r#"
+        check(
+            &robots(&["19999", "019997"]),
+            &expect![[r#"
             hint[port-of-other-target] 3:20 "19999" 19999 is a port of V-REP's; CoppeliaSim listens on 23000
               help: change the port, or set `target = "vrep"` in pydslrep.toml
               suggestion: change the port to 23000 -> robot r0 with port 23000 has { a b } wheels
             hint[port-of-other-target] 4:20 "019997" 19997 is a port of V-REP's; CoppeliaSim listens on 23000
               help: change the port, or set `target = "vrep"` in pydslrep.toml
               suggestion: change the port to 23000 -> robot r1 with port 23000 has { a b } wheels
-        "#]]);
+        "#]],
+        );
         check_clean(&robots(&["19996", "20000", "23000"]));
     }
 
