@@ -196,7 +196,7 @@ fn offers(place: &Place<'_>, expected: Expected) -> Vec<Completion> {
             found
         }
         Expected::Port => {
-            let port = words::port(place);
+            let port = words::port(place, place.entity);
             port.map(|port| words::value(place, &port, "the port of the simulator")).into_iter().collect()
         }
         Expected::Address => vec![words::value(place, "127.0.0.1", "this machine")],

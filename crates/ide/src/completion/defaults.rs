@@ -17,7 +17,7 @@ const MOST_LISTED: usize = 40;
 /// What is declared near a place, and what is written there.
 pub(super) struct Defaults<'a> {
     place: &'a Place<'a>,
-    /// Near the cursor, in the order of the text, without the entity that is being written.
+    /// Near the cursor, in the order of the text.
     near: Vec<Near<'a>>,
 }
 
@@ -49,9 +49,19 @@ pub(super) struct LastTurn {
 }
 
 impl<'a> Defaults<'a> {
-    pub(super) fn around(place: &'a Place<'a>) -> Self {
+    /// For a new entity.
+    pub(super) fn for_entity(place: &'a Place<'a>) -> Self {
+        Self::around(place, None)
+    }
+
+    /// For what is missing of the entity at the cursor, which says nothing about itself.
+    pub(super) fn for_part(place: &'a Place<'a>) -> Self {
+        Self::around(place, place.entity)
+    }
+
+    fn around(place: &'a Place<'a>, own: Option<EntityId>) -> Self {
         let around = place.database.entities_around(place.file, place.word.start, NEAR);
-        let near = around.filter(|id| place.entity != Some(*id)).filter_map(|id| {
+        let near = around.filter(|id| own != Some(*id)).filter_map(|id| {
             let entity = place.database.entity(id)?;
             let is_before = entity.span.start < place.word.start;
             Some(Near { id, tree: entity.parse.entity.as_ref()?, is_before })
@@ -321,34 +331,33 @@ fn numbered(name: &str) -> Option<(&str, u32)> {
 
 const SIDES: [(&str, &str); 3] = [("left", "right"), ("Left", "Right"), ("L", "R")];
 
-/// The names for the other side: `wheelR0` of `wheelL0`, the change nearest to the end first.
-fn mirrored(name: &str) -> Vec<String> {
-    let exchange = |from: &'static str, to: &'static str| {
-        let at = name.rmatch_indices(from);
-        at.map(move |(at, _)| format!("{}{to}{}", &name[..at], &name[at + from.len()..]))
-    };
-    SIDES.into_iter().flat_map(|(left, right)| exchange(left, right).chain(exchange(right, left))).collect()
+/// The names with one `from` in them replaced by `to`, the last one first.
+fn exchanged(name: &str, from: &str, to: &str) -> Vec<String> {
+    let places = name.rmatch_indices(from);
+    places.map(|(at, _)| format!("{}{to}{}", &name[..at], &name[at + from.len()..])).collect()
 }
 
-/// Wheels in the order of the language: those that have a counterpart on the right come first.
-fn left_first(mut names: Vec<SmolStr>) -> Vec<SmolStr> {
-    let all = names.clone();
-    let is_right = |name: &SmolStr| {
-        let left = SIDES.into_iter().flat_map(|(left, right)| {
-            name.rmatch_indices(right)
-                .map(move |(at, _)| format!("{}{left}{}", &name[..at], &name[at + right.len()..]))
-        });
-        let mut left = left;
-        left.any(|left| all.iter().any(|other| *other == left))
+/// The names for the other side, such as `wheelR0` for `wheelL0`.
+fn mirrored(name: &str) -> Vec<String> {
+    let both = |(left, right)| [exchanged(name, left, right), exchanged(name, right, left)];
+    SIDES.into_iter().flat_map(both).flatten().collect()
+}
+
+/// Wheels in the order of the language: those whose counterpart on the left is among them come last.
+fn left_first(names: Vec<SmolStr>) -> Vec<SmolStr> {
+    let has_left = |name: &SmolStr| {
+        let mut left = SIDES.into_iter().flat_map(|(left, right)| exchanged(name, right, left));
+        left.any(|left| names.iter().any(|other| *other == left))
     };
-    let is_right: Vec<(bool, SmolStr)> = names.drain(..).map(|name| (is_right(&name), name)).collect();
-    let (right, left): (Vec<_>, Vec<_>) = is_right.into_iter().partition(|(is_right, _)| *is_right);
-    left.into_iter().chain(right).map(|(_, name)| name).collect()
+    let is_right: Vec<bool> = names.iter().map(has_left).collect();
+    let mut sides: Vec<(bool, SmolStr)> = is_right.into_iter().zip(names).collect();
+    sides.sort_by_key(|(is_right, _)| *is_right);
+    sides.into_iter().map(|(_, name)| name).collect()
 }
 
 /// The wheels, robots or movements that a list of this kind in the entity at the cursor probably has.
 pub(super) fn likely_list(place: &Place<'_>, kind: EntityKind) -> String {
-    let defaults = Defaults::around(place);
+    let defaults = Defaults::for_part(place);
     match (place.tree, kind) {
         (Some(Entity::Robot(_)), EntityKind::Wheel) => defaults.wheels().names.join(" "),
         (Some(Entity::Robot(_)), EntityKind::Sensor) => defaults.sensors().join(", "),

@@ -24,7 +24,7 @@ impl Pattern {
 
 /// Whole entities, in the order of the grammar; of the two kinds of wheel, the one declared last comes first.
 pub(super) fn entities(place: &Place<'_>) -> Vec<Completion> {
-    let defaults = Defaults::around(place);
+    let defaults = Defaults::for_entity(place);
     let mut patterns = Vec::new();
     if place.database.entities(place.file).all(|entity| entity.parse.entity.is_none()) {
         patterns.push(program(place));
@@ -97,7 +97,7 @@ fn robot(place: &Place<'_>, defaults: &Defaults<'_>) -> Pattern {
         "robot ${{1:{}}} type ${{5:{}}} with port ${{4:{}}} has {{ {} }} wheels{sensors}",
         defaults.next_name(EntityKind::Robot),
         layout.drive,
-        port(place).unwrap_or_default(),
+        port(place, None).unwrap_or_default(),
         stop(2, &layout.names.join(" ")),
     );
     Pattern::new("robot …", "a complete robot declaration", insert)
@@ -136,7 +136,7 @@ fn environment(defaults: &Defaults<'_>) -> Pattern {
 
 /// Whole actions, those like the last action of their kind first.
 pub(super) fn actions(place: &Place<'_>) -> Vec<Completion> {
-    let defaults = Defaults::around(place);
+    let defaults = Defaults::for_part(place);
     let (moves, turns) = (moves(&defaults), turns(&defaults));
     // Turns and moves mostly take turns.
     let patterns = if defaults.follows_a_move() { [turns, moves] } else { [moves, turns] };
@@ -213,7 +213,7 @@ fn spelling(direction: Direction) -> &'static str {
 
 /// The clause that a move can end with.
 pub(super) fn speed(place: &Place<'_>) -> Vec<Completion> {
-    let insert = format!("at ${{1:{}}}", Defaults::around(place).speed());
+    let insert = format!("at ${{1:{}}}", Defaults::for_part(place).speed());
     completions(place, vec![Pattern::new("at …", "a speed (cm/s)", insert)])
 }
 
@@ -261,6 +261,8 @@ pub(super) fn without_stops(snippet: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use expect_test::{Expect, expect};
+
     use super::*;
     use crate::fixture::{PARTS, at_cursor};
     use crate::{CompletionTrigger, completions};
@@ -269,6 +271,97 @@ mod tests {
     fn stops_leave_their_text() {
         assert_eq!(without_stops("a ${1:b} {\n  $0\n}"), "a b {\n  \n}");
         assert_eq!(without_stops("{ $1 } ${2:a ${3:b}} \\$ \\}"), "{  } a b $ }");
+    }
+
+    /// What patterns of these labels insert.
+    fn check(fixture: &str, labels: &[&str], expected: &Expect) {
+        let (database, position) = at_cursor(fixture);
+        let items = completions(&database, position, CompletionTrigger::Invoked, 9.0);
+        let found = labels.iter().map(|label| {
+            let item = items.iter().find(|item| item.label == *label);
+            item.map_or_else(|| format!("no {label}\n"), |item| item.insert.clone() + "\n")
+        });
+        expected.assert_eq(&found.collect::<String>());
+    }
+
+    #[test]
+    fn entities_continue_what_is_declared_above() {
+        let wheels =
+            "wheelH wheelR0 with radius 6\nwheelH wheelL0 with radius 6\nwheelH wheelR1 with radius 6.5\n";
+        check(
+            &format!("{wheels}$0"),
+            &["wheelH …", "robot …"],
+            &expect![[r#"
+                wheelH ${1:wheelL1} with radius ${2:6.5}
+                robot ${1:rover} type ${5:tw} with port ${4:23000} has { $2 } wheels
+            "#]],
+        );
+        check(
+            &format!("{wheels}wheelH wheelL1 with radius 6\nsensor sonar_1\n$0"),
+            &["wheelH …", "sensor …", "robot …"],
+            &expect![[r#"
+                wheelH ${1:wheelL2} with radius ${2:6}
+                sensor ${1:sonar_2}
+                robot ${1:rover} type ${5:fwh} with port ${4:23000} has { ${2:wheelL0 wheelL1 wheelR0 wheelR1} } wheels with sensors { ${3:sonar_1} }
+            "#]],
+        );
+        check(
+            &format!(
+                "{PARTS}movement mov_1 of rover {{ slam }}\nmovement mov_2 of rover {{ slam }}\n\
+                 robot other with port 23000 has {{ wheelL wheelR }} wheels\n$0"
+            ),
+            &["movement …", "parallel movement …", "environment …"],
+            &expect![[r#"
+                movement ${1:mov_3} of ${2:other} {
+                  $0
+                }
+                parallel movement ${1:mov_3} of ${2:other} {
+                  $0
+                }
+                environment ${1:area} has { ${2:rover} } robots with { ${3:mov_1 mov_2} } moves
+            "#]],
+        );
+    }
+
+    #[test]
+    fn a_long_list_has_a_line_for_each_name() {
+        let movement = |number: u32| format!("movement along_the_fence_{number} of rover {{ slam }}\n");
+        let movements: String = (1..5).map(movement).collect();
+        check(
+            &format!("{PARTS}{movements}$0"),
+            &["environment …"],
+            &expect![[r#"
+                environment ${1:area} has { ${2:rover} } robots with {
+                  ${3:along_the_fence_1
+                  along_the_fence_2
+                  along_the_fence_3
+                  along_the_fence_4}
+                } moves
+            "#]],
+        );
+    }
+
+    #[test]
+    fn actions_are_like_those_before() {
+        let before = "movement m of rover { move 50 centimeters at 12.5 turn right 45";
+        check(
+            &format!("{PARTS}{before} $0"),
+            &["move … centimeters at …", "move … meters", "turn right …", "turn right until …"],
+            &expect![[r#"
+                move ${1:50} centimeters at ${2:12.5}
+                move ${1:1.0} meters
+                turn right ${1:45}
+                turn right until { ${1:front} }
+            "#]],
+        );
+        check(
+            &format!("{PARTS}{before} }}\nmovement n of rover {{ $0 }}"),
+            &["move … centimeters at …", "turn left …"],
+            &expect![[r#"
+                move ${1:50} centimeters at ${2:12.5}
+                turn left ${1:45}
+            "#]],
+        );
     }
 
     #[test]

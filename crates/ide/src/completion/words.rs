@@ -154,12 +154,12 @@ pub(super) fn value(place: &Place<'_>, text: &str, detail: &str) -> Completion {
     Completion { detail: detail.to_owned(), ..place.item(text, CompletionKind::Value, Rank::Fitting) }
 }
 
-/// A port for another robot. Where all robots share one port, as they may in CoppeliaSim, it is theirs; else it is the one
+/// A port for a robot: `own`, or a new one. Where all robots share one port, as they may in CoppeliaSim, it is theirs; else it is the one
 /// after the highest, or the first that is free.
-pub(super) fn port(place: &Place<'_>) -> Option<String> {
+pub(super) fn port(place: &Place<'_>, own: Option<EntityId>) -> Option<String> {
     let target = place.database.target(place.file);
     let port = |id: EntityId| match place.database.tree(id)? {
-        Entity::Robot(robot) if Some(id) != place.entity => robot.port.as_ref()?.value,
+        Entity::Robot(robot) if Some(id) != own => robot.port.as_ref()?.value,
         _ => None,
     };
     let mut taken: Vec<u16> = if place.database.count(place.file, EntityKind::Robot) as usize > FEW {
