@@ -46,18 +46,14 @@ def ported(script: str, *, explores: bool = False) -> str:
     lines = script.splitlines(keepends=True)
     places: dict[str, tuple[int, int]] = {}
     for node in ast.parse(script).body:
-        if isinstance(node, ast.Import):
-            name = node.names[0].name
-        elif isinstance(node, ast.ImportFrom):
-            name = str(node.module)
-        else:
-            name = str(getattr(node, "name", ""))
+        # What is tried is the import of the client.
+        is_client = isinstance(node, ast.Try)
+        name = "client" if is_client else str(getattr(node, "name", ""))
         places[name] = (node.lineno - 1, node.end_lineno or 0)
     replaced = {
         "Body": body,
         "LimitedSocket": "",
-        "coppeliasim_zmqremoteapi_client": "",
-        "zmq": imports,
+        "client": imports,
     }
     for name, code in sorted(replaced.items(), key=lambda item: -places[item[0]][0]):
         first, last = places[name]

@@ -172,9 +172,13 @@ pub fn completions(
 /// Without what is in the way of what is being typed. All replace the same word.
 fn narrowed_at(database: &Database, position: FilePosition, items: Vec<Completion>) -> Vec<Completion> {
     let Some(word) = items.first().map(|item| item.replace) else { return items };
-    let before = database.slice(position.file, Span::new(word.start, position.offset));
-    let after = database.slice(position.file, Span::new(position.offset, word.end));
-    offers::narrowed(items, &before, &after)
+    let slice = |start, end| database.slice(position.file, Span::new(start, end));
+    let (before, after) = (slice(word.start, position.offset), slice(position.offset, word.end));
+    let ends_line = database.text(position.file).is_none_or(|text| {
+        let following = text.get_byte_slice(word.end as usize..);
+        following.is_none_or(|following| offers::ends_line(following.chars()))
+    });
+    offers::narrowed(items, offers::Word { before: &before, after: &after, ends_line })
 }
 
 fn offers(place: &Place<'_>, expected: Expected) -> Vec<Completion> {
@@ -485,7 +489,7 @@ mod tests {
             in_movement("slam$0"),
             in_movement("turn left until { front$0 }"),
             format!("{PARTS}robot r with port 1 has {{ wheelL wheelR }} wheels$0"),
-            format!("{PARTS}wheel wheelL2 with radius 4.5 robot r with port 1 has {{ wheelL$0 }} wheels"),
+            format!("{PARTS}wheel wheelL2 with radius 4.5 robot r with port 1 has {{ wheelL$0 }}"),
             format!("{PARTS}movement m of rover$0"),
             "wheel$0".to_owned(),
             "sensor s : bumper$0".to_owned(),
@@ -493,6 +497,13 @@ mod tests {
         for fixture in fixtures {
             assert_eq!(opens(&fixture), [""; 0], "{fixture}");
         }
+    }
+
+    #[test]
+    fn a_word_inside_a_line_is_offered_to_the_end() {
+        let fixture = |typed: &str| format!("{PARTS}movement m of {typed}$0 {{ slam }}");
+        assert_eq!(opens(&fixture("rove")), ["rover"]);
+        assert_eq!(opens(&fixture("rover")), ["rover"]);
     }
 
     #[test]

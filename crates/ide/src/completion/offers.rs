@@ -9,26 +9,44 @@ use super::{Completion, CompletionTrigger};
 /// right after the word, for as long as the editor waits for the answer to the last letter.
 const FEW_LETTERS: usize = 2;
 
-/// Of what fits, that which the typed beginning of the word can become and which is longer by more than a few letters;
-/// nothing where the word is complete already.
-///
-/// `before` and `after` are the parts of the word on either side of the cursor.
-pub(crate) fn narrowed(items: Vec<Completion>, before: &str, after: &str) -> Vec<Completion> {
-    if before.is_empty() && after.is_empty() {
+/// The word at the cursor.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Word<'a> {
+    /// Its part before the cursor.
+    pub(crate) before: &'a str,
+    /// Its part after the cursor.
+    pub(crate) after: &'a str,
+    /// Whether nothing follows it on its line but what editors close by themselves, so that Enter may come next.
+    pub(crate) ends_line: bool,
+}
+
+impl Word<'_> {
+    /// Whether a text is there already, or so nearly that the rest is typed faster.
+    fn is_nearly(&self, text: &str) -> bool {
+        let is_short = text.len() <= self.before.len() + FEW_LETTERS;
+        self.ends_line && self.after.is_empty() && is_short && starts_with(text, &self.before.to_lowercase())
+    }
+}
+
+/// Whether what follows a word on its line is only what editors close by themselves.
+pub(crate) fn ends_line(following: impl Iterator<Item = char>) -> bool {
+    let mut line = following.take_while(|character| !matches!(character, '\r' | '\n'));
+    line.all(|character| " \t}]\"'".contains(character))
+}
+
+/// Of what fits, that which the typed beginning of the word can become. Where Enter may end the line, nothing is offered
+/// of a word that is complete, and no word of which few letters are missing.
+pub(crate) fn narrowed(items: Vec<Completion>, word: Word<'_>) -> Vec<Completion> {
+    if word.before.is_empty() && word.after.is_empty() {
         return items;
     }
-    if after.is_empty() && items.iter().any(|item| item.plain() == before) {
+    if word.ends_line && word.after.is_empty() && items.iter().any(|item| item.plain() == word.before) {
         return Vec::new();
     }
-    let typed = bare(before).to_lowercase();
-    let is_there = |item: &Completion| {
-        let plain = item.plain();
-        let is_nearly = after.is_empty() && plain.len() <= before.len() + FEW_LETTERS;
-        plain == [before, after].concat() || (is_nearly && starts_with(&plain, &before.to_lowercase()))
-    };
+    let typed = bare(word.before).to_lowercase();
     let mut found: Vec<(bool, Completion)> = items
         .into_iter()
-        .filter(|item| !is_there(item))
+        .filter(|item| !word.is_nearly(&item.plain()))
         .filter_map(|item| Some((!fit(&item, &typed)?, item)))
         .collect();
     found.sort_by_key(|(is_inside, item)| (*is_inside, item.rank));
@@ -82,7 +100,13 @@ fn has_letters(word: &str, typed: &str) -> bool {
 pub(crate) fn narrowed_in_toml(items: Vec<Completion>, text: &str, offset: u32) -> Vec<Completion> {
     let Some(word) = items.first().map(|item| item.replace) else { return items };
     let cut = offset.clamp(word.start, word.end);
-    narrowed(items, Span::new(word.start, cut).text(text), Span::new(cut, word.end).text(text))
+    let following = text.get(word.end as usize..).unwrap_or_default();
+    let word = Word {
+        before: Span::new(word.start, cut).text(text),
+        after: Span::new(cut, word.end).text(text),
+        ends_line: ends_line(following.chars()),
+    };
+    narrowed(items, word)
 }
 
 impl CompletionTrigger {

@@ -268,7 +268,12 @@ mod tests {
             back | a table | "back"
         "#]],
         );
-        check("[robots.ro$0ver.sensors.front]", &expect![""]);
+        check(
+            "[robots.ro$0ver.sensors.front]",
+            &expect![[r#"
+            rover | a table | "rover"
+        "#]],
+        );
         check(
             "robots.$0",
             &expect![[r#"
@@ -305,7 +310,12 @@ mod tests {
             rim-acceleration | default: 1.0 | "rim-acceleration = $0"
         "#]],
         );
-        check("[robots.rover.sensors.front]\nco$0ne = 1", &expect![""]);
+        check(
+            "[robots.rover.sensors.front]\nco$0ne = 1",
+            &expect![[r#"
+            cone | default: 20 | "cone"
+        "#]],
+        );
         check(
             "world = { s$0 }",
             &expect![[r#"

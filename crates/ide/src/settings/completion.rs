@@ -212,7 +212,12 @@ mod tests {
             slam-sensors | default: "error" | "slam-sensors = \"$0\""
         "#]],
         );
-        check("[severity]\nslam-rob$0ot = 'off'", &expect![""]);
+        check(
+            "[severity]\nslam-rob$0ot = 'off'",
+            &expect![[r#"
+            slam-robot | default: "error" | "slam-robot"
+        "#]],
+        );
     }
 
     #[test]
