@@ -170,7 +170,7 @@ const tests = {
     });
     await vscode.tasks.executeTask(tasks[0]);
     assert.equal(await ended, 1);
-    const radii = () => problems("unopened.pyr").filter(({ code }) => codeOf(code) === "invalid-radius");
+    const radii = () => problems("unopened.pyr").filter(({ code }) => (code.value ?? code) === "invalid-radius");
     await until("the server's problem of a file that is not open", () => radii().length > 0);
     assert.equal(radii().length, 1);
   },
