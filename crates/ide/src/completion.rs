@@ -509,8 +509,8 @@ mod tests {
     #[test]
     fn the_list_is_gone_before_the_word_is_complete() {
         let fixture = |typed: &str| format!("{PARTS}movement m of rover {{ move 2 {typed}$0");
-        assert_eq!(opens(&fixture("met")), ["meters"]);
-        assert_eq!(opens(&fixture("mete")), [""; 0]);
+        assert_eq!(opens(&fixture("me")), ["meters"]);
+        assert_eq!(opens(&fixture("met")), [""; 0]);
         assert_eq!(opens(&fixture("meter")), [""; 0]);
     }
 
@@ -556,9 +556,9 @@ mod tests {
             "#]],
         );
         check_in(
-            &[wheels, more, ("a.pyr", "// head\nimport \"more.pyr\"\nrobot r with port 1 has { ro$0")],
+            &[wheels, more, ("a.pyr", "// head\nimport \"more.pyr\"\nrobot r with port 1 has { r$0")],
             &expect![[r#"
-                round [wheel from lib/wheels.pyr, adds the import] "ro" -> "round" and "import \"lib/wheels.pyr\"\n" at 8
+                round [wheel from lib/wheels.pyr, adds the import] "r" -> "round" and "import \"lib/wheels.pyr\"\n" at 8
             "#]],
         );
         check_in(

@@ -180,7 +180,7 @@ fn a_half_typed_word_is_replaced_by_what_it_was_going_to_be() {
             // Right behind a word it is that one which is being typed.
             let touches = text[..start].ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
             // Of the last letters none is offered.
-            for typed in usize::from(touches)..word.len().saturating_sub(2) {
+            for typed in usize::from(touches)..word.len().saturating_sub(3) {
                 // `wheel` may be meant as it is, and is left alone.
                 if !token.is_name() && KEYWORDS.iter().any(|(_, keyword)| *keyword == &word[..typed]) {
                     continue;

@@ -143,8 +143,8 @@ local function options()
     return codes
   end
   open_program('unused.pyr', 'wheel spare with radius 4.5\nsensor 1\n' .. PROGRAM)
-  -- Of the two things that are wrong, one is switched off.
-  becomes('settings reach the server', { 'syntax-error' }, notes)
+  -- Of what is wrong, one thing is switched off.
+  becomes('settings reach the server', { 'port-of-other-target', 'syntax-error' }, notes)
   local chosen = vim.g.pydslrep
   local wrong = told('there is no option `setings`', function()
     require('pydslrep').setup({ setings = {}, highlight = 1 })

@@ -23,7 +23,7 @@ from session import ROOT, session
 
 PACES = (30, 70, 150)
 # Without `--all`, all programs are typed at the first pace, and the first of them at the second.
-FEW_PACES = (30, 70)
+FEW_PACES = (70, 30)
 # How long a file may take to be written, in seconds.
 PATIENCE = 5.0
 SIGNS = {

@@ -7,7 +7,7 @@ use super::{Completion, CompletionTrigger};
 
 /// So few letters are typed faster than a list is read. Without this, a list would still be open when Enter ends the line
 /// right after the word, for as long as the editor waits for the answer to the last letter.
-const FEW_LETTERS: usize = 2;
+const FEW_LETTERS: usize = 3;
 
 /// The word at the cursor.
 #[derive(Debug, Clone, Copy)]

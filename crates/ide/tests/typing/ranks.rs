@@ -62,8 +62,9 @@ fn offered(program: &str, word: Span) -> Option<Vec<String>> {
     let blank = program[..word.start as usize].chars().last();
     let by_blank = blank.map(|blank| asked(program, word.start, CompletionTrigger::Character(blank)));
     by_blank.filter(|words| !words.is_empty()).or_else(|| {
-        let is_long = word.end - word.start > 3;
-        is_long.then(|| asked(program, word.start + 1, CompletionTrigger::Invoked))
+        let length = word.end - word.start;
+        let words = (length > 1).then(|| asked(program, word.start + 1, CompletionTrigger::Invoked));
+        words.filter(|words| length > 4 || !words.is_empty())
     })
 }
 
