@@ -172,9 +172,12 @@ class Neovim(Modal):
 
 
 class Helix(Modal):
-    """Helix as it comes: completion and auto-closing brackets are on."""
+    """Helix as it comes: completion and auto-closing brackets are on.
 
-    habits = Habits(leader=usual_leader, closes_braces=True)
+    Ctrl+U scrolls parameter hints, and whoever types without a pause meets hints that Helix has not asked about anew.
+    """
+
+    habits = Habits(leader=usual_leader, deletes_by_line=False, closes_braces=True)
     mistake = "● 1"
     insert = "(?m)^ INS"
     normal = "(?m)^ NOR"

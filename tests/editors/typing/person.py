@@ -1,6 +1,6 @@
 """How a person types a program: one key after the other, and nothing that the editor has put there already.
 
-Keys are characters, and these names: Enter, Tab, Down, End, C-u (which deletes what is before the cursor).
+Keys are characters, and these names: Enter, Tab, Down, End, BSpace, C-u (which deletes what is before the cursor).
 """
 
 from __future__ import annotations
@@ -36,6 +36,8 @@ class Habits:
     # After a line comment, Enter begins another one with the `//` and the blanks that this gives. Where another beginning
     # is wanted, one deletes it.
     leader: Callable[[str], str] = lambda _comment: ""
+    # It is deleted at once by Ctrl+U; elsewhere one presses Backspace.
+    deletes_by_line: bool = True
     # The last line of a file ends without Enter.
     ends_last_line: bool = False
 
@@ -64,17 +66,18 @@ def strokes(program: str, habits: Habits) -> list[Stroke]:
             steps = 0 if habits.indents else (len(line) - len(text)) // STEP
             before = lines[number - 1].lstrip()
             leader = habits.leader(before) if before.startswith("//") else ""
-            keys = ["Enter", *["Tab"] * steps, *_after_leader(text, leader)]
+            keys = ["Enter", *["Tab"] * steps, *_after_leader(text, leader, habits)]
         typed += [Stroke(key, number) for key in keys]
         open_braces = _opened(open_braces, line)
     return typed
 
 
-def _after_leader(text: str, leader: str) -> list[str]:
+def _after_leader(text: str, leader: str, habits: Habits) -> list[str]:
     """The keys for a line that begins as a comment already."""
     if text.startswith(leader):
         return list(text.removeprefix(leader))
-    return ["C-u", *text]
+    deleted = ["C-u"] if habits.deletes_by_line else ["BSpace"] * len(leader)
+    return [*deleted, *text]
 
 
 def _opened(before: list[bool], line: str) -> list[bool]:

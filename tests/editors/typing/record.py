@@ -31,6 +31,7 @@ SIGNS = {
     "Enter": "⏎\n        ",
     "Tab": "⇥",
     "C-u": "⌫",
+    "BSpace": "⌫",
     "Down": "↓",
     "End": "⇲",
 }

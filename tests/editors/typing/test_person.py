@@ -25,6 +25,7 @@ KINDS = [
     Habits(ends_last_line=True),
     Habits(leader=same_leader, ends_last_line=True),
     Habits(leader=usual_leader, closes_braces=True),
+    Habits(leader=usual_leader, deletes_by_line=False),
 ]
 
 
@@ -71,6 +72,9 @@ class Ideal:
 
     def _Tab(self) -> None:  # noqa: N802
         self.before += " " * STEP
+
+    def _BSpace(self) -> None:  # noqa: N802
+        self.before = self.before[:-1]
 
     def _C_u(self) -> None:  # noqa: N802
         line = self._line()
