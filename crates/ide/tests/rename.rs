@@ -249,9 +249,10 @@ proptest! {
         prop_assume!(!KEYWORDS.iter().any(|(token, word)| token.is_keyword() && name == *word));
         let (said, text) = (meaning(&database), texts(&database));
         let bare = new.trim_start_matches('^');
-        // How a problem is worded may depend on other names ("`x` is a robot, not a wheel").
+        // How a problem is worded may depend on other names ("`x` is a robot, not a wheel"), and so may how many syntax
+        // errors a broken statement is reported as: recovery compares its words with keywords.
         let unworded = |problems: Vec<String>| -> Vec<String> {
-            problems.iter().map(|problem| problem.split(' ').take(3).collect()).collect()
+            problems.iter().filter(|problem| !problem.contains("syntax-error")).map(|problem| problem.split(' ').take(3).collect()).collect()
         };
         let found = unworded(problems(&database, [&name, bare]));
         let all = references(&database, at(place), true).unwrap();

@@ -63,10 +63,9 @@ fn may_end(previous: Option<Token>, token: Token, inside: Option<EntityKind>) ->
         | Token::Slam
         | Token::Meters
         | Token::Centimeters => true,
-        Token::Distance | Token::Bumper => inside == Some(EntityKind::Sensor),
         // A port never ends a robot, and a list may stand without its braces.
         _ if previous.is_number() => inside != Some(EntityKind::Robot),
-        Token::Name | Token::MalformedName => {
+        _ if previous.is_name() => {
             !matches!(inside, Some(EntityKind::Robot | EntityKind::Environment | EntityKind::Movement))
         }
         _ => false,
@@ -270,6 +269,18 @@ environment robot1 has { robot1 robot2 } robots with { movement1 of } moves whee
                 robot q with port 1 has { wheel1 with }
                 environment robot1 has { robot1 robot2 } robots with { movement1 of } moves
                 wheels a with radius 4"#]],
+        );
+    }
+
+    #[test]
+    fn misspelt_keywords_cut_after_names_that_are_keywords_elsewhere() {
+        check(
+            "wheel distance weel a with radius 4 sensor import weel b with radius 4",
+            &expect![[r"
+                wheel distance
+                weel a with radius 4
+                sensor import
+                weel b with radius 4"]],
         );
     }
 
