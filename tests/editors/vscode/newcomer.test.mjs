@@ -194,3 +194,7 @@ test("a new file is a program, and its script asks for a place", async () => {
   await stage.toast("Script written: yard.py");
   await stage.tab("yard.py").waitFor();
 });
+
+test("steps done before the walkthrough is first opened are ticked off", async () => {
+  assert.deepEqual(await stage.walkthrough(), ["Write a program", "See where it goes", "Run it", "Export the script"]);
+});

@@ -238,6 +238,18 @@ export class Stage {
     await message.waitFor({ state: "detached" });
   }
 
+  /** Opens the walkthrough and returns the titles of the steps that are ticked off. */
+  async walkthrough() {
+    await this.call("Welcome: Open Walkthrough...");
+    await this.page.locator(".quick-input-widget input").first().fill("PyDSLRep");
+    await this.page.locator(".quick-input-widget .monaco-list-row.focused", { hasText: "PyDSLRep" }).waitFor();
+    await this.page.keyboard.press("Enter");
+    const steps = this.page.locator(".getting-started-step");
+    await steps.first().waitFor();
+    const done = steps.filter({ has: this.page.locator(".codicon-getting-started-step-checked") });
+    return (await done.locator(".step-title").allInnerTexts()).map((title) => spaced(title).trim());
+  }
+
   /** The frame of a webview that has an element like this. */
   async webview(selector) {
     return until(`a webview with ${selector}`, async () => {

@@ -34,7 +34,7 @@ test("a mistake is underlined, and the file is one of the language", async () =>
 });
 
 test("the walkthrough begins with nothing done", async () => {
-  assert.deepEqual(await stepsDone(), []);
+  assert.deepEqual(await stage.walkthrough(), []);
   await stage.tab("yard.pyr").click();
   await stage.line("movement patrol").first().waitFor();
 });
@@ -158,22 +158,10 @@ test("the message leads to the table of the run", async () => {
 });
 
 test("the steps of the walkthrough are ticked off as they are done", async () => {
-  assert.deepEqual(await stepsDone(), ["Write a program", "See where it goes", "Run it", "Export the script"]);
+  assert.deepEqual(await stage.walkthrough(), ["Write a program", "See where it goes", "Run it", "Export the script"]);
 });
 
 /** What the extension says when a run has come to its end. */
 function driven() {
   return stage.page.locator(".notification-toast", { hasText: "simulated in" });
-}
-
-/** Opens the walkthrough, and says which steps are ticked off. */
-async function stepsDone() {
-  await stage.call("Welcome: Open Walkthrough...");
-  await stage.page.locator(".quick-input-widget input").first().fill("PyDSLRep");
-  await stage.page.locator(".quick-input-widget .monaco-list-row.focused", { hasText: "PyDSLRep" }).waitFor();
-  await stage.page.keyboard.press("Enter");
-  const steps = stage.page.locator(".getting-started-step");
-  await steps.first().waitFor();
-  const done = steps.filter({ has: stage.page.locator(".codicon-getting-started-step-checked") });
-  return (await done.locator(".step-title").allInnerTexts()).map((title) => spaced(title).trim());
 }
