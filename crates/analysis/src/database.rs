@@ -8,13 +8,13 @@ mod references;
 mod scenes;
 
 pub use self::imports::Absence;
-pub use self::references::Place;
+pub use self::references::FileSpan;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{EntityKind, Parse, Span, Token};
+use pydslrep_syntax::{EntityKind, Parse, Span, TokenKind};
 use ropey::Rope;
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
@@ -24,7 +24,7 @@ use self::scenes::Scenes;
 use crate::diagnostics::{self, Problem};
 use crate::file::File;
 use crate::names::Names;
-use crate::pieces::Piece;
+use crate::slots::EntitySlot;
 use crate::{Diagnostic, Target};
 
 /// A file of the database; the same for the same path, also after closing and opening it again.
@@ -169,13 +169,13 @@ impl Database {
 
     /// The entities of a file in the order of the text; also what stands before the first.
     pub fn entities(&self, file: FileId) -> impl Iterator<Item = EntityRef<'_>> {
-        let pieces = self.get(file).map_or(&[][..], |file| &file.pieces);
-        pieces
+        let slots = self.get(file).map_or(&[][..], |file| &file.slots);
+        slots
             .iter()
-            .scan(0, move |start, piece| {
-                let span = Span::new(*start, *start + piece.len);
+            .scan(0, move |start, slot| {
+                let span = Span::new(*start, *start + slot.len);
                 *start = span.end;
-                Some((piece.entity, span))
+                Some((slot.entity, span))
             })
             .filter_map(|(id, span)| {
                 self.data(id).map(|data| EntityRef { id, file: data.file, span, parse: &data.parse })
@@ -184,12 +184,12 @@ impl Database {
 
     /// The entities of a file from the one that holds an offset on, in the order of the text.
     pub fn entities_from(&self, file: FileId, offset: u32) -> impl Iterator<Item = EntityRef<'_>> {
-        let (index, start) = self.piece_at(file, offset);
-        let pieces = self.pieces(file).get(index..).unwrap_or_default();
-        let located = pieces.iter().scan(start, move |start, piece| {
-            let span = Span::new(*start, *start + piece.len);
+        let (index, start) = self.slot_at(file, offset);
+        let slots = self.slots(file).get(index..).unwrap_or_default();
+        let located = slots.iter().scan(start, move |start, slot| {
+            let span = Span::new(*start, *start + slot.len);
             *start = span.end;
-            Some((piece.entity, span))
+            Some((slot.entity, span))
         });
         located.filter_map(|(id, span)| {
             self.data(id).map(|data| EntityRef { id, file: data.file, span, parse: &data.parse })
@@ -199,13 +199,13 @@ impl Database {
     /// The entity that holds an offset: at a boundary the one behind it, at the end of the text the last one.
     pub fn entity_at(&self, file: FileId, offset: u32) -> Option<EntityRef<'_>> {
         let open = self.get(file)?;
-        let (index, start) = open.pieces.at(offset);
-        let piece = open.pieces.get(index)?;
-        let data = self.data(piece.entity)?;
+        let (index, start) = open.slots.at(offset);
+        let slot = open.slots.get(index)?;
+        let data = self.data(slot.entity)?;
         Some(EntityRef {
-            id: piece.entity,
+            id: slot.entity,
             file,
-            span: Span::new(start, start + piece.len),
+            span: Span::new(start, start + slot.len),
             parse: &data.parse,
         })
     }
@@ -213,20 +213,20 @@ impl Database {
     /// The entities next to an offset, at most so many on either side of the one that holds it, in the order of the text:
     /// their number does not follow the length of the file.
     pub fn entities_around(&self, file: FileId, offset: u32, reach: usize) -> impl Iterator<Item = EntityId> {
-        let (index, _) = self.piece_at(file, offset);
-        let pieces = self.pieces(file);
-        let around = index.saturating_sub(reach)..(index + reach + 1).min(pieces.len());
-        pieces.get(around).unwrap_or_default().iter().map(|piece| piece.entity)
+        let (index, _) = self.slot_at(file, offset);
+        let slots = self.slots(file);
+        let around = index.saturating_sub(reach)..(index + reach + 1).min(slots.len());
+        slots.get(around).unwrap_or_default().iter().map(|slot| slot.entity)
     }
 
     /// An entity with its place.
     pub fn entity(&self, id: EntityId) -> Option<EntityRef<'_>> {
         let data = self.data(id)?;
         let open = self.get(data.file)?;
-        let index = open.pieces.partition_point(|piece| self.order(piece.entity) < data.order);
-        let piece = open.pieces.get(index).filter(|piece| piece.entity == id)?;
-        let start = open.pieces.start_of(index);
-        let span = Span::new(start, start + piece.len);
+        let index = open.slots.partition_point(|slot| self.order(slot.entity) < data.order);
+        let slot = open.slots.get(index).filter(|slot| slot.entity == id)?;
+        let start = open.slots.start_of(index);
+        let span = Span::new(start, start + slot.len);
         Some(EntityRef { id, file: data.file, span, parse: &data.parse })
     }
 
@@ -238,13 +238,13 @@ impl Database {
         self.data(id).map(|data| &data.parse)
     }
 
-    /// The piece that holds an offset, and where it starts.
-    pub(crate) fn piece_at(&self, file: FileId, offset: u32) -> (usize, u32) {
-        self.get(file).map_or((0, 0), |file| file.pieces.at(offset))
+    /// The slot that holds an offset, and where it starts.
+    pub(crate) fn slot_at(&self, file: FileId, offset: u32) -> (usize, u32) {
+        self.get(file).map_or((0, 0), |file| file.slots.at(offset))
     }
 
-    pub(crate) fn pieces(&self, file: FileId) -> &[Piece] {
-        self.get(file).map_or(&[], |file| &file.pieces)
+    pub(crate) fn slots(&self, file: FileId) -> &[EntitySlot] {
+        self.get(file).map_or(&[], |file| &file.slots)
     }
 
     /// An entity's tree, without its place.
@@ -343,10 +343,9 @@ impl Database {
 
     /// Whether the file ends inside a comment: whatever stands in it is hidden.
     pub(crate) fn has_open_comment(&self, file: FileId) -> bool {
-        let last =
-            self.get(file).and_then(|file| file.pieces.last()).and_then(|piece| self.data(piece.entity));
-        last.and_then(|data| data.parse.lexemes.last())
-            .is_some_and(|(token, _)| *token == Token::UnterminatedComment)
+        let last = self.get(file).and_then(|file| file.slots.last()).and_then(|slot| self.data(slot.entity));
+        last.and_then(|data| data.parse.tokens.last())
+            .is_some_and(|(token, _)| *token == TokenKind::UnterminatedComment)
     }
 
     /// The entities of a file that have problems, in the order of the text.

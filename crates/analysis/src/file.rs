@@ -2,25 +2,25 @@
 
 use std::ops::Range;
 
-use pydslrep_syntax::{LOOKAHEAD, Parse, Span, Token, cut, lex, parse, parse_cut};
+use pydslrep_syntax::{LOOKAHEAD, Parse, Span, TokenKind, cut, lex, parse, parse_cut};
 use ropey::Rope;
 
 use crate::EntityId;
-use crate::pieces::Pieces;
+use crate::slots::EntitySlots;
 
 /// One document.
 #[derive(Debug, Clone)]
 pub(crate) struct File {
     pub(crate) path: String,
     pub(crate) text: Rope,
-    pub(crate) pieces: Pieces,
+    pub(crate) slots: EntitySlots,
 }
 
-/// The pieces an edit replaces, and what replaces them.
+/// The slots an edit replaces, and what replaces them.
 #[derive(Debug)]
 pub(crate) struct Window {
     pub(crate) replaced: Range<usize>,
-    /// How many pieces at the window's head and tail the edit did not touch; they were read for what stands around
+    /// How many slots at the window's head and tail the edit did not touch; they were read for what stands around
     /// them, and can turn out as before.
     pub(crate) untouched: (usize, usize),
     /// How many tokens were lexed to find all this.
@@ -42,27 +42,27 @@ impl File {
         }
     }
 
-    /// Replaces `span` by `text` and reads again what the edit may have changed. The caller puts the new pieces in
-    /// place. `lexemes_of` gives the tokens of a piece as they were.
+    /// Replaces `span` by `text` and reads again what the edit may have changed. The caller puts the new slots in
+    /// place. `lexemes_of` gives the tokens of a slot as they were.
     pub(crate) fn edit<'a>(
         &mut self,
         span: Span,
         text: &str,
-        lexemes_of: impl Fn(EntityId) -> &'a [(Token, Span)],
+        lexemes_of: impl Fn(EntityId) -> &'a [(TokenKind, Span)],
     ) -> Window {
         let (first, first_start) = self.window_start(span.start, lexemes_of);
-        let (touched, touched_start) = self.pieces.at(span.end);
-        let before = self.pieces.at(span.start).0 - first;
+        let (touched, touched_start) = self.slots.at(span.end);
+        let before = self.slots.at(span.start).0 - first;
         let untouched = |window: &Range<usize>| (before, window.end - touched - 1);
         let old_len = Span::of_rope(&self.text).len();
         self.replace(span, text);
         let grown = i64::from(Span::of_rope(&self.text).len()) - i64::from(old_len);
         let mut end = touched + 1;
-        let mut end_offset = touched_start + self.pieces[touched].len;
+        let mut end_offset = touched_start + self.slots[touched].len;
         let mut growth = 1;
         let mut relexed = 0;
         loop {
-            let parses = if end >= self.pieces.len() {
+            let parses = if end >= self.slots.len() {
                 let window = Span::new(first_start, Span::of_rope(&self.text).len());
                 Some(parse(&self.slice(window)))
             } else {
@@ -70,19 +70,19 @@ impl File {
                 self.read_up_to(first_start, boundary, end, grown, end_offset, &mut relexed)
             };
             if let Some(parses) = parses {
-                let replaced = first..end.min(self.pieces.len());
+                let replaced = first..end.min(self.slots.len());
                 relexed += token_count(&parses);
                 return Window { untouched: untouched(&replaced), replaced, relexed, parses };
             }
-            let next_end = (end + growth).min(self.pieces.len());
-            end_offset += self.pieces[end..next_end].iter().map(|piece| piece.len).sum::<u32>();
+            let next_end = (end + growth).min(self.slots.len());
+            end_offset += self.slots[end..next_end].iter().map(|slot| slot.len).sum::<u32>();
             end = next_end;
             growth *= 2;
         }
     }
 
     /// Reads from `start` to `boundary`, if the old boundary there still holds: a token begins on it and still begins
-    /// an entity. Whether it does depends on that token and the few after it, and each piece has at least one; from
+    /// an entity. Whether it does depends on that token and the few after it, and each slot has at least one; from
     /// there on nothing can have changed.
     fn read_up_to(
         &self,
@@ -93,36 +93,37 @@ impl File {
         end_offset: u32,
         relexed: &mut usize,
     ) -> Option<Vec<(Span, Parse)>> {
-        let ahead: u32 = self.pieces[end..].iter().take(1 + LOOKAHEAD).map(|piece| piece.len).sum();
+        let ahead: u32 = self.slots[end..].iter().take(1 + LOOKAHEAD).map(|slot| slot.len).sum();
         let text = self.slice(Span::new(start, shift(end_offset + ahead, grown)));
-        let lexemes = lex(&text);
-        *relexed += lexemes.len();
-        let starts = cut(&text, &lexemes);
-        let last = starts.iter().position(|&index| lexemes[index].1.start + start == boundary)?;
+        let tokens = lex(&text);
+        *relexed += tokens.len();
+        let starts = cut(&text, &tokens);
+        let last = starts.iter().position(|&index| tokens[index].1.start + start == boundary)?;
         let mut parses = Vec::with_capacity(last + 1);
         let text = Span::new(0, boundary - start).text(&text);
-        parse_cut(text, &lexemes[..starts[last]], &starts[..last], |span, parse| parses.push((span, parse)));
+        parse_cut(text, &tokens[..starts[last]], &starts[..last], |span, parse| parses.push((span, parse)));
         Some(parses)
     }
 
-    /// The first piece to read again. Whether a piece begins where it does depends on its first token, those few after
+    /// The first slot to read again. Whether a slot begins where it does depends on its first token, those few after
     /// it and what stands before; so that many of its tokens must lie wholly before the edit.
     fn window_start<'a>(
         &self,
         offset: u32,
-        lexemes_of: impl Fn(EntityId) -> &'a [(Token, Span)],
+        lexemes_of: impl Fn(EntityId) -> &'a [(TokenKind, Span)],
     ) -> (usize, u32) {
         const NEEDED: usize = 1 + LOOKAHEAD;
-        let (mut index, mut start) = self.pieces.at(offset);
+        let (mut index, mut start) = self.slots.at(offset);
         let mut untouched = 0;
         loop {
-            let before = |(token, span): &&(Token, Span)| !token.is_comment() && span.end + start < offset;
-            untouched += lexemes_of(self.pieces[index].entity).iter().filter(before).take(NEEDED).count();
+            let before =
+                |(token, span): &&(TokenKind, Span)| !token.is_comment() && span.end + start < offset;
+            untouched += lexemes_of(self.slots[index].entity).iter().filter(before).take(NEEDED).count();
             if index == 0 || untouched >= NEEDED {
                 return (index, start);
             }
             index -= 1;
-            start -= self.pieces[index].len;
+            start -= self.slots[index].len;
         }
     }
 
@@ -140,7 +141,7 @@ fn shift(offset: u32, by: i64) -> u32 {
 
 /// How many tokens some entities have together.
 fn token_count(parses: &[(Span, Parse)]) -> usize {
-    parses.iter().map(|(_, parse)| parse.lexemes.len()).sum()
+    parses.iter().map(|(_, parse)| parse.tokens.len()).sum()
 }
 
 /// The range of a whole document.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pydslrep_kinematics::{Drive, motion};
 use pydslrep_scene::{Scene, SensorKind};
 use pydslrep_syntax::ast::{self, ActionKind as Statement, DriveWord, Entity, Name, TurnExtent};
-use pydslrep_syntax::{EntityKind, Parse, Span, Token};
+use pydslrep_syntax::{EntityKind, Parse, Span, TokenKind};
 
 use crate::environment::{Action, ActionKind, Environment, Movement, Robot, Sensor, Source, Wheel};
 use crate::script_name::script_names;
@@ -35,12 +35,12 @@ impl Blocked {
 /// All that an environment is made of, itself and its scene included. As long as two of them are equal, so is what follows
 /// from the environment: its script, its path, and what that meets.
 #[derive(Debug, Clone)]
-pub struct MadeOf {
+pub struct Fingerprint {
     parts: Vec<(EntityId, Arc<Parse>)>,
     scene: Option<Arc<str>>,
 }
 
-impl PartialEq for MadeOf {
+impl PartialEq for Fingerprint {
     /// What was read again counts as changed.
     fn eq(&self, other: &Self) -> bool {
         self.scene == other.scene
@@ -86,7 +86,7 @@ impl Database {
     }
 
     /// What an environment is made of now, to be compared with what it is made of later; `None` where it has errors.
-    pub fn made_of(&self, id: EntityId) -> Option<MadeOf> {
+    pub fn fingerprint(&self, id: EntityId) -> Option<Fingerprint> {
         let reached = Parts { database: self, file: self.file_of(id) }.reached_from(id);
         let problems = reached.iter().flat_map(|id| self.problems(*id));
         if problems.into_iter().any(|problem| problem.severity == Severity::Error) {
@@ -94,7 +94,7 @@ impl Database {
         }
         let parse = |id: EntityId| Some((id, Arc::clone(self.shared_parse(id)?)));
         let parts = reached.into_iter().map(parse).collect::<Option<_>>()?;
-        Some(MadeOf { parts, scene: self.scene_text(id).cloned() })
+        Some(Fingerprint { parts, scene: self.scene_text(id).cloned() })
     }
 
     /// An environment without errors, and the entities of its movements in its order.
@@ -332,13 +332,13 @@ impl<'a> Parts<'a> {
 
     /// The tokens of a range with single spaces between them and no comments.
     fn folded_text(&self, entity: &EntityRef<'_>, span: Span) -> String {
-        let lexemes = &entity.parse.lexemes;
-        let first = lexemes.partition_point(|(_, place)| place.start < span.start);
-        let within = lexemes.iter().skip(first).take_while(|(_, place)| place.end <= span.end);
+        let tokens = &entity.parse.tokens;
+        let first = tokens.partition_point(|(_, place)| place.start < span.start);
+        let within = tokens.iter().skip(first).take_while(|(_, place)| place.end <= span.end);
         let tokens = within.filter(|(token, _)| !token.is_comment());
         let mut text = String::new();
         for (token, place) in tokens {
-            if !text.is_empty() && *token != Token::Comma {
+            if !text.is_empty() && *token != TokenKind::Comma {
                 text.push(' ');
             }
             text += &self.database.slice(entity.file, place.shifted(entity.span.start));
@@ -481,18 +481,18 @@ environment e with ip here has { ^left q q } robots with { m n o m } moves";
                        wheel b with radius 4";
         let file = database.open("test.pyr", program);
         let id = database.environments(file)[0].0;
-        let made_of = |database: &Database| database.made_of(id);
-        let before = made_of(&database);
+        let fingerprint = |database: &Database| database.fingerprint(id);
+        let before = fingerprint(&database);
         assert!(before.is_some());
         database.edit(file, Span::at(7), "very_");
-        assert_eq!(made_of(&database), before, "nobody uses this sensor");
+        assert_eq!(fingerprint(&database), before, "nobody uses this sensor");
         database.edit(file, Span::at(0), "\n\nsensor new robot x has { } ");
-        assert_eq!(made_of(&database), before, "nor that one, and what is wrong with a robot is its own");
+        assert_eq!(fingerprint(&database), before, "nor that one, and what is wrong with a robot is its own");
         let text = database.text(file).unwrap().to_string();
         let speed = u32::try_from(text.find("at 18").unwrap()).unwrap() + 3;
         database.edit(file, Span::new(speed, speed + 2), "19");
-        assert_ne!(made_of(&database), before);
+        assert_ne!(fingerprint(&database), before);
         database.edit(file, Span::new(speed, speed + 2), "0");
-        assert_eq!(made_of(&database), None, "no speed");
+        assert_eq!(fingerprint(&database), None, "no speed");
     }
 }

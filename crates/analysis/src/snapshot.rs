@@ -15,7 +15,7 @@ pub struct Snapshot {
     file: FileId,
     text: Rope,
     start: u32,
-    pieces: Vec<Kept>,
+    slots: Vec<Kept>,
     stops: Vec<Arc<AtomicBool>>,
 }
 
@@ -30,27 +30,27 @@ impl Database {
     /// A file as it is now, or the entities of it that touch a range; `None` for a closed file.
     pub fn snapshot(&self, file: FileId, range: Option<Span>) -> Option<Snapshot> {
         let text = self.text(file)?.clone();
-        let all = self.pieces(file);
+        let all = self.slots(file);
         let (from, start, end) = match range {
             None => (0, 0, u32::MAX),
             Some(range) => {
                 // The one that ends where the range begins touches it too.
-                let (index, start) = self.piece_at(file, range.start.saturating_sub(1));
+                let (index, start) = self.slot_at(file, range.start.saturating_sub(1));
                 (index, start, range.end)
             }
         };
         let mut at = start;
-        let pieces = all.get(from..).unwrap_or_default().iter().take_while(|piece| {
+        let slots = all.get(from..).unwrap_or_default().iter().take_while(|slot| {
             let begins = at;
-            at += piece.len;
+            at += slot.len;
             begins <= end
         });
-        let keep = |piece: &crate::pieces::Piece| {
-            let parse = Arc::clone(self.shared_parse(piece.entity)?);
-            Some(Kept { entity: piece.entity, len: piece.len, parse })
+        let keep = |slot: &crate::slots::EntitySlot| {
+            let parse = Arc::clone(self.shared_parse(slot.entity)?);
+            Some(Kept { entity: slot.entity, len: slot.len, parse })
         };
-        let pieces = pieces.filter_map(keep).collect();
-        Some(Snapshot { file, text, start, pieces, stops: Vec::new() })
+        let slots = slots.filter_map(keep).collect();
+        Some(Snapshot { file, text, start, slots, stops: Vec::new() })
     }
 }
 
@@ -69,7 +69,7 @@ impl Snapshot {
     /// Its entities in the order of the text; they end early once work on it is to [stop](Self::stop_on).
     pub fn entities(&self) -> impl Iterator<Item = EntityRef<'_>> {
         let mut at = self.start;
-        self.pieces.iter().take_while(|_| !self.is_stopped()).map(move |kept| {
+        self.slots.iter().take_while(|_| !self.is_stopped()).map(move |kept| {
             let span = Span::new(at, at + kept.len);
             at = span.end;
             EntityRef { id: kept.entity, file: self.file, span, parse: &kept.parse }
@@ -90,19 +90,19 @@ impl Snapshot {
     /// How many entities at the start and at the end read as they did before, in the same places of the order.
     pub fn unchanged_ends(&self, before: &Self) -> (usize, usize) {
         let same = |(a, b): &(&Kept, &Kept)| Arc::ptr_eq(&a.parse, &b.parse);
-        let head = self.pieces.iter().zip(&before.pieces).take_while(same).count();
-        let (ours, theirs) = (self.pieces[head..].iter().rev(), before.pieces[head..].iter().rev());
+        let head = self.slots.iter().zip(&before.slots).take_while(same).count();
+        let (ours, theirs) = (self.slots[head..].iter().rev(), before.slots[head..].iter().rev());
         (head, ours.zip(theirs).take_while(same).count())
     }
 
     /// How many entities it has.
     pub fn len(&self) -> usize {
-        self.pieces.len()
+        self.slots.len()
     }
 
     /// Whether it has no entities, which only a part of a file can be.
     pub fn is_empty(&self) -> bool {
-        self.pieces.is_empty()
+        self.slots.is_empty()
     }
 }
 

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use pydslrep_analysis::{Database, Diagnostic};
 use pydslrep_naive::{Finding, declarations};
-use pydslrep_syntax::{KEYWORDS, Lexeme, Span, lex};
+use pydslrep_syntax::{KEYWORDS, Span, Token, lex};
 
 /// What one slip makes of a program, and where the slip is.
 struct Slip {
@@ -37,25 +37,25 @@ fn replace(text: &str, span: Span, by: &str, what: String) -> Slip {
     Slip { text: changed, at: was.start..was.start + by.len(), was, what }
 }
 
-fn deletions(text: &str, lexemes: &[Lexeme]) -> Vec<Slip> {
-    lexemes
+fn deletions(text: &str, tokens: &[Token]) -> Vec<Slip> {
+    tokens
         .iter()
         .map(|(_, span)| replace(text, *span, "", format!("without {:?}", span.text(text))))
         .collect()
 }
 
-fn duplications(text: &str, lexemes: &[Lexeme]) -> Vec<Slip> {
-    let twice = |(_, span): &Lexeme| {
+fn duplications(text: &str, tokens: &[Token]) -> Vec<Slip> {
+    let twice = |(_, span): &Token| {
         let word = span.text(text);
         replace(text, Span::at(span.end), &format!(" {word}"), format!("{word:?} twice"))
     };
-    lexemes.iter().map(twice).collect()
+    tokens.iter().map(twice).collect()
 }
 
 /// Something that does not belong before every token: a word, a name, a number, a sign.
-fn insertions(text: &str, lexemes: &[Lexeme]) -> Vec<Slip> {
+fn insertions(text: &str, tokens: &[Token]) -> Vec<Slip> {
     let strangers = ["radius", "stranger", "7", "}", "until", ","];
-    let before = |(index, (_, span)): (usize, &Lexeme)| {
+    let before = |(index, (_, span)): (usize, &Token)| {
         let word = strangers[index % strangers.len()];
         replace(
             text,
@@ -64,13 +64,13 @@ fn insertions(text: &str, lexemes: &[Lexeme]) -> Vec<Slip> {
             format!("{word:?} before {:?}", span.text(text)),
         )
     };
-    lexemes.iter().enumerate().map(before).collect()
+    tokens.iter().enumerate().map(before).collect()
 }
 
 /// Every keyword with its last letter missing, its first two letters swapped, and a letter too many.
-fn misspellings(text: &str, lexemes: &[Lexeme]) -> Vec<Slip> {
+fn misspellings(text: &str, tokens: &[Token]) -> Vec<Slip> {
     let mut slips = Vec::new();
-    for (_, span) in lexemes.iter().filter(|(token, span)| token.is_keyword() && span.len() > 2) {
+    for (_, span) in tokens.iter().filter(|(token, span)| token.is_keyword() && span.len() > 2) {
         let word = span.text(text);
         let swapped = [&word[1..2], &word[..1], &word[2..]].concat();
         for slip in [word[..word.len() - 1].to_owned(), swapped, format!("{word}e")] {

@@ -1,7 +1,7 @@
 //! Call hierarchy: which movements an environment runs and which robot each of them drives, and back from a robot to
 //! its movements and from those to their environments.
 
-use pydslrep_analysis::{Database, EntityId, EntityRef, FileId, Place};
+use pydslrep_analysis::{Database, EntityId, EntityRef, FileId, FileSpan};
 use pydslrep_syntax::ast::{Entity, Name};
 use pydslrep_syntax::{EntityKind, Span};
 use smol_str::SmolStr;
@@ -75,7 +75,7 @@ pub fn incoming_calls(database: &Database, called: &CallItem) -> Vec<Call> {
 }
 
 /// The named entities that hold these places of one file.
-fn users(database: &Database, mut places: &[Place]) -> Vec<Call> {
+fn users(database: &Database, mut places: &[FileSpan]) -> Vec<Call> {
     let Some(first) = places.first() else { return Vec::new() };
     let mut found = Vec::new();
     for entity in database.entities(first.file) {

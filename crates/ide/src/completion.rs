@@ -12,7 +12,7 @@ mod place;
 mod words;
 
 use pydslrep_analysis::{Database, FileId};
-use pydslrep_syntax::{EntityKind, Expected, Span, TextEdit, Token, expected_after};
+use pydslrep_syntax::{EntityKind, Expected, Span, TextEdit, TokenKind, expected_after};
 
 pub use self::documentation::completion_documentation;
 use self::patterns::without_stops;
@@ -151,7 +151,7 @@ pub fn completions(
         expected.iter().any(|expected| matches!(expected, Expected::Action | Expected::Declaration));
     let mut items: Vec<Completion> = Vec::new();
     for expected in expected {
-        let is_clause = may_end && matches!(expected, Expected::Word(word) if word != Token::CloseBrace);
+        let is_clause = may_end && matches!(expected, Expected::Word(word) if word != TokenKind::CloseBrace);
         let is_name = matches!(expected, Expected::ReferenceTo(_));
         if is_name || trigger == CompletionTrigger::Invoked {
             let mut found = offers(&place, expected);
@@ -183,14 +183,14 @@ fn narrowed_at(database: &Database, position: FilePosition, items: Vec<Completio
 
 fn offers(place: &Place<'_>, expected: Expected) -> Vec<Completion> {
     match expected {
-        Expected::Word(Token::At) => {
-            patterns::speed(place).into_iter().chain(words::word(place, Token::At)).collect()
+        Expected::Word(TokenKind::At) => {
+            patterns::speed(place).into_iter().chain(words::word(place, TokenKind::At)).collect()
         }
         Expected::Word(word) => words::word(place, word).into_iter().collect(),
         Expected::ReferenceTo(kind) => names::names(place, kind),
         Expected::Action => {
             let mut found = patterns::actions(place);
-            found.extend(words::plain_words(place, &[Token::Move, Token::Turn, Token::Slam]));
+            found.extend(words::plain_words(place, &[TokenKind::Move, TokenKind::Turn, TokenKind::Slam]));
             found
         }
         Expected::Declaration => {
@@ -213,16 +213,16 @@ fn offers(place: &Place<'_>, expected: Expected) -> Vec<Completion> {
     }
 }
 
-const BEGINNINGS: [Token; 9] = [
-    Token::Import,
-    Token::Wheel,
-    Token::WheelH,
-    Token::Sensor,
-    Token::Ip,
-    Token::Robot,
-    Token::Movement,
-    Token::Parallel,
-    Token::Environment,
+const BEGINNINGS: [TokenKind; 9] = [
+    TokenKind::Import,
+    TokenKind::Wheel,
+    TokenKind::WheelH,
+    TokenKind::Sensor,
+    TokenKind::Ip,
+    TokenKind::Robot,
+    TokenKind::Movement,
+    TokenKind::Parallel,
+    TokenKind::Environment,
 ];
 
 #[cfg(test)]

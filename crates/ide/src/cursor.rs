@@ -2,7 +2,7 @@
 
 use pydslrep_analysis::{Database, EntityId, EntityRef, FileId};
 use pydslrep_syntax::ast::{Entity, Name};
-use pydslrep_syntax::{EntityKind, Lexeme, Span};
+use pydslrep_syntax::{EntityKind, Span, Token};
 use smol_str::SmolStr;
 
 use crate::FilePosition;
@@ -60,27 +60,27 @@ pub(crate) fn entities_at(database: &Database, position: FilePosition) -> Vec<En
 }
 
 /// The token that touches the cursor, with its place in the file; of two the one behind it, unless that is a sign.
-pub(crate) fn lexeme_at(database: &Database, position: FilePosition) -> Option<Lexeme> {
+pub(crate) fn lexeme_at(database: &Database, position: FilePosition) -> Option<Token> {
     let in_file = |entity: &EntityRef<'_>| {
         let start = entity.span.start;
-        let touching = |(_, span): &&Lexeme| span.shifted(start).touches(position.offset);
-        let found: Vec<Lexeme> = entity
+        let touching = |(_, span): &&Token| span.shifted(start).touches(position.offset);
+        let found: Vec<Token> = entity
             .parse
-            .lexemes
+            .tokens
             .iter()
             .filter(touching)
             .map(|(token, span)| (*token, span.shifted(start)))
             .collect();
         found
     };
-    let found: Vec<Lexeme> = entities_at(database, position).iter().flat_map(in_file).collect();
-    let word = |(token, _): &&Lexeme| token.is_name() || token.is_keyword() || token.is_number();
+    let found: Vec<Token> = entities_at(database, position).iter().flat_map(in_file).collect();
+    let word = |(token, _): &&Token| token.is_name() || token.is_keyword() || token.is_number();
     found.iter().find(word).or(found.first()).copied()
 }
 
 /// The whole of an entity: from its keyword to its last token, comments behind it left out.
 pub(crate) fn body(entity: &EntityRef<'_>) -> Span {
-    let last = entity.parse.lexemes.iter().rev().find(|(token, _)| !token.is_comment());
+    let last = entity.parse.tokens.iter().rev().find(|(token, _)| !token.is_comment());
     let end = last.map_or(entity.span.start, |(_, span)| entity.span.start + span.end);
     Span::new(entity.span.start, end)
 }

@@ -4,7 +4,7 @@
 
 use pydslrep_analysis::Snapshot;
 use pydslrep_syntax::ast::{Entity, Movement};
-use pydslrep_syntax::{Span, Token};
+use pydslrep_syntax::{Span, TokenKind};
 
 use crate::cursor::body;
 
@@ -38,7 +38,7 @@ pub fn folding_ranges(snapshot: &Snapshot) -> Vec<Fold> {
     let mut folds = Folds::new(&text);
     for entity in snapshot.entities() {
         let start = entity.span.start;
-        for (token, span) in &entity.parse.lexemes {
+        for (token, span) in &entity.parse.tokens {
             folds.pass(*token, span.shifted(start));
         }
         match &entity.parse.entity {
@@ -70,8 +70,8 @@ impl<'a> Folds<'a> {
         Self { text, found: Vec::new(), last_end: 0, run: None, regions: Vec::new(), imports: None }
     }
 
-    fn pass(&mut self, token: Token, span: Span) {
-        if token == Token::LineComment {
+    fn pass(&mut self, token: TokenKind, span: Span) {
+        if token == TokenKind::LineComment {
             self.line_comment(span);
         } else {
             self.end_run();

@@ -65,7 +65,7 @@ pub use references::references;
 pub use rename::{Refusal, RenameTarget, prepare_rename, rename};
 pub use scenes::{scene_completions, scene_fixes, scene_hover};
 pub use selection::selection_ranges;
-pub use semantic_tokens::{Modifier, SemanticToken, TokenKind, entity_tokens, semantic_tokens};
+pub use semantic_tokens::{HighlightKind, Modifier, SemanticToken, entity_tokens, semantic_tokens};
 pub use settings::{KeyFix, settings_completions, settings_fixes, settings_hover};
 pub use signature::{Signature, SignatureHelp, SignatureTrigger, signature_help};
 pub use symbols::{Symbol, SymbolKind, document_symbols};

@@ -1,7 +1,7 @@
 //! Linked editing: while a name is typed over, its declaration and uses change with it, where no other file is
 //! concerned.
 
-use pydslrep_analysis::{Database, Place};
+use pydslrep_analysis::{Database, FileSpan};
 use pydslrep_syntax::Span;
 
 use crate::FilePosition;
@@ -18,7 +18,7 @@ fn linked(database: &Database, position: FilePosition) -> Option<Vec<Span>> {
     let referent = referent_at(database, position)?;
     let declared = declarations(database, &referent);
     let uses = database.references(referent.home, referent.kind, &referent.name);
-    let here = |place: &Place| place.file == position.file;
+    let here = |place: &FileSpan| place.file == position.file;
     if declared.len() != 1
         || uses.is_empty()
         || !declared.iter().chain(&uses).all(here)

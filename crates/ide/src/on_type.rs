@@ -4,7 +4,7 @@
 
 use pydslrep_analysis::{Database, EntityRef};
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{EntityKind, Lexeme, Span, TextEdit, Token, format_edits};
+use pydslrep_syntax::{EntityKind, Span, TextEdit, Token, TokenKind, format_edits};
 
 use crate::FilePosition;
 use crate::cursor::body;
@@ -17,8 +17,8 @@ pub fn format_after_brace(database: &Database, position: FilePosition) -> Vec<Te
     let Some(brace) = position.offset.checked_sub(1) else { return Vec::new() };
     let Some(entity) = database.entity_at(position.file, brace) else { return Vec::new() };
     let start = entity.span.start;
-    let closes = |(token, span): &&Lexeme| *token == Token::CloseBrace && span.start + start == brace;
-    if !entity.parse.lexemes.iter().any(|lexeme| closes(&lexeme)) {
+    let closes = |(token, span): &&Token| *token == TokenKind::CloseBrace && span.start + start == brace;
+    if !entity.parse.tokens.iter().any(|token| closes(&token)) {
         // It was typed in a comment.
         return Vec::new();
     }
@@ -88,21 +88,21 @@ impl Line {
     fn depth(&self, database: &Database, position: FilePosition) -> Option<usize> {
         let before = self.blank.start.checked_sub(1)?;
         let entity = database.entity_at(position.file, before)?;
-        let place = |(token, span): &Lexeme| (*token, span.shifted(entity.span.start));
-        let lexemes = || entity.parse.lexemes.iter().map(place);
-        if lexemes().any(|(_, span)| span.start < self.blank.start && self.blank.start < span.end) {
+        let place = |(token, span): &Token| (*token, span.shifted(entity.span.start));
+        let tokens = || entity.parse.tokens.iter().map(place);
+        if tokens().any(|(_, span)| span.start < self.blank.start && self.blank.start < span.end) {
             // In a comment, whose lines are the person's own.
             return None;
         }
-        let is_sign = |(token, span): &Lexeme| !token.is_comment() && span.end <= self.blank.start;
-        let typed: Vec<Token> = lexemes().filter(is_sign).map(|(token, _)| token).collect();
+        let is_sign = |(token, span): &Token| !token.is_comment() && span.end <= self.blank.start;
+        let typed: Vec<TokenKind> = tokens().filter(is_sign).map(|(token, _)| token).collect();
         let open = typed.iter().fold(0_usize, |open, token| match token {
-            Token::OpenBrace => open + 1,
-            Token::CloseBrace => open.saturating_sub(1),
+            TokenKind::OpenBrace => open + 1,
+            TokenKind::CloseBrace => open.saturating_sub(1),
             _ => open,
         });
         let closes =
-            lexemes().any(|(token, span)| token == Token::CloseBrace && span.start == self.blank.end);
+            tokens().any(|(token, span)| token == TokenKind::CloseBrace && span.start == self.blank.end);
         let is_movement = typed.first().and_then(|token| token.entity_kind()) == Some(EntityKind::Movement);
         match open {
             0 => self.ends(&entity).then_some(0),
@@ -121,10 +121,10 @@ impl Line {
 }
 
 /// Whether an action cannot be over yet behind these tokens.
-fn continues(typed: &[Token]) -> bool {
+fn continues(typed: &[TokenKind]) -> bool {
     let last = typed.last().copied();
-    matches!(last, Some(Token::Move | Token::Turn | Token::At | Token::Until))
-        || matches!(typed, [.., Token::Move, number] if number.is_number())
+    matches!(last, Some(TokenKind::Move | TokenKind::Turn | TokenKind::At | TokenKind::Until))
+        || matches!(typed, [.., TokenKind::Move, number] if number.is_number())
 }
 
 #[cfg(test)]

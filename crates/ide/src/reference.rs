@@ -1,6 +1,6 @@
 //! The reference of the language's words, as completion and hover show it.
 
-use pydslrep_syntax::{EntityKind, Token};
+use pydslrep_syntax::{EntityKind, TokenKind};
 
 /// What there is to say of a word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,118 +34,120 @@ const TYPE: &str = "type tw | fw | fwh";
 
 /// The page of a word; `None` for what is no word of the language.
 #[expect(clippy::too_many_lines, reason = "a table, a row a word")]
-pub fn keyword_page(token: Token) -> Option<KeywordPage> {
+pub fn keyword_page(token: TokenKind) -> Option<KeywordPage> {
     let page = |syntax, meaning, example| KeywordPage { syntax, meaning, example };
     Some(match token {
-        Token::Wheel => page(
+        TokenKind::Wheel => page(
             EntityKind::Wheel.shape(),
             "A standard wheel, with its radius in centimetres. Several robots may use it; each gets a joint of that name.",
             "wheel wheelL with radius 4.5",
         ),
-        Token::WheelH => page(
+        TokenKind::WheelH => page(
             "wheelH NAME with radius CENTIMETRES",
             "A mecanum wheel: its rollers stand at 45°, so that four of them can drive a robot sideways.",
             "wheelH frontLeft with radius 5.0",
         ),
-        Token::With => page("with …", "Adds a part: a radius, a port, sensors, an ip or movements.", ROBOT),
-        Token::Radius => page(
+        TokenKind::With => {
+            page("with …", "Adds a part: a radius, a port, sensors, an ip or movements.", ROBOT)
+        }
+        TokenKind::Radius => page(
             "with radius CENTIMETRES",
             "The wheel's radius in centimetres.",
             "wheel wheelL with radius 4.5",
         ),
-        Token::Sensor => page(
+        TokenKind::Sensor => page(
             "sensor NAME [: distance | bumper]",
             "A proximity sensor. `distance` (also where nothing is written) sees an obstacle ahead of it, `bumper` feels one.",
             "sensor front : distance",
         ),
-        Token::Ip => page(
+        TokenKind::Ip => page(
             EntityKind::Ip.shape(),
             "The address of the machine the simulator runs on. Without one it is this machine.",
             "ip lab 192.168.0.7\nenvironment area with ip lab has { rover } robots",
         ),
-        Token::Robot => page(
+        TokenKind::Robot => page(
             ROBOT_SHAPE,
             "A robot: its wheels in the order left, right, or left front, left rear, right front, right rear.",
             ROBOT,
         ),
-        Token::Type => page(TYPE, "How the robot drives. Without it the wheels tell.", ROBOT),
-        Token::Tw => page(TYPE, "Two-wheel differential drive: two `wheel`, listed left, right.", ROBOT),
-        Token::Fw => page(
+        TokenKind::Type => page(TYPE, "How the robot drives. Without it the wheels tell.", ROBOT),
+        TokenKind::Tw => page(TYPE, "Two-wheel differential drive: two `wheel`, listed left, right.", ROBOT),
+        TokenKind::Fw => page(
             TYPE,
             "Four-wheel skid-steer drive: four `wheel`, listed left front, left rear, right front, right rear.",
             "robot truck type fw with port 23000 has { lf lr rf rr } wheels",
         ),
-        Token::Fwh => page(
+        TokenKind::Fwh => page(
             TYPE,
             "Mecanum drive: four `wheelH`, listed left front, left rear, right front, right rear.",
             "robot crab type fwh with port 23000 has { lf lr rf rr } wheels",
         ),
-        Token::Port => {
+        TokenKind::Port => {
             page("with port NUMBER", "The port of the simulator's remote API, from 1 to 65535.", ROBOT)
         }
-        Token::Has => page("has { … }", "What a robot or an environment is made of.", ENVIRONMENT),
-        Token::Wheels => page("has { WHEELS } wheels", "Ends the list of a robot's wheels.", ROBOT),
-        Token::Sensors => page(SENSORS, "The sensors a robot carries.", ROBOT),
-        Token::Parallel => page(
+        TokenKind::Has => page("has { … }", "What a robot or an environment is made of.", ENVIRONMENT),
+        TokenKind::Wheels => page("has { WHEELS } wheels", "Ends the list of a robot's wheels.", ROBOT),
+        TokenKind::Sensors => page(SENSORS, "The sensors a robot carries.", ROBOT),
+        TokenKind::Parallel => page(
             MOVEMENT_SHAPE,
             "Parallel movements that are next to each other in an environment's list start together.",
             "parallel movement patrol of rover {\n  move 4.0 meters\n}",
         ),
-        Token::Movement => page(
+        TokenKind::Movement => page(
             MOVEMENT_SHAPE,
             "What one robot does, action by action.",
             "movement patrol of rover {\n  move 4.0 meters\n  turn left\n}",
         ),
-        Token::Of => {
+        TokenKind::Of => {
             page("movement NAME of ROBOT", "Whose movement it is.", "movement patrol of rover { slam }")
         }
-        Token::Move => page(
+        TokenKind::Move => page(
             MOVE,
             "Straight ahead along the heading; a negative distance drives backwards. The speed is in centimetres per second, 9.0 where nothing is written.",
             "move 4.0 meters at 12.5",
         ),
-        Token::Meters => page(MOVE, "The distance is in metres.", "move 4.0 meters"),
-        Token::Centimeters => {
+        TokenKind::Meters => page(MOVE, "The distance is in metres.", "move 4.0 meters"),
+        TokenKind::Centimeters => {
             page("move DISTANCE centimeters", "The distance is in centimetres.", "move 40 centimeters")
         }
-        Token::At => {
+        TokenKind::At => {
             page(MOVE, "The speed at the wheels' rim in centimetres per second.", "move 4.0 meters at 12.5")
         }
-        Token::Turn => page(
+        TokenKind::Turn => page(
             "turn left | right [DEGREES]\nturn left | right until { SENSORS }",
             "In place, by 90° where nothing is written; `left` is counter-clockwise seen from above.",
             "turn left 45",
         ),
-        Token::Left => page("turn left DEGREES", "Counter-clockwise seen from above.", "turn left 45"),
-        Token::Right => page("turn right DEGREES", "Clockwise seen from above.", "turn right 45"),
-        Token::Until => page(
+        TokenKind::Left => page("turn left DEGREES", "Counter-clockwise seen from above.", "turn left 45"),
+        TokenKind::Right => page("turn right DEGREES", "Clockwise seen from above.", "turn right 45"),
+        TokenKind::Until => page(
             "turn left | right until { SENSORS }",
             "Turns until none of the sensors detects an obstacle; not at all if none does.",
             "turn right until { front }",
         ),
-        Token::Slam => page(
+        TokenKind::Slam => page(
             "slam",
             "Explores a closed area on its own and maps it. Two-wheel robots with five distance sensors or more.",
             "movement explore of rover { slam }",
         ),
-        Token::Environment => page(
+        TokenKind::Environment => page(
             ENVIRONMENT_SHAPE,
             "The robots of a run and their movements in order. Each environment becomes one script.",
             ENVIRONMENT,
         ),
-        Token::Robots => {
+        TokenKind::Robots => {
             page("has { ROBOTS } robots", "Ends the list of an environment's robots.", ENVIRONMENT)
         }
-        Token::Moves => {
+        TokenKind::Moves => {
             page("with { MOVEMENTS } moves", "Ends the list of an environment's movements.", ENVIRONMENT)
         }
-        Token::Distance => {
+        TokenKind::Distance => {
             page("sensor NAME : distance", "Sees an obstacle ahead of it.", "sensor front : distance")
         }
-        Token::Bumper => {
+        TokenKind::Bumper => {
             page("sensor NAME : bumper", "Feels an obstacle at contact.", "sensor nose : bumper")
         }
-        Token::Import => page(
+        TokenKind::Import => page(
             "import \"FILE.pyr\"",
             "Makes the entities of another file visible, by its path relative to this one.",
             "import \"parts/wheels.pyr\"",

@@ -3,7 +3,7 @@
 //!
 //! Of a name that nothing declares, the uses in the same file are found.
 
-use pydslrep_analysis::{Database, Place};
+use pydslrep_analysis::{Database, FileSpan};
 
 use crate::FilePosition;
 use crate::cursor::{Referent, referent_at};
@@ -13,7 +13,7 @@ pub fn references(
     database: &Database,
     position: FilePosition,
     include_declaration: bool,
-) -> Option<Vec<Place>> {
+) -> Option<Vec<FileSpan>> {
     let referent = referent_at(database, position)?;
     let mut places = database.references(referent.home, referent.kind, &referent.name);
     if include_declaration {
@@ -24,10 +24,10 @@ pub fn references(
 }
 
 /// Where it is declared.
-pub(crate) fn declarations(database: &Database, referent: &Referent) -> Vec<Place> {
+pub(crate) fn declarations(database: &Database, referent: &Referent) -> Vec<FileSpan> {
     let Referent { home, kind, name, .. } = referent;
     let spans = database.declarations(*home, *kind, name).into_iter();
-    spans.map(|span| Place { file: *home, span }).collect()
+    spans.map(|span| FileSpan { file: *home, span }).collect()
 }
 
 #[cfg(test)]

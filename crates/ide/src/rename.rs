@@ -6,8 +6,8 @@
 
 use std::fmt;
 
-use pydslrep_analysis::{Database, Edit, FileId, Place};
-use pydslrep_syntax::{EntityKind, Span, Token, as_written, lex};
+use pydslrep_analysis::{Database, Edit, FileId, FileSpan};
+use pydslrep_syntax::{EntityKind, Span, TokenKind, as_written, lex};
 use smol_str::SmolStr;
 
 use crate::FilePosition;
@@ -63,7 +63,7 @@ pub fn rename(database: &Database, position: FilePosition, new: &str) -> Result<
         renamed.check_free(database, &new)?;
     }
     let text = as_written(&new);
-    let edit = |place: Place| {
+    let edit = |place: FileSpan| {
         // In `sensor^s` nothing but the `^` keeps the two words apart.
         let separator = if text.starts_with('^') || stands_apart(database, place) { "" } else { "^" };
         Edit { file: place.file, span: place.span, text: format!("{separator}{text}") }
@@ -72,7 +72,7 @@ pub fn rename(database: &Database, position: FilePosition, new: &str) -> Result<
 }
 
 /// Whether nothing before a place could run into a name there.
-pub(crate) fn stands_apart(database: &Database, place: Place) -> bool {
+pub(crate) fn stands_apart(database: &Database, place: FileSpan) -> bool {
     let before = Span::new(place.span.start.saturating_sub(1), place.span.start);
     let apart = |c: char| c.is_ascii_whitespace() || "{},:/\"".contains(c);
     place.span.start == 0 || database.slice(place.file, before).starts_with(apart)
@@ -81,7 +81,7 @@ pub(crate) fn stands_apart(database: &Database, place: Place) -> bool {
 /// The name that a text is, without `^`.
 fn read_name(text: &str) -> Result<SmolStr, Refusal> {
     match lex(text)[..] {
-        [(token, span)] if span == Span::of(text) && token.is_name() && token != Token::MalformedName => {
+        [(token, span)] if span == Span::of(text) && token.is_name() && token != TokenKind::MalformedName => {
             Ok(text.strip_prefix('^').unwrap_or(text).into())
         }
         [(token, span)] if span == Span::of(text) && token.is_keyword() => Err(Refusal::Invalid(format!(
@@ -99,7 +99,7 @@ struct Renamed {
     name: SmolStr,
     /// Where it is declared.
     home: FileId,
-    places: Vec<Place>,
+    places: Vec<FileSpan>,
 }
 
 fn renamed_at(database: &Database, position: FilePosition) -> Result<Renamed, Refusal> {

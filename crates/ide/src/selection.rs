@@ -2,7 +2,7 @@
 
 use pydslrep_analysis::{Database, EntityRef, FileId};
 use pydslrep_syntax::ast::{Action, ActionKind, Entity, Move, References};
-use pydslrep_syntax::{Lexeme, Span, Token};
+use pydslrep_syntax::{Span, Token, TokenKind};
 
 use crate::cursor::body;
 
@@ -57,9 +57,9 @@ impl Ranges {
     /// What is inside one entity, from the smallest on.
     fn add_inside(&mut self, entity: &EntityRef<'_>) {
         let start = entity.span.start;
-        let lexemes: Vec<Lexeme> =
-            entity.parse.lexemes.iter().map(|(token, span)| (*token, span.shifted(start))).collect();
-        if let Some((_, span)) = token_at(&lexemes, self.offset) {
+        let tokens: Vec<Token> =
+            entity.parse.tokens.iter().map(|(token, span)| (*token, span.shifted(start))).collect();
+        if let Some((_, span)) = token_at(&tokens, self.offset) {
             self.add(*span);
         }
         match &entity.parse.entity {
@@ -71,23 +71,23 @@ impl Ranges {
             }
             Some(Entity::Movement(movement)) => {
                 for action in &movement.actions {
-                    self.add_action(action, start, &lexemes);
+                    self.add_action(action, start, &tokens);
                 }
                 if let Some(body) = movement.body.map(|body| body.shifted(start)) {
                     if let (Some(first), Some(last)) = (movement.actions.first(), movement.actions.last()) {
                         self.add(first.span.to(last.span).shifted(start));
                     }
                     self.add(body);
-                    let head = lexemes.partition_point(|(_, span)| span.start < body.start);
-                    return self.add_clauses(&lexemes[..head]);
+                    let head = tokens.partition_point(|(_, span)| span.start < body.start);
+                    return self.add_clauses(&tokens[..head]);
                 }
             }
             _ => {}
         }
-        self.add_clauses(&lexemes);
+        self.add_clauses(&tokens);
     }
 
-    fn add_action(&mut self, action: &Action, start: u32, lexemes: &[Lexeme]) {
+    fn add_action(&mut self, action: &Action, start: u32, tokens: &[Token]) {
         let span = action.span.shifted(start);
         if !span.touches(self.offset) {
             return;
@@ -96,10 +96,12 @@ impl Ranges {
         if let ActionKind::Move(Move { distance: Some(distance), unit: Some((_, unit)), .. }) = &action.kind {
             self.add(distance.span.to(*unit).shifted(start));
         }
-        let clause = |(token, place): &&Lexeme| {
-            matches!(token, Token::At | Token::Until) && span.start <= place.start && place.end <= span.end
+        let clause = |(token, place): &&Token| {
+            matches!(token, TokenKind::At | TokenKind::Until)
+                && span.start <= place.start
+                && place.end <= span.end
         };
-        if let Some((_, word)) = lexemes.iter().find(clause) {
+        if let Some((_, word)) = tokens.iter().find(clause) {
             self.add(Span::new(word.start, span.end));
         }
         self.add(span);
@@ -115,10 +117,14 @@ impl Ranges {
     }
 
     /// Clauses of an entity's head: each reaches from its first word to the next clause.
-    fn add_clauses(&mut self, lexemes: &[Lexeme]) {
-        let significant: Vec<&Lexeme> = lexemes.iter().filter(|(token, _)| !token.is_comment()).collect();
-        let begins =
-            |token| matches!(token, Token::With | Token::Has | Token::Type | Token::Of | Token::Colon);
+    fn add_clauses(&mut self, tokens: &[Token]) {
+        let significant: Vec<&Token> = tokens.iter().filter(|(token, _)| !token.is_comment()).collect();
+        let begins = |token| {
+            matches!(
+                token,
+                TokenKind::With | TokenKind::Has | TokenKind::Type | TokenKind::Of | TokenKind::Colon
+            )
+        };
         for clause in significant.chunk_by(|_, next| !begins(next.0)) {
             if let (Some(first), Some(last)) = (clause.first(), clause.last())
                 && begins(first.0)
@@ -130,9 +136,9 @@ impl Ranges {
 }
 
 /// The token that touches an offset; of two, a word or number rather than a sign.
-fn token_at(lexemes: &[Lexeme], offset: u32) -> Option<&Lexeme> {
-    let touching = || lexemes.iter().filter(|(_, span)| span.touches(offset));
-    let is_word = |token: Token| token.is_name() || token.is_keyword() || token.is_number();
+fn token_at(tokens: &[Token], offset: u32) -> Option<&Token> {
+    let touching = || tokens.iter().filter(|(_, span)| span.touches(offset));
+    let is_word = |token: TokenKind| token.is_name() || token.is_keyword() || token.is_number();
     touching().find(|(token, _)| is_word(*token)).or_else(|| touching().next())
 }
 

@@ -2,7 +2,7 @@
 
 use pydslrep_analysis::{EntityRef, Snapshot};
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{EntityKind, Lexeme, Span, Token};
+use pydslrep_syntax::{EntityKind, Span, Token, TokenKind};
 
 /// A coloured piece of text; never reaches over a line's end.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -10,14 +10,14 @@ pub struct SemanticToken {
     /// Where it stands.
     pub span: Span,
     /// What it is.
-    pub kind: TokenKind,
+    pub kind: HighlightKind,
     /// What else is to be said of it.
     pub modifiers: Vec<Modifier>,
 }
 
 /// What a token is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum TokenKind {
+pub enum HighlightKind {
     /// A word of the language.
     Keyword,
     /// A number or an address.
@@ -56,9 +56,9 @@ pub fn semantic_tokens(snapshot: &Snapshot, range: Option<Span>) -> Vec<Semantic
 /// Adds the tokens of one entity, which depend on nothing but its own text.
 pub fn entity_tokens(snapshot: &Snapshot, entity: &EntityRef<'_>, tokens: &mut Vec<SemanticToken>) {
     let names = Names::of(entity.parse.entity.as_ref());
-    for lexeme in &entity.parse.lexemes {
-        if let Some((kind, modifiers)) = names.classify(*lexeme) {
-            let span = lexeme.1.shifted(entity.span.start);
+    for token in &entity.parse.tokens {
+        if let Some((kind, modifiers)) = names.classify(*token) {
+            let span = token.1.shifted(entity.span.start);
             push_lines(snapshot, SemanticToken { span, kind, modifiers }, tokens);
         }
     }
@@ -66,7 +66,7 @@ pub fn entity_tokens(snapshot: &Snapshot, entity: &EntityRef<'_>, tokens: &mut V
 
 /// Only block comments reach over lines; editors want a token for each.
 fn push_lines(snapshot: &Snapshot, token: SemanticToken, tokens: &mut Vec<SemanticToken>) {
-    if token.kind != TokenKind::Comment {
+    if token.kind != HighlightKind::Comment {
         tokens.push(token);
         return;
     }
@@ -104,23 +104,23 @@ impl<'a> Names<'a> {
         Self { tree, all, deprecated }
     }
 
-    fn classify(&self, (token, span): Lexeme) -> Option<(TokenKind, Vec<Modifier>)> {
+    fn classify(&self, (token, span): Token) -> Option<(HighlightKind, Vec<Modifier>)> {
         if let Ok(index) = self.all.binary_search_by_key(&span.start, |(span, ..)| span.start) {
             let (_, kind, declares) = self.all[index];
             let readonly = matches!(kind, EntityKind::Wheel | EntityKind::Sensor | EntityKind::Ip);
             let modifiers = [(declares, Modifier::Declaration), (readonly, Modifier::Readonly)];
             let modifiers = modifiers.into_iter().filter(|(holds, _)| *holds).map(|(_, modifier)| modifier);
-            return Some((TokenKind::Name(kind), modifiers.collect()));
+            return Some((HighlightKind::Name(kind), modifiers.collect()));
         }
         let kind = match token {
-            Token::String | Token::UnterminatedString => TokenKind::String,
-            Token::Import if matches!(self.tree, Some(Entity::Import(_))) => TokenKind::Keyword,
-            Token::Distance | Token::Bumper if matches!(self.tree, Some(Entity::Sensor(_))) => {
-                TokenKind::Keyword
+            TokenKind::String | TokenKind::UnterminatedString => HighlightKind::String,
+            TokenKind::Import if matches!(self.tree, Some(Entity::Import(_))) => HighlightKind::Keyword,
+            TokenKind::Distance | TokenKind::Bumper if matches!(self.tree, Some(Entity::Sensor(_))) => {
+                HighlightKind::Keyword
             }
-            token if token.is_comment() => TokenKind::Comment,
-            token if token.is_number() => TokenKind::Number,
-            token if token.is_keyword() => TokenKind::Keyword,
+            token if token.is_comment() => HighlightKind::Comment,
+            token if token.is_number() => HighlightKind::Number,
+            token if token.is_keyword() => HighlightKind::Keyword,
             _ => return None,
         };
         let old = self.deprecated.is_some_and(|old| old.start <= span.start && span.end <= old.end);

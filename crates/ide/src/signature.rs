@@ -7,7 +7,7 @@
 mod shape;
 
 use pydslrep_analysis::Database;
-use pydslrep_syntax::{EntityKind, Expected, Lexeme, Span, Token, expected_after};
+use pydslrep_syntax::{EntityKind, Expected, Span, Token, TokenKind, expected_after};
 
 use self::shape::{clause, window};
 use crate::FilePosition;
@@ -58,7 +58,7 @@ pub fn signature_help(
     trigger: SignatureTrigger,
 ) -> Option<SignatureHelp> {
     let typed = Typed::before(database, position)?;
-    let expected = expected_after(&typed.text, &typed.lexemes);
+    let expected = expected_after(&typed.text, &typed.tokens);
     match trigger {
         SignatureTrigger::Asked => asked(&typed, &expected),
         SignatureTrigger::Again => again(&typed, &expected),
@@ -73,7 +73,7 @@ fn asked(typed: &Typed, expected: &[Expected]) -> Option<SignatureHelp> {
     }
     let action = typed.action().and_then(|action| signatures(action, expected));
     action.filter(SignatureHelp::is_marked).or_else(|| {
-        let help = signatures(&typed.lexemes, expected)?;
+        let help = signatures(&typed.tokens, expected)?;
         (help.is_marked() || !ends).then_some(help)
     })
 }
@@ -87,7 +87,7 @@ fn again(typed: &Typed, expected: &[Expected]) -> Option<SignatureHelp> {
     let statement = match typed.action() {
         Some(action) => action,
         None if typed.is_in_body() => return None,
-        None => &typed.lexemes,
+        None => &typed.tokens,
     };
     signatures(statement, expected).filter(SignatureHelp::is_marked)
 }
@@ -97,7 +97,7 @@ fn list(typed: &Typed, expected: &[Expected]) -> Option<SignatureHelp> {
     if !typed.is_in_list() {
         return None;
     }
-    let all = signatures(typed.action().unwrap_or(&typed.lexemes), expected)?;
+    let all = signatures(typed.action().unwrap_or(&typed.tokens), expected)?;
     let label = all.signatures.get(all.active)?;
     Some(SignatureHelp { signatures: vec![clause(label)?], active: 0 })
 }
@@ -113,7 +113,7 @@ struct Typed {
     /// The entity's text.
     text: String,
     /// Its tokens, without comments.
-    lexemes: Vec<Lexeme>,
+    tokens: Vec<Token>,
     /// Whether the cursor is on another line than the last of them.
     on_new_line: bool,
 }
@@ -122,9 +122,10 @@ impl Typed {
     fn before(database: &Database, position: FilePosition) -> Option<Self> {
         let at_cursor = position.offset.checked_sub(1)?;
         let mut entity = database.entity_at(position.file, at_cursor)?;
-        let touched = entity.parse.lexemes.iter().find(|(token, span)| {
+        let touched = entity.parse.tokens.iter().find(|(token, span)| {
             let end = span.end + entity.span.start;
-            let goes_on = is_word(*token) || matches!(token, Token::LineComment | Token::UnterminatedComment);
+            let goes_on =
+                is_word(*token) || matches!(token, TokenKind::LineComment | TokenKind::UnterminatedComment);
             span.start + entity.span.start < position.offset
                 && (end > position.offset || goes_on && end == position.offset)
         });
@@ -137,22 +138,21 @@ impl Typed {
             entity = database.entity_at(position.file, cursor.checked_sub(1)?)?;
         }
         let start = entity.span.start;
-        let before = entity.parse.lexemes.iter().filter(|(token, _)| !token.is_comment());
-        let lexemes: Vec<Lexeme> =
-            before.take_while(|(_, span)| span.end + start <= cursor).copied().collect();
-        let end = lexemes.last()?.1.end;
+        let before = entity.parse.tokens.iter().filter(|(token, _)| !token.is_comment());
+        let tokens: Vec<Token> = before.take_while(|(_, span)| span.end + start <= cursor).copied().collect();
+        let end = tokens.last()?.1.end;
         let text = database.slice(position.file, entity.span);
         let on_new_line = Span::new(end, cursor - start).text(&text).contains(['\n', '\r']);
-        Some(Self { text, lexemes, on_new_line })
+        Some(Self { text, tokens, on_new_line })
     }
 
     /// The place of the last brace that nothing closes.
     fn open_brace(&self) -> Option<usize> {
         let mut open = Vec::new();
-        for (index, (token, _)) in self.lexemes.iter().enumerate() {
+        for (index, (token, _)) in self.tokens.iter().enumerate() {
             match token {
-                Token::OpenBrace => open.push(index),
-                Token::CloseBrace => drop(open.pop()),
+                TokenKind::OpenBrace => open.push(index),
+                TokenKind::CloseBrace => drop(open.pop()),
                 _ => {}
             }
         }
@@ -160,14 +160,14 @@ impl Typed {
     }
 
     fn is_movement(&self) -> bool {
-        self.lexemes.first().and_then(|(token, _)| token.entity_kind()) == Some(EntityKind::Movement)
+        self.tokens.first().and_then(|(token, _)| token.entity_kind()) == Some(EntityKind::Movement)
     }
 
     /// Whether the cursor is in braces that hold references.
     fn is_in_list(&self) -> bool {
         self.open_brace().is_some_and(|open| {
-            let before = open.checked_sub(1).and_then(|before| self.lexemes.get(before));
-            !self.is_movement() || before.is_some_and(|(token, _)| *token == Token::Until)
+            let before = open.checked_sub(1).and_then(|before| self.tokens.get(before));
+            !self.is_movement() || before.is_some_and(|(token, _)| *token == TokenKind::Until)
         })
     }
 
@@ -177,21 +177,22 @@ impl Typed {
     }
 
     /// The tokens of the last action, in a movement's body.
-    fn action(&self) -> Option<&[Lexeme]> {
-        let body = self.lexemes.iter().position(|(token, _)| *token == Token::OpenBrace)?;
-        let begins = |(token, _): &Lexeme| matches!(token, Token::Move | Token::Turn | Token::Slam);
-        let last = self.lexemes.iter().rposition(begins)?;
-        (self.is_movement() && last > body).then(|| &self.lexemes[last..])
+    fn action(&self) -> Option<&[Token]> {
+        let body = self.tokens.iter().position(|(token, _)| *token == TokenKind::OpenBrace)?;
+        let begins =
+            |(token, _): &Token| matches!(token, TokenKind::Move | TokenKind::Turn | TokenKind::Slam);
+        let last = self.tokens.iter().rposition(begins)?;
+        (self.is_movement() && last > body).then(|| &self.tokens[last..])
     }
 }
 
-fn is_word(token: Token) -> bool {
-    let is_string = matches!(token, Token::String | Token::UnterminatedString);
-    token.is_name() || token.is_keyword() || token.is_number() || is_string || token == Token::Invalid
+fn is_word(token: TokenKind) -> bool {
+    let is_string = matches!(token, TokenKind::String | TokenKind::UnterminatedString);
+    token.is_name() || token.is_keyword() || token.is_number() || is_string || token == TokenKind::Invalid
 }
 
 /// The shapes of the statement that begins with these tokens.
-fn signatures(typed: &[Lexeme], expected: &[Expected]) -> Option<SignatureHelp> {
+fn signatures(typed: &[Token], expected: &[Expected]) -> Option<SignatureHelp> {
     // `parallel` has a page of its own, with the same shape.
     let page = keyword_page(typed.first()?.0).filter(|_| is_statement(typed[0].0))?;
     let signatures: Vec<Signature> = page
@@ -208,8 +209,9 @@ fn signatures(typed: &[Lexeme], expected: &[Expected]) -> Option<SignatureHelp> 
     Some(SignatureHelp { signatures, active })
 }
 
-fn is_statement(token: Token) -> bool {
-    token.entity_kind().is_some() || matches!(token, Token::Import | Token::Move | Token::Turn | Token::Slam)
+fn is_statement(token: TokenKind) -> bool {
+    token.entity_kind().is_some()
+        || matches!(token, TokenKind::Import | TokenKind::Move | TokenKind::Turn | TokenKind::Slam)
 }
 
 /// A piece of a shape: a word, a word to choose from several, or what a person fills in.
@@ -247,17 +249,17 @@ fn parts(label: &'static str) -> Vec<Part> {
 }
 
 /// The part that comes next: the first behind the words that are there which the parser would take.
-fn current(parts: &[Part], typed: &[Lexeme], expected: &[Expected]) -> Option<usize> {
+fn current(parts: &[Part], typed: &[Token], expected: &[Expected]) -> Option<usize> {
     let mut next = 0;
     for (token, _) in typed {
-        let Some(word) = token.spelling().filter(|_| token.is_keyword() || *token == Token::Colon) else {
+        let Some(word) = token.spelling().filter(|_| token.is_keyword() || *token == TokenKind::Colon) else {
             continue;
         };
         let place = parts[next..].iter().position(|part| part.is_word(word));
         match place {
             Some(place) => next += place + 1,
             // A word of another shape, unless it stands in for a name.
-            None if *token == Token::Until => return None,
+            None if *token == TokenKind::Until => return None,
             None => {}
         }
     }
@@ -272,7 +274,7 @@ impl Part {
 
     fn takes(&self, expected: Expected) -> bool {
         match expected {
-            Expected::Word(Token::OpenBrace) => self.opens,
+            Expected::Word(TokenKind::OpenBrace) => self.opens,
             Expected::Word(word) => word.spelling().is_some_and(|word| self.is_word(word)),
             Expected::ReferenceTo(EntityKind::Robot) => matches!(self.text, "ROBOT" | "ROBOTS"),
             _ => placeholder(expected).is_some_and(|placeholder| self.text == placeholder),
@@ -599,7 +601,7 @@ mod tests {
             if !is_statement(token) {
                 continue;
             }
-            let in_movement = matches!(token, Token::Move | Token::Turn | Token::Slam);
+            let in_movement = matches!(token, TokenKind::Move | TokenKind::Turn | TokenKind::Slam);
             for label in keyword_page(token).unwrap().syntax.lines() {
                 for text in written(label) {
                     let text = if in_movement { format!("movement m of r {{ {text} }}") } else { text };

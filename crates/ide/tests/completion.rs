@@ -9,7 +9,7 @@ use pydslrep_analysis::{Database, FileId};
 use pydslrep_ide::{
     Completion, CompletionKind, CompletionTrigger, Definition, FilePosition, completions, goto_definition,
 };
-use pydslrep_syntax::{Found, KEYWORDS, Lexeme, Span, SyntaxErrorKind, Token, cut, lex, parse};
+use pydslrep_syntax::{Found, KEYWORDS, Span, SyntaxErrorKind, Token, TokenKind, cut, lex, parse};
 
 /// The article's programs, and those made from them.
 fn article() -> Vec<String> {
@@ -25,7 +25,7 @@ fn article() -> Vec<String> {
     programs
 }
 
-fn tokens(text: &str) -> Vec<Lexeme> {
+fn tokens(text: &str) -> Vec<Token> {
     lex(text).into_iter().filter(|(token, _)| !token.is_comment()).collect()
 }
 
@@ -70,8 +70,8 @@ fn filled_in(insert: &str) -> String {
 
 /// What tells one place from another: the entity's keyword and the last tokens, whatever the names and numbers are. (No
 /// rule of the grammar looks back further than its own clause; seven tokens are more than any has.)
-fn context(entity: &[Lexeme], may_import: bool) -> (Vec<Token>, bool) {
-    let kind = |(token, _): &Lexeme| if *token == Token::Float { Token::Integer } else { *token };
+fn context(entity: &[Token], may_import: bool) -> (Vec<TokenKind>, bool) {
+    let kind = |(token, _): &Token| if *token == TokenKind::Float { TokenKind::Integer } else { *token };
     let last = entity.len().saturating_sub(7).max(1);
     (entity.iter().take(1).chain(entity.iter().skip(last)).map(kind).collect(), may_import)
 }
@@ -84,7 +84,7 @@ fn context(entity: &[Lexeme], may_import: bool) -> (Vec<Token>, bool) {
 /// finished.
 ///
 /// Places of the same [`context`] are asked about once.
-fn check_while_typed(text: &str, seen: &mut HashSet<(Vec<Token>, bool)>) {
+fn check_while_typed(text: &str, seen: &mut HashSet<(Vec<TokenKind>, bool)>) {
     let mut database = Database::new();
     let file = database.open("a.pyr", " ");
     let tokens = tokens(text);
@@ -96,7 +96,7 @@ fn check_while_typed(text: &str, seen: &mut HashSet<(Vec<Token>, bool)>) {
             let token = tokens[index - 1];
             if starts.contains(&(index - 1)) {
                 entity.clear();
-                imports &= token.0 == Token::Import;
+                imports &= token.0 == TokenKind::Import;
             }
             entity.push(token);
         }
@@ -135,17 +135,17 @@ fn the_words_offered_are_those_that_fit() {
         check_while_typed(&imports.seeded(seed), &mut seen);
     }
     assert!(seen.len() > 1_000, "only {} places", seen.len());
-    let contextual = [Token::Distance, Token::Bumper, Token::Import];
+    let contextual = [TokenKind::Distance, TokenKind::Bumper, TokenKind::Import];
     for (token, word) in KEYWORDS.iter().filter(|(token, _)| token.is_keyword() || contextual.contains(token))
     {
-        let used = |(tokens, _): &(Vec<Token>, bool)| tokens.contains(token);
+        let used = |(tokens, _): &(Vec<TokenKind>, bool)| tokens.contains(token);
         assert!(seen.iter().any(used), "no program has `{word}`");
     }
 }
 
 /// Whether a token is what somebody can be helped to write: a word or a brace, or a name that is declared.
-fn can_be_offered(database: &Database, file: FileId, token: Token, span: Span) -> bool {
-    if token == Token::Comma || token.is_number() || token == Token::String {
+fn can_be_offered(database: &Database, file: FileId, token: TokenKind, span: Span) -> bool {
+    if token == TokenKind::Comma || token.is_number() || token == TokenKind::String {
         return false;
     }
     let declared = |offset| goto_definition(database, FilePosition { file, offset });

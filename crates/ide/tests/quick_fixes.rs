@@ -69,11 +69,11 @@ fn moved(span: Span, edits: &[Edit]) -> Option<Span> {
 /// A program at random with the words of it that a slip makes others.
 fn program(seed: u64) -> String {
     let text = Recipe { lines: 12, ..Recipe::default() }.seeded(seed);
-    let lexemes = lex(&text);
-    if seed.is_multiple_of(2) || lexemes.is_empty() {
+    let tokens = lex(&text);
+    if seed.is_multiple_of(2) || tokens.is_empty() {
         return text;
     }
-    let (_, span) = lexemes[usize::try_from(seed * 7919).unwrap() % lexemes.len()];
+    let (_, span) = tokens[usize::try_from(seed * 7919).unwrap() % tokens.len()];
     let word = span.text(&text);
     let slip = match seed % 3 {
         0 => String::new(),
@@ -177,11 +177,11 @@ fn broken(seed: u64) -> (String, Vec<Range<usize>>) {
     let mut text = Recipe { lines: 10, ..Recipe::default() }.seeded(seed);
     let mut entities: Vec<_> = declarations(&text).unwrap().into_iter().map(|entity| entity.range).collect();
     for turn in 0..=seed % 3 {
-        let lexemes: Vec<_> = lex(&text).into_iter().filter(|(token, _)| !token.is_comment()).collect();
+        let tokens: Vec<_> = lex(&text).into_iter().filter(|(token, _)| !token.is_comment()).collect();
         let chosen = usize::try_from(seed * 7919 + turn * 104_729).unwrap();
-        let Some((_, span)) = lexemes.get(chosen % lexemes.len().max(1)) else { continue };
+        let Some((_, span)) = tokens.get(chosen % tokens.len().max(1)) else { continue };
         let slips = slips(span.text(&text));
-        let slip = &slips[chosen / lexemes.len() % slips.len()];
+        let slip = &slips[chosen / tokens.len() % slips.len()];
         let range = Range::<usize>::from(*span);
         text.replace_range(range.clone(), slip);
         let moved =

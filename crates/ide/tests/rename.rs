@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use proptest::prelude::*;
-use pydslrep_analysis::{Database, FileId, Place, Resolution};
+use pydslrep_analysis::{Database, FileId, FileSpan, Resolution};
 use pydslrep_ide::{FilePosition, references, rename};
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, KEYWORDS, Span};
@@ -19,7 +19,7 @@ fn meaning(database: &Database) -> Vec<String> {
 fn meaning_of_file(database: &Database, file: FileId) -> Vec<String> {
     let mut said = Vec::new();
     for entity in database.entities(file) {
-        for (token, span) in &entity.parse.lexemes {
+        for (token, span) in &entity.parse.tokens {
             let text = database.slice(file, span.shifted(entity.span.start));
             said.push(if token.is_name() { "a name".to_owned() } else { text });
         }
@@ -80,15 +80,15 @@ fn apply(database: &mut Database, position: FilePosition, new: &str) -> bool {
 }
 
 /// Every kind and name that a file declares or uses, with one of its places there.
-fn names(database: &Database) -> Vec<(EntityKind, SmolStr, Place)> {
-    let mut found: Vec<(EntityKind, SmolStr, Place)> = Vec::new();
+fn names(database: &Database) -> Vec<(EntityKind, SmolStr, FileSpan)> {
+    let mut found: Vec<(EntityKind, SmolStr, FileSpan)> = Vec::new();
     for file in database.files() {
         for entity in database.entities(file) {
             let Some(tree) = &entity.parse.entity else { continue };
             let declared = tree.name().and_then(|name| Some((tree.kind()?, name)));
             for (kind, name) in tree.references().into_iter().chain(declared) {
-                let place = Place { file, span: name.span.shifted(entity.span.start) };
-                let is_same = |(other, text, place): &(EntityKind, SmolStr, Place)| {
+                let place = FileSpan { file, span: name.span.shifted(entity.span.start) };
+                let is_same = |(other, text, place): &(EntityKind, SmolStr, FileSpan)| {
                     (*other, text, place.file) == (kind, &name.text, file)
                 };
                 if !found.iter().any(is_same) {
@@ -101,7 +101,7 @@ fn names(database: &Database) -> Vec<(EntityKind, SmolStr, Place)> {
 }
 
 /// Inside the name: between two that touch, as in `a^b`, the cursor means the first.
-fn at(place: Place) -> FilePosition {
+fn at(place: FileSpan) -> FilePosition {
     FilePosition { file: place.file, offset: place.span.start + place.span.len() / 2 }
 }
 

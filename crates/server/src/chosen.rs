@@ -1,6 +1,6 @@
 //! Which environment of which program a client means, and what it has of it.
 
-use pydslrep_analysis::MadeOf;
+use pydslrep_analysis::Fingerprint;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use tower_lsp::ls_types::Uri;
@@ -20,7 +20,7 @@ pub(crate) struct Watched {
     /// Whose path.
     pub(crate) which: ChosenEnvironment,
     /// What the environment was made of, where it was without errors.
-    pub(crate) made_of: Option<MadeOf>,
+    pub(crate) fingerprint: Option<Fingerprint>,
     /// The path, as it was sent.
     pub(crate) path: Option<Value>,
 }

@@ -8,27 +8,27 @@
 //! after it and on nothing else. That bound is what incremental analysis relies on; widen it only together with
 //! `pydslrep-analysis`'s rule for growing the window of an edit.
 
-use crate::{EntityKind, Lexeme, Token, TokenSet, is_similar};
+use crate::{EntityKind, Token, TokenKind, TokenSet, is_similar};
 
 /// How many tokens after one can matter for whether it begins an entity.
 pub const LOOKAHEAD: usize = 2;
 
-/// The indices into `lexemes`, which are places in `text`, at which entities (and imports) begin.
-pub fn cut(text: &str, lexemes: &[Lexeme]) -> Vec<usize> {
+/// The indices into `tokens`, which are places in `text`, at which entities (and imports) begin.
+pub fn cut(text: &str, tokens: &[Token]) -> Vec<usize> {
     let mut starts = Vec::new();
     let mut inside = None;
     let mut previous = None;
-    for (index, &(token, _)) in lexemes.iter().enumerate() {
+    for (index, &(token, _)) in tokens.iter().enumerate() {
         if token.is_comment() {
             continue;
         }
         let keyword = if could_begin(token) {
-            let next = lexemes[index + 1..].iter().map(|(token, _)| *token).find(|token| !token.is_comment());
+            let next = tokens[index + 1..].iter().map(|(token, _)| *token).find(|token| !token.is_comment());
             begins_entity(token, previous, next, inside).then_some(token)
         } else {
             Some(token)
                 .filter(|token| could_be_misspelt(*token) && may_end(previous, *token, inside))
-                .and_then(|_| misspelt_beginning(text, &lexemes[index..]))
+                .and_then(|_| misspelt_beginning(text, &tokens[index..]))
         };
         if let Some(keyword) = keyword {
             starts.push(index);
@@ -39,30 +39,30 @@ pub fn cut(text: &str, lexemes: &[Lexeme]) -> Vec<usize> {
     starts
 }
 
-fn could_begin(token: Token) -> bool {
-    token == Token::Import || token.entity_kind().is_some()
+fn could_begin(token: TokenKind) -> bool {
+    token == TokenKind::Import || token.entity_kind().is_some()
 }
 
 /// Names, and the plurals that are keywords of their own.
-fn could_be_misspelt(token: Token) -> bool {
-    matches!(token, Token::Name | Token::Wheels | Token::Sensors | Token::Robots)
+fn could_be_misspelt(token: TokenKind) -> bool {
+    matches!(token, TokenKind::Name | TokenKind::Wheels | TokenKind::Sensors | TokenKind::Robots)
 }
 
 /// Whether the entity before `token` may be over after `previous`, so that a misspelt keyword may follow.
-fn may_end(previous: Option<Token>, token: Token, inside: Option<EntityKind>) -> bool {
+fn may_end(previous: Option<TokenKind>, token: TokenKind, inside: Option<EntityKind>) -> bool {
     let Some(previous) = previous else { return true };
     match previous {
         // `{ a b } wheels`
-        Token::CloseBrace => token == Token::Name,
-        Token::Wheels
-        | Token::Sensors
-        | Token::Robots
-        | Token::Moves
-        | Token::String
-        | Token::UnterminatedString
-        | Token::Slam
-        | Token::Meters
-        | Token::Centimeters => true,
+        TokenKind::CloseBrace => token == TokenKind::Name,
+        TokenKind::Wheels
+        | TokenKind::Sensors
+        | TokenKind::Robots
+        | TokenKind::Moves
+        | TokenKind::String
+        | TokenKind::UnterminatedString
+        | TokenKind::Slam
+        | TokenKind::Meters
+        | TokenKind::Centimeters => true,
         // A port never ends a robot, and a list may stand without its braces.
         _ if previous.is_number() => inside != Some(EntityKind::Robot),
         _ if previous.is_name() => {
@@ -74,22 +74,22 @@ fn may_end(previous: Option<Token>, token: Token, inside: Option<EntityKind>) ->
 
 /// The keyword of an entity that the first of these tokens is a slip for, where the next tokens are those of such an
 /// entity.
-pub(crate) fn misspelt_beginning(text: &str, lexemes: &[Lexeme]) -> Option<Token> {
-    let mut tokens = lexemes.iter().filter(|(token, _)| !token.is_comment());
-    let &(first, span) = tokens.next()?;
+pub(crate) fn misspelt_beginning(text: &str, tokens: &[Token]) -> Option<TokenKind> {
+    let mut significant = tokens.iter().filter(|(token, _)| !token.is_comment());
+    let &(first, span) = significant.next()?;
     if !could_be_misspelt(first) {
         return None;
     }
-    let &(next, _) = tokens.next()?;
-    let after = tokens.next();
-    let follows = |keyword: &Token| match *keyword {
-        Token::Import => is_string(next),
-        Token::Parallel => next == Token::Movement,
+    let &(next, _) = significant.next()?;
+    let after = significant.next();
+    let follows = |keyword: &TokenKind| match *keyword {
+        TokenKind::Import => is_string(next),
+        TokenKind::Parallel => next == TokenKind::Movement,
         // A sensor may be over after its name.
-        Token::Sensor => {
+        TokenKind::Sensor => {
             next.is_name()
                 && after.is_none_or(|(after, _)| {
-                    *after == Token::Colon || *after == Token::Name || could_begin(*after)
+                    *after == TokenKind::Colon || *after == TokenKind::Name || could_begin(*after)
                 })
         }
         keyword => next.is_name() && after.is_some_and(|after| is_one_of(text, *after, clauses(keyword))),
@@ -100,100 +100,109 @@ pub(crate) fn misspelt_beginning(text: &str, lexemes: &[Lexeme]) -> Option<Token
 }
 
 /// All that begin an entity.
-pub(crate) const BEGINNINGS: [Token; 9] = [
-    Token::Wheel,
-    Token::WheelH,
-    Token::Sensor,
-    Token::Ip,
-    Token::Robot,
-    Token::Parallel,
-    Token::Movement,
-    Token::Environment,
-    Token::Import,
+pub(crate) const BEGINNINGS: [TokenKind; 9] = [
+    TokenKind::Wheel,
+    TokenKind::WheelH,
+    TokenKind::Sensor,
+    TokenKind::Ip,
+    TokenKind::Robot,
+    TokenKind::Parallel,
+    TokenKind::Movement,
+    TokenKind::Environment,
+    TokenKind::Import,
 ];
 
 /// What can stand after the name of an entity with such a keyword, also where a word is missing.
-const fn clauses(keyword: Token) -> TokenSet {
+const fn clauses(keyword: TokenKind) -> TokenSet {
     const NUMBER: TokenSet =
-        TokenSet::of(&[Token::Integer, Token::Float, Token::Ipv4, Token::MalformedNumber]);
+        TokenSet::of(&[TokenKind::Integer, TokenKind::Float, TokenKind::Ipv4, TokenKind::MalformedNumber]);
     match keyword {
-        Token::Wheel | Token::WheelH => TokenSet::of(&[Token::With, Token::Radius]).or(NUMBER),
-        Token::Ip => NUMBER,
-        Token::Robot => TokenSet::of(&[Token::With, Token::Type, Token::Port, Token::Has]),
-        Token::Movement => TokenSet::of(&[Token::Of, Token::OpenBrace]),
-        _ => TokenSet::of(&[Token::With, Token::Has, Token::Comma]),
+        TokenKind::Wheel | TokenKind::WheelH => {
+            TokenSet::of(&[TokenKind::With, TokenKind::Radius]).or(NUMBER)
+        }
+        TokenKind::Ip => NUMBER,
+        TokenKind::Robot => {
+            TokenSet::of(&[TokenKind::With, TokenKind::Type, TokenKind::Port, TokenKind::Has])
+        }
+        TokenKind::Movement => TokenSet::of(&[TokenKind::Of, TokenKind::OpenBrace]),
+        _ => TokenSet::of(&[TokenKind::With, TokenKind::Has, TokenKind::Comma]),
     }
 }
 
 /// Whether a token is one of `set`, or a word that is nearly one of its keywords.
-fn is_one_of(text: &str, (token, span): Lexeme, set: TokenSet) -> bool {
-    let words = [Token::With, Token::Radius, Token::Type, Token::Port, Token::Has, Token::Of];
+fn is_one_of(text: &str, (token, span): Token, set: TokenSet) -> bool {
+    let words =
+        [TokenKind::With, TokenKind::Radius, TokenKind::Type, TokenKind::Port, TokenKind::Has, TokenKind::Of];
     set.has(token)
-        || token == Token::Name
+        || token == TokenKind::Name
             && words.into_iter().any(|word| set.has(word) && is_slip(span.text(text), word))
 }
 
 /// Whether a word is a slip for a keyword.
-pub(crate) fn is_slip(written: &str, keyword: Token) -> bool {
+pub(crate) fn is_slip(written: &str, keyword: TokenKind) -> bool {
     keyword.spelling().is_some_and(|spelling| is_similar(written, spelling))
 }
 
 /// How far a word is from a keyword: whether in more than case, and by how many edits.
-pub(crate) fn distance(written: &str, keyword: Token) -> (bool, usize) {
+pub(crate) fn distance(written: &str, keyword: TokenKind) -> (bool, usize) {
     let spelling = keyword.spelling().unwrap_or_default();
     (!written.eq_ignore_ascii_case(spelling), strsim::osa_distance(written, spelling))
 }
 
 fn begins_entity(
-    token: Token,
-    previous: Option<Token>,
-    next: Option<Token>,
+    token: TokenKind,
+    previous: Option<TokenKind>,
+    next: Option<TokenKind>,
     inside: Option<EntityKind>,
 ) -> bool {
     match token {
-        Token::Import => next.is_some_and(is_string) || previous.is_none_or(is_string),
+        TokenKind::Import => next.is_some_and(is_string) || previous.is_none_or(is_string),
         _ if is_taken_for_name(previous, next) => false,
-        Token::Ip => previous != Some(Token::With),
-        Token::Movement | Token::Parallel if previous == Some(Token::Parallel) => false,
+        TokenKind::Ip => previous != Some(TokenKind::With),
+        TokenKind::Movement | TokenKind::Parallel if previous == Some(TokenKind::Parallel) => false,
         // `with { parallel m }`: it is said where the movement is declared.
-        Token::Parallel if inside == Some(EntityKind::Environment) => !is_listed(previous, next),
+        TokenKind::Parallel if inside == Some(EntityKind::Environment) => !is_listed(previous, next),
         // `movement parallel m`; before `parallel movement` somebody is about to write another one.
-        Token::Parallel if previous == Some(Token::Movement) => next == Some(Token::Movement),
+        TokenKind::Parallel if previous == Some(TokenKind::Movement) => next == Some(TokenKind::Movement),
         // `} wheel`, `with sensor {`, `} robot with` and `} movement` are slips for the plural, not entities.
-        Token::Wheel if inside == Some(EntityKind::Robot) => !closes_list(previous, next),
-        Token::Robot | Token::Movement if inside == Some(EntityKind::Environment) => {
+        TokenKind::Wheel if inside == Some(EntityKind::Robot) => !closes_list(previous, next),
+        TokenKind::Robot | TokenKind::Movement if inside == Some(EntityKind::Environment) => {
             !closes_list(previous, next)
         }
-        Token::Sensor if inside == Some(EntityKind::Robot) => previous != Some(Token::With),
+        TokenKind::Sensor if inside == Some(EntityKind::Robot) => previous != Some(TokenKind::With),
         _ => true,
     }
 }
 
 /// `wheel robot with …`, `movement m of robot { … }`: a keyword where only a name can be meant. (`wheel` right before
 /// `robot r` is a wheel that somebody is about to write.)
-fn is_taken_for_name(previous: Option<Token>, next: Option<Token>) -> bool {
+fn is_taken_for_name(previous: Option<TokenKind>, next: Option<TokenKind>) -> bool {
     let (Some(previous), Some(next)) = (previous, next) else { return false };
     match previous {
-        Token::Of => next == Token::OpenBrace,
-        Token::Parallel => false,
+        TokenKind::Of => next == TokenKind::OpenBrace,
+        TokenKind::Parallel => false,
         _ => {
             previous.entity_kind().is_some()
-                && matches!(next, Token::With | Token::Of | Token::Has | Token::Colon | Token::Ipv4)
+                && matches!(
+                    next,
+                    TokenKind::With | TokenKind::Of | TokenKind::Has | TokenKind::Colon | TokenKind::Ipv4
+                )
         }
     }
 }
 
-fn is_listed(previous: Option<Token>, next: Option<Token>) -> bool {
-    let in_list = |token: Token| matches!(token, Token::OpenBrace | Token::Comma) || token.is_name();
-    previous.is_some_and(in_list) && next.is_some_and(Token::is_name)
+fn is_listed(previous: Option<TokenKind>, next: Option<TokenKind>) -> bool {
+    let in_list =
+        |token: TokenKind| matches!(token, TokenKind::OpenBrace | TokenKind::Comma) || token.is_name();
+    previous.is_some_and(in_list) && next.is_some_and(TokenKind::is_name)
 }
 
-fn is_string(token: Token) -> bool {
-    matches!(token, Token::String | Token::UnterminatedString)
+fn is_string(token: TokenKind) -> bool {
+    matches!(token, TokenKind::String | TokenKind::UnterminatedString)
 }
 
-fn closes_list(previous: Option<Token>, next: Option<Token>) -> bool {
-    previous == Some(Token::CloseBrace) && !next.is_some_and(Token::is_name)
+fn closes_list(previous: Option<TokenKind>, next: Option<TokenKind>) -> bool {
+    previous == Some(TokenKind::CloseBrace) && !next.is_some_and(TokenKind::is_name)
 }
 
 #[cfg(test)]
@@ -204,9 +213,9 @@ mod tests {
     use crate::lex;
 
     fn check(text: &str, expected: &Expect) {
-        let lexemes = lex(text);
+        let tokens = lex(text);
         let mut ends: Vec<usize> =
-            cut(text, &lexemes).into_iter().map(|i| lexemes[i].1.start as usize).collect();
+            cut(text, &tokens).into_iter().map(|i| tokens[i].1.start as usize).collect();
         ends.push(text.len());
         let pieces: Vec<&str> = ends.windows(2).map(|pair| text[pair[0]..pair[1]].trim()).collect();
         expected.assert_eq(&pieces.join("\n"));

@@ -2,7 +2,7 @@
 
 use smol_str::SmolStr;
 
-use crate::{EntityKind, Span, Token};
+use crate::{EntityKind, Span, TokenKind};
 
 /// One mistake in the text.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -55,7 +55,7 @@ pub enum SyntaxErrorKind {
         /// As written.
         written: SmolStr,
         /// The nearest keyword.
-        keyword: Token,
+        keyword: TokenKind,
     },
     /// A keyword where a name belongs; `^` before it would make it one.
     KeywordAsName {
@@ -104,7 +104,7 @@ pub enum SyntaxErrorKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Expected {
     /// A certain word or sign.
-    Word(Token),
+    Word(TokenKind),
     /// A name for a new entity.
     NameOf(EntityKind),
     /// The name of an entity declared elsewhere.

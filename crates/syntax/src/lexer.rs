@@ -2,10 +2,10 @@
 
 use logos::Logos;
 
-use crate::{Span, Token};
+use crate::{Span, TokenKind};
 
 /// A token and where it stands.
-pub type Lexeme = (Token, Span);
+pub type Token = (TokenKind, Span);
 
 const BYTE_ORDER_MARK: &str = "\u{feff}";
 
@@ -13,49 +13,49 @@ const BYTE_ORDER_MARK: &str = "\u{feff}";
 /// the start of a file, because every other text handed in starts at an entity's keyword.
 ///
 /// Texts beyond 4 GiB are cut off there.
-pub fn lex(text: &str) -> Vec<Lexeme> {
+pub fn lex(text: &str) -> Vec<Token> {
     let start = if text.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
-    let mut lexemes: Vec<Lexeme> = Vec::with_capacity(text.len() / 6);
-    for (token, range) in Token::lexer(&text[start..]).spanned() {
+    let mut tokens: Vec<Token> = Vec::with_capacity(text.len() / 6);
+    for (token, range) in TokenKind::lexer(&text[start..]).spanned() {
         let (Ok(from), Ok(to)) = (u32::try_from(range.start + start), u32::try_from(range.end + start))
         else {
             break;
         };
-        push(text, &mut lexemes, token.unwrap_or(Token::Invalid), Span::new(from, to));
+        push(text, &mut tokens, token.unwrap_or(TokenKind::Invalid), Span::new(from, to));
     }
-    lexemes
+    tokens
 }
 
 /// Characters that begin no token come one by one; adjacent ones are one mistake, and so is `robot-1`.
-fn push(text: &str, lexemes: &mut Vec<Lexeme>, token: Token, span: Span) {
-    if let [before @ .., (last_token, last)] = &mut lexemes[..]
+fn push(text: &str, tokens: &mut Vec<Token>, token: TokenKind, span: Span) {
+    if let [before @ .., (last_token, last)] = &mut tokens[..]
         && last.end == span.start
     {
         let goes_on = match (*last_token, token) {
-            (Token::Invalid, Token::Invalid) => true,
-            (name, Token::Integer | Token::Float | Token::MalformedNumber) => {
+            (TokenKind::Invalid, TokenKind::Invalid) => true,
+            (name, TokenKind::Integer | TokenKind::Float | TokenKind::MalformedNumber) => {
                 let exponent =
                     before.last().is_some_and(|(token, span)| token.is_number() && span.end == last.start);
                 may_begin_name(name) && !exponent && span.text(text).starts_with('-')
             }
             // `robot-1a`
-            (Token::MalformedName, word) => {
+            (TokenKind::MalformedName, word) => {
                 let after_digit = last.text(text).ends_with(|c: char| c.is_ascii_digit());
                 (word.is_name() || word.is_keyword()) && after_digit && !span.text(text).starts_with('^')
             }
             _ => false,
         };
         if goes_on {
-            *last_token = if token == Token::Invalid { token } else { Token::MalformedName };
+            *last_token = if token == TokenKind::Invalid { token } else { TokenKind::MalformedName };
             last.end = span.end;
             return;
         }
     }
-    lexemes.push((token, span));
+    tokens.push((token, span));
 }
 
 /// What no number follows, so that one right after it is meant to be a part of the name. (`move-4` is a move.)
-fn may_begin_name(token: Token) -> bool {
+fn may_begin_name(token: TokenKind) -> bool {
     token.is_name() || token.entity_kind().is_some()
 }
 
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn an_unterminated_comment_takes_the_rest() {
         for text in ["/*", "/* a", "/* a *", "/* é\n}\n", "/***"] {
-            assert_eq!(lex(text), [(Token::UnterminatedComment, Span::of(text))], "{text:?}");
+            assert_eq!(lex(text), [(TokenKind::UnterminatedComment, Span::of(text))], "{text:?}");
         }
     }
 

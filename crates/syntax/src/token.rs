@@ -6,7 +6,7 @@ use logos::Logos;
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[logos(skip r"[ \t\r\n\f]+")]
 #[repr(u8)]
-pub enum Token {
+pub enum TokenKind {
     /// A name, also one escaped by `^`.
     #[regex(r"\^?[A-Za-z_][A-Za-z0-9_]*")]
     Name,
@@ -163,51 +163,51 @@ pub enum Token {
 
 /// Every word with a meaning of its own, in the order of the language's contract; the last three are contextual:
 /// they stay usable as names.
-pub const KEYWORDS: [(Token, &str); 33] = [
-    (Token::Wheel, "wheel"),
-    (Token::WheelH, "wheelH"),
-    (Token::With, "with"),
-    (Token::Radius, "radius"),
-    (Token::Sensor, "sensor"),
-    (Token::Ip, "ip"),
-    (Token::Robot, "robot"),
-    (Token::Type, "type"),
-    (Token::Tw, "tw"),
-    (Token::Fw, "fw"),
-    (Token::Fwh, "fwh"),
-    (Token::Port, "port"),
-    (Token::Has, "has"),
-    (Token::Wheels, "wheels"),
-    (Token::Sensors, "sensors"),
-    (Token::Parallel, "parallel"),
-    (Token::Movement, "movement"),
-    (Token::Of, "of"),
-    (Token::Move, "move"),
-    (Token::Meters, "meters"),
-    (Token::Centimeters, "centimeters"),
-    (Token::At, "at"),
-    (Token::Turn, "turn"),
-    (Token::Left, "left"),
-    (Token::Right, "right"),
-    (Token::Until, "until"),
-    (Token::Slam, "slam"),
-    (Token::Environment, "environment"),
-    (Token::Robots, "robots"),
-    (Token::Moves, "moves"),
-    (Token::Distance, "distance"),
-    (Token::Bumper, "bumper"),
-    (Token::Import, "import"),
+pub const KEYWORDS: [(TokenKind, &str); 33] = [
+    (TokenKind::Wheel, "wheel"),
+    (TokenKind::WheelH, "wheelH"),
+    (TokenKind::With, "with"),
+    (TokenKind::Radius, "radius"),
+    (TokenKind::Sensor, "sensor"),
+    (TokenKind::Ip, "ip"),
+    (TokenKind::Robot, "robot"),
+    (TokenKind::Type, "type"),
+    (TokenKind::Tw, "tw"),
+    (TokenKind::Fw, "fw"),
+    (TokenKind::Fwh, "fwh"),
+    (TokenKind::Port, "port"),
+    (TokenKind::Has, "has"),
+    (TokenKind::Wheels, "wheels"),
+    (TokenKind::Sensors, "sensors"),
+    (TokenKind::Parallel, "parallel"),
+    (TokenKind::Movement, "movement"),
+    (TokenKind::Of, "of"),
+    (TokenKind::Move, "move"),
+    (TokenKind::Meters, "meters"),
+    (TokenKind::Centimeters, "centimeters"),
+    (TokenKind::At, "at"),
+    (TokenKind::Turn, "turn"),
+    (TokenKind::Left, "left"),
+    (TokenKind::Right, "right"),
+    (TokenKind::Until, "until"),
+    (TokenKind::Slam, "slam"),
+    (TokenKind::Environment, "environment"),
+    (TokenKind::Robots, "robots"),
+    (TokenKind::Moves, "moves"),
+    (TokenKind::Distance, "distance"),
+    (TokenKind::Bumper, "bumper"),
+    (TokenKind::Import, "import"),
 ];
 
 /// A name as a program has to write it: keywords need their `^`. So does `import`, although it can stand without in
 /// most places: behind `} wheel` it would be taken for the next entity.
 pub fn as_written(name: &str) -> String {
-    let is_escaped = |token: Token| token.is_keyword() || token == Token::Import;
+    let is_escaped = |token: TokenKind| token.is_keyword() || token == TokenKind::Import;
     let escaped = KEYWORDS.iter().any(|(token, word)| is_escaped(*token) && *word == name);
     if escaped { format!("^{name}") } else { name.to_owned() }
 }
 
-impl Token {
+impl TokenKind {
     /// How a keyword or sign is written; `None` for tokens whose text varies.
     pub fn spelling(self) -> Option<&'static str> {
         match self {
@@ -326,7 +326,7 @@ pub struct TokenSet(u64);
 
 impl TokenSet {
     /// The set of these tokens.
-    pub const fn of(tokens: &[Token]) -> Self {
+    pub const fn of(tokens: &[TokenKind]) -> Self {
         let mut bits = 0;
         let mut i = 0;
         while i < tokens.len() {
@@ -337,7 +337,7 @@ impl TokenSet {
     }
 
     /// The set of all tokens but one.
-    pub const fn all_but(token: Token) -> Self {
+    pub const fn all_but(token: TokenKind) -> Self {
         Self(!(1 << token as u8))
     }
 
@@ -357,7 +357,7 @@ impl TokenSet {
     }
 
     /// Whether `token` is in it.
-    pub const fn has(self, token: Token) -> bool {
+    pub const fn has(self, token: TokenKind) -> bool {
         self.0 & (1 << token as u8) != 0
     }
 }
@@ -369,8 +369,8 @@ mod tests {
     #[test]
     fn every_keyword_is_lexed_as_itself() {
         for (token, word) in KEYWORDS {
-            assert_eq!(Token::lexer(word).next(), Some(Ok(token)), "{word}");
-            let contextual = matches!(token, Token::Distance | Token::Bumper | Token::Import);
+            assert_eq!(TokenKind::lexer(word).next(), Some(Ok(token)), "{word}");
+            let contextual = matches!(token, TokenKind::Distance | TokenKind::Bumper | TokenKind::Import);
             assert_eq!(token.is_keyword(), !contextual, "{word}");
             assert_eq!(token.is_name(), contextual, "{word}");
         }
@@ -378,10 +378,10 @@ mod tests {
 
     #[test]
     fn the_list_is_complete() {
-        let first = Token::Wheel as u8;
+        let first = TokenKind::Wheel as u8;
         let listed: Vec<u8> = KEYWORDS.iter().map(|(token, _)| *token as u8).collect();
-        let all: Vec<u8> = (first..Token::Invalid as u8).collect();
+        let all: Vec<u8> = (first..TokenKind::Invalid as u8).collect();
         assert_eq!(listed, all);
-        assert!((Token::Cursor as u8) < 64, "a token set is one word");
+        assert!((TokenKind::Cursor as u8) < 64, "a token set is one word");
     }
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{EntityKind, Lexeme, Parse, Span, parse_each};
+use pydslrep_syntax::{EntityKind, Parse, Span, Token, parse_each};
 use ropey::Rope;
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
@@ -16,7 +16,7 @@ use crate::Target;
 use crate::diagnostics;
 use crate::file::{File, OfRope, Window};
 use crate::names::Key;
-use crate::pieces::{Piece, Pieces};
+use crate::slots::{EntitySlot, EntitySlots};
 
 /// The space between the orders of two neighbours in a fresh file.
 const ORDER_STEP: u64 = 1 << 32;
@@ -27,16 +27,16 @@ impl Database {
         let file = self.file_for(path);
         self.forget(file);
         self.files[file.0 as usize] =
-            Some(File { path: path.to_owned(), text: Rope::from_str(text), pieces: Pieces::default() });
+            Some(File { path: path.to_owned(), text: Rope::from_str(text), slots: EntitySlots::default() });
         let before = self.imports(file).to_vec();
-        let (mut pieces, mut relexed) = (Vec::new(), 0);
+        let (mut slots, mut relexed) = (Vec::new(), 0);
         parse_each(text, |span, parse| {
-            let order = (pieces.len() as u64 + 1) * ORDER_STEP;
-            relexed += parse.lexemes.len();
-            pieces.push(self.add(file, span, parse, order));
+            let order = (slots.len() as u64 + 1) * ORDER_STEP;
+            relexed += parse.tokens.len();
+            slots.push(self.add(file, span, parse, order));
         });
-        self.last_edit = EditCounts { relexed, reparsed: pieces.len(), revalidated: 0 };
-        self.set_pieces(file, pieces);
+        self.last_edit = EditCounts { relexed, reparsed: slots.len(), revalidated: 0 };
+        self.set_pieces(file, slots);
         self.touch(file);
         self.update_imports(file);
         self.forget_absence(path);
@@ -64,12 +64,12 @@ impl Database {
     /// to where it does.
     pub fn edit(&mut self, file: FileId, span: Span, text: &str) {
         let entities = &self.entities;
-        let lexemes = |id: EntityId| -> &[Lexeme] {
-            entities[id.0 as usize].as_ref().map_or(&[], |data| &data.parse.lexemes)
+        let tokens = |id: EntityId| -> &[Token] {
+            entities[id.0 as usize].as_ref().map_or(&[], |data| &data.parse.tokens)
         };
         let Some(open) = self.files.get_mut(file.0 as usize).and_then(Option::as_mut) else { return };
         let span = fit(&open.text, span);
-        let window = open.edit(span, text, lexemes);
+        let window = open.edit(span, text, tokens);
         self.touch(file);
         self.apply(file, window);
     }
@@ -86,15 +86,15 @@ impl Database {
 
     /// Removes all entities of a file.
     fn forget(&mut self, file: FileId) {
-        let pieces = self.files[file.0 as usize].as_mut().map(|file| std::mem::take(&mut file.pieces));
-        for piece in pieces.unwrap_or_default().iter() {
-            self.remove(piece.entity);
+        let slots = self.files[file.0 as usize].as_mut().map(|file| std::mem::take(&mut file.slots));
+        for slot in slots.unwrap_or_default().iter() {
+            self.remove(slot.entity);
         }
     }
 
-    fn set_pieces(&mut self, file: FileId, pieces: Vec<Piece>) {
+    fn set_pieces(&mut self, file: FileId, slots: Vec<EntitySlot>) {
         if let Some(open) = self.files[file.0 as usize].as_mut() {
-            open.pieces = pieces.into();
+            open.slots = slots.into();
         }
     }
 
@@ -102,20 +102,19 @@ impl Database {
         self.last_edit =
             EditCounts { relexed: window.relexed, reparsed: window.parses.len(), revalidated: 0 };
         let Window { replaced, parses, .. } = self.without_unchanged_ends(file, window);
-        let old: Vec<EntityId> =
-            self.pieces(file)[replaced.clone()].iter().map(|piece| piece.entity).collect();
+        let old: Vec<EntityId> = self.slots(file)[replaced.clone()].iter().map(|slot| slot.entity).collect();
         let had_imports = self.any_import(&old);
         let imports_before = self.which_are_imports(&old);
         let had_environments = self.count(file, EntityKind::Environment) > 0;
         let mut doubtful = Doubtful::default();
-        let new: Vec<Piece> = if old.len() == parses.len() {
+        let new: Vec<EntitySlot> = if old.len() == parses.len() {
             old.iter().zip(parses).map(|(id, parsed)| self.update(*id, parsed, &mut doubtful)).collect()
         } else {
             self.exchange(file, &replaced, parses, &mut doubtful)
         };
-        let ids: Vec<EntityId> = new.iter().map(|piece| piece.entity).collect();
+        let ids: Vec<EntityId> = new.iter().map(|slot| slot.entity).collect();
         if let Some(open) = self.files[file.0 as usize].as_mut() {
-            open.pieces.replace(replaced, new);
+            open.slots.replace(replaced, new);
         }
         let has_environments = self.count(file, EntityKind::Environment) > 0;
         if had_imports || self.any_import(&ids) {
@@ -138,13 +137,13 @@ impl Database {
         self.validate_doubtful(doubtful);
     }
 
-    /// Pieces at either end of a window that the edit did not touch and that read as before keep their entities and
+    /// Slots at either end of a window that the edit did not touch and that read as before keep their entities and
     /// all their answers.
     fn without_unchanged_ends(&self, file: FileId, window: Window) -> Window {
         let Window { replaced, untouched, relexed, mut parses } = window;
-        let old = &self.pieces(file)[replaced.clone()];
-        let same = |(piece, (span, parse)): &(&Piece, &(Span, Parse))| {
-            piece.len == span.len() && self.data(piece.entity).is_some_and(|data| *data.parse == *parse)
+        let old = &self.slots(file)[replaced.clone()];
+        let same = |(slot, (span, parse)): &(&EntitySlot, &(Span, Parse))| {
+            slot.len == span.len() && self.data(slot.entity).is_some_and(|data| *data.parse == *parse)
         };
         let head = old.iter().zip(&parses).take(untouched.0).take_while(same).count();
         let (old, rest) = (&old[head..], &parses[head..]);
@@ -155,8 +154,8 @@ impl Database {
     }
 
     /// Reads an entity anew in its place.
-    fn update(&mut self, id: EntityId, (span, parse): (Span, Parse), doubtful: &mut Doubtful) -> Piece {
-        let Some(file) = self.file_of(id) else { return Piece { entity: id, len: span.len() } };
+    fn update(&mut self, id: EntityId, (span, parse): (Span, Parse), doubtful: &mut Doubtful) -> EntitySlot {
+        let Some(file) = self.file_of(id) else { return EntitySlot { entity: id, len: span.len() } };
         self.unregister(id, file);
         if let Some(data) = self.entities[id.0 as usize].as_mut() {
             doubtful.uses.extend(only_in_one(used_keys(file, &data.parse), used_keys(file, &parse)));
@@ -169,18 +168,18 @@ impl Database {
             data.parse = Arc::new(parse);
         }
         self.register(id, file);
-        Piece { entity: id, len: span.len() }
+        EntitySlot { entity: id, len: span.len() }
     }
 
-    /// Removes the entities of a range of pieces and adds others.
+    /// Removes the entities of a range of slots and adds others.
     fn exchange(
         &mut self,
         file: FileId,
         replaced: &Range<usize>,
         parses: Vec<(Span, Parse)>,
         doubtful: &mut Doubtful,
-    ) -> Vec<Piece> {
-        for id in self.pieces(file)[replaced.clone()].iter().map(|piece| piece.entity).collect::<Vec<_>>() {
+    ) -> Vec<EntitySlot> {
+        for id in self.slots(file)[replaced.clone()].iter().map(|slot| slot.entity).collect::<Vec<_>>() {
             if let Some(data) = self.data(id) {
                 doubtful.keys.extend(visible_keys(file, &data.parse));
                 doubtful.uses.extend(used_keys(file, &data.parse));
@@ -201,8 +200,8 @@ impl Database {
     fn orders_between(&mut self, file: FileId, replaced: &Range<usize>, count: usize) -> Vec<u64> {
         let count = count as u64;
         let neighbour = |database: &Self, index: Option<usize>| {
-            let piece = index.and_then(|index| database.pieces(file).get(index).copied());
-            piece.map(|piece| database.order(piece.entity))
+            let slot = index.and_then(|index| database.slots(file).get(index).copied());
+            slot.map(|slot| database.order(slot.entity))
         };
         let before = neighbour(self, replaced.start.checked_sub(1)).unwrap_or(0);
         let after = neighbour(self, Some(replaced.end)).unwrap_or(before + (count + 1) * ORDER_STEP);
@@ -210,23 +209,23 @@ impl Database {
         if step > 0 {
             return (1..=count).map(|index| before + index * step).collect();
         }
-        let pieces: Vec<Piece> = self.pieces(file).to_vec();
+        let slots: Vec<EntitySlot> = self.slots(file).to_vec();
         let mut order = 0;
         let mut new = Vec::new();
-        for (index, piece) in pieces.iter().enumerate() {
+        for (index, slot) in slots.iter().enumerate() {
             if index == replaced.start {
                 new = (1..=count).map(|index| order + index * ORDER_STEP).collect();
                 order += count * ORDER_STEP;
             }
             order += ORDER_STEP;
-            if let Some(data) = self.entities[piece.entity.0 as usize].as_mut() {
+            if let Some(data) = self.entities[slot.entity.0 as usize].as_mut() {
                 data.order = order;
             }
         }
         new
     }
 
-    fn add(&mut self, file: FileId, span: Span, parse: Parse, order: u64) -> Piece {
+    fn add(&mut self, file: FileId, span: Span, parse: Parse, order: u64) -> EntitySlot {
         let data = Some(EntityData { file, order, parse: Arc::new(parse), problems: Vec::new() });
         let id = if let Some(index) = self.free.pop() {
             self.entities[index as usize] = data;
@@ -236,7 +235,7 @@ impl Database {
             EntityId(u32::try_from(self.entities.len() - 1).unwrap_or(u32::MAX))
         };
         self.register(id, file);
-        Piece { entity: id, len: span.len() }
+        EntitySlot { entity: id, len: span.len() }
     }
 
     fn remove(&mut self, id: EntityId) {
@@ -296,8 +295,8 @@ impl Database {
     }
 
     pub(super) fn validate_file(&mut self, file: FileId) {
-        for index in 0..self.pieces(file).len() {
-            self.validate(self.pieces(file)[index].entity);
+        for index in 0..self.slots(file).len() {
+            self.validate(self.slots(file)[index].entity);
         }
     }
 
@@ -432,7 +431,7 @@ fn looks_alike(before: &Parse, after: &Parse) -> bool {
         (Some(Entity::Movement(before)), Some(Entity::Movement(after))) => {
             (&before.parallel, &before.name, &before.robot) == (&after.parallel, &after.name, &after.robot)
         }
-        (tree, changed) => tree == changed && before.lexemes == after.lexemes,
+        (tree, changed) => tree == changed && before.tokens == after.tokens,
     }
 }
 

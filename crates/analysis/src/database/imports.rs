@@ -101,9 +101,9 @@ impl Database {
         let Some(data) = self.data(id) else { return false };
         let Some(open) = self.get(data.file) else { return false };
         let first_entity = open
-            .pieces
+            .slots
             .iter()
-            .filter_map(|piece| self.data(piece.entity))
+            .filter_map(|slot| self.data(slot.entity))
             .find(|data| !matches!(data.parse.entity, None | Some(Entity::Import(_))));
         first_entity.is_some_and(|first| first.order < data.order)
     }
@@ -112,7 +112,7 @@ impl Database {
         self.forget_imports(file);
         let is_import = |id: &EntityId| matches!(self.tree(*id), Some(Entity::Import(_)));
         let entities: Vec<EntityId> =
-            self.pieces(file).iter().map(|piece| piece.entity).filter(is_import).collect();
+            self.slots(file).iter().map(|slot| slot.entity).filter(is_import).collect();
         let paths: Vec<String> = entities.iter().filter_map(|id| self.import_path(*id)).collect();
         for path in &paths {
             self.importers.entry(path.clone()).or_default().insert(file);

@@ -1,13 +1,13 @@
 //! Where names are used, asked of the index: the cost follows the number of uses, not the length of the files.
 
-use pydslrep_syntax::{EntityKind, Span, Token};
+use pydslrep_syntax::{EntityKind, Span, TokenKind};
 use smol_str::SmolStr;
 
 use super::{Database, EntityId, EntityRef, FileId};
 
-/// A piece of text in a file.
+/// A range of text in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Place {
+pub struct FileSpan {
     /// Which file.
     pub file: FileId,
     /// From the start of the file.
@@ -65,7 +65,7 @@ impl Database {
 
     /// Everywhere that what `home` declares under a name is used: in `home`, and in the files that import it and mean
     /// what it declares. Where `home` declares nothing of that name these are the uses in it.
-    pub fn references(&self, home: FileId, kind: EntityKind, name: &SmolStr) -> Vec<Place> {
+    pub fn references(&self, home: FileId, kind: EntityKind, name: &SmolStr) -> Vec<FileSpan> {
         let means_it = |file: &FileId| {
             let meant = self.resolve(*file, kind, name).entity();
             meant.and_then(|id| self.file_of(id)) == Some(home)
@@ -73,7 +73,7 @@ impl Database {
         let importing = self.importing(home).into_iter().filter(means_it);
         std::iter::once(home)
             .chain(importing)
-            .flat_map(|file| self.uses(file, kind, name).into_iter().map(move |span| Place { file, span }))
+            .flat_map(|file| self.uses(file, kind, name).into_iter().map(move |span| FileSpan { file, span }))
             .collect()
     }
 
@@ -90,9 +90,9 @@ impl Database {
     /// The comment that reaches to the end of a file for want of its `*/`.
     fn open_comment(&self, file: FileId) -> Option<Span> {
         let open = self.get(file)?;
-        let (token, span) = *self.data(open.pieces.last()?.entity)?.parse.lexemes.last()?;
-        (token == Token::UnterminatedComment)
-            .then(|| span.shifted(open.pieces.start_of(open.pieces.len() - 1)))
+        let (token, span) = *self.data(open.slots.last()?.entity)?.parse.tokens.last()?;
+        (token == TokenKind::UnterminatedComment)
+            .then(|| span.shifted(open.slots.start_of(open.slots.len() - 1)))
     }
 
     /// The import statements of a file with the paths that they lead to, in the order of the text.

@@ -14,7 +14,7 @@ use super::{Database, EntityId, FileId};
 use crate::diagnostics::PlannedRun;
 use crate::environment::Environment;
 use crate::names::Key;
-use crate::{MadeOf, scene};
+use crate::{Fingerprint, scene};
 
 /// Scenes by the names of environments.
 pub(super) type Scenes = BTreeMap<SmolStr, SceneFile>;
@@ -24,13 +24,13 @@ pub(super) type Scenes = BTreeMap<SmolStr, SceneFile>;
 pub(super) struct SceneFile {
     text: Arc<str>,
     /// What the environment was made of when its files were last touched for its sake.
-    touched_with: Option<MadeOf>,
+    touched_with: Option<Fingerprint>,
     /// How the environment drives in it. Clones share it: it says what it holds for.
     run: Arc<Mutex<Option<Known>>>,
 }
 
 /// How an environment drives, with what it is then made of.
-type Known = (MadeOf, Option<Arc<PlannedRun>>);
+type Known = (Fingerprint, Option<Arc<PlannedRun>>);
 
 impl Database {
     /// Sets the text of the scene file of an environment by its name, or takes it away. Kept while a file is closed, and
@@ -112,15 +112,15 @@ impl Database {
 
     fn planned_run(&self, home: FileId, name: &SmolStr, scene: &SceneFile) -> Option<Arc<PlannedRun>> {
         let id = self.environment_called(home, name)?;
-        let made_of = self.made_of(id)?;
+        let fingerprint = self.fingerprint(id)?;
         let mut known = scene.run.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((of, run)) = known.as_ref()
-            && *of == made_of
+            && *of == fingerprint
         {
             return run.clone();
         }
         let run = PlannedRun::new(self, id).map(Arc::new);
-        *known = Some((made_of, run.clone()));
+        *known = Some((fingerprint, run.clone()));
         run
     }
 
@@ -134,17 +134,17 @@ impl Database {
                 continue;
             }
             for (name, scene) in scenes {
-                let made_of = self.environment_called(*home, name).and_then(|id| self.made_of(id));
+                let fingerprint = self.environment_called(*home, name).and_then(|id| self.fingerprint(id));
                 // Where something is met, other files may name a place that has moved.
-                if made_of != scene.touched_with || scene.meets_something() {
+                if fingerprint != scene.touched_with || scene.meets_something() {
                     concerned.extend(&seen);
                 }
-                looked_at.push((*home, name.clone(), made_of));
+                looked_at.push((*home, name.clone(), fingerprint));
             }
         }
-        for (home, name, made_of) in looked_at {
+        for (home, name, fingerprint) in looked_at {
             if let Some(scene) = self.scenes.get_mut(&home).and_then(|scenes| scenes.get_mut(&name)) {
-                scene.touched_with = made_of;
+                scene.touched_with = fingerprint;
             }
         }
         self.touched.extend(concerned);

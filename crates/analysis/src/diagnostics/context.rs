@@ -1,7 +1,7 @@
 //! What a check sees, and what it reports.
 
 use pydslrep_syntax::ast::{Entity, Movement, Name, References, Robot, Wheel};
-use pydslrep_syntax::{EntityKind, Lexeme, Span, SyntaxError, Token, closest_of_any_order};
+use pydslrep_syntax::{EntityKind, Span, SyntaxError, Token, TokenKind, closest_of_any_order};
 use smol_str::SmolStr;
 
 pub(crate) use pydslrep_syntax::as_written;
@@ -165,7 +165,7 @@ pub(super) struct Context<'a> {
     /// `None` for what stands before the first entity.
     pub(super) tree: Option<&'a Entity>,
     pub(super) errors: &'a [SyntaxError],
-    pub(super) lexemes: &'a [Lexeme],
+    pub(super) tokens: &'a [Token],
     /// The statements that are one problem each, whatever their syntax errors are.
     pub(super) rewrites: Vec<Rewrite>,
 }
@@ -180,7 +180,7 @@ impl<'a> Context<'a> {
             id,
             tree: parse.entity.as_ref(),
             errors: &parse.errors,
-            lexemes: &parse.lexemes,
+            tokens: &parse.tokens,
             rewrites: Vec::new(),
         };
         context.rewrites = syntax_error::rewrites(&context);
@@ -264,7 +264,7 @@ impl<'a> Context<'a> {
     /// The smallest edit that removes `span` and the white space around it that would be left over. A comment that the
     /// end of its line ends would swallow what follows, and keeps it.
     pub(super) fn remove(&self, span: Span) -> ProblemEdit {
-        let before = self.lexemes.iter().rev().find(|(_, other)| other.end <= span.start);
+        let before = self.tokens.iter().rev().find(|(_, other)| other.end <= span.start);
         match before {
             Some((token, comment)) if token.ends_line() => self.remove_behind(*comment, span),
             Some((_, other)) => self.replace(Span::new(other.end, span.end), ""),
@@ -275,7 +275,7 @@ impl<'a> Context<'a> {
     /// Removes what a comment of the line before stands before: with its line, or as far as the line goes on.
     fn remove_behind(&self, comment: Span, span: Span) -> ProblemEdit {
         let rest = self.place().map_or(span.end, Span::len);
-        let next = self.lexemes.iter().find(|(_, other)| other.start >= span.end);
+        let next = self.tokens.iter().find(|(_, other)| other.start >= span.end);
         let next = next.map_or(rest, |(_, other)| other.start);
         let gap = self.text(Span::new(comment.end, span.start));
         let last_line = gap.rfind(['\n', '\r']).map_or(0, |end| end + 1);
@@ -308,10 +308,10 @@ impl<'a> Context<'a> {
 
     /// Removes a word; what stands on other lines stays there.
     pub(super) fn remove_word(&self, span: Span) -> ProblemEdit {
-        let before = self.lexemes.iter().rev().find(|(_, other)| other.end <= span.start);
+        let before = self.tokens.iter().rev().find(|(_, other)| other.end <= span.start);
         let start = before.map_or(0, |(_, other)| other.end);
         let first = self.text(Span::new(start, span.start)).contains(['\n', '\r']) || before.is_none();
-        let behind = self.lexemes.iter().find(|(_, other)| other.start >= span.end);
+        let behind = self.tokens.iter().find(|(_, other)| other.start >= span.end);
         match behind.map(|(_, other)| Span::new(span.end, other.start)) {
             Some(gap) if first && !self.text(gap).contains(['\n', '\r']) => self.replace(span.to(gap), ""),
             _ => self.remove(span),
@@ -326,7 +326,7 @@ impl<'a> Context<'a> {
         let blank = behind.len() - behind.trim_start_matches([' ', '\t']).len();
         let line_end = ["\r\n", "\n", "\r"].into_iter().find(|end| behind[blank..].starts_with(end));
         let Some(line_end) = line_end else {
-            let start = self.lexemes.first().is_some_and(|(_, first)| first.start == span.start);
+            let start = self.tokens.first().is_some_and(|(_, first)| first.start == span.start);
             let blank = u32::try_from(blank).unwrap_or_default();
             return if start {
                 self.replace(Span::new(span.start, span.end + blank), "")
@@ -340,20 +340,20 @@ impl<'a> Context<'a> {
 
     /// Removes one item of a list with the comma before it, or else, of the first item, the one behind it.
     pub(super) fn remove_item(&self, item: Span) -> Vec<ProblemEdit> {
-        let is_word = |(token, _): &&Lexeme| !token.is_comment();
-        let before = self.lexemes.iter().rev().filter(is_word).find(|(_, span)| span.end <= item.start);
-        let behind = self.lexemes.iter().filter(is_word).find(|(_, span)| span.start >= item.end);
+        let is_word = |(token, _): &&Token| !token.is_comment();
+        let before = self.tokens.iter().rev().filter(is_word).find(|(_, span)| span.end <= item.start);
+        let behind = self.tokens.iter().filter(is_word).find(|(_, span)| span.start >= item.end);
         let is_comment_between = |comma: Span| {
-            self.lexemes.iter().any(|(token, span)| {
+            self.tokens.iter().any(|(token, span)| {
                 token.is_comment() && comma.start <= span.start && span.end <= item.start
             })
         };
         match (before, behind) {
-            (Some((Token::Comma, comma)), _) if is_comment_between(*comma) => {
+            (Some((TokenKind::Comma, comma)), _) if is_comment_between(*comma) => {
                 vec![self.replace(*comma, ""), self.remove(item)]
             }
-            (Some((Token::Comma, comma)), _) => vec![self.remove(comma.to(item))],
-            (Some((Token::OpenBrace, _)), Some((Token::Comma, comma))) => {
+            (Some((TokenKind::Comma, comma)), _) => vec![self.remove(comma.to(item))],
+            (Some((TokenKind::OpenBrace, _)), Some((TokenKind::Comma, comma))) => {
                 vec![self.remove(item), self.replace(*comma, "")]
             }
             _ => vec![self.remove(item)],
@@ -363,9 +363,9 @@ impl<'a> Context<'a> {
     /// Removes the whole entity, but not the comments behind it.
     pub(super) fn whole(&self) -> Option<ProblemEdit> {
         let end = self.place()?.len();
-        let is_word = |(token, _): &Lexeme| !token.is_comment();
-        let behind = self.lexemes.iter().rposition(is_word).map_or(0, |last| last + 1);
-        let end = self.lexemes.get(behind).map_or(end, |(_, comment)| comment.start);
+        let is_word = |(token, _): &Token| !token.is_comment();
+        let behind = self.tokens.iter().rposition(is_word).map_or(0, |last| last + 1);
+        let end = self.tokens.get(behind).map_or(end, |(_, comment)| comment.start);
         Some(self.replace(Span::new(0, end), ""))
     }
 

@@ -1,7 +1,7 @@
 //! `invalid-character`: characters no token starts with.
 
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{Span, SyntaxError, SyntaxErrorKind, Token};
+use pydslrep_syntax::{Span, SyntaxError, SyntaxErrorKind, TokenKind};
 
 use super::context::{Context, Problem};
 use super::{Page, Remedy, Rule};
@@ -66,7 +66,7 @@ fn name(context: &Context<'_>, span: Span, written: &str) -> Problem {
     let foreign = context.text(span);
     let message = format!("`{}` cannot stand in a name", if foreign.is_empty() { written } else { &foreign });
     let problem = RULE.problem(span, message).help(NAMES);
-    let whole = context.lexemes.iter().find(|(_, other)| other.start <= span.start && span.end <= other.end);
+    let whole = context.tokens.iter().find(|(_, other)| other.start <= span.start && span.end <= other.end);
     let plain = plain_name(written);
     match whole.filter(|_| plain.chars().any(|c| c.is_ascii_alphanumeric())) {
         Some((_, whole)) => problem.suggestion(format!("write `{plain}`"), [context.replace(*whole, plain)]),
@@ -97,7 +97,7 @@ fn plain_name(written: &str) -> String {
 /// `# my robot`
 fn comment(context: &Context<'_>, span: Span, written: &str) -> Problem {
     let problem = RULE.problem(span, format!("`{written}` begins no comment here"));
-    let line = context.lexemes.iter().find(|(_, other)| other.start == span.start);
+    let line = context.tokens.iter().find(|(_, other)| other.start == span.start);
     let text = line.map_or_else(String::new, |(_, line)| context.text(*line));
     let problem = problem.help(if text.starts_with("#include") {
         "another file is read by `import \"wheels.pyr\"`; a comment starts with `//`"
@@ -137,12 +137,12 @@ fn pair(context: &Context<'_>, open: Span, close: Span, written: &str) -> Proble
     let nothing = [context.remove_character(open), context.remove_character(close)];
     let body = matches!(context.tree, Some(Entity::Movement(_)));
     let lists = context
-        .lexemes
+        .tokens
         .iter()
         .rev()
         .find(|(token, span)| !token.is_comment() && span.end <= open.start)
         .is_some_and(|(token, _)| {
-            matches!(token, Token::Has | Token::Sensors | Token::With | Token::Until)
+            matches!(token, TokenKind::Has | TokenKind::Sensors | TokenKind::With | TokenKind::Until)
                 || body && token.is_name()
         });
     let spaced = context.text(Span::new(open.end, close.start)).starts_with([' ', '\n']);
@@ -160,7 +160,7 @@ fn characters(context: &Context<'_>, span: Span, written: &str) -> Problem {
         return problem.suggestion("change to `-`", [context.replace(span, "-")]);
     }
     if written == "-" {
-        return match context.lexemes.iter().find(|(_, other)| other.start >= span.end) {
+        return match context.tokens.iter().find(|(_, other)| other.start >= span.end) {
             Some((token, number)) if token.is_number() && number.start > span.end => problem.suggestion(
                 "join it with its number",
                 [context.replace(Span::new(span.end, number.start), "")],

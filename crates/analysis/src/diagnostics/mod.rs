@@ -285,18 +285,18 @@ fn declared_before(database: &Database, id: EntityId) -> Option<EntityId> {
     /// A text that is broken for longer is no place for a declaration.
     const FARTHEST: usize = 64;
     let entity = database.entity(id)?;
-    let (index, _) = database.piece_at(entity.file, entity.span.start);
-    let pieces = database.pieces(entity.file).get(..=index)?;
+    let (index, _) = database.slot_at(entity.file, entity.span.start);
+    let slots = database.slots(entity.file).get(..=index)?;
     let is_free =
-        |at: &usize| *at == 0 || pieces.get(at - 1).is_some_and(|before| is_over(database, before.entity));
+        |at: &usize| *at == 0 || slots.get(at - 1).is_some_and(|before| is_over(database, before.entity));
     let at = (index.saturating_sub(FARTHEST)..=index).rev().find(is_free)?;
-    pieces.get(at).map(|piece| piece.entity)
+    slots.get(at).map(|slot| slot.entity)
 }
 
 /// Whether an entity is complete, and the next one starts on another line.
 fn is_over(database: &Database, id: EntityId) -> bool {
     let Some(entity) = database.entity(id) else { return false };
-    let last = entity.parse.lexemes.iter().rev().find(|(token, _)| !token.is_comment());
+    let last = entity.parse.tokens.iter().rev().find(|(token, _)| !token.is_comment());
     let Some((_, last)) = last else { return true };
     let rest = database.slice(entity.file, Span::new(entity.span.start + last.end, entity.span.end));
     let is_import = matches!(entity.parse.entity, Some(Entity::Import(_)));

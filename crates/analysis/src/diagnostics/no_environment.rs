@@ -55,7 +55,7 @@ pub(super) fn in_file(database: &Database, file: FileId) -> Option<Diagnostic> {
     }
     let last = database.entities(file).filter(|entity| entity.parse.entity.is_some()).last()?;
     let name = last.parse.entity.as_ref()?.name();
-    let span = name.map_or(last.parse.lexemes.first()?.1, |name| name.span).shifted(last.span.start);
+    let span = name.map_or(last.parse.tokens.first()?.1, |name| name.span).shifted(last.span.start);
     Some(Diagnostic {
         rule: &RULE,
         severity: RULE.severity,
@@ -81,7 +81,7 @@ fn with_all(database: &Database, last: &EntityRef<'_>) -> Fix {
         names.join(" ")
     };
     let ending = database.line_ending(last.file);
-    let tokens = last.parse.lexemes.iter().rev();
+    let tokens = last.parse.tokens.iter().rev();
     let end = tokens.map(|(_, span)| span.end).next().unwrap_or(last.span.len()) + last.span.start;
     let (robots, movements) = (names(EntityKind::Robot), names(EntityKind::Movement));
     let text =

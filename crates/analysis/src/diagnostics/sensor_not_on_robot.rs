@@ -92,8 +92,8 @@ fn added(context: &Context<'_>, id: EntityId, robot: &Robot, sensor: &str) -> Op
     if let Some(list) = &robot.sensors {
         return Some(append(id, list, sensor, ", "));
     }
-    let lexemes = &context.database.parse(id)?.lexemes;
-    let end = lexemes.iter().rev().find(|(token, _)| !token.is_comment())?.1.end;
+    let tokens = &context.database.parse(id)?.tokens;
+    let end = tokens.iter().rev().find(|(token, _)| !token.is_comment())?.1.end;
     Some(ProblemEdit::new(id, Span::at(end), format!(" with sensors {{ {} }}", as_written(sensor))))
 }
 

@@ -99,7 +99,7 @@ fn is_parallel(context: &Context<'_>, file: FileId, name: &Name) -> Option<bool>
 
 /// The start of the token behind a place.
 fn after(context: &Context<'_>, place: pydslrep_syntax::Span) -> pydslrep_syntax::Span {
-    let next = context.lexemes.iter().find(|(_, span)| span.start >= place.end);
+    let next = context.tokens.iter().find(|(_, span)| span.start >= place.end);
     pydslrep_syntax::Span::at(next.map_or(place.end, |(_, span)| span.start))
 }
 

@@ -36,7 +36,7 @@ wheel wheelR with radius 4.5",
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     for error in context.errors.iter().filter(|error| error.kind == SyntaxErrorKind::UnterminatedComment) {
         let line_end =
-            context.lexemes.iter().map(|(_, span)| span).find(|span| span.start == error.span.start).map_or(
+            context.tokens.iter().map(|(_, span)| span).find(|span| span.start == error.span.start).map_or(
                 error.span.end,
                 |span| {
                     let text = context.text(*span);

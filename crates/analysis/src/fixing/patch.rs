@@ -9,11 +9,11 @@ use crate::{Edit, FileId};
 pub(super) struct Patch {
     /// How long the text was.
     len: u32,
-    pieces: Vec<Piece>,
+    fragments: Vec<Fragment>,
 }
 
 #[derive(Debug)]
-enum Piece {
+enum Fragment {
     /// Text that was there.
     Kept(Span),
     /// Text that came.
@@ -24,30 +24,30 @@ impl Patch {
     /// A text as it is.
     pub(super) fn of(text: &str) -> Self {
         let all = Span::of(text);
-        Self { len: all.len(), pieces: vec![Piece::Kept(all)] }
+        Self { len: all.len(), fragments: vec![Fragment::Kept(all)] }
     }
 
     /// Changes the text; the edits are of what it is now, in its order.
     pub(super) fn apply(&mut self, edits: &[&Edit]) {
-        let mut changed = Vec::with_capacity(self.pieces.len() + 2 * edits.len());
+        let mut changed = Vec::with_capacity(self.fragments.len() + 2 * edits.len());
         let mut done = 0;
         for edit in edits {
             self.copy(Span::new(done, edit.span.start), &mut changed);
-            changed.push(Piece::New(edit.text.clone()));
+            changed.push(Fragment::New(edit.text.clone()));
             done = edit.span.end;
         }
         self.copy(Span::new(done, u32::MAX), &mut changed);
-        self.pieces = changed;
+        self.fragments = changed;
     }
 
-    /// The pieces of a range of the text as it is now, cut to it.
-    fn copy(&self, range: Span, to: &mut Vec<Piece>) {
+    /// The fragments of a range of the text as it is now, cut to it.
+    fn copy(&self, range: Span, to: &mut Vec<Fragment>) {
         let mut start = 0;
-        for piece in &self.pieces {
-            let end = start + piece.len();
+        for fragment in &self.fragments {
+            let end = start + fragment.len();
             let (from, until) = (range.start.max(start), range.end.min(end));
             if from < until {
-                to.push(piece.part(Span::new(from - start, until - start)));
+                to.push(fragment.part(Span::new(from - start, until - start)));
             }
             start = end;
         }
@@ -57,11 +57,11 @@ impl Patch {
     pub(super) fn edits(&self, file: FileId) -> Vec<Edit> {
         let mut edits = Vec::new();
         let (mut done, mut come) = (0, String::new());
-        let end = Piece::Kept(Span::at(self.len));
-        for piece in self.pieces.iter().chain([&end]) {
-            match piece {
-                Piece::New(text) => come += text,
-                Piece::Kept(span) => {
+        let end = Fragment::Kept(Span::at(self.len));
+        for fragment in self.fragments.iter().chain([&end]) {
+            match fragment {
+                Fragment::New(text) => come += text,
+                Fragment::Kept(span) => {
                     if done < span.start || !come.is_empty() {
                         let text = std::mem::take(&mut come);
                         edits.push(Edit { file, span: Span::new(done, span.start), text });
@@ -74,7 +74,7 @@ impl Patch {
     }
 }
 
-impl Piece {
+impl Fragment {
     fn len(&self) -> u32 {
         match self {
             Self::Kept(span) => span.len(),

@@ -1,7 +1,7 @@
 //! Paths of imports: the programs that the database knows, as this file has to name them.
 
 use pydslrep_analysis::{Database, FileId};
-use pydslrep_syntax::{Lexeme, Span, Token};
+use pydslrep_syntax::{Span, Token, TokenKind};
 
 use super::place::Place;
 use super::{Completion, CompletionKind};
@@ -21,20 +21,20 @@ pub(super) fn string_at(database: &Database, position: FilePosition) -> Option<P
     let before = position.offset.checked_sub(1)?;
     let entity = database.entity_at(position.file, before)?;
     let start = entity.span.start;
-    let mut tokens = entity.parse.lexemes.iter().filter(|(token, _)| !token.is_comment());
-    let first = tokens.next().filter(|(token, _)| *token == Token::Import);
+    let mut tokens = entity.parse.tokens.iter().filter(|(token, _)| !token.is_comment());
+    let first = tokens.next().filter(|(token, _)| *token == TokenKind::Import);
     let (token, span) =
         tokens.next().filter(|(token, span)| is_at(*token, span.shifted(start), position.offset))?;
     first?;
-    let (span, is_open) = (span.shifted(start), *token == Token::UnterminatedString);
+    let (span, is_open) = (span.shifted(start), *token == TokenKind::UnterminatedString);
     let end = if is_open { span.end } else { span.end - 1 };
     Some(PathAt { span: Span::new(span.start + 1, end), is_open })
 }
 
-fn is_at(token: Token, span: Span, offset: u32) -> bool {
+fn is_at(token: TokenKind, span: Span, offset: u32) -> bool {
     match token {
-        Token::String => span.start < offset && offset < span.end,
-        Token::UnterminatedString => span.start < offset && offset <= span.end,
+        TokenKind::String => span.start < offset && offset < span.end,
+        TokenKind::UnterminatedString => span.start < offset && offset <= span.end,
         _ => false,
     }
 }
@@ -105,7 +105,7 @@ pub(super) fn import_line(database: &Database, file: FileId, path: &str) -> (Spa
 
 /// Whether nothing but comments stands before an offset.
 fn is_first(database: &Database, file: FileId, offset: u32) -> bool {
-    let comment = |lexeme: &Lexeme| lexeme.0.is_comment();
+    let comment = |token: &Token| token.0.is_comment();
     let mut before = database.entities(file).take_while(|entity| entity.span.start < offset);
-    before.all(|entity| entity.parse.lexemes.iter().all(comment))
+    before.all(|entity| entity.parse.tokens.iter().all(comment))
 }

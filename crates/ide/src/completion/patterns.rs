@@ -2,7 +2,7 @@
 //! with is what the program makes likely ([`super::defaults`]).
 
 use pydslrep_syntax::ast::{Direction, Unit};
-use pydslrep_syntax::{EntityKind, Token};
+use pydslrep_syntax::{EntityKind, TokenKind};
 
 use super::defaults::Defaults;
 use super::place::Place;
@@ -151,8 +151,8 @@ fn moves(defaults: &Defaults<'_>) -> Vec<Pattern> {
     let speed = defaults.speed();
     let pattern = |(unit, with_speed): (Unit, bool)| {
         let (word, other) = match unit {
-            Unit::Meters => (Token::Meters, "1.0"),
-            Unit::Centimeters => (Token::Centimeters, "50"),
+            Unit::Meters => (TokenKind::Meters, "1.0"),
+            Unit::Centimeters => (TokenKind::Centimeters, "50"),
         };
         let word = word.spelling().unwrap_or_default();
         let distance = last.distance.as_deref().filter(|_| unit == last.unit).unwrap_or(other);
@@ -205,8 +205,8 @@ fn turns(defaults: &Defaults<'_>) -> Vec<Pattern> {
 
 fn spelling(direction: Direction) -> &'static str {
     let token = match direction {
-        Direction::Left => Token::Left,
-        Direction::Right => Token::Right,
+        Direction::Left => TokenKind::Left,
+        Direction::Right => TokenKind::Right,
     };
     token.spelling().unwrap_or_default()
 }

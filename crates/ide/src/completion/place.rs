@@ -2,7 +2,7 @@
 
 use pydslrep_analysis::{Database, EntityId, EntityRef, FileId};
 use pydslrep_syntax::ast::{DriveWord, Entity, Movement};
-use pydslrep_syntax::{Lexeme, Span, Token};
+use pydslrep_syntax::{Span, Token, TokenKind};
 use smol_str::SmolStr;
 
 use crate::FilePosition;
@@ -20,9 +20,9 @@ pub(super) struct Place<'a> {
     /// Its text.
     pub(super) text: String,
     /// Its tokens before the word at the cursor.
-    pub(super) before: Vec<Lexeme>,
+    pub(super) before: Vec<Token>,
     /// The tokens after that word, in the file, as far as the next entity.
-    after: Vec<Lexeme>,
+    after: Vec<Token>,
     /// Whether nothing of the entity is written after that word.
     pub(super) at_end: bool,
     /// The speed in patterns, centimetres per second.
@@ -46,7 +46,7 @@ impl<'a> Place<'a> {
         };
         let (start, significant) = (at.span.start, significant(&at));
         let at_end = !significant.iter().any(|(_, span)| span.start + start >= word.end);
-        let before: Vec<Lexeme> =
+        let before: Vec<Token> =
             significant.into_iter().take_while(|(_, span)| span.end + start <= word.start).collect();
         let ends_number =
             before.last().is_some_and(|(token, span)| token.is_number() && span.end + start == word.start);
@@ -75,7 +75,7 @@ impl<'a> Place<'a> {
 
     /// The names that the list around the cursor has already, but for the word at the cursor.
     pub(super) fn listed(&self) -> Vec<SmolStr> {
-        let in_list = |token: Token| token == Token::Comma || token.is_name();
+        let in_list = |token: TokenKind| token == TokenKind::Comma || token.is_name();
         let before = self.before.iter().rev().take_while(|(token, _)| in_list(*token));
         let before = before.filter(|(token, _)| token.is_name()).map(|(_, span)| name(span.text(&self.text)));
         let after = self.after.iter().take_while(|(token, _)| in_list(*token));
@@ -106,8 +106,8 @@ impl<'a> Place<'a> {
         let is_there = self.after.first().is_some_and(|(token, _)| token.is_name());
         let Some((last, _)) = self.before.last().filter(|_| !is_there) else { return false };
         match last {
-            Token::Of | Token::Ip | Token::Comma => true,
-            Token::OpenBrace => self.listed().is_empty(),
+            TokenKind::Of | TokenKind::Ip | TokenKind::Comma => true,
+            TokenKind::OpenBrace => self.listed().is_empty(),
             token if token.is_name() => self.lacks_wheels(),
             _ => false,
         }
@@ -116,7 +116,8 @@ impl<'a> Place<'a> {
     /// Whether the cursor is in the list of a robot's wheels, which needs another one.
     fn lacks_wheels(&self) -> bool {
         let Some(Entity::Robot(robot)) = self.tree else { return false };
-        let in_wheels = !self.before.iter().any(|(token, _)| matches!(token, Token::Wheels | Token::Sensors));
+        let in_wheels =
+            !self.before.iter().any(|(token, _)| matches!(token, TokenKind::Wheels | TokenKind::Sensors));
         let wanted = match robot.drive.and_then(|clause| clause.word) {
             Some(DriveWord::Tw) | None => 2,
             Some(DriveWord::Fw | DriveWord::Fwh) => 4,
@@ -138,8 +139,8 @@ fn name(written: &str) -> SmolStr {
 }
 
 /// The tokens of an entity that the parser sees.
-fn significant(entity: &EntityRef<'_>) -> Vec<Lexeme> {
-    entity.parse.lexemes.iter().filter(|(token, _)| !token.is_comment()).copied().collect()
+fn significant(entity: &EntityRef<'_>) -> Vec<Token> {
+    entity.parse.tokens.iter().filter(|(token, _)| !token.is_comment()).copied().collect()
 }
 
 /// The word around the cursor; `None` inside comments, strings and numbers, where nothing is completed.
@@ -157,20 +158,20 @@ fn word_at(database: &Database, position: FilePosition) -> Option<Span> {
 
 fn word_in(database: &Database, entity: &EntityRef<'_>, offset: u32) -> Option<Span> {
     let start = entity.span.start;
-    let covering = |(_, span): &&Lexeme| span.start + start < offset && offset <= span.end + start;
-    let Some((token, span)) = entity.parse.lexemes.iter().find(covering) else {
+    let covering = |(_, span): &&Token| span.start + start < offset && offset <= span.end + start;
+    let Some((token, span)) = entity.parse.tokens.iter().find(covering) else {
         return Some(Span::at(offset));
     };
     let span = span.shifted(start);
     let inside = offset < span.end;
     match token {
-        Token::BlockComment | Token::String if !inside => Some(Span::at(offset)),
-        Token::String | Token::UnterminatedString => None,
+        TokenKind::BlockComment | TokenKind::String if !inside => Some(Span::at(offset)),
+        TokenKind::String | TokenKind::UnterminatedString => None,
         token if token.is_comment() => None,
         token if token.is_name() || token.is_keyword() => Some(span),
         token if token.is_number() && inside => None,
         // The beginning of an escaped name.
-        Token::Invalid if database.slice(entity.file, Span::new(span.start, offset)).ends_with('^') => {
+        TokenKind::Invalid if database.slice(entity.file, Span::new(span.start, offset)).ends_with('^') => {
             Some(Span::new(offset - 1, offset))
         }
         _ => Some(Span::at(offset)),

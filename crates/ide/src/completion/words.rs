@@ -2,7 +2,7 @@
 
 use pydslrep_analysis::{EntityId, Target};
 use pydslrep_syntax::ast::{DriveWord, Entity};
-use pydslrep_syntax::{EntityKind, Expected, Span, Token, expected_after};
+use pydslrep_syntax::{EntityKind, Expected, Span, TokenKind, expected_after};
 use smol_str::SmolStr;
 
 use super::defaults::likely_list;
@@ -25,15 +25,16 @@ impl Place<'_> {
 }
 
 /// A word, followed by those that can only follow it; `None` for the comma, which is never needed.
-pub(super) fn word(place: &Place<'_>, word: Token) -> Option<Completion> {
-    let spelling = word.spelling().filter(|_| word != Token::Comma)?;
+pub(super) fn word(place: &Place<'_>, word: TokenKind) -> Option<Completion> {
+    let spelling = word.spelling().filter(|_| word != TokenKind::Comma)?;
     let Continued { insert, label, last } = continued(place, word);
-    let label = if word == Token::OpenBrace { &label } else { label.trim_end_matches(" …") };
+    let label = if word == TokenKind::OpenBrace { &label } else { label.trim_end_matches(" …") };
     // `with` and braces say little by themselves; the word they lead to says it.
-    let leads = matches!(word, Token::With | Token::Has | Token::OpenBrace | Token::CloseBrace);
+    let leads =
+        matches!(word, TokenKind::With | TokenKind::Has | TokenKind::OpenBrace | TokenKind::CloseBrace);
     let page = keyword_page(if leads { last } else { word });
     let rank = match word {
-        Token::CloseBrace => Rank::Closing,
+        TokenKind::CloseBrace => Rank::Closing,
         _ if suits(place, word) => Rank::Fitting,
         _ => Rank::Word,
     };
@@ -49,17 +50,18 @@ pub(super) fn word(place: &Place<'_>, word: Token) -> Option<Completion> {
 }
 
 /// What a value of `type` stands for says more than where it stands.
-fn detail(word: Token, page: &KeywordPage) -> String {
+fn detail(word: TokenKind, page: &KeywordPage) -> String {
     let text = match word {
-        Token::Tw | Token::Fw | Token::Fwh => page.meaning.split(':').next(),
+        TokenKind::Tw | TokenKind::Fw | TokenKind::Fwh => page.meaning.split(':').next(),
         _ => page.syntax.lines().next(),
     };
     text.unwrap_or_default().to_owned()
 }
 
 /// Whether it is the type of a robot with the wheels that this one has.
-fn suits(place: &Place<'_>, word: Token) -> bool {
-    let (Token::Tw | Token::Fw | Token::Fwh, Some(Entity::Robot(robot))) = (word, place.tree) else {
+fn suits(place: &Place<'_>, word: TokenKind) -> bool {
+    let (TokenKind::Tw | TokenKind::Fw | TokenKind::Fwh, Some(Entity::Robot(robot))) = (word, place.tree)
+    else {
         return false;
     };
     let names = robot.wheels.iter().flat_map(|list| &list.names);
@@ -88,7 +90,7 @@ struct Continued {
     /// The same with `…` for what the person fills in.
     label: String,
     /// The last of the words.
-    last: Token,
+    last: TokenKind,
 }
 
 impl Continued {
@@ -100,7 +102,7 @@ impl Continued {
 
 /// `with` continues to `with port`, `has` to `has { … } wheels`: as long as only one word can follow, and nothing
 /// is written there yet.
-fn continued(place: &Place<'_>, word: Token) -> Continued {
+fn continued(place: &Place<'_>, word: TokenKind) -> Continued {
     const MOST: usize = 6;
     let mut before = place.before.clone();
     let spelling = word.spelling().unwrap_or_default().to_owned();
@@ -112,11 +114,11 @@ fn continued(place: &Place<'_>, word: Token) -> Continued {
         if let Some(kind) = listed_kind(continued.last, &expected) {
             continued.push(&stop(1, &likely_list(place, kind)), "…");
             continued.push("}", "}");
-            before.extend([(Token::Name, end), (Token::CloseBrace, end)]);
+            before.extend([(TokenKind::Name, end), (TokenKind::CloseBrace, end)]);
             expected = expected_after(&place.text, &before);
         }
         match expected[..] {
-            [Expected::Word(word)] if word != Token::Comma && word != Token::CloseBrace => {
+            [Expected::Word(word)] if word != TokenKind::Comma && word != TokenKind::CloseBrace => {
                 let spelling = word.spelling().unwrap_or_default();
                 continued.push(spelling, spelling);
                 continued.last = word;
@@ -128,17 +130,17 @@ fn continued(place: &Place<'_>, word: Token) -> Continued {
 }
 
 /// What a list that begins here has references to.
-fn listed_kind(last: Token, expected: &[Expected]) -> Option<EntityKind> {
+fn listed_kind(last: TokenKind, expected: &[Expected]) -> Option<EntityKind> {
     let kind = expected.iter().find_map(|expected| match expected {
         Expected::ReferenceTo(kind) => Some(*kind),
         _ => None,
     });
-    kind.filter(|_| last == Token::OpenBrace)
+    kind.filter(|_| last == TokenKind::OpenBrace)
 }
 
 /// Words after which a person goes on.
-pub(super) fn plain_words(place: &Place<'_>, words: &[Token]) -> Vec<Completion> {
-    let word = |word: &Token| {
+pub(super) fn plain_words(place: &Place<'_>, words: &[TokenKind]) -> Vec<Completion> {
+    let word = |word: &TokenKind| {
         let page = keyword_page(*word)?;
         Some(Completion {
             detail: detail(*word, &page),

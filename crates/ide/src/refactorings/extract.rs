@@ -1,7 +1,7 @@
 //! Extract actions into a new movement of the same robot. Wherever the movement is listed the parts are listed one behind
 //! the other, so that the robot does the same as before.
 
-use pydslrep_analysis::{Database, Edit, FileId, Place as UseOf};
+use pydslrep_analysis::{Database, Edit, FileId, FileSpan};
 use pydslrep_syntax::ast::{Entity, Movement};
 use pydslrep_syntax::{EntityKind, Span, format};
 use smol_str::{SmolStr, format_smolstr};
@@ -122,9 +122,9 @@ impl Parts<'_> {
     }
 
     fn comments(&self, gap: Span) -> impl Iterator<Item = Span> {
-        let lexemes = self.place.entity.parse.lexemes.iter();
+        let tokens = self.place.entity.parse.tokens.iter();
         let inside = move |span: &Span| gap.start <= span.start && span.end <= gap.end;
-        lexemes.filter(|(token, _)| token.is_comment()).map(|(_, span)| *span).filter(inside)
+        tokens.filter(|(token, _)| token.is_comment()).map(|(_, span)| *span).filter(inside)
     }
 
     /// Where another entity can stand: at the end of the line.
@@ -160,7 +160,7 @@ fn free_names(database: &Database, file: FileId, name: &SmolStr) -> impl Iterato
 }
 
 /// The edit that lists more movements before or behind one that is listed.
-fn listed(database: &Database, place: UseOf, names: &[&str], is_before: bool) -> Edit {
+fn listed(database: &Database, place: FileSpan, names: &[&str], is_before: bool) -> Edit {
     let separator = if has_commas(database, place) { ", " } else { " " };
     let names = names.join(separator);
     let (at, text) = if is_before {
@@ -172,7 +172,7 @@ fn listed(database: &Database, place: UseOf, names: &[&str], is_before: bool) ->
     Edit { file: place.file, span: Span::at(at), text }
 }
 
-fn has_commas(database: &Database, place: UseOf) -> bool {
+fn has_commas(database: &Database, place: FileSpan) -> bool {
     let Some(entity) = database.entity_at(place.file, place.span.start) else { return false };
     let Some(Entity::Environment(environment)) = &entity.parse.entity else { return false };
     let list = environment.movements.as_ref();

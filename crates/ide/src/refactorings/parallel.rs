@@ -3,7 +3,7 @@
 
 use pydslrep_analysis::{Database, Edit, EntityId};
 use pydslrep_syntax::ast::{Entity, Movement};
-use pydslrep_syntax::{EntityKind, Span, Token};
+use pydslrep_syntax::{EntityKind, Span, TokenKind};
 
 use super::{Place, Refactoring, RefactoringKind};
 
@@ -186,7 +186,7 @@ impl<'a> Lists<'a> {
 
     fn add_parallel(&self, id: EntityId) -> Option<Edit> {
         let entity = self.database.entity(id)?;
-        let (_, keyword) = entity.parse.lexemes.iter().find(|(token, _)| *token == Token::Movement)?;
+        let (_, keyword) = entity.parse.tokens.iter().find(|(token, _)| *token == TokenKind::Movement)?;
         let span = Span::at(keyword.start).shifted(entity.span.start);
         Some(Edit { file: entity.file, span, text: "parallel ".to_owned() })
     }
@@ -194,7 +194,7 @@ impl<'a> Lists<'a> {
     fn remove_parallel(&self, id: EntityId) -> Option<Edit> {
         let entity = self.database.entity(id)?;
         let parallel = self.tree(id)?.parallel?;
-        let (_, next) = entity.parse.lexemes.iter().find(|(_, span)| span.start >= parallel.end)?;
+        let (_, next) = entity.parse.tokens.iter().find(|(_, span)| span.start >= parallel.end)?;
         let span = Span::new(parallel.start, next.start).shifted(entity.span.start);
         Some(Edit { file: entity.file, span, text: String::new() })
     }

@@ -40,7 +40,7 @@ pub(crate) enum Step {
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Anchor {
     /// So many bytes behind the start of a token; of the last where there are fewer.
-    Token(u8, u8),
+    TokenKind(u8, u8),
     /// A part of 65536 of the text. It may be inside a character.
     Part(u16),
 }
@@ -137,7 +137,7 @@ fn steps() -> impl Strategy<Value = Step> {
         6 => proptest::sample::select(SIGNS.map(str::to_owned).to_vec()),
     ];
     let at = prop_oneof![
-        4 => (any::<u8>(), prop_oneof![3 => Just(0_u8), 1 => 1..12_u8]).prop_map(|(token, bytes)| Anchor::Token(token, bytes)),
+        4 => (any::<u8>(), prop_oneof![3 => Just(0_u8), 1 => 1..12_u8]).prop_map(|(token, bytes)| Anchor::TokenKind(token, bytes)),
         1 => any::<u16>().prop_map(Anchor::Part),
     ];
     let len = prop_oneof![
@@ -529,13 +529,13 @@ impl Editing {
 
 /// The text that an anchor and a length stand for.
 fn span(text: &str, at: Anchor, len: Length) -> Span {
-    let lexemes = lex(text);
+    let tokens = lex(text);
     let start = match at {
         Anchor::Part(part) => u32::try_from(text.len() * usize::from(part) / usize::from(u16::MAX)).unwrap(),
-        Anchor::Token(token, bytes) => match usize::from(token) % (lexemes.len() + 1) {
+        Anchor::TokenKind(token, bytes) => match usize::from(token) % (tokens.len() + 1) {
             0 => 0,
             index => {
-                let span = lexemes[index - 1].1;
+                let span = tokens[index - 1].1;
                 span.start + u32::from(bytes).min(span.len())
             }
         },
@@ -543,7 +543,7 @@ fn span(text: &str, at: Anchor, len: Length) -> Span {
     match len {
         Length::Bytes(bytes) => Span::new(start, start + u32::from(bytes)),
         Length::Tokens(count) => {
-            let behind = lexemes.iter().filter(|(_, span)| span.end > start).take(usize::from(count));
+            let behind = tokens.iter().filter(|(_, span)| span.end > start).take(usize::from(count));
             Span::new(start, behind.last().map_or(start, |(_, span)| span.end))
         }
     }

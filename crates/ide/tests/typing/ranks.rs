@@ -2,7 +2,7 @@
 
 use pydslrep_analysis::Database;
 use pydslrep_ide::{CompletionTrigger, FilePosition, completions};
-use pydslrep_syntax::{Lexeme, Span, Token, lex};
+use pydslrep_syntax::{Span, Token, TokenKind, lex};
 
 /// Of places where a keyword or a name was due.
 #[derive(Debug, Clone, Copy, Default)]
@@ -22,7 +22,7 @@ impl Ranks {
 /// first letter.
 pub(crate) fn ranks(program: &str) -> Ranks {
     let mut ranks = Ranks::default();
-    let tokens: Vec<Lexeme> = lex(program).into_iter().filter(|(token, _)| !token.is_comment()).collect();
+    let tokens: Vec<Token> = lex(program).into_iter().filter(|(token, _)| !token.is_comment()).collect();
     for (index, (token, span)) in tokens.iter().enumerate() {
         let is_due = token.is_keyword() || (token.is_name() && is_known(program, &tokens, index));
         if is_due && let Some(words) = offered(program, *span) {
@@ -34,25 +34,25 @@ pub(crate) fn ranks(program: &str) -> Ranks {
 }
 
 /// Whether a name refers to what is written already: what is not cannot be suggested.
-fn is_known(program: &str, tokens: &[Lexeme], index: usize) -> bool {
+fn is_known(program: &str, tokens: &[Token], index: usize) -> bool {
     let name = |index: usize| tokens[index].1.text(program);
     let is_declared = |other: usize| name(other) == name(index) && declares(&tokens[..other]);
     !declares(&tokens[..index]) && (0..index).any(is_declared)
 }
 
 /// Whether the next word is a new name.
-fn declares(before: &[Lexeme]) -> bool {
+fn declares(before: &[Token]) -> bool {
     let declaring = [
-        Token::Wheel,
-        Token::WheelH,
-        Token::Sensor,
-        Token::Ip,
-        Token::Robot,
-        Token::Movement,
-        Token::Environment,
+        TokenKind::Wheel,
+        TokenKind::WheelH,
+        TokenKind::Sensor,
+        TokenKind::Ip,
+        TokenKind::Robot,
+        TokenKind::Movement,
+        TokenKind::Environment,
     ];
     // `with ip lab` refers to one.
-    let is_reference = matches!(before, [.., (Token::With, _), (Token::Ip, _)]);
+    let is_reference = matches!(before, [.., (TokenKind::With, _), (TokenKind::Ip, _)]);
     before.last().is_some_and(|(token, _)| declaring.contains(token)) && !is_reference
 }
 

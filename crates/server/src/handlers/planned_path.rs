@@ -1,7 +1,7 @@
 //! `pydslrep/plannedPath`, a request of our own, and `pydslrep/plannedPathChanged`, the notification that goes with it.
 //! Both are described in `docs/protocol.md`.
 
-use pydslrep_analysis::MadeOf;
+use pydslrep_analysis::Fingerprint;
 use pydslrep_ide as ide;
 use pydslrep_scene::{self as scenery, Mount, Shape};
 use serde::Serialize;
@@ -109,8 +109,8 @@ enum Met {
 pub(crate) fn planned_path(state: &mut State, which: &ChosenEnvironment) -> Result<Value> {
     let path = plan(state, which);
     state.watched.retain(|watched| watched.which != *which);
-    let made_of = made_of(state, which);
-    state.watched.push(Watched { which: which.clone(), made_of, path: path.as_ref().ok().cloned() });
+    let fingerprint = fingerprint(state, which);
+    state.watched.push(Watched { which: which.clone(), fingerprint, path: path.as_ref().ok().cloned() });
     path
 }
 
@@ -119,19 +119,19 @@ fn plan(state: &State, which: &ChosenEnvironment) -> Result<Value> {
     serde_json::to_value(convert(path)).map_err(|error| failure(error.to_string()))
 }
 
-fn made_of(state: &State, which: &ChosenEnvironment) -> Option<MadeOf> {
-    state.database.made_of(environment(state, which).ok()?)
+fn fingerprint(state: &State, which: &ChosenEnvironment) -> Option<Fingerprint> {
+    state.database.fingerprint(environment(state, which).ok()?)
 }
 
 /// Tells the client which of the paths that it has are no longer right, each once; it asks again if it still wants them.
 pub(crate) fn announce(state: &mut State, outbox: &Outbox) {
     let watched = std::mem::take(&mut state.watched);
     for mut watched in watched {
-        let made_of = made_of(state, &watched.which);
+        let fingerprint = fingerprint(state, &watched.which);
         // Most of what is typed is none of its business: then nothing is planned again.
-        let is_the_same = made_of.is_some() && made_of == watched.made_of;
+        let is_the_same = fingerprint.is_some() && fingerprint == watched.fingerprint;
         if is_the_same || plan(state, &watched.which).ok() == watched.path {
-            watched.made_of = made_of;
+            watched.fingerprint = fingerprint;
             state.watched.push(watched);
         } else {
             outbox.notify(PLANNED_PATH_CHANGED, &watched.which);

@@ -183,18 +183,18 @@ pub(crate) fn legend() -> SemanticTokensLegend {
     }
 }
 
-fn token_type(kind: ide::TokenKind) -> u32 {
+fn token_type(kind: ide::HighlightKind) -> u32 {
     match kind {
-        ide::TokenKind::Keyword => 0,
-        ide::TokenKind::Number => 1,
-        ide::TokenKind::String => 2,
-        ide::TokenKind::Comment => 3,
-        ide::TokenKind::Name(EntityKind::Wheel) => 4,
-        ide::TokenKind::Name(EntityKind::Sensor) => 5,
-        ide::TokenKind::Name(EntityKind::Ip) => 6,
-        ide::TokenKind::Name(EntityKind::Robot) => 7,
-        ide::TokenKind::Name(EntityKind::Movement) => 8,
-        ide::TokenKind::Name(EntityKind::Environment) => 9,
+        ide::HighlightKind::Keyword => 0,
+        ide::HighlightKind::Number => 1,
+        ide::HighlightKind::String => 2,
+        ide::HighlightKind::Comment => 3,
+        ide::HighlightKind::Name(EntityKind::Wheel) => 4,
+        ide::HighlightKind::Name(EntityKind::Sensor) => 5,
+        ide::HighlightKind::Name(EntityKind::Ip) => 6,
+        ide::HighlightKind::Name(EntityKind::Robot) => 7,
+        ide::HighlightKind::Name(EntityKind::Movement) => 8,
+        ide::HighlightKind::Name(EntityKind::Environment) => 9,
     }
 }
 
@@ -224,12 +224,12 @@ mod tests {
             modifiers: modifiers.to_vec(),
         };
         let tokens = [
-            token(0, 8, ide::TokenKind::Comment, &[]),
-            token(9, 11, ide::TokenKind::Number, &[]),
+            token(0, 8, ide::HighlightKind::Comment, &[]),
+            token(9, 11, ide::HighlightKind::Number, &[]),
             token(
                 14,
                 15,
-                ide::TokenKind::Name(EntityKind::Ip),
+                ide::HighlightKind::Name(EntityKind::Ip),
                 &[ide::Modifier::Declaration, ide::Modifier::Readonly],
             ),
         ];

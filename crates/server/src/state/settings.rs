@@ -55,7 +55,7 @@ impl State {
         self.stale.all = true;
         // They may say where an environment stands.
         for watched in &mut self.watched {
-            watched.made_of = None;
+            watched.fingerprint = None;
         }
     }
 

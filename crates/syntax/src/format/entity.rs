@@ -3,7 +3,7 @@
 use super::gap::{Blank, Gap, Place};
 use super::piece::{Item, ItemKind};
 use super::writer::Writer;
-use crate::{EntityKind, Lexeme, Token};
+use crate::{EntityKind, Token, TokenKind};
 
 /// The longest line, in characters, that a list may stand on.
 pub const COLUMNS: usize = 100;
@@ -25,15 +25,15 @@ struct List {
 }
 
 /// Writes the entity that `item` is; what stands around it is not touched.
-pub(super) fn lay_out(writer: &mut Writer<'_>, text: &str, lexemes: &[Lexeme], item: &Item) {
+pub(super) fn lay_out(writer: &mut Writer<'_>, text: &str, tokens: &[Token], item: &Item) {
     let is_movement = item.first_kind == Some(ItemKind::Declaration(EntityKind::Movement));
-    let mut layout = Layout { text, lexemes, item, is_movement, in_body: false, list: None };
+    let mut layout = Layout { text, tokens, item, is_movement, in_body: false, list: None };
     layout.write(writer);
 }
 
 struct Layout<'a> {
     text: &'a str,
-    lexemes: &'a [Lexeme],
+    tokens: &'a [Token],
     item: &'a Item,
     is_movement: bool,
     in_body: bool,
@@ -43,10 +43,10 @@ struct Layout<'a> {
 impl Layout<'_> {
     fn write(&mut self, writer: &mut Writer<'_>) {
         let mut previous = self.item.first;
-        writer.put(self.lexemes[previous].1);
+        writer.put(self.tokens[previous].1);
         for index in self.item.first + 1..=self.item.last {
-            let (token, span) = self.lexemes[index];
-            if token.is_comment() || token == Token::Comma && self.list.is_some() {
+            let (token, span) = self.tokens[index];
+            if token.is_comment() || token == TokenKind::Comma && self.list.is_some() {
                 continue;
             }
             let edits = writer.edits();
@@ -57,9 +57,9 @@ impl Layout<'_> {
                 writer.join_edits(edits);
             }
             match token {
-                Token::OpenBrace if self.is_movement && !self.in_body => self.in_body = true,
-                Token::OpenBrace => self.list = Some(self.begin_list(writer, previous, index)),
-                Token::CloseBrace => self.list = None,
+                TokenKind::OpenBrace if self.is_movement && !self.in_body => self.in_body = true,
+                TokenKind::OpenBrace => self.list = Some(self.begin_list(writer, previous, index)),
+                TokenKind::CloseBrace => self.list = None,
                 _ => {}
             }
             previous = index;
@@ -68,9 +68,9 @@ impl Layout<'_> {
 
     /// Writes what stands between two neighbouring tokens.
     fn separate(&self, writer: &mut Writer<'_>, previous: usize, index: usize) {
-        let gap = Gap::new(self.text, self.lexemes, Some(previous), index);
-        let opens = self.lexemes[previous].0 == Token::OpenBrace;
-        let closes = self.lexemes[index].0 == Token::CloseBrace;
+        let gap = Gap::new(self.text, self.tokens, Some(previous), index);
+        let opens = self.tokens[previous].0 == TokenKind::OpenBrace;
+        let closes = self.tokens[index].0 == TokenKind::CloseBrace;
         if let Some(list) = self.list {
             if list.commas && !opens && !closes {
                 writer.glue(",");
@@ -87,20 +87,20 @@ impl Layout<'_> {
             return gap.write_broken(writer, &place);
         }
         let step = if self.in_body { 2 * STEP } else { STEP };
-        let glue = if self.lexemes[index].0 == Token::Comma { "" } else { " " };
+        let glue = if self.tokens[index].0 == TokenKind::Comma { "" } else { " " };
         gap.write_inline(writer, spaces(step), glue);
     }
 
     /// Whether a token outside lists begins a line: an action of a movement, or the end of its body.
     fn begins_line(&self, previous: usize, index: usize) -> bool {
-        let (token, _) = self.lexemes[index];
-        let begins = begins_action(token) || token == Token::CloseBrace;
-        self.in_body && (begins || self.lexemes[previous].0 == Token::OpenBrace)
+        let (token, _) = self.tokens[index];
+        let begins = begins_action(token) || token == TokenKind::CloseBrace;
+        self.in_body && (begins || self.tokens[previous].0 == TokenKind::OpenBrace)
     }
 
     /// The list that begins at the brace at `open`, which has been written already; `before` is the token before it.
     fn begin_list(&self, writer: &Writer<'_>, before: usize, open: usize) -> List {
-        let commas = matches!(self.lexemes[before].0, Token::Sensors | Token::Until);
+        let commas = matches!(self.tokens[before].0, TokenKind::Sensors | TokenKind::Until);
         let broken = !self.fits(writer.column(), open, commas);
         List { commas, broken, indent: writer.line_indent() }
     }
@@ -112,15 +112,15 @@ impl Layout<'_> {
         let mut in_list = true;
         let mut names = 0;
         for index in open + 1..=self.item.last {
-            let (token, span) = self.lexemes[index];
-            if token.is_comment() || token == Token::Comma && in_list {
+            let (token, span) = self.tokens[index];
+            if token.is_comment() || token == TokenKind::Comma && in_list {
                 continue;
             }
-            let closes = token == Token::CloseBrace;
+            let closes = token == TokenKind::CloseBrace;
             if !in_list && (closes || begins_action(token)) {
                 break;
             }
-            let gap = Gap::new(self.text, self.lexemes, Some(previous), index);
+            let gap = Gap::new(self.text, self.tokens, Some(previous), index);
             if in_list && gap.forces_break() {
                 return false;
             }
@@ -129,7 +129,7 @@ impl Layout<'_> {
             if ends {
                 break;
             }
-            column += usize::from(token != Token::Comma) + span.len() as usize;
+            column += usize::from(token != TokenKind::Comma) + span.len() as usize;
             if in_list && !closes {
                 column += usize::from(commas && names > 0);
                 names += 1;
@@ -138,7 +138,7 @@ impl Layout<'_> {
             if column > COLUMNS && names > 0 {
                 return false;
             }
-            if token == Token::OpenBrace {
+            if token == TokenKind::OpenBrace {
                 break;
             }
             previous = index;
@@ -147,8 +147,8 @@ impl Layout<'_> {
     }
 }
 
-fn begins_action(token: Token) -> bool {
-    matches!(token, Token::Move | Token::Turn | Token::Slam)
+fn begins_action(token: TokenKind) -> bool {
+    matches!(token, TokenKind::Move | TokenKind::Turn | TokenKind::Slam)
 }
 
 fn spaces(count: usize) -> &'static str {

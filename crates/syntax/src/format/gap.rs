@@ -6,12 +6,12 @@
 use std::ops::Range;
 
 use super::writer::{BLANKS, BYTE_ORDER_MARK, LINE_ENDS, Writer};
-use crate::{Lexeme, Span};
+use crate::{Span, Token};
 
 /// What stands between two neighbouring tokens that are not comments.
 pub(super) struct Gap<'a> {
     text: &'a str,
-    lexemes: &'a [Lexeme],
+    tokens: &'a [Token],
     groups: Vec<Group>,
     /// Line ends before the second token.
     next_lines: usize,
@@ -52,11 +52,11 @@ pub(super) struct Place<'a> {
 impl<'a> Gap<'a> {
     /// The gap between the token at index `from` and that at `to`; `None` is the start of the file, the number of
     /// tokens its end.
-    pub(super) fn new(text: &'a str, lexemes: &'a [Lexeme], from: Option<usize>, to: usize) -> Self {
-        let mut at = from.map_or(0, |index| lexemes[index].1.end);
+    pub(super) fn new(text: &'a str, tokens: &'a [Token], from: Option<usize>, to: usize) -> Self {
+        let mut at = from.map_or(0, |index| tokens[index].1.end);
         let first = from.map_or(0, |index| index + 1);
         let mut groups: Vec<Group> = Vec::new();
-        for (index, &(token, span)) in (first..to).zip(&lexemes[first..to]) {
+        for (index, &(token, span)) in (first..to).zip(&tokens[first..to]) {
             if !token.is_comment() {
                 continue;
             }
@@ -68,16 +68,16 @@ impl<'a> Gap<'a> {
             }
             at = span.end;
         }
-        let end = lexemes.get(to).map_or(Span::of(text).end, |(_, span)| span.start);
-        Self { text, lexemes, groups, next_lines: line_ends(text, at, end) }
+        let end = tokens.get(to).map_or(Span::of(text).end, |(_, span)| span.start);
+        Self { text, tokens, groups, next_lines: line_ends(text, at, end) }
     }
 
     pub(super) fn has_comments(&self) -> bool {
         !self.groups.is_empty()
     }
 
-    fn comments(&self, group: &Group) -> impl Iterator<Item = Lexeme> + use<'a> {
-        self.lexemes[group.range.clone()].iter().copied().filter(|(token, _)| token.is_comment())
+    fn comments(&self, group: &Group) -> impl Iterator<Item = Token> + use<'a> {
+        self.tokens[group.range.clone()].iter().copied().filter(|(token, _)| token.is_comment())
     }
 
     /// Line ends behind a group.

@@ -14,7 +14,7 @@ use self::entity::lay_out;
 use self::gap::{Blank, Gap, Place};
 use self::piece::{Item, items};
 use self::writer::{BYTE_ORDER_MARK, Writer};
-use crate::{Lexeme, Parse, Span, Token, parse};
+use crate::{Parse, Span, Token, TokenKind, parse};
 
 /// A change of text.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -53,20 +53,20 @@ pub fn format_edits<'a>(text: &str, pieces: impl IntoIterator<Item = (Span, &'a 
         // Spans cannot reach the end.
         return Vec::new();
     }
-    let (lexemes, items) = items(text, pieces);
+    let (tokens, items) = items(text, pieces);
     let mut writer = Writer::new(text);
     let mut previous: Option<&Item> = None;
     for item in &items {
-        separate(&mut writer, text, &lexemes, previous, Some(item));
+        separate(&mut writer, text, &tokens, previous, Some(item));
         if item.broken {
-            writer.put(Span::new(lexemes[item.first].1.start, lexemes[item.last].1.end));
+            writer.put(Span::new(tokens[item.first].1.start, tokens[item.last].1.end));
         } else {
-            lay_out(&mut writer, text, &lexemes, item);
+            lay_out(&mut writer, text, &tokens, item);
         }
         previous = Some(item);
     }
-    if previous.is_none_or(|item| lexemes[item.last].0 != Token::UnterminatedComment) {
-        separate(&mut writer, text, &lexemes, previous, None);
+    if previous.is_none_or(|item| tokens[item.last].0 != TokenKind::UnterminatedComment) {
+        separate(&mut writer, text, &tokens, previous, None);
     }
     writer.finish()
 }
@@ -75,18 +75,18 @@ pub fn format_edits<'a>(text: &str, pieces: impl IntoIterator<Item = (Span, &'a 
 fn separate(
     writer: &mut Writer<'_>,
     text: &str,
-    lexemes: &[Lexeme],
+    tokens: &[Token],
     previous: Option<&Item>,
     next: Option<&Item>,
 ) {
-    if previous.is_none() && next.is_some_and(|item| begins_with_mark(text, lexemes, item)) {
+    if previous.is_none() && next.is_some_and(|item| begins_with_mark(text, tokens, item)) {
         // At the very start it would be taken for the file's byte order mark.
-        return writer.keep(lexemes[0].1.start);
+        return writer.keep(tokens[0].1.start);
     }
     let from = previous.map(|item| item.last);
-    let to = next.map_or(lexemes.len(), |item| item.first);
-    let gap = Gap::new(text, lexemes, from, to);
-    let kept_indent = next.filter(|item| item.broken).map(|item| gap::indent_of(text, lexemes[item.first].1));
+    let to = next.map_or(tokens.len(), |item| item.first);
+    let gap = Gap::new(text, tokens, from, to);
+    let kept_indent = next.filter(|item| item.broken).map(|item| gap::indent_of(text, tokens[item.first].1));
     let place = Place {
         indent: "",
         next_indent: kept_indent.unwrap_or_default(),
@@ -97,8 +97,8 @@ fn separate(
     gap.write_broken(writer, &place);
 }
 
-fn begins_with_mark(text: &str, lexemes: &[Lexeme], item: &Item) -> bool {
-    item.first == 0 && lexemes[0].1.text(text).starts_with(BYTE_ORDER_MARK)
+fn begins_with_mark(text: &str, tokens: &[Token], item: &Item) -> bool {
+    item.first == 0 && tokens[0].1.text(text).starts_with(BYTE_ORDER_MARK)
 }
 
 /// Declarations of one line stand together, kind by kind; everything else stands apart.

@@ -2,7 +2,7 @@
 
 use super::gap::Gap;
 use crate::ast::Entity;
-use crate::{EntityKind, Lexeme, Parse, Span, Token};
+use crate::{EntityKind, Parse, Span, Token, TokenKind};
 
 /// What an item declares, as far as blank lines go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,15 +36,15 @@ pub(super) struct Item {
 pub(super) fn items<'a>(
     text: &str,
     pieces: impl IntoIterator<Item = (Span, &'a Parse)>,
-) -> (Vec<Lexeme>, Vec<Item>) {
-    let mut lexemes = Vec::with_capacity(text.len() / 6);
+) -> (Vec<Token>, Vec<Item>) {
+    let mut tokens = Vec::with_capacity(text.len() / 6);
     let mut items: Vec<Item> = Vec::new();
     for (span, parse) in pieces {
-        let offset = lexemes.len();
-        lexemes.extend(parse.lexemes.iter().map(|(token, place)| (*token, place.shifted(span.start))));
-        let is_inside = |(token, _): &Lexeme| !token.is_comment() || *token == Token::UnterminatedComment;
-        let first = parse.lexemes.iter().position(is_inside);
-        let last = parse.lexemes.iter().rposition(is_inside);
+        let offset = tokens.len();
+        tokens.extend(parse.tokens.iter().map(|(token, place)| (*token, place.shifted(span.start))));
+        let is_inside = |(token, _): &Token| !token.is_comment() || *token == TokenKind::UnterminatedComment;
+        let first = parse.tokens.iter().position(is_inside);
+        let last = parse.tokens.iter().rposition(is_inside);
         if let (Some(first), Some(last)) = (first, last) {
             let kind = parse.entity.as_ref().map(kind_of);
             items.push(Item {
@@ -56,8 +56,8 @@ pub(super) fn items<'a>(
             });
         }
     }
-    let items = join_broken(text, &lexemes, items);
-    (lexemes, items)
+    let items = join_broken(text, &tokens, items);
+    (tokens, items)
 }
 
 fn kind_of(entity: &Entity) -> ItemKind {
@@ -66,7 +66,7 @@ fn kind_of(entity: &Entity) -> ItemKind {
 
 /// Broken neighbours stay as they are together with what stands between them: a mistake may have cut one entity in
 /// two. Comments behind a broken entity may be part of it, so they stay too, unless they belong to the next one.
-fn join_broken(text: &str, lexemes: &[Lexeme], items: Vec<Item>) -> Vec<Item> {
+fn join_broken(text: &str, tokens: &[Token], items: Vec<Item>) -> Vec<Item> {
     let mut joined: Vec<Item> = Vec::with_capacity(items.len());
     for item in items {
         match joined.last_mut().filter(|previous| previous.broken) {
@@ -75,19 +75,19 @@ fn join_broken(text: &str, lexemes: &[Lexeme], items: Vec<Item>) -> Vec<Item> {
                 previous.last_kind = item.last_kind;
             }
             Some(previous) => {
-                previous.last = end_of_broken(text, lexemes, previous.last, item.first);
+                previous.last = end_of_broken(text, tokens, previous.last, item.first);
                 joined.push(item);
             }
             None => joined.push(item),
         }
     }
     if let Some(last) = joined.last_mut().filter(|item| item.broken) {
-        last.last = lexemes.len() - 1;
+        last.last = tokens.len() - 1;
     }
     joined
 }
 
-fn end_of_broken(text: &str, lexemes: &[Lexeme], last: usize, next: usize) -> usize {
-    let gap = Gap::new(text, lexemes, Some(last), next);
+fn end_of_broken(text: &str, tokens: &[Token], last: usize, next: usize) -> usize {
+    let gap = Gap::new(text, tokens, Some(last), next);
     gap.first_attached().unwrap_or(next) - 1
 }

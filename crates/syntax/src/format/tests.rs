@@ -36,7 +36,7 @@ fn without_spans(tree: &str) -> String {
 
 /// Comments, and the tokens around them, with what the layout may change left out.
 fn tokens_and_comments(text: &str) -> Vec<String> {
-    let kept = lex(text).into_iter().filter(|(token, _)| *token != Token::Comma);
+    let kept = lex(text).into_iter().filter(|(token, _)| *token != TokenKind::Comma);
     let lines = |span: Span| {
         let lines = span.text(text).split(['\r', '\n']).map(|line| line.trim_matches([' ', '\t', '\x0c']));
         lines.filter(|line| !line.is_empty()).collect::<Vec<_>>().join("\n")
@@ -50,8 +50,8 @@ fn broken_texts(text: &str) -> Vec<&str> {
     let broken = pieces.iter().filter(|(_, parse)| !parse.errors.is_empty());
     broken
         .filter_map(|(span, parse)| {
-            let stays = |token: Token| !token.is_comment() || token == Token::UnterminatedComment;
-            let mut kept = parse.lexemes.iter().filter(|(token, _)| stays(*token)).map(|(_, span)| *span);
+            let stays = |token: TokenKind| !token.is_comment() || token == TokenKind::UnterminatedComment;
+            let mut kept = parse.tokens.iter().filter(|(token, _)| stays(*token)).map(|(_, span)| *span);
             // A comment of another language is a mistake without any token.
             let first = kept.next()?;
             Some(first.to(kept.next_back().unwrap_or(first)).shifted(span.start).text(text))
@@ -392,7 +392,7 @@ fn check_looks(text: &str, formatted: &str) -> Result<(), TestCaseError> {
     for ((token, _), (before, after)) in places.zip(stands(text).into_iter().zip(stands(formatted))) {
         prop_assert!(!before.0 || after.0, "a comment is no longer alone on its line");
         prop_assert!(
-            token != Token::LineComment || !before.1 || after.1,
+            token != TokenKind::LineComment || !before.1 || after.1,
             "a comment left the end of its line"
         );
     }
@@ -414,7 +414,7 @@ fn check_properties(text: &str) -> Result<(), TestCaseError> {
     prop_assert_eq!(broken_texts(&formatted), broken_texts(text));
     let ends_well = formatted.ends_with(['\n', '\r']) && !formatted.ends_with("\n\n");
     let is_empty = formatted.trim_start_matches('\u{feff}').is_empty();
-    let is_open = lex(text).last().is_some_and(|(token, _)| *token == Token::UnterminatedComment);
+    let is_open = lex(text).last().is_some_and(|(token, _)| *token == TokenKind::UnterminatedComment);
     prop_assert!(ends_well || is_empty || is_open);
     Ok(())
 }

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::TextEdit;
-use crate::{Span, Token};
+use crate::{Span, TokenKind};
 
 pub(super) const BYTE_ORDER_MARK: &str = "\u{feff}";
 
@@ -85,7 +85,7 @@ impl<'a> Writer<'a> {
 
     /// Writes a comment. `indent` is given where it begins a line; a comment of several lines that all begin with
     /// `*` is then moved as a whole.
-    pub(super) fn comment(&mut self, token: Token, span: Span, indent: Option<&str>) {
+    pub(super) fn comment(&mut self, token: TokenKind, span: Span, indent: Option<&str>) {
         let written = span.text(self.text);
         let wanted = match token {
             token if token.ends_line() => Cow::Borrowed(written.trim_end_matches(BLANKS)),

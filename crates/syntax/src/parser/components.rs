@@ -5,7 +5,7 @@ use chumsky::prelude::{Parser, choice, just};
 use super::slot::{NUMBER, declared_name, keyword, nothing_more, number, slot, take};
 use super::{Rule, tidy};
 use crate::ast::{Entity, Import, Ip, Sensor, SensorKind, Wheel};
-use crate::{EntityKind, Expected, Token, TokenSet};
+use crate::{EntityKind, Expected, TokenKind, TokenSet};
 
 /// What stands before the first entity: nothing, or text that fits nowhere.
 pub(super) fn preamble<'s>() -> Rule<'s, Option<Entity>> {
@@ -14,9 +14,9 @@ pub(super) fn preamble<'s>() -> Rule<'s, Option<Entity>> {
 
 /// `import "file.pyr"`
 pub(super) fn import<'s>() -> Rule<'s, Option<Entity>> {
-    let strings = TokenSet::of(&[Token::String, Token::UnterminatedString]);
+    let strings = TokenSet::of(&[TokenKind::String, TokenKind::UnterminatedString]);
     let path = take(move |token, span, text| strings.has(token).then(|| (tidy::unquoted(span, text), span)));
-    just(Token::Import)
+    just(TokenKind::Import)
         .ignore_then(slot(path.labelled(Expected::Path), strings, TokenSet::default()))
         .then_ignore(nothing_more())
         .map(|path| {
@@ -28,31 +28,33 @@ pub(super) fn import<'s>() -> Rule<'s, Option<Entity>> {
 
 /// `wheel name with radius 4.5`
 pub(super) fn wheel<'s>() -> Rule<'s, Option<Entity>> {
-    const WITH: TokenSet = TokenSet::of(&[Token::With]);
-    const RADIUS: TokenSet = TokenSet::of(&[Token::Radius]);
-    let head =
-        choice((just(Token::Wheel), just(Token::WheelH))).map_with(|token, extra| (token, extra.span()));
+    const WITH: TokenSet = TokenSet::of(&[TokenKind::With]);
+    const RADIUS: TokenSet = TokenSet::of(&[TokenKind::Radius]);
+    let head = choice((just(TokenKind::Wheel), just(TokenKind::WheelH)))
+        .map_with(|token, extra| (token, extra.span()));
     head.then(declared_name(EntityKind::Wheel, WITH, RADIUS.or(NUMBER)))
-        .then_ignore(keyword(Token::With, RADIUS, NUMBER))
-        .then_ignore(keyword(Token::Radius, NUMBER, TokenSet::default()))
+        .then_ignore(keyword(TokenKind::With, RADIUS, NUMBER))
+        .then_ignore(keyword(TokenKind::Radius, NUMBER, TokenSet::default()))
         .then(slot(number(Expected::Radius), NUMBER, TokenSet::default()))
         .then_ignore(nothing_more())
         .map(|(((token, keyword), name), radius)| {
-            Some(Entity::Wheel(Wheel { keyword, mecanum: token == Token::WheelH, name, radius }))
+            Some(Entity::Wheel(Wheel { keyword, mecanum: token == TokenKind::WheelH, name, radius }))
         })
         .boxed()
 }
 
 /// `sensor name : bumper`
 pub(super) fn sensor<'s>() -> Rule<'s, Option<Entity>> {
-    const COLON: TokenSet = TokenSet::of(&[Token::Colon]);
-    const KINDS: TokenSet = TokenSet::of(&[Token::Distance, Token::Bumper]);
-    let kind =
-        choice((just(Token::Distance).to(SensorKind::Distance), just(Token::Bumper).to(SensorKind::Bumper)))
-            .map_with(|kind, extra| (kind, extra.span()));
-    just(Token::Sensor)
+    const COLON: TokenSet = TokenSet::of(&[TokenKind::Colon]);
+    const KINDS: TokenSet = TokenSet::of(&[TokenKind::Distance, TokenKind::Bumper]);
+    let kind = choice((
+        just(TokenKind::Distance).to(SensorKind::Distance),
+        just(TokenKind::Bumper).to(SensorKind::Bumper),
+    ))
+    .map_with(|kind, extra| (kind, extra.span()));
+    just(TokenKind::Sensor)
         .ignore_then(declared_name(EntityKind::Sensor, COLON, TokenSet::default()))
-        .then(just(Token::Colon).ignore_then(slot(kind, KINDS, TokenSet::default())).or_not())
+        .then(just(TokenKind::Colon).ignore_then(slot(kind, KINDS, TokenSet::default())).or_not())
         .then_ignore(nothing_more())
         .map(|(name, kind)| Some(Entity::Sensor(Sensor { name, kind: kind.flatten() })))
         .boxed()
@@ -60,9 +62,10 @@ pub(super) fn sensor<'s>() -> Rule<'s, Option<Entity>> {
 
 /// `ip name 127.0.0.1`
 pub(super) fn ip<'s>() -> Rule<'s, Option<Entity>> {
-    let address = take(|token, span, text| (token == Token::Ipv4).then(|| (span.text(text).into(), span)));
-    let ipv4 = TokenSet::of(&[Token::Ipv4]);
-    just(Token::Ip)
+    let address =
+        take(|token, span, text| (token == TokenKind::Ipv4).then(|| (span.text(text).into(), span)));
+    let ipv4 = TokenSet::of(&[TokenKind::Ipv4]);
+    just(TokenKind::Ip)
         .ignore_then(declared_name(EntityKind::Ip, ipv4, NUMBER))
         .then(slot(address.labelled(Expected::Address), ipv4, TokenSet::default()))
         .then_ignore(nothing_more())

@@ -5,24 +5,24 @@ use chumsky::prelude::{Parser, choice, end, just};
 use super::slot::{NAME, declared_name, keyword, nothing_more, one_in, reference, references};
 use super::{Extra, Input, Rule};
 use crate::ast::{Entity, Environment, IpClause, References};
-use crate::{EntityKind, Token, TokenSet};
+use crate::{EntityKind, TokenKind, TokenSet};
 
-const WITH: TokenSet = TokenSet::of(&[Token::With]);
-const IP: TokenSet = TokenSet::of(&[Token::Ip]);
-const HAS: TokenSet = TokenSet::of(&[Token::Has]);
-const COMMA: TokenSet = TokenSet::of(&[Token::Comma]);
-const OPEN: TokenSet = TokenSet::of(&[Token::OpenBrace]);
-const BUT_OPEN: TokenSet = TokenSet::all_but(Token::OpenBrace);
-const CLOSE: TokenSet = TokenSet::of(&[Token::CloseBrace]);
-const ROBOTS: TokenSet = TokenSet::of(&[Token::Robots]);
-const MOVES: TokenSet = TokenSet::of(&[Token::Moves]);
+const WITH: TokenSet = TokenSet::of(&[TokenKind::With]);
+const IP: TokenSet = TokenSet::of(&[TokenKind::Ip]);
+const HAS: TokenSet = TokenSet::of(&[TokenKind::Has]);
+const COMMA: TokenSet = TokenSet::of(&[TokenKind::Comma]);
+const OPEN: TokenSet = TokenSet::of(&[TokenKind::OpenBrace]);
+const BUT_OPEN: TokenSet = TokenSet::all_but(TokenKind::OpenBrace);
+const CLOSE: TokenSet = TokenSet::of(&[TokenKind::CloseBrace]);
+const ROBOTS: TokenSet = TokenSet::of(&[TokenKind::Robots]);
+const MOVES: TokenSet = TokenSet::of(&[TokenKind::Moves]);
 
 /// What can stand behind the name and the ip.
 const TAIL: TokenSet = HAS.or(OPEN).or(CLOSE).or(ROBOTS);
 
 /// `environment name with ip ip1 has { … } robots with { … } moves`
 pub(super) fn environment<'s>() -> Rule<'s, Option<Entity>> {
-    just(Token::Environment)
+    just(TokenKind::Environment)
         .ignore_then(declared_name(EntityKind::Environment, WITH.or(COMMA).or(HAS), IP.or(TAIL)))
         .then(ip_clause().or_not())
         .then(robots())
@@ -37,9 +37,9 @@ pub(super) fn environment<'s>() -> Rule<'s, Option<Entity>> {
 fn ip_clause<'s>() -> impl Parser<'s, Input<'s>, IpClause, Extra<'s>> + Clone {
     let with_comma = choice((
         // `with { … } moves` is about movements.
-        just(Token::With)
+        just(TokenKind::With)
             .then_ignore(choice((one_in(BUT_OPEN).ignored(), end())).rewind())
-            .then(keyword(Token::Ip, NAME, TAIL))
+            .then(keyword(TokenKind::Ip, NAME, TAIL))
             .to(false),
         // The older spelling is understood, but never expected.
         one_in(COMMA).to(true),
@@ -52,15 +52,15 @@ fn ip_clause<'s>() -> impl Parser<'s, Input<'s>, IpClause, Extra<'s>> + Clone {
 
 fn robots<'s>() -> Rule<'s, References> {
     let behind = ROBOTS.or(WITH).or(MOVES);
-    keyword(Token::Has, OPEN, NAME.or(CLOSE).or(behind))
+    keyword(TokenKind::Has, OPEN, NAME.or(CLOSE).or(behind))
         .ignore_then(references(EntityKind::Robot, true, behind))
-        .then_ignore(keyword(Token::Robots, WITH, MOVES))
+        .then_ignore(keyword(TokenKind::Robots, WITH, MOVES))
         .boxed()
 }
 
 fn movements<'s>() -> Rule<'s, References> {
-    just(Token::With)
+    just(TokenKind::With)
         .ignore_then(references(EntityKind::Movement, true, MOVES))
-        .then_ignore(keyword(Token::Moves, TokenSet::default(), TokenSet::default()))
+        .then_ignore(keyword(TokenKind::Moves, TokenSet::default(), TokenSet::default()))
         .boxed()
 }

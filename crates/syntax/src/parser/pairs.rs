@@ -1,10 +1,10 @@
 //! Two complaints that are one mistake: something is missing in one place because it stands in another, or both braces
 //! of a list are missing.
 
-use crate::{Expected, Found, Lexeme, Span, SyntaxError, SyntaxErrorKind, Token};
+use crate::{Expected, Found, Span, SyntaxError, SyntaxErrorKind, Token, TokenKind};
 
 /// The errors, which are in the order of the text, with each such pair as one.
-pub(super) fn join(mut errors: Vec<SyntaxError>, tokens: &[Lexeme]) -> Vec<SyntaxError> {
+pub(super) fn join(mut errors: Vec<SyntaxError>, tokens: &[Token]) -> Vec<SyntaxError> {
     let mut index = 0;
     while index + 1 < errors.len() {
         let joined = too_early(&errors[index], &errors[index + 1], tokens)
@@ -21,16 +21,16 @@ pub(super) fn join(mut errors: Vec<SyntaxError>, tokens: &[Lexeme]) -> Vec<Synta
 }
 
 /// `has wheels { a b }`
-fn too_early(first: &SyntaxError, second: &SyntaxError, tokens: &[Lexeme]) -> Option<SyntaxError> {
+fn too_early(first: &SyntaxError, second: &SyntaxError, tokens: &[Token]) -> Option<SyntaxError> {
     misplaced(first, second, tokens)
 }
 
 /// `movement m r of { … }`
-fn too_late(first: &SyntaxError, second: &SyntaxError, tokens: &[Lexeme]) -> Option<SyntaxError> {
+fn too_late(first: &SyntaxError, second: &SyntaxError, tokens: &[Token]) -> Option<SyntaxError> {
     misplaced(second, first, tokens)
 }
 
-fn misplaced(stray: &SyntaxError, gap: &SyntaxError, tokens: &[Lexeme]) -> Option<SyntaxError> {
+fn misplaced(stray: &SyntaxError, gap: &SyntaxError, tokens: &[Token]) -> Option<SyntaxError> {
     let SyntaxErrorKind::Unexpected { found: Found::Text(written), inside, .. } = &stray.kind else {
         return None;
     };
@@ -41,34 +41,35 @@ fn misplaced(stray: &SyntaxError, gap: &SyntaxError, tokens: &[Lexeme]) -> Optio
 }
 
 /// Whether a token is what is missing.
-fn fills(token: Token, expected: Expected) -> bool {
+fn fills(token: TokenKind, expected: Expected) -> bool {
     match expected {
         Expected::Word(word) => {
-            word == token && !matches!(word, Token::Comma | Token::OpenBrace | Token::CloseBrace)
+            word == token && !matches!(word, TokenKind::Comma | TokenKind::OpenBrace | TokenKind::CloseBrace)
         }
         Expected::NameOf(_) | Expected::ReferenceTo(_) => token.is_name(),
         Expected::Radius | Expected::Port | Expected::Distance | Expected::Speed => {
-            matches!(token, Token::Integer | Token::Float)
+            matches!(token, TokenKind::Integer | TokenKind::Float)
         }
-        Expected::Address => token == Token::Ipv4,
-        Expected::Path => token == Token::String,
+        Expected::Address => token == TokenKind::Ipv4,
+        Expected::Path => token == TokenKind::String,
         Expected::Angle | Expected::Action | Expected::Declaration => false,
     }
 }
 
 /// `has a b wheels`
-fn unbraced(first: &SyntaxError, second: &SyntaxError, tokens: &[Lexeme]) -> Option<SyntaxError> {
-    let wants = |error: &SyntaxError, brace: Token| match &error.kind {
+fn unbraced(first: &SyntaxError, second: &SyntaxError, tokens: &[Token]) -> Option<SyntaxError> {
+    let wants = |error: &SyntaxError, brace: TokenKind| match &error.kind {
         SyntaxErrorKind::Missing { expected, .. } => expected.contains(&Expected::Word(brace)),
         _ => false,
     };
-    if !wants(first, Token::OpenBrace) || !wants(second, Token::CloseBrace) {
+    if !wants(first, TokenKind::OpenBrace) || !wants(second, TokenKind::CloseBrace) {
         return None;
     }
     let between = Span::new(first.span.start, second.span.start);
-    let opened = tokens.iter().any(|(token, span)| *token == Token::OpenBrace && between.touches(span.start));
+    let opened =
+        tokens.iter().any(|(token, span)| *token == TokenKind::OpenBrace && between.touches(span.start));
     let mut inner = tokens.iter().filter(|(_, span)| between.start <= span.start && span.end <= between.end);
-    if inner.clone().next().is_some() && inner.all(|(token, _)| *token == Token::CloseBrace) {
+    if inner.clone().next().is_some() && inner.all(|(token, _)| *token == TokenKind::CloseBrace) {
         // `turn left until }`: the brace was taken for the list's.
         return Some(first.clone());
     }

@@ -7,24 +7,24 @@ use super::slot::{
 };
 use super::{Extra, Input, Rule};
 use crate::ast::{DriveClause, DriveWord, Entity, Name, PortNumber, References, Robot};
-use crate::{EntityKind, Expected, Span, Token, TokenSet};
+use crate::{EntityKind, Expected, Span, TokenKind, TokenSet};
 
-const TYPE: TokenSet = TokenSet::of(&[Token::Type]);
-const DRIVES: TokenSet = TokenSet::of(&[Token::Tw, Token::Fw, Token::Fwh]);
-const WITH: TokenSet = TokenSet::of(&[Token::With]);
-const PORT: TokenSet = TokenSet::of(&[Token::Port]);
-const HAS: TokenSet = TokenSet::of(&[Token::Has]);
-const OPEN: TokenSet = TokenSet::of(&[Token::OpenBrace]);
-const CLOSE: TokenSet = TokenSet::of(&[Token::CloseBrace]);
-const WHEELS: TokenSet = TokenSet::of(&[Token::Wheels]);
-const SENSORS: TokenSet = TokenSet::of(&[Token::Sensors]);
+const TYPE: TokenSet = TokenSet::of(&[TokenKind::Type]);
+const DRIVES: TokenSet = TokenSet::of(&[TokenKind::Tw, TokenKind::Fw, TokenKind::Fwh]);
+const WITH: TokenSet = TokenSet::of(&[TokenKind::With]);
+const PORT: TokenSet = TokenSet::of(&[TokenKind::Port]);
+const HAS: TokenSet = TokenSet::of(&[TokenKind::Has]);
+const OPEN: TokenSet = TokenSet::of(&[TokenKind::OpenBrace]);
+const CLOSE: TokenSet = TokenSet::of(&[TokenKind::CloseBrace]);
+const WHEELS: TokenSet = TokenSet::of(&[TokenKind::Wheels]);
+const SENSORS: TokenSet = TokenSet::of(&[TokenKind::Sensors]);
 
 /// What can stand behind the port clause.
 const TAIL: TokenSet = HAS.or(OPEN).or(CLOSE).or(WHEELS);
 
 /// `robot name type tw with port 23000 has { … } wheels with sensors { … }`
 pub(super) fn robot<'s>() -> Rule<'s, Option<Entity>> {
-    just(Token::Robot)
+    just(TokenKind::Robot)
         .ignore_then(head())
         .then(port())
         .then(wheels())
@@ -32,8 +32,10 @@ pub(super) fn robot<'s>() -> Rule<'s, Option<Entity>> {
         .then_ignore(nothing_more())
         .validate(|(((((before, name), after), port), wheels), sensors), _, emitter| {
             if let (Some(_), Some(second)) = (&before, &after) {
-                emitter
-                    .emit(Fault::Expected { at: second.span, expected: vec![Expected::Word(Token::With)] });
+                emitter.emit(Fault::Expected {
+                    at: second.span,
+                    expected: vec![Expected::Word(TokenKind::With)],
+                });
                 emitter.emit(Fault::Skipped(second.span));
             }
             let before = before.map(|clause| DriveClause { before_name: true, ..clause });
@@ -50,18 +52,18 @@ fn head<'s>() -> Rule<'s, Head> {
     // Before the name, and behind the name once more, a type is understood, but never expected.
     let before = drive(one_in(TYPE), NAME.or(WITH)).map(Some).then(name());
     let before = before.then(drive(one_in(TYPE), WITH.or(PORT)).or_not());
-    let behind = empty().to(None).then(name()).then(drive(just(Token::Type), WITH.or(PORT)).or_not());
+    let behind = empty().to(None).then(name()).then(drive(just(TokenKind::Type), WITH.or(PORT)).or_not());
     choice((before, behind)).boxed()
 }
 
 fn drive<'s>(
-    first: impl Parser<'s, Input<'s>, Token, Extra<'s>> + Clone + 's,
+    first: impl Parser<'s, Input<'s>, TokenKind, Extra<'s>> + Clone + 's,
     next: TokenSet,
 ) -> impl Parser<'s, Input<'s>, DriveClause, Extra<'s>> + Clone {
     let word = choice((
-        just(Token::Tw).to(DriveWord::Tw),
-        just(Token::Fw).to(DriveWord::Fw),
-        just(Token::Fwh).to(DriveWord::Fwh),
+        just(TokenKind::Tw).to(DriveWord::Tw),
+        just(TokenKind::Fw).to(DriveWord::Fw),
+        just(TokenKind::Fwh).to(DriveWord::Fwh),
     ));
     first
         .ignore_then(slot(word, DRIVES, next.or(PORT).or(NUMBER).or(TAIL)))
@@ -71,31 +73,31 @@ fn drive<'s>(
 
 fn port<'s>() -> Rule<'s, Option<PortNumber>> {
     let number = take(|token, span, text| NUMBER.has(token).then_some((token, span, text)))
-        .validate(|(token, span, text): (Token, Span, &str), _, emitter| {
-            let whole = token == Token::Integer;
+        .validate(|(token, span, text): (TokenKind, Span, &str), _, emitter| {
+            let whole = token == TokenKind::Integer;
             if !whole {
                 emitter.emit(Fault::PortNotWhole(span));
             }
             PortNumber { value: span.text(text).parse().ok().filter(|port| *port != 0), span, whole }
         })
         .labelled(Expected::Port);
-    keyword(Token::With, PORT, NUMBER.or(TAIL))
-        .ignore_then(keyword(Token::Port, NUMBER, TAIL))
+    keyword(TokenKind::With, PORT, NUMBER.or(TAIL))
+        .ignore_then(keyword(TokenKind::Port, NUMBER, TAIL))
         .ignore_then(slot(number, NUMBER, TAIL))
         .boxed()
 }
 
 fn wheels<'s>() -> Rule<'s, References> {
     let behind = WHEELS.or(WITH).or(SENSORS);
-    keyword(Token::Has, OPEN, NAME.or(CLOSE).or(behind))
+    keyword(TokenKind::Has, OPEN, NAME.or(CLOSE).or(behind))
         .ignore_then(references(EntityKind::Wheel, true, behind))
-        .then_ignore(keyword(Token::Wheels, WITH, SENSORS))
+        .then_ignore(keyword(TokenKind::Wheels, WITH, SENSORS))
         .boxed()
 }
 
 fn sensors<'s>() -> Rule<'s, References> {
-    just(Token::With)
-        .ignore_then(keyword(Token::Sensors, OPEN, NAME.or(CLOSE)))
+    just(TokenKind::With)
+        .ignore_then(keyword(TokenKind::Sensors, OPEN, NAME.or(CLOSE)))
         .ignore_then(references(EntityKind::Sensor, false, TokenSet::default()))
         .boxed()
 }

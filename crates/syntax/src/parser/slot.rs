@@ -13,7 +13,7 @@ use chumsky::util::MaybeRef;
 
 use super::{Extra, Input, Rule};
 use crate::ast::{Name, Number, References};
-use crate::{EntityKind, Expected, Span, Token, TokenSet, is_similar};
+use crate::{EntityKind, Expected, Span, TokenKind, TokenSet, is_similar};
 
 /// What a rule reports while it runs; [`super::tidy`] makes errors of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,7 +23,7 @@ pub(super) enum Fault {
     /// These tokens were passed over.
     Skipped(Span),
     /// This token was taken for that keyword.
-    TakenForKeyword(Span, Token),
+    TakenForKeyword(Span, TokenKind),
     /// This keyword was taken for a name.
     TakenForName(Span, EntityKind),
     /// This number is none.
@@ -43,10 +43,10 @@ impl<'s> Error<'s, Input<'s>> for Fault {
     }
 }
 
-impl<'s> LabelError<'s, Input<'s>, DefaultExpected<'s, Token>> for Fault {
-    fn expected_found<E: IntoIterator<Item = DefaultExpected<'s, Token>>>(
+impl<'s> LabelError<'s, Input<'s>, DefaultExpected<'s, TokenKind>> for Fault {
+    fn expected_found<E: IntoIterator<Item = DefaultExpected<'s, TokenKind>>>(
         expected: E,
-        _: Option<MaybeRef<'s, Token>>,
+        _: Option<MaybeRef<'s, TokenKind>>,
         at: Span,
     ) -> Self {
         let words = expected.into_iter().filter_map(|pattern| match pattern {
@@ -60,7 +60,7 @@ impl<'s> LabelError<'s, Input<'s>, DefaultExpected<'s, Token>> for Fault {
 impl<'s> LabelError<'s, Input<'s>, Expected> for Fault {
     fn expected_found<E: IntoIterator<Item = Expected>>(
         expected: E,
-        _: Option<MaybeRef<'s, Token>>,
+        _: Option<MaybeRef<'s, TokenKind>>,
         at: Span,
     ) -> Self {
         Self::Expected { at, expected: expected.into_iter().collect() }
@@ -75,7 +75,7 @@ impl<'s> LabelError<'s, Input<'s>, Expected> for Fault {
 
 /// One token that `judge` makes something of, from the token, its place and the text.
 pub(super) fn take<'s, O>(
-    judge: impl Fn(Token, Span, &'s str) -> Option<O> + Clone + 's,
+    judge: impl Fn(TokenKind, Span, &'s str) -> Option<O> + Clone + 's,
 ) -> impl Parser<'s, Input<'s>, O, Extra<'s>> + Clone {
     select(move |token, extra: &mut MapExtra<'s, '_, Input<'s>, Extra<'s>>| {
         judge(token, extra.span(), extra.state().0)
@@ -89,7 +89,7 @@ pub(super) fn slot<'s, O: 's>(
     later: TokenSet,
 ) -> Rule<'s, Option<O>> {
     // `with { … }` begins the next clause and is not passed over for its brace.
-    let passed = ANY.without(later.and(TokenSet::of(&[Token::With])));
+    let passed = ANY.without(later.and(TokenSet::of(&[TokenKind::With])));
     let stray = skip_before(passed, first).ignore_then(part.clone());
     part.clone()
         .map(Some)
@@ -100,12 +100,12 @@ pub(super) fn slot<'s, O: 's>(
 
 /// The keyword (or sign) `word`, forgiving a slip of spelling, or one other token in its place where what follows it
 /// is in `next`.
-pub(super) fn keyword<'s>(word: Token, next: TokenSet, later: TokenSet) -> Rule<'s, Option<Span>> {
+pub(super) fn keyword<'s>(word: TokenKind, next: TokenSet, later: TokenSet) -> Rule<'s, Option<Span>> {
     let first = TokenSet::of(&[word]);
     let exact = just(word).map_with(|_, extra| extra.span());
     let misspelt = misspelling(word);
     let replaced = any()
-        .filter(move |token: &Token| (!later.has(*token) || token.is_name()) && !CURSOR.has(*token))
+        .filter(move |token: &TokenKind| (!later.has(*token) || token.is_name()) && !CURSOR.has(*token))
         .then_ignore(one_in(next).rewind())
         .validate(|_, extra, emitter| emitter.emit(Fault::Skipped(extra.span())));
     exact
@@ -118,7 +118,7 @@ pub(super) fn keyword<'s>(word: Token, next: TokenSet, later: TokenSet) -> Rule<
 }
 
 /// A word that is nearly `word`.
-fn misspelling<'s>(word: Token) -> impl Parser<'s, Input<'s>, Span, Extra<'s>> + Clone {
+fn misspelling<'s>(word: TokenKind) -> impl Parser<'s, Input<'s>, Span, Extra<'s>> + Clone {
     take(move |token, span, text| looks_like(token, span, text, word).then_some(span)).validate(
         move |span, _, emitter| {
             emitter.emit(Fault::TakenForKeyword(span, word));
@@ -127,7 +127,7 @@ fn misspelling<'s>(word: Token) -> impl Parser<'s, Input<'s>, Span, Extra<'s>> +
     )
 }
 
-fn looks_like(token: Token, span: Span, text: &str, word: Token) -> bool {
+fn looks_like(token: TokenKind, span: Span, text: &str, word: TokenKind) -> bool {
     (token.is_name() || token.is_keyword())
         && word.spelling().is_some_and(|spelling| is_similar(span.text(text), spelling))
 }
@@ -140,7 +140,7 @@ fn skip_to<'s>(until: TokenSet) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + C
 /// Like [`skip_to`], but there must be something to pass over.
 pub(super) fn skip_some<'s>(until: TokenSet) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
     let skipped = any()
-        .filter(move |token: &Token| !until.or(CURSOR).has(*token))
+        .filter(move |token: &TokenKind| !until.or(CURSOR).has(*token))
         .repeated()
         .at_least(1)
         .map_with(|(), extra: &mut MapExtra<'s, '_, Input<'s>, Extra<'s>>| extra.span());
@@ -149,10 +149,11 @@ pub(super) fn skip_some<'s>(until: TokenSet) -> impl Parser<'s, Input<'s>, (), E
 
 /// Like [`skip_some`], but a list in braces is passed over whole: its closing brace closes nothing else.
 pub(super) fn skip_statement<'s>(until: TokenSet) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
-    const BRACES: TokenSet = TokenSet::of(&[Token::OpenBrace, Token::CloseBrace]);
-    let inside = any().filter(move |token: &Token| !until.or(CURSOR).or(BRACES).has(*token)).repeated();
-    let list = just(Token::OpenBrace).ignore_then(inside).then_ignore(just(Token::CloseBrace)).ignored();
-    let other = any().filter(move |token: &Token| !until.or(CURSOR).has(*token)).ignored();
+    const BRACES: TokenSet = TokenSet::of(&[TokenKind::OpenBrace, TokenKind::CloseBrace]);
+    let inside = any().filter(move |token: &TokenKind| !until.or(CURSOR).or(BRACES).has(*token)).repeated();
+    let list =
+        just(TokenKind::OpenBrace).ignore_then(inside).then_ignore(just(TokenKind::CloseBrace)).ignored();
+    let other = any().filter(move |token: &TokenKind| !until.or(CURSOR).has(*token)).ignored();
     let skipped = choice((list, other))
         .repeated()
         .at_least(1)
@@ -171,8 +172,8 @@ pub(super) fn skip_before<'s>(
 }
 
 /// One of the tokens of a set.
-pub(super) fn one_in<'s>(set: TokenSet) -> impl Parser<'s, Input<'s>, Token, Extra<'s>> + Clone {
-    any().filter(move |token: &Token| set.has(*token))
+pub(super) fn one_in<'s>(set: TokenSet) -> impl Parser<'s, Input<'s>, TokenKind, Extra<'s>> + Clone {
+    any().filter(move |token: &TokenKind| set.has(*token))
 }
 
 /// Nothing more, or a fault; whatever is left is passed over.
@@ -181,22 +182,27 @@ pub(super) fn nothing_more<'s>() -> Rule<'s, ()> {
 }
 
 /// Every token that may be passed over.
-const ANY: TokenSet = TokenSet::all_but(Token::Cursor);
+const ANY: TokenSet = TokenSet::all_but(TokenKind::Cursor);
 
 /// What never stands for a name.
 const SIGNS: TokenSet =
-    TokenSet::of(&[Token::CloseBrace, Token::Comma, Token::Colon, Token::String]).or(NUMBER);
+    TokenSet::of(&[TokenKind::CloseBrace, TokenKind::Comma, TokenKind::Colon, TokenKind::String]).or(NUMBER);
 
 /// Nothing passes over the cursor: what could stand there is what was asked.
-const CURSOR: TokenSet = TokenSet::of(&[Token::Cursor]);
+const CURSOR: TokenSet = TokenSet::of(&[TokenKind::Cursor]);
 
 /// The first tokens of a name.
-pub(super) const NAME: TokenSet =
-    TokenSet::of(&[Token::Name, Token::MalformedName, Token::Distance, Token::Bumper, Token::Import]);
+pub(super) const NAME: TokenSet = TokenSet::of(&[
+    TokenKind::Name,
+    TokenKind::MalformedName,
+    TokenKind::Distance,
+    TokenKind::Bumper,
+    TokenKind::Import,
+]);
 
 /// The first tokens of a number.
 pub(super) const NUMBER: TokenSet =
-    TokenSet::of(&[Token::Integer, Token::Float, Token::Ipv4, Token::MalformedNumber]);
+    TokenSet::of(&[TokenKind::Integer, TokenKind::Float, TokenKind::Ipv4, TokenKind::MalformedNumber]);
 
 /// The name of a new entity; a keyword in its place is taken for a name where what follows it is in `next`.
 pub(super) fn declared_name<'s>(kind: EntityKind, next: TokenSet, later: TokenSet) -> Rule<'s, Option<Name>> {
@@ -244,9 +250,9 @@ fn name_at(span: Span, text: &str) -> Name {
 /// A number.
 pub(super) fn number<'s>(label: Expected) -> impl Parser<'s, Input<'s>, Number, Extra<'s>> + Clone {
     take(|token, span, text| NUMBER.has(token).then_some((token, span, text)))
-        .validate(|(token, span, text): (Token, Span, &str), _, emitter| {
+        .validate(|(token, span, text): (TokenKind, Span, &str), _, emitter| {
             let value = match token {
-                Token::Integer | Token::Float => span.text(text).parse().ok(),
+                TokenKind::Integer | TokenKind::Float => span.text(text).parse().ok(),
                 _ => {
                     emitter.emit(Fault::MalformedNumber(span));
                     None
@@ -263,17 +269,18 @@ pub(super) fn references<'s>(
     may_be_empty: bool,
     later: TokenSet,
 ) -> impl Parser<'s, Input<'s>, References, Extra<'s>> + Clone {
-    let inside = NAME.or(TokenSet::of(&[Token::CloseBrace]));
-    let open = slot(just(Token::OpenBrace).ignored(), TokenSet::of(&[Token::OpenBrace]), inside.or(later));
-    let stop = TokenSet::of(&[Token::CloseBrace]).or(later);
+    let inside = NAME.or(TokenSet::of(&[TokenKind::CloseBrace]));
+    let open =
+        slot(just(TokenKind::OpenBrace).ignored(), TokenSet::of(&[TokenKind::OpenBrace]), inside.or(later));
+    let stop = TokenSet::of(&[TokenKind::CloseBrace]).or(later);
     let item = plain_name()
         .labelled(Expected::ReferenceTo(kind))
         .map(Some)
         .recover_with(via_parser(keyword_for_name(kind, stop).map(Some)))
         .recover_with(via_parser(skip_some(NAME.or(stop)).to(None)))
-        .then_ignore(just(Token::Comma).or_not())
+        .then_ignore(just(TokenKind::Comma).or_not())
         .boxed();
-    let close = slot(just(Token::CloseBrace).ignored(), TokenSet::of(&[Token::CloseBrace]), later);
+    let close = slot(just(TokenKind::CloseBrace).ignored(), TokenSet::of(&[TokenKind::CloseBrace]), later);
     open.then(item.repeated().collect::<Vec<_>>())
         .then(close)
         .map_with(|((open, items), close), extra| {

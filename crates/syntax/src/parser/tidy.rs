@@ -8,33 +8,33 @@ use smol_str::SmolStr;
 use super::pairs;
 use super::slot::Fault;
 use crate::cut::{BEGINNINGS, distance, is_slip};
-use crate::{EntityKind, Expected, Found, Lexeme, Span, SyntaxError, SyntaxErrorKind, Token};
+use crate::{EntityKind, Expected, Found, Span, SyntaxError, SyntaxErrorKind, Token, TokenKind};
 
-/// The errors behind `faults`. `tokens` is what the parser saw, `lexemes` everything that stands in the text.
+/// The errors behind `faults`. `significant` is what the parser saw, `tokens` everything that stands in the text.
 pub(super) fn tidy(
     text: &str,
     inside: Option<EntityKind>,
-    tokens: &[Lexeme],
-    lexemes: &[Lexeme],
+    significant: &[Token],
+    tokens: &[Token],
     faults: &[Fault],
 ) -> Vec<SyntaxError> {
-    let piece = Piece { text, inside, tokens, lexemes, faults };
+    let source = EntitySource { text, inside, significant, tokens, faults };
     let mut errors: Vec<SyntaxError> =
-        lexemes.iter().filter_map(|lexeme| piece.lexical_error(*lexeme)).collect();
-    if let Some(error) = piece.broken_path() {
+        tokens.iter().filter_map(|token| source.lexical_error(*token)).collect();
+    if let Some(error) = source.broken_path() {
         errors.retain(|other| other.span.start >= error.span.end);
         errors.insert(0, error);
         return errors;
     }
-    errors.retain(|error| !piece.is_passed_over(error));
-    errors.extend(faults.iter().filter_map(|fault| piece.plain_error(fault)));
-    errors.extend(piece.expectation_errors());
+    errors.retain(|error| !source.is_passed_over(error));
+    errors.extend(faults.iter().filter_map(|fault| source.plain_error(fault)));
+    errors.extend(source.expectation_errors());
     errors.sort_by_key(|error| (error.span.start, error.span.end));
-    pairs::join(errors, tokens)
+    pairs::join(errors, significant)
 }
 
-/// The names among the tokens that were passed over.
-pub(super) fn skipped_names(text: &str, tokens: &[Lexeme], faults: &[Fault]) -> Vec<SmolStr> {
+/// The names among the tokens that the parser skipped.
+pub(super) fn skipped_names(text: &str, significant: &[Token], faults: &[Fault]) -> Vec<SmolStr> {
     let skipped = |span: Span| {
         faults.iter().any(
             |fault| matches!(fault, Fault::Skipped(all) if all.start <= span.start && span.end <= all.end),
@@ -43,7 +43,7 @@ pub(super) fn skipped_names(text: &str, tokens: &[Lexeme], faults: &[Fault]) -> 
     if !faults.iter().any(|fault| matches!(fault, Fault::Skipped(_))) {
         return Vec::new();
     }
-    let names = tokens.iter().filter(|(token, span)| token.is_name() && skipped(*span));
+    let names = significant.iter().filter(|(token, span)| token.is_name() && skipped(*span));
     names.map(|(_, span)| span.text(text).trim_start_matches('^').into()).collect()
 }
 
@@ -52,37 +52,37 @@ pub(super) fn unquoted(span: Span, text: &str) -> SmolStr {
     span.text(text).trim_matches('"').into()
 }
 
-struct Piece<'a> {
+struct EntitySource<'a> {
     text: &'a str,
     inside: Option<EntityKind>,
-    tokens: &'a [Lexeme],
-    lexemes: &'a [Lexeme],
+    significant: &'a [Token],
+    tokens: &'a [Token],
     faults: &'a [Fault],
 }
 
 /// Complaints about one place.
 struct Complaint<'a> {
-    /// Index into the tokens; their number for the end.
+    /// Index into the significant tokens; their number for the end.
     index: usize,
     expected: &'a [Expected],
 }
 
-impl Piece<'_> {
+impl EntitySource<'_> {
     fn written(&self, span: Span) -> SmolStr {
         span.text(self.text).into()
     }
 
-    fn lexical_error(&self, (token, span): Lexeme) -> Option<SyntaxError> {
+    fn lexical_error(&self, (token, span): Token) -> Option<SyntaxError> {
         let (span, kind) = match token {
-            Token::Invalid => (span, SyntaxErrorKind::InvalidCharacter { written: self.written(span) }),
-            Token::UnterminatedComment => {
+            TokenKind::Invalid => (span, SyntaxErrorKind::InvalidCharacter { written: self.written(span) }),
+            TokenKind::UnterminatedComment => {
                 (Span::new(span.start, span.start + 2), SyntaxErrorKind::UnterminatedComment)
             }
-            Token::UnterminatedString => (span, SyntaxErrorKind::UnterminatedString),
-            Token::MalformedName => {
+            TokenKind::UnterminatedString => (span, SyntaxErrorKind::UnterminatedString),
+            TokenKind::MalformedName => {
                 (self.foreign_part(span), SyntaxErrorKind::InvalidName { written: self.written(span) })
             }
-            Token::ForeignComment => {
+            TokenKind::ForeignComment => {
                 let marker =
                     span.text(self.text).find([' ', '\t']).filter(|_| !span.text(self.text).starts_with('#'));
                 let marker = u32::try_from(marker.unwrap_or(1)).unwrap_or(1);
@@ -115,7 +115,7 @@ impl Piece<'_> {
         );
         let inside = |fault: &Fault| match fault {
             Fault::Skipped(span) => {
-                let next = self.tokens.iter().find(|(_, token)| token.start >= span.end);
+                let next = self.significant.iter().find(|(_, token)| token.start >= span.end);
                 let end = next.map_or(u32::MAX, |(_, token)| token.start);
                 span.start < error.span.start && error.span.end <= end
             }
@@ -126,13 +126,13 @@ impl Piece<'_> {
 
     /// An import whose path is not in quotes: all that stands on its line is one mistake.
     fn broken_path(&self) -> Option<SyntaxError> {
-        let (&(first, import), rest) = self.lexemes.split_first()?;
+        let (&(first, import), rest) = self.tokens.split_first()?;
         let next = rest.iter().find(|(token, _)| !token.is_comment())?;
-        if first != Token::Import || matches!(next.0, Token::String | Token::UnterminatedString) {
+        if first != TokenKind::Import || matches!(next.0, TokenKind::String | TokenKind::UnterminatedString) {
             return None;
         }
         let same_line =
-            |(_, span): &&Lexeme| !Span::new(import.end, span.start).text(self.text).contains(['\n', '\r']);
+            |(_, span): &&Token| !Span::new(import.end, span.start).text(self.text).contains(['\n', '\r']);
         let path = rest.iter().take_while(same_line).filter(|(token, _)| !token.is_comment());
         let span = path.map(|(_, span)| *span).reduce(Span::to)?;
         let found = Found::Text(self.written(span));
@@ -183,7 +183,7 @@ impl Piece<'_> {
             .filter_map(|fault| match fault {
                 // A rule that only looked ahead expects nothing.
                 Fault::Expected { at, expected } if !expected.is_empty() => {
-                    let index = self.tokens.partition_point(|(_, span)| span.start < at.start);
+                    let index = self.significant.partition_point(|(_, span)| span.start < at.start);
                     Some(Complaint { index, expected })
                 }
                 _ => None,
@@ -195,10 +195,10 @@ impl Piece<'_> {
 
     /// Where reading went on if the token at `index` was passed over.
     fn skipped_from(&self, index: usize) -> Option<usize> {
-        let start = self.tokens.get(index)?.1.start;
+        let start = self.significant.get(index)?.1.start;
         self.faults.iter().find_map(|fault| match fault {
             Fault::Skipped(span) if span.start <= start && start < span.end => {
-                Some(self.tokens.partition_point(|(_, token)| token.start < span.end))
+                Some(self.significant.partition_point(|(_, token)| token.start < span.end))
             }
             _ => None,
         })
@@ -207,26 +207,28 @@ impl Piece<'_> {
     /// Whether the mistake at `index` has been reported otherwise: the token was taken for something, or something
     /// that is no token stands right before it.
     fn is_consequence(&self, index: usize) -> bool {
-        let here = self.tokens.get(index).map(|(_, span)| *span);
+        let here = self.significant.get(index).map(|(_, span)| *span);
         let taken = self.faults.iter().any(|fault| {
             matches!(fault, Fault::TakenForKeyword(span, _) | Fault::TakenForName(span, _) if Some(*span) == here)
         });
-        let before = index.checked_sub(1).map_or(0, |previous| self.tokens[previous].1.end);
+        let before = index.checked_sub(1).map_or(0, |previous| self.significant[previous].1.end);
         let until = here.map_or(Span::of(self.text).end, |span| span.start);
-        let lexical = |token: Token| {
-            matches!(token, Token::Invalid | Token::UnterminatedComment | Token::UnterminatedString)
+        let lexical = |token: TokenKind| {
+            matches!(
+                token,
+                TokenKind::Invalid | TokenKind::UnterminatedComment | TokenKind::UnterminatedString
+            )
         };
-        let no_token =
-            |(token, span): &Lexeme| lexical(*token) && before <= span.start && span.start <= until;
-        let after_string = index > 0 && self.tokens[index - 1].0 == Token::UnterminatedString;
-        taken || after_string || self.lexemes.iter().any(no_token)
+        let no_token = |(token, span): &Token| lexical(*token) && before <= span.start && span.start <= until;
+        let after_string = index > 0 && self.significant[index - 1].0 == TokenKind::UnterminatedString;
+        taken || after_string || self.tokens.iter().any(no_token)
     }
 
     fn expectation_error(&self, complaint: &Complaint<'_>, skipped: bool) -> SyntaxError {
         let mut expected = complaint.expected.to_vec();
         expected.sort_unstable();
         expected.dedup();
-        let Some(&(token, span)) = self.tokens.get(complaint.index) else {
+        let Some(&(token, span)) = self.significant.get(complaint.index) else {
             return self.missing(complaint.index, expected, Found::End);
         };
         let written = self.written(span);
@@ -234,7 +236,7 @@ impl Piece<'_> {
             return self.missing(complaint.index, expected, Found::Text(written));
         }
         // `with sensors` behind a robot is no other declaration.
-        let clause = token == Token::Sensors && self.inside == Some(EntityKind::Robot);
+        let clause = token == TokenKind::Sensors && self.inside == Some(EntityKind::Robot);
         if let Some(keyword) = meant(token, &written, &expected).filter(|_| !clause) {
             return SyntaxError { span, kind: SyntaxErrorKind::Misspelt { written, keyword } };
         }
@@ -243,15 +245,15 @@ impl Piece<'_> {
     }
 
     fn missing(&self, index: usize, expected: Vec<Expected>, found: Found) -> SyntaxError {
-        let end = index.checked_sub(1).map_or(0, |previous| self.tokens[previous].1.end);
+        let end = index.checked_sub(1).map_or(0, |previous| self.significant[previous].1.end);
         let kind = SyntaxErrorKind::Missing { expected, found, inside: self.inside };
         SyntaxError { span: Span::at(end), kind }
     }
 }
 
 /// The expected keyword that `written` is a slip for.
-fn meant(token: Token, written: &str, expected: &[Expected]) -> Option<Token> {
-    const ACTIONS: [Token; 3] = [Token::Move, Token::Turn, Token::Slam];
+fn meant(token: TokenKind, written: &str, expected: &[Expected]) -> Option<TokenKind> {
+    const ACTIONS: [TokenKind; 3] = [TokenKind::Move, TokenKind::Turn, TokenKind::Slam];
     if !token.is_name() && !token.is_keyword() {
         return None;
     }

@@ -1,7 +1,7 @@
 //! What people write who know it from elsewhere, or who put it in the wrong place: each gets its own words.
 
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{Expected, Span, Token};
+use pydslrep_syntax::{Expected, Span, TokenKind};
 
 use super::{RULE, mend};
 use crate::diagnostics::context::{Brace, Context, Problem};
@@ -40,7 +40,7 @@ pub(super) fn problem(
 struct Place<'a, 'c> {
     context: &'a Context<'c>,
     span: Span,
-    tokens: Vec<(Token, Span)>,
+    tokens: Vec<(TokenKind, Span)>,
     index: usize,
 }
 
@@ -48,9 +48,9 @@ impl<'a, 'c> Place<'a, 'c> {
     fn new(context: &'a Context<'c>, span: Span) -> Option<Self> {
         /// No habit is longer.
         const AROUND: usize = 4;
-        let all = context.lexemes;
+        let all = context.tokens;
         let at = all.partition_point(|(_, other)| other.start < span.start);
-        let is_token = |(token, _): &&(Token, Span)| !token.is_comment();
+        let is_token = |(token, _): &&(TokenKind, Span)| !token.is_comment();
         let mut tokens: Vec<_> = all.get(..at)?.iter().rev().filter(is_token).take(AROUND).copied().collect();
         tokens.reverse();
         let index = tokens.len();
@@ -59,7 +59,7 @@ impl<'a, 'c> Place<'a, 'c> {
     }
 
     /// The token so many places before it.
-    fn before(&self, by: usize) -> Option<(Token, Span)> {
+    fn before(&self, by: usize) -> Option<(TokenKind, Span)> {
         self.tokens.get(self.index.checked_sub(by)?).copied()
     }
 
@@ -67,11 +67,11 @@ impl<'a, 'c> Place<'a, 'c> {
         self.context.text(self.span)
     }
 
-    fn here(&self) -> Option<Token> {
+    fn here(&self) -> Option<TokenKind> {
         self.tokens.get(self.index).map(|(token, _)| *token)
     }
 
-    fn after(&self) -> Option<(Token, Span)> {
+    fn after(&self) -> Option<(TokenKind, Span)> {
         self.tokens.get(self.index + 1).copied()
     }
 }
@@ -92,7 +92,7 @@ fn path(context: &Context<'_>, span: Span, found: &str) -> Problem {
 
 /// `move 40 cm`
 fn distance_unit(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
-    if !expected.contains(&Expected::Word(Token::Meters)) {
+    if !expected.contains(&Expected::Word(TokenKind::Meters)) {
         return None;
     }
     let word = match found.to_lowercase().as_str() {
@@ -128,9 +128,9 @@ fn needless_unit(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
         return None;
     }
     let (what, unit, own): (&str, &str, &[&str]) = match place.before(2)?.0 {
-        Token::Radius => ("a radius", "centimetres", &CENTIMETRES),
-        Token::At => ("a speed", "centimetres per second", &CENTIMETRES),
-        Token::Left | Token::Right => ("an angle", "degrees", &DEGREES),
+        TokenKind::Radius => ("a radius", "centimetres", &CENTIMETRES),
+        TokenKind::At => ("a speed", "centimetres per second", &CENTIMETRES),
+        TokenKind::Left | TokenKind::Right => ("an angle", "degrees", &DEGREES),
         _ => return None,
     };
     let known = own.contains(&found) || OTHERS.contains(&found);
@@ -149,7 +149,7 @@ fn needless_unit(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
     if own.contains(&found) {
         return Some(problem.fix(format!("remove `{written}`"), [edit]));
     }
-    let length = matches!(place.before(2), Some((Token::Radius | Token::At, _)));
+    let length = matches!(place.before(2), Some((TokenKind::Radius | TokenKind::At, _)));
     let factor = match found {
         "mm" => 0.1,
         "m" | "meter" | "meters" | "metres" => 100.0,
@@ -183,8 +183,8 @@ fn glued(place: &Place<'_, '_>) -> Span {
 fn decimal_comma(place: &Place<'_, '_>) -> Option<Problem> {
     let ((before, whole), (after, fraction)) = (place.before(1)?, place.after()?);
     let glued = whole.end == place.span.start && place.span.end == fraction.start;
-    let digits = before == Token::Integer && after == Token::Integer;
-    if place.here() != Some(Token::Comma) || !glued || !digits {
+    let digits = before == TokenKind::Integer && after == TokenKind::Integer;
+    if place.here() != Some(TokenKind::Comma) || !glued || !digits {
         return None;
     }
     let edit = place.context.replace(place.span, ".");
@@ -203,7 +203,7 @@ fn two_names(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Optio
     let (before, first) = place.before(1)?;
     let declared = place.before(2).is_some_and(|(token, _)| token.entity_kind().is_some());
     let wanted = expected.iter().all(|expected| matches!(expected, Expected::Word(_)));
-    if !declared || !wanted || before != Token::Name || place.here() != Some(Token::Name) {
+    if !declared || !wanted || before != TokenKind::Name || place.here() != Some(TokenKind::Name) {
         return None;
     }
     let gap = place.context.join(Span::new(first.end, place.span.start), "_");
@@ -219,7 +219,7 @@ fn two_names(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Optio
 
 /// `move 4 meters` between declarations.
 fn action_outside(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
-    let is_action = matches!(place.here(), Some(Token::Move | Token::Turn | Token::Slam));
+    let is_action = matches!(place.here(), Some(TokenKind::Move | TokenKind::Turn | TokenKind::Slam));
     if !is_action || !expected.contains(&Expected::Declaration) {
         return None;
     }
@@ -234,7 +234,9 @@ fn action_outside(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> 
 
 /// `}` where nothing is open.
 fn stray_brace(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Problem> {
-    if place.here() != Some(Token::CloseBrace) || expected.contains(&Expected::Word(Token::CloseBrace)) {
+    if place.here() != Some(TokenKind::CloseBrace)
+        || expected.contains(&Expected::Word(TokenKind::CloseBrace))
+    {
         return None;
     }
     let problem = RULE
@@ -255,7 +257,7 @@ fn separator(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Optio
     } else {
         return None;
     };
-    if place.here() != Some(Token::Comma) {
+    if place.here() != Some(TokenKind::Comma) {
         return None;
     }
     let problem =
@@ -302,10 +304,10 @@ fn quoted(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
 fn glued_to_number(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Problem> {
     let (number, before) = place.before(1)?;
     let glued = number.is_number() && before.end == place.span.start;
-    let units =
-        expected.contains(&Expected::Word(Token::Meters)) || needless_unit(place, &place.written()).is_some();
+    let units = expected.contains(&Expected::Word(TokenKind::Meters))
+        || needless_unit(place, &place.written()).is_some();
     let known = units && !place.written().contains(|c: char| c.is_ascii_digit());
-    (glued && !known && place.here() == Some(Token::Name)).then(|| {
+    (glued && !known && place.here() == Some(TokenKind::Name)).then(|| {
         let whole = before.to(place.span);
         RULE.problem(whole, format!("`{}` is not a number", place.context.text(whole)))
             .help("write digits, and at most one point between them, such as `4` or `4.5`")
@@ -315,14 +317,15 @@ fn glued_to_number(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Probl
 /// `wheel 1 with …`
 fn number_for_name(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
     let reference = expected.contains(&Expected::ReferenceTo(pydslrep_syntax::EntityKind::Ip));
-    if reference && place.here() == Some(Token::Ipv4) {
+    if reference && place.here() == Some(TokenKind::Ipv4) {
         return Some(
             RULE.problem(place.span, format!("expected the name of an ip, found the address `{found}`"))
                 .help(format!("declare it, such as `ip home {found}`, and write its name here")),
         );
     }
     let wanted = expected.iter().any(|expected| matches!(expected, Expected::NameOf(_)));
-    let plain = matches!(place.here(), Some(Token::Integer | Token::Float | Token::MalformedNumber));
+    let plain =
+        matches!(place.here(), Some(TokenKind::Integer | TokenKind::Float | TokenKind::MalformedNumber));
     (wanted && plain).then(|| {
         RULE.problem(place.span, format!("a name cannot start with a digit, as `{found}` does"))
             .help("names start with a letter or `_`, such as `wheel_1`")
@@ -332,7 +335,7 @@ fn number_for_name(place: &Place<'_, '_>, expected: &[Expected], found: &str) ->
 /// `move forward 4 meters`
 fn way_of_moving(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
     let early = expected.contains(&Expected::Distance);
-    let late = matches!(place.before(1), Some((Token::Meters | Token::Centimeters, _)));
+    let late = matches!(place.before(1), Some((TokenKind::Meters | TokenKind::Centimeters, _)));
     if !early && !late {
         return None;
     }
@@ -356,10 +359,10 @@ fn way_of_moving(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> O
 
 /// `turn 90 left`
 fn angle_first(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
-    let number = matches!(place.here(), Some(Token::Integer | Token::Float));
+    let number = matches!(place.here(), Some(TokenKind::Integer | TokenKind::Float));
     let (after, direction) = place.after()?;
-    let turn =
-        matches!(place.before(1), Some((Token::Turn, _))) && matches!(after, Token::Left | Token::Right);
+    let turn = matches!(place.before(1), Some((TokenKind::Turn, _)))
+        && matches!(after, TokenKind::Left | TokenKind::Right);
     if !number || !turn {
         return None;
     }
@@ -376,10 +379,10 @@ fn angle_first(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
 
 /// `turn left 90 until { … }`, `move 4 meters until { … }`
 fn until(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Problem> {
-    if place.here() != Some(Token::Until) {
+    if place.here() != Some(TokenKind::Until) {
         return None;
     }
-    let turned = matches!(place.before(2), Some((Token::Left | Token::Right, _)));
+    let turned = matches!(place.before(2), Some((TokenKind::Left | TokenKind::Right, _)));
     if expected.contains(&Expected::Distance) || !turned {
         let problem = RULE.problem(place.span, "only a turn has `until`, and a move has its distance");
         return Some(problem.help("a turn is written `turn left 90` or `turn right until { SENSORS }`"));
@@ -405,7 +408,7 @@ fn foreign_action(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> 
             );
         }
         "repeat" | "for" | "while" | "loop" | "forever"
-            if place.before(1)?.0 != Token::Left && place.before(1)?.0 != Token::Right =>
+            if place.before(1)?.0 != TokenKind::Left && place.before(1)?.0 != TokenKind::Right =>
         {
             return Some(
                 problem.help("there are no loops; an environment may list a movement several times"),
@@ -426,7 +429,8 @@ fn foreign_action(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> 
 fn another_sensor(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Problem> {
     let Some(Entity::Sensor(_)) = place.context.tree else { return None };
     let (next, name) = place.after()?;
-    if place.here() != Some(Token::Comma) || !expected.contains(&Expected::Declaration) || !next.is_name() {
+    if place.here() != Some(TokenKind::Comma) || !expected.contains(&Expected::Declaration) || !next.is_name()
+    {
         return None;
     }
     let problem = RULE
@@ -439,8 +443,8 @@ fn another_sensor(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Proble
 
 /// `ip home 127.0.0.1:23000`
 fn port_of_address(place: &Place<'_, '_>) -> Option<Problem> {
-    let address = matches!(place.before(1), Some((Token::Ipv4, _)));
-    (address && place.here() == Some(Token::Colon)).then(|| {
+    let address = matches!(place.before(1), Some((TokenKind::Ipv4, _)));
+    (address && place.here() == Some(TokenKind::Colon)).then(|| {
         RULE.problem(place.span, "an ip is an address without a port")
             .help("each robot has its port: `robot NAME with port 23000 has …`")
     })

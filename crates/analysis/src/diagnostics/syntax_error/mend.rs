@@ -1,7 +1,7 @@
 //! Finding fixes: what could mend an entity is tried, and offered where it does.
 
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{Expected, Span, Token, parse};
+use pydslrep_syntax::{Expected, Span, TokenKind, parse};
 
 use crate::diagnostics::context::{Context, Problem, ProblemEdit};
 
@@ -20,7 +20,7 @@ pub(super) fn is_split(context: &Context<'_>, edits: &[ProblemEdit]) -> bool {
 }
 
 fn pieces_if_mended(context: &Context<'_>, edits: &[ProblemEdit]) -> Option<usize> {
-    let end = context.lexemes.last()?.1.end;
+    let end = context.tokens.last()?.1.end;
     if context.errors.len() > MOST_ERRORS || end > LONGEST {
         return None;
     }
@@ -44,7 +44,7 @@ pub(super) fn insert(context: &Context<'_>, problem: Problem, span: Span, expect
     let before = token_before(context, span);
     let words = expected.iter().filter_map(|expected| match expected {
         // A list with nothing in it is no better than one that does not end.
-        Expected::Word(Token::CloseBrace) if before == Some(Token::OpenBrace) => None,
+        Expected::Word(TokenKind::CloseBrace) if before == Some(TokenKind::OpenBrace) => None,
         Expected::Word(word) => word.spelling(),
         _ => None,
     });
@@ -82,23 +82,24 @@ pub(super) fn closing(context: &Context<'_>, place: Span) -> ProblemEdit {
 /// Whether a brace at this place is one of a movement's own.
 pub(super) fn is_body(context: &Context<'_>, place: Span) -> bool {
     let before =
-        context.lexemes.iter().rev().filter(|(token, span)| !token.is_comment() && span.end <= place.start);
-    let opened =
-        before.map(|(token, _)| *token).find(|token| matches!(token, Token::OpenBrace | Token::Until));
-    let list = matches!(opened, Some(Token::Until)) || is_until_list(context, place);
+        context.tokens.iter().rev().filter(|(token, span)| !token.is_comment() && span.end <= place.start);
+    let opened = before
+        .map(|(token, _)| *token)
+        .find(|token| matches!(token, TokenKind::OpenBrace | TokenKind::Until));
+    let list = matches!(opened, Some(TokenKind::Until)) || is_until_list(context, place);
     matches!(context.tree, Some(Entity::Movement(_))) && !list
 }
 
 fn is_until_list(context: &Context<'_>, place: Span) -> bool {
     let mut depth = Vec::new();
     let mut previous = None;
-    for (token, span) in context.lexemes.iter().filter(|(token, _)| !token.is_comment()) {
+    for (token, span) in context.tokens.iter().filter(|(token, _)| !token.is_comment()) {
         if span.start >= place.start {
             break;
         }
         match token {
-            Token::OpenBrace => depth.push(previous == Some(Token::Until)),
-            Token::CloseBrace => {
+            TokenKind::OpenBrace => depth.push(previous == Some(TokenKind::Until)),
+            TokenKind::CloseBrace => {
                 depth.pop();
             }
             _ => {}
@@ -108,16 +109,16 @@ fn is_until_list(context: &Context<'_>, place: Span) -> bool {
     depth.last() == Some(&true)
 }
 
-fn token_before(context: &Context<'_>, span: Span) -> Option<Token> {
+fn token_before(context: &Context<'_>, span: Span) -> Option<TokenKind> {
     let before =
-        context.lexemes.iter().rev().find(|(token, other)| !token.is_comment() && other.end <= span.start);
+        context.tokens.iter().rev().find(|(token, other)| !token.is_comment() && other.end <= span.start);
     before.map(|(token, _)| *token)
 }
 
 /// Whether the text at `span` is what stands right before it, too, and once is enough.
 pub(super) fn is_doubled(context: &Context<'_>, span: Span) -> bool {
     let before =
-        context.lexemes.iter().rev().find(|(token, other)| !token.is_comment() && other.end <= span.start);
+        context.tokens.iter().rev().find(|(token, other)| !token.is_comment() && other.end <= span.start);
     let same = before.is_some_and(|(_, before)| context.text(*before) == context.text(span));
     same && is_mended(context, &[context.remove(span)])
 }
@@ -133,7 +134,7 @@ pub(super) fn repair(
     let words: Vec<&str> = expected
         .iter()
         .filter_map(|expected| match expected {
-            Expected::Word(Token::Comma) => None,
+            Expected::Word(TokenKind::Comma) => None,
             Expected::Word(word) => word.spelling(),
             _ => None,
         })
@@ -162,8 +163,8 @@ pub(super) fn repair(
         }
     }
     let names = expected.iter().any(|expected| matches!(expected, Expected::NameOf(_)));
-    let glued = context.lexemes.iter().any(|(_, other)| other.end == span.start || other.start == span.end);
-    let alone = context.lexemes.len() == 1;
+    let glued = context.tokens.iter().any(|(_, other)| other.end == span.start || other.start == span.end);
+    let alone = context.tokens.len() == 1;
     if names && !found.starts_with(char::is_alphabetic) || glued || alone {
         return problem;
     }
@@ -176,7 +177,7 @@ pub(super) fn repair(
 
 /// Where a brace too many is closed.
 fn braces(context: &Context<'_>, span: Span, found: &str) -> Option<Span> {
-    let behind = context.lexemes.iter().filter(|(_, other)| other.start >= span.end);
-    let mut close = behind.filter(|(token, _)| *token == Token::CloseBrace).map(|(_, span)| *span);
+    let behind = context.tokens.iter().filter(|(_, other)| other.start >= span.end);
+    let mut close = behind.filter(|(token, _)| *token == TokenKind::CloseBrace).map(|(_, span)| *span);
     close.next().filter(|_| found == "{")
 }

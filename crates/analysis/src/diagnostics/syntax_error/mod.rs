@@ -9,7 +9,7 @@ mod rewrite;
 mod words;
 
 use pydslrep_syntax::ast::{Entity, Name};
-use pydslrep_syntax::{EntityKind, Expected, Found, Span, SyntaxError, SyntaxErrorKind, Token};
+use pydslrep_syntax::{EntityKind, Expected, Found, Span, SyntaxError, SyntaxErrorKind, TokenKind};
 
 pub(super) use self::rewrite::{Rewrite, find as rewrites};
 use self::words::{listed, shape, telling};
@@ -73,7 +73,7 @@ fn problem(context: &Context<'_>, error: &SyntaxError) -> Option<Problem> {
     })
 }
 
-fn misspelt(context: &Context<'_>, span: Span, written: &str, keyword: Token) -> Problem {
+fn misspelt(context: &Context<'_>, span: Span, written: &str, keyword: TokenKind) -> Problem {
     let word = keyword.spelling().unwrap_or_default();
     let is_keyword = pydslrep_syntax::KEYWORDS.iter().any(|(_, other)| *other == written);
     let message = if is_keyword {
@@ -130,9 +130,9 @@ fn missing(
 ) -> Problem {
     let all = expected;
     let expected = telling(expected);
-    let closes = matches!(expected[..], [Expected::Word(Token::CloseBrace)]);
+    let closes = matches!(expected[..], [Expected::Word(TokenKind::CloseBrace)]);
     let before =
-        context.lexemes.iter().rev().find(|(token, other)| !token.is_comment() && other.end <= span.start);
+        context.tokens.iter().rev().find(|(token, other)| !token.is_comment() && other.end <= span.start);
     let place = match (found, inside, before) {
         (Found::Text(text), ..) => format!(" before `{text}`"),
         (Found::End, Some(kind), _) if closes => format!(" at the end of this {}", kind.noun()),
@@ -145,7 +145,7 @@ fn missing(
     if let Some(shape) = shape(context, inside, &expected) {
         problem = problem.help(shape);
     }
-    if *found == Found::End && expected.contains(&Expected::Word(Token::CloseBrace)) {
+    if *found == Found::End && expected.contains(&Expected::Word(TokenKind::CloseBrace)) {
         problem = problem.brace(Brace::Unclosed);
     }
     if let Some((_, Some(text))) = clause {
@@ -165,13 +165,13 @@ fn clause(
 ) -> Option<(&'static str, Option<&'static str>)> {
     let Found::Text(found) = found else { return None };
     match (inside?, expected) {
-        (EntityKind::Robot, [Expected::Word(Token::With)]) if ["has", "{"].contains(&found.as_str()) => {
+        (EntityKind::Robot, [Expected::Word(TokenKind::With)]) if ["has", "{"].contains(&found.as_str()) => {
             Some(("the robot's port", Some("with port 23000")))
         }
-        (EntityKind::Movement, [Expected::Word(Token::Of)]) if found == "{" => {
+        (EntityKind::Movement, [Expected::Word(TokenKind::Of)]) if found == "{" => {
             Some(("`of` and the name of a robot", None))
         }
-        (EntityKind::Environment, [Expected::Word(Token::Has)]) if found == "with" => {
+        (EntityKind::Environment, [Expected::Word(TokenKind::Has)]) if found == "with" => {
             Some(("the environment's robots", None))
         }
         _ => None,
@@ -246,7 +246,7 @@ fn misplaced(
 ) -> Problem {
     let early = span.start < to;
     let side = if early { "early" } else { "late" };
-    let before = context.lexemes.iter().rev().find(|(token, other)| !token.is_comment() && other.end <= to);
+    let before = context.tokens.iter().rev().find(|(token, other)| !token.is_comment() && other.end <= to);
     let place = before.map(|(_, other)| format!(": it belongs after `{}`", context.text(*other)));
     let problem = RULE.problem(span, format!("`{written}` comes too {side}{}", place.unwrap_or_default()));
     let problem = match shape(context, inside, &[]) {
@@ -282,8 +282,8 @@ fn late_import(context: &Context<'_>) -> Option<Problem> {
     if !context.database.is_late_import(context.id) {
         return None;
     }
-    let first = context.lexemes.first()?.1;
-    let last = context.lexemes.iter().rev().find(|(token, _)| !token.is_comment())?.1;
+    let first = context.tokens.first()?.1;
+    let last = context.tokens.iter().rev().find(|(token, _)| !token.is_comment())?.1;
     let span = first.to(last);
     let top = context.database.entities(context.file).next()?.id;
     let text = format!("{}\n", context.text(span).replace("\r\n", "\n"));

@@ -8,7 +8,9 @@ mod actions;
 mod entities;
 
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{EntityKind, KEYWORDS, Lexeme, Span, SyntaxErrorKind, Token, is_similar, lex, parse};
+use pydslrep_syntax::{
+    EntityKind, KEYWORDS, Span, SyntaxErrorKind, Token, TokenKind, is_similar, lex, parse,
+};
 
 use super::{RULE, mend, words};
 use crate::diagnostics::context::{Context, Problem};
@@ -63,7 +65,7 @@ impl Rewrite {
 
 /// The statements of an entity that are one problem each.
 pub(crate) fn find(context: &Context<'_>) -> Vec<Rewrite> {
-    let end = context.lexemes.last().map_or(0, |(_, last)| last.end);
+    let end = context.tokens.last().map_or(0, |(_, last)| last.end);
     if context.errors.is_empty() || end > mend::LONGEST {
         return Vec::new();
     }
@@ -90,53 +92,53 @@ pub(super) fn with_fallback(context: &Context<'_>, problem: Problem) -> Problem 
 /// A token with its text; a number with a comma is one, and so is what stands in quotes.
 #[derive(Debug, Clone, PartialEq)]
 struct Word {
-    token: Token,
+    token: TokenKind,
     span: Span,
     text: String,
 }
 
 impl Word {
     fn is_number(&self) -> bool {
-        matches!(self.token, Token::Integer | Token::Float)
+        matches!(self.token, TokenKind::Integer | TokenKind::Float)
     }
 
     /// Signs that other languages put between or around values.
     fn is_noise(&self) -> bool {
         match self.token {
-            Token::Colon | Token::Comma => true,
-            Token::Invalid => self.text.chars().all(|c| "()[]=;.".contains(c)),
+            TokenKind::Colon | TokenKind::Comma => true,
+            TokenKind::Invalid => self.text.chars().all(|c| "()[]=;.".contains(c)),
             _ => false,
         }
     }
 }
 
 /// The words among some tokens; `None` where a comment stands among them, which would be lost.
-fn words_of(context: &Context<'_>, lexemes: &[Lexeme]) -> Option<Vec<Word>> {
-    let is_word = |(token, _): &Lexeme| !token.is_comment();
-    let last = lexemes.iter().rposition(is_word)?;
-    let first = lexemes.iter().position(is_word)?;
-    let lexemes = &lexemes[first..=last];
-    if lexemes.len() > MOST_TOKENS || !lexemes.iter().all(is_word) {
+fn words_of(context: &Context<'_>, tokens: &[Token]) -> Option<Vec<Word>> {
+    let is_word = |(token, _): &Token| !token.is_comment();
+    let last = tokens.iter().rposition(is_word)?;
+    let first = tokens.iter().position(is_word)?;
+    let tokens = &tokens[first..=last];
+    if tokens.len() > MOST_TOKENS || !tokens.iter().all(is_word) {
         return None;
     }
     let mut words: Vec<Word> = Vec::new();
-    for &(token, span) in lexemes {
+    for &(token, span) in tokens {
         let text = context.text(span);
         match (token, &mut words[..]) {
-            (Token::Integer, [.., whole, comma])
-                if whole.token == Token::Integer
-                    && comma.token == Token::Comma
+            (TokenKind::Integer, [.., whole, comma])
+                if whole.token == TokenKind::Integer
+                    && comma.token == TokenKind::Comma
                     && whole.span.end == comma.span.start
                     && comma.span.end == span.start =>
             {
-                whole.token = Token::Float;
+                whole.token = TokenKind::Float;
                 whole.span = whole.span.to(span);
                 whole.text = format!("{}.{text}", whole.text);
                 words.pop();
             }
-            (Token::String, _) => {
+            (TokenKind::String, _) => {
                 let text = text.trim_matches('"').to_owned();
-                let token = lex(&text).first().map_or(Token::String, |(token, _)| *token);
+                let token = lex(&text).first().map_or(TokenKind::String, |(token, _)| *token);
                 words.push(Word { token, span, text });
             }
             _ => words.push(Word { token, span, text }),
@@ -194,7 +196,7 @@ impl Difference {
         // Commas between names may stay.
         let listed = text.contains('{');
         let mut extra: Vec<String> = Vec::new();
-        for word in left.into_iter().filter(|word| !(listed && word.token == Token::Comma)) {
+        for word in left.into_iter().filter(|word| !(listed && word.token == TokenKind::Comma)) {
             if !extra.contains(&word.text) {
                 extra.push(word.text.clone());
             }

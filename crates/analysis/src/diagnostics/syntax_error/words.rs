@@ -1,7 +1,7 @@
 //! What was expected, in a person's terms.
 
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{EntityKind, Expected, Token};
+use pydslrep_syntax::{EntityKind, Expected, TokenKind};
 
 use crate::diagnostics::context::Context;
 
@@ -24,21 +24,26 @@ pub(super) fn shape(
     if wants(&[Expected::Action]) {
         return Some(ACTIONS.to_owned());
     }
-    if wants(&[Expected::Distance, Expected::Speed, word(Token::Meters), word(Token::Centimeters)]) {
+    if wants(&[Expected::Distance, Expected::Speed, word(TokenKind::Meters), word(TokenKind::Centimeters)]) {
         return Some(MOVE.to_owned());
     }
     let turns = [Expected::Angle, Expected::ReferenceTo(EntityKind::Sensor)];
-    let in_turn = wants(&[word(Token::Left), word(Token::Right), word(Token::Until)]) || wants(&turns);
+    let in_turn =
+        wants(&[word(TokenKind::Left), word(TokenKind::Right), word(TokenKind::Until)]) || wants(&turns);
     if in_turn && inside == Some(EntityKind::Movement) {
         return Some(TURN.to_owned());
     }
     let kind = inside?;
     let shape = match kind {
-        EntityKind::Sensor if wants(&[word(Token::Distance), word(Token::Bumper)]) => "sensor NAME : bumper",
-        EntityKind::Robot if wants(&[word(Token::Sensors), Expected::ReferenceTo(EntityKind::Sensor)]) => {
+        EntityKind::Sensor if wants(&[word(TokenKind::Distance), word(TokenKind::Bumper)]) => {
+            "sensor NAME : bumper"
+        }
+        EntityKind::Robot
+            if wants(&[word(TokenKind::Sensors), Expected::ReferenceTo(EntityKind::Sensor)]) =>
+        {
             "robot NAME type tw with port 23000 has { WHEELS } wheels with sensors { SENSORS }"
         }
-        EntityKind::Environment if wants(&[word(Token::Ip), Expected::ReferenceTo(EntityKind::Ip)]) => {
+        EntityKind::Environment if wants(&[word(TokenKind::Ip), Expected::ReferenceTo(EntityKind::Ip)]) => {
             "environment NAME with ip ADDRESS has { ROBOTS } robots with { MOVEMENTS } moves"
         }
         _ => kind.shape(),
@@ -50,20 +55,20 @@ pub(super) fn shape(
 /// as well; where a movement's brace is open, not every word that could continue its last action; and nothing that
 /// is optional where something must follow.
 pub(super) fn telling(expected: &[Expected]) -> Vec<Expected> {
-    let closes = expected.contains(&Expected::Word(Token::CloseBrace));
+    let closes = expected.contains(&Expected::Word(TokenKind::CloseBrace));
     let lists = expected.iter().any(|expected| matches!(expected, Expected::ReferenceTo(_)));
     let names = expected.iter().any(|expected| matches!(expected, Expected::NameOf(_)));
     let ends = expected.contains(&Expected::Declaration);
-    let has = expected.contains(&Expected::Word(Token::Has));
-    let with = expected.contains(&Expected::Word(Token::With));
+    let has = expected.contains(&Expected::Word(TokenKind::Has));
+    let with = expected.contains(&Expected::Word(TokenKind::With));
     let keep = |expected: &&Expected| match expected {
-        Expected::Word(Token::Comma) => !lists && !has,
-        Expected::Word(Token::Type) => !names && !with,
-        Expected::Word(Token::With | Token::OpenBrace) if has => false,
+        Expected::Word(TokenKind::Comma) => !lists && !has,
+        Expected::Word(TokenKind::Type) => !names && !with,
+        Expected::Word(TokenKind::With | TokenKind::OpenBrace) if has => false,
         Expected::ReferenceTo(_)
         | Expected::Action
         | Expected::Angle
-        | Expected::Word(Token::At | Token::Until) => !closes,
+        | Expected::Word(TokenKind::At | TokenKind::Until) => !closes,
         Expected::Word(_) => !ends,
         _ => true,
     };

@@ -1,6 +1,6 @@
 //! Movements: their actions and what stands before them.
 
-use pydslrep_syntax::{EntityKind, Lexeme, Span, Token, is_similar};
+use pydslrep_syntax::{EntityKind, Span, Token, TokenKind, is_similar};
 
 use super::{Rewrite, Word, are_sound, rewrite, shape, words, words_of};
 use crate::diagnostics::context::Context;
@@ -9,9 +9,9 @@ use crate::diagnostics::context::Context;
 const MOST_STATEMENTS: usize = 64;
 
 pub(super) fn find(context: &Context<'_>) -> Vec<Rewrite> {
-    let is_open = |(token, _): &Lexeme| *token == Token::OpenBrace;
-    let Some(open) = context.lexemes.iter().position(is_open) else { return Vec::new() };
-    let (head, body) = (&context.lexemes[..open], &context.lexemes[open + 1..]);
+    let is_open = |(token, _): &Token| *token == TokenKind::OpenBrace;
+    let Some(open) = context.tokens.iter().position(is_open) else { return Vec::new() };
+    let (head, body) = (&context.tokens[..open], &context.tokens[open + 1..]);
     let mut found: Vec<(Rewrite, String)> = header(context, head).into_iter().collect();
     let mut follows = false;
     for statement in statements(context, body).iter().take(MOST_STATEMENTS) {
@@ -40,19 +40,22 @@ fn span_of(words: &[Word]) -> Option<Span> {
 }
 
 /// `movement patrol(rover) {`
-fn header(context: &Context<'_>, lexemes: &[Lexeme]) -> Option<(Rewrite, String)> {
-    let words = words_of(context, lexemes)?;
+fn header(context: &Context<'_>, tokens: &[Token]) -> Option<(Rewrite, String)> {
+    let words = words_of(context, tokens)?;
     let errors = errors_in(context, span_of(&words)?);
     if errors == 0 {
         return None;
     }
-    let is_parallel = words.iter().any(|word| word.token == Token::Parallel || word.text == "parallel");
+    let is_parallel = words.iter().any(|word| word.token == TokenKind::Parallel || word.text == "parallel");
     let names: Vec<&Word> =
         words.get(1..)?.iter().filter(|word| word.token.is_name() && !joins(&word.text)).collect();
     let known = |word: &Word| {
         word.token.is_name()
             || word.is_noise()
-            || matches!(word.token, Token::Movement | Token::Parallel | Token::Of | Token::With | Token::Has)
+            || matches!(
+                word.token,
+                TokenKind::Movement | TokenKind::Parallel | TokenKind::Of | TokenKind::With | TokenKind::Has
+            )
     };
     let [name, robot] = names[..] else { return None };
     if !words.iter().all(known) {
@@ -71,19 +74,19 @@ fn joins(word: &str) -> bool {
 }
 
 /// The tokens of a movement's body by statements: one on each line, or more where one ends or the next begins.
-fn statements<'a>(context: &Context<'_>, body: &'a [Lexeme]) -> Vec<&'a [Lexeme]> {
-    let (mut starts, mut depth, mut previous): (Vec<usize>, usize, Option<Lexeme>) = (vec![0], 0, None);
+fn statements<'a>(context: &Context<'_>, body: &'a [Token]) -> Vec<&'a [Token]> {
+    let (mut starts, mut depth, mut previous): (Vec<usize>, usize, Option<Token>) = (vec![0], 0, None);
     for (index, &(token, span)) in body.iter().enumerate() {
         let gap = previous.map(|(_, before)| context.text(Span::new(before.end, span.start)));
         let is_new_line = gap.is_some_and(|gap| gap.contains(['\n', '\r']));
         let is_over = previous.is_some_and(|(token, span)| {
-            token == Token::Invalid && context.text(span).contains(';') || token == Token::CloseBrace
+            token == TokenKind::Invalid && context.text(span).contains(';') || token == TokenKind::CloseBrace
         });
-        let is_action = matches!(token, Token::Move | Token::Turn | Token::Slam) && depth == 0;
-        if index > 0 && (is_new_line || is_over || is_action || token == Token::CloseBrace) {
+        let is_action = matches!(token, TokenKind::Move | TokenKind::Turn | TokenKind::Slam) && depth == 0;
+        if index > 0 && (is_new_line || is_over || is_action || token == TokenKind::CloseBrace) {
             starts.push(index);
         }
-        if token == Token::Invalid {
+        if token == TokenKind::Invalid {
             let text = context.text(span);
             let count = |bracket: char| text.matches(bracket).count();
             depth = (depth + count('(')).saturating_sub(count(')'));
@@ -98,15 +101,15 @@ fn statements<'a>(context: &Context<'_>, body: &'a [Lexeme]) -> Vec<&'a [Lexeme]
 }
 
 /// Whether the parser takes a statement for an action; it has passed over what follows one that it does not.
-fn begins_action(statement: &[Lexeme]) -> bool {
+fn begins_action(statement: &[Token]) -> bool {
     let first = statement.iter().find(|(token, _)| !token.is_comment());
-    first.is_some_and(|(token, _)| matches!(token, Token::Move | Token::Turn | Token::Slam))
+    first.is_some_and(|(token, _)| matches!(token, TokenKind::Move | TokenKind::Turn | TokenKind::Slam))
 }
 
 /// A statement as an action with a movement around it; `follows` where the one before begins with no action.
 fn statement_as_action(
     context: &Context<'_>,
-    statement: &[Lexeme],
+    statement: &[Token],
     follows: bool,
 ) -> Option<(Rewrite, String)> {
     let words = words_of(context, statement)?;
@@ -117,8 +120,8 @@ fn statement_as_action(
         return None;
     }
     let (text, help) = action(&words)?;
-    let is_call = words.iter().any(|word| word.token == Token::Invalid && word.text.contains('('))
-        || first.token == Token::MalformedName;
+    let is_call = words.iter().any(|word| word.token == TokenKind::Invalid && word.text.contains('('))
+        || first.token == TokenKind::MalformedName;
     let is_only_begun = errors < 2 && !is_call && !passed_over;
     let is_fallback = is_only_begun && (begins_action(statement) || is_one_word_away(&words, &text));
     let whole = format!("movement m of r {{ {text} }}");

@@ -1,6 +1,6 @@
 //! Entities other than movements.
 
-use pydslrep_syntax::{EntityKind, SyntaxErrorKind, Token, is_similar};
+use pydslrep_syntax::{EntityKind, SyntaxErrorKind, TokenKind, is_similar};
 
 use super::{Difference, Rewrite, Word, are_sound, rewrite, shape, words_of};
 use crate::diagnostics::context::Context;
@@ -18,7 +18,7 @@ pub(super) fn find(context: &Context<'_>, kind: EntityKind) -> Option<Rewrite> {
     let mistakes = context.errors.iter().filter(|error| !is_slip(&error.kind));
     let (count, foreign) =
         (mistakes.clone().count(), mistakes.filter(|error| is_foreign(&error.kind)).count());
-    let words = words_of(context, context.lexemes)?;
+    let words = words_of(context, context.tokens)?;
     let words: Vec<Word> = words.into_iter().map(|word| corrected(word, kind)).collect();
     let text = match kind {
         EntityKind::Wheel => wheel(&words)?,
@@ -51,31 +51,36 @@ pub(super) fn find(context: &Context<'_>, kind: EntityKind) -> Option<Rewrite> {
 
 /// Whether most of the entity's keywords are missing, so that it is one mistake and not several.
 fn is_short(words: &[Word], kind: EntityKind, mistakes: usize, has_brackets: bool) -> bool {
-    let lacks = |token: Token| !words.iter().any(|word| word.token == token);
-    let lacks_braces = lacks(Token::OpenBrace) && !has_brackets;
+    let lacks = |token: TokenKind| !words.iter().any(|word| word.token == token);
+    let lacks_braces = lacks(TokenKind::OpenBrace) && !has_brackets;
     match kind {
         EntityKind::Robot => {
-            lacks(Token::Has) && (lacks(Token::Port) || mistakes > 1) || lacks_braces && mistakes > 1
+            lacks(TokenKind::Has) && (lacks(TokenKind::Port) || mistakes > 1) || lacks_braces && mistakes > 1
         }
-        EntityKind::Environment => mistakes > 1 && (lacks(Token::Has) || lacks_braces),
+        EntityKind::Environment => mistakes > 1 && (lacks(TokenKind::Has) || lacks_braces),
         _ => false,
     }
 }
 
 /// A misspelt keyword as the keyword. The text stays as written.
 fn corrected(word: Word, kind: EntityKind) -> Word {
-    let keywords: &[Token] = match kind {
-        EntityKind::Wheel => &[Token::With, Token::Radius],
-        EntityKind::Robot => {
-            &[Token::With, Token::Port, Token::Has, Token::Wheels, Token::Sensors, Token::Type]
-        }
-        EntityKind::Environment => &[Token::With, Token::Has, Token::Robots, Token::Moves],
+    let keywords: &[TokenKind] = match kind {
+        EntityKind::Wheel => &[TokenKind::With, TokenKind::Radius],
+        EntityKind::Robot => &[
+            TokenKind::With,
+            TokenKind::Port,
+            TokenKind::Has,
+            TokenKind::Wheels,
+            TokenKind::Sensors,
+            TokenKind::Type,
+        ],
+        EntityKind::Environment => &[TokenKind::With, TokenKind::Has, TokenKind::Robots, TokenKind::Moves],
         _ => &[],
     };
-    if word.token != Token::Name {
+    if word.token != TokenKind::Name {
         return word;
     }
-    let meant = |token: &&Token| token.spelling().is_some_and(|keyword| is_similar(&word.text, keyword));
+    let meant = |token: &&TokenKind| token.spelling().is_some_and(|keyword| is_similar(&word.text, keyword));
     match keywords.iter().find(meant) {
         Some(keyword) => Word { token: *keyword, ..word },
         None => word,
@@ -94,10 +99,10 @@ fn wheel(words: &[Word]) -> Option<String> {
     let mut is_listed = true;
     for (before, word) in words.iter().zip(words.get(1..)?) {
         match word.token {
-            Token::With | Token::Radius | Token::Has => {}
+            TokenKind::With | TokenKind::Radius | TokenKind::Has => {}
             token if token.is_name() && (names.is_empty() || !says_nothing(word)) => {
                 // `wheel my wheel with …` is another mistake.
-                is_listed &= names.is_empty() || before.token == Token::Comma || before.text == "and";
+                is_listed &= names.is_empty() || before.token == TokenKind::Comma || before.text == "and";
                 names.push(&word.text);
             }
             _ if word.is_number() && radius.is_none() => radius = Some(&word.text),
@@ -116,8 +121,8 @@ fn sensor(words: &[Word]) -> Option<String> {
     let (mut name, mut kind) = (None, None);
     for word in words.get(1..)? {
         let slot = match word.token {
-            Token::Type | Token::With | Token::Has => continue,
-            Token::Distance | Token::Bumper if name.is_some() => &mut kind,
+            TokenKind::Type | TokenKind::With | TokenKind::Has => continue,
+            TokenKind::Distance | TokenKind::Bumper if name.is_some() => &mut kind,
             token if token.is_name() && name.is_none() => &mut name,
             _ if says_nothing(word) => continue,
             _ => return None,
@@ -133,8 +138,8 @@ fn ip(words: &[Word]) -> Option<String> {
     let (mut name, mut address) = (None, None);
     for word in words.get(1..)? {
         let slot = match word.token {
-            Token::With | Token::Has => continue,
-            Token::Ipv4 => &mut address,
+            TokenKind::With | TokenKind::Has => continue,
+            TokenKind::Ipv4 => &mut address,
             token if token.is_name() && name.is_none() => &mut name,
             _ if says_nothing(word) => continue,
             _ => return None,
@@ -149,16 +154,18 @@ fn ip(words: &[Word]) -> Option<String> {
 /// The names of a list, and how many words it takes: with or without its braces.
 fn list(words: &[Word]) -> Option<(Vec<&str>, usize)> {
     let is_open = |word: &Word| {
-        word.token == Token::OpenBrace || word.token == Token::Invalid && word.text.ends_with(['(', '['])
+        word.token == TokenKind::OpenBrace
+            || word.token == TokenKind::Invalid && word.text.ends_with(['(', '['])
     };
     let is_close = |word: &Word| {
-        word.token == Token::CloseBrace || word.token == Token::Invalid && word.text.starts_with([')', ']'])
+        word.token == TokenKind::CloseBrace
+            || word.token == TokenKind::Invalid && word.text.starts_with([')', ']'])
     };
     let opened = usize::from(words.first().is_some_and(is_open));
     let mut names = Vec::new();
     for (index, word) in words.iter().enumerate().skip(opened) {
         match word.token {
-            Token::Comma => {}
+            TokenKind::Comma => {}
             token if token.is_name() && word.text != "and" => names.push(word.text.as_str()),
             token if token.is_name() => {}
             _ if opened > 0 && is_close(word) => return Some((names, index + 1)),
@@ -172,26 +179,26 @@ fn list(words: &[Word]) -> Option<(Vec<&str>, usize)> {
 /// The names of a list, and what the words before and after it call them.
 struct List<'a> {
     names: Vec<&'a str>,
-    before: Option<Token>,
-    after: Option<Token>,
+    before: Option<TokenKind>,
+    after: Option<TokenKind>,
 }
 
 impl List<'_> {
     /// Whether it is called so.
-    fn is(&self, word: Token) -> bool {
+    fn is(&self, word: TokenKind) -> bool {
         self.before == Some(word)
-            || self.before.is_none_or(|before| before == Token::Has) && self.after == Some(word)
+            || self.before.is_none_or(|before| before == TokenKind::Has) && self.after == Some(word)
     }
 }
 
 /// The lists among some words and the other words; `of` are the words for what is listed.
-fn lists<'a>(words: &'a [Word], of: [Token; 2]) -> Option<(Vec<List<'a>>, Vec<&'a Word>)> {
+fn lists<'a>(words: &'a [Word], of: [TokenKind; 2]) -> Option<(Vec<List<'a>>, Vec<&'a Word>)> {
     let (mut lists, mut others): (Vec<List<'a>>, Vec<&Word>) = (Vec::new(), Vec::new());
     let (mut index, mut label, mut is_after_list) = (0, None, false);
     while let Some(word) = words.get(index) {
         let begins = match word.token {
-            Token::OpenBrace => true,
-            Token::Invalid => word.text.ends_with(['(', '[']),
+            TokenKind::OpenBrace => true,
+            TokenKind::Invalid => word.text.ends_with(['(', '[']),
             token => label.is_some() && token.is_name(),
         };
         if begins {
@@ -204,7 +211,7 @@ fn lists<'a>(words: &'a [Word], of: [Token; 2]) -> Option<(Vec<List<'a>>, Vec<&'
         match (last, of.contains(&word.token)) {
             (Some(last), true) => last.after = Some(word.token),
             (_, true) => label = Some(word.token),
-            _ if word.token == Token::Has => label = Some(Token::Has),
+            _ if word.token == TokenKind::Has => label = Some(TokenKind::Has),
             _ => others.push(word),
         }
         (index, is_after_list) = (index + 1, false);
@@ -213,7 +220,7 @@ fn lists<'a>(words: &'a [Word], of: [Token; 2]) -> Option<(Vec<List<'a>>, Vec<&'
 }
 
 /// The lists of both kinds, the first of which must be there; what no word says is said by the order.
-fn in_order<'a>(lists: &[List<'a>], of: [Token; 2]) -> Option<(String, Option<String>)> {
+fn in_order<'a>(lists: &[List<'a>], of: [TokenKind; 2]) -> Option<(String, Option<String>)> {
     let joined = |list: &List<'a>| list.names.join(" ");
     match lists {
         [only] => (!only.is(of[1])).then(|| (joined(only), None)),
@@ -228,14 +235,14 @@ fn in_order<'a>(lists: &[List<'a>], of: [Token; 2]) -> Option<(String, Option<St
 }
 
 fn robot(words: &[Word], default_port: u16) -> Option<String> {
-    const LISTED: [Token; 2] = [Token::Wheels, Token::Sensors];
+    const LISTED: [TokenKind; 2] = [TokenKind::Wheels, TokenKind::Sensors];
     let (lists, others) = lists(words.get(1..)?, LISTED)?;
     let (mut name, mut drive, mut port) = (None, None, None);
     for word in others {
         let slot = match word.token {
-            Token::With | Token::Type | Token::Port => continue,
-            Token::Tw | Token::Fw | Token::Fwh => &mut drive,
-            Token::Integer => &mut port,
+            TokenKind::With | TokenKind::Type | TokenKind::Port => continue,
+            TokenKind::Tw | TokenKind::Fw | TokenKind::Fwh => &mut drive,
+            TokenKind::Integer => &mut port,
             token if token.is_name() && name.is_none() => &mut name,
             _ if says_nothing(word) => continue,
             _ => return None,
@@ -252,16 +259,16 @@ fn robot(words: &[Word], default_port: u16) -> Option<String> {
 }
 
 fn environment(words: &[Word]) -> Option<String> {
-    const LISTED: [Token; 2] = [Token::Robots, Token::Moves];
+    const LISTED: [TokenKind; 2] = [TokenKind::Robots, TokenKind::Moves];
     let (lists, others) = lists(words.get(1..)?, LISTED)?;
     let (mut name, mut ip, mut is_ip) = (None, None, false);
     for word in others {
         let slot = match word.token {
-            Token::Ip => {
+            TokenKind::Ip => {
                 is_ip = true;
                 continue;
             }
-            Token::With => continue,
+            TokenKind::With => continue,
             token if token.is_name() && is_ip => &mut ip,
             token if token.is_name() && name.is_none() => &mut name,
             _ if says_nothing(word) => continue,

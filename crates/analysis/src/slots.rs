@@ -1,4 +1,4 @@
-//! The pieces that tile a file, and where each of them is.
+//! The slots that tile a file, and where each of them is.
 
 use std::ops::{Deref, Range};
 
@@ -6,40 +6,40 @@ use crate::EntityId;
 
 /// Where an entity is in its file, without its absolute position: that would change with every edit before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Piece {
+pub(crate) struct EntitySlot {
     pub(crate) entity: EntityId,
     pub(crate) len: u32,
 }
 
-/// The lengths of so many pieces are added up, so that a place is found in a few hundred steps even in a file of a
-/// hundred thousand lines, and a piece that grows changes one sum.
+/// The lengths of so many slots are added up, so that a place is found in a few hundred steps even in a file of a
+/// hundred thousand lines, and a slot that grows changes one sum.
 const BLOCK: usize = 64;
 
-/// The pieces of a file in the order of the text; their lengths add up to the text's.
+/// The slots of a file in the order of the text; their lengths add up to the text's.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Pieces {
-    list: Vec<Piece>,
-    /// The length of each [`BLOCK`] of pieces.
+pub(crate) struct EntitySlots {
+    list: Vec<EntitySlot>,
+    /// The length of each [`BLOCK`] of slots.
     blocks: Vec<u32>,
 }
 
-impl Deref for Pieces {
-    type Target = [Piece];
+impl Deref for EntitySlots {
+    type Target = [EntitySlot];
 
-    fn deref(&self) -> &[Piece] {
+    fn deref(&self) -> &[EntitySlot] {
         &self.list
     }
 }
 
-impl From<Vec<Piece>> for Pieces {
-    fn from(list: Vec<Piece>) -> Self {
+impl From<Vec<EntitySlot>> for EntitySlots {
+    fn from(list: Vec<EntitySlot>) -> Self {
         let blocks = list.chunks(BLOCK).map(length).collect();
         Self { list, blocks }
     }
 }
 
-impl Pieces {
-    /// The piece that holds `offset` (the last one at the end of the text) and where it starts.
+impl EntitySlots {
+    /// The slot that holds `offset` (the last one at the end of the text) and where it starts.
     pub(crate) fn at(&self, offset: u32) -> (usize, u32) {
         let (mut index, mut start) = (0, 0);
         for len in &self.blocks {
@@ -49,28 +49,28 @@ impl Pieces {
             start += len;
             index += BLOCK;
         }
-        for piece in self.list.get(index..).unwrap_or_default() {
-            if offset < start + piece.len {
+        for slot in self.list.get(index..).unwrap_or_default() {
+            if offset < start + slot.len {
                 return (index, start);
             }
-            start += piece.len;
+            start += slot.len;
             index += 1;
         }
         let last = self.list.len().saturating_sub(1);
-        (last, start - self.list.last().map_or(0, |piece| piece.len))
+        (last, start - self.list.last().map_or(0, |slot| slot.len))
     }
 
-    /// Where the piece at `index` starts.
+    /// Where the slot at `index` starts.
     pub(crate) fn start_of(&self, index: usize) -> u32 {
         let block = index / BLOCK;
         self.blocks[..block].iter().sum::<u32>() + length(&self.list[block * BLOCK..index])
     }
 
-    /// Puts other pieces in the place of a range of them.
-    pub(crate) fn replace(&mut self, range: Range<usize>, pieces: Vec<Piece>) {
+    /// Puts other slots in the place of a range of them.
+    pub(crate) fn replace(&mut self, range: Range<usize>, slots: Vec<EntitySlot>) {
         let first = range.start / BLOCK;
-        let last = if range.len() == pieces.len() { range.end.div_ceil(BLOCK) } else { usize::MAX };
-        self.list.splice(range, pieces);
+        let last = if range.len() == slots.len() { range.end.div_ceil(BLOCK) } else { usize::MAX };
+        self.list.splice(range, slots);
         if last == usize::MAX {
             self.blocks.truncate(first);
             self.blocks.extend(self.list[first * BLOCK..].chunks(BLOCK).map(length));
@@ -81,8 +81,8 @@ impl Pieces {
     }
 }
 
-fn length(pieces: &[Piece]) -> u32 {
-    pieces.iter().map(|piece| piece.len).sum()
+fn length(slots: &[EntitySlot]) -> u32 {
+    slots.iter().map(|slot| slot.len).sum()
 }
 
 #[cfg(test)]
@@ -92,21 +92,21 @@ mod tests {
     use super::*;
     use crate::Database;
 
-    fn pieces(lens: &[u32]) -> Vec<Piece> {
+    fn slots(lens: &[u32]) -> Vec<EntitySlot> {
         let mut database = Database::new();
         let file = database.open("a.pyr", "");
-        let any = database.pieces(file)[0];
-        lens.iter().map(|&len| Piece { len, ..any }).collect()
+        let any = database.slots(file)[0];
+        lens.iter().map(|&len| EntitySlot { len, ..any }).collect()
     }
 
-    /// As the words say it, one piece after the other.
-    fn walk(list: &[Piece], offset: u32) -> (usize, u32) {
+    /// As the words say it, one slot after the other.
+    fn walk(list: &[EntitySlot], offset: u32) -> (usize, u32) {
         let mut start = 0;
-        for (index, piece) in list.iter().enumerate() {
-            if offset < start + piece.len || index + 1 == list.len() {
+        for (index, slot) in list.iter().enumerate() {
+            if offset < start + slot.len || index + 1 == list.len() {
                 return (index, start);
             }
-            start += piece.len;
+            start += slot.len;
         }
         (0, 0)
     }
@@ -118,12 +118,12 @@ mod tests {
             edits in prop::collection::vec((0_usize..400, 0_usize..90, prop::collection::vec(0_u32..9, 0..90)), 0..4),
             same in any::<bool>(),
         ) {
-            let mut found = Pieces::from(pieces(&lens));
+            let mut found = EntitySlots::from(slots(&lens));
             for (from, count, new) in edits {
                 let from = from.min(found.len());
                 let count = if same { new.len() } else { count }.min(found.len() - from);
                 let new = if same { &new[..count] } else { &new[..] };
-                found.replace(from..from + count, pieces(new));
+                found.replace(from..from + count, slots(new));
             }
             let list = found.to_vec();
             for offset in 0..=length(&list) {

@@ -9,14 +9,14 @@ use crate::{Database, Diagnostic, Edit, FileId, Fix, Severity};
 #[derive(Debug)]
 pub struct Offers<'a> {
     database: &'a Database,
-    trial: Option<Trial>,
+    validator: Option<FixValidator>,
     left: usize,
 }
 
 impl<'a> Offers<'a> {
     /// Offers for a database as it is now, of at most so many suggestions.
     pub fn new(database: &'a Database, most_suggestions: usize) -> Self {
-        Self { database, trial: None, left: most_suggestions }
+        Self { database, validator: None, left: most_suggestions }
     }
 
     /// Whether a fix is offered.
@@ -28,7 +28,7 @@ impl<'a> Offers<'a> {
             return false;
         }
         self.left -= 1;
-        self.trial.get_or_insert_with(|| Trial::new(self.database)).holds(problem, fix)
+        self.validator.get_or_insert_with(|| FixValidator::new(self.database)).holds(problem, fix)
     }
 
     /// Leaves of each problem only the fixes that are offered.
@@ -42,7 +42,7 @@ impl<'a> Offers<'a> {
 
 /// A database to try fixes in; the one it was made of stays as it is.
 #[derive(Debug)]
-pub struct Trial {
+pub struct FixValidator {
     tried: Database,
 }
 
@@ -50,8 +50,8 @@ pub struct Trial {
 /// something may well lead on to.
 type Counts = BTreeMap<(FileId, &'static str), usize>;
 
-impl Trial {
-    /// A trial of fixes for a database as it is now.
+impl FixValidator {
+    /// Validates fixes for a database as it is now.
     pub fn new(database: &Database) -> Self {
         Self { tried: database.clone() }
     }
@@ -127,13 +127,14 @@ mod tests {
     fn held(text: &str) -> Vec<String> {
         let mut database = Database::new();
         let file = database.open("a.pyr", text);
-        let mut trial = Trial::new(&database);
+        let mut validator = FixValidator::new(&database);
         let problems = database.diagnostics(file);
         let fixes = problems.iter().flat_map(|problem| problem.fixes.iter().map(move |fix| (problem, fix)));
-        let held = fixes.filter(|(problem, fix)| trial.holds(problem, fix)).map(|(_, fix)| fix.title.clone());
+        let held =
+            fixes.filter(|(problem, fix)| validator.holds(problem, fix)).map(|(_, fix)| fix.title.clone());
         let held = held.collect();
-        assert_eq!(trial.tried.diagnostics(file), problems);
-        assert_eq!(trial.tried.text(file), database.text(file));
+        assert_eq!(validator.tried.diagnostics(file), problems);
+        assert_eq!(validator.tried.text(file), database.text(file));
         held
     }
 
