@@ -11,12 +11,12 @@ ROOT = Path(__file__).resolve().parents[2]
 # Lowest first. A crate may know those named here and nothing else of ours.
 MAY_KNOW: dict[str, set[str]] = {
     "syntax": set(),
-    "notation": {"syntax"},
+    "schema": {"syntax"},
     "kinematics": set(),
-    "scene": {"notation", "kinematics"},
-    "analysis": {"syntax", "notation", "kinematics", "scene"},
-    "config": {"syntax", "notation", "kinematics", "analysis"},
-    "ide": {"config", "analysis", "syntax", "notation", "kinematics", "scene"},
+    "scene": {"schema", "kinematics"},
+    "analysis": {"syntax", "schema", "kinematics", "scene"},
+    "config": {"syntax", "schema", "kinematics", "analysis"},
+    "ide": {"config", "analysis", "syntax", "schema", "kinematics", "scene"},
     "script": {"analysis", "kinematics"},
     "files": {"config", "scene"},
     "record": {"kinematics"},
@@ -35,7 +35,7 @@ MAY_KNOW: dict[str, set[str]] = {
     },
     "cli": {
         "syntax",
-        "notation",
+        "schema",
         "kinematics",
         "scene",
         "analysis",
@@ -64,14 +64,14 @@ ONLY_IN: dict[str, set[str]] = {
     "minijinja": {"script"},
     "svg": {"picture"},
     "resvg": {"picture"},
-    "toml": {"notation"},
-    "toml_parser": {"notation"},
+    "toml": {"schema"},
+    "toml_parser": {"schema"},
 }
 
 # Files, clocks, threads and sockets stay out of what is to run in a browser.
 PURE = [
     "syntax",
-    "notation",
+    "schema",
     "kinematics",
     "scene",
     "analysis",

@@ -1,6 +1,6 @@
 //! The one list of settings.
 
-use pydslrep_notation::Value;
+use pydslrep_schema::Value;
 
 use crate::values::{self, Refusal, Values, Word};
 use crate::{Config, LensKind, Target};

@@ -18,7 +18,7 @@ pub use config::{CodeLens, CodeLensConfig, Config, InlayHints, InlayHintsConfig,
 pub use keys::{KEYS, Key, tables};
 pub use manual::{json_schema, manual};
 pub use pydslrep_analysis::Target;
-pub use pydslrep_notation::{Problem, ProblemKind};
+pub use pydslrep_schema::{Problem, ProblemKind};
 pub use severities::{Level, Severities, UnknownWord, find_rule};
 pub use values::{Values, Word};
 

@@ -1,7 +1,7 @@
 //! From a text or a JSON value to a [`Config`].
 
 use pydslrep_analysis::diagnostics::rule;
-use pydslrep_notation::{Entry, Node, Value, closest, did_you_mean, from_json};
+use pydslrep_schema::{Entry, Node, Value, closest, did_you_mean, from_json};
 
 use crate::keys::{KEYS, Key, parts_behind};
 use crate::severities::find_rule;
@@ -15,7 +15,7 @@ impl Config {
     /// Reads a `pydslrep.toml`. Of a text that is no TOML nothing holds; else what is fine does, whatever else is not.
     /// Problems are in the order of the text.
     pub fn from_toml(text: &str) -> (Self, Vec<Problem>) {
-        match pydslrep_notation::parse(text, "setting") {
+        match pydslrep_schema::parse(text, "setting") {
             Err(problem) => (Self::default(), vec![problem]),
             Ok(entries) => {
                 let mut reader = Reader::new(Spelling::Kebab);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use pydslrep_analysis::diagnostics::{CATALOGUE, Rule, rule};
 use pydslrep_analysis::{Diagnostic, Severity};
-use pydslrep_notation::{closest, did_you_mean};
+use pydslrep_schema::{closest, did_you_mean};
 
 /// How bad problems of a code are, or that they are not shown at all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! What a setting can be: how a value is read as that, or why it is refused.
 
-use pydslrep_notation::{Value, closest, did_you_mean};
+use pydslrep_schema::{Value, closest, did_you_mean};
 
 use crate::severities::UnknownWord;
 use crate::{Level, Target};

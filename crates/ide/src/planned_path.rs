@@ -3,8 +3,8 @@
 use pydslrep_analysis::environment::Environment;
 use pydslrep_analysis::{Blocked, Database, EntityId, plan};
 use pydslrep_kinematics::{ActionIndex, Leg, Plan, Pose, RobotPath};
-use pydslrep_notation::Problem;
 use pydslrep_scene::{self as scenery, Body, Collision, ENDING, Obstacle, Scene, Sensor, Thing};
+use pydslrep_schema::Problem;
 
 /// The planned path of an environment in its scene.
 #[derive(Debug, Clone, PartialEq)]

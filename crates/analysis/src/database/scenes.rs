@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use pydslrep_notation::Problem;
 use pydslrep_scene::Scene;
+use pydslrep_schema::Problem;
 use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::Entity;
 use rustc_hash::FxHashMap;

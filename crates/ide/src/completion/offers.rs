@@ -1,6 +1,6 @@
 //! What of all that fits is offered: nothing that would get in the way of typing.
 
-use pydslrep_notation::{Place, Slot};
+use pydslrep_schema::{Place, Slot};
 use pydslrep_syntax::Span;
 
 use super::{Completion, CompletionTrigger};

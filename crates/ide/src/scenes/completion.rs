@@ -1,8 +1,8 @@
 //! Completion in a scene file: tables, names of robots and sensors, keys of the table at the cursor and their values.
 
 use pydslrep_analysis::{Database, EntityId};
-use pydslrep_notation::{Named, Place, Slot, as_key, names, place_at};
 use pydslrep_scene::{Key, Sort, TABLES, Table, Values};
+use pydslrep_schema::{Named, Place, Slot, as_key, names, place_at};
 use smol_str::SmolStr;
 
 use super::{Meaning, meaning, robots};
@@ -372,7 +372,7 @@ mod tests {
                     let wrong = pydslrep_scene::read(&text, floor.clone()).1;
                     // One key alone may leave out another, or put a robot into a box.
                     let mut wrong = wrong.iter().filter(|problem| {
-                        problem.kind != pydslrep_notation::ProblemKind::MissingKey
+                        problem.kind != pydslrep_schema::ProblemKind::MissingKey
                             && !problem.message.contains("starts in")
                     });
                     assert_eq!(wrong.next(), None, "{text}");

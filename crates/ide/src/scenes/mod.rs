@@ -8,8 +8,8 @@ mod completion;
 pub use completion::scene_completions;
 
 use pydslrep_analysis::{Database, EntityId};
-use pydslrep_notation::names;
 use pydslrep_scene::{Key, TABLES, Table};
+use pydslrep_schema::names;
 use pydslrep_syntax::ast::{Entity, Name};
 use pydslrep_syntax::{EntityKind, Span};
 use smol_str::SmolStr;

@@ -2,7 +2,7 @@
 
 use pydslrep_analysis::diagnostics::CATALOGUE;
 use pydslrep_config::{KEYS, Level, Values, tables};
-use pydslrep_notation::{Place, Slot, names, place_at};
+use pydslrep_schema::{Place, Slot, names, place_at};
 
 use super::{Meaning, documentation, meaning};
 use crate::completion::Rank;

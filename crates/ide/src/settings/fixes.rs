@@ -1,7 +1,7 @@
 //! Quick fixes in a settings file, and in any other that has keys.
 
 use pydslrep_config::Config;
-use pydslrep_notation::Problem;
+use pydslrep_schema::Problem;
 use pydslrep_syntax::Span;
 
 /// A fix with the problem it mends.

@@ -1,6 +1,6 @@
 //! Hover in a settings file: what the setting under the cursor does.
 
-use pydslrep_notation::names;
+use pydslrep_schema::names;
 
 use super::{documentation, meaning};
 use crate::Hover;

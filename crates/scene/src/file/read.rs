@@ -1,9 +1,7 @@
 //! From the text of a scene file to a scene.
 
 use pydslrep_kinematics::{Drive, Pose};
-use pydslrep_notation::{
-    Entry, Node, Problem, ProblemKind, Span, Value, as_key, closest, did_you_mean, parse,
-};
+use pydslrep_schema::{Entry, Node, Problem, ProblemKind, Span, Value, as_key, closest, did_you_mean, parse};
 
 use super::keys::{Key, Sort, TABLES, Table, Values, find};
 use crate::{Body, Noise, Obstacle, Robot, Scene, SensorKind, Shape, Thing, defaults, mounts_by_name, space};
