@@ -10,15 +10,16 @@ ROOT = Path(__file__).resolve().parents[2]
 
 # Lowest first. A crate may know those named here and nothing else of ours.
 MAY_KNOW: dict[str, set[str]] = {
-    "syntax": set(),
-    "schema": {"syntax"},
+    "text": set(),
+    "syntax": {"text"},
+    "schema": {"text"},
     "kinematics": set(),
-    "scene": {"schema", "kinematics"},
-    "analysis": {"syntax", "schema", "kinematics", "scene"},
-    "config": {"syntax", "schema", "kinematics", "analysis"},
+    "scene": {"text", "schema", "kinematics"},
+    "analysis": {"text", "syntax", "schema", "kinematics", "scene"},
+    "config": {"text", "schema", "kinematics", "analysis"},
     "ide": {"config", "analysis", "syntax", "schema", "kinematics", "scene"},
     "script": {"analysis", "kinematics"},
-    "files": {"config", "scene"},
+    "files": {"text"},
     "record": {"kinematics"},
     "picture": {"kinematics", "scene", "record"},
     "simulator": {"kinematics", "scene", "record"},
@@ -34,6 +35,7 @@ MAY_KNOW: dict[str, set[str]] = {
         "files",
     },
     "cli": {
+        "text",
         "syntax",
         "schema",
         "kinematics",
@@ -58,9 +60,9 @@ ONLY_IN: dict[str, set[str]] = {
     "tower-lsp": {"server"},
     "clap": {"cli", "server"},
     "tokio": {"server", "simulator", "cli"},
-    "chumsky": {"syntax"},
+    "chumsky": {"text", "syntax"},
     "logos": {"syntax"},
-    "ropey": {"analysis", "server"},
+    "ropey": {"text", "analysis", "server"},
     "minijinja": {"script"},
     "svg": {"picture"},
     "resvg": {"picture"},
@@ -70,6 +72,7 @@ ONLY_IN: dict[str, set[str]] = {
 
 # Files, clocks, threads and sockets stay out of what is to run in a browser.
 PURE = [
+    "text",
     "syntax",
     "schema",
     "kinematics",

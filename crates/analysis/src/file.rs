@@ -31,7 +31,7 @@ pub(crate) struct Window {
 impl File {
     /// The text of a range.
     pub(crate) fn slice(&self, span: Span) -> String {
-        self.text.get_byte_slice(Range::from(span)).map_or_else(String::new, |slice| slice.to_string())
+        span.slice(&self.text)
     }
 
     /// The line ending that the file uses.
@@ -142,15 +142,4 @@ fn shift(offset: u32, by: i64) -> u32 {
 /// How many tokens some entities have together.
 fn token_count(parses: &[(Span, Parse)]) -> usize {
     parses.iter().map(|(_, parse)| parse.tokens.len()).sum()
-}
-
-/// The range of a whole document.
-pub(crate) trait OfRope {
-    fn of_rope(rope: &Rope) -> Span;
-}
-
-impl OfRope for Span {
-    fn of_rope(rope: &Rope) -> Span {
-        Span::new(0, u32::try_from(rope.len_bytes()).unwrap_or(u32::MAX))
-    }
 }

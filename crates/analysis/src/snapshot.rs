@@ -62,8 +62,7 @@ impl Snapshot {
 
     /// A part of the text; empty where it does not fit.
     pub fn slice(&self, span: Span) -> String {
-        let slice = self.text.get_byte_slice(std::ops::Range::from(span));
-        slice.map_or_else(String::new, |slice| slice.to_string())
+        span.slice(&self.text)
     }
 
     /// Its entities in the order of the text; they end early once work on it is to [stop](Self::stop_on).

@@ -19,11 +19,9 @@ pub use keys::{KEYS, Key, tables};
 pub use manual::{json_schema, manual};
 pub use pydslrep_analysis::Target;
 pub use pydslrep_schema::{Problem, ProblemKind};
+pub use pydslrep_text::file_names::SETTINGS_FILE as FILE_NAME;
 pub use severities::{Level, Severities, UnknownWord, find_rule};
 pub use values::{Values, Word};
-
-/// What the file is called. It stands in the folder that it is about, and holds for all programs in it and below.
-pub const FILE_NAME: &str = "pydslrep.toml";
 
 /// Under which word an editor keeps the settings.
 pub const SECTION: &str = "pydslrep";

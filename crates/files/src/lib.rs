@@ -8,13 +8,10 @@ mod search;
 
 use std::path::Path;
 
-pub use pydslrep_config::FILE_NAME;
-use pydslrep_scene::ENDING;
+use pydslrep_text::file_names::SCENE_SUFFIX;
+pub use pydslrep_text::file_names::{PROGRAM_EXTENSION as EXTENSION, SETTINGS_FILE as FILE_NAME};
 pub use read::{MOST_BYTES, Unread, decode, read, without_mark};
 pub use search::{Found, belongs, find};
-
-/// The ending of programs.
-pub const EXTENSION: &str = "pyr";
 
 /// Whether a path is named like a program.
 pub fn is_program(path: &Path) -> bool {
@@ -23,7 +20,7 @@ pub fn is_program(path: &Path) -> bool {
 
 /// Whether a path is named like a scene.
 pub fn is_scene(path: &Path) -> bool {
-    path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(ENDING))
+    path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(SCENE_SUFFIX))
 }
 
 /// The nearest folder upwards from a file that holds a `pydslrep.toml`.

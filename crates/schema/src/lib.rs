@@ -9,7 +9,7 @@ mod value;
 
 pub use outline::{Named, Place, Slot, names, place_at};
 pub use problem::{Problem, ProblemKind};
-pub use pydslrep_syntax::{Span, closest};
+pub use pydslrep_text::{Span, closest};
 pub use value::{Entry, Node, Value, from_json, parse, span};
 
 /// A name as it stands in a key: in quotes where it has other letters than keys may have without.

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use pydslrep_syntax::Span;
+use pydslrep_text::Span;
 use toml_parser::Source;
 use toml_parser::parser::{Event, EventKind, RecursionGuard, parse_document};
 

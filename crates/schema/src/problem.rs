@@ -1,6 +1,6 @@
 //! What is wrong with settings.
 
-use pydslrep_syntax::Span;
+use pydslrep_text::Span;
 
 /// One problem. What it is about does not hold; everything else that was set does, except where the text is no TOML.
 #[derive(Debug, Clone, PartialEq, Eq)]

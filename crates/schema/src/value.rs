@@ -1,6 +1,6 @@
 //! Values as TOML and JSON have them in common.
 
-use pydslrep_syntax::Span;
+use pydslrep_text::Span;
 use toml::Spanned;
 use toml::de::{DeFloat, DeInteger, DeTable, DeValue, Error};
 

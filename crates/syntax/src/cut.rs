@@ -8,7 +8,7 @@
 //! after it and on nothing else. That bound is what incremental analysis relies on; widen it only together with
 //! `pydslrep-analysis`'s rule for growing the window of an edit.
 
-use crate::{EntityKind, Token, TokenKind, TokenSet, is_similar};
+use crate::{EntityKind, Token, TokenKind, TokenSet};
 
 /// How many tokens after one can matter for whether it begins an entity.
 pub const LOOKAHEAD: usize = 2;
@@ -95,8 +95,7 @@ pub(crate) fn misspelt_beginning(text: &str, tokens: &[Token]) -> Option<TokenKi
         keyword => next.is_name() && after.is_some_and(|after| is_one_of(text, *after, clauses(keyword))),
     };
     let written = span.text(text);
-    let near = BEGINNINGS.into_iter().filter(|keyword| is_slip(written, *keyword) && follows(keyword));
-    near.min_by_key(|keyword| distance(written, *keyword))
+    TokenKind::closest(written, BEGINNINGS.into_iter().filter(follows))
 }
 
 /// All that begin an entity.
@@ -135,18 +134,7 @@ fn is_one_of(text: &str, (token, span): Token, set: TokenSet) -> bool {
         [TokenKind::With, TokenKind::Radius, TokenKind::Type, TokenKind::Port, TokenKind::Has, TokenKind::Of];
     set.has(token)
         || token == TokenKind::Name
-            && words.into_iter().any(|word| set.has(word) && is_slip(span.text(text), word))
-}
-
-/// Whether a word is a slip for a keyword.
-pub(crate) fn is_slip(written: &str, keyword: TokenKind) -> bool {
-    keyword.spelling().is_some_and(|spelling| is_similar(written, spelling))
-}
-
-/// How far a word is from a keyword: whether in more than case, and by how many edits.
-pub(crate) fn distance(written: &str, keyword: TokenKind) -> (bool, usize) {
-    let spelling = keyword.spelling().unwrap_or_default();
-    (!written.eq_ignore_ascii_case(spelling), strsim::osa_distance(written, spelling))
+            && words.into_iter().any(|word| set.has(word) && word.is_similar_to(span.text(text)))
 }
 
 fn begins_entity(

@@ -13,8 +13,6 @@ mod error;
 mod format;
 mod lexer;
 mod parser;
-mod span;
-mod spelling;
 mod token;
 
 pub use cut::{LOOKAHEAD, cut};
@@ -22,6 +20,5 @@ pub use error::{Expected, Found, SyntaxError, SyntaxErrorKind};
 pub use format::{COLUMNS, TextEdit, apply_edits, format, format_edits};
 pub use lexer::{Token, lex};
 pub use parser::{Parse, expected_after, parse, parse_cut, parse_each};
-pub use span::Span;
-pub use spelling::{closest, closest_of_any_order, is_similar};
+pub use pydslrep_text::Span;
 pub use token::{EntityKind, KEYWORDS, TokenKind, TokenSet, as_written};

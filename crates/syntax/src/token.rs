@@ -1,6 +1,7 @@
 //! The words and signs of the language. The keyword list exists here and nowhere else.
 
 use logos::Logos;
+use pydslrep_text::{closest, is_similar};
 
 /// A token without its text; the text is found by the span beside it.
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -217,6 +218,17 @@ impl TokenKind {
             Self::Colon => Some(":"),
             _ => KEYWORDS.iter().find(|(token, _)| *token == self).map(|(_, word)| *word),
         }
+    }
+
+    /// Whether `written` may be a slip for this keyword.
+    pub fn is_similar_to(self, written: &str) -> bool {
+        self.spelling().is_some_and(|spelling| is_similar(written, spelling))
+    }
+
+    /// The keyword that `written` is most likely a slip for.
+    pub(crate) fn closest(written: &str, keywords: impl Iterator<Item = Self>) -> Option<Self> {
+        let near = closest(written, keywords.filter_map(Self::spelling))?;
+        KEYWORDS.iter().find(|(_, word)| *word == near).map(|(kind, _)| *kind)
     }
 
     /// Whether it is a word that cannot be a name unless escaped by `^`.

@@ -14,7 +14,7 @@ use super::scenes::count_environment;
 use super::{Database, EditCounts, EntityData, EntityId, FileId};
 use crate::Target;
 use crate::diagnostics;
-use crate::file::{File, OfRope, Window};
+use crate::file::{File, Window};
 use crate::names::Key;
 use crate::slots::{EntitySlot, EntitySlots};
 

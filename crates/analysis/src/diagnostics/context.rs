@@ -1,7 +1,8 @@
 //! What a check sees, and what it reports.
 
 use pydslrep_syntax::ast::{Entity, Movement, Name, References, Robot, Wheel};
-use pydslrep_syntax::{EntityKind, Span, SyntaxError, Token, TokenKind, closest_of_any_order};
+use pydslrep_syntax::{EntityKind, Span, SyntaxError, Token, TokenKind};
+use pydslrep_text::closest_of_any_order;
 use smol_str::SmolStr;
 
 pub(crate) use pydslrep_syntax::as_written;

@@ -6,7 +6,5 @@ mod read;
 
 pub use keys::{Key, Sort, TABLES, Table, Values};
 pub use manual::{json_schema, manual};
+pub use pydslrep_text::file_names::SCENE_SUFFIX as ENDING;
 pub use read::{problems, read};
-
-/// What the name of a scene file ends in, behind that of its environment.
-pub const ENDING: &str = ".scene.toml";

@@ -13,7 +13,7 @@ use chumsky::util::MaybeRef;
 
 use super::{Extra, Input, Rule};
 use crate::ast::{Name, Number, References};
-use crate::{EntityKind, Expected, Span, TokenKind, TokenSet, is_similar};
+use crate::{EntityKind, Expected, Span, TokenKind, TokenSet};
 
 /// What a rule reports while it runs; [`super::tidy`] makes errors of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -128,8 +128,7 @@ fn misspelling<'s>(word: TokenKind) -> impl Parser<'s, Input<'s>, Span, Extra<'s
 }
 
 fn looks_like(token: TokenKind, span: Span, text: &str, word: TokenKind) -> bool {
-    (token.is_name() || token.is_keyword())
-        && word.spelling().is_some_and(|spelling| is_similar(span.text(text), spelling))
+    (token.is_name() || token.is_keyword()) && word.is_similar_to(span.text(text))
 }
 
 /// Passes over tokens up to one of `until` or the end, and says which.

@@ -7,7 +7,7 @@ use smol_str::SmolStr;
 
 use super::pairs;
 use super::slot::Fault;
-use crate::cut::{BEGINNINGS, distance, is_slip};
+use crate::cut::BEGINNINGS;
 use crate::{EntityKind, Expected, Found, Span, SyntaxError, SyntaxErrorKind, Token, TokenKind};
 
 /// The errors behind `faults`. `significant` is what the parser saw, `tokens` everything that stands in the text.
@@ -263,5 +263,5 @@ fn meant(token: TokenKind, written: &str, expected: &[Expected]) -> Option<Token
         Expected::Declaration => BEGINNINGS.to_vec(),
         _ => Vec::new(),
     });
-    words.filter(|word| is_slip(written, *word)).min_by_key(|word| distance(written, *word))
+    TokenKind::closest(written, words)
 }

@@ -9,8 +9,9 @@ mod entities;
 
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{
-    EntityKind, KEYWORDS, Span, SyntaxErrorKind, Token, TokenKind, is_similar, lex, parse,
+    EntityKind, KEYWORDS, Span, SyntaxErrorKind, Token, TokenKind, lex, parse,
 };
+use pydslrep_text::is_similar;
 
 use super::{RULE, mend, words};
 use crate::diagnostics::context::{Context, Problem};

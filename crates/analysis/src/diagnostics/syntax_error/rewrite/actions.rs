@@ -1,6 +1,7 @@
 //! Movements: their actions and what stands before them.
 
-use pydslrep_syntax::{EntityKind, Span, Token, TokenKind, is_similar};
+use pydslrep_syntax::{EntityKind, Span, Token, TokenKind};
+use pydslrep_text::is_similar;
 
 use super::{Rewrite, Word, are_sound, rewrite, shape, words, words_of};
 use crate::diagnostics::context::Context;

@@ -1,6 +1,7 @@
 //! Entities other than movements.
 
-use pydslrep_syntax::{EntityKind, SyntaxErrorKind, TokenKind, is_similar};
+use pydslrep_syntax::{EntityKind, SyntaxErrorKind, TokenKind};
+use pydslrep_text::is_similar;
 
 use super::{Difference, Rewrite, Word, are_sound, rewrite, shape, words_of};
 use crate::diagnostics::context::Context;

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use ropey::Rope;
+
 /// A half-open range of bytes in a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct Span {
@@ -26,6 +28,11 @@ impl Span {
     /// The range of a whole text. Texts beyond 4 GiB are for whoever reads files to refuse; here they count as 4 GiB.
     pub fn of(text: &str) -> Self {
         Self { start: 0, end: u32::try_from(text.len()).unwrap_or(u32::MAX) }
+    }
+
+    /// As [`Self::of`], of a rope.
+    pub fn of_rope(text: &Rope) -> Self {
+        Self { start: 0, end: u32::try_from(text.len_bytes()).unwrap_or(u32::MAX) }
     }
 
     /// Length in bytes.
@@ -57,6 +64,11 @@ impl Span {
     pub fn text(self, text: &str) -> &str {
         text.get(Range::from(self)).unwrap_or_default()
     }
+
+    /// As [`Self::text`], of a rope.
+    pub fn slice(self, text: &Rope) -> String {
+        text.get_byte_slice(Range::from(self)).map_or_else(String::new, |slice| slice.to_string())
+    }
 }
 
 impl From<Span> for Range<usize> {
@@ -65,6 +77,7 @@ impl From<Span> for Range<usize> {
     }
 }
 
+#[cfg(feature = "chumsky")]
 impl chumsky::span::Span for Span {
     type Context = ();
     type Offset = u32;
