@@ -8,9 +8,9 @@ import type { Location, Position } from "vscode-languageclient/node";
 import manifest from "../package.json";
 import { chooseEnvironment } from "./environments";
 import { sentence } from "./failure";
-import { fail } from "./messages";
+import { fail } from "./notifications";
 import { reached } from "./milestones";
-import { findCommand } from "./server";
+import { findCommand } from "./executables";
 import type { Session } from "./session";
 import { showStatistics, showVersion } from "./statistics";
 

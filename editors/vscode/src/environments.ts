@@ -2,7 +2,7 @@
 import * as vscode from "vscode";
 import type { LanguageClient } from "vscode-languageclient/node";
 
-import { inform, warn } from "./messages";
+import { inform, warn } from "./notifications";
 import { PLANNED_AT, type PlannedAt } from "./preview/protocol";
 
 /** What a lens hands to a command: the program's address and the environment's name. */

@@ -4,7 +4,7 @@ import { ExecuteCommandRequest, type LanguageClient, WorkDoneProgress } from "vs
 
 import type { ChosenEnvironment } from "./environments";
 import { failureOf } from "./failure";
-import { fail, warn } from "./messages";
+import { fail, warn } from "./notifications";
 import type { Location } from "./preview/follower";
 
 /** What the commands need of the window. */

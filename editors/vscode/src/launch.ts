@@ -1,7 +1,7 @@
 // A server's process, and what to do when it ends unasked. Knows nothing of VS Code.
 import { type ChildProcessWithoutNullStreams, spawn } from "node:child_process";
 
-import type { Program } from "./server";
+import type { Program } from "./executables";
 
 /** A server that ended so many times within `WITHIN` is not started again. */
 const MOST_ENDS = 5;

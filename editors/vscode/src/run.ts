@@ -3,7 +3,7 @@ import * as vscode from "vscode";
 
 import type { ChosenEnvironment } from "./environments";
 import { executeLong, type Surroundings } from "./execute";
-import { inform } from "./messages";
+import { inform } from "./notifications";
 import { reached } from "./milestones";
 
 /** What the server answers when a run has come to its end. */

@@ -18,7 +18,7 @@ import { PAGES } from "./explain";
 import { Ends, launch } from "./launch";
 import { CLIENT_COMMANDS, middleware } from "./middleware";
 import { Runs } from "./run";
-import { findServer, type Places, type Program } from "./server";
+import { findServer, type Places, type Program } from "./executables";
 
 /** Where the server is in its life. */
 export type ServerState = "starting" | "running" | "stopped" | "missing";

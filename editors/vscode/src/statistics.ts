@@ -4,8 +4,8 @@ import * as path from "node:path";
 
 import * as vscode from "vscode";
 
-import { fail, inform } from "./messages";
-import { findCommand } from "./server";
+import { fail, inform } from "./notifications";
+import { findCommand } from "./executables";
 import type { Session } from "./session";
 import { sentence } from "./failure";
 

@@ -3,7 +3,7 @@ import * as path from "node:path";
 
 import * as vscode from "vscode";
 
-import { findCommand } from "./server";
+import { findCommand } from "./executables";
 import type { Session } from "./session";
 import { type Action, type Definition, argumentsOf, nameOf } from "./task_definition";
 

@@ -3,7 +3,7 @@ import * as path from "node:path";
 
 import * as vscode from "vscode";
 
-import { inform, fail } from "../messages";
+import { inform, fail } from "../notifications";
 import { PNG } from "./messages";
 import type { Which } from "./protocol";
 

@@ -3,7 +3,7 @@ import { test } from "node:test";
 
 import { commandOf, KEYS, type Key } from "../../webview/preview/keys";
 import { Playback } from "../../webview/preview/playback";
-import * as words from "../../webview/preview/words";
+import * as format from "../../webview/preview/format";
 
 function playing(duration: number): Playback {
   const playback = new Playback();
@@ -88,9 +88,9 @@ test("keys mean something, unless what has the focus needs them", () => {
 });
 
 test("numbers for people", () => {
-  assert.deepEqual([0.04, 59.94, 59.96, 754.2].map(words.time), ["0.0 s", "59.9 s", "1 min 0.0 s", "12 min 34.2 s"]);
-  assert.deepEqual([Math.PI, -Math.PI, Math.PI / 3, -7].map(words.degrees), ["180°", "180°", "60°", "-41.1°"]);
-  assert.deepEqual([words.tickLabel(-0.5, 0.5), words.tickLabel(2, 1), words.tickLabel(0.1 + 0.2, 0.1)], ["-0.5", "2", "0.3"]);
-  assert.deepEqual([0.002, 0.5, 1, 2.5].map(words.length), ["0.2 cm", "50 cm", "1 m", "2.5 m"]);
-  assert.equal(words.pose({ x: -0.001, y: 1.5, theta: Math.PI / 2 }), "(0.00, 1.50) m, 90°");
+  assert.deepEqual([0.04, 59.94, 59.96, 754.2].map(format.time), ["0.0 s", "59.9 s", "1 min 0.0 s", "12 min 34.2 s"]);
+  assert.deepEqual([Math.PI, -Math.PI, Math.PI / 3, -7].map(format.degrees), ["180°", "180°", "60°", "-41.1°"]);
+  assert.deepEqual([format.tickLabel(-0.5, 0.5), format.tickLabel(2, 1), format.tickLabel(0.1 + 0.2, 0.1)], ["-0.5", "2", "0.3"]);
+  assert.deepEqual([0.002, 0.5, 1, 2.5].map(format.length), ["0.2 cm", "50 cm", "1 m", "2.5 m"]);
+  assert.equal(format.pose({ x: -0.001, y: 1.5, theta: Math.PI / 2 }), "(0.00, 1.50) m, 90°");
 });

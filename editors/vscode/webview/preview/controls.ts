@@ -3,7 +3,7 @@ import { element, icon, ICONS } from "./elements";
 import type { Crash } from "./model";
 import { SPEEDS, type Playback } from "./playback";
 import { button } from "./toolbar";
-import { time as inWords } from "./words";
+import { time as inWords } from "./format";
 
 export interface ControlEvents {
   toggle: () => void;

@@ -2,7 +2,7 @@
 import type { Outline } from "./model";
 import type { Theme } from "./theme";
 import { ticks, type View } from "./view";
-import { tickLabel } from "./words";
+import { tickLabel } from "./format";
 
 /** Room for the labels of the grid, pixels. */
 const EDGE = 18;

@@ -2,7 +2,7 @@
 import { element } from "./elements";
 import { deviation, type Crash, type Driven, type Model, type Robot } from "./model";
 import { ROBOT_COLOURS } from "./theme";
-import * as words from "./words";
+import * as format from "./format";
 
 export interface LegendEvents {
   hide: (robot: string, isHidden: boolean) => void;
@@ -45,11 +45,11 @@ export class Legend {
     const swatch = element("span", { class: `swatch robot-${robot.colour % ROBOT_COLOURS}`, "aria-hidden": "true" });
     const name = element("span", { class: "name", title: robot.name }, robot.name);
     const found = isRunShown ? driven?.robots.get(robot.name)?.end : undefined;
-    const lines = [robot.unknownAfter ? `planned up to “${robot.unknownAfter.text}”; the rest depends on the world` : `→ ${words.pose(robot.end)}`];
-    if (found && robot.unknownAfter) lines.push(`driven → ${words.pose(found)}`);
+    const lines = [robot.unknownAfter ? `planned up to “${robot.unknownAfter.text}”; the rest depends on the world` : `→ ${format.pose(robot.end)}`];
+    if (found && robot.unknownAfter) lines.push(`driven → ${format.pose(found)}`);
     else if (found) {
       const { distance, angle } = deviation(robot.end, found);
-      lines.push(`driven path ends ${words.small(distance)}, ${words.fixed((angle * 180) / Math.PI, 1)}° off`);
+      lines.push(`driven path ends ${format.small(distance)}, ${format.fixed((angle * 180) / Math.PI, 1)}° off`);
     }
     const notes = lines.map((line) => element("small", {}, line));
     return element("li", {}, element("label", {}, check, swatch, name), ...notes);
@@ -64,7 +64,7 @@ export class Legend {
 
   private crashes(crashes: readonly Crash[]): HTMLElement {
     const items = crashes.map((crash, index) => {
-      const when = crash.t === null ? "" : ` after ${words.time(crash.t)}`;
+      const when = crash.t === null ? "" : ` after ${format.time(crash.t)}`;
       const sentence = `${crash.robot.name} would run into ${crash.other}${when}`;
       const go = element("button", { type: "button", class: "crash", "data-key": `crash ${index}`, "data-collision": `${index}` });
       go.append(sample("collision"), element("span", {}, sentence));

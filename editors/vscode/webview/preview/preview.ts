@@ -15,7 +15,7 @@ import { readTheme, watchTheme, type Theme } from "./theme";
 import { Toolbar } from "./toolbar";
 import { describe, Tooltip } from "./tooltip";
 import { niceStep } from "./view";
-import * as words from "./words";
+import * as format from "./format";
 
 export interface Outside {
   say: (message: FromPage) => void;
@@ -422,7 +422,7 @@ export class Preview {
   private draw(): void {
     const { scale } = this.stage.view;
     const metres = niceStep(36 / scale);
-    this.toolbar.setScale(metres * scale, words.length(metres));
+    this.toolbar.setScale(metres * scale, format.length(metres));
     this.stage.drawStill(this.scene(), this.theme);
     this.drawMoving();
   }
@@ -445,7 +445,7 @@ export class Preview {
   private summary(model: Model): string {
     const robots = model.robots.length === 1 ? "1 robot" : `${model.robots.length} robots`;
     const crashes = model.crashes.length === 0 ? "" : `, ${model.crashes.length === 1 ? "1 collision" : `${model.crashes.length} collisions`}`;
-    const time = model.isWhole ? `, ${words.time(model.duration)}` : ", of unknown duration";
+    const time = model.isWhole ? `, ${format.time(model.duration)}` : ", of unknown duration";
     return `Planned path of ${model.environment}: ${robots}${time}${crashes}. Press ? for the keys.`;
   }
 

@@ -1,17 +1,17 @@
 // What an action does, beside the pointer.
 import { element } from "./elements";
 import type { Hit } from "./hit";
-import * as words from "./words";
+import * as format from "./format";
 
 /** An action in sentences; the first is the action itself. */
 export function describe({ robot, leg }: Hit): string[] {
   const { action, start, duration } = leg;
-  const when = start === null ? "when is not known" : `from ${words.time(start)} to ${words.time(start + duration)}`;
+  const when = start === null ? "when is not known" : `from ${format.time(start)} to ${format.time(start + duration)}`;
   return [
     action.text,
     `${robot.name} · ${action.movement}, action ${action.index + 1}`,
-    `takes ${words.time(duration)}, ${when}`,
-    `ends at ${words.pose(leg.to)}`,
+    `takes ${format.time(duration)}, ${when}`,
+    `ends at ${format.pose(leg.to)}`,
   ];
 }
 

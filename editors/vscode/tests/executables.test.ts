@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { findCommand, findServer, type Places } from "../src/server";
+import { findCommand, findServer, type Places } from "../src/executables";
 
 function places(files: string[], more: Partial<Places> = {}): Places {
   return {
