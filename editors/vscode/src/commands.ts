@@ -1,23 +1,19 @@
-// The commands of the palette and the menus. Those of the server itself are registered by the client library.
-import { execFile } from "node:child_process";
-import { promisify } from "node:util";
-
+// The commands of the palette and the menus. The client library registers those of the server.
 import * as vscode from "vscode";
 import type { Location, Position } from "vscode-languageclient/node";
 
 import manifest from "../package.json";
+import { findCommandLine, runCommandLine } from "./command_line";
 import { chooseEnvironment } from "./environments";
-import { sentence } from "./failure";
-import { fail } from "./notifications";
 import { reached } from "./milestones";
-import { findCommand } from "./executables";
+import { showInformation } from "./notifications";
 import type { Session } from "./session";
-import { showStatistics, showVersion } from "./statistics";
+import { showStatistics } from "./statistics";
 
 export function registerCommands(session: Session): vscode.Disposable {
   const onEnvironment = (command: string) => async (uri?: vscode.Uri) => {
-    const chosen = await chooseEnvironment(session.client, uri);
-    return chosen && vscode.commands.executeCommand(command, chosen);
+    const environment = await chooseEnvironment(session.client, uri);
+    return environment && vscode.commands.executeCommand(command, environment);
   };
   const commands: Record<string, (...args: never[]) => unknown> = {
     "pydslrep.runInSimulator": onEnvironment("pydslrep.run"),
@@ -26,7 +22,7 @@ export function registerCommands(session: Session): vscode.Disposable {
     "pydslrep.newProgram": () => newProgram(session),
     "pydslrep.newFile": () => newFile(),
     "pydslrep.showStatistics": () => showStatistics(session),
-    "pydslrep.showVersion": () => showVersion(session, manifest.version),
+    "pydslrep.showVersion": () => showVersion(session),
     "pydslrep.restartServer": () => session.restart(),
     "pydslrep.showOutput": () => session.output.show(),
     "pydslrep.showReferences": (uri: string, position: Position, locations: Location[]) => {
@@ -47,16 +43,15 @@ export function registerCommands(session: Session): vscode.Disposable {
   );
 }
 
-/** An empty program that is not saved yet. */
+/** Opens an empty, unsaved program. */
 async function newFile(): Promise<void> {
   await vscode.window.showTextDocument(await vscode.workspace.openTextDocument({ language: "pydslrep" }));
 }
 
-/** Asks for a name, and has the command `pydslrep` write a program to start from. */
+/** Asks for a name and creates a program with `pydslrep new`. */
 async function newProgram(session: Session): Promise<void> {
-  const command = findCommand(session.places());
+  const command = findCommandLine(session);
   if (command === undefined) {
-    fail("There is no command `pydslrep`: neither in the extension nor beside the server nor on the PATH.");
     return;
   }
   const folder = vscode.workspace.workspaceFolders?.[0]?.uri ?? (await chooseFolder());
@@ -70,15 +65,10 @@ async function newProgram(session: Session): Promise<void> {
   if (folder === undefined || name === undefined) {
     return;
   }
-  try {
-    await promisify(execFile)(command, ["new", name], { cwd: folder.fsPath });
-  } catch (error) {
-    const printed = (error as { stderr?: string }).stderr?.trim();
-    fail(sentence(printed === undefined || printed === "" ? String(error) : printed));
-    return;
+  if ((await runCommandLine(command, ["new", name], folder.fsPath)) !== undefined) {
+    reached("program");
+    await vscode.window.showTextDocument(vscode.Uri.joinPath(folder, name, `${name}.pyr`));
   }
-  reached("program");
-  await vscode.window.showTextDocument(vscode.Uri.joinPath(folder, name, `${name}.pyr`));
 }
 
 async function chooseFolder(): Promise<vscode.Uri | undefined> {
@@ -88,4 +78,12 @@ async function chooseFolder(): Promise<vscode.Uri | undefined> {
     openLabel: "Create Here",
   });
   return chosen?.[0];
+}
+
+/** Shows the versions of the extension and of the server. */
+function showVersion(session: Session): void {
+  const server = session.client?.initializeResult?.serverInfo?.version;
+  const running = server === undefined ? "no server running" : `server ${server}`;
+  const versions = `PyDSLRep ${manifest.version}, ${running} (${session.server?.command ?? "none found"})`;
+  showInformation(versions, { label: "Copy", press: () => vscode.env.clipboard.writeText(versions) });
 }

@@ -1,29 +1,26 @@
-// Which environment of a program a command is about.
+// Determines the environment of a program that a command applies to.
 import * as vscode from "vscode";
 import type { LanguageClient } from "vscode-languageclient/node";
 
-import { inform, warn } from "./notifications";
-import { PLANNED_AT, type PlannedAt } from "./preview/protocol";
+import { codeOf } from "./explain";
+import { showInformation, showWarning } from "./notifications";
+import { PLANNED_AT, type EnvironmentId, type PlannedAt } from "./preview/protocol";
 
-/** What a lens hands to a command: the program's address and the environment's name. */
-export interface ChosenEnvironment {
-  uri: string;
-  environment: string;
-}
+export const OPEN_A_PROGRAM = "Open a program (a .pyr file) first.";
 
-/** The environment that a command is about: the one at the cursor, else the one that the person chooses. */
+/** The environment at the cursor; if there are several, the one that the user picks. */
 export async function chooseEnvironment(
   client: LanguageClient | undefined,
   document: vscode.Uri | undefined,
-): Promise<ChosenEnvironment | undefined> {
+): Promise<EnvironmentId | undefined> {
   const program = await openProgram(document);
   if (program === undefined) {
-    inform("Open a program (a file that ends in .pyr) first.");
+    showInformation(OPEN_A_PROGRAM);
     return undefined;
   }
   if (client?.isRunning() !== true) {
     const restart = () => vscode.commands.executeCommand("pydslrep.restartServer");
-    warn("The language server of PyDSLRep is not running.", { label: "Restart Server", press: restart });
+    showWarning("The PyDSLRep language server is not running.", { label: "Restart Server", press: restart });
     return undefined;
   }
   const uri = client.code2ProtocolConverter.asUri(program.uri);
@@ -32,33 +29,32 @@ export async function chooseEnvironment(
   const found = await client.sendRequest<PlannedAt | null>(PLANNED_AT, { textDocument: { uri }, position });
   const names = candidates(found);
   if (names.length === 0) {
-    offerEnvironment(program);
+    offerToAddEnvironment(program);
     return undefined;
   }
   const environment = names.length === 1 ? names[0] : await vscode.window.showQuickPick(names, { placeHolder: "Which environment?" });
   return environment === undefined ? undefined : { uri, environment };
 }
 
-/** The environments that may be meant: those that use what is at the cursor, else all. */
-export function candidates(found: PlannedAt | null): string[] {
+/** The environments that use what is at the cursor, or all if none does. */
+function candidates(found: PlannedAt | null): string[] {
   if (found === null) {
     return [];
   }
   return found.using.length > 0 ? found.using : found.environments;
 }
 
-/** Says that there is nothing to run yet, and what would be. */
-function offerEnvironment(program: vscode.TextDocument): void {
+function offerToAddEnvironment(program: vscode.TextDocument): void {
   const message = "This program has no environment yet. Add one to say which robots and movements run.";
-  inform(message, { label: "Add Environment", press: () => addEnvironment(program) });
+  showInformation(message, { label: "Add Environment", press: () => addEnvironment(program) });
 }
 
-/** Adds an environment: the one that the server offers, with all robots and movements, else one to fill in. */
+/** Adds the environment that the server's quick fix offers, with all robots and movements, or else a snippet. */
 export async function addEnvironment(program: vscode.TextDocument): Promise<void> {
-  // Not over the preview, whose button asks for it, too.
+  // The button may be in the preview, which must not be covered.
   const visible = vscode.window.visibleTextEditors.find(({ document }) => document === program);
   const editor = await vscode.window.showTextDocument(program, { viewColumn: visible?.viewColumn ?? vscode.ViewColumn.One });
-  const problem = vscode.languages.getDiagnostics(program.uri).find(({ code }) => (typeof code === "object" ? code.value : code) === "no-environment");
+  const problem = vscode.languages.getDiagnostics(program.uri).find((diagnostic) => codeOf(diagnostic) === "no-environment");
   if (problem !== undefined) {
     const kind = vscode.CodeActionKind.QuickFix.value;
     const actions = await vscode.commands.executeCommand<vscode.CodeAction[]>("vscode.executeCodeActionProvider", program.uri, problem.range, kind, 10);
@@ -75,7 +71,7 @@ export async function addEnvironment(program: vscode.TextDocument): Promise<void
   await editor.insertSnippet(new vscode.SnippetString(text), end);
 }
 
-/** The program of this address, or the one in the active editor. */
+/** The program with this URI, or the one in the active editor. */
 async function openProgram(uri: vscode.Uri | undefined): Promise<vscode.TextDocument | undefined> {
   const document = uri instanceof vscode.Uri ? await vscode.workspace.openTextDocument(uri) : vscode.window.activeTextEditor?.document;
   return document?.languageId === "pydslrep" ? document : undefined;

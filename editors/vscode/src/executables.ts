@@ -1,29 +1,30 @@
-// Where the language server is: named by a setting, beside the extension, or on the path. Knows nothing of VS Code.
+// Finds the language server and the command: set by the user, bundled with the extension, or on the PATH. Does not depend on
+// VS Code.
 import * as path from "node:path";
 
-/** A program that can be started. */
-export interface Program {
+/** A program to start. */
+export interface Executable {
   command: string;
   args: string[];
   /** How it was found. */
   origin: "setting" | "bundled" | "path";
 }
 
-/** Why there is no program, in words for the person. */
+/** Why there is no server, as a message. */
 export interface Missing {
   reason: string;
-  /** The setting that is wrong, rather than none given. */
-  setting: boolean;
+  /** Whether the setting is wrong; otherwise there is none. */
+  isSettingWrong: boolean;
 }
 
-/** Where to look. */
-export interface Places {
-  /** What `pydslrep.server.path` says; empty for nothing. */
+/** Where to search. */
+export interface SearchPaths {
+  /** The value of `pydslrep.server.path`; empty if unset. */
   setting: string;
-  /** The folder that `${workspaceFolder}` and relative paths are about. */
+  /** The value of `${workspaceFolder}`, which relative paths start from. */
   workspaceFolder: string | undefined;
   homeFolder: string;
-  /** The folder in the extension where a package for one platform has its programs. */
+  /** The extension's folder for bundled programs; packages for one platform have them. */
   bundledFolder: string;
   /** The environment's `PATH`. */
   searchPath: string;
@@ -31,62 +32,65 @@ export interface Places {
   isFile: (file: string) => boolean;
 }
 
-/** The language server: a program of its own, or the command `pydslrep`, which also serves. */
-export function findServer(places: Places): Program | Missing {
-  const named = places.setting.trim();
+/** The language server: `pydslrep-lsp`, or the command `pydslrep`, which contains the server. */
+export function findServer(search: SearchPaths): Executable | Missing {
+  const named = search.setting.trim();
   if (named !== "") {
-    const file = resolveSetting(named, places);
+    const file = resolveSetting(named, search);
     return file === undefined
-      ? { reason: `The setting \`pydslrep.server.path\` is \`${named}\`, but that file does not exist.`, setting: true }
-      : serving(file, "setting", places);
+      ? { reason: `The setting \`pydslrep.server.path\` is \`${named}\`, but that file does not exist.`, isSettingWrong: true }
+      : asServer(file, "setting", search);
   }
-  const bundled = firstFile(places.bundledFolder, ["pydslrep-lsp", "pydslrep"], places);
+  const bundled = firstFile(search.bundledFolder, ["pydslrep-lsp", "pydslrep"], search);
   if (bundled !== undefined) {
-    return serving(bundled, "bundled", places);
+    return asServer(bundled, "bundled", search);
   }
   for (const name of ["pydslrep-lsp", "pydslrep"]) {
-    const found = onSearchPath(name, places);
+    const found = onSearchPath(name, search);
     if (found !== undefined) {
-      return serving(found, "path", places);
+      return asServer(found, "path", search);
     }
   }
-  return { reason: "The language server of PyDSLRep is not installed: this package of the extension has none inside, and there is no `pydslrep-lsp` on the PATH.", setting: false };
+  return {
+    reason: "The PyDSLRep language server is not installed: the extension contains none, and `pydslrep-lsp` is not on the PATH.",
+    isSettingWrong: false,
+  };
 }
 
-/** The command `pydslrep`, for tasks: beside the server, in the extension, or on the path. */
-export function findCommand(places: Places): string | undefined {
-  const server = findServer(places);
-  const folders = "command" in server ? [pathsOf(places).dirname(server.command)] : [];
-  for (const folder of [...folders, places.bundledFolder]) {
-    const found = firstFile(folder, ["pydslrep"], places);
+/** The command `pydslrep`: next to the server, in the extension, or on the PATH. */
+export function findCommand(search: SearchPaths): string | undefined {
+  const server = findServer(search);
+  const folders = "command" in server ? [pathModule(search).dirname(server.command)] : [];
+  for (const folder of [...folders, search.bundledFolder]) {
+    const found = firstFile(folder, ["pydslrep"], search);
     if (found !== undefined) {
       return found;
     }
   }
-  return onSearchPath("pydslrep", places);
+  return onSearchPath("pydslrep", search);
 }
 
-function serving(command: string, origin: Program["origin"], places: Places): Program {
-  const name = pathsOf(places).basename(command).toLowerCase();
+function asServer(command: string, origin: Executable["origin"], search: SearchPaths): Executable {
+  const name = pathModule(search).basename(command).toLowerCase();
   const args = /^pydslrep(\.exe)?$/.test(name) ? ["lsp", "--stdio"] : ["--stdio"];
   return { command, args, origin };
 }
 
-function resolveSetting(named: string, places: Places): string | undefined {
-  const paths = pathsOf(places);
+function resolveSetting(named: string, search: SearchPaths): string | undefined {
+  const paths = pathModule(search);
   if (!/[\\/]/.test(named)) {
-    return onSearchPath(named, places);
+    return onSearchPath(named, search);
   }
-  const folder = places.workspaceFolder ?? places.homeFolder;
-  const expanded = named.replace(/^~(?=[\\/])/, () => places.homeFolder).replaceAll("${workspaceFolder}", () => folder);
+  const folder = search.workspaceFolder ?? search.homeFolder;
+  const expanded = named.replace(/^~(?=[\\/])/, () => search.homeFolder).replaceAll("${workspaceFolder}", () => folder);
   const absolute = paths.resolve(folder, expanded);
-  return firstFile(paths.dirname(absolute), [paths.basename(absolute)], places);
+  return firstFile(paths.dirname(absolute), [paths.basename(absolute)], search);
 }
 
-function onSearchPath(name: string, places: Places): string | undefined {
-  const paths = pathsOf(places);
-  for (const folder of places.searchPath.split(paths.delimiter)) {
-    const found = folder === "" ? undefined : firstFile(folder, [name], places);
+function onSearchPath(name: string, search: SearchPaths): string | undefined {
+  const paths = pathModule(search);
+  for (const folder of search.searchPath.split(paths.delimiter)) {
+    const found = folder === "" ? undefined : firstFile(folder, [name], search);
     if (found !== undefined) {
       return found;
     }
@@ -94,12 +98,12 @@ function onSearchPath(name: string, places: Places): string | undefined {
   return undefined;
 }
 
-function firstFile(folder: string, names: string[], places: Places): string | undefined {
-  const endings = places.platform === "win32" ? ["", ".exe"] : [""];
-  const candidates = names.flatMap((name) => endings.map((ending) => pathsOf(places).join(folder, name + ending)));
-  return candidates.find((file) => places.isFile(file));
+function firstFile(folder: string, names: string[], search: SearchPaths): string | undefined {
+  const endings = search.platform === "win32" ? ["", ".exe"] : [""];
+  const candidates = names.flatMap((name) => endings.map((ending) => pathModule(search).join(folder, name + ending)));
+  return candidates.find((file) => search.isFile(file));
 }
 
-function pathsOf(places: Places): path.PlatformPath {
-  return places.platform === "win32" ? path.win32 : path.posix;
+function pathModule(search: SearchPaths): path.PlatformPath {
+  return search.platform === "win32" ? path.win32 : path.posix;
 }

@@ -1,57 +1,56 @@
-// The server's commands about an environment: carried out, and told once where they fail, with what helps.
+// Executes the server's commands on an environment and reports failures once, each with a button that helps.
 import * as vscode from "vscode";
 import { ExecuteCommandRequest, type LanguageClient, WorkDoneProgress } from "vscode-languageclient/node";
 
-import type { ChosenEnvironment } from "./environments";
 import { failureOf } from "./failure";
-import { fail, warn } from "./notifications";
-import type { Location } from "./preview/follower";
+import { showError, showWarning } from "./notifications";
+import type { EnvironmentId, Location } from "./preview/protocol";
 
-/** What the commands need of the window. */
-export interface Surroundings {
+/** The connection to the server and the channel for details. */
+export interface Connection {
   client: LanguageClient | undefined;
   output: vscode.LogOutputChannel;
 }
 
 let requests = 0;
 
-/** Carries out a command of the server; undefined where it failed, which the person then knows. */
-export async function execute(around: Surroundings, command: string, chosen: ChosenEnvironment): Promise<unknown> {
+/** The result of a command; undefined if it failed, which the user has been told. */
+export async function execute(connection: Connection, command: string, environment: EnvironmentId): Promise<unknown> {
   try {
-    return await request(around.client, command, chosen);
+    return await request(connection.client, command, environment);
   } catch (error) {
-    explain(around, command, chosen, error);
+    reportFailure(connection, command, environment, error);
     return undefined;
   }
 }
 
-/** Carries out a command that takes a while: with its progress once it has begun, and until somebody stops it. */
-export async function executeLong(
-  around: Surroundings,
+/** Like `execute`, for a command that takes a while: shows its progress and can be cancelled. */
+export async function executeWithProgress(
+  connection: Connection,
   command: string,
-  chosen: ChosenEnvironment,
-  stop: vscode.CancellationTokenSource,
+  environment: EnvironmentId,
+  cancellation: vscode.CancellationTokenSource,
 ): Promise<unknown> {
-  const shown = new Shown(`Running ${chosen.environment}`, stop);
+  const progress = new ProgressNotification(`Running ${environment.environment}`, cancellation);
   try {
-    return await request(around.client, command, chosen, (message) => shown.report(message), stop.token);
+    return await request(connection.client, command, environment, (message) => progress.report(message), cancellation.token);
   } catch (error) {
-    shown.end();
-    explain(around, command, chosen, error);
+    progress.end();
+    reportFailure(connection, command, environment, error);
     return undefined;
   } finally {
-    shown.end();
+    progress.end();
   }
 }
 
-/** Progress as a message that stops what it is about; what fails before it begins has none. */
-class Shown {
+/** A progress notification that cancels the command. It opens with the first report, so a command that fails at once shows none. */
+class ProgressNotification {
   private progress: vscode.Progress<{ message?: string }> | undefined;
   private finish: () => void = () => undefined;
 
   constructor(
     private readonly title: string,
-    private readonly stop: vscode.CancellationTokenSource,
+    private readonly cancellation: vscode.CancellationTokenSource,
   ) {}
 
   report(message: string | undefined): void {
@@ -71,7 +70,7 @@ class Shown {
     const options = { location: vscode.ProgressLocation.Notification, title: this.title, cancellable: true };
     void vscode.window.withProgress(options, (progress, pressed) => {
       this.progress = progress;
-      pressed.onCancellationRequested(() => this.stop.cancel());
+      pressed.onCancellationRequested(() => this.cancellation.cancel());
       return new Promise<void>((resolve) => (this.finish = resolve));
     });
   }
@@ -80,19 +79,19 @@ class Shown {
 async function request(
   client: LanguageClient | undefined,
   command: string,
-  chosen: ChosenEnvironment,
+  environment: EnvironmentId,
   report?: (message: string | undefined) => void,
   token?: vscode.CancellationToken,
 ): Promise<unknown> {
   if (client === undefined) {
     throw new Error("the language server is not running");
   }
-  const params = { command, arguments: [chosen] };
+  const params = { command, arguments: [environment] };
   if (report === undefined) {
     return client.sendRequest(ExecuteCommandRequest.type, params);
   }
   const workDoneToken = `pydslrep command ${++requests}`;
-  const following = client.onProgress(WorkDoneProgress.type, workDoneToken, (value) => {
+  const listener = client.onProgress(WorkDoneProgress.type, workDoneToken, (value) => {
     if (value.kind !== "end") {
       report(value.message);
     }
@@ -100,41 +99,40 @@ async function request(
   try {
     return await client.sendRequest(ExecuteCommandRequest.type, { ...params, workDoneToken }, token);
   } finally {
-    following.dispose();
+    listener.dispose();
   }
 }
 
-/** Says once why a command failed, with what one can do about it as a button. */
-function explain(around: Surroundings, command: string, chosen: ChosenEnvironment, error: unknown): void {
-  const again = (which = chosen) => vscode.commands.executeCommand(command, which);
+function reportFailure(connection: Connection, command: string, environment: EnvironmentId, error: unknown): void {
+  const retry = (which = environment) => vscode.commands.executeCommand(command, which);
   const failure = failureOf(error);
   switch (failure.kind) {
     case "cancelled":
       return;
-    case "ended":
+    case "disconnected":
       if (command === "pydslrep.run") {
-        warn(`The run of ${chosen.environment} ended because the language server was restarted.`, { label: "Run Again", press: () => again() });
+        showWarning(`The run of ${environment.environment} ended because the language server was restarted.`, { label: "Run Again", press: () => retry() });
       }
       return;
     case "unsaved":
-      fail(failure.message, { label: "Save As…", press: () => saveAs(chosen, again) });
+      showError(failure.message, { label: "Save As…", press: () => saveAs(environment, retry) });
       return;
     case "errors": {
       const { location } = failure;
       const show = location && { label: "Show Problem", press: () => showProblem(location) };
-      fail(failure.message, ...(show ? [show] : []));
+      showError(failure.message, ...(show ? [show] : []));
       return;
     }
     case "other":
-      around.output.error(failure.details);
-      fail(failure.message, { label: "Show Output", press: () => around.output.show() });
+      connection.output.error(failure.details);
+      showError(failure.message, { label: "Show Output", press: () => connection.output.show() });
   }
 }
 
-async function saveAs(chosen: ChosenEnvironment, again: (which: ChosenEnvironment) => unknown): Promise<void> {
-  const saved = await vscode.workspace.saveAs(vscode.Uri.parse(chosen.uri));
+async function saveAs(environment: EnvironmentId, retry: (which: EnvironmentId) => unknown): Promise<void> {
+  const saved = await vscode.workspace.saveAs(vscode.Uri.parse(environment.uri));
   if (saved !== undefined) {
-    await again({ ...chosen, uri: saved.toString() });
+    await retry({ ...environment, uri: saved.toString() });
   }
 }
 

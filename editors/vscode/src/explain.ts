@@ -1,16 +1,17 @@
-// Pages about problems, in the editor: behind the code of each problem, in its light bulb, and by a command.
+// Opens the page of a diagnostic code: from the code's link, from the light bulb and by a command.
 import * as vscode from "vscode";
 import type { LanguageClient } from "vscode-languageclient/node";
 
 import manifest from "../package.json";
+import { showInformation } from "./notifications";
 
-/** The scheme of the pages' addresses; the server links codes to them. */
-export const PAGES = "pydslrep-page";
+/** The URI scheme of the pages; the server uses it in the links of codes. */
+export const PAGE_SCHEME = "pydslrep-page";
 
-/** How VS Code calls its preview of Markdown. */
-const PREVIEW = "vscode.markdown.preview.editor";
+/** The custom editor that previews Markdown in VS Code. */
+const MARKDOWN_PREVIEW = "vscode.markdown.preview.editor";
 
-/** The codes that have a page: those whose severity can be chosen. */
+/** The codes that have a page: those with a configurable severity. */
 const CODES = new Set(
   manifest.contributes.configuration.flatMap(({ properties }) =>
     "pydslrep.severity" in properties ? Object.keys(properties["pydslrep.severity"].properties) : [],
@@ -19,7 +20,7 @@ const CODES = new Set(
 
 export function registerExplanations(client: () => LanguageClient | undefined): vscode.Disposable {
   return vscode.Disposable.from(
-    vscode.workspace.registerTextDocumentContentProvider(PAGES, {
+    vscode.workspace.registerTextDocumentContentProvider(PAGE_SCHEME, {
       provideTextDocumentContent: async ({ path }) => {
         const code = path.replace(/^\/|\.md$/g, "");
         const page = await client()?.sendRequest<{ markdown: string }>("pydslrep/explain", { code });
@@ -30,43 +31,48 @@ export function registerExplanations(client: () => LanguageClient | undefined): 
   );
 }
 
-/** What the light bulb offers besides fixes. */
-export function explanations(diagnostics: readonly vscode.Diagnostic[]): vscode.CodeAction[] {
-  return codesOf(diagnostics).map((code) => {
+/** The code actions that open pages. */
+export function explainActions(diagnostics: readonly vscode.Diagnostic[]): vscode.CodeAction[] {
+  return codesWithPage(diagnostics).map((code) => {
     const action = new vscode.CodeAction(`Explain this problem: ${code}`, vscode.CodeActionKind.QuickFix);
     action.command = { command: "pydslrep.explainProblem", title: "Explain This Problem", arguments: [code] };
-    action.diagnostics = diagnostics.filter((diagnostic) => codeOf(diagnostic) === code);
+    action.diagnostics = diagnostics.filter((diagnostic) => pydslrepCodeOf(diagnostic) === code);
     return action;
   });
 }
 
-async function explain(chosen: string | undefined): Promise<void> {
-  const code = chosen ?? (await codeAtCursor());
+async function explain(requested: string | undefined): Promise<void> {
+  const code = requested ?? (await codeAtCursor());
   if (code === undefined) {
     return;
   }
-  const page = vscode.Uri.from({ scheme: PAGES, path: `/${code}.md` });
-  await vscode.commands.executeCommand("vscode.openWith", page, PREVIEW, vscode.ViewColumn.Beside);
+  const page = vscode.Uri.from({ scheme: PAGE_SCHEME, path: `/${code}.md` });
+  await vscode.commands.executeCommand("vscode.openWith", page, MARKDOWN_PREVIEW, vscode.ViewColumn.Beside);
 }
 
-/** The code of the problem at the cursor, else of one on its line. */
+/** The code of the problem at the cursor, or else of one on its line. */
 async function codeAtCursor(): Promise<string | undefined> {
   const editor = vscode.window.activeTextEditor;
   const all = editor ? vscode.languages.getDiagnostics(editor.document.uri) : [];
   const cursor = editor?.selection.active ?? new vscode.Position(0, 0);
-  const there = codesOf(all.filter(({ range }) => range.contains(cursor)));
-  const near = there.length > 0 ? there : codesOf(all.filter(({ range }) => range.start.line <= cursor.line && cursor.line <= range.end.line));
-  if (near.length === 0) {
-    void vscode.window.showInformationMessage("There is no problem on the line of the cursor.");
+  const atCursor = codesWithPage(all.filter(({ range }) => range.contains(cursor)));
+  const onLine = () => codesWithPage(all.filter(({ range }) => range.start.line <= cursor.line && cursor.line <= range.end.line));
+  const codes = atCursor.length > 0 ? atCursor : onLine();
+  if (codes.length === 0) {
+    showInformation("There is no problem on this line.");
   }
-  return near.length > 1 ? vscode.window.showQuickPick(near, { placeHolder: "Which problem?" }) : near[0];
+  return codes.length > 1 ? vscode.window.showQuickPick(codes, { placeHolder: "Which problem?" }) : codes[0];
 }
 
-function codesOf(diagnostics: readonly vscode.Diagnostic[]): string[] {
-  return [...new Set(diagnostics.map(codeOf).filter((code) => code !== undefined && CODES.has(code)))] as string[];
+function codesWithPage(diagnostics: readonly vscode.Diagnostic[]): string[] {
+  return [...new Set(diagnostics.map(pydslrepCodeOf))].filter((code): code is string => code !== undefined && CODES.has(code));
 }
 
-function codeOf({ source, code }: vscode.Diagnostic): string | undefined {
+function pydslrepCodeOf(diagnostic: vscode.Diagnostic): string | undefined {
+  return diagnostic.source === "pydslrep" ? codeOf(diagnostic) : undefined;
+}
+
+export function codeOf({ code }: vscode.Diagnostic): string | undefined {
   const value = typeof code === "object" ? code.value : code;
-  return source === "pydslrep" && value !== undefined ? String(value) : undefined;
+  return value === undefined ? undefined : String(value);
 }

@@ -1,4 +1,4 @@
-// The extension: starts the language server and adds what the protocol has no word for.
+// The extension's entry point: starts the language server and registers everything that LSP does not cover.
 import * as vscode from "vscode";
 
 import { registerCommands } from "./commands";
@@ -28,9 +28,9 @@ export function activate(context: vscode.ExtensionContext): void {
         void session.restart();
       }
     }),
-    // Paths that the workspace names count from now on.
+    // A trusted workspace may set the server's path.
     vscode.workspace.onDidGrantWorkspaceTrust(() => void session.restart()),
   );
-  // Nothing waits for it: a server that never answers must not keep anybody from starting another one.
+  // Not awaited: a server that never responds must not block the activation of the extension.
   void session.start();
 }

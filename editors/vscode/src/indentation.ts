@@ -1,29 +1,29 @@
-// Indentation of a program that was open before VS Code knew its language: it keeps what plain text has.
+// Applies the language's indentation to programs that VS Code opened as plain text.
 import * as vscode from "vscode";
 
 const LANGUAGE = "pydslrep";
 
 /**
- * VS Code opens the files of the last session before it has read the extensions, and a file that becomes a program then
- * keeps the indentation of plain text. Each program gets that of its language once, so that a choice in the status bar stays.
+ * VS Code restores the files of the last session before it has loaded extensions, and a file that becomes a program later
+ * keeps the indentation of plain text. Each document is changed only once, so a choice made in the status bar is kept.
  */
 export function registerIndentation(): vscode.Disposable {
   const seen = new WeakSet<vscode.TextDocument>();
-  const adopt = (editors: readonly vscode.TextEditor[]) => {
+  const update = (editors: readonly vscode.TextEditor[]) => {
     for (const editor of editors) {
       if (editor.document.languageId === LANGUAGE && !seen.has(editor.document)) {
         seen.add(editor.document);
-        indent(editor);
+        setIndentation(editor);
       }
     }
   };
-  adopt(vscode.window.visibleTextEditors);
-  return vscode.window.onDidChangeVisibleTextEditors(adopt);
+  update(vscode.window.visibleTextEditors);
+  return vscode.window.onDidChangeVisibleTextEditors(update);
 }
 
-function indent(editor: vscode.TextEditor): void {
+function setIndentation(editor: vscode.TextEditor): void {
   const settings = vscode.workspace.getConfiguration("editor", editor.document);
-  // Whoever wants it detected has it from the text.
+  // VS Code then takes it from the text.
   if (settings.get("detectIndentation") === true) {
     return;
   }

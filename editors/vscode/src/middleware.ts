@@ -1,16 +1,16 @@
-// What is between the editor and the server: which settings it is told, and where its commands and pictures go.
+// Intercepts the language client: which settings the server gets, and how its commands and documents are shown.
 import * as vscode from "vscode";
 import type { Middleware } from "vscode-languageclient/node";
 
 import manifest from "../package.json";
-import type { ChosenEnvironment } from "./environments";
-import { execute, type Surroundings } from "./execute";
-import { explanations } from "./explain";
+import { execute, type Connection } from "./execute";
+import { explainActions } from "./explain";
 import { reached } from "./milestones";
+import type { EnvironmentId } from "./preview/protocol";
 import type { Runs } from "./run";
-import { setTable } from "./settings";
+import { explicitSettings } from "./settings";
 
-/** The commands of this extension that the server may put into a lens. */
+/** The commands of this extension that the server may use in a lens. */
 export const CLIENT_COMMANDS = ["pydslrep.showReferences"];
 
 const SECTION = "pydslrep";
@@ -21,29 +21,28 @@ const KEYS = manifest.contributes.configuration
   .flatMap(({ properties }) => Object.keys(properties))
   .map((key) => key.slice(SECTION.length + 1));
 
-export function middleware(around: Surroundings, runs: Runs): Middleware {
+export function middleware(connection: Connection, runs: Runs): Middleware {
   return {
     workspace: {
       configuration: async (params, token, next) => {
         const answers: unknown = await next(params, token);
         const others: unknown[] = Array.isArray(answers) ? answers : [];
         const settings = vscode.workspace.getConfiguration(SECTION);
-        const told = params.items.map((item, index): unknown =>
-          item.section === SECTION ? setTable(KEYS, (key) => settings.inspect<unknown>(key)) : others[index],
+        return params.items.map((item, index): unknown =>
+          item.section === SECTION ? explicitSettings(KEYS, (key) => settings.inspect<unknown>(key)) : others[index],
         );
-        return told;
       },
     },
-    // Not by the client library: it would show each failure twice, and in words of the protocol.
+    // Left to the client library, each failure would be shown twice, in the protocol's terms.
     executeCommand: async (command, args: unknown[], next) => {
-      const [chosen] = args as [ChosenEnvironment];
+      const [environment] = args as [EnvironmentId];
       switch (command) {
         case "pydslrep.run":
-          return runs.run(chosen);
+          return runs.run(environment);
         case "pydslrep.previewPath":
-          return vscode.commands.executeCommand("pydslrep.showPreview", vscode.Uri.parse(chosen.uri), chosen.environment);
+          return vscode.commands.executeCommand("pydslrep.showPreview", vscode.Uri.parse(environment.uri), environment.environment);
         case "pydslrep.generateScript": {
-          const answer = await execute(around, command, chosen);
+          const answer = await execute(connection, command, environment);
           if (answer !== undefined) {
             reached("script");
           }
@@ -55,11 +54,11 @@ export function middleware(around: Surroundings, runs: Runs): Middleware {
     },
     provideCodeActions: async (document, range, context, token, next) => {
       const actions = (await next(document, range, context, token)) ?? [];
-      const isFix = context.only?.contains(vscode.CodeActionKind.QuickFix) ?? true;
-      return isFix ? [...actions, ...explanations(context.diagnostics)] : actions;
+      const wantsFixes = context.only?.contains(vscode.CodeActionKind.QuickFix) ?? true;
+      return wantsFixes ? [...actions, ...explainActions(context.diagnostics)] : actions;
     },
     window: {
-      // The picture of a run: the preview shows what is in it, where one can look closer.
+      // The picture of a run is not opened: the preview shows the same path.
       showDocument: (params, token, next) =>
         params.external === true && params.uri.endsWith(".svg") ? { success: true } : next(params, token),
     },

@@ -1,4 +1,4 @@
-// Messages with buttons: what happened in a sentence, and what one can do about it.
+// Notifications with buttons: what happened, and what to do about it.
 import * as vscode from "vscode";
 
 export interface Button {
@@ -8,13 +8,13 @@ export interface Button {
 
 type Show = (message: string, ...labels: string[]) => Thenable<string | undefined>;
 
-/** Shows a message, and does what the button says that is pressed. */
-async function ask(show: Show, message: string, buttons: readonly Button[]): Promise<void> {
+/** Shows a notification and runs the action of the button that is pressed. */
+async function notify(show: Show, message: string, buttons: readonly Button[]): Promise<void> {
   const pressed = await show(message, ...buttons.map(({ label }) => label));
   await buttons.find(({ label }) => label === pressed)?.press();
 }
 
-/** Nothing waits for an answer: a message may stay for hours. */
-export const inform = (message: string, ...buttons: Button[]) => void ask(vscode.window.showInformationMessage, message, buttons);
-export const warn = (message: string, ...buttons: Button[]) => void ask(vscode.window.showWarningMessage, message, buttons);
-export const fail = (message: string, ...buttons: Button[]) => void ask(vscode.window.showErrorMessage, message, buttons);
+// Not awaited: a notification may stay for hours.
+export const showInformation = (message: string, ...buttons: Button[]) => void notify(vscode.window.showInformationMessage, message, buttons);
+export const showWarning = (message: string, ...buttons: Button[]) => void notify(vscode.window.showWarningMessage, message, buttons);
+export const showError = (message: string, ...buttons: Button[]) => void notify(vscode.window.showErrorMessage, message, buttons);

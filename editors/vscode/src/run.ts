@@ -1,68 +1,68 @@
-// Running a program: only where the workspace is trusted; the preview then shows what was driven over what was planned.
+// Runs programs in trusted workspaces and shows the driven path in the preview.
 import * as vscode from "vscode";
 
-import type { ChosenEnvironment } from "./environments";
-import { executeLong, type Surroundings } from "./execute";
-import { inform } from "./notifications";
+import { type Connection, executeWithProgress } from "./execute";
 import { reached } from "./milestones";
+import { showInformation, showWarning } from "./notifications";
+import { type EnvironmentId, keyOf } from "./preview/protocol";
 
-/** What the server answers when a run has come to its end. */
-interface Driven {
-  /** What was printed: the table of poses and times. */
+/** The server's answer to `pydslrep.run`. */
+interface RunResult {
+  /** The printed table of poses and times. */
   output: string;
-  /** Addresses of what was drawn, for as long as the server runs; the preview draws it, too. */
+  /** URIs of the drawn files; they exist as long as the server runs. */
   picture?: string | null;
   replay?: string | null;
 }
 
-/** Pictures of the latest run of an environment. */
-export type Pictures = Pick<Driven, "picture" | "replay">;
+/** The pictures of the latest run of an environment. */
+export type Pictures = Pick<RunResult, "picture" | "replay">;
 
 /** The runs of this window. */
 export class Runs implements vscode.Disposable {
   private readonly running = new Set<vscode.CancellationTokenSource>();
-  private readonly drawn = new Map<string, Pictures>();
+  private readonly pictures = new Map<string, Pictures>();
   private readonly tables = vscode.window.createOutputChannel("PyDSLRep Runs");
 
-  constructor(private readonly around: Surroundings) {}
+  constructor(private readonly connection: Connection) {}
 
-  /** Runs an environment, and shows the path that was driven. */
-  async run(chosen: ChosenEnvironment): Promise<unknown> {
+  /** Runs an environment and shows the driven path. */
+  async run(environment: EnvironmentId): Promise<unknown> {
     if (!vscode.workspace.isTrusted) {
-      await askForTrust();
+      askForTrust();
       return undefined;
     }
-    const stop = new vscode.CancellationTokenSource();
-    this.running.add(stop);
-    this.tell();
+    const cancellation = new vscode.CancellationTokenSource();
+    this.running.add(cancellation);
+    this.updateContext();
     try {
-      const answer = await executeLong(this.around, "pydslrep.run", chosen, stop);
-      if (isDriven(answer)) {
-        this.end(chosen, answer);
+      const result = await executeWithProgress(this.connection, "pydslrep.run", environment, cancellation);
+      if (isRunResult(result)) {
+        this.showResult(environment, result);
       }
-      return answer;
+      return result;
     } finally {
-      this.running.delete(stop);
-      this.tell();
-      stop.dispose();
+      this.running.delete(cancellation);
+      this.updateContext();
+      cancellation.dispose();
     }
   }
 
-  /** Ends what runs. */
+  /** Cancels all runs. */
   stop(): void {
-    for (const stop of this.running) {
-      stop.cancel();
+    for (const cancellation of this.running) {
+      cancellation.cancel();
     }
   }
 
-  /** What the latest run of an environment has drawn, if there was one since the server was started. */
-  picturesOf(chosen: ChosenEnvironment): Pictures | undefined {
-    return this.drawn.get(nameOf(chosen));
+  /** The pictures of the latest run of an environment since the server started. */
+  picturesOf(environment: EnvironmentId): Pictures | undefined {
+    return this.pictures.get(keyOf(environment));
   }
 
-  /** A server that is started again has other pictures. */
-  forget(): void {
-    this.drawn.clear();
+  /** The pictures are deleted when the server exits. */
+  forgetPictures(): void {
+    this.pictures.clear();
   }
 
   dispose(): void {
@@ -70,37 +70,31 @@ export class Runs implements vscode.Disposable {
     this.tables.dispose();
   }
 
-  private tell(): void {
+  private updateContext(): void {
     void vscode.commands.executeCommand("setContext", "pydslrep.isRunning", this.running.size > 0);
   }
 
-  private end(chosen: ChosenEnvironment, driven: Driven): void {
+  private showResult(environment: EnvironmentId, result: RunResult): void {
     reached("run");
-    this.drawn.set(nameOf(chosen), driven);
-    this.tables.appendLine(`${driven.output.trimEnd()}\n`);
-    const showPath = () => vscode.commands.executeCommand("pydslrep.showPreview", vscode.Uri.parse(chosen.uri), chosen.environment);
-    inform(summary(driven.output), { label: "Show Path", press: showPath }, { label: "Show Table", press: () => this.tables.show(true) });
+    this.pictures.set(keyOf(environment), result);
+    this.tables.appendLine(`${result.output.trimEnd()}\n`);
+    const showPath = () => vscode.commands.executeCommand("pydslrep.showPreview", vscode.Uri.parse(environment.uri), environment.environment);
+    showInformation(summary(result.output), { label: "Show Path", press: showPath }, { label: "Show Table", press: () => this.tables.show(true) });
     void showPath();
   }
 }
 
-async function askForTrust(): Promise<void> {
-  const manage = "Manage Workspace Trust";
-  if ((await vscode.window.showWarningMessage("Programs are run only in workspaces that you trust.", manage)) === manage) {
-    await vscode.commands.executeCommand("workbench.trust.manage");
-  }
+function askForTrust(): void {
+  const manage = { label: "Manage Workspace Trust", press: () => vscode.commands.executeCommand("workbench.trust.manage") };
+  showWarning("Programs run only in workspaces that you trust.", manage);
 }
 
-function nameOf({ uri, environment }: ChosenEnvironment): string {
-  return `${environment} ${uri}`;
-}
-
-function isDriven(answer: unknown): answer is Driven {
+function isRunResult(answer: unknown): answer is RunResult {
   return typeof answer === "object" && answer !== null && "output" in answer && typeof answer.output === "string";
 }
 
-/** The line that says how long it took. */
-export function summary(output: string): string {
+/** The line of the output that says how long the run took. */
+function summary(output: string): string {
   const lines = output.split("\n").map((line) => line.trim());
   return lines.find((line) => /^\S+: .* simulated in /.test(line)) ?? "The run has ended.";
 }

@@ -1,4 +1,4 @@
-// The language server for as long as the window is open: found, started, and started again.
+// The window's language server: finds, starts and restarts it.
 import type { ChildProcess } from "node:child_process";
 import { statSync } from "node:fs";
 import * as os from "node:os";
@@ -14,16 +14,16 @@ import {
   State,
 } from "vscode-languageclient/node";
 
-import { PAGES } from "./explain";
-import { Ends, launch } from "./launch";
+import { type Executable, findServer, type SearchPaths } from "./executables";
+import { PAGE_SCHEME } from "./explain";
+import { CrashCounter, launch } from "./launch";
 import { CLIENT_COMMANDS, middleware } from "./middleware";
+import { showError } from "./notifications";
 import { Runs } from "./run";
-import { findServer, type Places, type Program } from "./executables";
 
-/** Where the server is in its life. */
 export type ServerState = "starting" | "running" | "stopped" | "missing";
 
-/** Programs, and the files beside them that the server knows. */
+/** Programs, settings and scenes. */
 export const DOCUMENTS = [
   { language: "pydslrep" },
   { pattern: "**/pydslrep.toml" },
@@ -31,14 +31,14 @@ export const DOCUMENTS = [
 ] as const satisfies vscode.DocumentSelector;
 
 export class Session implements vscode.Disposable {
-  /** The connection to the server; none where no server was found. */
+  /** The connection to the server; undefined if no server was found. */
   client: LanguageClient | undefined;
   /** The server that was found. */
-  program: Program | undefined;
+  server: Executable | undefined;
   state: ServerState = "starting";
 
   private process: ChildProcess | undefined;
-  /** What was begun last. */
+  /** The last step of the queue. */
   private last: Promise<void> = Promise.resolve();
 
   private readonly changed = new vscode.EventEmitter<ServerState>();
@@ -50,48 +50,48 @@ export class Session implements vscode.Disposable {
 
   constructor(private readonly context: vscode.ExtensionContext) {}
 
-  /** Looks for the server and starts it; says so where it cannot. */
+  /** Finds and starts the server; shows an error if that fails. */
   start(): Promise<void> {
-    return this.inTurn(() => this.begin());
+    return this.enqueue(() => this.findAndStart());
   }
 
-  /** Ends the server, if there is one, and starts the one that is found now. */
+  /** Stops the server, if there is one, and finds and starts it again. */
   restart(): Promise<void> {
-    this.letGo();
-    return this.inTurn(() => this.begin());
+    this.stop();
+    return this.enqueue(() => this.findAndStart());
   }
 
-  private async begin(): Promise<void> {
-    const server = findServer(this.places());
+  private async findAndStart(): Promise<void> {
+    const server = findServer(this.searchPaths());
     if (!("command" in server)) {
-      this.program = undefined;
-      this.enter("missing");
-      void this.complain(server.reason, server.setting);
+      this.server = undefined;
+      this.setState("missing");
+      this.reportMissing(server.reason, server.isSettingWrong);
       return;
     }
-    this.program = server;
+    this.server = server;
     this.output.info(`starting ${server.command} ${server.args.join(" ")}`);
-    const client = this.connect(server);
+    const client = this.createClient(server);
     this.client = client;
     try {
       await client.start();
     } catch (error) {
       if (this.client === client) {
-        this.enter("stopped");
-        void this.complain(`${server.command} is not a PyDSLRep language server: ${String(error)}`, server.origin === "setting");
+        this.setState("stopped");
+        this.reportMissing(`${server.command} is not a PyDSLRep language server: ${String(error)}`, server.origin === "setting");
       }
     }
   }
 
-  private connect(server: Program): LanguageClient {
+  private createClient(server: Executable): LanguageClient {
     const folder = vscode.workspace.workspaceFolders?.[0]?.uri.fsPath;
-    const ends = new Ends();
+    const crashes = new CrashCounter();
     const closed = (): CloseHandlerResult => {
       if (this.client !== client) {
         return { action: CloseAction.DoNotRestart, handled: true };
       }
-      if (ends.add(Date.now())) {
-        return { action: CloseAction.Restart, handled: true, message: "The server stopped and is started again." };
+      if (crashes.add(Date.now())) {
+        return { action: CloseAction.Restart, handled: true, message: "The server stopped and is being restarted." };
       }
       return { action: CloseAction.DoNotRestart, message: "The PyDSLRep server crashed repeatedly and was not restarted." };
     };
@@ -105,51 +105,50 @@ export class Session implements vscode.Disposable {
       return process;
     };
     const client = new LanguageClient("pydslrep", "PyDSLRep", start, {
-      ...this.options(),
-      // What is written to a server that died fails before its end is seen: it is the end that counts.
+      ...this.clientOptions(),
+      // Writing to a dead server fails before its exit is noticed; `closed` handles the exit.
       errorHandler: { error: () => ({ action: ErrorAction.Continue, handled: true }), closed },
     });
     client.registerFeature({
       fillClientCapabilities: (capabilities) => {
-        capabilities.experimental = { commands: { commands: CLIENT_COMMANDS }, pages: PAGES };
+        capabilities.experimental = { commands: { commands: CLIENT_COMMANDS }, pages: PAGE_SCHEME };
       },
       initialize: () => undefined,
       getState: () => ({ kind: "static" }),
       clear: () => undefined,
     });
     client.onDidChangeState(({ newState }) => {
-      // One that was let go of may still have something to say.
+      // A client that was replaced may still change.
       if (this.client === client) {
-        this.enter(named(newState));
+        this.setState(serverState(newState));
       }
     });
     return client;
   }
 
-  /** Lets go of the server, if there is one, and ends it in its turn. */
-  private letGo(): void {
+  /** Detaches the client, if there is one, and queues its shutdown. */
+  private stop(): void {
     const { client, process } = this;
     this.client = undefined;
     this.process = undefined;
     if (client?.state === State.Starting) {
-      // It may never answer, and what comes next waits for it.
+      // It may never respond, and the next step of the queue waits for it.
       process?.kill();
     }
-    void this.inTurn(async () => {
+    void this.enqueue(async () => {
       await client?.dispose().catch((error: unknown) => this.output.warn(String(error)));
-      // One that hangs does not go by being asked.
+      // A hanging server does not exit on request.
       process?.kill();
     });
   }
 
-  /** Does one thing after the other: what is asked for while a server starts comes behind that. */
-  private inTurn(step: () => Promise<void>): Promise<void> {
+  /** Runs steps one after the other, so that a restart waits for a server that is still starting. */
+  private enqueue(step: () => Promise<void>): Promise<void> {
     this.last = this.last.then(step, step);
     return this.last;
   }
 
-  /** Where this window looks for programs. */
-  places(): Places {
+  searchPaths(): SearchPaths {
     return {
       setting: vscode.workspace.getConfiguration("pydslrep").get("server.path", ""),
       workspaceFolder: vscode.workspace.workspaceFolders?.[0]?.uri.fsPath,
@@ -162,44 +161,42 @@ export class Session implements vscode.Disposable {
   }
 
   dispose(): void {
-    this.letGo();
+    this.stop();
     this.runs.dispose();
     this.changed.dispose();
     this.output.dispose();
   }
 
-  private options(): LanguageClientOptions {
+  private clientOptions(): LanguageClientOptions {
     return {
       documentSelector: [...DOCUMENTS],
       outputChannel: this.output,
       middleware: middleware(this, this.runs),
-      // Failures are told where they are understood, and once.
+      // Failures are shown by the code that can explain them.
       revealOutputChannelOn: RevealOutputChannelOn.Never,
       diagnosticPullOptions: { onChange: true, onSave: true },
     };
   }
 
-  private enter(state: ServerState): void {
+  private setState(state: ServerState): void {
     this.state = state;
     if (state !== "running") {
-      this.runs.forget();
+      this.runs.forgetPictures();
     }
     this.changed.fire(state);
   }
 
-  private async complain(reason: string, setting: boolean): Promise<void> {
+  private reportMissing(reason: string, isSettingWrong: boolean): void {
     this.output.error(reason);
-    const change = setting ? "Change the Setting" : "Set a Path";
-    const chosen = await vscode.window.showErrorMessage(reason, change, "Show Output");
-    if (chosen === change) {
-      await vscode.commands.executeCommand("workbench.action.openSettings", "pydslrep.server.path");
-    } else if (chosen !== undefined) {
-      this.output.show();
-    }
+    const change = {
+      label: isSettingWrong ? "Change Setting" : "Set Server Path",
+      press: () => vscode.commands.executeCommand("workbench.action.openSettings", "pydslrep.server.path"),
+    };
+    showError(reason, change, { label: "Show Output", press: () => this.output.show() });
   }
 }
 
-function named(state: State): ServerState {
+function serverState(state: State): ServerState {
   switch (state) {
     case State.Running:
       return "running";

@@ -1,7 +1,7 @@
-// What the language server is told of the settings: only what somebody has set. Defaults are left out, since what an
-// editor says counts more than a `pydslrep.toml`.
+// Collects the settings that the user has set. Defaults are left out: what the server receives from an editor takes
+// precedence over a `pydslrep.toml`.
 
-/** Where a setting has a value, as `WorkspaceConfiguration.inspect` tells; the later the more it counts. */
+/** The values of a setting by scope, from `WorkspaceConfiguration.inspect`; later ones take precedence. */
 export interface Inspection {
   globalValue?: unknown;
   workspaceValue?: unknown;
@@ -10,20 +10,20 @@ export interface Inspection {
 
 type Table = Record<string, unknown>;
 
-/** The value that somebody has set; tables are put together from all places. */
-export function setValue(inspection: Inspection | undefined): unknown {
+/** The value that the user has set; tables of several scopes are merged. */
+export function explicitValue(inspection: Inspection | undefined): unknown {
   const values = [inspection?.globalValue, inspection?.workspaceValue, inspection?.workspaceFolderValue];
-  // The settings editor leaves an empty text where somebody has deleted one.
-  const said = values.filter((value) => value !== undefined && value !== null && value !== "");
-  const tables = said.filter(isTable);
-  return tables.length > 1 ? Object.assign({}, ...tables) : said.at(-1);
+  // The settings editor leaves an empty string when a text is deleted.
+  const present = values.filter((value) => value !== undefined && value !== null && value !== "");
+  const tables = present.filter(isTable);
+  return tables.length > 1 ? Object.assign({}, ...tables) : present.at(-1);
 }
 
-/** The settings that have a value, as one table of tables: `inlayHints.pose` is in `inlayHints`. */
-export function setTable(keys: readonly string[], inspect: (key: string) => Inspection | undefined): Table {
+/** All settings that have a value, as nested tables: `inlayHints.pose` is in `inlayHints`. */
+export function explicitSettings(keys: readonly string[], inspect: (key: string) => Inspection | undefined): Table {
   const table: Table = {};
   for (const key of keys) {
-    const value = setValue(inspect(key));
+    const value = explicitValue(inspect(key));
     if (value !== undefined) {
       insert(table, key.split("."), value);
     }

@@ -1,56 +1,39 @@
-// What the status bar says about the server, behind the braces beside the language's name.
+// The server's state in the status bar, under the language's status icon.
 import * as vscode from "vscode";
 
-import { DOCUMENTS, type ServerState, type Session } from "./session";
+import { DOCUMENTS, type Session } from "./session";
 
-interface Words {
-  text: string;
-  detail: string;
-  severity: vscode.LanguageStatusSeverity;
-  command: vscode.Command;
-}
+type Status = Pick<vscode.LanguageStatusItem, "text" | "detail" | "severity" | "command">;
 
 const RESTART = { command: "pydslrep.restartServer", title: "Restart Server" };
 const OUTPUT = { command: "pydslrep.showOutput", title: "Show Output" };
+const SET_PATH = { command: "workbench.action.openSettings", title: "Set Server Path", arguments: ["pydslrep.server.path"] };
 
 export function registerStatus(session: Session): vscode.Disposable {
   const item = vscode.languages.createLanguageStatusItem("pydslrep.server", [...DOCUMENTS]);
   item.name = "PyDSLRep Language Server";
-  const show = () => {
-    const words = wordsFor(session.state, session);
-    item.text = words.text;
-    item.detail = words.detail;
-    item.severity = words.severity;
-    item.command = words.command;
+  const update = () => {
+    Object.assign(item, statusOf(session));
     item.busy = session.state === "starting";
   };
-  show();
-  return vscode.Disposable.from(item, session.onDidChangeState(show));
+  update();
+  return vscode.Disposable.from(item, session.onDidChangeState(update));
 }
 
-function wordsFor(state: ServerState, session: Session): Words {
-  switch (state) {
+function statusOf(session: Session): Status {
+  const severity = vscode.LanguageStatusSeverity;
+  switch (session.state) {
     case "starting":
-      return { text: "PyDSLRep is starting", detail: "", severity: vscode.LanguageStatusSeverity.Information, command: OUTPUT };
+      return { text: "PyDSLRep is starting", detail: "", severity: severity.Information, command: OUTPUT };
     case "running": {
       const version = session.client?.initializeResult?.serverInfo?.version;
-      const origin = { bundled: "of the extension", path: "on the PATH", setting: "of the settings" };
-      const from = session.program && origin[session.program.origin];
-      return {
-        text: `PyDSLRep ${version ?? ""}`.trim(),
-        detail: `server ${from ?? ""} is running`,
-        severity: vscode.LanguageStatusSeverity.Information,
-        command: RESTART,
-      };
+      const origins = { bundled: "bundled server", path: "server from the PATH", setting: "server from the settings" };
+      const origin = session.server && origins[session.server.origin];
+      return { text: `PyDSLRep ${version ?? ""}`.trim(), detail: `${origin ?? "server"} is running`, severity: severity.Information, command: RESTART };
     }
     case "stopped":
-      return { text: "Server stopped", detail: "completion and checks are off", severity: vscode.LanguageStatusSeverity.Error, command: RESTART };
+      return { text: "Server stopped", detail: "completion and checks are off", severity: severity.Error, command: RESTART };
     case "missing":
-      return {
-        text: "PyDSLRep has no server",
-        detail: "completion and checks are off",
-        severity: vscode.LanguageStatusSeverity.Error,
-        command: { command: "workbench.action.openSettings", title: "Set a Path", arguments: ["pydslrep.server.path"] },
-      };
+      return { text: "PyDSLRep has no server", detail: "completion and checks are off", severity: severity.Error, command: SET_PATH };
   }
 }

@@ -1,9 +1,9 @@
-// What a task in tasks.json says, and the command line that comes of it. Knows nothing of VS Code.
+// A task of tasks.json and its command line. Does not depend on VS Code.
 
-/** What the command `pydslrep` is to do. */
+/** The subcommand of `pydslrep`. */
 export type Action = "check" | "build" | "run";
 
-/** A task, as the manifest's `taskDefinitions` describes it. */
+/** A task, as described by the manifest's `taskDefinitions`. */
 export interface Definition {
   type: "pydslrep";
   action: Action;
@@ -13,12 +13,12 @@ export interface Definition {
 
 /** The arguments for `pydslrep`. */
 export function argumentsOf({ action, path, arguments: more = [] }: Definition): string[] {
-  // A name that begins with a dash is no option.
-  const named = path === undefined ? [] : [path.startsWith("-") ? `./${path}` : path];
-  return [action, ...named, ...more];
+  // A path that starts with a dash would be read as an option.
+  const paths = path === undefined ? [] : [path.startsWith("-") ? `./${path}` : path];
+  return [action, ...paths, ...more];
 }
 
-/** What the task is called in lists. */
+/** The task's name in lists. */
 export function nameOf(definition: Definition): string {
   return argumentsOf(definition).join(" ");
 }

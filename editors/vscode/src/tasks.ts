@@ -1,4 +1,4 @@
-// Tasks for the command `pydslrep`: check, build, run.
+// Provides tasks for `pydslrep check`, `build` and `run`.
 import * as path from "node:path";
 
 import * as vscode from "vscode";
@@ -10,34 +10,34 @@ import { type Action, type Definition, argumentsOf, nameOf } from "./task_defini
 const TYPE = "pydslrep";
 
 export function registerTasks(session: Session): vscode.Disposable {
-  const make = (definition: Definition, folder: vscode.WorkspaceFolder) => task(definition, folder, session);
+  const taskFor = (definition: Definition, folder: vscode.WorkspaceFolder) => createTask(definition, folder, session);
   return vscode.tasks.registerTaskProvider(TYPE, {
-    provideTasks: () => (vscode.workspace.workspaceFolders ?? []).flatMap((folder) => offered(folder).map((definition) => make(definition, folder))),
+    provideTasks: () => (vscode.workspace.workspaceFolders ?? []).flatMap((folder) => definitionsFor(folder).map((definition) => taskFor(definition, folder))),
     resolveTask: ({ definition, scope }) => {
       const folder = typeof scope === "object" ? scope : vscode.workspace.workspaceFolders?.[0];
-      return folder && make(definition as Definition & vscode.TaskDefinition, folder);
+      return folder && taskFor(definition as Definition & vscode.TaskDefinition, folder);
     },
   });
 }
 
-/** Tasks for a whole folder, and for the program in the active editor if it is in there. */
-function offered(folder: vscode.WorkspaceFolder): Definition[] {
-  const all: Definition[] = (["check", "build"] as Action[]).map((action) => ({ type: TYPE, action }));
+/** Tasks for the whole folder and for the program in the active editor if it is in the folder. */
+function definitionsFor(folder: vscode.WorkspaceFolder): Definition[] {
+  const definitions: Definition[] = (["check", "build"] as Action[]).map((action) => ({ type: TYPE, action }));
   const document = vscode.window.activeTextEditor?.document;
   if (document?.languageId === "pydslrep" && vscode.workspace.getWorkspaceFolder(document.uri) === folder) {
-    all.push({ type: TYPE, action: "run", path: path.relative(folder.uri.fsPath, document.uri.fsPath) });
+    definitions.push({ type: TYPE, action: "run", path: path.relative(folder.uri.fsPath, document.uri.fsPath) });
   }
-  return all;
+  return definitions;
 }
 
-function task(definition: Definition, folder: vscode.WorkspaceFolder, session: Session): vscode.Task {
-  const command = findCommand(session.places()) ?? "pydslrep";
+function createTask(definition: Definition, folder: vscode.WorkspaceFolder, session: Session): vscode.Task {
+  const command = findCommand(session.searchPaths()) ?? "pydslrep";
   const execution = new vscode.ProcessExecution(command, argumentsOf(definition), { cwd: folder.uri.fsPath });
-  // The server reports the problems of a workspace by itself: a matcher would double them.
-  const made = new vscode.Task(definition, folder, nameOf(definition), TYPE, execution, []);
+  // No problem matcher: the server already reports the problems of the workspace.
+  const task = new vscode.Task(definition, folder, nameOf(definition), TYPE, execution, []);
   if (definition.action !== "run") {
-    made.group = vscode.TaskGroup.Build;
+    task.group = vscode.TaskGroup.Build;
   }
-  made.presentationOptions = { clear: true, showReuseMessage: false };
-  return made;
+  task.presentationOptions = { clear: true, showReuseMessage: false };
+  return task;
 }

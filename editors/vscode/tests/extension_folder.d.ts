@@ -1,2 +1,2 @@
-/** The folder of the extension; put in when the tests are bundled. */
+/** The extension's folder, defined when the tests are bundled. */
 declare const EXTENSION_FOLDER: string;

@@ -1,12 +1,13 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { failureOf, sentence } from "../src/failure";
+import { failureOf } from "../src/failure";
+import { sentence } from "../src/sentence";
 
 const answered = (code: number, message: string, data?: unknown) => Object.assign(new Error(message), { code, data });
 const location = { uri: "file:///a.pyr", range: { start: { line: 3, character: 2 }, end: { line: 3, character: 8 } } };
 
-test("what helps follows from the data of the error", () => {
+test("the data of the error says what the user can do", () => {
   assert.deepEqual(failureOf(answered(-32803, "`yard` has errors: no", { reason: "errors", location })), {
     kind: "errors",
     message: "`yard` has errors: no.",
@@ -16,18 +17,18 @@ test("what helps follows from the data of the error", () => {
   assert.equal(failureOf(answered(-32803, "no", { reason: "errors", location: null })).kind, "errors");
 });
 
-test("what was taken back is no failure, and a lost connection is one of its own", () => {
+test("cancelled requests and lost connections are told apart from failures", () => {
   assert.equal(failureOf(answered(-32800, "the run was cancelled")).kind, "cancelled");
-  assert.equal(failureOf(answered(-32097, "Pending response rejected since connection got disposed")).kind, "ended");
-  assert.equal(failureOf(answered(-32099, "Connection is closed")).kind, "ended");
+  assert.equal(failureOf(answered(-32097, "Pending response rejected since connection got disposed")).kind, "disconnected");
+  assert.equal(failureOf(answered(-32099, "Connection is closed")).kind, "disconnected");
 });
 
-test("anything may be thrown", () => {
+test("any value may be thrown", () => {
   assert.deepEqual(failureOf("no"), { kind: "other", message: "No.", details: "no" });
   assert.equal(failureOf(undefined).kind, "other");
 });
 
-test("a message has the headline and the help, and nothing of a terminal's lines", () => {
+test("a sentence has the headline and the help, without the terminal's lines", () => {
   const printed = "error: there is no Python on this machine's PATH\n  |\n  = help: install Python 3.11 or later\n";
   assert.equal(sentence(printed), "There is no Python on this machine's PATH. Install Python 3.11 or later.");
   assert.equal(sentence("error[invalid-radius]: no"), "No.");

@@ -11,22 +11,22 @@ import { command } from "./command";
 
 const at = (...parts: string[]) => path.join(EXTENSION_FOLDER, ...parts);
 
-test("settings are those of pydslrep.schema.json, and colours those of grammar/colours.json", () => {
+test("the manifest's settings and colours are up to date", () => {
   const { status, stderr } = spawnSync(process.execPath, [at("scripts/contributions.mjs"), "--check"], { encoding: "utf8" });
   assert.equal(status, 0, stderr);
 });
 
-test("no setting speaks of the file that it was described for", () => {
+test("no setting's description mentions the settings file", () => {
   assert.doesNotMatch(JSON.stringify(manifest.contributes.configuration), /this file/);
 });
 
-test("every file that the manifest names is there once the extension is built", () => {
+test("every file that the manifest names exists after a build", () => {
   const named = JSON.stringify(manifest).matchAll(/"(?:\.\/)?((?:dist|images|snippets|walkthrough)\/[^"]+)"/g);
   const missing = [...named].map(([, file = ""]) => file).filter((file) => !existsSync(at(file)));
   assert.deepEqual(missing, []);
 });
 
-test("no command of ours has the name of one that the server has", () => {
+test("no command of the extension has the name of a server command", () => {
   const protocol = readFileSync(path.resolve(EXTENSION_FOLDER, "../../docs/protocol.md"), "utf8");
   const servers = [...protocol.matchAll(/^\| `(pydslrep\.\w+)`/gm)].map(([, name]) => name);
   assert.equal(servers.length, 4);
@@ -34,7 +34,7 @@ test("no command of ours has the name of one that the server has", () => {
   assert.deepEqual(ours.filter((name) => servers.includes(name)), []);
 });
 
-test("menus, keys and the walkthrough call commands that there are", () => {
+test("menus, keys and the walkthrough refer to existing commands", () => {
   const { commands, menus, keybindings, walkthroughs } = manifest.contributes;
   const known = new Set(commands.map(({ command: name }) => name));
   const called = [
@@ -45,15 +45,15 @@ test("menus, keys and the walkthrough call commands that there are", () => {
   assert.deepEqual(called.filter((name) => name !== undefined && !known.has(name)), []);
 });
 
-test("nothing but the server suggests, and Enter ends a line rather than take what changes nothing", () => {
+test("only the server suggests, and Enter accepts only suggestions that change the text", () => {
   const defaults = manifest.contributes.configurationDefaults["[pydslrep]"];
   assert.equal(defaults["editor.acceptSuggestionOnEnter"], "smart");
   assert.equal(defaults["editor.wordBasedSuggestions"], "off");
-  // A snippet with a prefix is suggested wherever a word is typed.
+  // A snippet with a prefix is suggested after any word.
   assert.deepEqual(Object.entries(snippets).filter(([, snippet]) => "prefix" in snippet), []);
 });
 
-test("the manifest has the project's addresses once it has some, and says that nothing is collected", () => {
+test("the manifest has the project's URLs if there are any, and says that nothing is collected", () => {
   const cargo = 'license = "MIT"\nrepository = "https://example.org/pydslrep"\n';
   const script = `import(process.argv[1]).then(({ addresses }) => console.log(JSON.stringify(addresses(process.argv[2]))))`;
   const run = (text: string): unknown =>
@@ -66,19 +66,19 @@ test("the manifest has the project's addresses once it has some, and says that n
   assert.match(manifest.description, /Collects nothing\.$/);
 });
 
-test("F5 and Ctrl+F5 run, without a launch.json", () => {
+test("F5 and Ctrl+F5 run without a launch.json", () => {
   const { keybindings } = manifest.contributes;
   const running = keybindings.filter(({ command: name }) => name === "pydslrep.runInSimulator");
   assert.deepEqual(running.map(({ key }) => key), ["f5", "ctrl+f5"]);
 });
 
-test("no step of the walkthrough is done by a command that may be given up", () => {
+test("no step of the walkthrough is completed by a command that the user may cancel", () => {
   const events = manifest.contributes.walkthroughs.flatMap(({ steps }) => steps.flatMap(({ completionEvents }) => completionEvents));
   assert.deepEqual(events.filter((event) => event.startsWith("onCommand:")), []);
 });
 
-/** A snippet's text with what its places hold at first. */
-function filledIn(body: string[]): string {
+/** A snippet's text with its default values. */
+function expand(body: string[]): string {
   return body
     .join("\n")
     .replace(/\$\{\d+\|([^,|]*)[^|]*\|\}/g, "$1")
@@ -86,18 +86,18 @@ function filledIn(body: string[]): string {
     .replace(/\$(?:\w+)/g, "");
 }
 
-/** What a snippet needs around it to be a whole program. */
-const SURROUNDINGS: Record<string, string> = {
+/** The declarations that a snippet uses. */
+const PREAMBLES: Record<string, string> = {
   "Movement that drives a square":
     "wheel a with radius 4\nwheel b with radius 4\nrobot rover type tw with port 1 has { a b } wheels\n",
 };
 
-test("what snippets insert is a program without errors, in the canonical layout", () => {
+test("snippets expand to programs without errors", () => {
   const folder = mkdtempSync(path.join(tmpdir(), "pydslrep-snippets-"));
   try {
     for (const [name, { body }] of Object.entries(snippets)) {
       const file = path.join(folder, "program.pyr");
-      const text = `${SURROUNDINGS[name] ?? ""}${filledIn(body)}`;
+      const text = `${PREAMBLES[name] ?? ""}${expand(body)}`;
       assert.doesNotMatch(text, /\$/, name);
       writeFileSync(file, text);
       const { status, stdout } = spawnSync(command(), ["check", file], { encoding: "utf8" });

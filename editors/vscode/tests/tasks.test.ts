@@ -11,8 +11,8 @@ import { command } from "./command";
 
 const repository = path.resolve(EXTENSION_FOLDER, "../..");
 
-/** What `pydslrep` prints for these files, whatever its exit code. */
-function said(files: Record<string, string>, args: string[]): string {
+/** The output of `pydslrep` for these files, whatever its exit code. */
+function output(files: Record<string, string>, args: string[]): string {
   const folder = mkdtempSync(path.join(tmpdir(), "pydslrep-tasks-"));
   try {
     for (const [name, text] of Object.entries(files)) {
@@ -28,11 +28,11 @@ function said(files: Record<string, string>, args: string[]): string {
   }
 }
 
-/** What the manifest's problem matcher finds in an output, as VS Code matches lines. */
-function matched(output: string): Record<string, string | undefined>[] {
+/** What the manifest's problem matcher finds in a text, by the rules of VS Code. */
+function matched(text: string): Record<string, string | undefined>[] {
   const matcher = manifest.contributes.problemMatchers[0];
   assert.ok(matcher);
-  const lines = output.split(/\r?\n/);
+  const lines = text.split(/\r?\n/);
   const found: Record<string, string | undefined>[] = [];
   for (let at = 0; at + matcher.pattern.length <= lines.length; at++) {
     const problem: Record<string, string | undefined> = {};
@@ -50,16 +50,16 @@ function matched(output: string): Record<string, string | undefined>[] {
   return found;
 }
 
-test("the problem matcher finds every problem of `pydslrep check`, at every level", () => {
+test("the problem matcher finds every problem of `pydslrep check`, at every severity", () => {
   const programs = {
     "first.pyr": "wheel small with radius -1\nwheel large with radius 400\n",
     "second.pyr": `sensor spare
 ${readFileSync(path.join(repository, "examples/square.pyr"), "utf8")}`,
     "thi rd.pyr": "robot r type tw with port 1 has { a b } wheels\nmovement m of r { }\n",
   };
-  const output = said(programs, ["check", "--severity", "no-environment=information"]);
-  const found = matched(output).map(({ severity, code, file, line, column }) => [severity, code, file, line, column].join(" "));
-  const json = JSON.parse(said(programs, ["check", "--severity", "no-environment=information", "--format", "json"])) as {
+  const printed = output(programs, ["check", "--severity", "no-environment=information"]);
+  const found = matched(printed).map(({ severity, code, file, line, column }) => [severity, code, file, line, column].join(" "));
+  const json = JSON.parse(output(programs, ["check", "--severity", "no-environment=information", "--format", "json"])) as {
     file: string;
     code: string;
     severity: string;
@@ -69,18 +69,18 @@ ${readFileSync(path.join(repository, "examples/square.pyr"), "utf8")}`,
     [severity, code, file, start.line, start.column].join(" "),
   );
   assert.deepEqual(found, wanted);
-  const levels = new Set(json.map(({ severity }) => severity));
-  assert.deepEqual([...levels].sort(), ["error", "hint", "information", "warning"]);
+  const severities = new Set(json.map(({ severity }) => severity));
+  assert.deepEqual([...severities].sort(), ["error", "hint", "information", "warning"]);
 });
 
-test("a message is matched without its code and the words around it", () => {
-  const [problem] = matched(said({ "p.pyr": "wheel w with radius -1\n" }, ["check"]));
+test("the matched message excludes its severity and code", () => {
+  const [problem] = matched(output({ "p.pyr": "wheel w with radius -1\n" }, ["check"]));
   assert.equal(problem?.message, "a wheel's radius must be above zero, not -1 cm");
 });
 
-test("a program without problems has none that match", () => {
+test("nothing matches for a program without problems", () => {
   const program = path.join(repository, "examples", "square.pyr");
-  assert.deepEqual(matched(said({}, ["check", program])), []);
+  assert.deepEqual(matched(output({}, ["check", program])), []);
 });
 
 test("tasks become command lines", () => {
@@ -93,7 +93,7 @@ test("tasks become command lines", () => {
   assert.equal(nameOf({ type: "pydslrep", action: "build", path: "rooms" }), "build rooms");
 });
 
-test("every action that a task may have is one of the command", () => {
+test("every action of a task is a subcommand", () => {
   const [definition] = manifest.contributes.taskDefinitions;
   for (const action of definition?.properties.action.enum ?? []) {
     assert.match(execFileSync(command(), [action, "--help"], { encoding: "utf8" }), /Usage:/);

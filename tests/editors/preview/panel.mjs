@@ -1,4 +1,4 @@
-// The panel's page in a browser, where VS Code is played by a few lines.
+// The preview's page in a browser, with a mock of VS Code.
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import path from "node:path";
@@ -13,7 +13,7 @@ const ORIGIN = "http://preview.test";
 
 const esbuild = createRequire(path.join(EXTENSION, "package.json"))("esbuild");
 
-/** A module of the extension, for Node. */
+/** A module of the extension, bundled for Node. */
 export async function extensionModule(file) {
   const { outputFiles } = await esbuild.build({
     entryPoints: [path.join(EXTENSION, "src", "preview", file)],
@@ -32,38 +32,38 @@ export function launch() {
 }
 
 export class Panel {
-  /** What the page has said. */
-  said = [];
-  /** What must not happen: errors, and what the page's policy forbids. */
-  complaints = [];
+  /** The messages of the page. */
+  received = [];
+  /** Errors and violations of the content security policy. */
+  errors = [];
   /** Called with each message of the page. */
-  hear = () => undefined;
+  onMessage = () => undefined;
 
   static async open(browser, { theme = "light", width = 760, height = 560, state, ...options } = {}) {
     const panel = new Panel();
     const context = await browser.newContext({ viewport: { width, height }, deviceScaleFactor: 2, ...options });
     panel.page = await context.newPage();
     const { page } = panel;
-    page.on("pageerror", (error) => panel.complaints.push(String(error)));
+    page.on("pageerror", (error) => panel.errors.push(String(error)));
     page.on("console", (message) => {
-      if (message.type() === "error") panel.complaints.push(message.text());
+      if (message.type() === "error") panel.errors.push(message.text());
     });
     await page.exposeFunction("toHost", (message) => {
-      panel.said.push(message);
-      panel.hear(message);
+      panel.received.push(message);
+      panel.onMessage(message);
     });
-    await page.addInitScript((before) => {
-      let kept = before;
-      // Before the page hears it.
+    await page.addInitScript((initial) => {
+      let state = initial;
+      // Before the page receives it.
       window.addEventListener("message", ({ data }) => {
-        if (data.type === "path") window.toldAt = performance.now();
+        if (data.type === "path") window.receivedAt = performance.now();
       });
       window.acquireVsCodeApi = () => ({
         postMessage: (message) => void window.toHost(message),
-        getState: () => kept,
-        setState: (now) => {
-          kept = structuredClone(now);
-          window.keptState = kept;
+        getState: () => state,
+        setState: (changed) => {
+          state = structuredClone(changed);
+          window.savedState = state;
         },
       });
     }, state);
@@ -77,19 +77,19 @@ export class Panel {
       return file ? route.fulfill(file) : route.abort();
     });
     await page.goto(`${ORIGIN}/`);
-    await panel.dress(theme);
+    await panel.setTheme(theme);
     return panel;
   }
 
-  /** Puts on a theme, as VS Code does: a class and variables. */
-  dress(theme) {
+  /** Sets a theme as VS Code does, by a class and variables. */
+  setTheme(theme) {
     return this.page.evaluate(({ kind, variables }) => {
       document.body.className = kind;
       for (const [name, value] of Object.entries(variables)) document.documentElement.style.setProperty(name, value);
     }, THEMES[theme]);
   }
 
-  tell(message) {
+  post(message) {
     return this.page.evaluate((data) => window.postMessage(data, "*"), message);
   }
 
@@ -97,7 +97,7 @@ export class Panel {
     return this.page.locator(`[data-part="${name}"]`);
   }
 
-  /** What the page says of itself. */
+  /** A data attribute of the page. */
   data(name) {
     return this.page.locator("main").getAttribute(`data-${name}`);
   }
@@ -106,13 +106,13 @@ export class Panel {
     await this.page.locator(`main[data-${name}="${value}"]`).waitFor({ state: "attached", timeout: 15_000 });
   }
 
-  /** The last message of a kind, once the page has said one: what it says takes its own way out of the browser. */
-  async heard(type) {
-    let message;
-    while (!(message = this.said.findLast((said) => said.type === type))) {
-      await new Promise((resolve) => (this.hear = resolve));
+  /** Waits for a message of this type; messages leave the browser asynchronously. */
+  async message(type) {
+    let found;
+    while (!(found = this.received.findLast((message) => message.type === type))) {
+      await new Promise((resolve) => (this.onMessage = resolve));
     }
-    return message;
+    return found;
   }
 
   close() {

@@ -1,4 +1,4 @@
-// The path preview as somebody uses it: paths from the language server, the page in a browser.
+// The path preview as used: paths from the language server, the page in a browser.
 import assert from "node:assert/strict";
 import { mkdirSync, readFileSync } from "node:fs";
 import path from "node:path";
@@ -21,8 +21,8 @@ before(async () => {
   for (const folder of [OUT, PICTURES]) mkdirSync(folder, { recursive: true });
   browser = await launch();
   server = await Server.start(EXAMPLES);
-  server.on("pydslrep/plannedPathChanged", (which) => void following?.pathChanged(which));
-  server.on("pydslrep/drivenPathChanged", (which) => void following?.drivenChanged(which));
+  server.on("pydslrep/plannedPathChanged", (environment) => void current?.pathChanged(environment));
+  server.on("pydslrep/drivenPathChanged", (environment) => void current?.drivenChanged(environment));
 });
 
 after(async () => {
@@ -30,17 +30,17 @@ after(async () => {
   await server?.stop();
 });
 
-/** Who is told when paths change. */
-let following;
+/** The follower that is notified when paths change. */
+let current;
 
-/** A panel that follows a program as the extension's does, with that program open in the server. */
+/** A panel that follows a program, which is open in the server. */
 async function follow(uri, text, options = {}) {
   const panel = await Panel.open(browser, options);
   const follower = new Follower(
-    (method, params) => server.ask(method, params),
-    (message) => void panel.tell(message),
+    (method, params) => server.request(method, params),
+    (message) => void panel.post(message),
   );
-  following = follower;
+  current = follower;
   await server.open(uri, text);
   await follower.follow(uri, options.at ?? { line: 0, character: 0 });
   await panel.until("state", "ready");
@@ -52,7 +52,7 @@ function example(name) {
   return { uri: pathToFileURL(file).href, text: readFileSync(file, "utf8") };
 }
 
-/** Four robots with so many actions each. */
+/** Four robots with this many actions each. */
 function manyActions(count) {
   const names = ["north", "east", "south", "west"];
   const parts = names.map(
@@ -67,8 +67,8 @@ ${Array.from({ length: count / 2 }, (_, index) => `  move ${(0.3 + (index % 7) *
   return `${parts.join("\n")}environment many has { ${names.join(" ")} } robots with { ${names.map((name) => `go_${name}`).join(" ")} } moves\n`;
 }
 
-/** How many pixels of the picture are not paper, on each layer. */
-function inked(panel) {
+/** The number of drawn pixels of each layer. */
+function drawnPixels(panel) {
   return panel.page.evaluate(() =>
     [...document.querySelectorAll("canvas")].map((canvas) => {
       const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
@@ -79,34 +79,34 @@ function inked(panel) {
   );
 }
 
-/** A picture of the layer with the robots, to tell two of them apart. */
-function robotsDrawn(panel) {
+/** The layer with the robots, for comparisons. */
+function robotLayer(panel) {
   return panel.page.evaluate(() => document.querySelectorAll("canvas")[1].toDataURL());
 }
 
-/** The middle and the greatest of some times, in words. */
-function spread(times) {
+/** The median and the maximum of times. */
+function summary(times) {
   const sorted = times.toSorted((a, b) => a - b);
-  return `${sorted[sorted.length >> 1].toFixed(1)} ms in the middle, ${sorted.at(-1).toFixed(1)} ms at worst`;
+  return `${sorted[sorted.length >> 1].toFixed(1)} ms median, ${sorted.at(-1).toFixed(1)} ms maximum`;
 }
 
-/** The colour of a robot in this theme. */
+/** The colour of a robot in the current theme. */
 function robotColour(panel, index) {
   return panel.page.evaluate((robot) => getComputedStyle(document.body).getPropertyValue(`--robot-${robot}`).trim(), index);
 }
 
-test("a program is drawn with all its robots, and only our script runs", async () => {
+test("all robots of a program are drawn, and only the extension's script runs", async () => {
   const { uri, text } = example("crossing");
   const { panel } = await follow(uri, text);
-  const [still, moving] = await inked(panel);
-  assert.ok(still > 20_000, `${still} pixels`);
+  const [fixed, moving] = await drawnPixels(panel);
+  assert.ok(fixed > 20_000, `${fixed} pixels`);
   assert.ok(moving > 2_000, `${moving} pixels`);
   const names = await panel.page.locator(".robots .name").allTextContents();
   assert.deepEqual(names, ["north", "east", "south", "west"]);
   assert.equal(await panel.part("environment").textContent(), "crossing");
   assert.match(await panel.part("clock").textContent(), /^0\.0 s \/ 36\.\d s$/);
   assert.match(await panel.part("picture").getAttribute("aria-label"), /crossing: 4 robots, 36/);
-  assert.deepEqual(panel.complaints, []);
+  assert.deepEqual(panel.errors, []);
   await panel.page.evaluate(() => {
     const script = document.createElement("script");
     script.textContent = "window.ran = true";
@@ -116,7 +116,7 @@ test("a program is drawn with all its robots, and only our script runs", async (
   await panel.close();
 });
 
-test("every step of the slider through 200 actions of 4 robots is drawn", async () => {
+test("every step of the slider is drawn, with 200 actions of 4 robots", async () => {
   const { panel } = await follow("file:///many.pyr", manyActions(200));
   const STEPS = 400;
   const measured = await panel.page.evaluate(async (steps) => {
@@ -135,12 +135,12 @@ test("every step of the slider through 200 actions of 4 robots is drawn", async 
     }
     return { handled: Number(main.dataset.steps), shown, costs };
   }, STEPS);
-  console.log(`a step of 4 × 200 actions: ${spread(measured.costs)}`);
+  console.log(`one step with 4 × 200 actions: ${summary(measured.costs)}`);
   assert.deepEqual([measured.handled, measured.shown], [STEPS, STEPS]);
   await panel.close();
 });
 
-test("dragging the slider draws each time that the browser reports", async () => {
+test("dragging the slider draws every input event", async () => {
   const { panel } = await follow("file:///many.pyr", manyActions(200));
   const { page } = panel;
   await page.evaluate(() => {
@@ -159,13 +159,13 @@ test("dragging the slider draws each time that the browser reports", async () =>
   await panel.close();
 });
 
-test("the picture follows typing", async () => {
+test("the picture follows the text", async () => {
   const { uri, text } = example("crossing");
   const { panel } = await follow(uri, text);
-  const place = rangeOf(text, "2.1", text.indexOf("movement down"));
+  const number = rangeOf(text, "2.1", text.indexOf("movement down"));
   let length = "2.1";
   await panel.page.exposeFunction("type", (typed) => {
-    const range = { start: place.start, end: { ...place.start, character: place.start.character + length.length } };
+    const range = { start: number.start, end: { ...number.start, character: number.start.character + length.length } };
     length = typed;
     return server.change(uri, range, typed);
   });
@@ -181,26 +181,26 @@ test("the picture follows typing", async () => {
       window.type(digits);
       await drawn;
       const end = performance.now();
-      return [end - begin, end - window.toldAt];
+      return [end - begin, end - window.receivedAt];
     }, typed);
     times.push(all);
     inPage.push(page);
   }
-  console.log(`from a keystroke to its picture, 4 robots: ${spread(times)}; of that in the page: ${spread(inPage)}`);
+  console.log(`from keystroke to picture, 4 robots: ${summary(times)}; in the page: ${summary(inPage)}`);
   const ends = await panel.page.locator(".robots small").first().textContent();
   assert.match(ends, /^→ \(0\.99, -0\.99\) m, 0°$/);
   await panel.close();
 });
 
-test("a program with errors keeps its last picture, grey, and says why", async () => {
+test("a program with errors keeps its last picture in grey and says why", async () => {
   const { uri, text } = example("crossing");
   const { panel } = await follow(uri, text);
-  const before = await inked(panel);
+  const before = await drawnPixels(panel);
   await server.change(uri, rangeOf(text, "move 2.1 meters"), "move meters");
   await panel.until("state", "stale");
   const banner = await panel.part("banner").textContent();
   assert.match(banner, /crossing has errors: .+ Showing the last valid path\.$/);
-  assert.deepEqual(await inked(panel), before);
+  assert.deepEqual(await drawnPixels(panel), before);
   await panel.page.waitForFunction(() => getComputedStyle(document.querySelector("canvas")).filter.includes("grayscale"));
   await panel.page.screenshot({ path: path.join(OUT, "stale.png") });
   await server.change(uri, rangeOf(text.replace("move 2.1 meters", "move meters"), "move meters"), "move 2.1 meters");
@@ -209,10 +209,10 @@ test("a program with errors keeps its last picture, grey, and says why", async (
   await panel.close();
 });
 
-test("there is never an empty panel", async () => {
+test("the panel is never empty", async () => {
   const panel = await Panel.open(browser);
-  const follower = new Follower((method, params) => server.ask(method, params), (message) => void panel.tell(message));
-  await follower.again();
+  const follower = new Follower((method, params) => server.request(method, params), (message) => void panel.post(message));
+  await follower.resend();
   await panel.part("banner").waitFor();
   assert.match(await panel.part("banner").textContent(), /Open a program/);
   await server.open("file:///empty.pyr", "wheel w with radius 3\n");
@@ -221,40 +221,40 @@ test("there is never an empty panel", async () => {
   await panel.close();
 });
 
-test("a program without an environment is shown as such, and never with the path of the one before", async () => {
+test("a program without an environment is shown as such, without the path of another program", async () => {
   const { text } = example("crossing");
   const uri = "file:///whole.pyr";
   const { panel, follower } = await follow(uri, text);
-  await drive(panel, uri, "crossing");
+  await run(panel, uri, "crossing");
   await panel.page.keyboard.press("Space");
   const other = "file:///none.pyr";
   await server.open(other, text.slice(0, text.indexOf("environment ")));
   await follower.follow(other, { line: 0, character: 0 });
   await panel.page.getByText("The program has no environment yet. Add one to see the path.").waitFor();
   assert.equal(await panel.data("state"), "empty");
-  assert.equal((await inked(panel))[1], 0, "no robot is drawn");
+  assert.equal((await drawnPixels(panel))[1], 0, "no robot is drawn");
   assert.ok(!(await panel.part("legend").isVisible()));
   assert.equal(await panel.part("environment").textContent(), "Path preview");
   assert.match(await panel.part("clock").textContent(), /^0\.0 s \/ 0\.0 s$/);
   await panel.page.screenshot({ path: path.join(OUT, "no-environment.png") });
-  await panel.part("remedy").click();
-  assert.deepEqual(await panel.heard("remedy"), { type: "remedy", remedy: "addEnvironment" });
-  // One with errors has no path either; the environment is named all the same.
+  await panel.part("suggestion").click();
+  assert.deepEqual(await panel.message("accept"), { type: "accept", suggestion: "addEnvironment" });
+  // A program with errors has no path, but its environment is named.
   const broken = "file:///broken.pyr";
   await server.open(broken, text.replace("move 2.1 meters", "move meters"));
   await follower.follow(broken, { line: 0, character: 0 });
   await panel.page.getByText("crossing has errors").waitFor();
-  assert.equal((await inked(panel))[1], 0);
+  assert.equal((await drawnPixels(panel))[1], 0);
   assert.equal(await panel.part("environment").textContent(), "crossing");
-  // Back again, and its run with it.
+  // The first program is shown again, with its run.
   await server.open(uri, text);
   await follower.follow(uri, { line: 0, character: 0 });
   await panel.until("driven", "crossing");
-  assert.equal(await panel.data("time"), "0.000", "the playback has ended");
+  assert.equal(await panel.data("time"), "0.000", "the playback was reset");
   await panel.close();
 });
 
-test("the question mark lists all keys, and takes the list away", async () => {
+test("the question mark shows and hides the list of keys", async () => {
   const { uri, text } = example("crossing");
   const { panel } = await follow(uri, text, { theme: "dark" });
   assert.ok(!(await panel.part("help").isVisible()));
@@ -270,7 +270,7 @@ test("the question mark lists all keys, and takes the list away", async () => {
   await panel.close();
 });
 
-test("everything fits into a window of 700 pixels, with the program beside it or not", async () => {
+test("everything fits into windows of 700 pixels and less", async () => {
   const { text } = example("crossing");
   const long = text.replaceAll("crossing", "crossing_of_four_robots_around_a_column");
   for (const [width, height] of [[700, 500], [350, 500], [326, 420]]) {
@@ -285,7 +285,7 @@ test("everything fits into a window of 700 pixels, with the program beside it or
       return visible.filter((part) => isOutside(part.getBoundingClientRect())).map(({ dataset, tagName }) => dataset.part ?? tagName);
     });
     assert.deepEqual(outside, [], `at ${width} pixels`);
-    assert.ok(await panel.page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `nothing to scroll at ${width} pixels`);
+    assert.ok(await panel.page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `nothing scrolls at ${width} pixels`);
     const { width: wide, height: high } = await panel.part("picture").boundingBox();
     assert.ok(wide >= Math.min(width * 0.6, 420) && high >= height * 0.4, `${wide} × ${high} for the picture at ${width} pixels`);
     for (const part of ["keys", "export", "fit", "play", "speed"]) {
@@ -298,55 +298,55 @@ test("everything fits into a window of 700 pixels, with the program beside it or
   }
 });
 
-test("the picture is exported as it is seen, in the format that the person chooses outside", async () => {
+test("the page asks to export, and captures the picture as shown", async () => {
   const { uri, text } = example("crossing");
   const { panel } = await follow(uri, text);
   await panel.part("export").click();
-  assert.deepEqual(await panel.heard("export"), { type: "export" });
-  panel.said.length = 0;
+  assert.deepEqual(await panel.message("export"), { type: "export" });
+  panel.received.length = 0;
   await panel.page.keyboard.press("e");
-  assert.deepEqual(await panel.heard("export"), { type: "export" });
-  await panel.tell({ type: "draw" });
-  const { data } = await panel.heard("picture");
+  assert.deepEqual(await panel.message("export"), { type: "export" });
+  await panel.post({ type: "capture" });
+  const { png } = await panel.message("captured");
   const [colours, size] = await panel.page.evaluate(async (address) => {
-    // The page's policy forbids to show it, not to read it.
+    // The page's policy forbids showing the image, not decoding it.
     const bytes = Uint8Array.from(atob(address.split(",")[1]), (letter) => letter.charCodeAt(0));
     const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
     const canvas = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height });
     const context = canvas.getContext("2d");
     context.drawImage(image, 0, 0);
-    const { data: pixels } = context.getImageData(0, 0, image.width, image.height);
+    const { data } = context.getImageData(0, 0, image.width, image.height);
     const seen = new Set();
-    for (let index = 0; index < pixels.length; index += 4) seen.add(`${pixels.slice(index, index + 4)}`);
+    for (let index = 0; index < data.length; index += 4) seen.add(`${data.slice(index, index + 4)}`);
     return [[...seen], [image.width, image.height]];
-  }, data);
+  }, png);
   const { width, height } = await panel.part("picture").boundingBox();
   assert.deepEqual(size, [Math.round(width * 2), Math.round(height * 2)]);
   assert.ok(colours.includes("0,114,178,255"), "the first robot's colour");
-  assert.ok(!colours.some((colour) => colour.endsWith(",0")), "it has paper");
+  assert.ok(!colours.some((colour) => colour.endsWith(",0")), "it has a background");
   await panel.close();
 });
 
-test("a run ends the playback of the one before", async () => {
+test("a run resets the playback of the previous one", async () => {
   const { text } = example("crossing");
   const uri = "file:///twice.pyr";
   const { panel } = await follow(uri, text);
-  await drive(panel, uri, "crossing");
+  await run(panel, uri, "crossing");
   await panel.part("speed").selectOption("0.5");
   await panel.page.keyboard.press("Space");
   await panel.page.waitForFunction(() => Number(document.querySelector("main").dataset.time) > 0);
   assert.equal(await panel.part("play").getAttribute("aria-label"), "Pause (space)");
-  await server.ask("workspace/executeCommand", { command: "pydslrep.run", arguments: [{ uri, environment: "crossing" }] });
+  await server.request("workspace/executeCommand", { command: "pydslrep.run", arguments: [{ uri, environment: "crossing" }] });
   await panel.page.locator('[data-part="play"][aria-label="Play (space)"]').waitFor();
   assert.equal(await panel.data("time"), "0.000");
   await panel.close();
 });
 
-test("pointing at an action explains it, clicking it asks for its place in the text", async () => {
+test("hovering over an action describes it, clicking reveals it in the text", async () => {
   const { uri, text } = example("crossing");
   const { panel, follower } = await follow(uri, text);
   const { page } = panel;
-  // Along the middle of the picture's width a robot drives across: look for it from above.
+  // A robot crosses the centre line of the picture: search for it from the top.
   const box = await panel.part("picture").boundingBox();
   let found;
   for (let y = 10; y < box.height - 30 && !found; y += 4) {
@@ -354,37 +354,37 @@ test("pointing at an action explains it, clicking it asks for its place in the t
     if (await panel.part("tooltip").isVisible()) found = y;
   }
   assert.ok(found, "an action is under the pointer");
-  const words = await panel.part("tooltip").innerText();
-  assert.match(words, /^(?:move|turn) .+\n\w+ · \w+, action \d\ntakes .+, from .+ to .+\nends at \(.+\) m, .+°$/);
+  const tooltip = await panel.part("tooltip").innerText();
+  assert.match(tooltip, /^(?:move|turn) .+\n\w+ · \w+, action \d\ntakes .+, from .+ to .+\nends at \(.+\) m, .+°$/);
   assert.match(await panel.data("highlighted"), /^\w+ \d$/);
-  const [robotLine] = words.split("\n").slice(1);
+  const [robotLine] = tooltip.split("\n").slice(1);
   const [, movement, number] = /· (\w+), action (\d)/.exec(robotLine);
   await page.mouse.click(box.x + box.width / 2, box.y + found);
-  const { action } = await panel.heard("reveal");
+  const { action } = await panel.message("reveal");
   assert.deepEqual(action, { movement, index: Number(number) - 1 });
-  const place = await follower.place(action);
-  assert.equal(place.uri, uri);
-  const line = text.split("\n")[place.range.start.line];
-  assert.equal(line.slice(place.range.start.character, place.range.end.character), words.split("\n")[0]);
+  const location = await follower.locate(action);
+  assert.equal(location.uri, uri);
+  const line = text.split("\n")[location.range.start.line];
+  assert.equal(line.slice(location.range.start.character, location.range.end.character), tooltip.split("\n")[0]);
   await page.screenshot({ path: path.join(OUT, "tooltip.png") });
   await panel.close();
 });
 
-test("the action at the cursor stands out", async () => {
+test("the action at the cursor is highlighted", async () => {
   const { uri, text } = example("crossing");
   const { panel, follower } = await follow(uri, text);
-  const before = await robotsDrawn(panel);
+  const before = await robotLayer(panel);
   const at = rangeOf(text, "move 1.4", text.indexOf("movement across")).start;
-  await follower.look(at, true);
+  await follower.update(at, true);
   await panel.until("highlighted", "across 2");
-  assert.notEqual(await robotsDrawn(panel), before);
-  await follower.look({ line: 0, character: 0 }, true);
+  assert.notEqual(await robotLayer(panel), before);
+  await follower.update({ line: 0, character: 0 }, true);
   await panel.until("highlighted", "");
-  assert.equal(await robotsDrawn(panel), before);
+  assert.equal(await robotLayer(panel), before);
   await panel.close();
 });
 
-test("keys play, step, jump, zoom and go through the actions", async () => {
+test("keys play, step, jump, zoom and select actions", async () => {
   const { uri, text } = example("crossing");
   const { panel } = await follow(uri, text);
   const { page } = panel;
@@ -407,14 +407,14 @@ test("keys play, step, jump, zoom and go through the actions", async () => {
   await page.keyboard.press("n");
   await page.keyboard.press("n");
   assert.equal(await panel.data("highlighted"), "down 1");
-  assert.match(await panel.part("spoken").textContent(), /^turn left 45, north · down, action 2/);
+  assert.match(await panel.part("announcement").textContent(), /^turn left 45, north · down, action 2/);
   await page.keyboard.press("Enter");
-  assert.deepEqual(await panel.heard("reveal"), { type: "reveal", action: { movement: "down", index: 1 } });
-  const [before] = await inked(panel);
+  assert.deepEqual(await panel.message("reveal"), { type: "reveal", action: { movement: "down", index: 1 } });
+  const [before] = await drawnPixels(panel);
   await page.keyboard.press("+");
   await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
-  assert.notEqual((await inked(panel))[0], before);
-  // All that can be used is reached by Tab, and shows that it has the focus.
+  assert.notEqual((await drawnPixels(panel))[0], before);
+  // Every control is reached by Tab and shows its focus.
   const reached = new Set();
   for (let turn = 0; turn < 16; turn += 1) {
     await page.keyboard.press("Tab");
@@ -433,7 +433,7 @@ test("keys play, step, jump, zoom and go through the actions", async () => {
   await panel.close();
 });
 
-test("with reduced motion time goes by in steps", async () => {
+test("with reduced motion, time advances in steps", async () => {
   const { uri, text } = example("crossing");
   const { panel } = await follow(uri, text, { reducedMotion: "reduce" });
   const times = await panel.page.evaluate(async () => {
@@ -451,57 +451,57 @@ test("with reduced motion time goes by in steps", async () => {
   await panel.close();
 });
 
-test("robots are hidden by their legend, and stay so after a reload", async () => {
+test("robots hidden in the legend stay hidden after a reload", async () => {
   const { uri, text } = example("crossing");
   const { panel } = await follow(uri, text);
-  const [, before] = await inked(panel);
+  const [, before] = await drawnPixels(panel);
   await panel.page.locator('[data-robot="east"]').uncheck();
-  const [, without] = await inked(panel);
+  const [, without] = await drawnPixels(panel);
   assert.ok(without < before * 0.9, `${before} → ${without}`);
   await panel.page.locator('[data-part="slider"]').fill("10");
-  const state = await panel.page.evaluate(() => window.keptState);
+  const state = await panel.page.evaluate(() => window.savedState);
   assert.deepEqual({ ...state, time: Math.round(state.time) }, { uri, environment: "crossing", hidden: ["east"], time: 10 });
   await panel.close();
   const again = await follow(uri, text, { state });
   assert.equal(await again.panel.page.locator('[data-robot="east"]').isChecked(), false);
   assert.equal(Math.round(Number(await again.panel.data("time"))), 10);
-  assert.deepEqual(again.panel.said[0], { type: "ready" });
+  assert.deepEqual(again.panel.received[0], { type: "ready" });
   await again.panel.close();
 });
 
-test("among several environments one may choose", async () => {
+test("one of several environments can be selected", async () => {
   const { text } = example("crossing");
   const uri = "file:///two.pyr";
   const { panel, follower } = await follow(uri, `${text}\nenvironment alone has { north } robots with { down } moves\n`);
-  panel.hear = (message) => {
-    if (message.type === "choose") void follower.choose(message.environment);
+  panel.onMessage = (message) => {
+    if (message.type === "select") void follower.select(message.environment);
   };
   await panel.until("environment", "crossing");
   await panel.part("picker").selectOption("alone");
   await panel.until("environment", "alone");
   assert.deepEqual(await panel.page.locator(".robots .name").allTextContents(), ["north"]);
-  // The cursor is in what both use: nothing jumps. In what only the other uses, it does.
-  await follower.look(rangeOf(text, "turn left", text.indexOf("movement down")).start, true);
+  // Only a cursor in something that the shown environment does not use switches to the other.
+  await follower.update(rangeOf(text, "turn left", text.indexOf("movement down")).start, true);
   assert.equal(await panel.data("environment"), "alone");
-  await follower.look(rangeOf(text, "turn left", text.indexOf("movement across")).start, true);
+  await follower.update(rangeOf(text, "turn left", text.indexOf("movement across")).start, true);
   await panel.until("environment", "crossing");
   await panel.close();
 });
 
-test("collisions are marked, and told with when and what", async () => {
+test("collisions are marked and listed with their time and obstacle", async () => {
   const { uri, text } = example("crossing");
   const { panel } = await follow(uri, text.replace("turn left 45\n  move 1.4", "turn left 85\n  move 1.4"));
-  const crash = panel.page.locator("[data-collision]").first();
-  assert.match(await crash.textContent(), /^north would run into \w+ after \d+\.\d s$/);
+  const collision = panel.page.locator("[data-collision]").first();
+  assert.match(await collision.textContent(), /^north runs into \w+ after \d+\.\d s$/);
   assert.ok((await panel.page.locator(".marks i").count()) > 0);
-  await crash.click();
+  await collision.click();
   assert.ok(Number(await panel.data("time")) > 1);
-  assert.equal((await panel.heard("reveal")).action.movement, "down");
+  assert.equal((await panel.message("reveal")).action.movement, "down");
   await panel.page.screenshot({ path: path.join(OUT, "collision.png") });
   await panel.close();
 });
 
-test("a plan that the world decides says so", async () => {
+test("a plan of unknown duration says so", async () => {
   const { uri, text } = example("horseshoe");
   const { panel } = await follow(uri, text);
   assert.match(await panel.page.locator(".robots li").textContent(), /planned up to “turn right until \{ fSensorLeft, fSensor, fSensorRight \}”/);
@@ -510,26 +510,26 @@ test("a plan that the world decides says so", async () => {
   await panel.close();
 });
 
-/** Drives the shown program, and waits for the picture of it. */
-async function drive(panel, uri, environment) {
-  await server.ask("workspace/executeCommand", { command: "pydslrep.run", arguments: [{ uri, environment }] });
+/** Runs the shown program and waits until its path is drawn. */
+async function run(panel, uri, environment) {
+  await server.request("workspace/executeCommand", { command: "pydslrep.run", arguments: [{ uri, environment }] });
   await panel.page.locator(`main[data-driven="${environment}"]`).waitFor({ state: "attached", timeout: 15_000 });
 }
 
-test("after a run the driven path is over the planned one", async () => {
+test("after a run the driven path is drawn with the planned one", async () => {
   const { uri, text } = example("horseshoe");
   const { panel } = await follow(uri, text, { theme: "dark" });
-  const [before] = await inked(panel);
-  await drive(panel, uri, "horseshoe");
-  assert.ok((await inked(panel))[0] > before + 3000);
+  const [before] = await drawnPixels(panel);
+  await run(panel, uri, "horseshoe");
+  assert.ok((await drawnPixels(panel))[0] > before + 3000);
   assert.match(await panel.page.locator(".robots li").textContent(), /driven → \(.+\) m, .+°$/);
-  // The world decides how long it takes: the time goes on to the end of the run.
+  // The duration is known only after the run: the slider extends to its end.
   await panel.page.keyboard.press("End");
   assert.ok(Number(await panel.data("time")) > 30);
   await panel.page.screenshot({ path: path.join(OUT, "driven.png") });
   await panel.part("show-run").uncheck();
   await panel.part("fit").click();
-  assert.equal((await inked(panel))[0], before);
+  assert.equal((await drawnPixels(panel))[0], before);
   await panel.close();
 });
 
@@ -545,20 +545,20 @@ test("pictures", async () => {
     { file: "narrow", name: "crossing", theme: "dark", time: 0.6, size: { width: 420, height: 640 } },
     { file: "square-dark", name: "square", theme: "dark", time: 0.7 },
   ];
-  // It takes a while to explore.
+  // Exploring takes a while.
   if (process.env.UPDATE_EXPECT) scenes.push({ file: "preview-dark", name: "rooms", theme: "dark", time: 0.93, run: "rooms" });
-  for (const { file, name, theme, time, at, run, size = {}, change = (text) => text } of scenes) {
+  for (const { file, name, theme, time, at, run: ranEnvironment, size = {}, change = (text) => text } of scenes) {
     const { uri, text } = example(name);
     const { panel, follower } = await follow(uri, change(text), { theme, ...size });
-    if (run) await drive(panel, uri, run);
-    if (at) await follower.look(rangeOf(text, at).start, true);
+    if (ranEnvironment) await run(panel, uri, ranEnvironment);
+    if (at) await follower.update(rangeOf(text, at).start, true);
     await panel.part("slider").evaluate((input, share) => {
       input.value = String(Number(input.max) * share);
       input.dispatchEvent(new Event("input"));
     }, time);
     assert.equal(await robotColour(panel, 0), colours[theme]);
     await panel.page.screenshot({ path: path.join(file.startsWith("preview-") ? PICTURES : OUT, `${file}.png`) });
-    assert.deepEqual(panel.complaints, []);
+    assert.deepEqual(panel.errors, []);
     await panel.close();
   }
 });

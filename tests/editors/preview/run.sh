@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The path preview of editors/vscode in a browser, with paths from the language server.
-# PYDSLREP_LSP: the server, with the command beside it, else that of target/debug. CHROMIUM: the browser, else the system's.
-# UPDATE_EXPECT=1 writes the pictures of docs/images/editors.
+# Tests the path preview of editors/vscode in a browser, with paths from the language server.
+# PYDSLREP_LSP: the server, next to the command (default: in target/debug). CHROMIUM: the browser (default: the system's).
+# UPDATE_EXPECT=1 rewrites the pictures in docs/images/editors.
 set -euo pipefail
 here="$(cd "$(dirname "$0")" && pwd)"
 root="$(cd "$here/../../.." && pwd)"
@@ -16,7 +16,7 @@ if [ ! -x "$CHROMIUM" ]; then
     exit 2
   fi
 fi
-# The server starts the command that is beside it.
+# The server runs the command next to it.
 if [ ! -x "$PYDSLREP_LSP" ] || [ ! -x "$(dirname "$PYDSLREP_LSP")/pydslrep" ]; then
   (cd "$root" && cargo build --quiet --locked --bin pydslrep --bin pydslrep-lsp)
 fi

@@ -1,4 +1,4 @@
-// The language server with programs open, as an editor has them.
+// A client of the language server.
 import { spawn } from "node:child_process";
 import { pathToFileURL } from "node:url";
 
@@ -18,7 +18,6 @@ export class Server {
     return server;
   }
 
-  /** Opens a program. */
   open(uri, text) {
     this.version = 1;
     return this.connection.sendNotification("textDocument/didOpen", {
@@ -26,7 +25,7 @@ export class Server {
     });
   }
 
-  /** Puts text in the place of a range. */
+  /** Replaces a range. */
   change(uri, range, text) {
     this.version += 1;
     return this.connection.sendNotification("textDocument/didChange", {
@@ -35,12 +34,12 @@ export class Server {
     });
   }
 
-  ask(method, params) {
+  request(method, params) {
     return this.connection.sendRequest(method, params);
   }
 
-  on(method, heard) {
-    this.connection.onNotification(method, heard);
+  on(method, handler) {
+    this.connection.onNotification(method, handler);
   }
 
   async stop() {
@@ -50,13 +49,13 @@ export class Server {
   }
 }
 
-/** Where a piece of a text is in it, as a range of the protocol. */
-export function rangeOf(text, piece, from = 0) {
-  const start = text.indexOf(piece, from);
-  if (start < 0) throw new Error(`no ${piece}`);
-  const place = (offset) => {
+/** The LSP range of a part of a text. */
+export function rangeOf(text, part, from = 0) {
+  const start = text.indexOf(part, from);
+  if (start < 0) throw new Error(`no ${part}`);
+  const position = (offset) => {
     const lines = text.slice(0, offset).split("\n");
     return { line: lines.length - 1, character: lines.at(-1).length };
   };
-  return { start: place(start), end: place(start + piece.length) };
+  return { start: position(start), end: position(start + part.length) };
 }

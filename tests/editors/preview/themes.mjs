@@ -1,4 +1,4 @@
-// The variables that VS Code gives a page, as far as the preview uses them: of its modern and high contrast themes.
+// The CSS variables that the preview uses, with the values of VS Code's modern and high contrast themes.
 const fonts = {
   "--vscode-font-family": '"DejaVu Sans", sans-serif',
   "--vscode-font-size": "13px",

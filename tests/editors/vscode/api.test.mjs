@@ -1,4 +1,4 @@
-// The tests of api/tests.cjs, run where extensions run.
+// Runs the tests of api/tests.cjs in the extension host.
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import os from "node:os";
@@ -16,7 +16,7 @@ const FILES = {
   "misspelt.pyr": `${ROVER}movement m of rovr {\n  move 1 meters\n}\n`,
 };
 
-test("what the editor's own interface says", async (t) => {
+test("the editor's API", async (t) => {
   const out = path.join(os.tmpdir(), `pyr-api-${process.pid}.json`);
   const testsPath = path.join(import.meta.dirname, "api/tests.cjs");
   const prepare = async (page) => {
@@ -24,7 +24,7 @@ test("what the editor's own interface says", async (t) => {
     await page.exposeFunction("codeAutomationLog", () => undefined);
   };
   await Stage.with({ files: FILES, env: { API_RESULTS: out }, prepare, testsPath }, async () => {
-    const results = JSON.parse(await until("the tests are through", () => existsSync(out) && readFileSync(out, "utf8"), 240_000));
+    const results = JSON.parse(await until("the tests have ended", () => existsSync(out) && readFileSync(out, "utf8"), 240_000));
     for (const { name, error } of results) {
       await t.test(name, () => assert.equal(error, undefined, error));
     }

@@ -1,4 +1,4 @@
-// Programs look the same before the server answers and afterwards: the grammar's colours are those of semantic tokens.
+// Programs look the same before and after the server responds: the grammar and semantic tokens give the same colours.
 import assert from "node:assert/strict";
 import { readdirSync } from "node:fs";
 import path from "node:path";
@@ -9,13 +9,13 @@ import { Stage, program, repository, until } from "./stage.mjs";
 const names = readdirSync(path.join(repository, "tests/paper")).filter((name) => name.endsWith(".pyr"));
 const files = Object.fromEntries(names.map((name) => [name, program(`tests/paper/${name}`)]));
 
-/** Themes, each with what the page calls it. */
+/** Themes with their CSS class names. */
 const THEMES = { "Default Dark Modern": "dark_modern", "Default Light Modern": "light_modern", Monokai: "monokai" };
 
-/** Nothing in the lines but the program. */
-const BARE = { "editor.codeLens": false, "editor.inlayHints.enabled": "off", "editor.occurrencesHighlight": "off" };
+/** Shows nothing in the lines except the program. */
+const PLAIN = { "editor.codeLens": false, "editor.inlayHints.enabled": "off", "editor.occurrencesHighlight": "off" };
 
-/** The semantic tokens of two types get colours that no theme has: what one sees is then proved to be new. */
+/** Colours that no theme has, for two types of semantic tokens: they prove that the new settings are applied. */
 const MARKS = { "class": "rgb(1, 254, 3)", "function": "rgb(1, 253, 3)" };
 
 function marked(type, enabled = true) {
@@ -25,18 +25,18 @@ function marked(type, enabled = true) {
 
 const has = (seen, type) => seen.some((one) => one.includes(MARKS[type]));
 
-/** What declares the names that are marked. */
-const DECLARING = { "class": /\brobot (\w+) type/g, "function": /\bmovement (\w+) of/g };
+/** The declarations of the names that are marked. */
+const DECLARATIONS = { "class": /\brobot (\w+) type/g, "function": /\bmovement (\w+) of/g };
 
-/** Whether all names of a type have its mark, and nothing else has: while a theme changes, marks are where the last ones were. */
-function exact(seen, type, text) {
-  const names = [...text.matchAll(DECLARING[type])].map(([, name]) => name);
+/** Whether exactly the names of a type are marked; while a theme changes, marks are at old positions. */
+function isExact(seen, type, text) {
+  const names = [...text.matchAll(DECLARATIONS[type])].map(([, name]) => name);
   const uses = text.match(new RegExp(`\\b(?:${names.join("|")})\\b`, "g"));
   const marks = seen.filter((one) => has([one], type)).map((one) => one[0]);
   return marks.join("") === uses.join("");
 }
 
-/** Every character of the editor that can be seen, with its colour. */
+/** Every visible character of the editor with its style. */
 function colours(page) {
   return page.evaluate(() => {
     const lines = [...document.querySelectorAll(".editor-instance .view-line")];
@@ -55,33 +55,33 @@ function colours(page) {
   });
 }
 
-test("with and without semantic tokens every character of the article's programs has one colour", async () => {
-  await Stage.with({ files, open: names[0], settings: BARE, size: { width: 1300, height: 900 } }, async (stage) => {
+test("semantic tokens change the colour of no character of the article's programs", async () => {
+  await Stage.with({ files, open: names[0], settings: PLAIN, size: { width: 1300, height: 900 } }, async (stage) => {
     let compared = 0;
-    for (const [theme, called] of Object.entries(THEMES)) {
+    for (const [theme, cssClass] of Object.entries(THEMES)) {
       stage.set({ "workbench.colorTheme": theme });
-      await stage.page.locator(`.monaco-workbench[class*="${called}"]`).waitFor();
+      await stage.page.locator(`.monaco-workbench[class*="${cssClass}"]`).waitFor();
       for (const name of names) {
         await stage.openFile(name);
-        const once = (what, check) =>
+        const colouringOnce = (what, check) =>
           until(`${what} in all of ${name} in ${theme}`, async () => {
             const seen = await colours(stage.page);
             const whole = seen.map((one) => one[0]).join("") === files[name].replace(/\s/g, "");
             return whole && check(seen) && seen;
           });
         stage.set(marked("class"));
-        const robots = await once("robots are marked", (seen) => exact(seen, "class", files[name]));
+        const robots = await colouringOnce("robots are marked", (seen) => isExact(seen, "class", files[name]));
         stage.set(marked("function"));
-        const movements = await once("movements are marked", (seen) => exact(seen, "function", files[name]));
+        const movements = await colouringOnce("movements are marked", (seen) => isExact(seen, "function", files[name]));
         stage.set(marked("function", false));
-        const grammatical = await once("no marks", (seen) => !has(seen, "class") && !has(seen, "function"));
+        const textMate = await colouringOnce("no marks", (seen) => !has(seen, "class") && !has(seen, "function"));
 
         const semantic = movements.map((one, at) => (has([one], "function") ? robots[at] : one));
-        assert.deepEqual(grammatical, semantic, `${name} in ${theme}`);
+        assert.deepEqual(textMate, semantic, `${name} in ${theme}`);
         assert.ok(new Set(semantic.map((one) => one.slice(2))).size > 3, `${name} has colours in ${theme}`);
         compared += semantic.length;
       }
     }
-    console.log(`${compared} characters compared, in ${names.length} programs and ${Object.keys(THEMES).length} themes`);
+    console.log(`${compared} characters compared in ${names.length} programs and ${Object.keys(THEMES).length} themes`);
   });
 });

@@ -1,4 +1,4 @@
-// The language server's life: started again when it dies, found by a setting, and missed in words that help.
+// The life cycle of the language server: restarts, the server path setting, and helpful messages if it is missing.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
@@ -6,7 +6,7 @@ import { Stage, program, until } from "./stage.mjs";
 
 const FILES = { "square.pyr": program("examples/square.pyr"), "broken.pyr": "wheel w with radius -1\n" };
 
-/** What the braces in the status bar say when one points at them. */
+/** The hover of the language status in the status bar. */
 async function status(stage) {
   await stage.page.locator('.statusbar-item[aria-label*="Editor Language Status"]').first().hover();
   const text = await stage.page.locator(".hover-language-status").first().innerText();
@@ -14,7 +14,7 @@ async function status(stage) {
   return text;
 }
 
-test("a server that is killed comes back, with what is open", async () => {
+test("a killed server is restarted with the open documents", async () => {
   await Stage.with({ files: FILES, open: "broken.pyr" }, async (stage) => {
     await stage.page.locator(".squiggly-error").first().waitFor();
     const [first] = stage.servers();
@@ -42,8 +42,8 @@ test("a server that is killed comes back, with what is open", async () => {
   });
 });
 
-test("a run that is stopped says nothing, and one that a restart ends says so", async () => {
-  // A robot that explores takes a while.
+test("stopping a run shows no message, a restart of the server during a run does", async () => {
+  // Exploring takes a while.
   const scene = program("examples/rooms.scene.toml");
   const files = { "rooms.pyr": program("examples/rooms.pyr"), "rooms.scene.toml": scene };
   await Stage.with({ files, open: "rooms.pyr" }, async (stage) => {
@@ -73,21 +73,21 @@ test("a run that is stopped says nothing, and one that a restart ends says so", 
   });
 });
 
-test("a program that never answers keeps nobody from another one", async () => {
-  const silent = "#!/bin/sh\nwhile :; do sleep 1; done\n";
+test("a server that never responds can be replaced by another one", async () => {
+  const unresponsive = "#!/bin/sh\nwhile :; do sleep 1; done\n";
   await Stage.with({
-    files: { ...FILES, silent },
+    files: { ...FILES, unresponsive },
     open: "broken.pyr",
-    settings: { "pydslrep.server.path": "${workspaceFolder}/silent" },
+    settings: { "pydslrep.server.path": "${workspaceFolder}/unresponsive" },
   }, async (stage) => {
     const [first] = await until("it is started", () => stage.servers().length === 1 && stage.servers());
     stage.set({ "pydslrep.server.path": "" });
     await stage.page.locator(".squiggly-error").first().waitFor();
-    await until("only the other one is there", () => stage.servers().length === 1 && stage.servers()[0] !== first);
+    await until("only the other one runs", () => stage.servers().length === 1 && stage.servers()[0] !== first);
   });
 });
 
-test("a path that leads nowhere is said, and a new one is used at once", async () => {
+test("a wrong server path is reported, and a new one is used at once", async () => {
   await Stage.with({
     files: FILES,
     open: "broken.pyr",
@@ -97,16 +97,16 @@ test("a path that leads nowhere is said, and a new one is used at once", async (
     await message.waitFor();
     assert.match(await message.innerText(), /that file does not exist/);
     assert.equal(stage.servers().length, 0);
-    await until("the status bar says it", async () => /no server/.test(await status(stage)));
-    await message.getByRole("button", { name: "Change the Setting" }).click();
+    await until("the status bar says so", async () => /no server/.test(await status(stage)));
+    await message.getByRole("button", { name: "Change Setting" }).click();
     const search = stage.page.locator(".settings-editor .search-container");
-    await until("the setting is looked for", async () => /pydslrep\.server\.path/.test(await search.innerText()));
+    await until("the settings editor shows the setting", async () => /pydslrep\.server\.path/.test(await search.innerText()));
     stage.set({ "pydslrep.server.path": "" });
-    await until("the extension's own server runs", () => stage.servers().length === 1);
+    await until("the bundled server runs", () => stage.servers().length === 1);
   });
 });
 
-test("in a workspace that is not trusted programs are checked but not run", async () => {
+test("in an untrusted workspace programs are checked but not run", async () => {
   await Stage.with({
     files: { ...FILES, ".vscode/settings.json": JSON.stringify({ "pydslrep.server.path": "/bin/false" }) },
     open: "square.pyr",
@@ -116,7 +116,7 @@ test("in a workspace that is not trusted programs are checked but not run", asyn
     await stage.page.locator(".view-line").first().click();
     await stage.page.keyboard.press("Control+End");
     await stage.page.locator(".codelens-decoration", { hasText: "Run" }).first().waitFor();
-    assert.equal(stage.servers().length, 1, "the workspace's path does not count");
+    assert.equal(stage.servers().length, 1, "the workspace cannot set the server path");
     await stage.page.locator(".codelens-decoration a", { hasText: /^Run$/ }).first().click();
     const message = stage.page.locator(".notification-toast", { hasText: "workspaces that you trust" });
     await message.waitFor();

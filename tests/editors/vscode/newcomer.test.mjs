@@ -1,4 +1,4 @@
-// The first hour of somebody who opens an empty file: default settings, nothing known, and all that goes wrong at first.
+// The first hour of a new user: default settings, an empty file, and the mistakes of beginners.
 import assert from "node:assert/strict";
 import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
 import os from "node:os";
@@ -23,7 +23,7 @@ before(async () => {
       "unopened.pyr": "wheel w with radius -1\n",
     },
     open: "empty.pyr",
-    // Nothing is there from earlier runs.
+    // Empty, as before the first run.
     env: { XDG_CACHE_HOME: cache },
   });
 });
@@ -33,23 +33,23 @@ after(async () => {
   rmSync(cache, { recursive: true, force: true });
 });
 
-/** What the status bar says. */
-const bar = async () => spaced(await stage.page.locator(".statusbar").innerText());
+/** The text of the status bar. */
+const statusBar = async () => spaced(await stage.page.locator(".statusbar").innerText());
 
-test("an empty file that was open before the extension was known is indented by two", async () => {
-  await until("the status bar says it", async () => /Spaces: 2/.test(await bar()));
+test("an empty file that was opened before the extension loaded is indented by two", async () => {
+  await until("the status bar shows the indentation", async () => /Spaces: 2/.test(await statusBar()));
 });
 
-test("an empty file says what to do, until the first character", async () => {
-  await until("it says so", async () => (await ghost()).includes("press Ctrl+Space"));
+test("an empty file says what to do until the first character", async () => {
+  await until("the hint is shown", async () => (await ghost()).includes("press Ctrl+Space"));
   await stage.line("").first().click();
   await stage.type("r");
-  await until("it is gone", async () => (await ghost()) === "");
+  await until("the hint is hidden", async () => (await ghost()) === "");
   await stage.page.keyboard.press("Backspace");
-  await until("it is back", async () => (await ghost()).includes("Type a program"));
+  await until("the hint is shown again", async () => (await ghost()).includes("Type a program"));
 });
 
-/** The text that is shown in the editor without being in the file. */
+/** The decorations shown in the editor's lines. */
 function ghost() {
   return stage.page.evaluate(() => {
     const shown = [...document.querySelectorAll(".view-line span")].map((span) => getComputedStyle(span, "::after").content);
@@ -57,9 +57,9 @@ function ghost() {
   });
 }
 
-test("whatever a file has, two is what is typed", async () => {
+test("a file is indented by two, whatever it contains", async () => {
   await stage.openFile("wide.pyr");
-  await until("the status bar says it", async () => /Spaces: 2/.test(await bar()));
+  await until("the status bar shows the indentation", async () => /Spaces: 2/.test(await statusBar()));
   await stage.openFile("empty.pyr");
 });
 
@@ -84,31 +84,31 @@ test("the packaged server is stripped", () => {
   }
 });
 
-test("without an environment F5 says so once, and adds one", async () => {
+test("without an environment, F5 says so once and adds one", async () => {
   await stage.openFile("none.pyr");
   await stage.page.locator(".squiggly-info").first().waitFor();
   await stage.page.keyboard.press("F5");
   await stage.toast("has no environment yet", "Add Environment");
-  await until("there is one", async () => /area/.test(await bracesOf("environment")));
+  await until("it is added", async () => /area/.test(await linesWith("environment")));
   await stage.page.keyboard.press("Control+Z");
 });
 
-/** The lines of the editor that begin with a word. */
-async function bracesOf(word) {
+/** The visible lines that contain a word. */
+async function linesWith(word) {
   const lines = await stage.line(word).allInnerTexts();
   return lines.map(spaced).join("\n");
 }
 
-test("of two environments F5 runs the one at the cursor", async () => {
+test("F5 runs the environment at the cursor", async () => {
   await stage.openFile("two.pyr");
-  // A file that has just been opened may not have the focus yet.
+  // A newly opened file may not have the focus yet.
   await stage.line("wheel wheelL with").first().click();
   await stage.page.keyboard.press("Control+End");
   await stage.page.locator(".codelens-decoration", { hasText: "Run" }).first().waitFor();
   await stage.page.keyboard.press("ArrowUp");
   await stage.page.keyboard.press("F5");
   const progress = stage.page.locator(".notification-toast", { hasText: "Running hall" });
-  // The first run puts the client library into place, and says so.
+  // The first run installs the client library.
   await progress.filter({ hasText: "preparing Python" }).waitFor();
   await stage.page.locator(".notification-toast", { hasText: /hall: .* simulated in/ }).waitFor();
   assert.equal(await progress.count(), 0);
@@ -118,7 +118,7 @@ test("of two environments F5 runs the one at the cursor", async () => {
   await frame.locator('main.preview[data-driven="hall"]').waitFor();
 });
 
-test("where both use what is at the cursor it asks which", async () => {
+test("if several environments use what is at the cursor, a list asks which", async () => {
   await stage.page.locator('.tab[data-resource-name="two.pyr"]').click();
   await stage.page.keyboard.press("Control+Home");
   await stage.page.keyboard.press("Control+F5");
@@ -127,21 +127,21 @@ test("where both use what is at the cursor it asks which", async () => {
   await stage.page.keyboard.press("Escape");
 });
 
-test("beside a program without an environment there is no other program's path", async () => {
+test("for a program without an environment, the preview does not show another program's path", async () => {
   const frame = await stage.webview("main.preview");
   await frame.locator('main.preview[data-state="ready"]').waitFor();
   await stage.openFile("none.pyr");
   await frame.getByText("The program has no environment yet").waitFor();
   assert.equal(await frame.locator("main.preview").getAttribute("data-state"), "empty");
   assert.equal(await frame.locator("aside.legend").isVisible(), false);
-  await frame.locator('[data-part="remedy"]').click();
+  await frame.locator('[data-part="suggestion"]').click();
   await frame.locator('main.preview[data-state="ready"][data-environment="area"]').waitFor();
 });
 
-test("the preview fits beside the program in a window of 700 pixels", async () => {
+test("the preview fits next to the program in a window of 700 pixels", async () => {
   await stage.page.setViewportSize({ width: 700, height: 560 });
   const frame = await stage.webview("main.preview");
-  await until("nothing is outside", () =>
+  await until("everything is visible", () =>
     frame.evaluate(() => {
       const parts = [...document.querySelectorAll("button, select, input, output, canvas")].filter((part) => part.checkVisibility());
       return innerWidth < 400 && parts.every((part) => part.getBoundingClientRect().right <= innerWidth + 0.5);
@@ -151,16 +151,16 @@ test("the preview fits beside the program in a window of 700 pixels", async () =
   await stage.page.setViewportSize({ width: 1100, height: 680 });
 });
 
-test("the check task doubles no problem", async () => {
+test("the check task does not duplicate problems", async () => {
   const problems = async () => spaced((await stage.page.locator("#status\\.problems").getAttribute("aria-label")) ?? "");
-  await until("the unopened file has its problem", async () => /[1-9]/.test(await problems()));
+  await until("the problem of the unopened file is counted", async () => /[1-9]/.test(await problems()));
   await stage.page.keyboard.press("Control+Shift+M");
   await stage.page.locator(".viewpane-filter input, .markers-panel-action-filter input").first().fill("above zero");
   const rows = stage.page.locator(".markers-panel .monaco-list-row", { hasText: "must be above zero" });
   await until("it is listed", async () => (await rows.count()) === 1);
   await stage.call("Tasks: Run Build Task");
   await stage.page.locator(".quick-input-widget .monaco-list-row", { hasText: "check" }).first().click();
-  // It ends with an exit code, as there are errors.
+  // The task fails because of errors.
   await stage.page.locator(".single-terminal-tab .codicon-error").waitFor();
   await stage.page.keyboard.press("Control+Shift+M");
   await rows.first().waitFor();
@@ -168,19 +168,19 @@ test("the check task doubles no problem", async () => {
   await stage.page.keyboard.press("Control+J");
 });
 
-test("statistics and versions are told", async () => {
+test("statistics and versions are shown", async () => {
   await stage.openFile("two.pyr");
   await stage.call("PyDSLRep: Statistics");
-  await stage.toast(/2 environments: \d+ lines of program stand for \d+ lines of Python \(\d\d % fewer\)/);
+  await stage.toast(/2 environments: \d+ lines of program generate \d+ lines of Python \(\d\d % fewer\)/);
   await stage.call("PyDSLRep: Show Version");
   await stage.toast(/PyDSLRep \d+\.\d+\.\d+, server \d+\.\d+\.\d+/);
 });
 
-test("a new file is a program, and its script asks for a place", async () => {
+test("a new file is a program; generating its script asks to save it", async () => {
   await stage.call("Create: New File...");
   await stage.page.locator(".quick-input-widget .monaco-list-row", { hasText: "PyDSLRep Program" }).click();
   await stage.tab("Untitled-1").waitFor();
-  await until("it is indented by two", async () => /Spaces: 2 .*PyDSLRep|PyDSLRep.* Spaces: 2/.test(await bar()));
+  await until("it is indented by two", async () => /Spaces: 2 .*PyDSLRep|PyDSLRep.* Spaces: 2/.test(await statusBar()));
   const [head, environment] = [NO_ENVIRONMENT, SQUARE.slice(NO_ENVIRONMENT.length)];
   await stage.page.keyboard.insertText(`${head}${environment}`);
   await stage.page.locator(".codelens-decoration", { hasText: "Generate script" }).first().waitFor({ state: "attached" });

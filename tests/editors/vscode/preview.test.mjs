@@ -1,4 +1,4 @@
-// The path preview in the real editor: opens beside the program, and follows what is typed.
+// The path preview in the real editor: opens next to the program and follows the text.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import path from "node:path";
@@ -18,38 +18,38 @@ before(async () => {
 afterEach((t) => t.passed || stage?.keepPicture());
 after(() => stage?.close());
 
-/** How often the page has drawn a path. */
-const drawn = () => frame.locator("main.preview").getAttribute("data-drawn").then(Number);
+/** How many paths the page has drawn. */
+const drawCount = () => frame.locator("main.preview").getAttribute("data-drawn").then(Number);
 
-test("the preview opens beside the program by its keys", async () => {
+test("the preview opens next to the program by its keys", async () => {
   await stage.line("parallel movement cross_1").first().click();
   await stage.page.keyboard.press("Control+K");
   await stage.page.keyboard.press("v");
   frame = await stage.webview("main.preview");
-  await until("a path is drawn", async () => (await drawn()) > 0);
+  await until("a path is drawn", async () => (await drawCount()) > 0);
   assert.equal(await frame.locator("main.preview").getAttribute("data-state"), "ready");
   await stage.picture("preview");
 });
 
-/** What is on the canvases, in a number. */
+/** The content of the canvases. */
 const picture = () =>
   frame.evaluate(() => [...document.querySelectorAll("canvas")].map((canvas) => canvas.toDataURL()).join());
 
-test("it moves when a number is edited", async () => {
+test("the path follows an edited number", async () => {
   const before = await picture();
-  const count = await drawn();
-  await cursorBehind("move 2 meters at 10", "2");
+  const count = await drawCount();
+  await cursorAfter("move 2 meters at 10", "2");
   await stage.page.keyboard.press("Backspace");
   await stage.type("3");
-  await until("it is drawn anew", async () => (await drawn()) > count && (await picture()) !== before);
+  await until("it is redrawn", async () => (await drawCount()) > count && (await picture()) !== before);
   assert.equal(await frame.locator("main.preview").getAttribute("data-state"), "ready");
 });
 
-test("a mistake keeps the last picture, and says so", async () => {
+test("an error keeps the last picture and says so", async () => {
   await stage.page.keyboard.press("Backspace");
-  await until("it says that it is old", async () => (await frame.locator("main.preview").getAttribute("data-state")) === "stale");
+  await until("the path is stale", async () => (await frame.locator("main.preview").getAttribute("data-state")) === "stale");
   await stage.type("2");
-  await until("it is new", async () => (await frame.locator("main.preview").getAttribute("data-state")) === "ready");
+  await until("the path is valid", async () => (await frame.locator("main.preview").getAttribute("data-state")) === "ready");
 });
 
 test("the path is exported as SVG, PNG and replay", async () => {
@@ -57,7 +57,7 @@ test("the path is exported as SVG, PNG and replay", async () => {
     await stage.call("PyDSLRep: Export Path…");
     await stage.page.locator(".quick-input-widget .monaco-list-row", { hasText: format }).first().click();
     const input = stage.page.locator(".quick-input-widget input").first();
-    await until("a file is asked for", async () => (await input.inputValue().catch(() => "")).endsWith(name));
+    await until("the file dialog is open", async () => (await input.inputValue().catch(() => "")).endsWith(name));
     await stage.page.keyboard.press("Enter");
     await stage.toast(`Path exported: ${name}`);
     const content = readFileSync(path.join(stage.folder, name), "latin1");
@@ -66,19 +66,19 @@ test("the path is exported as SVG, PNG and replay", async () => {
   }
 });
 
-test("from a key to the picture on the screen", async (t) => {
+test("latency from a key to the picture", async (t) => {
   await stage.page.evaluate(() => {
     window.addEventListener("keydown", () => (window.lastKey = performance.timeOrigin + performance.now()), { capture: true });
   });
   await frame.evaluate(() => {
     const main = document.querySelector("main.preview");
     const seen = () => (window.lastDrawn = { count: Number(main.dataset.drawn), time: performance.timeOrigin + performance.now() });
-    // The frame behind the one that the change is drawn in: by then it can be seen.
+    // The frame after the one with the change: only then it is visible.
     new MutationObserver(() => requestAnimationFrame(() => requestAnimationFrame(seen))).observe(main, { attributeFilter: ["data-drawn"] });
   });
   const times = [];
   for (let round = 0; round < 40; round++) {
-    const count = await drawn();
+    const count = await drawCount();
     await stage.page.keyboard.press(round % 2 === 0 ? "5" : "Backspace");
     const last = await until("it is drawn", async () => {
       const seen = await frame.evaluate(() => window.lastDrawn);
@@ -88,11 +88,11 @@ test("from a key to the picture on the screen", async (t) => {
   }
   times.sort((a, b) => a - b);
   const at = (share) => times[Math.floor(share * (times.length - 1))].toFixed(0);
-  t.diagnostic(`${times.length} keys in a program of four robots: median ${at(0.5)} ms, 90 % within ${at(0.9)} ms, at most ${at(1)} ms`);
+  t.diagnostic(`${times.length} keys in a program of four robots: median ${at(0.5)} ms, 90 % within ${at(0.9)} ms, maximum ${at(1)} ms`);
 });
 
-/** Puts the cursor behind a word of a line. */
-async function cursorBehind(line, word) {
+/** Puts the cursor after a word of a line. */
+async function cursorAfter(line, word) {
   await stage.line(line).first().click();
   await stage.page.keyboard.press("Home");
   const text = (await stage.line(line).first().innerText()).trimStart();

@@ -1,4 +1,4 @@
-// A real editor to test in: code-server with a fresh profile and the extension in it, open in a headless Chromium.
+// A real editor for tests: code-server with a fresh profile and the extension, in a headless Chromium.
 import { execFileSync, spawn } from "node:child_process";
 import { cpSync, mkdirSync, mkdtempSync, readFileSync, renameSync, rmSync, writeFileSync } from "node:fs";
 import net from "node:net";
@@ -10,20 +10,20 @@ import { chromium } from "playwright-core";
 const { VSIX, CHROMIUM, CODE_SERVER, PICTURES } = process.env;
 for (const [name, value] of Object.entries({ VSIX, CHROMIUM, CODE_SERVER })) {
   if (!value) {
-    throw new Error(`${name} is not set: start the tests by tests/editors/run.sh vscode`);
+    throw new Error(`${name} is not set: start the tests with tests/editors/run.sh vscode`);
   }
 }
 const entry = path.join(CODE_SERVER, "node_modules/code-server/out/node/entry.js");
 
 export const repository = path.resolve(import.meta.dirname, "../../..");
 
-/** The extension that changes settings for the tests. */
-const HELPER = path.join(import.meta.dirname, "api");
+/** The extension that changes settings for tests. */
+const TEST_EXTENSION = path.join(import.meta.dirname, "api");
 
-/** How long anything may take that is waited for, milliseconds. */
+/** The timeout of all waits, milliseconds. */
 const PATIENCE = Number(process.env.PATIENCE ?? 90_000);
 
-/** Nothing on the screen that is not the extension's. */
+/** Hides what does not belong to the extension. */
 const SETTINGS = {
   "workbench.startupEditor": "none",
   "workbench.colorTheme": "Default Dark Modern",
@@ -43,7 +43,7 @@ const SETTINGS = {
   "extensions.autoCheckUpdates": false,
 };
 
-/** An editor with a workspace of these files: names in it, and texts or files of the repository. */
+/** An editor with a workspace. */
 export class Stage {
   /** @param {{files: Record<string, string>, settings?: object, trusted?: boolean, env?: object, open?: string, testsPath?: string, prepare?: (page) => Promise<void>, size?: {width: number, height: number}}} options */
   static async open(options) {
@@ -57,7 +57,7 @@ export class Stage {
     }
   }
 
-  /** Opens an editor for a test and closes it afterwards; of a test that fails a picture is kept in `target`. */
+  /** Opens an editor for a test and closes it afterwards; keeps a screenshot of a failed test in `target`. */
   static async with(options, test) {
     const stage = await Stage.open(options);
     try {
@@ -70,11 +70,11 @@ export class Stage {
     }
   }
 
-  /** What is on the screen, for whoever wants to know why a test failed. */
+  /** Saves a screenshot, to find out why a test failed. */
   async keepPicture() {
     const file = path.join(repository, "target", "editors", `vscode-failed-${Date.now()}.png`);
     await this.page.screenshot({ path: file });
-    console.log(`what was on the screen: ${file}`);
+    console.log(`screenshot: ${file}`);
   }
 
   async #start({ files, settings = {}, trusted = true, env = {}, open, testsPath, prepare, size }) {
@@ -86,7 +86,7 @@ export class Stage {
       writeFileSync(path.join(this.folder, name), text, { mode: text.startsWith("#!") ? 0o755 : 0o644 });
     }
     writeFileSync(path.join(this.scratch, "data/User/settings.json"), JSON.stringify({ ...SETTINGS, ...settings }));
-    // Paths of programs are settings of the machine: those of the person reach it only from an editor on the same one.
+    // Server paths have machine scope: user settings do not apply in a remote window.
     const machine = Object.fromEntries(Object.entries(settings).filter(([name]) => name.startsWith("pydslrep.server.")));
     mkdirSync(path.join(this.scratch, "data/Machine"), { recursive: true });
     writeFileSync(path.join(this.scratch, "data/Machine/settings.json"), JSON.stringify(machine));
@@ -102,8 +102,8 @@ export class Stage {
     };
     const base = ["--config", "config.yaml", "--user-data-dir", "data", "--extensions-dir", "extensions"];
     const inScratch = { env: this.env, cwd: this.scratch };
-    // What is in the folder when the first extension is installed is taken for installed, too.
-    cpSync(HELPER, path.join(this.scratch, "extensions/api-tests"), { recursive: true });
+    // Folders that exist when the first extension is installed count as installed.
+    cpSync(TEST_EXTENSION, path.join(this.scratch, "extensions/api-tests"), { recursive: true });
     execFileSync(process.execPath, [entry, ...base, "--install-extension", VSIX], { ...inScratch, stdio: "ignore" });
     const port = await freePort();
     this.address = `127.0.0.1:${port}`;
@@ -125,7 +125,7 @@ export class Stage {
     const payload = open ? [["openFile", this.inEditor(open)]] : [];
     if (testsPath) {
       await this.page.addInitScript(allowTests);
-      payload.push(["extensionDevelopmentPath", this.inEditor(HELPER)], ["extensionTestsPath", this.inEditor(testsPath)]);
+      payload.push(["extensionDevelopmentPath", this.inEditor(TEST_EXTENSION)], ["extensionTestsPath", this.inEditor(testsPath)]);
     }
     await prepare?.(this.page);
     const search = new URLSearchParams({ folder: this.folder, payload: JSON.stringify(payload) });
@@ -133,22 +133,22 @@ export class Stage {
     await this.page.locator(".monaco-workbench").waitFor();
     if (open) {
       await this.line("").first().waitFor();
-      // Before that, the editor does not know the extension.
+      // The extension is loaded once the language is shown.
       await this.page.locator(".statusbar-item", { hasText: "PyDSLRep" }).first().waitFor();
       await this.page.keyboard.press("Control+B");
       await this.page.locator(".part.sidebar").waitFor({ state: "hidden" });
     }
   }
 
-  /** Changes settings of the person, by the extension that is there for it. */
+  /** Changes user settings through the test extension. */
   set(settings) {
     const file = path.join(this.scratch, "wanted.json");
-    // At once, or half of it may be read.
+    // Atomically, so that no partial file is read.
     writeFileSync(`${file}.new`, JSON.stringify(settings));
     renameSync(`${file}.new`, file);
   }
 
-  /** Opens a file of the workspace, as a person does by its name. */
+  /** Opens a file of the workspace with Quick Open. */
   async openFile(name) {
     await this.page.keyboard.press("Control+P");
     const input = this.page.locator(".quick-input-widget input").first();
@@ -158,12 +158,12 @@ export class Stage {
     await this.page.locator(`.tab.active[data-resource-name="${path.basename(name)}"]`).waitFor();
   }
 
-  /** The address of a file as the editor in the browser has it; with the authority, or marks are not drawn. */
+  /** The URI of a file in the browser. It needs the authority, or else decorations are not drawn. */
   inEditor(file) {
     return `vscode-remote://${this.address}${path.resolve(this.folder, file)}`;
   }
 
-  /** Lines of the editor that contain this text. */
+  /** The visible lines that contain a text. */
   line(text) {
     return this.page.locator(".editor-instance .view-line", { hasText: text });
   }
@@ -173,22 +173,22 @@ export class Stage {
     return this.page.locator(`.tab[data-resource-name="${name}"]`);
   }
 
-  /** Puts the cursor into a word of a line. */
+  /** Puts the cursor in a word of a line. */
   async clickWord(line, word) {
     await this.line(line).first().locator("span span", { hasText: word }).first().click();
   }
 
-  /** The editor's text as one sees it, with single spaces. */
+  /** The visible text of the editor, with single spaces. */
   async text() {
     return spaced(await this.page.locator(".editor-instance .view-lines").first().innerText());
   }
 
-  /** A file of the workspace. */
+  /** The text of a file of the workspace. */
   read(file) {
     return readFileSync(path.join(this.folder, file), "utf8");
   }
 
-  /** Calls a command by its title in the palette. */
+  /** Runs a command of the palette by its title. */
   async call(title) {
     await this.page.keyboard.press("F1");
     const input = this.page.locator(".quick-input-widget input").first();
@@ -198,37 +198,37 @@ export class Stage {
     await this.page.keyboard.press("Enter");
   }
 
-  /** Presses keys until what they open is there: a busy editor may close it again at once, as it would to a person. */
-  async summon(keys, widget) {
-    await until(`${keys} opens something`, async () => {
+  /** Presses keys until a widget is open: a busy editor may close it at once. */
+  async openWidget(keys, widget) {
+    await until(`${keys} opens its widget`, async () => {
       await this.page.keyboard.press(keys);
-      const isThere = await widget.waitFor({ timeout: 5000 }).then(() => true, () => false);
-      if (!isThere) {
+      const isOpen = await widget.waitFor({ timeout: 5000 }).then(() => true, () => false);
+      if (!isOpen) {
         await this.page.keyboard.press("Escape");
       }
-      return isThere;
+      return isOpen;
     });
   }
 
-  /** Types at the cursor, as a person does: key by key. */
+  /** Types at the cursor, key by key. */
   async type(text) {
     await this.page.keyboard.type(text, { delay: 15 });
   }
 
-  /** The messages on the screen. */
+  /** The visible notifications. */
   get toasts() {
     return this.page.locator(".notification-toast");
   }
 
-  /** Waits for a message, which has to be the only one, and presses its button or takes it away. */
+  /** Waits for a notification, which must be the only one, and presses its button or closes it. */
   async toast(text, button) {
     const message = this.toasts.filter({ hasText: text });
     await message.first().waitFor();
-    // A message that is pointed at stays.
+    // A notification stays while the pointer is over it.
     await message.first().hover();
     const all = await this.toasts.allInnerTexts();
     if (all.length !== 1) {
-      throw new Error(`one message was expected, not ${all.length}: ${spaced(all.join(" | "))}`);
+      throw new Error(`expected one notification, found ${all.length}: ${spaced(all.join(" | "))}`);
     }
     if (button === undefined) {
       await message.locator(".codicon-notifications-clear, .codicon-notifications-hide").first().click();
@@ -250,7 +250,7 @@ export class Stage {
     return (await done.locator(".step-title").allInnerTexts()).map((title) => spaced(title).trim());
   }
 
-  /** The frame of a webview that has an element like this. */
+  /** The webview with an element that matches the selector. */
   async webview(selector) {
     return until(`a webview with ${selector}`, async () => {
       for (const frame of this.page.frames()) {
@@ -262,7 +262,7 @@ export class Stage {
     });
   }
 
-  /** A picture for the documentation, if pictures are wanted. */
+  /** A screenshot for the documentation, with `--pictures`. */
   async picture(name, options = {}) {
     if (PICTURES) {
       mkdirSync(PICTURES, { recursive: true });
@@ -270,11 +270,11 @@ export class Stage {
     }
   }
 
-  /** The processes of the extension's own server, by their numbers. */
+  /** The process ids of the bundled server. */
   servers() {
     const list = execFileSync("ps", ["-eo", "pid=,args="], { encoding: "utf8" }).split("\n");
-    const ours = list.filter((line) => line.includes(this.scratch) && / (lsp )?--stdio\b/.test(line));
-    return ours.map((line) => Number.parseInt(line, 10));
+    const servers = list.filter((line) => line.includes(this.scratch) && / (lsp )?--stdio\b/.test(line));
+    return servers.map((line) => Number.parseInt(line, 10));
   }
 
   /** Ends everything and removes its files. */
@@ -292,8 +292,8 @@ export class Stage {
 }
 
 /**
- * A built editor runs tests in its extension host only where its page says that it is there to be tested. It then keeps
- * messages in the bell, where a person would see them: so tests of what is on the screen do without.
+ * A release build runs tests in its extension host only if its page enables the smoke test driver. Notifications then stay in
+ * the bell, so tests that look at the screen do not use this.
  */
 function allowTests() {
   new MutationObserver((_, observer) => {
@@ -312,17 +312,12 @@ export function program(name) {
   return readFileSync(path.join(repository, name), "utf8");
 }
 
-/** A whole folder of the repository, as files for a stage. */
-export function copyInto(stage, from, to) {
-  cpSync(path.join(repository, from), path.join(stage.folder, to), { recursive: true });
-}
-
-/** Text from the editor: it has spaces that do not break, and as many as the layout wants. */
+/** Collapses white space; the editor inserts non-breaking spaces for its layout. */
 export function spaced(text) {
   return text.replace(/[\u00a0\s]+/g, " ");
 }
 
-/** Waits until something is so, and returns it; what was waited for is said where it never is. */
+/** Waits until a check is truthy and returns its value; `what` describes it in the error. */
 export async function until(what, check, patience = PATIENCE) {
   const end = Date.now() + patience;
   for (;;) {
@@ -331,7 +326,7 @@ export async function until(what, check, patience = PATIENCE) {
       return value;
     }
     if (Date.now() > end) {
-      throw new Error(`waited ${patience / 1000} s in vain until ${what}`);
+      throw new Error(`timed out after ${patience / 1000} s waiting until ${what}`);
     }
     await new Promise((resolve) => setTimeout(resolve, 50));
   }

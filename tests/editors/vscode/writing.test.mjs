@@ -1,4 +1,4 @@
-// What a person does with a program in the editor: sees a mistake, completes, mends, generates, runs.
+// Writing a program in the editor: an error, quick fixes, completion, the script and a run.
 import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
 import path from "node:path";
@@ -27,19 +27,19 @@ before(async () => {
 afterEach((t) => t.passed || stage?.keepPicture());
 after(() => stage?.close());
 
-test("a mistake is underlined, and the file is one of the language", async () => {
+test("an error is underlined, and the file has the language", async () => {
   await stage.page.locator(".squiggly-error").first().waitFor();
   const bar = spaced(await stage.page.locator(".statusbar").innerText());
   assert.match(bar, /PyDSLRep/);
 });
 
-test("the walkthrough begins with nothing done", async () => {
+test("no step of the walkthrough is ticked off at first", async () => {
   assert.deepEqual(await stage.walkthrough(), []);
   await stage.tab("yard.pyr").click();
   await stage.line("movement patrol").first().waitFor();
 });
 
-test("the server is the one in the extension, with nothing set", () => {
+test("without settings the bundled server is used", () => {
   assert.equal(stage.servers().length, 1);
 });
 
@@ -48,26 +48,26 @@ test("lenses are shown above declarations", async () => {
   await stage.page.locator(".codelens-decoration", { hasText: /^\d references?$/ }).first().waitFor();
 });
 
-test("a run with errors says so once, and leads to the first", async () => {
+test("a run with errors says so once and shows the first", async () => {
   await stage.page.locator(".view-line").first().click();
   await stage.page.keyboard.press("F5");
   await stage.toast(/`yard` has errors: .*rovr/, "Show Problem");
-  await until("the cursor is there", async () => /Ln 6, Col/.test(spaced(await stage.page.locator(".statusbar").innerText())));
+  await until("the cursor is at the error", async () => /Ln 6, Col/.test(spaced(await stage.page.locator(".statusbar").innerText())));
   await stage.page.keyboard.press("Escape");
   await stage.call("PyDSLRep: Generate Script");
   await stage.toast(/`yard` has errors: .*rovr/);
 });
 
-test("the code of a problem leads to its page, and so do the light bulb and the command", async () => {
+test("a problem's code, the light bulb and a command open its page", async () => {
   const page = stage.page.locator('.tab[data-resource-name="unresolved-reference.md"]');
   const close = async () => {
     await page.waitFor();
-    // Laid out, not as Markdown.
+    // Rendered, not as Markdown.
     const frame = await stage.webview("h2:has-text('Why it matters')");
     assert.equal(await frame.locator("h1").innerText(), "unresolved-reference");
     await page.click({ button: "middle" });
     await page.waitFor({ state: "detached" });
-    // The cursor is still where *Show Problem* has put it.
+    // *Show Problem* has put the cursor there.
     await stage.page.keyboard.press("Control+1");
   };
   await stage.line("movement patrol of").first().locator("span span", { hasText: "rovr" }).first().hover();
@@ -76,33 +76,33 @@ test("the code of a problem leads to its page, and so do the light bulb and the 
   await stage.call("PyDSLRep: Explain This Problem");
   await close();
   const offered = stage.page.locator(".action-widget .monaco-list-row", { hasText: "Explain this problem: unresolved-reference" });
-  await stage.summon("Control+.", offered.first());
+  await stage.openWidget("Control+.", offered.first());
   await offered.first().click();
   await close();
   await stage.page.keyboard.press("Control+Home");
 });
 
-test("a quick fix mends the mistake", async () => {
+test("a quick fix fixes the error", async () => {
   await stage.page.locator(".squiggly-error").first().waitFor();
   await stage.clickWord("movement patrol of", "rovr");
-  await stage.summon("Control+.", stage.page.locator(".action-widget .monaco-list-row", { hasText: "rover" }).first());
+  await stage.openWidget("Control+.", stage.page.locator(".action-widget .monaco-list-row", { hasText: "rover" }).first());
   await stage.picture("quick-fix");
   await stage.page.keyboard.press("Enter");
   await stage.page.locator(".squiggly-error").first().waitFor({ state: "detached" });
   assert.match(await stage.text(), /movement patrol of rover \{/);
 });
 
-test("hints say behind each action how long it takes and where it leads", async () => {
+test("hints after each action show its duration and where it ends", async () => {
   await until("hints are shown", async () => /move 2.0 meters.* s → 2\.00, 0\.00, 0°/.test(await stage.text()));
 });
 
-test("completion offers what can come next, and inserts it", async () => {
+test("completion offers what can come next", async () => {
   await stage.line("move 50 centimeters").first().click();
   await stage.page.keyboard.press("End");
   await stage.page.keyboard.press("Enter");
   await stage.type("tu");
   const offered = stage.page.locator(".suggest-widget.visible .monaco-list-row");
-  await stage.summon("Control+Space", offered.filter({ hasText: "turn" }).first());
+  await stage.openWidget("Control+Space", offered.filter({ hasText: "turn" }).first());
   await stage.picture("completion");
   await stage.page.keyboard.press("Escape");
   await stage.type("rn right 45");
@@ -119,7 +119,7 @@ test("hovering over a robot shows its equations", async () => {
   await stage.page.mouse.move(5, 5);
 });
 
-test("the script is generated from the palette, and shown", async () => {
+test("the script is generated from the palette and opened", async () => {
   await stage.call("PyDSLRep: Generate Script");
   await until("the script is written", () => existsSync(path.join(stage.folder, "yard.py")));
   assert.match(stage.read("yard.py"), /def patrol|patrol/);
@@ -127,29 +127,29 @@ test("the script is generated from the palette, and shown", async () => {
   await stage.tab("yard.pyr").click();
 });
 
-test("the program runs in the simulator, and a message says how it went", async () => {
+test("the program runs in the simulator, and a message sums up the run", async () => {
   await stage.line("movement patrol").first().waitFor();
   await stage.page.locator(".codelens-decoration a", { hasText: /^Run$/ }).first().click();
-  const message = driven();
+  const message = runMessage();
   await message.waitFor();
-  // A message that is pointed at stays.
+  // A message stays while the pointer is over it.
   await message.hover();
   assert.match(spaced(await message.innerText()), /yard: [\d.]+ s \(planned: [\d.]+ s\) simulated in [\d.]+ s/);
 });
 
-test("the message leads to the path", async () => {
-  assert.deepEqual(await driven().getByRole("button").filter({ hasText: "Show" }).allInnerTexts(), ["Show Path", "Show Table"]);
+test("the message offers the path and the table", async () => {
+  assert.deepEqual(await runMessage().getByRole("button").filter({ hasText: "Show" }).allInnerTexts(), ["Show Path", "Show Table"]);
 });
 
-test("the preview shows what was driven", async () => {
+test("the preview shows the driven path", async () => {
   const frame = await stage.webview("main.preview");
   await frame.locator('main.preview[data-driven="yard"]').waitFor();
   assert.match(await frame.locator("main.preview").innerText(), /driven path ends \d/);
 });
 
-test("the message leads to the table of the run", async () => {
-  await driven().getByRole("button", { name: "Show Table" }).click();
-  await driven().waitFor({ state: "detached" });
+test("the message opens the table of the run", async () => {
+  await runMessage().getByRole("button", { name: "Show Table" }).click();
+  await runMessage().waitFor({ state: "detached" });
   const table = stage.page.locator(".panel .view-lines");
   await until("the table is shown", async () => /rover planned .* driven /.test(spaced(await table.innerText())));
   await stage.call("Notifications: Clear All Notifications");
@@ -157,11 +157,11 @@ test("the message leads to the table of the run", async () => {
   await stage.picture("run");
 });
 
-test("the steps of the walkthrough are ticked off as they are done", async () => {
+test("the steps of the walkthrough are ticked off once done", async () => {
   assert.deepEqual(await stage.walkthrough(), ["Write a program", "See where it goes", "Run it", "Export the script"]);
 });
 
-/** What the extension says when a run has come to its end. */
-function driven() {
+/** The message at the end of a run. */
+function runMessage() {
   return stage.page.locator(".notification-toast", { hasText: "simulated in" });
 }

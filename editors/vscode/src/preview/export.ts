@@ -1,18 +1,16 @@
-// A path as a file: what is seen as PNG, and what the server has drawn as SVG, still or moving.
+// Exports a path: as PNG from the page, or as still or animated SVG drawn by the server.
 import * as path from "node:path";
 
 import * as vscode from "vscode";
 
-import { inform, fail } from "../notifications";
-import { PNG } from "./messages";
-import type { Which } from "./protocol";
+import { showError, showInformation } from "../notifications";
+import { PNG_PREFIX } from "./messages";
+import type { EnvironmentId } from "./protocol";
 
-/** Addresses of what the server has drawn. */
-export interface Drawn {
+/** URIs of the files that the server has drawn. */
+export interface Drawings {
   picture?: string | null;
   replay?: string | null;
-  /** Whether a run is in it. */
-  isDriven: boolean;
 }
 
 interface Format extends vscode.QuickPickItem {
@@ -20,44 +18,43 @@ interface Format extends vscode.QuickPickItem {
 }
 
 const FORMATS: Format[] = [
-  { form: "svg", label: "SVG", detail: "The planned path, and that of the latest run, for documents" },
-  { form: "png", label: "PNG", detail: "The picture as the preview shows it" },
+  { form: "svg", label: "SVG", detail: "The planned path and that of the latest run, for documents" },
+  { form: "png", label: "PNG", detail: "The picture as shown in the preview" },
   { form: "replay", label: "Replay", detail: "An animated SVG, for any browser" },
 ];
 
-/** Asks for the format and the file, and writes it. */
-export async function exportPath(which: Which, draw: () => Promise<Drawn | undefined>, picture: () => Promise<string>): Promise<void> {
-  const format = await vscode.window.showQuickPick(FORMATS, { title: `Export the path of ${which.environment}`, placeHolder: "As what?" });
+/** Asks for a format and a file, and writes the file. */
+export async function exportPath(environment: EnvironmentId, draw: () => Promise<Drawings | undefined>, capture: () => Promise<string>): Promise<void> {
+  const format = await vscode.window.showQuickPick(FORMATS, { title: `Export the path of ${environment.environment}`, placeHolder: "Which format?" });
   if (format === undefined) return;
-  const content = format.form === "png" ? fromAddress(await picture()) : await drawnFile(format.form, await draw());
+  const content = format.form === "png" ? decodePng(await capture()) : await readDrawing(format.form, await draw());
   if (content === undefined) return;
-  const ending = format.form === "png" ? "png" : "svg";
-  const name = format.form === "replay" ? `${which.environment}-replay.${ending}` : `${which.environment}.${ending}`;
-  const file = await vscode.window.showSaveDialog({ defaultUri: beside(which.uri, name), filters: { [ending.toUpperCase()]: [ending] } });
+  const extension = format.form === "png" ? "png" : "svg";
+  const name = format.form === "replay" ? `${environment.environment}-replay.${extension}` : `${environment.environment}.${extension}`;
+  const file = await vscode.window.showSaveDialog({ defaultUri: nextTo(environment.uri, name), filters: { [extension.toUpperCase()]: [extension] } });
   if (file === undefined) return;
   try {
     await vscode.workspace.fs.writeFile(file, content);
   } catch (error) {
-    fail(`Cannot write ${file.fsPath}: ${error instanceof Error ? error.message : String(error)}`);
+    showError(`Cannot write ${file.fsPath}: ${error instanceof Error ? error.message : String(error)}`);
     return;
   }
-  const isOutside = ending === "svg";
-  const open = () => (isOutside ? vscode.env.openExternal(file) : vscode.commands.executeCommand("vscode.open", file));
-  inform(`Path exported: ${path.basename(file.path)}`, { label: "Open", press: open });
+  // VS Code shows an SVG as text.
+  const open = () => (extension === "svg" ? vscode.env.openExternal(file) : vscode.commands.executeCommand("vscode.open", file));
+  showInformation(`Path exported: ${path.basename(file.path)}`, { label: "Open", press: open });
 }
 
-function fromAddress(data: string): Uint8Array {
-  return Buffer.from(data.slice(PNG.length), "base64");
+function decodePng(dataUri: string): Uint8Array {
+  return Buffer.from(dataUri.slice(PNG_PREFIX.length), "base64");
 }
 
-/** A file of the server's, which goes with it. */
-async function drawnFile(kind: "svg" | "replay", drawn: Drawn | undefined): Promise<Uint8Array | undefined> {
-  const address = kind === "svg" ? drawn?.picture : drawn?.replay;
-  return typeof address === "string" ? vscode.workspace.fs.readFile(vscode.Uri.parse(address)) : undefined;
+async function readDrawing(form: "svg" | "replay", drawings: Drawings | undefined): Promise<Uint8Array | undefined> {
+  const uri = form === "svg" ? drawings?.picture : drawings?.replay;
+  return typeof uri === "string" ? vscode.workspace.fs.readFile(vscode.Uri.parse(uri)) : undefined;
 }
 
-/** A file in the folder of a program; for one that was never saved, in the workspace. */
-function beside(program: string, name: string): vscode.Uri {
+/** A file in the program's folder, or in the workspace if the program was never saved. */
+function nextTo(program: string, name: string): vscode.Uri {
   const uri = vscode.Uri.parse(program);
   const folder = uri.scheme === "untitled" ? vscode.workspace.workspaceFolders?.[0]?.uri : vscode.Uri.joinPath(uri, "..");
   return vscode.Uri.joinPath(folder ?? vscode.Uri.file("/"), name);

@@ -1,203 +1,194 @@
-// Follows the text: which environment is shown, and its path as it is now. Knows neither the editor nor the panel.
-import type { Remedy, ToPage } from "./messages";
+// Decides which environment the preview shows as the text and the cursor change, and requests its path. Does not depend on
+// VS Code.
+import type { Suggestion, ToPage } from "./messages";
 import {
   ACTION_LOCATION,
   DRIVEN_PATH,
   PLANNED_AT,
   PLANNED_PATH,
   type DrivenPath,
+  type EnvironmentId,
+  type Location,
   type NumberedAction,
   type PlannedAt,
   type PlannedPath,
-  type Which,
+  type Position,
 } from "./protocol";
 
-/** Asks the server; rejects with an error whose message is for people. */
-export type Ask = (method: string, params: object, signal: AbortSignal) => Promise<unknown>;
-
-export interface Position {
-  line: number;
-  character: number;
-}
-
-/** A place in a file as the protocol has it. */
-export interface Location {
-  uri: string;
-  range: { start: Position; end: Position };
-}
+/** Sends a request to the server; rejects with an error whose message is shown. */
+export type Request = (method: string, params: object, signal: AbortSignal) => Promise<unknown>;
 
 export class Follower {
   private uri: string | undefined;
   private environment: string | undefined;
   private environments: string[] = [];
   private action: NumberedAction | null = null;
-  /** Requests under way, by what they are about: a newer one of its kind cancels an older one. */
-  private readonly asked = new Map<string, AbortController>();
+  /** Whether the path of the shown environment, or why there is none, was requested. */
+  private isPathRequested = false;
+  /** Whether the server has named the program's environments. */
+  private areEnvironmentsKnown = false;
+  /** The latest request of each kind; a newer one cancels it. */
+  private readonly pending = new Map<string, AbortController>();
 
   constructor(
-    private readonly ask: Ask,
+    private readonly sendRequest: Request,
     private readonly show: (message: ToPage) => void,
   ) {}
 
-  /** The program that is shown. */
+  /** The URI of the shown program. */
   get program(): string | undefined {
     return this.uri;
   }
 
-  /** The environment that is shown. */
-  get which(): Which | undefined {
+  /** The shown environment. */
+  get shown(): EnvironmentId | undefined {
     const { uri, environment } = this;
     return uri === undefined || environment === undefined ? undefined : { uri, environment };
   }
 
-  /** Shows a program, and in it the given environment, else the one at the position. */
-  async follow(uri: string, at: Position, environment?: string): Promise<void> {
+  /** Shows a program with the given environment, or else the one at the position. */
+  async follow(uri: string, position: Position, environment?: string): Promise<void> {
     if (uri !== this.uri) {
       this.uri = uri;
       this.environment = environment;
       this.environments = [];
-      this.isAnswered = false;
-      this.isShown = false;
-      await this.look(at);
+      this.areEnvironmentsKnown = false;
+      this.isPathRequested = false;
+      await this.update(position);
     } else if (environment !== undefined && environment !== this.environment) {
       this.environment = environment;
-      await this.look(at);
+      await this.update(position);
     } else {
-      await this.look(at, true);
+      await this.update(position, true);
     }
   }
 
-  /** The cursor or the text has changed: the environment that is shown stays while the text at the cursor is part of it. */
-  async look(at: Position, mayMove = false): Promise<void> {
+  /** Call this when the text or the cursor changes. Only `maySwitch` allows another environment to be shown. */
+  async update(position: Position, maySwitch = false): Promise<void> {
     const uri = this.uri;
     if (uri === undefined) return;
-    const found = (await this.request("at", PLANNED_AT, { textDocument: { uri }, position: at })) as
+    const found = (await this.request("at", PLANNED_AT, { textDocument: { uri }, position })) as
       | PlannedAt
       | Failure
       | null
       | undefined;
     if (found === undefined || uri !== this.uri) return;
     if (found === null || found instanceof Failure) {
-      this.trouble(found?.message ?? "The program is not open in the editor.");
+      this.showProblem(found?.message ?? "The program is not open in the editor.");
       return;
     }
-    this.isAnswered = true;
+    this.areEnvironmentsKnown = true;
     const before = this.environment;
-    this.environment = this.choice(found, mayMove);
+    this.environment = this.choose(found, maySwitch);
     const list = JSON.stringify([found.environments, this.environment]);
     if (list !== JSON.stringify([this.environments, before]) || this.environments.length === 0) {
       this.environments = found.environments;
-      this.tellEnvironments();
+      this.showEnvironments();
     }
     if (JSON.stringify(found.action) !== JSON.stringify(this.action)) {
       this.action = found.action;
       this.show({ type: "cursor", action: found.action });
     }
     if (this.environment === undefined) {
-      this.isShown = false;
-      this.noEnvironment();
-    } else if (this.environment !== before || !this.isShown) {
-      await this.plan();
+      this.isPathRequested = false;
+      this.showNoEnvironment();
+    } else if (this.environment !== before || !this.isPathRequested) {
+      await this.requestPaths();
     }
   }
 
-  /** Whether a path, or why there is none, was asked for the environment that is shown. */
-  private isShown = false;
-
-  /** Whether the server has told which environments there are. */
-  private isAnswered = false;
-
-  private choice(found: PlannedAt, mayMove: boolean): string | undefined {
+  /** The shown environment stays while it uses what is at the cursor. */
+  private choose(found: PlannedAt, maySwitch: boolean): string | undefined {
     const current = this.environment;
     const exists = current !== undefined && found.environments.includes(current);
-    if (exists && (!mayMove || found.using.length === 0 || found.using.includes(current))) return current;
+    if (exists && (!maySwitch || found.using.length === 0 || found.using.includes(current))) return current;
     return found.using[0] ?? (exists ? current : found.environments[0]);
   }
 
-  /** The person chose an environment. */
-  async choose(environment: string): Promise<void> {
+  /** The user selected an environment. */
+  async select(environment: string): Promise<void> {
     if (environment === this.environment) return;
     this.environment = environment;
-    this.tellEnvironments();
-    await this.plan();
+    this.showEnvironments();
+    await this.requestPaths();
   }
 
-  /** The server says that a path is no longer right. */
-  async pathChanged(which: Which): Promise<void> {
-    if (this.isThis(which)) await this.planned(which);
+  /** The server reports that a planned path changed. */
+  async pathChanged(id: EnvironmentId): Promise<void> {
+    if (this.isShown(id)) await this.requestPlanned(id);
   }
 
-  /** The server says that an environment was run. */
-  async drivenChanged(which: Which): Promise<void> {
-    if (this.isThis(which)) await this.driven(which, true);
+  /** The server reports that a run has ended. */
+  async drivenChanged(id: EnvironmentId): Promise<void> {
+    if (this.isShown(id)) await this.requestDriven(id, true);
   }
 
-  /** Says everything again, to a page that knows nothing. */
-  async again(): Promise<void> {
-    this.isShown = false;
+  /** Sends everything again, to a page that was just loaded. */
+  async resend(): Promise<void> {
+    this.isPathRequested = false;
     if (this.uri === undefined) {
-      this.trouble("Open a program (a file that ends in .pyr) to see its planned path.");
+      this.showProblem("Open a program (a .pyr file) to see its planned path.");
       return;
     }
-    this.tellEnvironments();
+    this.showEnvironments();
     this.show({ type: "cursor", action: this.action });
-    if (this.environment !== undefined) await this.plan();
-    else if (this.isAnswered) this.noEnvironment();
+    if (this.environment !== undefined) await this.requestPaths();
+    else if (this.areEnvironmentsKnown) this.showNoEnvironment();
   }
 
-  /** Where an action of the shown environment stands. */
-  async place(action: NumberedAction): Promise<Location | undefined> {
+  /** The location of an action of the shown environment. */
+  async locate(action: NumberedAction): Promise<Location | undefined> {
     const { uri, environment } = this;
     if (uri === undefined || environment === undefined) return undefined;
     const params = { uri, environment, movement: action.movement, index: action.index };
-    const found = await this.request("place", ACTION_LOCATION, params);
+    const found = await this.request("location", ACTION_LOCATION, params);
     return found === null || found instanceof Failure ? undefined : (found as Location | undefined);
   }
 
-  private isThis(which: Which): boolean {
-    return which.uri === this.uri && which.environment === this.environment;
+  private isShown(id: EnvironmentId): boolean {
+    return id.uri === this.uri && id.environment === this.environment;
   }
 
-  private tellEnvironments(): void {
+  private showEnvironments(): void {
     if (this.uri === undefined) return;
     this.show({ type: "environments", uri: this.uri, names: this.environments, shown: this.environment ?? null });
   }
 
-  private async plan(): Promise<void> {
-    const { uri, environment } = this;
-    if (uri === undefined || environment === undefined) return;
-    this.isShown = true;
-    await Promise.all([this.planned({ uri, environment }), this.driven({ uri, environment })]);
+  private async requestPaths(): Promise<void> {
+    const { shown } = this;
+    if (shown === undefined) return;
+    this.isPathRequested = true;
+    await Promise.all([this.requestPlanned(shown), this.requestDriven(shown)]);
   }
 
-  private async planned(which: Which): Promise<void> {
-    const path = await this.request("planned", PLANNED_PATH, which);
-    if (path === undefined || !this.isThis(which)) return;
-    if (path instanceof Failure) this.trouble(path.message);
-    else this.show({ type: "path", uri: which.uri, path: path as PlannedPath });
+  private async requestPlanned(id: EnvironmentId): Promise<void> {
+    const path = await this.request("planned", PLANNED_PATH, id);
+    if (path === undefined || !this.isShown(id)) return;
+    if (path instanceof Failure) this.showProblem(path.message);
+    else this.show({ type: "path", uri: id.uri, path: path as PlannedPath });
   }
 
-  private async driven(which: Which, isNew = false): Promise<void> {
-    const driven = await this.request("driven", DRIVEN_PATH, which);
-    if (driven === undefined || driven instanceof Failure || !this.isThis(which)) return;
-    this.show({ type: "driven", ...which, driven: driven as DrivenPath | null, isNew });
+  private async requestDriven(id: EnvironmentId, isNew = false): Promise<void> {
+    const driven = await this.request("driven", DRIVEN_PATH, id);
+    if (driven === undefined || driven instanceof Failure || !this.isShown(id)) return;
+    this.show({ type: "driven", ...id, driven: driven as DrivenPath | null, isNew });
   }
 
-  private noEnvironment(): void {
-    this.trouble("The program has no environment yet. Add one to see the path.", "addEnvironment");
+  private showNoEnvironment(): void {
+    this.showProblem("The program has no environment yet. Add one to see the path.", "addEnvironment");
   }
 
-  private trouble(sentence: string, remedy?: Remedy): void {
-    this.show({ type: "trouble", uri: this.uri ?? null, sentence, ...(remedy ? { remedy } : {}) });
+  private showProblem(message: string, suggestion?: Suggestion): void {
+    this.show({ type: "problem", uri: this.uri ?? null, message, ...(suggestion ? { suggestion } : {}) });
   }
 
-  /** The answer; undefined where a newer question of the same kind was asked meanwhile. */
+  /** The response; undefined if a newer request of the same kind has been sent. */
   private async request(kind: string, method: string, params: object): Promise<unknown> {
-    this.asked.get(kind)?.abort();
+    this.pending.get(kind)?.abort();
     const controller = new AbortController();
-    this.asked.set(kind, controller);
+    this.pending.set(kind, controller);
     try {
-      const answer = await this.ask(method, params, controller.signal);
+      const answer = await this.sendRequest(method, params, controller.signal);
       return controller.signal.aborted ? undefined : answer;
     } catch (error) {
       return controller.signal.aborted ? undefined : new Failure(error);
@@ -205,7 +196,7 @@ export class Follower {
   }
 }
 
-/** Why there is no answer, in words. */
+/** A request that was rejected. */
 class Failure {
   readonly message: string;
 

@@ -1,27 +1,25 @@
-// The command, the panel that VS Code restores, and the connection to the server.
+// The preview's command, the panel that VS Code restores, and the connection to the server.
 import * as vscode from "vscode";
 import type { LanguageClient } from "vscode-languageclient/node";
 
-import { chooseEnvironment } from "../environments";
+import { chooseEnvironment, OPEN_A_PROGRAM } from "../environments";
 import { execute } from "../execute";
+import { showInformation } from "../notifications";
 import type { Session } from "../session";
-import type { Drawn } from "./export";
-import type { Ask } from "./follower";
+import type { Drawings } from "./export";
+import type { Request } from "./follower";
 import { pageState } from "./messages";
-import { isProgram, PANEL, PreviewPanel } from "./panel";
-import { DRIVEN_PATH_CHANGED, PLANNED_PATH_CHANGED, type Which } from "./protocol";
+import { isProgram, PANEL_TYPE, PreviewPanel } from "./panel";
+import { DRIVEN_PATH_CHANGED, type EnvironmentId, PLANNED_PATH_CHANGED } from "./protocol";
 
 /**
- * Registers the command `pydslrep.showPreview` and the panel behind it. Its arguments are both optional: the program's
- * `vscode.Uri`, which the button in the title bar gives, and the environment's name, which lenses give besides.
+ * Registers the preview. Both arguments of `pydslrep.showPreview` are optional: the program's URI, which the button in the
+ * title bar passes, and the name of the environment, which lenses pass as well.
  */
-export function registerPreview(
-  context: vscode.ExtensionContext,
-  session: Session,
-): vscode.Disposable {
+export function registerPreview(context: vscode.ExtensionContext, session: Session): vscode.Disposable {
   const preview = new Preview(context.extensionUri, session);
   return vscode.Disposable.from(
-    // A server that was started again knows of nobody who wants a path.
+    // A restarted server does not know which paths are shown.
     session.onDidChangeState((state) => {
       if (state === "running") preview.refresh();
     }),
@@ -29,13 +27,13 @@ export function registerPreview(
       preview.open(uri, environment),
     ),
     vscode.commands.registerCommand("pydslrep.exportPath", () => preview.export()),
-    vscode.window.registerWebviewPanelSerializer(PANEL, preview),
+    vscode.window.registerWebviewPanelSerializer(PANEL_TYPE, preview),
   );
 }
 
 class Preview implements vscode.WebviewPanelSerializer {
-  private shown: PreviewPanel | undefined;
-  /** The clients that tell this when paths change: each restart may bring another. */
+  private panel: PreviewPanel | undefined;
+  /** The clients whose notifications are handled; each restart may create another. */
   private readonly connected = new WeakSet<LanguageClient>();
 
   constructor(
@@ -45,59 +43,57 @@ class Preview implements vscode.WebviewPanelSerializer {
 
   async open(uri: unknown, environment: unknown): Promise<void> {
     const active = vscode.window.activeTextEditor?.document;
-    const chosen = uri instanceof vscode.Uri ? uri : typeof uri === "string" ? vscode.Uri.parse(uri) : undefined;
-    const program = chosen ?? (active && isProgram(active) ? active.uri : undefined);
+    const given = uri instanceof vscode.Uri ? uri : typeof uri === "string" ? vscode.Uri.parse(uri) : undefined;
+    const program = given ?? (active && isProgram(active) ? active.uri : undefined);
     if (!program) {
-      void vscode.window.showInformationMessage("Open a PyDSLRep program first: its planned path is shown beside it.");
+      showInformation(OPEN_A_PROGRAM);
       return;
     }
-    if (this.shown) {
-      this.shown.reveal();
+    if (this.panel) {
+      this.panel.reveal();
     } else {
-      const place = { viewColumn: vscode.ViewColumn.Beside, preserveFocus: true };
-      this.adopt(vscode.window.createWebviewPanel(PANEL, "Path", place));
+      const column = { viewColumn: vscode.ViewColumn.Beside, preserveFocus: true };
+      this.attach(vscode.window.createWebviewPanel(PANEL_TYPE, "Path", column));
     }
-    await this.shown?.follow(program, typeof environment === "string" ? environment : undefined);
+    await this.panel?.follow(program, typeof environment === "string" ? environment : undefined);
   }
 
   async deserializeWebviewPanel(panel: vscode.WebviewPanel, state: unknown): Promise<void> {
-    const adopted = this.adopt(panel);
+    const attached = this.attach(panel);
     const { uri, environment } = pageState(state);
-    if (uri !== undefined) await adopted.follow(vscode.Uri.parse(uri), environment);
+    if (uri !== undefined) await attached.follow(vscode.Uri.parse(uri), environment);
   }
 
-  /** Of what is shown; where nothing is, of the program in the editor. */
+  /** Exports the shown path; if none is shown, that of the program in the editor. */
   async export(): Promise<void> {
-    if (this.shown?.which === undefined) {
+    if (this.panel?.shown === undefined) {
       const chosen = await chooseEnvironment(this.session.client, undefined);
       if (chosen === undefined) return;
       await this.open(chosen.uri, chosen.environment);
     }
-    await this.shown?.export();
+    await this.panel?.export();
   }
 
   refresh(): void {
-    void this.shown?.refresh();
+    void this.panel?.refresh();
   }
 
-  private adopt(panel: vscode.WebviewPanel): PreviewPanel {
-    const adopted = new PreviewPanel(panel, this.extension, this.ask, this.draw);
-    this.shown = adopted;
+  private attach(panel: vscode.WebviewPanel): PreviewPanel {
+    const attached = new PreviewPanel(panel, this.extension, this.request, this.draw);
+    this.panel = attached;
     panel.onDidDispose(() => {
-      if (this.shown === adopted) this.shown = undefined;
+      if (this.panel === attached) this.panel = undefined;
     });
-    return adopted;
+    return attached;
   }
 
-  /** Files of a path: those of its latest run, else drawn now. */
-  private readonly draw = async (which: Which): Promise<Drawn | undefined> => {
-    const driven = this.session.runs.picturesOf(which);
-    if (driven) return { ...driven, isDriven: true };
-    const planned = await execute(this.session, "pydslrep.previewPath", which);
-    return planned === undefined ? undefined : { ...(planned as Drawn), isDriven: false };
+  /** The files drawn by the latest run; if there was none, the server draws the planned path. */
+  private readonly draw = async (environment: EnvironmentId): Promise<Drawings | undefined> => {
+    const driven = this.session.runs.picturesOf(environment);
+    return driven ?? ((await execute(this.session, "pydslrep.previewPath", environment)) as Drawings | undefined);
   };
 
-  private readonly ask: Ask = async (method, params, signal) => {
+  private readonly request: Request = async (method, params, signal) => {
     const { client } = this.session;
     if (!client) throw new Error("The language server is not running.");
     this.connect(client);
@@ -113,7 +109,7 @@ class Preview implements vscode.WebviewPanelSerializer {
   private connect(client: LanguageClient): void {
     if (this.connected.has(client)) return;
     this.connected.add(client);
-    client.onNotification(PLANNED_PATH_CHANGED, (which: Which) => void this.shown?.pathChanged(which));
-    client.onNotification(DRIVEN_PATH_CHANGED, (which: Which) => void this.shown?.drivenChanged(which));
+    client.onNotification(PLANNED_PATH_CHANGED, (id: EnvironmentId) => void this.panel?.pathChanged(id));
+    client.onNotification(DRIVEN_PATH_CHANGED, (id: EnvironmentId) => void this.panel?.drivenChanged(id));
   }
 }

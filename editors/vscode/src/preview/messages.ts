@@ -1,34 +1,33 @@
-// What the extension and the panel's page say to each other.
+// The messages between the extension and the preview's page.
 import type { DrivenPath, NumberedAction, PlannedPath } from "./protocol";
 
 /** To the page. */
 export type ToPage =
   | { type: "path"; uri: string; path: PlannedPath }
-  /** There is no path of this program now, and why, in a sentence. Its last good picture stays. */
-  | { type: "trouble"; uri: string | null; sentence: string; remedy?: Remedy }
+  /** The program has no path now, and why. The page keeps its last path. */
+  | { type: "problem"; uri: string | null; message: string; suggestion?: Suggestion }
   | { type: "environments"; uri: string; names: string[]; shown: string | null }
   | { type: "cursor"; action: NumberedAction | null }
-  /** The latest run, if there was one; whether it has just ended. */
+  /** The latest run, if there was one, and whether it has just ended. */
   | { type: "driven"; uri: string; environment: string; driven: DrivenPath | null; isNew: boolean }
-  /** The picture is wanted as PNG. */
-  | { type: "draw" };
+  /** Requests the picture as PNG. */
+  | { type: "capture" };
 
-/** What a person can do where there is no path. */
-export type Remedy = "addEnvironment";
+/** What the user can do about a problem. */
+export type Suggestion = "addEnvironment";
 
 /** From the page. */
 export type FromPage =
-  /** It is there, and knows nothing yet. */
+  /** The page is loaded. */
   | { type: "ready" }
-  | { type: "choose"; environment: string }
+  | { type: "select"; environment: string }
   | { type: "reveal"; action: NumberedAction }
-  | { type: "remedy"; remedy: Remedy }
-  /** Somebody wants a file of the picture. */
+  | { type: "accept"; suggestion: Suggestion }
   | { type: "export" }
-  /** The picture, as it is shown: an address with a PNG in it. */
-  | { type: "picture"; data: string };
+  /** The picture as a data URI. */
+  | { type: "captured"; png: string };
 
-/** What the page remembers over a reload of the window. */
+/** What the page keeps when the window is reloaded. */
 export interface PageState {
   uri?: string;
   environment?: string;
@@ -37,33 +36,33 @@ export interface PageState {
   time?: number;
 }
 
-/** Reads a message from the page; undefined for what is none. */
+/** Parses a message from the page; undefined if it is invalid. */
 export function fromPage(message: unknown): FromPage | undefined {
   if (!isRecord(message)) return undefined;
   switch (message.type) {
     case "ready":
       return { type: "ready" };
-    case "choose":
+    case "select":
       return typeof message.environment === "string"
-        ? { type: "choose", environment: message.environment }
+        ? { type: "select", environment: message.environment }
         : undefined;
     case "reveal":
       return isNumberedAction(message.action) ? { type: "reveal", action: message.action } : undefined;
-    case "remedy":
-      return message.remedy === "addEnvironment" ? { type: "remedy", remedy: message.remedy } : undefined;
+    case "accept":
+      return message.suggestion === "addEnvironment" ? { type: "accept", suggestion: message.suggestion } : undefined;
     case "export":
       return { type: "export" };
-    case "picture":
-      return typeof message.data === "string" && message.data.startsWith(PNG) ? { type: "picture", data: message.data } : undefined;
+    case "captured":
+      return typeof message.png === "string" && message.png.startsWith(PNG_PREFIX) ? { type: "captured", png: message.png } : undefined;
     default:
       return undefined;
   }
 }
 
-/** What an address with a PNG in it begins with. */
-export const PNG = "data:image/png;base64,";
+/** The start of a data URI that contains a PNG. */
+export const PNG_PREFIX = "data:image/png;base64,";
 
-/** Reads what a page remembers; what cannot be understood is forgotten. */
+/** Parses the page's state; invalid parts are dropped. */
 export function pageState(state: unknown): PageState {
   if (!isRecord(state)) return {};
   const { uri, environment, hidden, speed, time } = state;
@@ -71,12 +70,12 @@ export function pageState(state: unknown): PageState {
     ...(typeof uri === "string" ? { uri } : {}),
     ...(typeof environment === "string" ? { environment } : {}),
     ...(Array.isArray(hidden) ? { hidden: hidden.filter((name) => typeof name === "string") } : {}),
-    ...(isAboveZero(speed) ? { speed } : {}),
-    ...(isAboveZero(time) ? { time } : {}),
+    ...(isPositive(speed) ? { speed } : {}),
+    ...(isPositive(time) ? { time } : {}),
   };
 }
 
-function isAboveZero(value: unknown): value is number {
+function isPositive(value: unknown): value is number {
   return typeof value === "number" && Number.isFinite(value) && value > 0;
 }
 

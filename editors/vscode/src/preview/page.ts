@@ -1,15 +1,15 @@
-// The panel's page: what may run in it, and where its parts come from.
+// The HTML of the preview's page and its content security policy.
 
 export interface PageParts {
-  /** The source of scripts and styles, as a content security policy names it. */
+  /** The origin of scripts and styles, for the policy. */
   source: string;
   script: string;
   style: string;
-  /** Made anew for each page. */
+  /** Unique for each page. */
   nonce: string;
 }
 
-/** The page. Nothing in it comes from a network or from the program, and only our own script runs. */
+/** The page. It loads nothing from the network or the program, and runs only the extension's script. */
 export function page({ source, script, style, nonce }: PageParts): string {
   const policy = `default-src 'none'; style-src ${source}; script-src 'nonce-${nonce}';`;
   return `<!DOCTYPE html>

@@ -1,20 +1,19 @@
-// The panel beside the text: passes on between the follower, the editor and the page.
+// The preview's panel: passes messages between the follower, the editor and the page.
 import { randomUUID } from "node:crypto";
 
 import * as vscode from "vscode";
 
-import { Follower, type Ask } from "./follower";
-import { exportPath, type Drawn } from "./export";
-import { fromPage, type ToPage } from "./messages";
-import { page } from "./page";
-import type { NumberedAction, Which } from "./protocol";
 import { addEnvironment } from "../environments";
 import { reached } from "../milestones";
+import { type Drawings, exportPath } from "./export";
+import { Follower, type Request } from "./follower";
+import { fromPage, type ToPage } from "./messages";
+import { page } from "./page";
+import type { EnvironmentId, NumberedAction } from "./protocol";
 
-/** The panel's type, which VS Code restores it by. */
-export const PANEL = "pydslrep.preview";
+/** VS Code restores panels by their type. */
+export const PANEL_TYPE = "pydslrep.preview";
 
-/** Whether a document can have a path. */
 export function isProgram(document: vscode.TextDocument): boolean {
   return document.languageId === "pydslrep";
 }
@@ -22,25 +21,25 @@ export function isProgram(document: vscode.TextDocument): boolean {
 export class PreviewPanel {
   private readonly follower: Follower;
   private readonly subscriptions: vscode.Disposable[] = [];
-  /** Who waits for the page's picture. */
-  private awaiting: ((data: string) => void) | undefined;
+  /** Resolves the pending capture. */
+  private captured: ((png: string) => void) | undefined;
 
   constructor(
     private readonly panel: vscode.WebviewPanel,
     extension: vscode.Uri,
-    ask: Ask,
-    private readonly draw: (which: Which) => Promise<Drawn | undefined>,
+    request: Request,
+    private readonly draw: (environment: EnvironmentId) => Promise<Drawings | undefined>,
   ) {
-    this.follower = new Follower(ask, (message) => this.show(message));
+    this.follower = new Follower(request, (message) => this.post(message));
     const dist = vscode.Uri.joinPath(extension, "dist");
     const { webview } = panel;
     webview.options = { enableScripts: true, localResourceRoots: [dist] };
     this.subscriptions.push(
-      webview.onDidReceiveMessage((message: unknown) => this.hear(message)),
+      webview.onDidReceiveMessage((message: unknown) => this.receive(message)),
       vscode.window.onDidChangeActiveTextEditor((editor) => {
-        if (editor) this.look(editor);
+        if (editor) this.cursorMoved(editor);
       }),
-      vscode.window.onDidChangeTextEditorSelection(({ textEditor }) => this.look(textEditor)),
+      vscode.window.onDidChangeTextEditorSelection(({ textEditor }) => this.cursorMoved(textEditor)),
       vscode.workspace.onDidChangeTextDocument(({ document }) => this.textChanged(document)),
     );
     panel.onDidDispose(() => {
@@ -54,101 +53,116 @@ export class PreviewPanel {
     });
   }
 
-  /** Shows a program in it, and comes to the front. */
+  /** Shows a program. */
   async follow(uri: vscode.Uri, environment?: string): Promise<void> {
-    const editor = vscode.window.visibleTextEditors.find((visible) => visible.document.uri.toString() === uri.toString());
     this.panel.title = `Path: ${uri.path.slice(uri.path.lastIndexOf("/") + 1)}`;
-    await this.follower.follow(uri.toString(), editor?.selection.active ?? new vscode.Position(0, 0), environment);
+    const cursor = visibleEditor(uri)?.selection.active ?? new vscode.Position(0, 0);
+    await this.follower.follow(uri.toString(), cursor, environment);
   }
 
   reveal(): void {
     this.panel.reveal(undefined, true);
   }
 
-  pathChanged(which: Which): Promise<void> {
-    return this.follower.pathChanged(which);
+  pathChanged(environment: EnvironmentId): Promise<void> {
+    return this.follower.pathChanged(environment);
   }
 
-  drivenChanged(which: Which): Promise<void> {
-    return this.follower.drivenChanged(which);
+  drivenChanged(environment: EnvironmentId): Promise<void> {
+    return this.follower.drivenChanged(environment);
   }
 
-  /** Asks for everything again, for instance of a server that was restarted. */
+  /** Requests everything again, for example from a restarted server. */
   refresh(): Promise<void> {
-    return this.follower.again();
+    return this.follower.resend();
   }
 
-  /** What is shown. */
-  get which(): Which | undefined {
-    return this.follower.which;
+  get shown(): EnvironmentId | undefined {
+    return this.follower.shown;
   }
 
-  /** Writes what is shown into a file that the person chooses. */
+  /** Exports the shown path to a file that the user chooses. */
   async export(): Promise<void> {
-    const { which } = this.follower;
-    if (which !== undefined) {
-      await exportPath(which, () => this.draw(which), () => this.picture());
+    const { shown } = this;
+    if (shown !== undefined) {
+      await exportPath(shown, () => this.draw(shown), () => this.capture());
     }
   }
 
-  /** The picture in the page, as an address with a PNG in it. */
-  private picture(): Promise<string> {
+  /** The page's picture as a data URI. */
+  private capture(): Promise<string> {
     return new Promise((resolve) => {
-      this.awaiting = resolve;
-      this.show({ type: "draw" });
+      this.captured = resolve;
+      this.post({ type: "capture" });
     });
   }
 
-  private show(message: ToPage): void {
+  private post(message: ToPage): void {
     if (message.type === "path") reached("preview");
     void this.panel.webview.postMessage(message);
   }
 
-  private look(editor: vscode.TextEditor): void {
+  private cursorMoved(editor: vscode.TextEditor): void {
     if (!isProgram(editor.document)) return;
     const uri = editor.document.uri;
     if (uri.toString() !== this.follower.program) {
       if (editor === vscode.window.activeTextEditor) void this.follow(uri);
     } else {
-      void this.follower.look(editor.selection.active, true);
+      void this.follower.update(editor.selection.active, true);
     }
   }
 
-  /** Text may change without the cursor: by an undo, or in another editor. */
-  private textChanged(document: vscode.TextDocument): void {
-    const editor = vscode.window.visibleTextEditors.find((visible) => visible.document === document);
-    if (document.uri.toString() === this.follower.program) {
-      void this.follower.look(editor?.selection.active ?? new vscode.Position(0, 0));
+  /** Text may change without the cursor: by undo, or in another editor. */
+  private textChanged({ uri }: vscode.TextDocument): void {
+    if (uri.toString() === this.follower.program) {
+      void this.follower.update(visibleEditor(uri)?.selection.active ?? new vscode.Position(0, 0));
     }
   }
 
-  private hear(message: unknown): void {
-    const heard = fromPage(message);
-    if (heard?.type === "ready") void this.follower.again();
-    else if (heard?.type === "choose") void this.follower.choose(heard.environment);
-    else if (heard?.type === "reveal") void this.select(heard.action);
-    else if (heard?.type === "export") void this.export();
-    else if (heard?.type === "picture") this.awaiting?.(heard.data);
-    else if (heard?.type === "remedy") void this.remedy();
+  private receive(received: unknown): void {
+    const message = fromPage(received);
+    switch (message?.type) {
+      case "ready":
+        void this.follower.resend();
+        break;
+      case "select":
+        void this.follower.select(message.environment);
+        break;
+      case "reveal":
+        void this.revealAction(message.action);
+        break;
+      case "accept":
+        void this.addEnvironment();
+        break;
+      case "export":
+        void this.export();
+        break;
+      case "captured":
+        this.captured?.(message.png);
+        break;
+    }
   }
 
-  private async remedy(): Promise<void> {
+  private async addEnvironment(): Promise<void> {
     const { program } = this.follower;
     if (program !== undefined) await addEnvironment(await vscode.workspace.openTextDocument(vscode.Uri.parse(program)));
   }
 
-  /** Selects an action in the editor; the focus stays in the panel, where one may go on to the next. */
-  private async select(action: NumberedAction): Promise<void> {
-    const found = await this.follower.place(action);
-    if (!found) return;
-    const { start, end } = found.range;
-    const uri = vscode.Uri.parse(found.uri);
-    const editor = vscode.window.visibleTextEditors.find((visible) => visible.document.uri.toString() === uri.toString());
-    const column = editor?.viewColumn ?? (this.panel.viewColumn === vscode.ViewColumn.One ? vscode.ViewColumn.Beside : vscode.ViewColumn.One);
+  /** Selects an action in the editor; the panel keeps the focus, so the user can move on to the next action. */
+  private async revealAction(action: NumberedAction): Promise<void> {
+    const location = await this.follower.locate(action);
+    if (!location) return;
+    const { start, end } = location.range;
+    const uri = vscode.Uri.parse(location.uri);
+    const beside = this.panel.viewColumn === vscode.ViewColumn.One ? vscode.ViewColumn.Beside : vscode.ViewColumn.One;
     await vscode.window.showTextDocument(uri, {
       selection: new vscode.Range(start.line, start.character, end.line, end.character),
-      viewColumn: column,
+      viewColumn: visibleEditor(uri)?.viewColumn ?? beside,
       preserveFocus: true,
     });
   }
+}
+
+function visibleEditor(uri: vscode.Uri): vscode.TextEditor | undefined {
+  return vscode.window.visibleTextEditors.find((editor) => editor.document.uri.toString() === uri.toString());
 }

@@ -1,5 +1,5 @@
-// What the server says about paths: docs/protocol.md in types. Lengths are metres, angles radians counter-clockwise,
-// times seconds.
+// The server's messages about paths, as described in docs/protocol.md. Lengths are in metres, angles in radians
+// counter-clockwise, times in seconds.
 
 export const PLANNED_PATH = "pydslrep/plannedPath";
 export const PLANNED_PATH_CHANGED = "pydslrep/plannedPathChanged";
@@ -8,15 +8,30 @@ export const ACTION_LOCATION = "pydslrep/actionLocation";
 export const DRIVEN_PATH = "pydslrep/drivenPath";
 export const DRIVEN_PATH_CHANGED = "pydslrep/drivenPathChanged";
 
-/** An environment of a program. */
-export interface Which {
+export interface Position {
+  line: number;
+  character: number;
+}
+
+export interface Location {
+  uri: string;
+  range: { start: Position; end: Position };
+}
+
+/** An environment of a program: the argument of the server's commands. */
+export interface EnvironmentId {
   uri: string;
   environment: string;
 }
 
+/** The environment as a key of a map. */
+export function keyOf({ uri, environment }: EnvironmentId): string {
+  return `${environment} ${uri}`;
+}
+
 export interface PlannedPath {
   environment: string;
-  /** Until the last movement ends; null where that cannot be planned. */
+  /** When the last movement ends; null if that is unknown. */
   duration: number | null;
   robots: PlannedRobot[];
   obstacles: Obstacle[];
@@ -27,14 +42,14 @@ export interface PlannedRobot {
   name: string;
   body: { length: number; width: number };
   sensors: Sensor[];
-  /** The first is where the robot starts. */
+  /** The first is the start. */
   poses: PlannedPose[];
   legs: PlannedLeg[];
-  /** The action behind which its poses cannot be planned. */
+  /** The action after which the poses are unknown. */
   unknownAfter: PlannedAction | null;
 }
 
-/** A sensor's place on its robot, and what it sees from there. */
+/** A sensor's pose on its robot and its field of view. */
 export interface Sensor {
   name: string;
   x: number;
@@ -45,23 +60,23 @@ export interface Sensor {
 }
 
 export interface PlannedPose {
-  /** Null where an action before it takes an unknown time. */
+  /** Null after an action of unknown duration. */
   t: number | null;
   x: number;
   y: number;
   theta: number;
 }
 
-/** The drive of one action. */
+/** The part of a path that one action drives. */
 export interface PlannedLeg {
   action: PlannedAction;
   start: number | null;
   duration: number;
-  /** The index of its last pose; its first is the last one of the drive before. */
+  /** The index of its last pose; its first is the last of the leg before. */
   last: number;
 }
 
-/** An action by its number within its movement. */
+/** An action by its index in its movement. */
 export interface NumberedAction {
   movement: string;
   index: number;
@@ -85,15 +100,15 @@ export interface Collision {
   with: { obstacle: string } | { robot: string };
 }
 
-/** What of planned paths stands at a position. */
+/** What a position in a program refers to. */
 export interface PlannedAt {
   environments: string[];
-  /** Those that use what stands there. */
+  /** Those that use the declaration at the position. */
   using: string[];
   action: NumberedAction | null;
 }
 
-/** The latest run. */
+/** The path of the latest run. */
 export interface DrivenPath {
   environment: string;
   robots: DrivenRobot[];
@@ -102,6 +117,6 @@ export interface DrivenPath {
 export interface DrivenRobot {
   name: string;
   poses: { t: number; x: number; y: number; theta: number }[];
-  /** What it found on exploring. */
+  /** The map that the robot built with `slam`. */
   map: { nodes: [number, number][]; edges: [[number, number], [number, number]][] };
 }

@@ -9,35 +9,35 @@ import { plan } from "./plans";
 
 const TOP = { line: 0, character: 0 };
 
-interface Question {
+interface PendingRequest {
   method: string;
   params: object;
   signal: AbortSignal;
-  answer: (value: unknown) => void;
-  refuse: (words: string) => void;
+  resolve: (value: unknown) => void;
+  reject: (message: string) => void;
 }
 
-/** A follower, the questions that wait for an answer, and what it showed. */
-function desk() {
-  const questions: Question[] = [];
+/** A follower with its pending requests and the messages that it sent. */
+function setUp() {
+  const requests: PendingRequest[] = [];
   const shown: ToPage[] = [];
   const follower = new Follower(
     (method, params, signal) =>
-      new Promise((answer, reject) => {
-        questions.push({ method, params, signal, answer, refuse: (words) => reject(new Error(words)) });
+      new Promise((resolve, reject) => {
+        requests.push({ method, params, signal, resolve, reject: (message) => reject(new Error(message)) });
       }),
     (message) => shown.push(message),
   );
-  const next = async (method: string): Promise<Question> => {
+  const next = async (method: string): Promise<PendingRequest> => {
     for (let turn = 0; turn < 20; turn += 1) {
-      const index = questions.findIndex((question) => question.method === method);
-      const [found] = index < 0 ? [] : questions.splice(index, 1);
+      const index = requests.findIndex((request) => request.method === method);
+      const [found] = index < 0 ? [] : requests.splice(index, 1);
       if (found) return found;
       await Promise.resolve();
     }
-    throw new Error(`${method} is not asked`);
+    throw new Error(`${method} was not requested`);
   };
-  return { follower, shown, questions, next };
+  return { follower, shown, requests, next };
 }
 
 function at(using: string[], environments = ["yard", "hall"]): PlannedAt {
@@ -45,11 +45,11 @@ function at(using: string[], environments = ["yard", "hall"]): PlannedAt {
 }
 
 async function opened(found: PlannedAt) {
-  const made = desk();
+  const made = setUp();
   const following = made.follower.follow("file:///a.pyr", TOP);
-  (await made.next(PLANNED_AT)).answer(found);
-  (await made.next(PLANNED_PATH)).answer(plan());
-  (await made.next(DRIVEN_PATH)).answer(null);
+  (await made.next(PLANNED_AT)).resolve(found);
+  (await made.next(PLANNED_PATH)).resolve(plan());
+  (await made.next(DRIVEN_PATH)).resolve(null);
   await following;
   return made;
 }
@@ -60,138 +60,138 @@ test("a program is shown with the environment at the cursor", async () => {
   assert.deepEqual(shown[0], { type: "environments", uri: "file:///a.pyr", names: ["yard", "hall"], shown: "hall" });
 });
 
-test("a newer question takes an older one back, and its answer is not shown", async () => {
+test("a newer request cancels an older one, whose answer is not shown", async () => {
   const { follower, shown, next } = await opened(at(["yard"]));
   shown.length = 0;
-  const which = { uri: "file:///a.pyr", environment: "yard" };
-  const first = follower.pathChanged(which);
+  const id = { uri: "file:///a.pyr", environment: "yard" };
+  const first = follower.pathChanged(id);
   const older = await next(PLANNED_PATH);
-  const second = follower.pathChanged(which);
+  const second = follower.pathChanged(id);
   const newer = await next(PLANNED_PATH);
   assert.deepEqual([older.signal.aborted, newer.signal.aborted], [true, false]);
-  newer.answer({ ...plan(), duration: 7 });
-  older.answer({ ...plan(), duration: 6 });
+  newer.resolve({ ...plan(), duration: 7 });
+  older.resolve({ ...plan(), duration: 6 });
   await Promise.all([first, second]);
   assert.deepEqual(shown.map((message) => message.type === "path" && message.path.duration), [7]);
 });
 
-test("an older question that is refused is not told", async () => {
+test("the failure of an older request is not shown", async () => {
   const { follower, shown, next } = await opened(at(["yard"]));
   shown.length = 0;
-  const which = { uri: "file:///a.pyr", environment: "yard" };
-  const both = [follower.pathChanged(which), follower.pathChanged(which)];
+  const id = { uri: "file:///a.pyr", environment: "yard" };
+  const both = [follower.pathChanged(id), follower.pathChanged(id)];
   const older = await next(PLANNED_PATH);
-  older.refuse("cancelled");
-  (await next(PLANNED_PATH)).answer(plan());
+  older.reject("cancelled");
+  (await next(PLANNED_PATH)).resolve(plan());
   await Promise.all(both);
   assert.deepEqual(shown.map(({ type }) => type), ["path"]);
 });
 
-test("why there is no path is told", async () => {
+test("the reason for a missing path is shown", async () => {
   const { follower, shown, next } = await opened(at(["yard"]));
-  const asking = follower.pathChanged({ uri: "file:///a.pyr", environment: "yard" });
-  (await next(PLANNED_PATH)).refuse("`yard` has errors: there is no movement `go`");
-  await asking;
-  assert.deepEqual(shown.at(-1), { type: "trouble", uri: "file:///a.pyr", sentence: "`yard` has errors: there is no movement `go`" });
+  const requesting = follower.pathChanged({ uri: "file:///a.pyr", environment: "yard" });
+  (await next(PLANNED_PATH)).reject("`yard` has errors: there is no movement `go`");
+  await requesting;
+  assert.deepEqual(shown.at(-1), { type: "problem", uri: "file:///a.pyr", message: "`yard` has errors: there is no movement `go`" });
 });
 
-test("a program without environment is told as that program's, with what helps", async () => {
+test("a program without an environment is shown as such, with a suggestion", async () => {
   const { follower, shown, next } = await opened(at(["yard"]));
   const following = follower.follow("file:///b.pyr", TOP);
-  (await next(PLANNED_AT)).answer(at([], []));
+  (await next(PLANNED_AT)).resolve(at([], []));
   await following;
-  const trouble = {
-    type: "trouble",
+  const problem = {
+    type: "problem",
     uri: "file:///b.pyr",
-    sentence: "The program has no environment yet. Add one to see the path.",
-    remedy: "addEnvironment",
+    message: "The program has no environment yet. Add one to see the path.",
+    suggestion: "addEnvironment",
   };
-  assert.deepEqual(shown.slice(-2), [{ type: "environments", uri: "file:///b.pyr", names: [], shown: null }, trouble]);
-  await follower.again();
-  assert.deepEqual(shown.at(-1), trouble, "also to a page that was loaded again");
+  assert.deepEqual(shown.slice(-2), [{ type: "environments", uri: "file:///b.pyr", names: [], shown: null }, problem]);
+  await follower.resend();
+  assert.deepEqual(shown.at(-1), problem, "also after the page was reloaded");
 });
 
-test("a run that has just ended is told as new, one that is told again is not", async () => {
+test("a run is new only when it has just ended", async () => {
   const { follower, shown, next } = await opened(at(["yard"]));
-  const which = { uri: "file:///a.pyr", environment: "yard" };
+  const id = { uri: "file:///a.pyr", environment: "yard" };
   const driven = { environment: "yard", robots: [] };
-  const telling = follower.drivenChanged(which);
-  (await next(DRIVEN_PATH)).answer(driven);
-  await telling;
-  assert.deepEqual(shown.at(-1), { type: "driven", ...which, driven, isNew: true });
-  const again = follower.again();
-  (await next(PLANNED_PATH)).answer(plan());
-  (await next(DRIVEN_PATH)).answer(driven);
+  const sending = follower.drivenChanged(id);
+  (await next(DRIVEN_PATH)).resolve(driven);
+  await sending;
+  assert.deepEqual(shown.at(-1), { type: "driven", ...id, driven, isNew: true });
+  const again = follower.resend();
+  (await next(PLANNED_PATH)).resolve(plan());
+  (await next(DRIVEN_PATH)).resolve(driven);
   await again;
-  assert.deepEqual(shown.at(-1), { type: "driven", ...which, driven, isNew: false });
+  assert.deepEqual(shown.at(-1), { type: "driven", ...id, driven, isNew: false });
 });
 
-test("paths of other environments and programs do not matter", async () => {
-  const { follower, questions } = await opened(at(["yard"]));
+test("changes of other environments and programs are ignored", async () => {
+  const { follower, requests } = await opened(at(["yard"]));
   await follower.pathChanged({ uri: "file:///a.pyr", environment: "hall" });
   await follower.drivenChanged({ uri: "file:///b.pyr", environment: "yard" });
-  assert.equal(questions.length, 0);
+  assert.equal(requests.length, 0);
 });
 
-test("what both environments use moves nothing; what only the other uses does", async () => {
-  const { follower, shown, next, questions } = await opened(at(["yard"]));
-  const still = follower.look(TOP, true);
-  (await next(PLANNED_AT)).answer(at(["hall", "yard"]));
+test("the environment switches only if the cursor is in something that it does not use", async () => {
+  const { follower, shown, next, requests } = await opened(at(["yard"]));
+  const still = follower.update(TOP, true);
+  (await next(PLANNED_AT)).resolve(at(["hall", "yard"]));
   await still;
-  assert.equal(questions.length, 0);
-  void follower.look(TOP, true);
-  (await next(PLANNED_AT)).answer(at(["hall"]));
+  assert.equal(requests.length, 0);
+  void follower.update(TOP, true);
+  (await next(PLANNED_AT)).resolve(at(["hall"]));
   assert.deepEqual((await next(PLANNED_PATH)).params, { uri: "file:///a.pyr", environment: "hall" });
   assert.deepEqual(shown.at(-1), { type: "environments", uri: "file:///a.pyr", names: ["yard", "hall"], shown: "hall" });
 });
 
-test("an environment that gets another name is still shown", async () => {
+test("a renamed environment is still shown", async () => {
   const { follower, next } = await opened(at(["yard"], ["yard"]));
-  void follower.look(TOP);
-  (await next(PLANNED_AT)).answer(at(["yards"], ["yards"]));
+  void follower.update(TOP);
+  (await next(PLANNED_AT)).resolve(at(["yards"], ["yards"]));
   assert.deepEqual((await next(PLANNED_PATH)).params, { uri: "file:///a.pyr", environment: "yards" });
 });
 
-test("the action at the cursor is told once", async () => {
+test("the action at the cursor is sent once", async () => {
   const { follower, shown, next } = await opened(at(["yard"]));
   const action = { movement: "go", index: 2 };
   for (let turn = 0; turn < 2; turn += 1) {
-    const looking = follower.look(TOP);
-    (await next(PLANNED_AT)).answer({ ...at(["yard"]), action });
-    await looking;
+    const updating = follower.update(TOP);
+    (await next(PLANNED_AT)).resolve({ ...at(["yard"]), action });
+    await updating;
   }
   assert.deepEqual(shown.filter(({ type }) => type === "cursor"), [{ type: "cursor", action }]);
 });
 
-test("a page that knows nothing is told everything", async () => {
+test("a new page gets everything", async () => {
   const { follower, shown, next } = await opened(at(["yard"]));
   shown.length = 0;
-  const telling = follower.again();
-  (await next(PLANNED_PATH)).answer(plan());
-  (await next(DRIVEN_PATH)).answer({ environment: "yard", robots: [] });
-  await telling;
+  const sending = follower.resend();
+  (await next(PLANNED_PATH)).resolve(plan());
+  (await next(DRIVEN_PATH)).resolve({ environment: "yard", robots: [] });
+  await sending;
   assert.deepEqual(shown.map(({ type }) => type), ["environments", "cursor", "path", "driven"]);
 });
 
-test("before there is a program a page says what to do", async () => {
-  const { follower, shown } = desk();
-  await follower.again();
-  assert.equal(shown[0]?.type, "trouble");
+test("without a program the page says what to do", async () => {
+  const { follower, shown } = setUp();
+  await follower.resend();
+  assert.equal(shown[0]?.type, "problem");
 });
 
-test("messages from the page are read, whatever they are", () => {
+test("invalid messages from the page are ignored", () => {
   assert.deepEqual(fromPage({ type: "reveal", action: { movement: "go", index: 1 } }), { type: "reveal", action: { movement: "go", index: 1 } });
-  for (const nonsense of [null, 7, "ready", {}, { type: "choose" }, { type: "reveal", action: { movement: 1, index: 0 } }, { type: "reveal", action: { movement: "a", index: 0.5 } }, { type: "remedy", remedy: "rm" }, { type: "picture", data: "file:///etc/passwd" }]) {
-    assert.equal(fromPage(nonsense), undefined);
+  for (const invalid of [null, 7, "ready", {}, { type: "select" }, { type: "reveal", action: { movement: 1, index: 0 } }, { type: "reveal", action: { movement: "a", index: 0.5 } }, { type: "accept", suggestion: "rm" }, { type: "captured", png: "file:///etc/passwd" }]) {
+    assert.equal(fromPage(invalid), undefined);
   }
 });
 
-test("what a page remembers is read, whatever it is", () => {
+test("invalid parts of the page's state are dropped", () => {
   assert.deepEqual(pageState({ uri: "file:///a.pyr", environment: 3, hidden: ["a", 1], speed: -1, time: Number.NaN }), { uri: "file:///a.pyr", hidden: ["a"] });
   assert.deepEqual(pageState("nonsense"), {});
 });
 
-test("only our script runs in the page", () => {
+test("only the extension's script runs in the page", () => {
   const html = page({ source: "https://x.test", script: "https://x.test/a.js", style: "https://x.test/a.css", nonce: "n0" });
   assert.match(html, /default-src 'none'; style-src https:\/\/x\.test; script-src 'nonce-n0';/);
   assert.deepEqual(html.match(/<script[^>]*>/g), ['<script nonce="n0" src="https://x.test/a.js">']);

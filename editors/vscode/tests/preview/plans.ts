@@ -1,4 +1,4 @@
-// Paths to test with.
+// Paths for tests.
 import type { PlannedLeg, PlannedPath, PlannedPose } from "../../src/preview/protocol";
 
 /** A robot that drives 2 m in 2 s, waits for a second, turns left in 1 s, and drives 1 m in 1 s. */
@@ -42,7 +42,7 @@ export function plan(): PlannedPath {
   };
 }
 
-/** So many robots with so many legs each. */
+/** A path with this many robots and legs per robot. */
 export function large(robots: number, legs: number): PlannedPath {
   const [only] = plan().robots;
   if (!only) throw new Error("there is one");

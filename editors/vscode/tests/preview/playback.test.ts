@@ -12,7 +12,7 @@ function playing(duration: number): Playback {
   return playback;
 }
 
-test("time goes by as fast as was chosen, and stops at the end", () => {
+test("time advances at the chosen speed and stops at the end", () => {
   const playback = playing(10);
   playback.chosenSpeed = 4;
   assert.ok(playback.advance(0.1, false));
@@ -24,14 +24,14 @@ test("time goes by as fast as was chosen, and stops at the end", () => {
   assert.deepEqual([playback.time, playback.isPlaying], [0, true]);
 });
 
-test("a playback that is replaced ends, and the next begins at its start", () => {
+test("a reset stops the playback and goes back to the start", () => {
   const playback = playing(10);
   playback.advance(0.2, false);
-  playback.end();
+  playback.reset();
   assert.deepEqual([playback.time, playback.isPlaying], [0, false]);
 });
 
-test("the list of keys has every key that does something, and no other", () => {
+test("the help lists exactly the keys that have a command", () => {
   const press = (key: string, shiftKey = false) =>
     commandOf({ key, shiftKey, ctrlKey: false, altKey: false, metaKey: false }, "");
   const listed = KEYS.flatMap(({ keys, shift }) => keys.map((key) => [key, shift === true] as const));
@@ -42,14 +42,14 @@ test("the list of keys has every key that does something, and no other", () => {
   assert.deepEqual(working.filter((key) => !listed.some(([other]) => other === key)), []);
 });
 
-test("a window that was hidden does not jump", () => {
+test("the playback does not jump after its window was hidden", () => {
   const playback = playing(100);
   playback.chosenSpeed = 1;
   playback.advance(60, false);
   assert.equal(playback.time, 0.25);
 });
 
-test("with reduced motion time goes by in steps", () => {
+test("with reduced motion time advances in steps", () => {
   const playback = playing(100);
   playback.chosenSpeed = 1;
   const changes = Array.from({ length: 10 }, () => playback.advance(0.1, true));
@@ -57,7 +57,7 @@ test("with reduced motion time goes by in steps", () => {
   assert.ok(Math.abs(playback.time - 1) < 1e-9);
 });
 
-test("another path keeps the time where it can", () => {
+test("another path keeps the time if possible", () => {
   const playback = playing(10);
   playback.seek(7);
   playback.setDuration(20);
@@ -69,12 +69,12 @@ test("another path keeps the time where it can", () => {
   assert.deepEqual([playback.time, playback.isPlaying], [0, false]);
 });
 
-test("nobody waits long for a run that nobody chose a speed for", () => {
+test("the default speed limits the time of a playback", () => {
   const speeds = [3, 36, 2300, 1e6].map((duration) => playing(duration).speed);
   assert.deepEqual(speeds, [1, 2, 128, 128]);
 });
 
-test("keys mean something, unless what has the focus needs them", () => {
+test("keys have commands unless the focused element handles them", () => {
   const key = (name: string, more: Partial<Key> = {}): Key => ({ key: name, shiftKey: false, ctrlKey: false, altKey: false, metaKey: false, ...more });
   assert.deepEqual(commandOf(key(" "), "DIV"), { do: "toggle" });
   assert.equal(commandOf(key(" "), "BUTTON"), undefined);
@@ -87,8 +87,8 @@ test("keys mean something, unless what has the focus needs them", () => {
   assert.equal(commandOf(key("x"), "DIV"), undefined);
 });
 
-test("numbers for people", () => {
-  assert.deepEqual([0.04, 59.94, 59.96, 754.2].map(format.time), ["0.0 s", "59.9 s", "1 min 0.0 s", "12 min 34.2 s"]);
+test("numbers are formatted for people", () => {
+  assert.deepEqual([0.04, 59.94, 59.96, 754.2].map(format.duration), ["0.0 s", "59.9 s", "1 min 0.0 s", "12 min 34.2 s"]);
   assert.deepEqual([Math.PI, -Math.PI, Math.PI / 3, -7].map(format.degrees), ["180°", "180°", "60°", "-41.1°"]);
   assert.deepEqual([format.tickLabel(-0.5, 0.5), format.tickLabel(2, 1), format.tickLabel(0.1 + 0.2, 0.1)], ["-0.5", "2", "0.3"]);
   assert.deepEqual([0.002, 0.5, 1, 2.5].map(format.length), ["0.2 cm", "50 cm", "1 m", "2.5 m"]);

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { hitTest, toSegment } from "../../webview/preview/hit";
+import { hitTest, distanceToSegment } from "../../webview/preview/hit";
 import { modelOf } from "../../webview/preview/model";
 import { niceStep, ticks, View } from "../../webview/preview/view";
 import { large, plan } from "./plans";
@@ -13,20 +13,20 @@ function view(): View {
   return made;
 }
 
-test("what is fitted in can be seen whole, and larger would be too large", () => {
+test("a fitted rectangle is visible; a larger scale would cut it off", () => {
   const made = view();
   const bounds = { left: -3, bottom: 2, right: 5, top: 4 };
   made.fit(bounds);
-  assert.ok(made.suits(bounds));
+  assert.ok(made.isGoodFit(bounds));
   assert.ok(made.toX(-3) >= 20 && made.toX(5) <= 780);
   made.zoom(1.2);
-  assert.ok(!made.suits(bounds), "it is cut off");
+  assert.ok(!made.isGoodFit(bounds), "it is cut off");
   made.fit(bounds);
   made.zoom(0.4);
-  assert.ok(!made.suits(bounds), "it is too small");
+  assert.ok(!made.isGoodFit(bounds), "it is too small");
 });
 
-test("up is up, and there is a way back from pixels", () => {
+test("y points up, and pixels convert back to metres", () => {
   const made = view();
   made.fit({ left: 0, bottom: 0, right: 1, top: 1 });
   assert.ok(made.toY(1) < made.toY(0));
@@ -34,7 +34,7 @@ test("up is up, and there is a way back from pixels", () => {
   assert.ok(Math.abs(made.fromY(made.toY(0.7)) - 0.7) < 1e-12);
 });
 
-test("zooming keeps what is under the pointer, and has ends", () => {
+test("zooming keeps the point under the pointer, and is limited", () => {
   const made = view();
   const [x, y] = [made.fromX(100), made.fromY(500)];
   made.zoom(3, 100, 500);
@@ -45,14 +45,14 @@ test("zooming keeps what is under the pointer, and has ends", () => {
   assert.equal(made.scale, 0.5);
 });
 
-test("grid lines stand at round numbers, with room for a label", () => {
+test("grid lines are at round numbers, far enough apart for labels", () => {
   assert.deepEqual([0.011, 0.02, 0.3, 0.7, 1, 30].map(niceStep), [0.02, 0.02, 0.5, 1, 1, 50]);
   assert.deepEqual(ticks(-0.6, 1, 0.5).map((tick) => tick + 0), [-0.5, 0, 0.5, 1]);
   assert.equal(ticks(0, 1e9, 1).length, 400);
   assert.deepEqual(ticks(2.1, 2.4, 1), []);
 });
 
-test("the nearest leg is hit; at a joint it is the turn", () => {
+test("the nearest leg is hit; at a joint, the turn", () => {
   const made = view();
   made.fit({ left: 0, bottom: 0, right: 2, top: 1 });
   const { robots } = modelOf(plan());
@@ -64,7 +64,7 @@ test("the nearest leg is hit; at a joint it is the turn", () => {
   assert.equal(at(2, 0), 1);
   assert.equal(at(2, 0.5), 2);
   assert.equal(hitTest([], made, 1, 1), undefined);
-  assert.equal(toSegment(3, 4, 0, 0, 0, 0), 5);
+  assert.equal(distanceToSegment(3, 4, 0, 0, 0, 0), 5);
 });
 
 test("one of many legs is hit", () => {

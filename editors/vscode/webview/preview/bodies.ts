@@ -1,44 +1,45 @@
-// Robots as bodies that show where they head, their names, and where they would run into something.
+// Draws robots with their headings, names, sensors and planned collisions.
 import { label } from "./floor";
-import type { Crash, Robot } from "./model";
+import type { Collision, Robot } from "./model";
 import type { Theme } from "./theme";
 import type { Pose } from "./time";
 import type { View } from "./view";
 
-export type Look = "start" | "end" | "ghost" | "solid";
+/** `start` and `ghost` are dashed, `end` is tinted, `solid` is filled. */
+export type BodyStyle = "start" | "end" | "ghost" | "solid";
 
-/** Bodies are drawn no smaller than this, pixels: they would not be seen. */
-const LEAST = 9;
+/** Robots are drawn at least this long, pixels. */
+const MIN_SIZE = 9;
 
-export function drawBody(context: CanvasRenderingContext2D, view: View, robot: Robot, pose: Pose, colour: string, look: Look, theme: Theme): void {
-  const long = Math.max(robot.body.length * view.scale, LEAST);
-  const wide = Math.max(robot.body.width * view.scale, LEAST * 0.8);
+export function drawBody(context: CanvasRenderingContext2D, view: View, robot: Robot, pose: Pose, colour: string, style: BodyStyle, theme: Theme): void {
+  const length = Math.max(robot.body.length * view.scale, MIN_SIZE);
+  const width = Math.max(robot.body.width * view.scale, MIN_SIZE * 0.8);
   context.save();
   context.translate(view.toX(pose.x), view.toY(pose.y));
   context.rotate(-pose.theta);
   context.strokeStyle = colour;
   context.fillStyle = colour;
   context.lineJoin = "round";
-  context.lineWidth = look === "solid" ? 1.5 : 1.25;
-  if (look === "start" || look === "ghost") context.setLineDash([4, 3]);
+  context.lineWidth = style === "solid" ? 1.5 : 1.25;
+  if (style === "start" || style === "ghost") context.setLineDash([4, 3]);
   context.beginPath();
-  context.roundRect(-long / 2, -wide / 2, long, wide, Math.min(long, wide) / 8);
-  if (look !== "start" && look !== "ghost") {
+  context.roundRect(-length / 2, -width / 2, length, width, Math.min(length, width) / 8);
+  if (style !== "start" && style !== "ghost") {
     context.save();
-    context.globalAlpha = look === "solid" ? 1 : 0.22;
+    context.globalAlpha = style === "solid" ? 1 : 0.22;
     context.fill();
     context.restore();
   }
   context.stroke();
   context.setLineDash([]);
-  drawNose(context, long, wide, look === "solid" ? theme.paper : colour, look === "solid");
+  drawHeading(context, length, width, style === "solid" ? theme.background : colour, style === "solid");
   context.restore();
 }
 
-/** A wedge that points to where the robot heads. */
-function drawNose(context: CanvasRenderingContext2D, long: number, wide: number, colour: string, isFilled: boolean): void {
-  const size = Math.min(long, wide);
-  const tip = long / 2 - size * 0.12;
+/** A wedge that points in the robot's heading. */
+function drawHeading(context: CanvasRenderingContext2D, length: number, width: number, colour: string, isFilled: boolean): void {
+  const size = Math.min(length, width);
+  const tip = length / 2 - size * 0.12;
   context.beginPath();
   context.moveTo(tip, 0);
   context.lineTo(tip - size * 0.34, size * 0.26);
@@ -51,7 +52,7 @@ function drawNose(context: CanvasRenderingContext2D, long: number, wide: number,
   else context.stroke();
 }
 
-/** What the sensors of a robot see. */
+/** The fields of view of a robot's sensors. */
 export function drawSensors(context: CanvasRenderingContext2D, view: View, robot: Robot, pose: Pose, colour: string, theme: Theme): void {
   if (robot.sensors.length === 0) return;
   context.save();
@@ -76,15 +77,15 @@ export function drawSensors(context: CanvasRenderingContext2D, view: View, robot
   context.restore();
 }
 
-/** A mark that is seen also where it cannot be told by its colour. */
-export function drawCrash(context: CanvasRenderingContext2D, view: View, theme: Theme, crash: Crash): void {
-  drawBody(context, view, crash.robot, crash, theme.crash, "ghost", theme);
-  const [x, y] = [view.toX(crash.x), view.toY(crash.y)];
+/** A ghost of the robot and a crossed circle, which is recognizable without its colour. */
+export function drawCollision(context: CanvasRenderingContext2D, view: View, theme: Theme, collision: Collision): void {
+  drawBody(context, view, collision.robot, collision, theme.collision, "ghost", theme);
+  const [x, y] = [view.toX(collision.x), view.toY(collision.y)];
   context.beginPath();
   context.arc(x, y, 8, 0, 2 * Math.PI);
-  context.fillStyle = theme.paper;
+  context.fillStyle = theme.background;
   context.fill();
-  context.strokeStyle = theme.crash;
+  context.strokeStyle = theme.collision;
   context.lineWidth = 2;
   context.stroke();
   context.beginPath();
@@ -100,29 +101,29 @@ export interface Name {
   colour: string;
   x: number;
   y: number;
-  /** From the robot's middle to its farthest corner, pixels. */
-  reach: number;
+  /** Of the robot, pixels. */
+  radius: number;
 }
 
-/** Names beside their robots, each on the first side where it covers no other robot and no other name. */
+/** Draws names next to their robots, each on the first side where it covers no robot and no other name. */
 export function drawNames(context: CanvasRenderingContext2D, view: View, theme: Theme, names: readonly Name[]): void {
   context.font = `600 11px ${theme.font}`;
   context.textBaseline = "middle";
-  const taken = names.map(({ x, y, reach }) => ({ left: x - reach, right: x + reach, top: y - reach, bottom: y + reach }));
-  for (const { text, colour, x, y, reach } of names) {
+  const occupied = names.map(({ x, y, radius }) => ({ left: x - radius, right: x + radius, top: y - radius, bottom: y + radius }));
+  for (const { text, colour, x, y, radius } of names) {
     const half = context.measureText(text).width / 2;
-    const places = [
-      { x, y: y - reach - 9 },
-      { x, y: y + reach + 10 },
-      { x: x + reach + half + 5, y },
-      { x: x - reach - half - 5, y },
-    ].map((place) => ({ ...place, left: place.x - half, right: place.x + half, top: place.y - 7, bottom: place.y + 7 }));
-    const isFree = (place: (typeof places)[number]): boolean =>
-      place.left > 4 && place.right < view.width - 4 && place.top > 4 && place.bottom < view.height - 22 &&
-      taken.every((other) => place.right < other.left || place.left > other.right || place.bottom < other.top || place.top > other.bottom);
-    const place = places.find(isFree) ?? places[0];
-    if (!place) continue;
-    taken.push(place);
-    label(context, text, place.x, place.y, "center", theme, colour);
+    const sides = [
+      { x, y: y - radius - 9 },
+      { x, y: y + radius + 10 },
+      { x: x + radius + half + 5, y },
+      { x: x - radius - half - 5, y },
+    ].map((box) => ({ ...box, left: box.x - half, right: box.x + half, top: box.y - 7, bottom: box.y + 7 }));
+    const isFree = (box: (typeof sides)[number]): boolean =>
+      box.left > 4 && box.right < view.width - 4 && box.top > 4 && box.bottom < view.height - 22 &&
+      occupied.every((other) => box.right < other.left || box.left > other.right || box.bottom < other.top || box.top > other.bottom);
+    const box = sides.find(isFree) ?? sides[0];
+    if (!box) continue;
+    occupied.push(box);
+    label(context, text, box.x, box.y, "center", theme, colour);
   }
 }

@@ -1,13 +1,12 @@
-// The bar below the picture: play, the time on a slider, and how fast it goes by.
+// The bar below the picture: play, the time slider and the speed.
 import { element, icon, ICONS } from "./elements";
-import type { Crash } from "./model";
+import { duration as formatDuration } from "./format";
+import type { Collision } from "./model";
 import { SPEEDS, type Playback } from "./playback";
 import { button } from "./toolbar";
-import { time as inWords } from "./format";
 
 export interface ControlEvents {
   toggle: () => void;
-  /** Somebody moved the slider. */
   seek: (time: number) => void;
   setSpeed: (speed: number) => void;
 }
@@ -31,16 +30,16 @@ export class Controls {
     this.bar = element("footer", { class: "controls" }, this.play, track, this.clock, this.speeds);
   }
 
-  /** Another path: another end, and other collisions on the way. */
-  setPath(playback: Playback, crashes: readonly Crash[], isWhole: boolean): void {
+  /** Shows a path's duration and its collisions on the slider. */
+  setPath(playback: Playback, collisions: readonly Collision[], isComplete: boolean): void {
     const { duration } = playback;
     this.slider.max = `${duration}`;
-    this.end = `${inWords(duration)}${isWhole ? "" : " …"}`;
-    const isStill = duration === 0;
-    for (const control of [this.slider, this.play, this.speeds]) control.disabled = isStill;
+    this.end = `${formatDuration(duration)}${isComplete ? "" : " …"}`;
+    const isEmpty = duration === 0;
+    for (const control of [this.slider, this.play, this.speeds]) control.disabled = isEmpty;
     this.marks.replaceChildren(
-      ...crashes.flatMap(({ t }) => {
-        if (t === null || isStill) return [];
+      ...collisions.flatMap(({ t }) => {
+        if (t === null || isEmpty) return [];
         const mark = element("i");
         mark.style.setProperty("--share", `${t / duration}`);
         return [mark];
@@ -50,12 +49,12 @@ export class Controls {
     this.show(playback);
   }
 
-  /** As time goes by. */
+  /** Shows the state of the playback. */
   show({ time, isPlaying, speed, duration }: Playback): void {
     this.slider.value = `${time}`;
     this.slider.style.setProperty("--share", `${duration > 0 ? time / duration : 0}`);
-    this.slider.setAttribute("aria-valuetext", `${inWords(time)} of ${this.end}`);
-    this.clock.value = `${inWords(time)} / ${this.end}`;
+    this.slider.setAttribute("aria-valuetext", `${formatDuration(time)} of ${this.end}`);
+    this.clock.value = `${formatDuration(time)} / ${this.end}`;
     if (isPlaying === this.isPlaying) return;
     this.isPlaying = isPlaying;
     const label = isPlaying ? "Pause (space)" : "Play (space)";

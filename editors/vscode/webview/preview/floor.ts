@@ -1,11 +1,11 @@
-// The floor: a grid in metres, and what stands on it.
-import type { Outline } from "./model";
+// Draws the floor: a grid in metres, obstacles and labels.
+import type { ObstacleShape } from "./model";
 import type { Theme } from "./theme";
 import { ticks, type View } from "./view";
 import { tickLabel } from "./format";
 
-/** Room for the labels of the grid, pixels. */
-const EDGE = 18;
+/** Space for the labels of the grid, pixels. */
+const LABEL_SPACE = 18;
 
 export function drawGrid(context: CanvasRenderingContext2D, view: View, theme: Theme): void {
   const { step, width, height } = view;
@@ -20,41 +20,41 @@ export function drawGrid(context: CanvasRenderingContext2D, view: View, theme: T
   }
 }
 
-/** The values of the grid's lines at two edges, on top of everything. */
+/** Labels the grid's lines at two edges. */
 export function drawScale(context: CanvasRenderingContext2D, view: View, theme: Theme): void {
   const { step, width, height } = view;
   context.font = `11px ${theme.font}`;
   context.textBaseline = "middle";
   for (const x of ticks(view.fromX(40), view.fromX(width - 20), step)) {
-    label(context, tickLabel(x, step), view.toX(x), height - EDGE / 2 - 1, "center", theme);
+    label(context, tickLabel(x, step), view.toX(x), height - LABEL_SPACE / 2 - 1, "center", theme);
   }
-  for (const y of ticks(view.fromY(height - EDGE - 8), view.fromY(12), step)) {
+  for (const y of ticks(view.fromY(height - LABEL_SPACE - 8), view.fromY(12), step)) {
     label(context, tickLabel(y, step), 6, view.toY(y), "left", theme);
   }
 }
 
-export function drawOutlines(context: CanvasRenderingContext2D, view: View, theme: Theme, outlines: readonly Outline[]): void {
+export function drawObstacles(context: CanvasRenderingContext2D, view: View, theme: Theme, obstacles: readonly ObstacleShape[]): void {
   context.fillStyle = theme.obstacle;
   context.strokeStyle = theme.obstacleEdge;
   context.lineWidth = theme.isHighContrast ? 1.5 : 1;
   context.lineJoin = "round";
-  for (const outline of outlines) {
+  for (const obstacle of obstacles) {
     context.beginPath();
-    if ("points" in outline) {
-      outline.points.forEach(([x, y], index) => {
+    if ("points" in obstacle) {
+      obstacle.points.forEach(([x, y], index) => {
         if (index === 0) context.moveTo(view.toX(x), view.toY(y));
         else context.lineTo(view.toX(x), view.toY(y));
       });
       context.closePath();
     } else {
-      context.arc(view.toX(outline.x), view.toY(outline.y), outline.radius * view.scale, 0, 2 * Math.PI);
+      context.arc(view.toX(obstacle.x), view.toY(obstacle.y), obstacle.radius * view.scale, 0, 2 * Math.PI);
     }
     context.fill();
     context.stroke();
   }
 }
 
-/** Text that stays legible on whatever is below. */
+/** Text with a halo, legible on any background. */
 export function label(
   context: CanvasRenderingContext2D,
   text: string,
@@ -62,12 +62,12 @@ export function label(
   y: number,
   align: CanvasTextAlign,
   theme: Theme,
-  colour = theme.quiet,
+  colour = theme.muted,
 ): void {
   context.textAlign = align;
   context.lineJoin = "round";
   context.lineWidth = 3;
-  context.strokeStyle = theme.paper;
+  context.strokeStyle = theme.background;
   context.strokeText(text, x, y);
   context.fillStyle = colour;
   context.fillText(text, x, y);

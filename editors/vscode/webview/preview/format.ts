@@ -1,24 +1,24 @@
-// Numbers as people read them.
+// Formats numbers for people.
 import type { Pose } from "./time";
 
-/** A number with fixed decimals, the minus sign that hints and scripts have, and no minus before zero. */
+/** A number with fixed decimals and no minus sign before zero; the sign is the hyphen that hints and scripts use. */
 export function fixed(value: number, decimals: number): string {
   const digits = Math.abs(value).toFixed(decimals);
   return value < 0 && Number(digits) !== 0 ? `-${digits}` : digits;
 }
 
-/** A grid line's value with as many decimals as its distance to the next one needs. */
+/** The value of a grid line, with as many decimals as the step needs. */
 export function tickLabel(tick: number, step: number): string {
   return fixed(tick, Math.min(Math.max(Math.ceil(-Math.log10(step) - 1e-9), 0), 9));
 }
 
-/** A length with the unit that suits it. */
+/** A length in centimetres, or in metres if it is long. */
 export function length(metres: number): string {
   return metres < 1 ? `${fixed(metres * 100, metres < 0.01 ? 1 : 0)} cm` : `${fixed(metres, metres % 1 === 0 ? 0 : 1)} m`;
 }
 
-/** Seconds, from a minute on with minutes. */
-export function time(seconds: number): string {
+/** A duration in seconds, or in minutes and seconds. */
+export function duration(seconds: number): string {
   const tenths = Math.round(seconds * 10);
   if (tenths < 600) return `${(tenths / 10).toFixed(1)} s`;
   const rest = (tenths % 600) / 10;
@@ -36,7 +36,7 @@ export function pose({ x, y, theta }: Pose): string {
   return `(${fixed(x, 2)}, ${fixed(y, 2)}) m, ${degrees(theta)}`;
 }
 
-/** A small distance. */
-export function small(metres: number): string {
+/** A distance in millimetres, or in metres if it is long. */
+export function smallDistance(metres: number): string {
   return metres < 0.1 ? `${fixed(metres * 1000, 1)} mm` : `${fixed(metres, 2)} m`;
 }

@@ -1,4 +1,4 @@
-// The list of keys, over the picture.
+// The list of keys, shown over the picture.
 import { element } from "./elements";
 import { KEYS } from "./keys";
 
@@ -6,9 +6,9 @@ export class Help {
   readonly box: HTMLElement;
 
   constructor() {
-    const rows = KEYS.flatMap(({ shown, does }) => [
-      element("dt", {}, ...shown.split(" ").flatMap((key) => [element("kbd", {}, key), " "])),
-      element("dd", {}, does),
+    const rows = KEYS.flatMap(({ label, effect }) => [
+      element("dt", {}, ...label.split(" ").flatMap((key) => [element("kbd", {}, key), " "])),
+      element("dd", {}, effect),
     ]);
     this.box = element("section", { class: "help", role: "dialog", "aria-label": "Keys", "data-part": "help", tabindex: "-1" }, element("dl", {}, ...rows));
     this.box.hidden = true;
@@ -16,7 +16,7 @@ export class Help {
 
   toggle(): void {
     this.box.hidden = !this.box.hidden;
-    // Whoever cannot see it hears it.
+    // So that screen readers read the list.
     if (!this.box.hidden) this.box.focus();
   }
 

@@ -1,4 +1,4 @@
-// Which leg is under the pointer.
+// Finds the leg under the pointer.
 import type { Leg, Robot } from "./model";
 import type { View } from "./view";
 
@@ -7,18 +7,18 @@ export interface Hit {
   leg: Leg;
 }
 
-/** How near is near, pixels. */
-const REACH = 7;
+/** Pixels. */
+const MAX_DISTANCE = 7;
 
-/** The leg nearest to a place of the picture. At a joint a turn comes first, for there is no other place to hit it. */
+/** The leg nearest to a point of the picture. Turns win at joints, the only points where they can be hit. */
 export function hitTest(robots: readonly Robot[], view: View, px: number, py: number): Hit | undefined {
   let best: Hit | undefined;
-  let nearest = REACH;
+  let nearest = MAX_DISTANCE;
   for (const robot of robots) {
     for (const leg of robot.legs) {
       const distance = leg.isTurn
         ? Math.hypot(view.toX(leg.from.x) - px, view.toY(leg.from.y) - py) - 2
-        : toLine(robot.line, leg, view, px, py);
+        : distanceToLine(robot.line, leg, view, px, py);
       if (distance < nearest) {
         nearest = distance;
         best = { robot, leg };
@@ -28,22 +28,21 @@ export function hitTest(robots: readonly Robot[], view: View, px: number, py: nu
   return best;
 }
 
-function toLine(line: Float64Array, leg: Leg, view: View, px: number, py: number): number {
+function distanceToLine(line: Float64Array, leg: Leg, view: View, px: number, py: number): number {
   let nearest = Infinity;
   for (let index = leg.first; index < leg.last; index += 1) {
     const ax = view.toX(line[2 * index] ?? 0);
     const ay = view.toY(line[2 * index + 1] ?? 0);
     const bx = view.toX(line[2 * index + 2] ?? 0);
     const by = view.toY(line[2 * index + 3] ?? 0);
-    nearest = Math.min(nearest, toSegment(px, py, ax, ay, bx, by));
+    nearest = Math.min(nearest, distanceToSegment(px, py, ax, ay, bx, by));
   }
   return nearest;
 }
 
-/** The distance of a point from a segment. */
-export function toSegment(px: number, py: number, ax: number, ay: number, bx: number, by: number): number {
+export function distanceToSegment(px: number, py: number, ax: number, ay: number, bx: number, by: number): number {
   const [dx, dy] = [bx - ax, by - ay];
-  const square = dx * dx + dy * dy;
-  const share = square > 0 ? Math.min(Math.max(((px - ax) * dx + (py - ay) * dy) / square, 0), 1) : 0;
+  const squared = dx * dx + dy * dy;
+  const share = squared > 0 ? Math.min(Math.max(((px - ax) * dx + (py - ay) * dy) / squared, 0), 1) : 0;
   return Math.hypot(px - ax - share * dx, py - ay - share * dy);
 }

@@ -1,4 +1,5 @@
-// What keys do, wherever the focus is.
+// Maps keys to commands, wherever the focus is.
+import { ZOOM_STEP } from "./view";
 
 export type Command =
   | { do: "toggle" | "start" | "end" | "fit" | "reveal" | "help" | "close" | "export" }
@@ -15,34 +16,34 @@ export interface Key {
   metaKey: boolean;
 }
 
-/** What the keys do, in words; each by the name that the browser has for it. */
-export const KEYS: readonly { keys: readonly string[]; shift?: true; shown: string; does: string }[] = [
-  { keys: [" "], shown: "Space", does: "play or pause" },
-  { keys: ["ArrowLeft", "ArrowRight"], shown: "← →", does: "step through time" },
-  { keys: ["ArrowUp", "ArrowDown"], shown: "↑ ↓", does: "ten steps" },
-  { keys: ["Home", "End"], shown: "Home End", does: "go to the start or the end" },
-  { keys: ["n", "p", "PageDown", "PageUp"], shown: "N P", does: "next or previous action" },
-  { keys: ["Enter"], shown: "Enter", does: "show the action in the program" },
-  { keys: ["+", "=", "-", "−"], shown: "+ −", does: "zoom" },
-  { keys: ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"], shift: true, shown: "Shift+arrows", does: "move the picture" },
-  { keys: ["0"], shown: "0", does: "fit to view" },
-  { keys: ["e"], shown: "E", does: "export as SVG, PNG or replay" },
-  { keys: ["?"], shown: "?", does: "show or hide this list" },
-  { keys: ["Escape"], shown: "Esc", does: "hide this list" },
+/** The keys by their DOM names, with what the help says about them. */
+export const KEYS: readonly { keys: readonly string[]; shift?: true; label: string; effect: string }[] = [
+  { keys: [" "], label: "Space", effect: "play or pause" },
+  { keys: ["ArrowLeft", "ArrowRight"], label: "← →", effect: "step through time" },
+  { keys: ["ArrowUp", "ArrowDown"], label: "↑ ↓", effect: "ten steps" },
+  { keys: ["Home", "End"], label: "Home End", effect: "go to the start or the end" },
+  { keys: ["n", "p", "PageDown", "PageUp"], label: "N P", effect: "next or previous action" },
+  { keys: ["Enter"], label: "Enter", effect: "show the action in the program" },
+  { keys: ["+", "=", "-", "−"], label: "+ −", effect: "zoom" },
+  { keys: ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"], shift: true, label: "Shift+arrows", effect: "move the picture" },
+  { keys: ["0"], label: "0", effect: "fit to view" },
+  { keys: ["e"], label: "E", effect: "export as SVG, PNG or replay" },
+  { keys: ["?"], label: "?", effect: "show or hide this list" },
+  { keys: ["Escape"], label: "Esc", effect: "hide this list" },
 ];
 
-/** So far arrows with Shift move the floor, pixels. */
+/** How far Shift+arrow moves the picture, pixels. */
 const PAN = 40;
 
-/** What a key means; `focus` is the tag of what has the focus, which keeps the keys that it needs itself. */
+/** The command of a key. `focus` is the tag of the focused element, which handles the keys that it needs itself. */
 export function commandOf(event: Key, focus: string): Command | undefined {
   if (event.ctrlKey || event.altKey || event.metaKey || focus === "SELECT") return undefined;
-  const isPressed = focus === "BUTTON" || focus === "CHECKBOX";
+  const isActivatedByKeys = focus === "BUTTON" || focus === "CHECKBOX";
   switch (event.key) {
     case " ":
-      return isPressed ? undefined : { do: "toggle" };
+      return isActivatedByKeys ? undefined : { do: "toggle" };
     case "Enter":
-      return isPressed ? undefined : { do: "reveal" };
+      return isActivatedByKeys ? undefined : { do: "reveal" };
     case "ArrowLeft":
       return event.shiftKey ? { do: "pan", x: PAN, y: 0 } : { do: "step", steps: -1 };
     case "ArrowRight":
@@ -63,10 +64,10 @@ export function commandOf(event: Key, focus: string): Command | undefined {
       return { do: "action", direction: 1 };
     case "+":
     case "=":
-      return { do: "zoom", factor: 1.4 };
+      return { do: "zoom", factor: ZOOM_STEP };
     case "-":
     case "−":
-      return { do: "zoom", factor: 1 / 1.4 };
+      return { do: "zoom", factor: 1 / ZOOM_STEP };
     case "0":
       return { do: "fit" };
     case "e":

@@ -1,18 +1,18 @@
-// What the lines mean, who may be hidden, where each robot ends, and what it would run into.
+// The legend: the robots with their ends, the planned collisions, and the meaning of the lines.
 import { element } from "./elements";
-import { deviation, type Crash, type Driven, type Model, type Robot } from "./model";
-import { ROBOT_COLOURS } from "./theme";
 import * as format from "./format";
+import { deviation, type Collision, type Driven, type Model, type Robot } from "./model";
+import { ROBOT_COLOURS } from "./theme";
 
 export interface LegendEvents {
   hide: (robot: string, isHidden: boolean) => void;
   showRun: (isShown: boolean) => void;
-  goTo: (crash: Crash) => void;
+  goTo: (collision: Collision) => void;
 }
 
 export interface LegendContent {
   model: Model | undefined;
-  /** The latest run, also where it is not shown. */
+  /** The latest run, even if it is hidden. */
   driven: Driven | undefined;
   isRunShown: boolean;
   hidden: ReadonlySet<string>;
@@ -23,7 +23,7 @@ export class Legend {
 
   constructor(private readonly events: LegendEvents) {}
 
-  /** Makes it anew; the focus stays on what is still there. */
+  /** Replaces the content; the focus stays on the same entry. */
   show(content: LegendContent): void {
     const { model, driven } = content;
     const focused = document.activeElement?.getAttribute("data-key");
@@ -32,7 +32,7 @@ export class Legend {
     const robots = model.robots.map((robot) => this.entry(robot, content));
     const parts: HTMLElement[] = [element("ul", { class: "robots", "aria-label": "Robots" }, ...robots)];
     if (driven) parts.push(this.run(content.isRunShown));
-    if (model.crashes.length > 0) parts.push(this.crashes(model.crashes));
+    if (model.collisions.length > 0) parts.push(this.collisions(model.collisions));
     parts.push(key(content));
     this.panel.replaceChildren(...parts);
     if (focused) this.panel.querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)?.focus();
@@ -44,12 +44,12 @@ export class Legend {
     check.addEventListener("change", () => this.events.hide(robot.name, !check.checked));
     const swatch = element("span", { class: `swatch robot-${robot.colour % ROBOT_COLOURS}`, "aria-hidden": "true" });
     const name = element("span", { class: "name", title: robot.name }, robot.name);
-    const found = isRunShown ? driven?.robots.get(robot.name)?.end : undefined;
-    const lines = [robot.unknownAfter ? `planned up to “${robot.unknownAfter.text}”; the rest depends on the world` : `→ ${format.pose(robot.end)}`];
-    if (found && robot.unknownAfter) lines.push(`driven → ${format.pose(found)}`);
-    else if (found) {
-      const { distance, angle } = deviation(robot.end, found);
-      lines.push(`driven path ends ${format.small(distance)}, ${format.fixed((angle * 180) / Math.PI, 1)}° off`);
+    const drivenEnd = isRunShown ? driven?.robots.get(robot.name)?.end : undefined;
+    const lines = [robot.unknownAfter ? `planned up to “${robot.unknownAfter.text}”; the rest is unknown until it runs` : `→ ${format.pose(robot.end)}`];
+    if (drivenEnd && robot.unknownAfter) lines.push(`driven → ${format.pose(drivenEnd)}`);
+    else if (drivenEnd) {
+      const { distance, angle } = deviation(robot.end, drivenEnd);
+      lines.push(`driven path ends ${format.smallDistance(distance)}, ${format.fixed((angle * 180) / Math.PI, 1)}° off`);
     }
     const notes = lines.map((line) => element("small", {}, line));
     return element("li", {}, element("label", {}, check, swatch, name), ...notes);
@@ -62,28 +62,28 @@ export class Legend {
     return element("label", { class: "run" }, check, "Latest run");
   }
 
-  private crashes(crashes: readonly Crash[]): HTMLElement {
-    const items = crashes.map((crash, index) => {
-      const when = crash.t === null ? "" : ` after ${format.time(crash.t)}`;
-      const sentence = `${crash.robot.name} would run into ${crash.other}${when}`;
-      const go = element("button", { type: "button", class: "crash", "data-key": `crash ${index}`, "data-collision": `${index}` });
-      go.append(sample("collision"), element("span", {}, sentence));
-      go.addEventListener("click", () => this.events.goTo(crash));
-      return element("li", {}, go);
+  private collisions(collisions: readonly Collision[]): HTMLElement {
+    const items = collisions.map((collision, index) => {
+      const when = collision.t === null ? "" : ` after ${format.duration(collision.t)}`;
+      const sentence = `${collision.robot.name} runs into ${collision.other}${when}`;
+      const link = element("button", { type: "button", class: "collision-link", "data-key": `collision ${index}`, "data-collision": `${index}` });
+      link.append(sample("collision"), element("span", {}, sentence));
+      link.addEventListener("click", () => this.events.goTo(collision));
+      return element("li", {}, link);
     });
-    return element("ul", { class: "crashes", "aria-label": "Collisions" }, ...items);
+    return element("ul", { class: "collisions", "aria-label": "Collisions" }, ...items);
   }
 }
 
-/** Samples of what is in the picture. */
+/** Samples of the lines and shapes in the picture. */
 function key({ model, driven, isRunShown }: LegendContent): HTMLElement {
   const samples = [["planned", "planned path"]];
   if (driven && isRunShown) samples.push(["driven", "driven path"]);
   samples.push(["start", "start"]);
   if (model?.robots.some(({ legs }) => legs.length > 0)) samples.push(["end", "planned end"]);
   if (driven && isRunShown && [...driven.robots.values()].some(({ nodes }) => nodes.length > 0)) samples.push(["map", "map"]);
-  if (model && model.outlines.length > 0) samples.push(["obstacle", "obstacle"]);
-  if (model && model.crashes.length > 0) samples.push(["collision", "collision"]);
+  if (model && model.obstacles.length > 0) samples.push(["obstacle", "obstacle"]);
+  if (model && model.collisions.length > 0) samples.push(["collision", "collision"]);
   const items = samples.map(([kind = "", meaning = ""]) =>
     element("li", {}, sample(kind), meaning),
   );

@@ -1,10 +1,10 @@
-// What is drawn, made ready once for every path that arrives: lines to draw, legs to hit, and tracks to look up times in.
+// Paths prepared for drawing, once per path: lines, legs for hit tests, and tracks to look up poses by time.
 import type { DrivenPath, NumberedAction, PlannedAction, PlannedPath, Sensor } from "../../src/preview/protocol";
 import { endOf, trackOf, turnBetween, type Pose, type TimedPose, type Track } from "./time";
 
 export interface Leg {
   action: PlannedAction;
-  /** Null where an earlier action takes an unknown time. */
+  /** Null after an action of unknown duration. */
   start: number | null;
   duration: number;
   /** Indices of its first and last pose in the robot's line. */
@@ -12,17 +12,17 @@ export interface Leg {
   last: number;
   from: Pose;
   to: Pose;
-  /** Whether it stays where it is. */
+  /** Whether the robot turns on the spot. */
   isTurn: boolean;
 }
 
 export interface Robot {
   name: string;
-  /** Which of the robots' colours. */
+  /** The index of its colour. */
   colour: number;
   body: { length: number; width: number };
   sensors: Sensor[];
-  /** x and y of its poses in turn. */
+  /** x and y of its poses, alternating. */
   line: Float64Array;
   start: Pose;
   end: Pose;
@@ -31,12 +31,12 @@ export interface Robot {
   unknownAfter: PlannedAction | null;
 }
 
-export type Outline = { name: string; x: number; y: number; radius: number } | { name: string; points: [number, number][] };
+export type ObstacleShape = { name: string; x: number; y: number; radius: number } | { name: string; points: [number, number][] };
 
-export interface Crash extends Pose {
+export interface Collision extends Pose {
   robot: Robot;
   t: number | null;
-  /** What it meets: another robot or an obstacle. */
+  /** The robot or obstacle that it hits. */
   other: string;
   action: PlannedAction | null;
 }
@@ -44,16 +44,17 @@ export interface Crash extends Pose {
 export interface Model {
   environment: string;
   robots: Robot[];
-  outlines: Outline[];
-  crashes: Crash[];
-  /** Seconds until the last pose whose time is known. */
+  obstacles: ObstacleShape[];
+  collisions: Collision[];
+  /** The last known time, seconds. */
   duration: number;
-  /** Whether that is all. */
-  isWhole: boolean;
+  /** Whether the duration of the whole path is known. */
+  isComplete: boolean;
 }
 
-/** What was driven, by the robots' names. */
+/** A run. */
 export interface Driven {
+  /** By their names. */
   robots: Map<string, DrivenRobot>;
   duration: number;
 }
@@ -68,7 +69,7 @@ export interface DrivenRobot {
 
 export function modelOf(path: PlannedPath): Model {
   const robots = path.robots.map(robotOf);
-  const crashes = path.collisions.flatMap((collision): Crash[] => {
+  const collisions = path.collisions.flatMap((collision): Collision[] => {
     const robot = robots.find(({ name }) => name === collision.robot);
     if (!robot) return [];
     const { x, y, theta, t, action } = collision;
@@ -78,10 +79,10 @@ export function modelOf(path: PlannedPath): Model {
   return {
     environment: path.environment,
     robots,
-    outlines: path.obstacles.map(outlineOf),
-    crashes,
+    obstacles: path.obstacles.map(shapeOf),
+    collisions,
     duration: Math.max(0, ...robots.map(({ track }) => endOf(track))),
-    isWhole: path.duration !== null,
+    isComplete: path.duration !== null,
   };
 }
 
@@ -114,27 +115,27 @@ function robotOf(robot: PlannedPath["robots"][number], colour: number): Robot {
     start,
     end: poses.at(-1) ?? start,
     legs,
-    track: trackOf(timed(poses, legs)),
+    track: trackOf(timedPoses(poses, legs)),
     unknownAfter,
   };
 }
 
-/** Poses whose time is known, with those in which the robot waits for a leg to begin. */
-function timed(poses: PlannedPath["robots"][number]["poses"], legs: Leg[]): TimedPose[] {
-  const found: TimedPose[] = [];
+/** The poses whose time is known, and those where the robot waits for its next leg. */
+function timedPoses(poses: PlannedPath["robots"][number]["poses"], legs: Leg[]): TimedPose[] {
+  const timed: TimedPose[] = [];
   const add = (pose: Pose, t: number): void => {
-    found.push({ t, x: pose.x, y: pose.y, theta: pose.theta });
+    timed.push({ t, x: pose.x, y: pose.y, theta: pose.theta });
   };
   const start = poses[0];
   if (start) add(start, 0);
   for (const leg of legs) {
     if (leg.start === null) break;
-    if (leg.start > (found.at(-1)?.t ?? 0)) add(leg.from, leg.start);
+    if (leg.start > (timed.at(-1)?.t ?? 0)) add(leg.from, leg.start);
     for (const pose of poses.slice(leg.first + 1, leg.last + 1)) {
       if (pose.t !== null) add(pose, pose.t);
     }
   }
-  return found;
+  return timed;
 }
 
 function lineOf(poses: readonly { x: number; y: number }[]): Float64Array {
@@ -146,18 +147,18 @@ function lineOf(poses: readonly { x: number; y: number }[]): Float64Array {
   return line;
 }
 
-function outlineOf(obstacle: PlannedPath["obstacles"][number]): Outline {
+function shapeOf(obstacle: PlannedPath["obstacles"][number]): ObstacleShape {
   return "corners" in obstacle
     ? { name: obstacle.name, points: obstacle.corners }
     : { name: obstacle.name, x: obstacle.centre[0], y: obstacle.centre[1], radius: obstacle.radius };
 }
 
-/** Whether a leg is the drive of an action; one movement may be driven more than once. */
-export function isOf(leg: Leg, action: NumberedAction | null): boolean {
+/** Whether a leg belongs to an action; a movement may run more than once. */
+export function isLegOf(leg: Leg, action: NumberedAction | null): boolean {
   return action !== null && leg.action.index === action.index && leg.action.movement === action.movement;
 }
 
-/** How far a driven end is off the planned one: metres and radians. */
+/** How far the driven end is off the planned one: metres and radians. */
 export function deviation(planned: Pose, driven: Pose): { distance: number; angle: number } {
   return {
     distance: Math.hypot(driven.x - planned.x, driven.y - planned.y),
@@ -173,28 +174,28 @@ export interface Bounds {
   top: number;
 }
 
-/** What a picture of a path must show. */
+/** The bounds of all paths, robots and obstacles. */
 export function boundsOf(model: Model, driven: Driven | undefined): Bounds {
   const bounds = { left: Infinity, bottom: Infinity, right: -Infinity, top: -Infinity };
-  const include = (x: number, y: number, reach: number): void => {
+  const include = (x: number, y: number, margin: number): void => {
     if (!Number.isFinite(x) || !Number.isFinite(y)) return;
-    bounds.left = Math.min(bounds.left, x - reach);
-    bounds.right = Math.max(bounds.right, x + reach);
-    bounds.bottom = Math.min(bounds.bottom, y - reach);
-    bounds.top = Math.max(bounds.top, y + reach);
+    bounds.left = Math.min(bounds.left, x - margin);
+    bounds.right = Math.max(bounds.right, x + margin);
+    bounds.bottom = Math.min(bounds.bottom, y - margin);
+    bounds.top = Math.max(bounds.top, y + margin);
   };
-  const includeLine = (line: Float64Array, reach: number): void => {
-    for (let index = 0; index + 1 < line.length; index += 2) include(line[index] ?? 0, line[index + 1] ?? 0, reach);
+  const includeLine = (line: Float64Array, margin: number): void => {
+    for (let index = 0; index + 1 < line.length; index += 2) include(line[index] ?? 0, line[index + 1] ?? 0, margin);
   };
   for (const { name, line, body } of model.robots) {
-    const reach = Math.hypot(body.length, body.width) / 2;
-    includeLine(line, reach);
-    const found = driven?.robots.get(name);
-    if (found) includeLine(found.line, reach);
+    const margin = Math.hypot(body.length, body.width) / 2;
+    includeLine(line, margin);
+    const run = driven?.robots.get(name);
+    if (run) includeLine(run.line, margin);
   }
-  for (const outline of model.outlines) {
-    if ("points" in outline) for (const [x, y] of outline.points) include(x, y, 0);
-    else include(outline.x, outline.y, outline.radius);
+  for (const obstacle of model.obstacles) {
+    if ("points" in obstacle) for (const [x, y] of obstacle.points) include(x, y, 0);
+    else include(obstacle.x, obstacle.y, obstacle.radius);
   }
   if (bounds.left > bounds.right) return { left: -1, bottom: -1, right: 1, top: 1 };
   return bounds;

@@ -1,10 +1,10 @@
-// The lines that robots drive, planned and driven, and what they found.
+// Draws planned and driven paths, and the maps that robots built.
 import type { DrivenRobot, Leg, Robot } from "./model";
 import type { Theme } from "./theme";
 import type { View } from "./view";
 
-/** The joint between two actions, pixels. */
-const JOINT = 2.5;
+/** Of the joint between two actions, pixels. */
+const JOINT_RADIUS = 2.5;
 
 export function drawPlanned(context: CanvasRenderingContext2D, view: View, theme: Theme, robot: Robot, colour: string): void {
   context.strokeStyle = colour;
@@ -13,11 +13,11 @@ export function drawPlanned(context: CanvasRenderingContext2D, view: View, theme
   context.lineJoin = "round";
   trace(context, view, robot.line, 0, robot.line.length / 2 - 1);
   context.stroke();
-  context.fillStyle = theme.paper;
+  context.fillStyle = theme.background;
   context.lineWidth = 1.5;
   for (const leg of robot.legs) {
     context.beginPath();
-    context.arc(view.toX(leg.to.x), view.toY(leg.to.y), JOINT, 0, 2 * Math.PI);
+    context.arc(view.toX(leg.to.x), view.toY(leg.to.y), JOINT_RADIUS, 0, 2 * Math.PI);
     context.fill();
     context.stroke();
   }
@@ -35,9 +35,9 @@ export function drawDriven(context: CanvasRenderingContext2D, view: View, theme:
   context.restore();
 }
 
-/** Places and the ways between them. */
+/** The nodes and edges of a robot's map. */
 export function drawMap(context: CanvasRenderingContext2D, view: View, theme: Theme, driven: DrivenRobot): void {
-  context.strokeStyle = theme.ink;
+  context.strokeStyle = theme.foreground;
   context.lineWidth = 1.25;
   context.beginPath();
   for (const [[ax, ay], [bx, by]] of driven.edges) {
@@ -45,7 +45,7 @@ export function drawMap(context: CanvasRenderingContext2D, view: View, theme: Th
     context.lineTo(view.toX(bx), view.toY(by));
   }
   context.stroke();
-  context.fillStyle = theme.paper;
+  context.fillStyle = theme.background;
   for (const [x, y] of driven.nodes) {
     context.beginPath();
     context.arc(view.toX(x), view.toY(y), 3, 0, 2 * Math.PI);
@@ -54,13 +54,12 @@ export function drawMap(context: CanvasRenderingContext2D, view: View, theme: Th
   }
 }
 
-/** Makes one leg stand out. */
 export function drawHighlight(context: CanvasRenderingContext2D, view: View, theme: Theme, robot: Robot, leg: Leg, colour: string): void {
   context.lineCap = "round";
   context.lineJoin = "round";
   if (leg.isTurn) {
     const [x, y] = [view.toX(leg.from.x), view.toY(leg.from.y)];
-    // About the body, which may stand right there.
+    // Around the robot, which may be there.
     const radius = Math.max((Math.hypot(robot.body.length, robot.body.width) / 2) * view.scale + 3, 9);
     ring(context, x, y, radius, theme.highlight, 5);
     ring(context, x, y, radius, colour, 2);
@@ -83,7 +82,7 @@ function ring(context: CanvasRenderingContext2D, x: number, y: number, radius: n
   context.stroke();
 }
 
-/** A path along a robot's line; points that fall onto the same pixel are left out. */
+/** Traces part of a robot's line, skipping points on the same pixel. */
 function trace(context: CanvasRenderingContext2D, view: View, line: Float64Array, first: number, last: number): void {
   context.beginPath();
   let [beforeX, beforeY] = [NaN, NaN];

@@ -1,7 +1,7 @@
-// Two layers of a picture: what stays while time goes by, and what moves. A step of time draws the second alone, whose
-// cost follows the number of robots and not that of their actions.
-import { drawBody, drawCrash, drawNames, drawSensors, type Name } from "./bodies";
-import { drawGrid, drawOutlines, drawScale } from "./floor";
+// The picture, in two layers: what is fixed while time passes, and what moves. A step of time redraws only the second, whose
+// cost depends on the number of robots and not on their actions.
+import { drawBody, drawCollision, drawNames, drawSensors, type Name } from "./bodies";
+import { drawGrid, drawObstacles, drawScale } from "./floor";
 import type { Driven, DrivenRobot, Leg, Model, Robot } from "./model";
 import { drawDriven, drawHighlight, drawMap, drawPlanned } from "./paths";
 import { robotColour, type Theme } from "./theme";
@@ -10,71 +10,70 @@ import { View } from "./view";
 
 export interface Scene {
   model: Model | undefined;
-  /** The latest run, where it is to be shown. */
+  /** The latest run, if it is to be shown. */
   driven: Driven | undefined;
   hidden: ReadonlySet<string>;
-  /** What stands out, with its robot. */
   highlights: readonly { robot: Robot; leg: Leg }[];
   time: number;
 }
 
 export class Stage {
   readonly view = new View();
-  private readonly still: CanvasRenderingContext2D;
+  private readonly fixed: CanvasRenderingContext2D;
   private readonly moving: CanvasRenderingContext2D;
 
   constructor(
-    private readonly stillCanvas: HTMLCanvasElement,
+    private readonly fixedCanvas: HTMLCanvasElement,
     private readonly movingCanvas: HTMLCanvasElement,
   ) {
-    this.still = contextOf(stillCanvas);
+    this.fixed = contextOf(fixedCanvas);
     this.moving = contextOf(movingCanvas);
   }
 
-  /** Takes the size that the page gives it; pixels of the screen, for crisp lines. */
+  /** Adopts the size of the page, in pixels of the screen so that lines are crisp. */
   resize(): void {
     const { clientWidth, clientHeight } = this.movingCanvas;
     const ratio = window.devicePixelRatio || 1;
     this.view.width = Math.max(clientWidth, 1);
     this.view.height = Math.max(clientHeight, 1);
-    for (const canvas of [this.stillCanvas, this.movingCanvas]) {
+    for (const canvas of [this.fixedCanvas, this.movingCanvas]) {
       canvas.width = Math.round(this.view.width * ratio);
       canvas.height = Math.round(this.view.height * ratio);
     }
   }
 
-  /** Both layers on paper, as an address with a PNG in it. */
-  picture(theme: Theme): string {
+  /** Both layers on the background, as a data URI that contains a PNG. */
+  capture(theme: Theme): string {
     const canvas = document.createElement("canvas");
-    canvas.width = this.stillCanvas.width;
-    canvas.height = this.stillCanvas.height;
+    canvas.width = this.fixedCanvas.width;
+    canvas.height = this.fixedCanvas.height;
     const context = contextOf(canvas);
-    context.fillStyle = theme.paper;
+    context.fillStyle = theme.background;
     context.fillRect(0, 0, canvas.width, canvas.height);
-    context.drawImage(this.stillCanvas, 0, 0);
+    context.drawImage(this.fixedCanvas, 0, 0);
     context.drawImage(this.movingCanvas, 0, 0);
     return canvas.toDataURL("image/png");
   }
 
-  drawStill(scene: Scene, theme: Theme): void {
-    const context = this.begin(this.still);
+  drawFixed(scene: Scene, theme: Theme): void {
+    const context = this.begin(this.fixed);
     const { view } = this;
     drawGrid(context, view, theme);
     const { model, driven } = scene;
     if (model) {
-      drawOutlines(context, view, theme, model.outlines);
-      const robots = shown(scene);
+      drawObstacles(context, view, theme, model.obstacles);
+      const robots = visibleRobots(scene);
       for (const robot of robots) {
-        const found = driven?.robots.get(robot.name);
-        if (found) drawDriven(context, view, theme, found, robotColour(theme, robot.colour));
+        const run = driven?.robots.get(robot.name);
+        if (run) drawDriven(context, view, theme, run, robotColour(theme, robot.colour));
       }
       for (const robot of robots) drawPlanned(context, view, theme, robot, robotColour(theme, robot.colour));
       for (const robot of robots) {
         const colour = robotColour(theme, robot.colour);
         drawBody(context, view, robot, robot.start, colour, "start", theme);
         if (robot.legs.length > 0) drawBody(context, view, robot, robot.end, colour, "end", theme);
-        const found = driven?.robots.get(robot.name);
-        if (found) drawMap(context, view, theme, found);
+        const run = driven?.robots.get(robot.name);
+        if (run) drawMap(context, view, theme, run);
       }
     }
     drawScale(context, view, theme);
@@ -89,27 +88,26 @@ export class Stage {
       if (!scene.hidden.has(robot.name)) drawHighlight(context, view, theme, robot, leg, robotColour(theme, robot.colour));
     }
     const names: Name[] = [];
-    for (const robot of shown(scene)) {
+    for (const robot of visibleRobots(scene)) {
       const colour = robotColour(theme, robot.colour);
-      const found = driven?.robots.get(robot.name);
-      const pose = this.drawRobot(context, robot, found, time, colour, theme);
-      const reach = Math.max((Math.hypot(robot.body.length, robot.body.width) / 2) * view.scale, 6);
-      if (model.robots.length > 1) names.push({ text: robot.name, colour, x: view.toX(pose.x), y: view.toY(pose.y), reach });
+      const pose = this.drawRobot(context, robot, driven?.robots.get(robot.name), time, colour, theme);
+      const radius = Math.max((Math.hypot(robot.body.length, robot.body.width) / 2) * view.scale, 6);
+      if (model.robots.length > 1) names.push({ text: robot.name, colour, x: view.toX(pose.x), y: view.toY(pose.y), radius });
     }
-    for (const crash of model.crashes) {
-      if (!scene.hidden.has(crash.robot.name)) drawCrash(context, view, theme, crash);
+    for (const collision of model.collisions) {
+      if (!scene.hidden.has(collision.robot.name)) drawCollision(context, view, theme, collision);
     }
     drawNames(context, view, theme, names);
   }
 
-  /** A robot where it is: what was driven is solid, and then the plan is a ghost beside it. */
-  private drawRobot(context: CanvasRenderingContext2D, robot: Robot, driven: DrivenRobot | undefined, time: number, colour: string, theme: Theme): Pose {
+  /** A robot at a time: solid where the run has it, with the plan as a ghost; without a run the plan is solid. */
+  private drawRobot(context: CanvasRenderingContext2D, robot: Robot, run: DrivenRobot | undefined, time: number, colour: string, theme: Theme): Pose {
     const planned = poseAt(robot.track, time) ?? robot.start;
-    const real = driven && poseAt(driven.track, time);
-    drawSensors(context, this.view, robot, real ?? planned, colour, theme);
-    if (real) drawBody(context, this.view, robot, planned, colour, "ghost", theme);
-    drawBody(context, this.view, robot, real ?? planned, colour, "solid", theme);
-    return real ?? planned;
+    const driven = run && poseAt(run.track, time);
+    drawSensors(context, this.view, robot, driven ?? planned, colour, theme);
+    if (driven) drawBody(context, this.view, robot, planned, colour, "ghost", theme);
+    drawBody(context, this.view, robot, driven ?? planned, colour, "solid", theme);
+    return driven ?? planned;
   }
 
   private begin(context: CanvasRenderingContext2D): CanvasRenderingContext2D {
@@ -120,7 +118,7 @@ export class Stage {
   }
 }
 
-function shown({ model, hidden }: Scene): Robot[] {
+function visibleRobots({ model, hidden }: Scene): Robot[] {
   return model?.robots.filter(({ name }) => !hidden.has(name)) ?? [];
 }
 

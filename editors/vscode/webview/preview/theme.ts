@@ -1,36 +1,36 @@
-// The colours of the picture, as the style sheet has them for the editor's theme.
+// The colours of the picture, which the style sheet derives from the editor's theme.
 
 export interface Theme {
-  paper: string;
-  ink: string;
-  quiet: string;
+  background: string;
+  foreground: string;
+  muted: string;
   grid: string;
   axis: string;
   obstacle: string;
   obstacleEdge: string;
-  crash: string;
+  collision: string;
   highlight: string;
   robots: string[];
   font: string;
-  /** Whether areas are outlined rather than tinted. */
+  /** Areas are then outlined rather than tinted. */
   isHighContrast: boolean;
 }
 
-/** How many colours there are for robots; further ones begin anew. */
+/** Further robots reuse the colours. */
 export const ROBOT_COLOURS = 6;
 
 export function readTheme(body: HTMLElement): Theme {
   const style = getComputedStyle(body);
   const value = (name: string): string => style.getPropertyValue(name).trim();
   return {
-    paper: value("--paper"),
-    ink: value("--ink"),
-    quiet: value("--quiet"),
+    background: value("--background"),
+    foreground: value("--foreground"),
+    muted: value("--muted"),
     grid: value("--grid"),
     axis: value("--axis"),
     obstacle: value("--obstacle"),
     obstacleEdge: value("--obstacle-edge"),
-    crash: value("--crash"),
+    collision: value("--collision"),
     highlight: value("--highlight"),
     robots: Array.from({ length: ROBOT_COLOURS }, (_, index) => value(`--robot-${index}`)),
     font: style.fontFamily,
@@ -39,7 +39,7 @@ export function readTheme(body: HTMLElement): Theme {
 }
 
 export function robotColour(theme: Theme, index: number): string {
-  return theme.robots[index % ROBOT_COLOURS] ?? theme.ink;
+  return theme.robots[index % ROBOT_COLOURS] ?? theme.foreground;
 }
 
 /** Calls back when the editor's theme changes. */

@@ -1,4 +1,4 @@
-// Where a robot is at a time, in logarithmic time however many actions led there.
+// Looks up a robot's pose at a time, logarithmic in the number of poses.
 
 /** A pose: metres, and radians counter-clockwise. */
 export interface Pose {
@@ -7,7 +7,7 @@ export interface Pose {
   theta: number;
 }
 
-/** Poses over time, the times in order. */
+/** Poses in order of time. */
 export interface Track {
   times: Float64Array;
   xs: Float64Array;
@@ -35,8 +35,8 @@ export function trackOf(poses: readonly TimedPose[]): Track {
   return track;
 }
 
-/** How many times of a track are not later than a time. */
-export function begun(times: Float64Array, t: number): number {
+/** How many of the sorted times are not later than `t`. */
+export function countUpTo(times: Float64Array, t: number): number {
   let low = 0;
   let high = times.length;
   while (low < high) {
@@ -47,11 +47,11 @@ export function begun(times: Float64Array, t: number): number {
   return low;
 }
 
-/** The pose at a time: before the first that, behind the last that; undefined where there is none at all. */
+/** The pose at a time, interpolated; the first pose holds before it, the last after it. Undefined if there is none. */
 export function poseAt(track: Track, t: number): Pose | undefined {
   const { times, xs, ys, thetas } = track;
   if (times.length === 0) return undefined;
-  const next = begun(times, t);
+  const next = countUpTo(times, t);
   const before = Math.max(next - 1, 0);
   const after = Math.min(next, times.length - 1);
   const span = at(times, after) - at(times, before);
@@ -64,12 +64,12 @@ export function poseAt(track: Track, t: number): Pose | undefined {
   };
 }
 
-/** When the last pose is reached; 0 where there is none. */
+/** The time of the last pose; 0 if there is none. */
 export function endOf(track: Track): number {
   return track.times.length > 0 ? at(track.times, track.times.length - 1) : 0;
 }
 
-/** The shorter way from one heading to another, radians. */
+/** The shorter turn from one heading to another, radians. */
 export function turnBetween(from: number, to: number): number {
   const turn = (to - from) % (2 * Math.PI);
   if (turn > Math.PI) return turn - 2 * Math.PI;

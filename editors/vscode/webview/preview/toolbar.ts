@@ -1,15 +1,19 @@
-// What is above the picture: which environment it is, how much of the floor is seen, and what is wrong.
-import type { Remedy } from "../../src/preview/messages";
+// The bar above the picture: the environment, the scale and buttons; and the banner that shows problems.
+import type { Suggestion } from "../../src/preview/messages";
+import { withFullStop } from "../../src/sentence";
 import { element, icon, ICONS } from "./elements";
+import { ZOOM_STEP } from "./view";
 
 export interface ToolbarEvents {
-  choose: (environment: string) => void;
+  select: (environment: string) => void;
   zoom: (factor: number) => void;
   fit: () => void;
-  exportFile: () => void;
+  export: () => void;
   help: () => void;
-  remedy: (remedy: Remedy) => void;
+  accept: (suggestion: Suggestion) => void;
 }
+
+const SUGGESTION_LABELS: Record<Suggestion, string> = { addEnvironment: "Add Environment" };
 
 export class Toolbar {
   readonly bar: HTMLElement;
@@ -19,7 +23,7 @@ export class Toolbar {
   private readonly picker = element("select", { "aria-label": "Environment", "data-part": "picker" });
 
   constructor(private readonly events: ToolbarEvents) {
-    this.picker.addEventListener("change", () => events.choose(this.picker.value));
+    this.picker.addEventListener("change", () => events.select(this.picker.value));
     this.bar = element(
       "header",
       { class: "toolbar" },
@@ -27,10 +31,10 @@ export class Toolbar {
       this.picker,
       element("span", { class: "space" }),
       this.scale,
-      button("Zoom out (−)", ICONS.minus, "zoom-out", () => events.zoom(1 / 1.4)),
-      button("Zoom in (+)", ICONS.plus, "zoom-in", () => events.zoom(1.4)),
+      button("Zoom out (−)", ICONS.minus, "zoom-out", () => events.zoom(1 / ZOOM_STEP)),
+      button("Zoom in (+)", ICONS.plus, "zoom-in", () => events.zoom(ZOOM_STEP)),
       button("Fit to view (0)", ICONS.fit, "fit", events.fit),
-      button("Export as SVG, PNG or replay (E)", ICONS.export, "export", events.exportFile),
+      button("Export as SVG, PNG or replay (E)", ICONS.export, "export", events.export),
       button("Keys (?)", ICONS.help, "keys", events.help),
     );
     this.banner = element("p", { class: "banner", role: "status", "data-part": "banner" });
@@ -38,7 +42,7 @@ export class Toolbar {
     this.picker.hidden = true;
   }
 
-  /** One environment is a title; among several one may choose. */
+  /** Shows one environment as a title, several as a picker. */
   setEnvironments(names: readonly string[], shown: string | null): void {
     const isChoice = names.length > 1;
     this.picker.hidden = !isChoice;
@@ -48,39 +52,34 @@ export class Toolbar {
     if (shown !== null) this.picker.value = shown;
   }
 
-  private remedyFor(remedy: Remedy): HTMLElement {
-    const made = element("button", { type: "button", class: "remedy", "data-part": "remedy" }, REMEDIES[remedy]);
-    made.addEventListener("click", () => this.events.remedy(remedy));
-    return made;
-  }
-
-  /** How long a length of the floor is in the picture, pixels. */
+  /** Shows how long a length of the floor is in the picture. */
   setScale(pixels: number, length: string): void {
-    this.scale.style.setProperty("--long", `${pixels}px`);
+    this.scale.style.setProperty("--length", `${pixels}px`);
     this.scale.textContent = length;
   }
 
-  /** What is wrong, in a sentence; undefined where nothing is. */
-  setTrouble(sentence: string | undefined, hasPicture: boolean, remedy?: Remedy): void {
-    this.banner.hidden = sentence === undefined;
-    if (sentence === undefined) return;
-    const words = hasPicture ? `${ended(sentence)} Showing the last valid path.` : ended(sentence);
-    // What stands in backquotes is out of the program.
-    const parts = words.split("`").map((part, index) => (index % 2 === 1 ? element("code", {}, part) : part));
+  showProblem(message: string, hasPath: boolean, suggestion?: Suggestion): void {
+    const text = hasPath ? `${withFullStop(message)} Showing the last valid path.` : withFullStop(message);
+    // Backquotes mark code.
+    const parts = text.split("`").map((part, index) => (index % 2 === 1 ? element("code", {}, part) : part));
     this.banner.replaceChildren(...parts);
-    if (remedy) this.banner.append(" ", this.remedyFor(remedy));
+    if (suggestion) this.banner.append(" ", this.suggestionButton(suggestion));
+    this.banner.hidden = false;
+  }
+
+  hideProblem(): void {
+    this.banner.hidden = true;
+  }
+
+  private suggestionButton(suggestion: Suggestion): HTMLElement {
+    const made = element("button", { type: "button", class: "suggestion", "data-part": "suggestion" }, SUGGESTION_LABELS[suggestion]);
+    made.addEventListener("click", () => this.events.accept(suggestion));
+    return made;
   }
 }
-
-/** What a button that helps is called. */
-const REMEDIES: Record<Remedy, string> = { addEnvironment: "Add Environment" };
 
 export function button(label: string, shape: string, part: string, pressed: () => void): HTMLButtonElement {
   const made = element("button", { type: "button", class: "icon", title: label, "aria-label": label, "data-part": part }, icon(shape));
   made.addEventListener("click", pressed);
   return made;
-}
-
-function ended(sentence: string): string {
-  return /[.!?]$/.test(sentence) ? sentence : `${sentence}.`;
 }

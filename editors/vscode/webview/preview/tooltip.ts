@@ -1,19 +1,10 @@
-// What an action does, beside the pointer.
+// The description of an action, next to the pointer.
+import { describeAction } from "./descriptions";
 import { element } from "./elements";
 import type { Hit } from "./hit";
-import * as format from "./format";
 
-/** An action in sentences; the first is the action itself. */
-export function describe({ robot, leg }: Hit): string[] {
-  const { action, start, duration } = leg;
-  const when = start === null ? "when is not known" : `from ${format.time(start)} to ${format.time(start + duration)}`;
-  return [
-    action.text,
-    `${robot.name} · ${action.movement}, action ${action.index + 1}`,
-    `takes ${format.time(duration)}, ${when}`,
-    `ends at ${format.pose(leg.to)}`,
-  ];
-}
+/** Pixels between the tooltip and its point. */
+const GAP = 14;
 
 export class Tooltip {
   readonly box = element("div", { class: "tooltip", role: "tooltip", "data-part": "tooltip" });
@@ -22,14 +13,14 @@ export class Tooltip {
     this.box.hidden = true;
   }
 
-  /** Beside a place of the picture, on the side where there is room. */
-  show(hit: Hit, px: number, py: number, width: number, height: number): void {
-    const [action = "", ...facts] = describe(hit);
+  /** Shows the tooltip next to a point of a picture of this size, on the side that has room. */
+  show(hit: Hit, px: number, py: number, { width, height }: { width: number; height: number }): void {
+    const [action = "", ...facts] = describeAction(hit);
     this.box.replaceChildren(element("code", {}, action), ...facts.map((fact) => element("div", {}, fact)));
     this.box.hidden = false;
     const { offsetWidth, offsetHeight } = this.box;
-    const left = px + 14 + offsetWidth > width ? px - 14 - offsetWidth : px + 14;
-    const top = py + 14 + offsetHeight > height ? py - 14 - offsetHeight : py + 14;
+    const left = px + GAP + offsetWidth > width ? px - GAP - offsetWidth : px + GAP;
+    const top = py + GAP + offsetHeight > height ? py - GAP - offsetHeight : py + GAP;
     this.box.style.left = `${Math.max(left, 4)}px`;
     this.box.style.top = `${Math.max(top, 4)}px`;
   }

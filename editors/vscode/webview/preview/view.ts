@@ -1,25 +1,27 @@
-// The part of the floor that is shown, and where: metres to pixels and back.
+// The visible part of the floor: converts metres to pixels and back.
 import type { Bounds } from "./model";
 
-/** Pixels per metre, at the least and at the most. */
-const SCALES = { least: 0.5, most: 20_000 };
+/** Pixels per metre. */
+const SCALES = { min: 0.5, max: 20_000 };
 
-/** Room about what is fitted in, pixels. */
+/** The factor of one zoom step. */
+export const ZOOM_STEP = 1.4;
+
+/** Space around fitted bounds, pixels. */
 const MARGIN = 34;
 
-/** Least distance between grid lines, pixels: a label fits between two. */
+/** The least distance between grid lines, pixels; leaves space for a label. */
 const SPACING = 52;
 
 export class View {
   /** Pixels per metre. */
   scale = 100;
-  /** The point of the floor in the middle. */
+  /** The point of the floor at the centre. */
   x = 0;
   y = 0;
   width = 1;
   height = 1;
 
-  /** Where a point of the floor is in the picture. */
   toX(x: number): number {
     return this.width / 2 + (x - this.x) * this.scale;
   }
@@ -28,7 +30,6 @@ export class View {
     return this.height / 2 - (y - this.y) * this.scale;
   }
 
-  /** Which point of the floor is at a place of the picture. */
   fromX(px: number): number {
     return this.x + (px - this.width / 2) / this.scale;
   }
@@ -37,24 +38,24 @@ export class View {
     return this.y - (py - this.height / 2) / this.scale;
   }
 
-  /** Shows a rectangle as large as it goes. */
+  /** Shows a rectangle as large as possible. */
   fit({ left, bottom, right, top }: Bounds): void {
-    const wide = Math.max(this.width - 2 * MARGIN, 40) / Math.max(right - left, 0.2);
-    const high = Math.max(this.height - 2 * MARGIN, 40) / Math.max(top - bottom, 0.2);
-    this.scale = clamp(Math.min(wide, high));
+    const horizontal = Math.max(this.width - 2 * MARGIN, 40) / Math.max(right - left, 0.2);
+    const vertical = Math.max(this.height - 2 * MARGIN, 40) / Math.max(top - bottom, 0.2);
+    this.scale = clamp(Math.min(horizontal, vertical));
     this.x = (left + right) / 2;
     this.y = (bottom + top) / 2;
   }
 
-  /** Whether a rectangle can be seen whole and not much too small: then nothing need jump while somebody types. */
-  suits({ left, bottom, right, top }: Bounds): boolean {
-    const isWhole =
+  /** Whether a rectangle is visible and not much too small; the view then stays, so that it does not jump while typing. */
+  isGoodFit({ left, bottom, right, top }: Bounds): boolean {
+    const isVisible =
       this.toX(left) >= 4 && this.toX(right) <= this.width - 4 && this.toY(top) >= 4 && this.toY(bottom) <= this.height - 4;
     const fills = Math.max(((right - left) * this.scale) / this.width, ((top - bottom) * this.scale) / this.height);
-    return isWhole && fills > 0.55;
+    return isVisible && fills > 0.55;
   }
 
-  /** Makes everything larger by a factor; the floor at a place of the picture stays there. */
+  /** Scales by a factor; the floor under the given point stays there. */
   zoom(factor: number, px = this.width / 2, py = this.height / 2): void {
     const [x, y] = [this.fromX(px), this.fromY(py)];
     this.scale = clamp(this.scale * factor);
@@ -74,15 +75,15 @@ export class View {
   }
 }
 
-/** The least of 1, 2 and 5 times a power of ten that is not below a length. */
-export function niceStep(least: number): number {
-  const power = 10 ** Math.floor(Math.log10(least));
-  // What rounding leaves below must not cost a whole step.
-  const found = [1, 2, 5].find((digit) => digit * power >= least * (1 - 1e-9));
+/** The smallest of 1, 2 and 5 times a power of ten that is at least a length. */
+export function niceStep(length: number): number {
+  const power = 10 ** Math.floor(Math.log10(length));
+  // A rounding error must not skip a step.
+  const found = [1, 2, 5].find((digit) => digit * power >= length * (1 - 1e-9));
   return (found ?? 10) * power;
 }
 
-/** The multiples of a step from one length to another. */
+/** The multiples of a step between two values. */
 export function ticks(from: number, to: number, step: number): number[] {
   const first = Math.ceil(from / step);
   const count = Math.min(Math.floor(to / step) - first + 1, 400);
@@ -90,5 +91,5 @@ export function ticks(from: number, to: number, step: number): number[] {
 }
 
 function clamp(scale: number): number {
-  return Math.min(Math.max(scale, SCALES.least), SCALES.most);
+  return Math.min(Math.max(scale, SCALES.min), SCALES.max);
 }

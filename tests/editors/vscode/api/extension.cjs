@@ -1,12 +1,12 @@
-// An extension for tests only: changes settings as the settings editor does, whenever a file says so. (The tests could
-// write the editor's own file, but a change of that is not always noticed.)
+// A test extension: applies the settings in a file whenever it changes. (Tests could write the editor's settings file, but
+// the editor does not always notice.)
 const { readFileSync } = require("node:fs");
 
 const vscode = require("vscode");
 
 exports.activate = (context) => {
   let last = "{}";
-  const look = () => {
+  const applySettings = () => {
     const wanted = readFileSync(process.env.WANTED_SETTINGS, "utf8");
     if (wanted === last) {
       return;
@@ -16,6 +16,6 @@ exports.activate = (context) => {
       void vscode.workspace.getConfiguration().update(name, value, vscode.ConfigurationTarget.Global);
     }
   };
-  const timer = setInterval(look, 50);
+  const timer = setInterval(applySettings, 50);
   context.subscriptions.push({ dispose: () => clearInterval(timer) });
 };

@@ -1,4 +1,4 @@
-// Runs inside the editor's extension host, where extensions live: asks the editor for what it would show.
+// Runs in the extension host: asks the editor what it would show.
 const assert = require("node:assert/strict");
 const { writeFileSync } = require("node:fs");
 
@@ -15,7 +15,7 @@ async function until(what, check, patience = 30_000) {
     if (value) {
       return value;
     }
-    assert.ok(Date.now() < end, `waited in vain until ${what}`);
+    assert.ok(Date.now() < end, `timed out waiting until ${what}`);
     await new Promise((resolve) => setTimeout(resolve, 50));
   }
 }
@@ -26,11 +26,11 @@ async function open(name) {
   return document;
 }
 
-/** Where a text is in a document, behind its first characters. */
-function at(document, text, behind = 0) {
-  const offset = document.getText().indexOf(text);
-  assert.notEqual(offset, -1, text);
-  return document.positionAt(offset + behind);
+/** The position of a text in a document, after some of its characters. */
+function at(document, text, offset = 0) {
+  const start = document.getText().indexOf(text);
+  assert.notEqual(start, -1, text);
+  return document.positionAt(start + offset);
 }
 
 const problems = (name) => vscode.languages.getDiagnostics(file(name));
@@ -38,13 +38,13 @@ const labels = ({ items }) => items.map(({ label }) => label.label ?? label);
 const extension = () => vscode.extensions.getExtension("pydslrep.pydslrep");
 
 const tests = {
-  async "the extension starts with a program"() {
+  async "a program activates the extension"() {
     const document = await open("square.pyr");
     assert.equal(document.languageId, "pydslrep");
     await until("it is active", () => extension()?.isActive);
   },
 
-  async "diagnostics have codes that lead to pages, and go when the mistake goes"() {
+  async "diagnostics have codes and disappear with the error"() {
     const document = await open("broken.pyr");
     const [problem] = await until("there is a problem", () => problems("broken.pyr").length > 0 && problems("broken.pyr"));
     assert.equal(problem.source, "pydslrep");
@@ -52,16 +52,16 @@ const tests = {
     const edit = new vscode.WorkspaceEdit();
     edit.replace(document.uri, new vscode.Range(at(document, "-1"), at(document, "-1", 2)), "4");
     await vscode.workspace.applyEdit(edit);
-    await until("it is gone", () => problems("broken.pyr").length === 0);
+    await until("the problem is gone", () => problems("broken.pyr").length === 0);
     await vscode.commands.executeCommand("undo");
-    await until("it is back", () => problems("broken.pyr").length > 0);
+    await until("the problem is back", () => problems("broken.pyr").length > 0);
   },
 
-  async "files that are not open have diagnostics too"() {
-    await until("the other file's problem", () => problems("unopened.pyr").length > 0);
+  async "unopened files have diagnostics"() {
+    await until("the unopened file has a problem", () => problems("unopened.pyr").length > 0);
   },
 
-  async "completion knows the language"() {
+  async "completion offers keywords"() {
     const document = await open("square.pyr");
     const found = await ask("executeCompletionItemProvider", document.uri, at(document, "turn left", 5));
     assert.ok(labels(found).includes("left") && labels(found).includes("right"), labels(found).join());
@@ -73,7 +73,7 @@ const tests = {
     assert.match(hover.contents.map(({ value }) => value).join("\n"), /rad\/s/);
   },
 
-  async "the outline, folding, hints, lenses and links are there"() {
+  async "the outline, folding, hints and lenses are provided"() {
     const document = await open("square.pyr");
     const symbols = await ask("executeDocumentSymbolProvider", document.uri);
     assert.ok(symbols.some(({ name }) => name === "yard"));
@@ -89,7 +89,7 @@ const tests = {
     assert.equal(references.command.command, "pydslrep.showReferences");
   },
 
-  async "definition and references find their way"() {
+  async "definition and references are found"() {
     const document = await open("square.pyr");
     const use = at(document, "of scout", 4);
     const [definition] = await ask("executeDefinitionProvider", document.uri, use);
@@ -104,7 +104,7 @@ const tests = {
     assert.ok(edit.get(document.uri).length >= 3);
   },
 
-  async "quick fixes mend, and the script is a code action"() {
+  async "quick fixes are offered, and the script is a code action"() {
     const document = await open("misspelt.pyr");
     const isReference = ({ code }) => (code.value ?? code) === "unresolved-reference";
     const problem = await until("there is a problem", () => problems("misspelt.pyr").find(isReference));
@@ -116,13 +116,13 @@ const tests = {
     assert.ok(source.some(({ title }) => /script/i.test(title)), source.map(({ title }) => title).join());
   },
 
-  async "formatting makes the canonical layout"() {
+  async "formatting is provided"() {
     const document = await vscode.workspace.openTextDocument({ language: "pydslrep", content: "wheel   a with radius 4\n" });
     const edits = await until("edits", () => ask("executeFormatDocumentProvider", document.uri, { tabSize: 8, insertSpaces: false }));
     assert.ok(edits.length > 0);
   },
 
-  async "semantic tokens have the types that the manifest gives scopes to"() {
+  async "the manifest has scopes for all types of semantic tokens"() {
     const document = await open("square.pyr");
     const legend = await ask("provideDocumentSemanticTokensLegend", document.uri);
     const [{ scopes }] = extension().packageJSON.contributes.semanticTokenScopes;
@@ -130,11 +130,11 @@ const tests = {
     assert.ok((await ask("provideDocumentSemanticTokens", document.uri)).data.length > 50);
   },
 
-  async "a settings file wins where the editor says nothing, and the editor's setting wins over it"() {
+  async "a settings file wins over defaults, and the editor's settings win over the file"() {
     await open("square.pyr");
     const unused = () => problems("unused.pyr").find(({ code }) => (code.value ?? code) === "unused-declaration");
     await open("unused.pyr");
-    const severity = (level) => until(`the level is ${level}`, () => unused()?.severity === level);
+    const severity = (level) => until(`the severity is ${level}`, () => unused()?.severity === level);
     await severity(vscode.DiagnosticSeverity.Hint);
     await vscode.workspace.fs.writeFile(file("pydslrep.toml"), Buffer.from('[severity]\nunused-declaration = "warning"\n'));
     await severity(vscode.DiagnosticSeverity.Warning);
@@ -150,12 +150,12 @@ const tests = {
   async "settings and scene files are checked"() {
     await vscode.workspace.fs.writeFile(file("inner/pydslrep.toml"), Buffer.from('tarqet = "vrep"\n'));
     await open("inner/pydslrep.toml");
-    await until("the misspelt key is told", () => problems("inner/pydslrep.toml").length > 0);
+    await until("the misspelt key is reported", () => problems("inner/pydslrep.toml").length > 0);
     const [problem] = problems("inner/pydslrep.toml");
     assert.match(problem.message, /tarqet/);
   },
 
-  async "a task that checks does not double the server's problems"() {
+  async "the check task does not duplicate the server's problems"() {
     await open("square.pyr");
     const tasks = await vscode.tasks.fetchTasks({ type: "pydslrep" });
     const names = tasks.map(({ name }) => name);
@@ -171,18 +171,18 @@ const tests = {
     await vscode.tasks.executeTask(tasks[0]);
     assert.equal(await ended, 1);
     const radii = () => problems("unopened.pyr").filter(({ code }) => (code.value ?? code) === "invalid-radius");
-    await until("the server's problem of a file that is not open", () => radii().length > 0);
+    await until("the unopened file has a problem", () => radii().length > 0);
     assert.equal(radii().length, 1);
   },
 
-  async "every command of the manifest is there, and those of the server too"() {
+  async "every command of the manifest and of the server is registered"() {
     const known = await vscode.commands.getCommands(true);
     const wanted = extension().packageJSON.contributes.commands.map(({ command }) => command);
     const all = [...wanted, "pydslrep.generateScript", "pydslrep.run", "pydslrep.showKinematics", "pydslrep.previewPath"];
     assert.deepEqual(all.filter((command) => !known.includes(command)), []);
   },
 
-  async "a comment goes on at the next line, and braces close themselves"() {
+  async "a comment continues on the next line"() {
     const document = await vscode.workspace.openTextDocument({ language: "pydslrep", content: "" });
     await vscode.window.showTextDocument(document);
     for (const text of ["/", "*", " a"]) {
