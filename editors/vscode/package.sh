@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds the extension for this platform, with the server inside: a .vsix that works with no setting at all.
-# Needs Rust; Node it finds or gets by pip. Prints the path of the package.
-# `--command FILE` takes a command `pydslrep` that is already built, `--target NAME` says which platform that is for.
+# Builds the extension for this platform, with the server inside: a .vsix that needs no settings.
+# Requires Rust; installs Node with pip if necessary. Prints the path of the package.
+# `--command FILE` uses a command `pydslrep` that is already built, `--target NAME` names the platform that it is for.
 set -euo pipefail
 cd "$(dirname "$0")"
 repository=$(cd ../.. && pwd)
@@ -29,16 +29,16 @@ npm ci --loglevel error >&2
 npm ci --loglevel error --prefix packaging >&2
 rm -rf server
 mkdir server
-# The command is the server as well (`pydslrep lsp`), and is what runs programs.
+# The command contains the server (`pydslrep lsp`) and runs programs.
 cp "$command" "server/pydslrep$ending"
 chmod +x "server/pydslrep$ending"
-# What a debugger wants is most of a build that is not for release, and some of one that is.
+# Most of a debug build, and part of a release build, is debug information.
 if [ "$target" = "$(node -p 'process.platform + "-" + process.arch')" ] && command -v strip >/dev/null; then
   strip "server/pydslrep$ending"
 fi
 node scripts/build.mjs --production >&2
 package=pydslrep-$target.vsix
-# As long as Cargo.toml names no repository, links in the readme lead nowhere.
+# Without a repository in Cargo.toml, relative links of the readme have no target.
 packaging/node_modules/.bin/vsce package --target "$target" --out "$package" --no-dependencies --allow-missing-repository \
   --no-rewrite-relative-links >&2
 echo "$PWD/$package"

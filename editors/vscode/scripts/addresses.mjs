@@ -1,6 +1,6 @@
-// Where the project is, as a manifest says it.
+// The project's URLs in the manifest.
 
-/** Where the project is to be found, and where problems are to be told; nothing as long as it has no public address. */
+/** The repository and the issue tracker, if Cargo.toml names a repository. */
 export function addresses(cargo) {
   const [, repository] = /^repository = "([^"]+)"$/m.exec(cargo) ?? [];
   return repository === undefined

@@ -1,5 +1,5 @@
-// Builds what the extension consists of into dist/: the extension itself, the browser side of the preview, and copies
-// of what the repository keeps elsewhere. `--watch` builds again at every change, `--production` is for the package.
+// Builds dist/: the extension, the preview's page, and copies of files from elsewhere in the repository. `--watch` rebuilds
+// after every change, `--production` minifies for the package.
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { copyFile, mkdir, rm } from "node:fs/promises";
 import path from "node:path";
@@ -10,7 +10,7 @@ const root = path.resolve(import.meta.dirname, "..");
 const repository = path.resolve(root, "../..");
 const production = process.argv.includes("--production");
 
-/** What is made elsewhere in the repository and shipped with the extension. */
+/** Files from elsewhere in the repository that the extension ships. */
 const copies = [
   ["grammar/textmate/pydslrep.tmLanguage.json", "dist/pydslrep.tmLanguage.json"],
   ["editors/vscode/webview/preview/style.css", "dist/preview.css"],
@@ -62,7 +62,7 @@ for (const bundle of bundles) {
 }
 writeFileSync(path.join(root, "dist", "LICENSES.txt"), licences(inputs));
 
-/** What the packages that were put into a bundle want to be said with it. */
+/** The licences of the packages in a bundle. */
 function licences(inputs) {
   const folders = [...inputs].map((input) => /^.*node_modules\/(?:@[^/]+\/)?[^/]+/.exec(input)?.[0]);
   return [...new Set(folders)]
@@ -71,7 +71,7 @@ function licences(inputs) {
     .map((folder) => {
       const licence = readdirSync(path.join(root, folder)).find((name) => /^licen[cs]e/i.test(name));
       if (licence === undefined) {
-        throw new Error(`${folder} has no licence: it cannot be bundled`);
+        throw new Error(`${folder} has no licence, so it cannot be bundled`);
       }
       const { name, version } = JSON.parse(readFileSync(path.join(root, folder, "package.json"), "utf8"));
       return `${name} ${version}\n\n${readFileSync(path.join(root, folder, licence), "utf8")}`;

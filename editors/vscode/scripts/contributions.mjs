@@ -1,6 +1,5 @@
-// Puts into package.json what other files of the repository say: the settings, from pydslrep.schema.json, like which scope of
-// the grammar each semantic token is coloured, from grammar/colours.json, and where the project is, from Cargo.toml. `--check`
-// says what is out of date instead of writing it.
+// Generates parts of package.json: the settings from pydslrep.schema.json, the grammar scope of each semantic token from
+// grammar/colours.json, and the project's URLs from Cargo.toml. `--check` only reports whether it is up to date.
 import { readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 
@@ -9,7 +8,7 @@ import { addresses } from "./addresses.mjs";
 const root = path.resolve(import.meta.dirname, "..");
 const manifest = path.join(root, "package.json");
 
-/** The settings of a program, as VS Code has them: `inlay-hints.pose` is `pydslrep.inlayHints.pose`. */
+/** The settings under their names in VS Code: `inlay-hints.pose` is `pydslrep.inlayHints.pose`. */
 function settings(schema) {
   const flat = (properties, prefix) =>
     Object.entries(properties).flatMap(([key, value]) => {
@@ -21,28 +20,28 @@ function settings(schema) {
 }
 
 function setting({ description, pattern: _, properties, ...rest }) {
-  const words = description.replace("the folder of this file and inside of it", "the workspace folder and inside of it");
+  const markdownDescription = description.replace("the folder of this file", "the workspace folder");
   const inner =
     properties === undefined
       ? {}
       : { properties: Object.fromEntries(Object.entries(properties).map(([key, value]) => [key, { type: "string", ...value }])), default: {} };
   const type = rest.enum === undefined ? {} : { type: "string" };
-  return { scope: "window", markdownDescription: words, ...type, ...rest, ...inner };
+  return { scope: "window", markdownDescription, ...type, ...rest, ...inner };
 }
 
-/** For each type of semantic token the scope that the grammar gives to the same words. */
+/** The grammar scope of each type of semantic token. */
 function scopes(colours) {
   const types = Object.entries(colours).filter(([type]) => !type.startsWith("$"));
   return Object.fromEntries(
     types.flatMap(([type, { scope }]) => {
-      // VS Code has a rule of its own for what is readonly, which would win over one without the word.
+      // VS Code's own rule for `readonly` would take precedence over a rule without it.
       return [type, `${type}.readonly`].map((selector) => [selector, [`${scope}.pydslrep`]]);
     }),
   );
 }
 
-/** The manifest as it has to be. */
-function upToDate(text, schema, colours, cargo) {
+/** The manifest with its generated parts. */
+function generate(text, schema, colours, cargo) {
   const { repository: _, bugs: __, ...read } = JSON.parse(text);
   Object.assign(read, addresses(cargo));
   const group = read.contributes.configuration.find(({ title }) => title === "Programs");
@@ -53,12 +52,12 @@ function upToDate(text, schema, colours, cargo) {
 
 const text = readFileSync(manifest, "utf8");
 const read = (file) => JSON.parse(readFileSync(path.join(root, file), "utf8"));
-const wanted = upToDate(text, read("../pydslrep.schema.json"), read("../../grammar/colours.json"), readFileSync(path.join(root, "../../Cargo.toml"), "utf8"));
+const generated = generate(text, read("../pydslrep.schema.json"), read("../../grammar/colours.json"), readFileSync(path.join(root, "../../Cargo.toml"), "utf8"));
 if (process.argv.includes("--check")) {
-  if (text !== wanted) {
+  if (text !== generated) {
     console.error("package.json is out of date: run `npm run contributions` in editors/vscode");
     process.exit(1);
   }
 } else {
-  writeFileSync(manifest, wanted);
+  writeFileSync(manifest, generated);
 }

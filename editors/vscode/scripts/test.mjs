@@ -1,4 +1,4 @@
-// Runs the unit tests: bundles every *.test.ts of tests/, src/ and webview/ for Node, and hands them to its test runner.
+// Runs the unit tests: bundles every *.test.ts in tests/ for Node and starts its test runner.
 import { spawnSync } from "node:child_process";
 import { readdirSync, rmSync } from "node:fs";
 import path from "node:path";
@@ -8,11 +8,9 @@ import esbuild from "esbuild";
 const root = path.resolve(import.meta.dirname, "..");
 const out = path.join(root, "dist", "tests");
 
-const entryPoints = ["tests", "src", "webview"].flatMap((folder) =>
-  readdirSync(path.join(root, folder), { recursive: true })
-    .filter((file) => file.endsWith(".test.ts"))
-    .map((file) => path.join(folder, file)),
-);
+const entryPoints = readdirSync(path.join(root, "tests"), { recursive: true })
+  .filter((file) => file.endsWith(".test.ts"))
+  .map((file) => path.join("tests", file));
 rmSync(out, { recursive: true, force: true });
 await esbuild.build({
   absWorkingDir: root,
@@ -26,7 +24,7 @@ await esbuild.build({
   sourcemap: "inline",
   external: ["vscode"],
   logLevel: "warning",
-  // Tests find the repository's files from here, wherever their bundle is.
+  // Tests find the repository's files from here; their bundles are elsewhere.
   define: { EXTENSION_FOLDER: JSON.stringify(root) },
 });
 const files = readdirSync(out, { recursive: true }).filter((file) => file.endsWith(".test.js"));

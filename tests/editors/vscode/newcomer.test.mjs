@@ -196,5 +196,5 @@ test("a new file is a program; generating its script asks to save it", async () 
 });
 
 test("steps done before the walkthrough is first opened are ticked off", async () => {
-  assert.deepEqual(await stage.walkthrough(), ["Write a program", "See where it goes", "Run it", "Export the script"]);
+  assert.deepEqual(await stage.walkthrough(), ["Write a program", "Preview the path", "Run it", "Export the script"]);
 });

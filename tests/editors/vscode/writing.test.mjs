@@ -158,7 +158,7 @@ test("the message opens the table of the run", async () => {
 });
 
 test("the steps of the walkthrough are ticked off once done", async () => {
-  assert.deepEqual(await stage.walkthrough(), ["Write a program", "See where it goes", "Run it", "Export the script"]);
+  assert.deepEqual(await stage.walkthrough(), ["Write a program", "Preview the path", "Run it", "Export the script"]);
 });
 
 /** The message at the end of a run. */
