@@ -41,6 +41,13 @@ for folder in grammar/textmate editors/vscode; do
   fi
 done
 
+step "Rust: toolchain"
+# rust-toolchain.toml says which; rustup installs what is missing of it.
+if command -v rustup >/dev/null; then
+  cargo --version >/dev/null 2>&1 || rustup toolchain install
+  rustup target list --installed | grep -x wasm32-unknown-unknown >/dev/null || rustup target add wasm32-unknown-unknown
+fi
+
 step "Rust: format and lints"
 cargo fmt --all --check
 cargo clippy --workspace --all-targets --locked -- --deny warnings
@@ -52,8 +59,8 @@ if cargo nextest --version >/dev/null 2>&1; then
 else
   cargo test --workspace --locked --no-fail-fast
 fi
-# The simulator without sockets is what a browser would get.
-cargo check --package pydslrep-simulator --no-default-features --locked
+# A browser gets every crate but the command: the server without its process, the simulator without sockets.
+cargo check --workspace --exclude pydslrep-cli --no-default-features --target wasm32-unknown-unknown --locked
 
 step "Extension for VS Code: types, lints, build and tests"
 npm run --silent --prefix editors/vscode check

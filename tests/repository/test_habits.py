@@ -1,0 +1,107 @@
+"""What contributors are promised: hooks, hosted checks, templates, and links that lead somewhere."""
+
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from commit_subject import complaints
+
+ROOT = Path(__file__).resolve().parents[2]
+HOOKS = ROOT / ".pre-commit-config.yaml"
+PRE_COMMIT = [sys.executable, "-m", "pre_commit"]
+PAGES = [
+    ROOT / "CONTRIBUTING.md",
+    ROOT / "SECURITY.md",
+    *sorted((ROOT / ".github").rglob("*.md")),
+]
+
+
+def toolchain() -> dict[str, object]:
+    file = ROOT / "rust-toolchain.toml"
+    found: dict[str, object] = tomllib.loads(file.read_text(encoding="utf-8"))[
+        "toolchain"
+    ]
+    return found
+
+
+def test_the_toolchain_has_what_the_checks_need() -> None:
+    assert toolchain()["components"] == ["rustfmt", "clippy"]
+    assert toolchain()["targets"] == ["wasm32-unknown-unknown"]
+    manifest = tomllib.loads((ROOT / "Cargo.toml").read_text(encoding="utf-8"))
+    oldest = manifest["workspace"]["package"]["rust-version"].split(".")
+    assert [*map(int, oldest)] <= [*map(int, str(toolchain()["channel"]).split("."))]
+
+
+def test_hosted_checks_run_the_test_command_and_nothing_else() -> None:
+    [workflow] = (ROOT / ".github" / "workflows").iterdir()
+    text = workflow.read_text(encoding="utf-8")
+    assert re.findall(r"\brun: *(.*)", text) == [".ci/run"]
+    [action] = re.findall(r"\buses: *(.*)", text)
+    assert action.startswith("actions/checkout@")
+    assert f"container: rust:{toolchain()['channel']}-" in text
+
+
+def test_hooks_are_local_and_complete() -> None:
+    subprocess.run([*PRE_COMMIT, "validate-config", HOOKS], check=True)
+    text = HOOKS.read_text(encoding="utf-8")
+    assert set(re.findall(r"\brepo: *(.*)", text)) == {"local"}
+    assert set(re.findall(r"\blanguage: *(.*)", text)) == {"system"}
+    assert re.findall(r"\bid: *(.*)", text) == [
+        "rustfmt",
+        "clippy",
+        "ruff",
+        "ruff-format",
+        "mypy",
+        "eslint",
+        "commit-subject",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("message", "is_right"),
+    [
+        ("server: answer in order\n\nA client waits for the first.\n", True),
+        ("syntax, analysis: call types what they are\n# a comment of git\n", True),
+        (f"server: {'x' * 64}", True),
+        ('Revert "server: answer in order"', True),
+        (f"server: {'x' * 65}", False),
+        ("Answer in order", False),
+        ("server: answer in order.", False),
+        ("server: answer in order\nA client waits for the first.", False),
+        ("", False),
+    ],
+)
+def test_a_subject_names_its_area_and_fits_a_line(message: str, is_right: bool) -> None:
+    assert (complaints(message) == []) is is_right
+
+
+@pytest.mark.parametrize(
+    ("subject", "code"), [("server: answer in order", 0), ("Answer in order", 1)]
+)
+def test_the_hook_reads_the_message(tmp_path: Path, subject: str, code: int) -> None:
+    """The entry of the hook, run as pre-commit runs it."""
+    [entry] = re.findall(r"entry: (.*commit_subject.*)", HOOKS.read_text("utf-8"))
+    message = tmp_path / "COMMIT_EDITMSG"
+    message.write_text(f"{subject}\n", encoding="utf-8")
+    _, script = entry.split()
+    done = subprocess.run([sys.executable, script, message], cwd=ROOT, check=False)
+    assert done.returncode == code
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_links_and_paths_lead_somewhere(page: Path) -> None:
+    text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    for link in re.findall(r"\]\(([^)#]+)", text):
+        assert (page.parent / link).exists(), link
+    for path in re.findall(r"`((?:\.?[\w-]+/)+[\w.*-]*)`", text):
+        assert [*ROOT.glob(path.removesuffix("/"))], path
+
+
+def test_no_page_invents_an_address() -> None:
+    for page in PAGES:
+        assert not re.search(
+            r"https?://|\b\S+@\S+\.\w", page.read_text(encoding="utf-8")
+        )
