@@ -335,22 +335,24 @@ async def completions_in_settings(s: Session) -> None:
 
 
 @exercises(
-    "signatureHelpProvider.triggerCharacters[{]",
     "signatureHelpProvider.retriggerCharacters[ ]",
     "signatureHelpProvider.retriggerCharacters[,]",
+    "signatureHelpProvider.retriggerCharacters[{]",
     "signatureHelpProvider.retriggerCharacters[}]",
 )
 async def shapes_of_statements(s: Session) -> None:
     shown: types.SignatureHelp | None = None
+    kinds = types.SignatureHelpTriggerKind
     for typed, trigger, expected in (
-        ("environment third has {", "{", "ROBOT"),
-        ("environment third has { rover ", " ", "ROBOT"),
-        ("environment third has { rover,", ",", "ROBOT"),
-        ("environment third has { rover }", "}", None),
+        ("movement third of rover { turn right until", None, "until"),
+        ("movement third of rover { turn right until {", "{", "SENSORS"),
+        ("movement third of rover { turn right until { s,", ",", "SENSORS"),
+        ("movement third of rover { turn right until { s ", " ", "SENSORS"),
+        ("movement third of rover { turn right until { s }", "}", None),
     ):
         s.show(PROGRAM + typed)
         context = types.SignatureHelpContext(
-            types.SignatureHelpTriggerKind.TriggerCharacter,
+            kinds.TriggerCharacter if trigger else kinds.Invoked,
             is_retrigger=shown is not None,
             trigger_character=trigger,
             active_signature_help=shown,

@@ -1,34 +1,25 @@
 //! Signature help: the shape of the statement being typed, with the part that comes next marked, on one line.
 //!
-//! It comes by itself only where a list begins, with the shape of that list, and is gone where the list ends. Who asks for
-//! it sees the statement's shape up to where the statement ends. The shapes are those of the keywords' pages; which part
-//! is next is asked of the parser itself, so neither can drift from the language.
+//! It opens on request only, because editors show it over the line above the cursor, and closes where the statement
+//! ends. The shapes are those of the keywords' pages, and the parser says which part is next, so neither can drift from
+//! the language.
 
 mod shape;
 
 use pydslrep_analysis::Database;
 use pydslrep_syntax::{EntityKind, Expected, Span, Token, TokenKind, expected_after};
 
-use self::shape::{clause, window};
+use self::shape::window;
 use crate::FilePosition;
 use crate::reference::keyword_page;
 
-/// Why it is shown.
+/// Why an editor asks for signature help.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SignatureTrigger {
-    /// Somebody asked for it.
-    Asked,
-    /// It was asked for, and is there still.
-    Again,
-    /// Something was typed.
-    Typed,
-}
-
-impl SignatureTrigger {
-    /// That of an answer to take the place of one that is shown, by its label.
-    pub fn after(shown: Option<&str>) -> Self {
-        if shown.is_some_and(|label| !shape::is_clause(label)) { Self::Again } else { Self::Typed }
-    }
+    /// The user requested it.
+    Invoked,
+    /// It is shown, and the text or the cursor has changed.
+    Retriggered,
 }
 
 /// The shapes a statement can have.
@@ -60,13 +51,12 @@ pub fn signature_help(
     let typed = Typed::before(database, position)?;
     let expected = expected_after(&typed.text, &typed.tokens);
     match trigger {
-        SignatureTrigger::Asked => asked(&typed, &expected),
-        SignatureTrigger::Again => again(&typed, &expected),
-        SignatureTrigger::Typed => list(&typed, &expected),
+        SignatureTrigger::Invoked => invoked(&typed, &expected),
+        SignatureTrigger::Retriggered => retriggered(&typed, &expected),
     }
 }
 
-fn asked(typed: &Typed, expected: &[Expected]) -> Option<SignatureHelp> {
+fn invoked(typed: &Typed, expected: &[Expected]) -> Option<SignatureHelp> {
     let ends = expected.contains(&Expected::Declaration);
     if ends && typed.on_new_line {
         return None;
@@ -79,7 +69,7 @@ fn asked(typed: &Typed, expected: &[Expected]) -> Option<SignatureHelp> {
 }
 
 /// That of the statement at the cursor and of no other, as long as something can follow.
-fn again(typed: &Typed, expected: &[Expected]) -> Option<SignatureHelp> {
+fn retriggered(typed: &Typed, expected: &[Expected]) -> Option<SignatureHelp> {
     let ends = expected.iter().any(|next| matches!(next, Expected::Declaration | Expected::Action));
     if ends && typed.on_new_line {
         return None;
@@ -90,16 +80,6 @@ fn again(typed: &Typed, expected: &[Expected]) -> Option<SignatureHelp> {
         None => &typed.tokens,
     };
     signatures(statement, expected).filter(SignatureHelp::is_marked)
-}
-
-/// That of the list that the cursor is in.
-fn list(typed: &Typed, expected: &[Expected]) -> Option<SignatureHelp> {
-    if !typed.is_in_list() {
-        return None;
-    }
-    let all = signatures(typed.action().unwrap_or(&typed.tokens), expected)?;
-    let label = all.signatures.get(all.active)?;
-    Some(SignatureHelp { signatures: vec![clause(label)?], active: 0 })
 }
 
 impl SignatureHelp {
@@ -146,34 +126,14 @@ impl Typed {
         Some(Self { text, tokens, on_new_line })
     }
 
-    /// The place of the last brace that nothing closes.
-    fn open_brace(&self) -> Option<usize> {
-        let mut open = Vec::new();
-        for (index, (token, _)) in self.tokens.iter().enumerate() {
-            match token {
-                TokenKind::OpenBrace => open.push(index),
-                TokenKind::CloseBrace => drop(open.pop()),
-                _ => {}
-            }
-        }
-        open.pop()
-    }
-
     fn is_movement(&self) -> bool {
         self.tokens.first().and_then(|(token, _)| token.entity_kind()) == Some(EntityKind::Movement)
     }
 
-    /// Whether the cursor is in braces that hold references.
-    fn is_in_list(&self) -> bool {
-        self.open_brace().is_some_and(|open| {
-            let before = open.checked_sub(1).and_then(|before| self.tokens.get(before));
-            !self.is_movement() || before.is_some_and(|(token, _)| *token == TokenKind::Until)
-        })
-    }
-
     /// Whether the cursor is among the actions of a movement.
     fn is_in_body(&self) -> bool {
-        self.is_movement() && self.open_brace().is_some()
+        let count = |brace| self.tokens.iter().filter(|(token, _)| *token == brace).count();
+        self.is_movement() && count(TokenKind::OpenBrace) > count(TokenKind::CloseBrace)
     }
 
     /// The tokens of the last action, in a movement's body.
@@ -330,7 +290,7 @@ mod tests {
     }
 
     fn at(fixture: &str) -> String {
-        after(fixture, SignatureTrigger::Asked)
+        after(fixture, SignatureTrigger::Invoked)
     }
 
     fn check(fixtures: &[&str], expected: &Expect) {
@@ -424,45 +384,8 @@ mod tests {
     }
 
     #[test]
-    fn by_itself_it_comes_in_lists_only() {
-        let typed = |fixture: &&str| format!("{fixture}: {}\n", after(fixture, SignatureTrigger::Typed));
-        let shown: String = [
-            "robot r with port 1 has {$0",
-            "robot r with port 1 has { a $0 } wheels",
-            "robot r with port 1 has { a } $0",
-            "robot r with port 1 has { a } wheels with sensors {$0}",
-            "robot r with port $0",
-            "environment e has {$0",
-            "environment e has { r } robots with { m $0",
-            "movement m of r {$0",
-            "movement m of r { move $0",
-            "movement m of r { slam turn left until { s, $0",
-            "movement m of r { turn left until { s } $0",
-            "wheel $0",
-        ]
-        .iter()
-        .map(typed)
-        .collect();
-        expect![[r#"
-            robot r with port 1 has {$0: has { «WHEELS» } wheels (1 of 1)
-            robot r with port 1 has { a $0 } wheels: has { «WHEELS» } wheels (1 of 1)
-            robot r with port 1 has { a } $0: nothing
-            robot r with port 1 has { a } wheels with sensors {$0}: with sensors { «SENSORS» } (1 of 1)
-            robot r with port $0: nothing
-            environment e has {$0: has { «ROBOTS» } robots (1 of 1)
-            environment e has { r } robots with { m $0: with { «MOVEMENTS» } moves (1 of 1)
-            movement m of r {$0: nothing
-            movement m of r { move $0: nothing
-            movement m of r { slam turn left until { s, $0: until { «SENSORS» } (1 of 1)
-            movement m of r { turn left until { s } $0: nothing
-            wheel $0: nothing
-        "#]]
-        .assert_eq(&shown);
-    }
-
-    #[test]
     fn what_was_asked_for_is_gone_at_the_end_of_the_statement() {
-        let again = |fixture: &&str| format!("{fixture:?}: {}\n", after(fixture, SignatureTrigger::Again));
+        let again = |fixture: &&str| format!("{fixture:?}: {}\n", after(fixture, SignatureTrigger::Retriggered));
         let shown: String = [
             "wheel a with radius $0",
             "wheel a with radius 4 $0",
@@ -501,18 +424,6 @@ mod tests {
             "movement m of r { turn left } $0": nothing
         "#]]
         .assert_eq(&shown);
-    }
-
-    #[test]
-    fn what_takes_the_place_of_a_list_is_a_list() {
-        let (database, position) = at_cursor("robot r with port 1 has {$0");
-        for trigger in [SignatureTrigger::Asked, SignatureTrigger::Typed] {
-            let help = signature_help(&database, position, trigger).unwrap();
-            let next = SignatureTrigger::after(Some(&help.signatures[0].label));
-            let kept = if trigger == SignatureTrigger::Asked { SignatureTrigger::Again } else { trigger };
-            assert_eq!(next, kept);
-        }
-        assert_eq!(SignatureTrigger::after(None), SignatureTrigger::Typed);
     }
 
     #[test]

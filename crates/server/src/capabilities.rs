@@ -58,8 +58,7 @@ fn server_capabilities(client: &ClientFeatures) -> ServerCapabilities {
             ..CompletionOptions::default()
         }),
         signature_help_provider: Some(SignatureHelpOptions {
-            trigger_characters: Some(vec!["{".to_owned()]),
-            retrigger_characters: Some([" ", ",", "}"].map(str::to_owned).to_vec()),
+            retrigger_characters: Some([" ", ",", "{", "}"].map(str::to_owned).to_vec()),
             ..SignatureHelpOptions::default()
         }),
         hover_provider: Some(HoverProviderCapability::Simple(true)),

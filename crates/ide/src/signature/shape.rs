@@ -19,7 +19,7 @@ pub(super) fn window(signature: &Signature) -> Signature {
     if label.len() <= WIDTH {
         return signature.clone();
     }
-    let clauses = clauses(label, &BEGINNINGS);
+    let clauses = clauses(label);
     let place = current_start(signature);
     let middle = clauses.iter().rposition(|clause| clause.start <= place).unwrap_or(0);
     let (mut first, mut last) = (middle, middle);
@@ -42,40 +42,20 @@ pub(super) fn window(signature: &Signature) -> Signature {
     cut(signature, clauses[first].to(clauses[last]), &before, &after)
 }
 
-/// The clause of a signature's current part, alone.
-pub(super) fn clause(signature: &Signature) -> Option<Signature> {
-    signature.current?;
-    let place = current_start(signature);
-    let mut beginnings = BEGINNINGS.to_vec();
-    beginnings.push("until");
-    let clauses = clauses(&signature.label, &beginnings);
-    let clause = clauses.into_iter().rfind(|clause| clause.start <= place)?;
-    let text = clause.text(&signature.label);
-    let inner = text.trim_end_matches(MORE).trim_end().trim_matches(['[', ']']);
-    let start = clause.start + u32::from(text.starts_with('['));
-    let clause = Span::new(start, start + Span::of(inner).len());
-    Some(cut(signature, clause, "", ""))
-}
-
-/// Whether a label is of a clause alone.
-pub(super) fn is_clause(label: &str) -> bool {
-    label.split(' ').next().is_some_and(|first| first == "until" || BEGINNINGS.contains(&first))
-}
-
 fn current_start(signature: &Signature) -> u32 {
     let current = signature.current.and_then(|current| signature.parts.get(current));
     current.map_or(0, |part| part.start)
 }
 
 /// The clauses of a label, each without the blank after it.
-fn clauses(label: &str, beginnings: &[&str]) -> Vec<Span> {
+fn clauses(label: &str) -> Vec<Span> {
     let mut clauses: Vec<Span> = Vec::new();
     let mut start = 0;
     for word in label.split(' ') {
         let span = Span::of(word).shifted(start);
         start = span.end + 1;
         match clauses.last_mut() {
-            Some(last) if !beginnings.contains(&word.trim_start_matches('[')) => *last = last.to(span),
+            Some(last) if !BEGINNINGS.contains(&word.trim_start_matches('[')) => *last = last.to(span),
             _ => clauses.push(span),
         }
     }

@@ -289,7 +289,7 @@ fn at_edit(pair: &Pair<'_>, offset: u32) -> Result<(), String> {
         ide::completions(database, position, ide::CompletionTrigger::Invoked, 9.0)
     })?;
     pair.same("signature help", |database| {
-        ide::signature_help(database, position, ide::SignatureTrigger::Asked)
+        ide::signature_help(database, position, ide::SignatureTrigger::Invoked)
     })?;
     pair.same("selection", |database| ide::selection_ranges(database, position.file, &[offset]))?;
     pair.same("formatting behind a brace", |database| ide::format_after_brace(database, position))?;

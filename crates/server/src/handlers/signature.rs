@@ -11,7 +11,7 @@ use crate::state::State;
 /// The shape of the statement at a position.
 pub(crate) fn signature_help(state: &State, params: &SignatureHelpParams) -> Option<SignatureHelp> {
     let place = state.place(&params.text_document_position_params)?;
-    let trigger = trigger(params.context.as_ref());
+    let trigger = trigger(params.context.as_ref())?;
     let found = ide::signature_help(&state.database, place.position(), trigger)?;
     let current = found.signatures.get(found.active).and_then(|signature| signature.current);
     Some(SignatureHelp {
@@ -21,15 +21,14 @@ pub(crate) fn signature_help(state: &State, params: &SignatureHelpParams) -> Opt
     })
 }
 
-/// Clients that do not say why they ask do so when somebody asks them.
-fn trigger(context: Option<&SignatureHelpContext>) -> ide::SignatureTrigger {
-    let Some(context) = context else { return ide::SignatureTrigger::Asked };
-    if context.trigger_kind == SignatureHelpTriggerKind::INVOKED {
-        return ide::SignatureTrigger::Asked;
+/// A client that gives no context asks because its user does. Typing alone never opens signature help.
+fn trigger(context: Option<&SignatureHelpContext>) -> Option<ide::SignatureTrigger> {
+    match context {
+        Some(context) if context.trigger_kind != SignatureHelpTriggerKind::INVOKED => {
+            context.is_retrigger.then_some(ide::SignatureTrigger::Retriggered)
+        }
+        _ => Some(ide::SignatureTrigger::Invoked),
     }
-    let shown = context.active_signature_help.as_ref().filter(|_| context.is_retrigger);
-    let shown = shown.and_then(|help| help.signatures.first());
-    ide::SignatureTrigger::after(shown.map(|signature| signature.label.as_str()))
 }
 
 /// Without documentation: it is one line, beside the one that is typed.
