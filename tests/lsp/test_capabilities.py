@@ -344,7 +344,7 @@ async def shapes_of_statements(s: Session) -> None:
     shown: types.SignatureHelp | None = None
     kinds = types.SignatureHelpTriggerKind
     for typed, trigger, expected in (
-        ("movement third of rover { turn right until", None, "until"),
+        ("movement third of rover { turn right ", None, "DEGREES"),
         ("movement third of rover { turn right until {", "{", "SENSORS"),
         ("movement third of rover { turn right until { s,", ",", "SENSORS"),
         ("movement third of rover { turn right until { s ", " ", "SENSORS"),
