@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Everything that must hold, in one command: formats, lints, tests of every crate, and whole behaviour through the
-# command, the protocol and the generated scripts. Needs Rust and Python; the rest it sets up. With `--editors` also in
-# real editors, which it installs on Debian and its kin.
+# Checks everything: formats, lints, the tests of every crate, and end-to-end tests of the command, the protocol and the
+# generated scripts. Requires Rust and Python; installs the rest. `--editors` also tests in real editors, which it installs
+# on Debian-based systems.
 set -euo pipefail
 case ${1:-} in
   '') editors='' ;;
@@ -14,11 +14,11 @@ step() { printf '\n== %s\n' "$*"; }
 
 step "Python environment"
 if ! python3 -c 'import ensurepip' 2>/dev/null; then
-  # Debian keeps ensurepip, which `venv` needs, in a package of its own.
+  # `venv` needs ensurepip, which is a separate package in Debian.
   if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
     apt-get update -qq && apt-get install -y -qq --no-install-recommends python3-venv
   else
-    echo "Python's venv is missing: install it (on Debian and Ubuntu: apt install python3-venv) and run this again" >&2
+    echo "Python's venv is missing: install it (on Debian-based systems: apt install python3-venv) and run this again" >&2
     exit 2
   fi
 fi
@@ -31,7 +31,7 @@ if ! cmp -s tests/requirements.txt "$stamp"; then
 fi
 
 step "Node packages"
-# What reads the TextMate grammar as an editor does, and what the extension for VS Code is built and tested with.
+# For VS Code's tokenizer, which tests the TextMate grammar, and for building and testing the extension.
 PATH=$(tests/node.sh):$PATH
 for folder in grammar/textmate editors/vscode; do
   stamp=$folder/node_modules/package-lock.json
@@ -59,7 +59,7 @@ if cargo nextest --version >/dev/null 2>&1; then
 else
   cargo test --workspace --locked --no-fail-fast
 fi
-# A browser gets every crate but the command: the server without its process, the simulator without sockets.
+# Every crate but the command builds for browsers: the server without its process, the simulator without sockets.
 cargo check --workspace --exclude pydslrep-cli --no-default-features --target wasm32-unknown-unknown --locked
 
 step "Extension for VS Code: types, lints, build and tests"

@@ -5,10 +5,10 @@
 
 ;;; Commentary:
 
-;; Colours, indentation and comments for programs of PyDSLRep (*.pyr), and the language server by eglot.
+;; Highlighting, indentation and comments for PyDSLRep programs (*.pyr), and the language server with eglot.
 ;;
-;; Where the tree-sitter parser is installed (`treesit-install-language-grammar', or as the README says), every name has
-;; the colour of what it names; without it, words, numbers and declarations have colours.
+;; If the tree-sitter parser is installed (with `treesit-install-language-grammar', or see the README), all names are
+;; highlighted by their kind; otherwise, keywords, numbers and declarations are.
 
 ;;; Code:
 
@@ -17,18 +17,18 @@
 (defvar eglot-server-programs)
 
 (defgroup pydslrep nil
-  "Programs of PyDSLRep."
+  "PyDSLRep programs."
   :group 'languages)
 
 (defcustom pydslrep-server '("pydslrep-lsp" "--stdio")
   "The command that starts the language server."
   :type '(repeat string))
 
-(defconst pydslrep-words
+(defconst pydslrep-keywords
   '("wheel" "wheelH" "with" "radius" "sensor" "ip" "robot" "type" "tw" "fw" "fwh" "port" "has" "wheels" "sensors"
     "parallel" "movement" "of" "move" "meters" "centimeters" "at" "turn" "left" "right" "until" "slam" "environment"
     "robots" "moves")
-  "The words that are no names.")
+  "The keywords; contextual ones are left out.")
 
 (defvar pydslrep-mode-syntax-table
   (let ((table (make-syntax-table)))
@@ -42,11 +42,11 @@
     table))
 
 (defun pydslrep--declares (words face)
-  "What gives the name behind one of WORDS a FACE."
+  "Return a rule that gives the name after one of WORDS a FACE."
   `(,(concat "\\_<\\(?:" words "\\)\\s-+\\(\\_<.+?\\_>\\)") 1 ',face))
 
 (defvar pydslrep-font-lock-keywords
-  `((,(regexp-opt pydslrep-words 'symbols) . 'font-lock-keyword-face)
+  `((,(regexp-opt pydslrep-keywords 'symbols) . 'font-lock-keyword-face)
     ("^\\s-*\\(import\\)\\s-*\"" 1 'font-lock-keyword-face)
     (":\\s-*\\(distance\\|bumper\\)\\_>" 1 'font-lock-keyword-face)
     ("\\_<-?[0-9]+\\(?:\\.[0-9]+\\)*" . 'font-lock-number-face)
@@ -56,15 +56,15 @@
     ,(pydslrep--declares "robot\\|of" 'font-lock-type-face)
     ,(pydslrep--declares "movement" 'font-lock-function-name-face)
     ,(pydslrep--declares "environment" 'font-lock-preprocessor-face))
-  "Colours where there is no parser.")
+  "Font lock rules without the parser.")
 
 (defun pydslrep--font-lock-rules ()
-  "Colours by the parser, the same as those of its highlights.scm."
+  "Return font lock rules for the parser, with the captures of its highlights.scm."
   (treesit-font-lock-rules
    :language 'pydslrep :feature 'comment '((comment) @font-lock-comment-face)
    :language 'pydslrep :feature 'string '((string) @font-lock-string-face)
    :language 'pydslrep :feature 'keyword
-   `([,@(remove "slam" pydslrep-words) "distance" "bumper" "import"] @font-lock-keyword-face
+   `([,@(remove "slam" pydslrep-keywords) "distance" "bumper" "import"] @font-lock-keyword-face
      (slam) @font-lock-keyword-face)
    :language 'pydslrep :feature 'number '([(number) (address)] @font-lock-number-face)
    :language 'pydslrep :feature 'definition
@@ -83,7 +83,7 @@
      (movement_references (name) @font-lock-function-call-face))))
 
 (defun pydslrep-indent-line ()
-  "Indents by two for each open brace."
+  "Indent the line by two for each open brace."
   (let* ((state (save-excursion (syntax-ppss (line-beginning-position))))
          (closes (save-excursion (back-to-indentation) (eq (char-after) ?})))
          (depth (- (car state) (if closes 1 0))))
@@ -94,7 +94,7 @@
 
 ;;;###autoload
 (define-derived-mode pydslrep-mode prog-mode "PyDSLRep"
-  "Programs of PyDSLRep."
+  "Major mode for PyDSLRep programs."
   (setq-local comment-start "// "
               comment-end ""
               comment-start-skip "\\(?://+\\|/\\*+\\)\\s-*"

@@ -1,4 +1,4 @@
-# PyDSLRep for Kakoune: words, numbers and comments have colours by themselves, names by kakoune-lsp.
+# PyDSLRep for Kakoune: highlights keywords, numbers and comments; kakoune-lsp highlights names.
 
 hook global BufCreate .*[.]pyr %{ set-option buffer filetype pydslrep }
 hook global BufCreate (.*/)?(pydslrep|[^/]*[.]scene)[.]toml %{ set-option buffer filetype toml }
@@ -29,16 +29,16 @@ hook global WinSetOption filetype=pydslrep %{
 
 define-command -hidden pydslrep-indent-on-new-line %~
     evaluate-commands -draft -itersel %_
-        # As the line before, whose blanks are not left behind.
+        # Copies the indentation of the line before and removes its trailing blanks.
         try %{ execute-keys -draft <semicolon> K <a-&> }
         try %{ execute-keys -draft k x s \h+$ <ret> d }
-        # One step further after an opening brace.
+        # Indents after an opening brace.
         try %[ execute-keys -draft k x <a-k> \{\h*(//[^\n]*)?$ <ret> j <a-gt> ]
     _
 ~
 
 define-command -hidden pydslrep-indent-on-closing-brace %~
-    # As the line of the brace that it closes.
+    # Aligns a closing brace with the line of its opening brace.
     try %[ execute-keys -draft <a-h> <a-k> ^\h+\}$ <ret> m <a-S> 1 <a-&> ]
 ~
 
@@ -48,7 +48,7 @@ hook -group lsp-filetype-pydslrep global BufSetOption filetype=pydslrep %{
         args = ["--stdio"]
         root_globs = ["pydslrep.toml", ".git"]
     }
-    # Faces that Kakoune's own colour schemes have.
+    # Faces of Kakoune's own colour schemes.
     set-option buffer lsp_semantic_tokens %{
         [
             {face="comment", token="comment"},

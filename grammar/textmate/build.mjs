@@ -1,25 +1,25 @@
-// Writes pydslrep.tmLanguage.json: `node build.mjs`, with `--check` only looks whether that would change it.
+// Generates pydslrep.tmLanguage.json: `node build.mjs`; `--check` only reports whether it is up to date.
 //
-// A TextMate grammar sees one line at a time and cannot look back, so what has to be known about a place is kept by
-// nesting: an entity's rule reaches from its keyword to the next one, and inside of it a rule for each part where names
-// mean something else. Every rule ends where the next entity begins, so nothing left open colours what follows.
+// A TextMate grammar sees one line at a time and cannot look back, so context is kept by nesting: the rule of an entity
+// extends from its keyword to the next entity and contains a rule for each clause where names have another kind. Every rule
+// ends where the next entity begins, so an unclosed clause does not affect what follows.
 //
-// No rule asks for a word boundary on its left, because none is needed in the language (`4meters`): each word, number
-// and comment is consumed as a whole.
+// No rule requires a word boundary on its left, because the language does not (`4meters`): each word, number and comment is
+// consumed as a whole.
 import { readFileSync, writeFileSync } from "node:fs";
 
 const read = (name) => readFileSync(new URL(name, import.meta.url), "utf8");
 const colours = JSON.parse(read("../colours.json"));
 const scope = (kind, detail) => [colours[kind].scope, detail, "pydslrep"].filter(Boolean).join(".");
 
-// The published grammar has the words, and a test holds it against the lexer.
+// The keywords are those of the published grammar, which a test compares with the lexer.
 const [rules] = read("../pydslrep.ebnf").split("(* Tokens.");
 const contextual = ["distance", "bumper", "import"];
 const quoted = [...rules.matchAll(/"([A-Za-z]+)"/g)].map(([, word]) => word);
 const keywords = [...new Set(quoted)].filter((word) => !contextual.includes(word));
 const entities = ["wheel", "wheelH", "sensor", "ip", "robot", "parallel", "movement", "environment"];
 
-// Behind a word there is neither more of it nor what makes it a malformed name: `wheels`, `wheel-a`.
+// A keyword does not continue as another word or as a malformed name: `wheels`, `wheel-a`.
 const oneOf = (words) => `(?:${words.join("|")})(?![\\p{L}\\p{M}\\p{N}_]|[-.'’][\\p{L}_])`;
 const name = `(?:\\^[A-Za-z_][A-Za-z0-9_]*|(?!${oneOf(keywords)})[A-Za-z_][A-Za-z0-9_]*)`;
 const nextEntity = `(?=${oneOf(entities)}|import(?=[ \\t]*"))`;
@@ -31,7 +31,7 @@ const include = (...names) => names.map((name) => ({ include: `#${name}` }));
 const named = (kind) => ({ match: name, name: scope(kind) });
 const keyword = { name: scope("keyword") };
 
-// What has the same colour wherever it stands; it comes last.
+// Patterns with the same scope everywhere; they come last.
 const anywhere = include("comment", "malformed-name", "keyword", "number", "string", "comma");
 
 /** An entity: from its keyword to the next one. */
@@ -43,7 +43,7 @@ const entity = (words, ...patterns) => ({
   patterns: [...include("comment", "malformed-name"), ...patterns, ...anywhere],
 });
 
-/** A part: from its first word up to what `end` says, in which names are of one kind. */
+/** A clause: from its keyword to `end`; its names are of one kind. */
 const part = (word, end, kind, ...patterns) => ({
   begin: oneOf([word]),
   beginCaptures: { 0: keyword },
@@ -51,7 +51,7 @@ const part = (word, end, kind, ...patterns) => ({
   patterns: [...include("comment", "malformed-name"), ...patterns, named(kind), ...anywhere],
 });
 
-/** Braces and what is between them. */
+/** Braces and their content. */
 const braces = (end, ...patterns) => ({
   begin: "\\{",
   beginCaptures: { 0: { name: "punctuation.section.block.begin.pydslrep" } },
@@ -81,7 +81,7 @@ const grammar = {
       {
         begin: ":",
         beginCaptures: { 0: { name: "punctuation.separator.pydslrep" } },
-        // One word, and whatever else begins ends it.
+        // A single name; anything else ends the rule.
         end: `(${oneOf(["distance", "bumper"])})|(?=[A-Za-z_^{}:,0-9"])`,
         endCaptures: { 1: keyword },
         patterns: include("comment"),
@@ -112,7 +112,7 @@ const grammar = {
     environment: entity(
       ["environment"],
       {
-        // `with ip NAME`, or `, NAME` in the older spelling; the name ends it.
+        // `with ip NAME`, or the older `, NAME`; the name ends the rule.
         begin: `(${oneOf(["with"])})|,`,
         beginCaptures: { 1: keyword },
         end: `(${name})|(?=[{}]|${oneOf(["has", ...entities.filter((word) => word !== "ip")])})`,
@@ -139,7 +139,7 @@ const grammar = {
           end: "\\*/",
           endCaptures: { 0: { name: "punctuation.definition.comment.end.pydslrep" } },
         },
-        // As other languages write them: a mistake, but what they say is no part of the program.
+        // Comments of other languages: an error, but their text is not part of the program.
         { name: scope("comment", "line"), match: "(?:#|<!--|(?:--|%|/|\\\\\\\\)[ \\t]).*$" },
       ],
     },
@@ -157,7 +157,7 @@ const grammar = {
         { match: '"[^"]*$', name: `${scope("string")} invalid.illegal.unterminated.pydslrep` },
       ],
     },
-    // `left-wheel`, `räder`: one mistake, and no keyword within it.
+    // `left-wheel`, `räder`: one error that contains no keyword.
     "malformed-name": {
       patterns: [
         { match: `\\^?${word}(?:[-.'’]${word})+`, ...malformed },

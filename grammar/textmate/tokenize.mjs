@@ -1,5 +1,5 @@
-// What the grammar makes of programs, by VS Code's own tokenizer: texts as a JSON array in, and for each of them the
-// tokens of each line as [first column, column behind, scopes] out. Columns count UTF-16 units.
+// Tokenizes programs with the grammar and VS Code's tokenizer. Reads a JSON array of texts; prints, for each text and line,
+// its tokens as [start column, end column, scopes]. Columns count UTF-16 units.
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import oniguruma from "vscode-oniguruma";

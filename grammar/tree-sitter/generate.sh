@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes src/ from grammar.js, for editors old and new (ABI 14), and notes from what, for the tests. Needs the
+# Generates src/ from grammar.js with ABI 14, which old and new editors support, and checksums for the tests. Requires the
 # tree-sitter command (0.26) and Node.
 set -euo pipefail
 cd "$(dirname "$0")"

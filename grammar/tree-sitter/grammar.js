@@ -14,7 +14,7 @@
 module.exports = grammar({
   name: "pydslrep",
 
-  // `distance`, `bumper` and `import` are words only where the grammar asks for them, and names everywhere else.
+  // `distance`, `bumper` and `import` are keywords only where the grammar expects them, and names elsewhere.
   word: ($) => $.name,
   extras: ($) => [/[ \t\r\n\f]/, $.comment],
 
@@ -44,7 +44,7 @@ module.exports = grammar({
     robot_definition: ($) =>
       incomplete(
         "robot",
-        // The type before the name is an older spelling.
+        // An older spelling has the type before the name.
         choice($.type_clause, seq($.type_clause, field("name", $.name)), seq(field("name", $.name), optional($.type_clause))),
         $.port_clause,
         $.wheels_clause,
@@ -82,7 +82,7 @@ module.exports = grammar({
 
     environment_definition: ($) =>
       incomplete("environment", field("name", $.name), $.ip_clause, $.robots_clause, $.moves_clause, "with"),
-    // With a comma it is an older spelling.
+    // An older spelling has a comma.
     ip_clause: ($) => incomplete(choice(seq("with", "ip"), ","), field("ip", $.name)),
     robots_clause: ($) => incomplete("has", $.robot_references, "robots"),
     moves_clause: ($) => incomplete(seq("with", $.movement_references), "moves"),
@@ -95,8 +95,8 @@ module.exports = grammar({
     name: (_) => /\^?[A-Za-z_][A-Za-z0-9_]*/,
     number: (_) => /-?[0-9]+(\.[0-9]+)?/,
     address: (_) => /[0-9]+\.[0-9]+\.[0-9]+\.[0-9]+/,
-    // These also as the language server sees them where they are wrong: without their end up to that of the line, and of
-    // the file, and comments as other languages write them.
+    // Invalid tokens end as in the language server: unterminated strings at the end of the line, unterminated comments at the
+    // end of the file. Comments of other languages are accepted, too.
     string: (_) => /"[^"\r\n]*"?/,
     comment: (_) =>
       token(

@@ -1,12 +1,12 @@
-# Sourced by the run.sh of terminal editors: finds an editor (find_NAME), or unpacks it with all it needs from a Debian
-# package.
+# Sourced by the run.sh of terminal editors: finds an editor (find_NAME), or unpacks it and its dependencies from Debian
+# packages.
 #
-# What is unpacked lies in target/editors and has its own libraries, so that an editor of a newer Debian runs on an older
-# one and nothing of the machine is changed.
+# Unpacked editors are in target/editors with their own libraries, so an editor of a newer Debian runs on an older one and
+# the system is not changed.
 
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 
-need() { # a program, the package that has it
+need() { # program, its package
   command -v "$1" >/dev/null && return
   if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
     apt-get update -qq && apt-get install -y -qq --no-install-recommends "$2" >/dev/null
@@ -16,11 +16,11 @@ need() { # a program, the package that has it
   fi
 }
 
-unpacked() { # suite, package: prints the folder it is unpacked in
+unpacked() { # suite, package; prints the folder
   local folder="$repository/target/editors/$1-$2"
   if [ ! -e "$folder/complete" ]; then
     command -v apt-get >/dev/null || {
-      echo "$2 is not on the path and no Debian package can be had here: install it and run this again" >&2
+      echo "$2 is not on the PATH, and there is no apt-get to download it: install it and run this again" >&2
       exit 2
     }
     need patchelf patchelf >&2
@@ -59,7 +59,7 @@ unpack() { # suite, folder, package
   done
 }
 
-find_helix() { # $HX if it is set, else hx of the path, else that of Debian 13
+find_helix() { # $HX, or else hx on the PATH, or else Debian 13's
   if [ -z "${HX:-}" ] && ! HX=$(command -v hx); then
     local folder
     folder=$(unpacked trixie hx)
@@ -68,12 +68,12 @@ find_helix() { # $HX if it is set, else hx of the path, else that of Debian 13
   export HX
 }
 
-find_emacs() { # $EMACS if it is set, else emacs of the path, else that of Debian 13
+find_emacs() { # $EMACS, or else emacs on the PATH, or else Debian 13's
   if [ -z "${EMACS:-}" ] && ! EMACS=$(command -v emacs); then
     local folder shared parts
     folder=$(unpacked trixie emacs-nox)
     EMACS="$folder/usr/bin/emacs-nox"
-    # Moved elsewhere, it has to be told where its parts are.
+    # It does not find its files outside /usr.
     shared=$(echo "$folder"/usr/share/emacs/[0-9]*)
     parts=$(echo "$folder"/usr/libexec/emacs/*/*)
     export EMACSLOADPATH="$shared/lisp" EMACSDATA="$shared/etc" EMACSDOC="$shared/etc" EMACSPATH="$parts"
@@ -82,13 +82,13 @@ find_emacs() { # $EMACS if it is set, else emacs of the path, else that of Debia
   export EMACS
 }
 
-find_kakoune() { # $KAK and $KAK_LSP if they are set, else those of the path, else Debian's and one that cargo builds
+find_kakoune() { # $KAK and $KAK_LSP, or else those on the PATH, or else Debian's and one that cargo builds
   if [ -z "${KAK:-}" ] && ! KAK=$(command -v kak); then
     local folder
     folder=$(unpacked trixie kakoune)
     export KAK="$folder/usr/bin/kak" KAKOUNE_RUNTIME="$folder/usr/share/kak"
   fi
-  # No Debian package; building it takes minutes.
+  # Debian has no package of it; the build takes minutes.
   if [ -z "${KAK_LSP:-}" ] && ! KAK_LSP=$(command -v kak-lsp); then
     KAK_LSP="$repository/target/editors/kak-lsp/bin/kak-lsp"
     [ -x "$KAK_LSP" ] || cargo install --quiet --locked --root "$repository/target/editors/kak-lsp" kak-lsp@22.0.0

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `run.sh NAME`: tries the set-up of editors/NAME in the real editor.
+# `run.sh NAME`: tests editors/NAME in the real editor.
 set -euo pipefail
 folder=$(cd "$(dirname "$0")" && pwd)
 if [ $# = 0 ] || [ ! -x "$folder/$1/run.sh" ]; then

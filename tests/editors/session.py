@@ -1,4 +1,4 @@
-"""What the checks of all terminal editors share: a home nobody else uses, a program with a mistake, and checks."""
+"""Shared by the tests of all terminal editors: a private home folder, a program with an error, and checks."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ movement home of rovr {
 environment yard has { rover } robots with { patrol home } moves
 """
 
-# What the server says of it, and how it would mend that.
+# The error in it, and the quick fix.
 MESSAGE = "there is no robot called `rovr`"
 FIX = "[Cc]hange to `rover`"
 FIXED = "movement home of rover"
@@ -50,11 +50,11 @@ class Session:
 
     @property
     def program(self) -> Path:
-        """The program that is edited."""
+        """The program to edit."""
         return self.home / "work" / "patrol.pyr"
 
     def environment(self) -> dict[str, str]:
-        """Variables that keep the editor from the settings of whoever runs this."""
+        """Variables that isolate the editor from the user's settings."""
         folders = {
             "CONFIG": ".config",
             "DATA": ".local/share",
@@ -74,7 +74,7 @@ class Session:
         }
 
     def set_up(self) -> None:
-        """Does what the readme of the editor says, with the real folder in it."""
+        """Runs the set-up in the editor's readme, with the real folder."""
         readme = (ROOT / "editors" / self.editor / "README.md").read_text()
         script = re.search(r"^```sh\n(.*?)^```", readme, re.M | re.S)
         assert script, "the readme has no set-up"
@@ -85,7 +85,7 @@ class Session:
         )
 
     def check(self, what: str, holds: bool, shown: str = "") -> None:
-        """Says that something is as it should be, or ends the session: what follows builds on it."""
+        """Reports a check and ends the session if it fails, since later checks depend on it."""
         print(("ok   " if holds else "FAIL ") + what, flush=True)
         if not holds:
             print(shown)
@@ -99,10 +99,8 @@ def session(editor: str) -> Iterator[Session]:
         "PYDSLREP_LSP", str(ROOT / "target" / "debug" / "pydslrep-lsp")
     )
     if not Path(server).exists():
-        sys.exit(
-            f"{server} is missing: cargo build, or say where the server is in PYDSLREP_LSP"
-        )
-    # An editor that has just been ended may still be writing its own files.
+        sys.exit(f"{server} is missing: run cargo build, or set PYDSLREP_LSP")
+    # An exiting editor may still write files.
     with tempfile.TemporaryDirectory(
         prefix="pydslrep-", ignore_cleanup_errors=True
     ) as folder:

@@ -1,7 +1,6 @@
-"""A program in a terminal of its own: types into it, waits for what it shows, and takes pictures of it.
+"""Runs a program in a private terminal: types, waits for output and takes pictures.
 
-The terminal is a tmux server that nobody else uses. Nothing here waits for a fixed time: `wait` ends as soon as the screen
-shows what is wanted.
+The terminal is a private tmux server. Nothing waits for a fixed time: `wait` returns as soon as the screen matches.
 """
 
 from __future__ import annotations
@@ -80,23 +79,23 @@ class Terminal:
             self._tmux("send-keys", key)
 
     def type(self, text: str) -> None:
-        """Characters, one after the other as a person does."""
+        """Characters, one at a time."""
         for character in text:
             self._tmux("send-keys", "-l", character)
             time.sleep(0.02)
 
     def screen(self) -> str:
-        """What it shows, without colours."""
+        """The text of the screen."""
         return self._tmux("capture-pane", "-p")
 
     def wait(self, pattern: str, patience: float = PATIENCE) -> bool:
-        """Whether something appears, sooner or later."""
+        """Waits until a pattern appears; returns whether it does."""
         return self._wait(
             lambda screen: re.search(pattern, screen) is not None, patience
         )
 
     def wait_without(self, pattern: str) -> bool:
-        """Whether something disappears."""
+        """Waits until a pattern disappears; returns whether it does."""
         return self._wait(lambda screen: re.search(pattern, screen) is None)
 
     def _wait(
@@ -110,19 +109,19 @@ class Terminal:
         return False
 
     def styled(self) -> list[list[tuple[str, dict[str, str]]]]:
-        """The lines of the screen as pieces, each with its CSS."""
-        return pieces(self._tmux("capture-pane", "-p", "-e", "-N"))
+        """The lines of the screen as styled spans: texts with their CSS."""
+        return spans(self._tmux("capture-pane", "-p", "-e", "-N"))
 
     def colour_of(self, text: str) -> str | None:
-        """The colour of the first place where a text stands in one colour."""
+        """The colour of the first span that contains a text."""
         for line in self.styled():
-            for piece, style in line:
-                if re.search(rf"(?<!\w){re.escape(text)}(?!\w)", piece):
+            for span, style in line:
+                if re.search(rf"(?<!\w){re.escape(text)}(?!\w)", span):
                     return style.get("color", FOREGROUND)
         return None
 
     def wait_for_colours(self, words: tuple[str, ...], count: int) -> bool:
-        """Whether these words, sooner or later, have so many different colours."""
+        """Waits until words have this many different colours; returns whether they do."""
 
         def has_them(_: str) -> bool:
             colours = {self.colour_of(word) for word in words}
@@ -131,8 +130,8 @@ class Terminal:
         return self._wait(has_them)
 
     def picture(self, file: Path) -> None:
-        """Saves what it shows as a PNG, where there is a Chromium to draw it."""
-        lines = ("".join(drawn(*piece) for piece in line) for line in self.styled())
+        """Saves the screen as a PNG with Chromium."""
+        lines = ("".join(html_span(*span) for span in line) for line in self.styled())
         font = "font: 15px/19px 'DejaVu Sans Mono', monospace"
         page = '<meta charset="utf-8"><style>span{display:inline-block;height:19px}</style>'
         page += f'<body style="margin:0;background:{BACKGROUND}">'
@@ -156,8 +155,8 @@ class Terminal:
             )
 
 
-def pieces(screen: str) -> list[list[tuple[str, dict[str, str]]]]:
-    """A screen with escape sequences as lines of text and CSS. A style holds until another one, also over lines."""
+def spans(screen: str) -> list[list[tuple[str, dict[str, str]]]]:
+    """Parses a screen with escape sequences into lines of styled spans. A style applies until the next one."""
     lines: list[list[tuple[str, dict[str, str]]]] = []
     style: dict[str, str] = {}
     for line in screen.splitlines():
@@ -173,7 +172,7 @@ def pieces(screen: str) -> list[list[tuple[str, dict[str, str]]]]:
 
 
 def restyled(style: dict[str, str], parameters: str) -> dict[str, str]:
-    """A style after one more sequence of parameters."""
+    """The style after a sequence of parameters."""
     style = dict(style)
     codes = [
         [int(part or 0) for part in code.split(":")]
@@ -239,7 +238,7 @@ def palette(number: int) -> str:
 
 
 def shown(style: dict[str, str]) -> dict[str, str]:
-    """A style as it looks: reversed where it says so."""
+    """A style with reversed colours resolved."""
     if "reverse" not in style:
         return style
     ends = {
@@ -251,7 +250,7 @@ def shown(style: dict[str, str]) -> dict[str, str]:
     }
 
 
-def drawn(text: str, style: dict[str, str]) -> str:
-    """A piece of text as HTML."""
+def html_span(text: str, style: dict[str, str]) -> str:
+    """A styled text as HTML."""
     css = ";".join(f"{name}:{value}" for name, value in style.items())
     return f'<span style="{css}">{html.escape(text)}</span>' if text else ""

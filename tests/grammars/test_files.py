@@ -127,7 +127,7 @@ def test_other_editors_have_their_names_of_the_colours(editor: str) -> None:
     expected = (TREE_SITTER / "queries" / "highlights.scm").read_text()
     for row in TABLE.values():
         expected = re.sub(rf"@{row['capture']}\b(?!\.)", f"@{row[editor]}", expected)
-    origin = "; Made from grammar/tree-sitter/queries/highlights.scm.\n"
+    origin = "; Generated from grammar/tree-sitter/queries/highlights.scm.\n"
     expected = re.sub(r"^; .*\n(; .*\n)*", origin, expected, count=1)
     file = OTHERS[editor] / "highlights.scm"
     if os.environ.get("UPDATE_EXPECT"):
@@ -137,7 +137,7 @@ def test_other_editors_have_their_names_of_the_colours(editor: str) -> None:
 
 def test_emacs_has_the_words_too() -> None:
     mode = (ROOT / "editors" / "emacs" / "pydslrep-mode.el").read_text()
-    _, _, listed = mode.partition("(defconst pydslrep-words")
+    _, _, listed = mode.partition("(defconst pydslrep-keywords")
     assert set(re.findall(r'"(\w+)"', listed.partition(")")[0])) == words() - CONTEXTUAL
 
 

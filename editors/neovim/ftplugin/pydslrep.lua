@@ -1,4 +1,4 @@
--- Settings for programs; `:help pydslrep-filetype`.
+-- Options for programs; see `:help pydslrep-filetype`.
 if vim.b.did_ftplugin then
   return
 end
@@ -17,5 +17,5 @@ vim.b.undo_ftplugin = 'setlocal commentstring< comments< formatoptions< expandta
 
 local has_parser = require('pydslrep.parser').highlight(buffer)
 require('pydslrep.folding').open(buffer, has_parser)
-require('pydslrep.server').look_for_it()
-require('pydslrep.completion').narrow(buffer)
+require('pydslrep.server').warn_if_missing()
+require('pydslrep.completion').configure(buffer)

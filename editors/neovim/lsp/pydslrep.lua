@@ -1,2 +1,2 @@
--- The language server of PyDSLRep; `vim.lsp.enable('pydslrep')` reads this file.
+-- The configuration of the language server, read by `vim.lsp.enable('pydslrep')`.
 return require('pydslrep.server').config()

@@ -1,4 +1,4 @@
--- What is there from the start; the rest is loaded when it is needed.
+-- Loaded at startup; everything else is loaded on demand.
 if vim.g.loaded_pydslrep or vim.fn.has('nvim-0.10') == 0 then
   return
 end
@@ -17,14 +17,14 @@ end, {
 local group = vim.api.nvim_create_augroup('pydslrep', {})
 
 ---@param event string
----@param act fun(event: table)
-local function on_server(event, act)
+---@param handle fun(event: table)
+local function on_server(event, handle)
   vim.api.nvim_create_autocmd(event, {
     group = group,
-    callback = function(happened)
-      local client = vim.lsp.get_client_by_id(happened.data.client_id)
+    callback = function(details)
+      local client = vim.lsp.get_client_by_id(details.data.client_id)
       if client and client.name == 'pydslrep' then
-        act(happened)
+        handle(details)
       end
     end,
   })
@@ -40,13 +40,13 @@ on_server('LspProgress', function(event)
   require('pydslrep.runs').progressed(event.data)
 end)
 
--- For those who have nvim-treesitter, which forgets what others have told it whenever it reads its list anew.
+-- nvim-treesitter drops parsers that others have registered whenever it reloads its list.
 vim.api.nvim_create_autocmd('User', {
   group = group,
   pattern = 'TSUpdate',
   callback = function()
-    local there, parsers = pcall(require, 'nvim-treesitter.parsers')
-    if there and type(parsers) == 'table' then
+    local installed, parsers = pcall(require, 'nvim-treesitter.parsers')
+    if installed and type(parsers) == 'table' then
       parsers.pydslrep = { install_info = { path = require('pydslrep.parser').grammar() } }
     end
   end,

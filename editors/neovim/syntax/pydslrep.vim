@@ -1,5 +1,5 @@
-" Colours for programs where neither the tree-sitter parser nor the server is there: what can be told of a word by those
-" beside it. A test holds the keywords against the language's own list, and the colours against those of the server.
+" Highlights programs without the tree-sitter parser and the server, as far as neighbouring words allow. Tests compare the
+" keywords with the language's list and the colours with those of the server.
 if exists('b:current_syntax')
   finish
 endif
@@ -8,7 +8,7 @@ set cpo&vim
 
 syn case match
 
-" Each word that is followed by a name says what the name stands for.
+" A keyword before a name determines the kind of the name.
 syn keyword pydslrepKeyword wheel wheelH nextgroup=pydslrepWheel skipwhite skipempty
 syn keyword pydslrepKeyword sensor nextgroup=pydslrepSensor skipwhite skipempty
 syn keyword pydslrepKeyword ip nextgroup=pydslrepIp skipwhite skipempty
@@ -18,7 +18,7 @@ syn keyword pydslrepKeyword environment nextgroup=pydslrepEnvironment skipwhite 
 syn keyword pydslrepKeyword with radius type tw fw fwh port has wheels sensors parallel move meters centimeters at
 syn keyword pydslrepKeyword turn left right until slam robots moves
 
-" Names. Those in braces that nothing is known of have no colour, as anywhere else.
+" Names; those of unknown kind have no colour.
 syn match pydslrepWheel /\^\=\<\h\w*/ contained
 syn match pydslrepSensor /\^\=\<\h\w*/ contained nextgroup=pydslrepSensorKind skipwhite skipempty
 syn match pydslrepIp /\^\=\<\h\w*/ contained
@@ -27,7 +27,7 @@ syn match pydslrepMovement /\^\=\<\h\w*/ contained
 syn match pydslrepEnvironment /\^\=\<\h\w*/ contained
 syn match pydslrepName /\^\h\w*/
 
-" Words that are keywords at one place only.
+" Contextual keywords.
 syn match pydslrepSensorKind /:\_s*\%(distance\|bumper\)\>/ contained contains=pydslrepKind
 syn keyword pydslrepKind contained distance bumper
 syn match pydslrepImport /\<import\>\%(\_s*"\)\@=/
@@ -35,7 +35,7 @@ syn match pydslrepImport /\<import\>\%(\_s*"\)\@=/
 syn match pydslrepNumber /-\=\<\d\+\%(\.\d\+\)*\>/
 syn match pydslrepString /"[^"]*"/
 
-" Braces: the movement's, which fold, and lists, of which the words around them say what they list.
+" Braces: bodies of movements, which fold, and lists, whose kind depends on the keyword next to them.
 syn region pydslrepBody start=/{/ end=/}/ transparent fold
 let s:list = '{\%(/\*\_.\{-}\*/\|//.*\|\_[^{}]\)*}'
 let s:of = ' contains=pydslrepLineComment,pydslrepBlockComment,'
@@ -48,10 +48,10 @@ unlet s:list s:of
 syn match pydslrepLineComment "//.*$" contains=@Spell
 syn region pydslrepBlockComment start="/\*" end="\*/" contains=@Spell fold
 
-" Lists and comments of any length are seen whole.
+" Parses long lists and comments from their start.
 syn sync minlines=200
 
-" The groups that the server's words lead to, so that nothing changes its colour when the server comes.
+" The groups that semantic tokens are linked to, so that no colour changes when the server responds.
 hi def link pydslrepKeyword @keyword
 hi def link pydslrepKind @keyword
 hi def link pydslrepImport @keyword

@@ -1,4 +1,4 @@
-//! The language server for Zed: found on the path of whoever opened the project.
+//! Starts the language server for Zed, found on the user's PATH.
 
 use zed_extension_api::{self as zed, Command, LanguageServerId, Result, Worktree};
 
@@ -11,7 +11,7 @@ impl zed::Extension for PyDslRep {
 
     fn language_server_command(&mut self, _: &LanguageServerId, worktree: &Worktree) -> Result<Command> {
         let command = worktree.which("pydslrep-lsp").ok_or(
-            "pydslrep-lsp is not on your path: run `cargo install --locked --path crates/server` in PyDSLRep",
+            "pydslrep-lsp is not on your PATH: run `cargo install --locked --path crates/server` in PyDSLRep",
         )?;
         Ok(Command { command, args: vec!["--stdio".to_owned()], env: worktree.shell_env() })
     }

@@ -1,5 +1,5 @@
-; What each capture stands for is said once, in ../../colours.json. No node has two of them, so that it does not matter
-; whether an editor lets the first or the last win.
+; ../../colours.json defines what each capture means. No node has two captures, so it does not matter whether an editor
+; prefers the first or the last.
 
 [
   "wheel" "wheelH" "with" "radius" "sensor" "ip" "robot" "type" "tw" "fw" "fwh" "port" "has" "wheels" "sensors"
@@ -8,7 +8,7 @@
 ] @keyword
 (slam) @keyword
 
-; Where a word cannot stand, the parser takes it for a name.
+; Where a keyword is not allowed, the parser reads it as a name.
 ((ERROR (name) @keyword)
   (#any-of? @keyword
     "wheel" "wheelH" "with" "radius" "sensor" "ip" "robot" "type" "tw" "fw" "fwh" "port" "has" "wheels" "sensors"

@@ -1,4 +1,4 @@
-"""Emacs, set up as its readme says: once with the parser, once without. With `--pictures` it takes those of the docs."""
+"""Tests Emacs, set up as its readme says, without and with the parser. `--pictures` takes those of the documentation."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from session import FIX, FIXED, MESSAGE, PICTURES, PROGRAM, ROOT, Session, sessi
 from terminal import Terminal
 
 EMACS = [os.environ["EMACS"], *os.environ.get("EMACS_OPTIONS", "").split()]
-# What is not the readme's: nothing asks questions or writes elsewhere, and the picture shows the program.
+# Not in the readme: suppresses questions and files elsewhere, and hides everything but the program.
 QUIET = """
 (setq native-comp-jit-compilation nil inhibit-startup-screen t make-backup-files nil auto-save-default nil
       create-lockfiles nil eglot-sync-connect 10 eglot-confirm-server-edits nil custom-file "/dev/null")
@@ -29,7 +29,7 @@ def command(terminal: Terminal, name: str) -> None:
 
 
 def answer(terminal: Terminal, text: str) -> None:
-    """Fills in what Emacs asks for. Now and then it loses a key that comes while it is busy."""
+    """Answers a prompt. A busy Emacs may lose keys, so this retries."""
     for _ in range(5):
         terminal.press("C-a", "C-k")
         terminal.type(text)
@@ -43,7 +43,7 @@ def edit(made: Session, terminal: Terminal, picture: Path | None) -> None:
     command(terminal, "flymake-goto-next-error")
     made.check("diagnostics", terminal.wait(MESSAGE), terminal.screen())
     made.check(
-        "poses and times behind actions",
+        "poses and times after actions",
         terminal.wait(r"9\.0.*\d s"),
         terminal.screen(),
     )
@@ -103,7 +103,7 @@ def main() -> None:
     with session("emacs") as made:
         readme = (ROOT / "editors" / "emacs" / "README.md").read_text()
         block = re.search(r"^```elisp\n(.*?)^```", readme, re.M | re.S)
-        assert block, "the readme has no elisp"
+        assert block, "the readme has no elisp block"
         settings = made.home / ".emacs.d" / "init.el"
         settings.parent.mkdir()
         settings.write_text(QUIET + block[1].replace("/path/to/pydslrep", str(ROOT)))

@@ -1,4 +1,4 @@
-"""Helix, set up as its readme says. With `--pictures` it also takes those of the documentation."""
+"""Tests Helix, set up as its readme says. `--pictures` takes those of the documentation."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def health(made: Session) -> None:
 
 
 def normal(terminal: Terminal) -> None:
-    """Back to normal mode; a key that comes right behind Escape would be taken for one with Alt."""
+    """Back to normal mode; a key right after Escape would be read as one with Alt."""
     terminal.press("Escape")
     terminal.wait("(?m)^ NOR")
 
@@ -41,7 +41,7 @@ def edit(made: Session, terminal: Terminal, takes_pictures: bool) -> None:
     made.check("diagnostics", terminal.wait(MESSAGE), terminal.screen())
     terminal.type("jk")
     made.check(
-        "poses and times behind actions",
+        "poses and times after actions",
         terminal.wait(r"9\.0.*\d s"),
         terminal.screen(),
     )
@@ -90,7 +90,9 @@ def edit(made: Session, terminal: Terminal, takes_pictures: bool) -> None:
         "text objects", terminal.wait_without("movement patrol of"), terminal.screen()
     )
     made.check(
-        "of the right size", "movement home of" in terminal.screen(), terminal.screen()
+        "with the right range",
+        "movement home of" in terminal.screen(),
+        terminal.screen(),
     )
     terminal.type(":q!")
     terminal.press("Enter")

@@ -1,4 +1,4 @@
-"""Kakoune, set up as its readme says. With `--pictures` it also takes that of the documentation."""
+"""Tests Kakoune, set up as its readme says. `--pictures` takes that of the documentation."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def command(terminal: Terminal, text: str) -> None:
 def edit(made: Session, terminal: Terminal, takes_pictures: bool) -> None:
     made.check("diagnostics", terminal.wait(MESSAGE), terminal.screen())
     made.check(
-        "poses and times behind actions",
+        "poses and times after actions",
         terminal.wait(r"9\.0.*\d s"),
         terminal.screen(),
     )

@@ -1,10 +1,10 @@
--- Colours of the same programs by the syntax file, by the parser and by the server: none changes when the next comes.
--- run.sh starts it in an empty folder, with the server switched off.
+-- Tests that the syntax file, the parser and the server give programs the same colours. run.sh starts it in an empty
+-- folder, with the server disabled.
 
 local harness = dofile(vim.env.TESTS .. '/harness.lua')
-local wait, check, told = harness.wait, harness.check, harness.told
+local wait, check, notified = harness.wait, harness.check, harness.notified
 
--- Whatever the grammar knows and the programs of the article do not have.
+-- Everything in the grammar that the article's programs do not use.
 local EVERYTHING = [[
 import "parts/rover.pyr"
 // A comment, TODO: with a robot { in it }
@@ -37,8 +37,8 @@ local function programs()
   return found
 end
 
---- What is to be seen of groups that lie on each other, and the last of them that has a colour.
-local function seen(groups)
+--- The visible colour of stacked groups, and the last group with a colour.
+local function visible(groups)
   local colour, name = {}, nil
   for _, group in ipairs(groups) do
     local own = vim.api.nvim_get_hl(0, { name = group, link = false })
@@ -62,7 +62,7 @@ local WAYS = {
   end,
 }
 
---- The groups of each character of a program that is no space, by its place.
+--- The groups of each visible character of a program, by its position.
 local function colours(program, way)
   vim.cmd.edit(program)
   if way == 'treesitter' then
@@ -81,12 +81,12 @@ local function colours(program, way)
   return all
 end
 
---- Where two ways to colour a program differ.
+--- Where two ways to highlight a program differ.
 local function differences(program, before, after)
   local found = {}
   for place, groups in pairs(after) do
-    local one, other = seen(groups), seen(before[place])
-    -- Signs have no colour by the server; where another gives them one, it stays.
+    local one, other = visible(groups), visible(before[place])
+    -- The server has no colour for punctuation; others may.
     local stays = #groups == 0 and (before[place][1] or ''):find('^@punctuation')
     if not stays and not vim.deep_equal(one and one.colour, other and other.colour) then
       table.insert(found, { program, place, one and one.group or 'nothing', other and other.group or 'nothing' })
@@ -95,7 +95,7 @@ local function differences(program, before, after)
   return found
 end
 
--- Neovim fetches the server's colours of what is to be seen.
+-- Neovim requests semantic tokens of visible lines only.
 vim.o.lines = 400
 
 local of = { syntax = {}, treesitter = {}, semantic_tokens = {} }
@@ -111,21 +111,21 @@ local function by_the_syntax_file()
   vim.fn.mkdir(vim.fs.dirname(parser.path()), 'p')
   harness.write(parser.path(), 'no parser')
   read('syntax')
-  check('a parser that is none is passed over', vim.bo.syntax == 'pydslrep')
+  check('an invalid parser is ignored', vim.bo.syntax == 'pydslrep')
   vim.cmd.checkhealth('pydslrep')
-  check('and told of', harness.text():find('cannot be used', 1, true), harness.text())
+  check('and reported', harness.text():find('cannot be used', 1, true), harness.text())
   vim.cmd.bwipeout()
   vim.uv.fs_unlink(parser.path())
 end
 
 local function by_the_parser()
-  local nothing = told('there is no grammar in', function() vim.cmd('Pydslrep parser /nowhere') end)
-  check('without a grammar there is no parser, and it is said', nothing)
+  local nothing = notified('no grammar in', function() vim.cmd('Pydslrep parser /nowhere') end)
+  check('a missing grammar is reported', nothing)
   local compiler = vim.env.CC
   vim.env.CC = 'false'
-  check('nor where the compiler fails', told('did not build', function() vim.cmd('Pydslrep parser') end))
+  check('a failing compiler is reported', notified('failed to build', function() vim.cmd('Pydslrep parser') end))
   vim.env.CC = compiler
-  check('the parser is built', told('is built', function() vim.cmd('Pydslrep parser') end))
+  check('the parser is built', notified('built ', function() vim.cmd('Pydslrep parser') end))
   check('and used at once', vim.treesitter.highlighter.active[vim.api.nvim_get_current_buf()])
   vim.cmd.checkhealth('pydslrep')
   check('health finds it', harness.text():find('parser/pydslrep.so', 1, true), harness.text())
@@ -133,9 +133,9 @@ local function by_the_parser()
   vim.cmd('silent %bwipeout')
   read('treesitter')
   local method = vim.wo.foldmethod .. ' ' .. vim.wo.foldexpr
-  check('it folds, too', method == 'expr v:lua.vim.treesitter.foldexpr()', method)
+  check('it folds', method == 'expr v:lua.vim.treesitter.foldexpr()', method)
   vim.cmd.edit(vim.env.PROGRAM)
-  harness.becomes('movements, for one', 1, function() return vim.fn.foldlevel(8) end)
+  harness.becomes('movements', 1, function() return vim.fn.foldlevel(8) end)
 end
 
 local function by_the_server()
@@ -156,8 +156,8 @@ local function by_the_server()
   table.sort(names)
   local all = { 'class', 'comment', 'enumMember', 'function', 'keyword', 'namespace', 'number', 'property', 'string',
     'variable' }
-  check('the server has a colour for all kinds of words', vim.deep_equal(names, all), names)
-  check('and for many places', places > 3000, places)
+  check('the server has all types of tokens', vim.deep_equal(names, all), names)
+  check('at many positions', places > 3000, places)
   for _, scheme in ipairs({ 'default', 'habamax', 'catppuccin' }) do
     vim.cmd.colorscheme(scheme)
     for _, way in ipairs({ 'syntax', 'treesitter' }) do
@@ -165,7 +165,7 @@ local function by_the_server()
       for program, after in pairs(of.semantic_tokens) do
         vim.list_extend(found, differences(program, of[way][program], after))
       end
-      local what = ('nothing changes its colour when the server comes: %s, %s'):format(scheme, way)
+      local what = ('semantic tokens change no colour: %s, %s'):format(scheme, way)
       check(what, #found == 0, vim.list_slice(found, 1, 40))
     end
   end
@@ -176,7 +176,7 @@ local function by_the_server()
   local function restarted()
     return harness.client() and harness.client().initialized and harness.client().id ~= first
   end
-  check('a server that is not started by the plugin is started again by it', wait(restarted))
+  check('the plugin restarts a server that it did not start', wait(restarted))
   harness.write('../server.pid', tostring(harness.process()))
 end
 

@@ -1,8 +1,8 @@
--- What all sessions share: steps that take their time, and checks of what comes of them.
+-- Shared by all sessions: waiting, checks and editing steps.
 
 local M = {}
 
--- Everything runs in a coroutine: Neovim's own loop goes on between the steps, so that typed keys are really typed.
+-- Sessions run in a coroutine, so that Neovim's event loop processes typed keys between the steps.
 local routine
 local failed = false
 
@@ -11,7 +11,7 @@ function M.sleep(milliseconds)
   coroutine.yield()
 end
 
---- Waits until `condition` gives something, and gives it on.
+--- Waits until `condition` returns something, and returns it.
 function M.wait(condition)
   local deadline = vim.uv.hrtime() + 10e9
   while vim.uv.hrtime() < deadline do
@@ -67,20 +67,20 @@ function M.text(buffer)
   return table.concat(vim.api.nvim_buf_get_lines(buffer or 0, 0, -1, false), '\n') .. '\n'
 end
 
---- Puts the cursor on the first place of `pattern` in the buffer.
+--- Puts the cursor on the first match of `pattern` in the buffer.
 function M.go_to(pattern)
   vim.api.nvim_win_set_cursor(0, { 1, 0 })
   assert(vim.fn.search(pattern, 'c') > 0, pattern)
 end
 
---- The errors in the program: where, and the code.
+--- The ranges and codes of the errors in the program.
 function M.errors()
   return vim.tbl_map(function(found)
     return { found.lnum, found.col, found.end_lnum, found.end_col, found.code }
   end, vim.diagnostic.get(0, { severity = vim.diagnostic.severity.ERROR }))
 end
 
---- Presses the key for code actions, takes the one whose title has `wanted` in it, and gives all titles.
+--- Requests code actions by key, applies the one whose title contains `wanted`, and returns all titles.
 function M.act(wanted)
   local titles
   local select = vim.ui.select
@@ -97,28 +97,28 @@ function M.act(wanted)
   return titles
 end
 
---- What is said to the person while `act` has its effects; the first that has `wanted` in it.
-function M.told(wanted, act)
+--- The first notification that contains `wanted` after `act` is called, and all notifications.
+function M.notified(wanted, act)
   local all = {}
   local notify = vim.notify
   vim.notify = function(message) table.insert(all, message) end
   act()
-  local function heard()
+  local function find()
     return vim.iter(all):find(function(message) return message:find(wanted, 1, true) ~= nil end)
   end
-  local found = M.wait(heard)
+  local found = M.wait(find)
   vim.notify = notify
   return found, all
 end
 
---- Goes through the parts in their order and ends Neovim; its exit code says whether all that was checked holds.
+--- Runs the parts in order and quits Neovim; its exit code says whether all checks passed.
 function M.run(parts)
   routine = coroutine.create(function()
     for _, part in ipairs(parts) do
-      local fine, why = xpcall(part, debug.traceback)
-      if not fine then
+      local ok, why = xpcall(part, debug.traceback)
+      if not ok then
         M.check(why, false)
-        break -- Each part goes on where the one before it ended.
+        break -- Each part continues where the one before it ended.
       end
     end
     vim.cmd(failed and 'cquit!' or 'quitall!')

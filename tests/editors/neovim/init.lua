@@ -1,4 +1,4 @@
--- Of the session `package`: options, and nothing to load the plugin, which is a package.
+-- For the session `package`: only options, since Neovim loads packages by itself.
 vim.g.pydslrep = {
   settings = { severity = { ['unused-declaration'] = 'off' } },
   open = function(picture)

@@ -1,8 +1,8 @@
--- The oldest Neovim that is supported, which knows less of servers: what the plugin makes up for.
+-- Tests the oldest supported Neovim, whose missing LSP features the plugin replaces.
 
 local harness = dofile(vim.env.TESTS .. '/harness.lua')
 local wait, check, becomes = harness.wait, harness.check, harness.becomes
-local open, text, go_to, told = harness.open, harness.text, harness.go_to, harness.told
+local open, text, go_to, notified = harness.open, harness.text, harness.go_to, harness.notified
 
 local PROGRAM = harness.read(vim.env.PROGRAM)
 local TYPO = PROGRAM:gsub('{ wheelL wheelR }', '{ wheelL whelR }')
@@ -12,7 +12,7 @@ local function codes()
 end
 
 local function server()
-  check('there is nothing that starts servers', vim.lsp.enable == nil)
+  check('Neovim cannot start servers by itself', vim.lsp.enable == nil)
   harness.write('typo.pyr', TYPO)
   open('typo.pyr')
   check('the server is attached', harness.client() ~= nil)
@@ -24,7 +24,7 @@ local function server()
     return vim.tbl_map(function(item) return item.abbr end, vim.fn.complete_info({ 'items' }).items)
   end)
   vim.api.nvim_input('<Esc>')
-  becomes('which mends the program', {}, codes)
+  becomes('which fixes the program', {}, codes)
   go_to('robot_1')
   becomes('names have the server\'s colours', true, function()
     local tokens = vim.inspect_pos().semantic_tokens
@@ -32,10 +32,10 @@ local function server()
   end)
   harness.write('pydslrep.toml', '[sevrity]\n')
   open('pydslrep.toml')
-  becomes('settings files are its business', { 'unknown-key' }, codes)
+  becomes('settings files are checked', { 'unknown-key' }, codes)
   harness.write('other.toml', 'x = 1\n')
   vim.cmd('edit! other.toml')
-  check('and other TOML is not', not harness.client())
+  check('other TOML is not', not harness.client())
   vim.uv.fs_unlink('pydslrep.toml')
 end
 
@@ -45,7 +45,7 @@ local function commands()
   local picture
   vim.g.pydslrep = { open = function(path) picture = path end }
   vim.cmd('Pydslrep preview')
-  check('the planned path is drawn, and opened', wait(function() return picture end))
+  check('the planned path is drawn and opened', wait(function() return picture end))
   local name = 'pydslrep://area_1/preview'
   check('its poses are listed', wait(function() return vim.fn.bufnr(name) > 0 and text(vim.fn.bufnr(name)) end))
   vim.cmd('messages clear')
@@ -55,15 +55,15 @@ local function commands()
     return harness.client() and harness.client().initialized and harness.client().id ~= first
   end
   check('the server can be restarted', wait(restarted))
-  check('the parser is built', told('is built', function() vim.cmd('Pydslrep parser') end))
-  check('and colours', vim.treesitter.highlighter.active[vim.api.nvim_get_current_buf()])
+  check('the parser is built', notified('built ', function() vim.cmd('Pydslrep parser') end))
+  check('and highlights', vim.treesitter.highlighter.active[vim.api.nvim_get_current_buf()])
   vim.cmd('edit')
   local method = vim.wo.foldmethod .. ' ' .. vim.wo.foldexpr
   check('and folds', method == 'expr v:lua.vim.treesitter.foldexpr()', method)
-  becomes('and answers', {}, codes)
+  becomes('and the server responds', {}, codes)
   vim.cmd('Pydslrep health')
   local health = text()
-  check('health tells what this Neovim lacks', health:find('knows less of the protocol', 1, true), health)
+  check('health reports what this Neovim lacks', health:find('lacks some LSP features', 1, true), health)
   check('and that the server runs', health:find('running for %d+ buffer'), health)
   vim.cmd.bwipeout()
   harness.write('../server.pid', tostring(harness.process()))

@@ -1,22 +1,22 @@
--- The plugin as a package, with nothing but options in init.lua: its commands, its help, its health, and what it does
--- where the server is not there. run.sh starts it in an empty folder.
+-- Tests the plugin as a package, with only options in init.lua: its commands, help and health, and its messages without
+-- a server. run.sh starts it in an empty folder.
 
 local harness = dofile(vim.env.TESTS .. '/harness.lua')
 local wait, check, becomes = harness.wait, harness.check, harness.becomes
-local open, text, go_to, told = harness.open, harness.text, harness.go_to, harness.told
+local open, text, go_to, notified = harness.open, harness.text, harness.go_to, harness.notified
 
 local PLUGIN = vim.env.REPOSITORY .. '/editors/neovim'
 local PROGRAM = harness.read(vim.env.PROGRAM)
 local TWO = PROGRAM .. '\nenvironment area_2 has { robot_1 } robots with { mov_1 } moves\n'
 
---- A folder of its own with a program in it that is open.
+--- Writes and opens a program.
 local function open_program(name, program)
   vim.cmd('silent! only!')
   harness.write(name, program)
   open(name)
 end
 
---- The text of the first buffer whose name ends so.
+--- The text of the first buffer whose name has this ending.
 local function shown(name)
   for _, buffer in ipairs(vim.api.nvim_list_bufs()) do
     if vim.endswith(vim.api.nvim_buf_get_name(buffer), name) then
@@ -30,38 +30,38 @@ local function before_the_server()
   vim.env.PATH = '/nowhere'
   harness.write('early.pyr', PROGRAM)
   local function edit() vim.cmd.edit('early.pyr') end
-  local missing = told('there is no `pydslrep-lsp`', edit)
-  check('without a server it is said where to get it', missing and missing:find('cargo install', 1, true), missing)
-  local _, again = told('there is no', function() vim.cmd.edit() vim.cmd.checkhealth('pydslrep') end)
-  check('but not again', #again == 0, again)
+  local missing = notified('`pydslrep-lsp` was not found', edit)
+  check('the message says how to install it', missing and missing:find('cargo install', 1, true), missing)
+  local _, again = notified('was not found', function() vim.cmd.edit() vim.cmd.checkhealth('pydslrep') end)
+  check('only once', #again == 0, again)
   local health = text()
-  check('health says so, too', health:find('ERROR there is no `pydslrep-lsp`', 1, true), health)
-  check('and what to do', health:find('cargo install --locked --path crates/server', 1, true), health)
+  check('health reports it', health:find('ERROR `pydslrep-lsp` was not found', 1, true), health)
+  check('and how to install it', health:find('cargo install --locked --path crates/server', 1, true), health)
   vim.cmd.bwipeout()
-  check('programs have colours all the same', vim.bo.syntax == 'pydslrep')
+  check('programs are highlighted without it', vim.bo.syntax == 'pydslrep')
   go_to('robot_1')
   local colours = vim.inspect_pos().syntax
-  check('of the syntax file', colours[1] and colours[1].hl_group == 'pydslrepRobot', colours)
-  check('and folds', vim.wo.foldmethod == 'syntax' and vim.fn.foldlevel(8) == 1, vim.fn.foldlevel(8))
-  check('that are open', vim.fn.foldclosed(8) == -1)
+  check('by the syntax file', colours[1] and colours[1].hl_group == 'pydslrepRobot', colours)
+  check('which folds', vim.wo.foldmethod == 'syntax' and vim.fn.foldlevel(8) == 1, vim.fn.foldlevel(8))
+  check('with open folds', vim.fn.foldclosed(8) == -1)
   vim.env.PATH = path
 end
 
 local function file_type()
   vim.cmd.edit('early.pyr')
   wait(function() return harness.client() and harness.client().initialized end)
-  check('a package needs nothing more', harness.client() ~= nil)
+  check('a package needs no configuration', harness.client() ~= nil)
   assert(harness.client(), 'without a server, there is nothing to see')
-  becomes('folds are the server\'s once it is there', 'v:lua.vim.lsp.foldexpr()', function() return vim.wo.foldexpr end)
-  becomes('and there is one', 1, function() return vim.fn.foldlevel(8) end)
-  check('open', vim.fn.foldclosed(8) == -1)
+  becomes('the server folds once it is attached', 'v:lua.vim.lsp.foldexpr()', function() return vim.wo.foldexpr end)
+  becomes('a movement', 1, function() return vim.fn.foldlevel(8) end)
+  check('which is open', vim.fn.foldclosed(8) == -1)
   go_to('move 4')
   vim.api.nvim_input('gcc')
-  becomes('a line becomes a comment', '  // move 4.0 meters', vim.api.nvim_get_current_line)
+  becomes('a line is commented out', '  // move 4.0 meters', vim.api.nvim_get_current_line)
   vim.api.nvim_input('gcc')
-  becomes('and no comment', '  move 4.0 meters', vim.api.nvim_get_current_line)
+  becomes('and back in', '  move 4.0 meters', vim.api.nvim_get_current_line)
   vim.api.nvim_input('O/* a<CR>b')
-  becomes('comments go on in the next line', { '  /* a', '   * b' }, function()
+  becomes('comments continue on the next line', { '  /* a', '   * b' }, function()
     local line = vim.fn.line('.')
     return vim.api.nvim_buf_get_lines(0, line - 2, line, false)
   end)
@@ -71,7 +71,7 @@ local function file_type()
   go_to('part')
   vim.cmd('silent write')
   vim.api.nvim_input('gf')
-  becomes('gf opens what is imported', 'part.pyr', function() return vim.fn.expand('%:t') end)
+  becomes('gf opens an imported file', 'part.pyr', function() return vim.fn.expand('%:t') end)
   vim.cmd('bwipeout!')
   vim.cmd.edit('early.pyr')
   vim.bo.filetype = 'text'
@@ -119,21 +119,21 @@ local function indentation()
       table.insert(wrong, { program, text() })
     end
   end
-  check('lines are indented as the canonical layout has them', #wrong == 0, wrong)
+  check('lines are indented like formatted programs', #wrong == 0, wrong)
   vim.cmd('bwipeout!')
 end
 
 local function command()
   local function offered(line) return vim.fn.getcompletion(line, 'cmdline') end
   local words = { 'generate', 'health', 'log', 'parser', 'preview', 'restart', 'run', 'stop' }
-  check('the command completes what it does', vim.deep_equal(offered('Pydslrep '), words), offered('Pydslrep '))
+  check('the command completes subcommands', vim.deep_equal(offered('Pydslrep '), words), offered('Pydslrep '))
   open_program('two.pyr', TWO)
   check('and environments', vim.deep_equal(offered('Pydslrep run '), { 'area_1', 'area_2' }), offered('Pydslrep run '))
-  check('and nothing behind what takes nothing', vim.deep_equal(offered('Pydslrep stop '), {}))
-  local unknown = told('there is no `:Pydslrep rnu`', function() vim.cmd('Pydslrep rnu') end)
-  check('what it does not know it says', unknown and unknown:find('generate, health', 1, true), unknown)
-  local more = told('takes nothing more', function() vim.cmd('Pydslrep stop it') end)
-  check('and what is too much', more)
+  check('and nothing for subcommands without an argument', vim.deep_equal(offered('Pydslrep stop '), {}))
+  local unknown = notified('unknown subcommand `rnu`', function() vim.cmd('Pydslrep rnu') end)
+  check('unknown subcommands are reported', unknown and unknown:find('generate, health', 1, true), unknown)
+  local more = notified('takes no argument', function() vim.cmd('Pydslrep stop it') end)
+  check('and surplus arguments', more)
 end
 
 local function options()
@@ -143,15 +143,15 @@ local function options()
     return codes
   end
   open_program('unused.pyr', 'wheel spare with radius 4.5\nsensor 1\n' .. PROGRAM)
-  -- Of what is wrong, one thing is switched off.
+  -- One of three problems is switched off.
   becomes('settings reach the server', { 'port-of-other-target', 'syntax-error' }, notes)
   local chosen = vim.g.pydslrep
-  local wrong = told('there is no option `setings`', function()
+  local wrong = notified('unknown option `setings`', function()
     require('pydslrep').setup({ setings = {}, highlight = 1 })
   end)
-  check('a slip in the options is told', wrong and wrong:find('`highlight` is to be a boolean', 1, true), wrong)
+  check('problems in the options are reported', wrong and wrong:find('`highlight` must be a boolean', 1, true), wrong)
   vim.cmd.checkhealth('pydslrep')
-  check('by :checkhealth, too', text():find('there is no option `setings`', 1, true), text())
+  check('also by :checkhealth', text():find('unknown option `setings`', 1, true), text())
   vim.cmd.bwipeout()
   vim.g.pydslrep = chosen
 end
@@ -161,8 +161,8 @@ local function generate()
   local wanted = vim.system({ 'pydslrep', 'build', '--stdout', '--environment', 'area_2', 'two.pyr' }):wait().stdout
   vim.cmd('Pydslrep generate area_2')
   becomes('the script of an environment is written', wanted, function() return harness.read('area_2.py') end)
-  becomes('and shown beside the program', true, function() return vim.fn.bufwinid('area_2.py') > 0 end)
-  check('where the cursor stays', vim.fn.expand('%:t') == 'two.pyr')
+  becomes('and shown next to the program', true, function() return vim.fn.bufwinid('area_2.py') > 0 end)
+  check('the cursor stays in the program', vim.fn.expand('%:t') == 'two.pyr')
   local select, asked = vim.ui.select, nil
   vim.ui.select = function(items, how, choose)
     asked = vim.tbl_map(how.format_item, items)
@@ -170,16 +170,16 @@ local function generate()
   end
   go_to('wheel')
   vim.cmd('Pydslrep generate')
-  becomes('with several, it is asked which', { 'area_1', 'area_2' }, function() return asked end)
-  becomes('and that one is written', true, function() return harness.read('area_1.py') ~= nil end)
+  becomes('with several environments, a list asks which', { 'area_1', 'area_2' }, function() return asked end)
+  becomes('and the chosen script is written', true, function() return harness.read('area_1.py') ~= nil end)
   vim.ui.select = select
   open_program('none.pyr', 'wheel w with radius 4.5\n')
-  check('without any, that is said', told('has no environment', function() vim.cmd('Pydslrep run') end))
+  check('a missing environment is reported', notified('has no environment', function() vim.cmd('Pydslrep run') end))
   open_program('broken.pyr', (PROGRAM:gsub('{ wheelL wheelR }', '{ wheelL whelR }')))
-  local why = told('no wheel called `whelR`', function() vim.cmd('Pydslrep run') end)
-  check('there is no run of a broken program, and why', why, why)
+  local why = notified('no wheel called `whelR`', function() vim.cmd('Pydslrep run') end)
+  check('a broken program does not run; a message says why', why, why)
   vim.cmd.enew()
-  check('without a server, that is said', told('not attached', function() vim.cmd('Pydslrep run') end))
+  check('without a server, a message says so', notified('not attached', function() vim.cmd('Pydslrep run') end))
 end
 
 local function preview()
@@ -188,16 +188,16 @@ local function preview()
   _G.opened = nil
   vim.cmd('Pydslrep preview')
   local picture = wait(function() return _G.opened end)
-  check('the planned path is drawn, and opened', picture and vim.endswith(picture, '.svg'), picture)
+  check('the planned path is drawn and opened', picture and vim.endswith(picture, '.svg'), picture)
   check('as a picture', picture and harness.read(picture):find('<svg', 1, true))
   local table_of_poses = wait(function() return shown('pydslrep://area_1/preview') end) or ''
   check('its poses are listed', table_of_poses:find('robot_1', 1, true), table_of_poses)
-  check('and where the picture is', picture and table_of_poses:find(picture, 1, true), table_of_poses)
+  check('and the file of the picture', picture and table_of_poses:find(picture, 1, true), table_of_poses)
   check('the cursor stays in the program', vim.fn.expand('%:t') == 'square.pyr')
 end
 
---- What is said of how far a run is.
-local function said()
+--- The messages so far.
+local function messages()
   return vim.fn.execute('messages')
 end
 
@@ -209,7 +209,7 @@ local function run()
   vim.cmd('Pydslrep run')
   local seen = {}
   local driven
-  -- On a machine where nothing has run yet, Python's packages come first.
+  -- The first run on a machine installs Python packages.
   for _ = 1, 12 do
     driven = wait(function()
       for name in pairs((harness.client() or { progress = {} }).progress.pending or {}) do seen[name] = true end
@@ -217,10 +217,10 @@ local function run()
     end)
     if driven then break end
   end
-  check('an environment is driven', driven and driven:find('robot_1', 1, true), driven or said())
+  check('an environment runs', driven and driven:find('robot_1', 1, true), driven or messages())
   check('its progress is shown', vim.iter(pairs(seen)):any(function(token) return token:find('^pydslrep%-') end), seen)
   check('its picture is opened', _G.opened and _G.opened:find('driven', 1, true), _G.opened)
-  becomes('its end is told', true, function() return said():find('done', 1, true) ~= nil end)
+  becomes('its end is reported', true, function() return messages():find('done', 1, true) ~= nil end)
 end
 
 local function stop()
@@ -233,21 +233,21 @@ local function stop()
     local server = harness.process()
     return #vim.api.nvim_get_proc_children(server) > 0
   end
-  check('a run is a process of the server\'s', wait(runs))
-  check('two at once there are not', told('is not finished yet', function() vim.cmd('Pydslrep run') end))
+  check('a run is a process of the server', wait(runs))
+  check('a second run does not start', notified('is still running', function() vim.cmd('Pydslrep run') end))
   vim.cmd('Pydslrep stop')
-  becomes('stopped, it is told', true, function() return said():find('stopped', 1, true) ~= nil end)
-  becomes('and the process is gone', false, runs)
-  check('then nothing runs', told('nothing runs', function() vim.cmd('Pydslrep stop') end))
+  becomes('a stopped run is reported', true, function() return messages():find('stopped', 1, true) ~= nil end)
+  becomes('and its process has exited', false, runs)
+  check('then nothing runs', notified('nothing is running', function() vim.cmd('Pydslrep stop') end))
   vim.cmd('Pydslrep run')
   check('and another can be started', wait(runs))
   local server = harness.process()
   local child = vim.api.nvim_get_proc_children(server)[1]
   vim.uv.kill(server, 'sigkill')
-  becomes('a server that ends is told', true, function()
-    return said():find('the server has ended', 1, true) ~= nil
+  becomes('the exit of the server is reported', true, function()
+    return messages():find('the server exited', 1, true) ~= nil
   end)
-  -- Who is killed cannot end what it has started.
+  -- A killed server cannot stop its child processes.
   vim.uv.kill(child, 'sigint')
 end
 
@@ -263,7 +263,7 @@ local function lenses()
   end
   wait(count)
   vim.api.nvim_input('grx')
-  becomes('the lens of a movement lists what uses it', { 14 }, function()
+  becomes('the lens of a movement lists its references', { 14 }, function()
     return vim.tbl_map(function(item) return item.lnum end, vim.fn.getqflist())
   end)
   vim.cmd.cclose()
@@ -279,41 +279,41 @@ local function life()
   end
   check('the server can be restarted', wait(restarted))
   vim.api.nvim_buf_set_lines(0, 0, 1, false, {})
-  becomes('and answers', 'unresolved-reference', function() return (harness.errors()[1] or {})[5] end)
+  becomes('and responds', 'unresolved-reference', function() return (harness.errors()[1] or {})[5] end)
   vim.cmd('Pydslrep health')
   local health = text()
-  check('health tells the server\'s version', health:match('OK [^\n]*pydslrep%-lsp: pydslrep%-lsp %d+%.%d+'), health)
+  check('health reports the server\'s version', health:match('OK [^\n]*pydslrep%-lsp: pydslrep%-lsp %d+%.%d+'), health)
   check('that it runs', health:find('running for %d+ buffer'), health)
-  check('the command\'s', health:match('for runs and previews: pydslrep %d+%.%d+'), health)
-  check('and Python\'s', health:match('Python 3%.%d+'), health)
+  check('the command\'s version', health:match('for runs and previews: pydslrep %d+%.%d+'), health)
+  check('and Python\'s version', health:match('Python 3%.%d+'), health)
   vim.cmd.bwipeout()
   vim.cmd('Pydslrep log')
-  check('the log can be looked at', vim.fn.expand('%:t') == 'lsp.log', vim.fn.expand('%'))
+  check('the log can be opened', vim.fn.expand('%:t') == 'lsp.log', vim.fn.expand('%'))
   vim.cmd.tabclose()
   harness.write('../server.pid', tostring(harness.process()))
 end
 
 local function help()
   vim.cmd.help('pydslrep')
-  check('there is help', vim.fn.expand('%:t') == 'pydslrep.txt' and vim.bo.filetype == 'help', vim.fn.expand('%'))
+  check('help is available', vim.fn.expand('%:t') == 'pydslrep.txt' and vim.bo.filetype == 'help', vim.fn.expand('%'))
   local broken = {}
   for tag in text():gmatch('|([^|%s]+)|') do
     if not pcall(vim.cmd.help, { args = { vim.fn.escape(tag, '*') } }) then
       table.insert(broken, tag)
     end
   end
-  check('whose links lead somewhere', #broken == 0, broken)
+  check('without broken links', #broken == 0, broken)
   vim.cmd('silent! helpclose')
   local long = {}
   for line in io.lines(PLUGIN .. '/doc/pydslrep.txt') do
     if vim.fn.strdisplaywidth(line) > 79 then table.insert(long, line) end
   end
-  check('and fits its window', #long == 0, long)
-  -- Its tags are kept with it: whoever only appends a folder to 'runtimepath' has no one to make them.
+  check('and with short lines', #long == 0, long)
+  -- The tags are in the repository, because nothing generates them for a folder appended to 'runtimepath'.
   vim.fn.mkdir('doc')
   vim.uv.fs_copyfile(PLUGIN .. '/doc/pydslrep.txt', 'doc/pydslrep.txt')
   vim.cmd.helptags('doc')
-  check('its tags are those that :helptags makes', harness.read('doc/tags') == harness.read(PLUGIN .. '/doc/tags'))
+  check('its tags are up to date', harness.read('doc/tags') == harness.read(PLUGIN .. '/doc/tags'))
 end
 
 harness.run({

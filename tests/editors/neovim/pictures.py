@@ -1,4 +1,4 @@
-"""Neovim in a terminal, set up as its readme says, for the pictures of the documentation."""
+"""Takes the pictures of Neovim for the documentation, set up as its readme says."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ NO_SERVER = "vim.g.pydslrep = { enable = false }\nvim.o.number = true\n"
 
 
 def start(made: Session, settings: str) -> Terminal:
-    """Neovim with the program, the plugin and some settings."""
+    """Starts Neovim with the program, the plugin and some settings."""
     folder = made.home / ".config" / "nvim"
     folder.mkdir(parents=True, exist_ok=True)
     plugin = ROOT / "editors" / "neovim"
@@ -48,7 +48,7 @@ def start(made: Session, settings: str) -> Terminal:
         f"vim.opt.runtimepath:append('{plugin}')\nvim.cmd.colorscheme('catppuccin')\nvim.o.wrap = false\nvim.g.pydslrep = {{ open = print }}\n{settings}"
     )
     command = [os.environ["NVIM"], str(made.program.name)]
-    # What a first run installs is kept.
+    # Keeps what the first run installs.
     kept = {"XDG_CACHE_HOME": str(ROOT / "target" / "editors" / "cache")}
     return Terminal(command, made.program.parent, {**made.environment(), **kept}, SIZE)
 
@@ -67,7 +67,7 @@ def run(made: Session) -> None:
         terminal.picture(PICTURES / "neovim-run.png")
 
 
-def mistake(made: Session) -> None:
+def problem(made: Session) -> None:
     made.program.write_text(FENCE.replace("{ patrol }", "{ patrl }"))
     with start(made, SHOWN) as terminal:
         made.check("lenses", terminal.wait("Generate script"), terminal.screen())
@@ -86,7 +86,7 @@ def colours(made: Session) -> None:
     with start(made, NO_SERVER) as terminal:
         terminal.type(":Pydslrep parser")
         terminal.press("Enter")
-        made.check("the parser", terminal.wait("is built"), terminal.screen())
+        made.check("the parser", terminal.wait("built "), terminal.screen())
         terminal.press("Enter")
         terminal.type(":InspectTree")
         terminal.press("Enter")
@@ -95,11 +95,11 @@ def colours(made: Session) -> None:
 
 
 if shutil.which("chromium") is None:
-    sys.exit("chromium is missing: it draws the pictures")
+    sys.exit("chromium is missing; it takes the pictures")
 with session("neovim") as made:
     command = Path(
         os.environ.get("PYDSLREP", str(ROOT / "target" / "debug" / "pydslrep"))
     )
     (made.home / "bin" / "pydslrep").symlink_to(command.resolve())
-    for part in (run, mistake, colours):
+    for part in (run, problem, colours):
         part(made)

@@ -1,24 +1,24 @@
 #!/usr/bin/env bash
-# Sessions in real Neovims, set up as editors/neovim/README.md says. On Debian and its kin everything that is needed is
-# unpacked into target/editors; elsewhere $NVIM names the Neovim (0.11 or later) to use, and lints are left out.
-# $PYDSLREP_LSP and $PYDSLREP name the programs; without them, they are built. Arguments choose sessions; `pictures` are
-# those of the documentation.
+# Tests the plugin in real Neovims, set up as editors/neovim/README.md says. On Debian-based systems the editors are unpacked
+# into target/editors; elsewhere $NVIM names the Neovim (0.11 or later), and there is no lint.
+# $PYDSLREP_LSP and $PYDSLREP name the programs, which are built by default. Arguments select sessions; `pictures` takes the
+# screenshots of the documentation.
 set -euo pipefail
 tests=$(cd "$(dirname "$0")" && pwd)
 source "$tests/../debian.sh"
 plugin="$repository/editors/neovim"
 cache="$repository/target/editors"
 
-# Inside Neovim's own terminal the variable holds the socket of that Neovim.
+# In Neovim's terminal the variable contains the socket of that Neovim.
 [ -S "${NVIM:-}" ] && NVIM=
 current=${NVIM:-} older='' lints=''
 if [ -z "$current" ] && command -v apt-get > /dev/null; then
-  # Of the stable and of the coming Debian: the oldest Neovim that is supported, and the newest.
+  # Debian stable has the oldest supported Neovim, Debian testing the newest.
   older=$(unpacked trixie neovim)/usr/bin/nvim
   current=$(unpacked forky neovim)/usr/bin/nvim
   lints=$(unpacked trixie lua-check)/usr
 fi
-current=$(command -v "${current:-nvim}") || { echo "there is no nvim: install Neovim, or name it in NVIM" >&2; exit 2; }
+current=$(command -v "${current:-nvim}") || { echo "Neovim was not found: install it, or set NVIM" >&2; exit 2; }
 unset NVIM
 
 if [ -z "${PYDSLREP:-}" ] || [ -z "${PYDSLREP_LSP:-}" ]; then
@@ -36,38 +36,38 @@ ln -s "$command" "$scratch/bin/pydslrep"
 export PATH="$scratch/bin:$PATH" TESTS="$tests" REPOSITORY="$repository"
 export PROGRAM="$repository/tests/paper/table2_two_wheels.pyr"
 
-lua_block() { # the n-th Lua block of the readme, with the real folder in it
+lua_block() { # prints the n-th Lua block of the readme, with the real folder
   awk -v wanted="$1" '/^```/ { inside = $0 == "```lua" && ++block == wanted; next } inside' "$plugin/README.md" |
     sed "s|/path/to/pydslrep|$repository|"
 }
 
-alive() { # a dead process that nobody has waited for yet does not count
+alive() { # zombies do not count
   case $(ps -o stat= -p "$1" || true) in "" | Z*) return 1 ;; esac
 }
 
-session() { # name, Neovim, file; init.lua comes from standard input
+session() { # name, Neovim, file; reads init.lua from standard input
   echo "== $1"
   local home="$scratch/$1" failed=0
   mkdir -p "$home/config/nvim" "$home/work"
   cat > "$home/config/nvim/init.lua"
   if [ "$1" = package ]; then
-    # As with any plugin manager: one folder among others.
+    # As plugin managers do.
     mkdir -p "$home/data/nvim/site/pack/person/start"
     ln -s "$plugin" "$home/data/nvim/site/pack/person/start/pydslrep"
   fi
   (
     cd "$home/work"
     export XDG_CONFIG_HOME="$home/config" XDG_DATA_HOME="$home/data" XDG_STATE_HOME="$home/state"
-    # Kept: what a first run installs.
+    # Keeps what the first run installs.
     export XDG_CACHE_HOME="$cache/cache"
     timeout 180 "$2" --headless -S "$tests/$3" 2> "$home/messages"
   ) || failed=1
   local server_id
   server_id=$(cat "$home/server.pid" 2>/dev/null || true)
   if [ -n "$server_id" ] && ! alive "$server_id"; then
-    echo "ok   the server is gone when Neovim is"
+    echo "ok   the server exits with Neovim"
   else
-    echo "FAIL the server is gone when Neovim is"
+    echo "FAIL the server exits with Neovim"
     failed=1
   fi
   [ $failed = 0 ] || cat "$home/messages" "$home/state/nvim/lsp.log" 2>/dev/null || true
@@ -98,7 +98,7 @@ for name in ${*:-lint folder pasted package colours older}; do
       need chromium chromium
       NVIM="$current" PYDSLREP="$command" PYDSLREP_LSP="$server" python3 "$tests/pictures.py"
       ;;
-    *) echo "there is no session $name" >&2; false ;;
+    *) echo "unknown session: $name" >&2; false ;;
   esac || failed=1
 done
 exit $failed

@@ -1,5 +1,5 @@
--- What a person does in Neovim with a program, key by key; run.sh starts it in an empty folder and says what it needs.
--- Prints one line for each thing that must hold; the exit code says whether all did.
+-- Edits programs in Neovim, key by key. run.sh starts it in an empty folder. Prints one line per check; the exit code
+-- says whether all passed.
 
 local harness = dofile(vim.env.TESTS .. '/harness.lua')
 local sleep = harness.sleep
@@ -16,11 +16,11 @@ local go_to = harness.go_to
 local errors = harness.errors
 local act = harness.act
 
-local MENDED = read(vim.env.PROGRAM)
-local TYPO = MENDED:gsub('{ wheelL wheelR }', '{ wheelL whelR }')
+local FIXED = read(vim.env.PROGRAM)
+local TYPO = FIXED:gsub('{ wheelL wheelR }', '{ wheelL whelR }')
 local BUILT = vim.system({ 'pydslrep', 'build', '--stdout', vim.env.PROGRAM }):wait().stdout
 
---- The one error of `TYPO`, `shift` bytes further right.
+--- The error in `TYPO`, shifted right by `shift` bytes.
 local function unknown(shift)
   return { { 3, 51 + (shift or 0), 3, 56 + (shift or 0), 'unresolved-reference' } }
 end
@@ -36,13 +36,13 @@ local function diagnostics()
 end
 
 local function no_script_of_a_broken_program()
-  local told
+  local message
   local notify = vim.notify
-  vim.notify = function(message) told = message end
+  vim.notify = function(shown) message = shown end
   act('Generate script')
-  wait(function() return told end)
+  wait(function() return message end)
   vim.notify = notify
-  check('there is no script of a broken program, and why', told and told:find('no wheel called `whelR`'), told)
+  check('a broken program has no script', message and message:find('no wheel called `whelR`'), message)
 end
 
 local function completion()
@@ -56,16 +56,16 @@ local function completion()
   local wheels = offered('ciwwh')
   check('completion offers the wheel not listed yet', vim.deep_equal(wheels, { 'wheelR' }), wheels)
   vim.api.nvim_input('<C-n><C-y><Esc>')
-  becomes('and inserts it', MENDED, text)
-  becomes('which mends the program', {}, errors)
+  becomes('and inserts it', FIXED, text)
+  becomes('which fixes the program', {}, errors)
   go_to('turn right')
   local actions = offered('Omo')
   check('completion offers actions', vim.tbl_contains(actions, 'move … meters'), actions)
   local place = 0
   for index, label in ipairs(actions) do if label == 'move … meters' then place = index end end
   vim.api.nvim_input(('<C-n>'):rep(place) .. '<C-y>')
-  becomes('a whole action is expanded', '  move 4.0 meters', vim.api.nvim_get_current_line)
-  becomes('with its first place selected', 's', function() return vim.api.nvim_get_mode().mode end)
+  becomes('an action is expanded', '  move 4.0 meters', vim.api.nvim_get_current_line)
+  becomes('with its first placeholder selected', 's', function() return vim.api.nvim_get_mode().mode end)
   vim.api.nvim_input('2.5<Esc>')
   becomes('and overtyped', '  move 2.5 meters', vim.api.nvim_get_current_line)
   vim.snippet.stop()
@@ -85,7 +85,7 @@ local function reading()
     end
   end
   local window = wait(float)
-  check('hovering over a wheel tells its circumference', window)
+  check('hovering over a wheel shows its circumference', window)
   if window then vim.api.nvim_win_close(window, true) end
 
   go_to('robot_1 {')
@@ -116,7 +116,7 @@ local function reading()
 end
 
 local function beside_the_program()
-  write('square.pyr', MENDED)
+  write('square.pyr', FIXED)
   open('square.pyr')
   vim.lsp.inlay_hint.enable(true, { bufnr = 0 })
   local function hints()
@@ -129,7 +129,7 @@ local function beside_the_program()
   go_to('move 4')
   local line = vim.api.nvim_win_get_cursor(0)[1]
   local function ends() return (hints()[line] or ''):match('→ 4%.00, 0%.00, 0°$') end
-  check('behind an action stands the pose it ends at', wait(ends), hints())
+  check('a hint after an action shows the pose where it ends', wait(ends), hints())
   vim.lsp.inlay_hint.enable(false, { bufnr = 0 })
 
   if vim.lsp.codelens.enable then
@@ -143,8 +143,8 @@ local function beside_the_program()
       return table.concat(found, ', ')
     end
     local wanted = 'Generate script, Run, Preview'
-    check('above an environment stands what can be done', wait(function() return titles():find(wanted) end), titles())
-    check('above a robot how often it is used', wait(function() return titles():find('2 references') end), titles())
+    check('lenses above an environment', wait(function() return titles():find(wanted) end), titles())
+    check('a lens above a robot', wait(function() return titles():find('2 references') end), titles())
     vim.lsp.codelens.enable(false, { bufnr = 0 })
   end
 
@@ -153,13 +153,13 @@ local function beside_the_program()
   local first = vim.api.nvim_win_get_cursor(0)[1]
   wait(function() return vim.fn.foldlevel(first + 2) > 0 end)
   local function folded() vim.cmd('normal! zM') return vim.fn.foldclosed(first + 2) end
-  becomes('a movement can be folded away', first, folded)
+  becomes('a movement can be folded', first, folded)
   vim.wo.foldmethod, vim.wo.foldlevel = 'manual', 99
   vim.cmd('normal! zE')
 end
 
 local function while_typing()
-  write('typed.pyr', MENDED)
+  write('typed.pyr', FIXED)
   open('typed.pyr')
   go_to('turn right')
   vim.api.nvim_input('Omove <C-s>')
@@ -171,14 +171,14 @@ local function while_typing()
       end
     end
   end
-  check('the shape of a statement is shown while it is typed', wait(signature))
+  check('the syntax of a statement is shown while it is typed', wait(signature))
   vim.api.nvim_input('<Esc>')
   open('typed.pyr')
   if not vim.lsp.on_type_formatting then return end
   vim.lsp.on_type_formatting.enable()
   go_to('environment')
   vim.api.nvim_input('Omovement   m_2 of    robot_1 { turn   left }')
-  becomes('a closing brace brings a movement into its layout', true, function()
+  becomes('a closing brace formats a movement', true, function()
     return text():find('movement m_2 of robot_1 {\n  turn left\n}', 1, true) ~= nil
   end)
   vim.api.nvim_input('<Esc>')
@@ -186,48 +186,48 @@ local function while_typing()
 end
 
 local function rewriting()
-  write('rewritten.pyr', MENDED)
+  write('rewritten.pyr', FIXED)
   open('rewritten.pyr')
   go_to('move 4')
   local titles = act('Convert to centimeters')
   check('refactorings are offered', titles and vim.tbl_contains(titles, 'Convert to centimeters'), titles)
-  becomes('and done', true, function() return text():find('move 400', 1, true) ~= nil end)
+  becomes('and applied', true, function() return text():find('move 400', 1, true) ~= nil end)
 end
 
 local function renaming()
-  write('renamed.pyr', MENDED)
+  write('renamed.pyr', FIXED)
   open('renamed.pyr')
   go_to('wheelL with')
   local input = vim.ui.input
   vim.ui.input = function(options, answer) answer(options.default .. '2') end
   vim.api.nvim_input('grn')
-  becomes('a rename changes a declaration and its uses', (MENDED:gsub('wheelL', 'wheelL2')), text)
+  becomes('a rename changes a declaration and its uses', (FIXED:gsub('wheelL', 'wheelL2')), text)
   vim.ui.input = input
 end
 
 local function formatting()
-  write('formatted.pyr', (MENDED:gsub('\n  ', '\n'):gsub('with radius', 'with   radius')))
+  write('formatted.pyr', (FIXED:gsub('\n  ', '\n'):gsub('with radius', 'with   radius')))
   open('formatted.pyr')
   vim.lsp.buf.format({ async = true })
-  becomes('a program can be brought into its layout', MENDED, text)
+  becomes('a program can be formatted', FIXED, text)
 end
 
 local function files_that_move()
   write('parts.pyr', 'wheel a with radius 4.5\nwheel b with radius 4.5\n')
   write('main.pyr', 'import "parts.pyr"\nrobot r type tw with port 1 has { a b } wheels\n')
   open('main.pyr')
-  becomes('an import is found', {}, errors)
+  becomes('an import is resolved', {}, errors)
   local old = vim.uri_from_fname(vim.fn.fnamemodify('parts.pyr', ':p'))
   local new = old:gsub('parts%.pyr$', 'lib/parts.pyr')
   local moved = { files = { { oldUri = old, newUri = new } } }
-  -- What file trees in Neovim do; it has no command of its own for it.
+  -- As file managers in Neovim do; it has no command for this.
   local answer = client():request_sync('workspace/willRenameFiles', moved, 10000, 0)
   vim.lsp.util.apply_workspace_edit(answer.result, client().offset_encoding)
   becomes('an import follows its file', 'import "lib/parts.pyr"', function() return vim.fn.getline(1) end)
   vim.fn.mkdir('lib')
   vim.uv.fs_rename('parts.pyr', 'lib/parts.pyr')
   client():notify('workspace/didRenameFiles', moved)
-  becomes('and leads there', {}, errors)
+  becomes('and is resolved there', {}, errors)
   vim.cmd.write()
 end
 
@@ -237,25 +237,25 @@ local function settings_file()
   local function codes()
     return vim.tbl_map(function(found) return found.code end, vim.diagnostic.get(0))
   end
-  becomes('a slip in a settings file is underlined', { 'unknown-key' }, codes)
+  becomes('a misspelt key in a settings file is underlined', { 'unknown-key' }, codes)
   go_to('sevrity')
   act('severity')
-  becomes('and mended', '[severity]', function() return vim.fn.getline(1) end)
-  becomes('and the underlining goes, too', {}, codes)
+  becomes('and fixed', '[severity]', function() return vim.fn.getline(1) end)
+  becomes('and no longer underlined', {}, codes)
   vim.cmd('bwipeout!')
   vim.uv.fs_unlink('pydslrep.toml')
   write('yard.scene.toml', '[wrold]\nseed = 2\n')
   open('yard.scene.toml')
-  becomes('a slip in a scene is underlined', { 'unknown-key' }, codes)
+  becomes('a misspelt key in a scene is underlined', { 'unknown-key' }, codes)
   go_to('wrold')
   act('world')
-  becomes('and mended, too', '[world]', function() return vim.fn.getline(1) end)
+  becomes('and fixed', '[world]', function() return vim.fn.getline(1) end)
   vim.cmd('bwipeout!')
   vim.uv.fs_unlink('yard.scene.toml')
   write('other.toml', 'x = 1\n')
   vim.cmd.edit('other.toml')
   sleep(100)
-  check('other TOML is nobody\'s business', not client())
+  check('other TOML is ignored', not client())
   vim.cmd('bwipeout!')
 end
 
@@ -265,8 +265,8 @@ local function quick_fix()
   go_to('whelR')
   local titles = act('wheelR')
   check('a quick fix is offered first', titles and titles[1]:find('wheelR'), titles)
-  becomes('and mends the text', MENDED, text)
-  becomes('and the underlining goes', {}, errors)
+  becomes('and fixes the text', FIXED, text)
+  becomes('and removes the underline', {}, errors)
   vim.cmd.write()
 end
 
@@ -277,27 +277,27 @@ local function script()
   end
   local titles = act('Generate script')
   check('Generate script is offered', vim.deep_equal(titles, { 'Generate script area_1.py' }), titles)
-  becomes('the script is there', BUILT, shown)
+  becomes('the script is generated', BUILT, shown)
   vim.cmd.wall()
-  check('saved, it is what the command builds, byte by byte', read('area_1.py') == BUILT)
+  check('it is identical to what the command builds', read('area_1.py') == BUILT)
 
   vim.cmd.bwipeout('area_1.py')
   write('area_1.py', 'print("mine")\n')
   act('Generate script')
   becomes('a script on the disk is replaced', BUILT, shown)
-  check('in its buffer only, until it is saved', read('area_1.py') == 'print("mine")\n')
+  check('only in its buffer until it is saved', read('area_1.py') == 'print("mine")\n')
   vim.cmd.sbuffer('area_1.py')
   vim.api.nvim_input('u')
-  becomes('what it was can be had back', 'print("mine")\n', shown)
+  becomes('undo restores it', 'print("mine")\n', shown)
 
   vim.api.nvim_input('ccunsaved<Esc>')
-  becomes('and changed by hand', 'unsaved\n', shown)
+  becomes('it can be edited', 'unsaved\n', shown)
   vim.cmd.wincmd('p')
   act('Generate script')
   becomes('a script open with unsaved text is replaced', BUILT, shown)
   vim.cmd.wincmd('p')
   vim.api.nvim_input('u')
-  becomes('which can be had back, too', 'unsaved\n', shown)
+  becomes('undo restores that text', 'unsaved\n', shown)
   vim.cmd.bwipeout({ bang = true })
 end
 
@@ -305,18 +305,18 @@ local function other_texts()
   local crlf = TYPO:gsub('\n', '\r\n')
   write('windows.pyr', crlf)
   open('windows.pyr')
-  becomes('with Windows line ends, the typo is at its place', unknown(), errors)
+  becomes('with Windows line ends, the error has the same range', unknown(), errors)
   go_to('whelR')
   act('wheelR')
-  becomes('and is mended', {}, errors)
+  becomes('and is fixed', {}, errors)
   vim.cmd.write()
-  check('and the line ends stay', read('windows.pyr') == MENDED:gsub('\n', '\r\n'), read('windows.pyr'))
+  check('the line ends are kept', read('windows.pyr') == FIXED:gsub('\n', '\r\n'), read('windows.pyr'))
 
-  -- A car of four UTF-8 bytes, two UTF-16 units and one character.
+  -- A car has four UTF-8 bytes, two UTF-16 units and one character.
   local comment = '/* 🚗 */ '
   write('emoji.pyr', (TYPO:gsub('robot robot_1', comment .. '%0')))
   open('emoji.pyr')
-  becomes('behind an emoji, the typo is at its place', unknown(#comment), errors)
+  becomes('after an emoji, the error has the right range', unknown(#comment), errors)
   vim.lsp.enable('pydslrep', false)
   wait(function() return not client() end)
   local capabilities = vim.lsp.protocol.make_client_capabilities()
@@ -325,10 +325,10 @@ local function other_texts()
   vim.lsp.enable('pydslrep')
   open('emoji.pyr')
   check('columns can be counted in UTF-16', client().offset_encoding == 'utf-16', client().offset_encoding)
-  becomes('with the same place', unknown(#comment), errors)
+  becomes('with the same range', unknown(#comment), errors)
   go_to('whelR')
   act('wheelR')
-  becomes('and the same fix', (MENDED:gsub('robot robot_1', comment .. '%0')), text)
+  becomes('and the same fix', (FIXED:gsub('robot robot_1', comment .. '%0')), text)
 end
 
 local function life()
@@ -337,7 +337,7 @@ local function life()
   vim.uv.kill(first, 'sigkill')
   check('a killed server is noticed', wait(function() return not client() end))
   open('typo.pyr')
-  check('and started again with the next file', client() and process() ~= first)
+  check('and restarted with the next file', client() and process() ~= first)
   if vim.fn.exists(':lsp') == 2 then
     local second = client().id
     vim.cmd('lsp restart')
@@ -345,7 +345,7 @@ local function life()
     check('the server can be restarted', wait(restarted))
   end
   vim.api.nvim_buf_set_lines(0, 0, 1, false, {})
-  becomes('and answers', 'unresolved-reference', function() return (errors()[1] or {})[5] end)
+  becomes('and responds', 'unresolved-reference', function() return (errors()[1] or {})[5] end)
   write('../server.pid', tostring(process()))
 end
 

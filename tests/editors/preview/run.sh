@@ -12,7 +12,7 @@ if [ ! -x "$CHROMIUM" ]; then
   if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
     apt-get update -qq && apt-get install -y -qq --no-install-recommends chromium fonts-dejavu-core
   else
-    echo "Chromium is missing: install it (on Debian and Ubuntu: apt install chromium), or set CHROMIUM" >&2
+    echo "Chromium is missing: install it (on Debian-based systems: apt install chromium), or set CHROMIUM" >&2
     exit 2
   fi
 fi

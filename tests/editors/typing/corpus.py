@@ -1,4 +1,4 @@
-"""The programs that are typed: those of the article, the examples, generated ones, and one for comments."""
+"""The programs to type: the article's, the examples, generated ones, and one with comments."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[3]
 DEBUG = ROOT / "target" / "debug"
 GENERATED = 50
-# How many entities and actions a generated program has, about.
+# The approximate number of entities and actions of a generated program.
 SIZE = 8
-# What continuous integration types: table 2, an example, generated ones.
+# The programs for continuous integration: table 2, an example, generated ones.
 FEW = ("table2_two_wheels", "mecanum", "generated_05", "generated_12")
 
 
 @dataclass(frozen=True)
 class Program:
-    """A program in the canonical layout."""
+    """A formatted program."""
 
     name: str
     text: str
 
 
 def programs() -> list[Program]:
-    """All of them, always in the same order."""
+    """All programs, in a fixed order."""
     folders = ("tests/paper", "examples", "tests/editors/typing/programs")
     files = [
         file for folder in folders for file in sorted((ROOT / folder).glob("*.pyr"))
@@ -40,7 +40,7 @@ def programs() -> list[Program]:
 
 
 def few() -> list[Program]:
-    """Those of them that show most defects in little time."""
+    """The programs that find most defects in little time."""
     return [program for program in programs() if program.name in FEW]
 
 
@@ -52,14 +52,14 @@ def _generated() -> list[str]:
 
 
 def _formatted(texts: dict[str, str], folder: Path) -> list[Program]:
-    """The programs in the canonical layout."""
+    """The programs, formatted."""
     parts = folder / "parts"
     parts.symlink_to(ROOT / "examples" / "parts")
     files = {name: folder / f"{name}.pyr" for name in texts}
     for name, file in files.items():
         file.write_text(texts[name])
     _run("fmt", files.values())
-    # What the article has printed has errors.
+    # The article's programs have errors.
     _run("check", [file for name, file in files.items() if "generated" in name])
     return [Program(name, file.read_text()) for name, file in files.items()]
 

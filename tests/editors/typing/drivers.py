@@ -1,4 +1,4 @@
-"""The editors that are typed into, each set up as its readme says, with completion that opens by itself."""
+"""The editors under test, each set up as its readme says, with automatic completion."""
 
 from __future__ import annotations
 
@@ -13,60 +13,59 @@ from typing import Any, cast
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from keyboard import Keyboard
-from person import Habits, same_leader, usual_leader
+from keystrokes import Behaviour, same_leader, usual_leader
 from session import MESSAGE, PROGRAM, ROOT, Session
 from terminal import Terminal
 
 HERE = Path(__file__).resolve().parent
-# For VS Code: what it has by default, unless the extension asks for something else.
+# VS Code's own default, which the extension changes.
 ENTER_ACCEPTS: dict[str, object] = {
     "[pydslrep]": {"editor.acceptSuggestionOnEnter": "on"}
 }
-# Nothing indents, so one does it oneself.
+# Without automatic indentation.
 TAB_INDENTS: dict[str, object] = {
     "[pydslrep]": {"editor.autoIndent": "none", "editor.formatOnType": False}
 }
-# Variables that name the folders of plugins.
+# Environment variables with the folders of plugins.
 CMP = ("NVIM_CMP", "CMP_NVIM_LSP")
 BLINK = ("BLINK_CMP",)
 
 
 class Editor:
-    """An editor that runs, in a folder with empty files to type into."""
+    """A running editor and a folder with empty files."""
 
-    habits: Habits
-    # Where programs are.
+    behaviour: Behaviour
     work: Path
 
     def open(self, file: Path) -> None:
-        """Opens an empty file, ready to be typed into."""
+        """Opens an empty file and puts the cursor in it."""
         raise NotImplementedError
 
     def type(self, keys: list[str], pace: float) -> float:
-        """Types, and returns how many seconds it took."""
+        """Presses keys, one each `pace` seconds; returns the seconds it took."""
         raise NotImplementedError
 
     def save(self) -> None:
-        """Writes the file as it is now."""
+        """Saves the file."""
         raise NotImplementedError
 
     def close(self) -> None:
-        """Ends the editor."""
+        """Quits the editor."""
         raise NotImplementedError
 
     def covered(self) -> list[str]:
-        """What has covered the line being typed, or the one above it, since it was last asked."""
+        """The popups that have covered the line being typed or the one above since the last call."""
         return []
 
     def screen(self) -> str:
-        """What it shows."""
+        """The text of the screen."""
         return ""
 
 
 class InTerminal(Editor):
-    """One whose screen is a terminal. Its first file has a mistake: once that is shown, the server is there."""
+    """An editor in a terminal. Its first file has an error; once it is shown, the server is running."""
 
-    mistake = re.escape(MESSAGE)
+    error_shown = re.escape(MESSAGE)
 
     def __init__(self, made: Session) -> None:
         self.made = made
@@ -75,24 +74,24 @@ class InTerminal(Editor):
         command = [*self.command(), str(made.program)]
         self.terminal = Terminal(command, made.program.parent, made.environment())
         self.keyboard = Keyboard(self.terminal)
-        if not self.terminal.wait(self.mistake):
+        if not self.terminal.wait(self.error_shown):
             shown = self.screen()
             self.close()
             raise SystemExit(f"the server did not answer:\n{shown}")
 
     def set_up(self) -> None:
-        """Writes its settings."""
+        """Writes its configuration."""
         self.made.set_up()
 
     def command(self) -> list[str]:
-        """What starts it."""
+        """The command that starts it."""
         raise NotImplementedError
 
     def type(self, keys: list[str], pace: float) -> float:
         return self.keyboard.type(keys, pace)
 
-    def say(self, *keys: str) -> None:
-        """Presses keys that are no part of a program: names of keys, and texts."""
+    def press(self, *keys: str) -> None:
+        """Presses keys that are not part of a program: names of keys, and texts."""
         for key in keys:
             if key in ("Enter", "Escape") or re.match(r"[CM]-", key):
                 self.keyboard.press(key)
@@ -109,32 +108,32 @@ class InTerminal(Editor):
 
 
 class Modal(InTerminal):
-    """One with a normal and an insert mode, and commands after a colon."""
+    """An editor with normal and insert mode, and commands after a colon."""
 
-    # What is on the screen in normal and in insert mode.
+    # Patterns of the screen in normal and in insert mode.
     normal: str
     insert: str
 
     def open(self, file: Path) -> None:
-        self.say(f":e {file}", "Enter")
+        self.press(f":e {file}", "Enter")
         self.terminal.wait(re.escape(file.name))
-        self.say("i")
+        self.press("i")
         self.terminal.wait(self.insert)
 
     def save(self) -> None:
-        self.say("Escape")
-        # A key right after Escape would be taken for one with Alt.
+        self.press("Escape")
+        # A key right after Escape would be read as one with Alt.
         self.terminal.wait(self.normal)
-        self.say(":w", "Enter")
+        self.press(":w", "Enter")
 
 
 class Neovim(Modal):
-    """Neovim with a completion plugin, or with its own completion."""
+    """Neovim with a completion plugin, or with built-in completion."""
 
-    habits = Habits(leader=same_leader, ends_last_line=True)
+    behaviour = Behaviour(leader=same_leader, ends_last_line=True)
     insert = "-- INSERT --"
     normal = r"(?s)\A(?!.*-- INSERT --)"
-    mistake = "(?m)^E "
+    error_shown = "(?m)^E "
 
     def __init__(
         self,
@@ -149,7 +148,7 @@ class Neovim(Modal):
         super().__init__(made)
 
     def set_up(self) -> None:
-        """The readme's settings without a plugin manager, and the plugin's or all that is optional in the readme."""
+        """Writes the readme's settings without a plugin manager, and the plugin's or else the readme's optional ones."""
         readme = (ROOT / "editors" / "neovim" / "README.md").read_text()
         blocks = re.findall(r"^```lua\n(.*?)^```", readme, re.M | re.S)
         packages = self.made.home / ".local/share/nvim/site/pack/person/start"
@@ -157,7 +156,7 @@ class Neovim(Modal):
         for variable in self.needs:
             folder = Path(os.environ.get(variable, "")).resolve()
             if not (folder / "lua").is_dir():
-                raise SystemExit(f"{variable} is to be the folder of that plugin")
+                raise SystemExit(f"{variable} must be the folder of that plugin")
             (packages / folder.name).symlink_to(folder)
         settings = self.made.home / ".config" / "nvim" / "init.lua"
         settings.parent.mkdir()
@@ -172,13 +171,15 @@ class Neovim(Modal):
 
 
 class Helix(Modal):
-    """Helix as it comes: completion and auto-closing brackets are on.
+    """Helix with default settings: completion and auto-closing brackets are on.
 
-    Ctrl+U scrolls parameter hints, and whoever types without a pause meets hints that Helix has not asked about anew.
+    Ctrl+U scrolls parameter hints, which may be outdated during fast typing.
     """
 
-    habits = Habits(leader=usual_leader, deletes_by_line=False, closes_braces=True)
-    mistake = "● 1"
+    behaviour = Behaviour(
+        leader=usual_leader, deletes_by_line=False, closes_braces=True
+    )
+    error_shown = "● 1"
     insert = "(?m)^ INS"
     normal = "(?m)^ NOR"
 
@@ -187,9 +188,9 @@ class Helix(Modal):
 
 
 class Kakoune(Modal):
-    """Kakoune with kakoune-lsp, as it comes."""
+    """Kakoune with kakoune-lsp and default settings."""
 
-    habits = Habits(ends_last_line=True)
+    behaviour = Behaviour(ends_last_line=True)
     insert = r"\binsert\b"
     normal = r"(?s)\A(?!.*\binsert\b)"
 
@@ -211,10 +212,10 @@ QUIET = """
 
 
 class Emacs(InTerminal):
-    """Emacs with eglot and a package that completes while one types."""
+    """Emacs with eglot and a package for automatic completion."""
 
-    habits = Habits(closes_braces=True)
-    mistake = r"\[eglot:"
+    behaviour = Behaviour(closes_braces=True)
+    error_shown = r"\[eglot:"
 
     def __init__(self, made: Session, package: str) -> None:
         self.package = package
@@ -238,17 +239,17 @@ class Emacs(InTerminal):
         return [os.environ["EMACS"], *options, "-nw"]
 
     def open(self, file: Path) -> None:
-        self.say("C-x", "C-f")
+        self.press("C-x", "C-f")
         self.terminal.wait("Find file: ")
-        self.say("C-a", "C-k", str(file), "Enter")
+        self.press("C-a", "C-k", str(file), "Enter")
         self.terminal.wait(rf"{re.escape(file.name)} .*All")
 
     def save(self) -> None:
-        self.say("C-x", "C-s")
+        self.press("C-x", "C-s")
 
 
 class VsCode(Editor):
-    """Visual Studio Code with default settings; vscode.mjs drives it."""
+    """Visual Studio Code, controlled by vscode.mjs."""
 
     def __init__(
         self,
@@ -256,7 +257,7 @@ class VsCode(Editor):
         settings: dict[str, object] | None = None,
         indents: bool = True,
     ) -> None:
-        self.habits = Habits(closes_braces=True, indents=indents)
+        self.behaviour = Behaviour(closes_braces=True, indents=indents)
         self.file = ""
         self.node = subprocess.Popen(
             ["node", str(HERE / "vscode.mjs")],
@@ -266,33 +267,33 @@ class VsCode(Editor):
         )
         self.found: list[str] = []
         self.work = Path(
-            self.ask("start", program=PROGRAM, settings=settings or {})["folder"]
+            self.request("start", program=PROGRAM, settings=settings or {})["folder"]
         )
 
-    def ask(self, action: str, **details: object) -> dict[str, Any]:
-        """Has something done, and waits for it."""
+    def request(self, action: str, **details: object) -> dict[str, Any]:
+        """Sends an action to vscode.mjs and returns its answer."""
         assert self.node.stdin
         assert self.node.stdout
         self.node.stdin.write(json.dumps({"action": action, **details}) + "\n")
         self.node.stdin.flush()
         answer = self.node.stdout.readline()
         if not answer:
-            raise SystemExit(f"the editor has ended while it was to {action}")
+            raise SystemExit(f"the editor exited during {action}")
         return cast("dict[str, Any]", json.loads(answer))
 
     def open(self, file: Path) -> None:
         self.file = file.stem
-        self.ask("open", name=file.name)
+        self.request("open", name=file.name)
 
     def type(self, keys: list[str], pace: float) -> float:
         kept = os.environ.get("FRAMES")
         frames = str(Path(kept, self.file)) if kept else None
-        typed = self.ask("type", keys=keys, pace=pace, frames=frames)
+        typed = self.request("type", keys=keys, pace=pace, frames=frames)
         self.found = typed["covered"]
         return float(typed["seconds"])
 
     def save(self) -> None:
-        self.ask("save")
+        self.request("save")
 
     def close(self) -> None:
         assert self.node.stdin

@@ -1,4 +1,4 @@
-"""Keys for a terminal at a steady pace: by one lasting connection to tmux, since a process for each would be late."""
+"""Presses keys in a terminal at a steady pace, through one tmux connection: a process per key would be too slow."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ class Keyboard:
         )
 
     def close(self) -> None:
-        """Ends the connection, not the terminal."""
+        """Closes the connection, not the terminal."""
         assert self.tmux.stdin
         self.tmux.stdin.close()
         self.tmux.wait()
 
     def press(self, key: str) -> None:
-        """Presses a key, at once."""
+        """Presses a key immediately."""
         assert self.tmux.stdin
         if len(key) == 1:
             quoted = '"\'"' if key == "'" else f"'{key}'"
@@ -39,10 +39,10 @@ class Keyboard:
         self.tmux.stdin.flush()
 
     def type(self, keys: Iterable[str], pace: float) -> float:
-        """Presses keys, one each `pace` seconds, and returns how long it took."""
+        """Presses keys, one each `pace` seconds; returns the seconds it took."""
         start = time.monotonic()
         for number, key in enumerate(keys):
-            # The pace is what is tested. Who is late goes on at once, as a person's keys wait in the editor.
+            # Late keys follow at once: the pace is under test, and the editor queues keys.
             time.sleep(max(0.0, start + number * pace - time.monotonic()))
             self.press(key)
         return time.monotonic() - start

@@ -1,4 +1,4 @@
-"""Types programs key by key into a real editor, and compares what is in its buffer then with the program.
+"""Types programs key by key into a real editor and compares its buffer with the program.
 
 See README.md.
 """
@@ -18,13 +18,13 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from corpus import FEW, Program, programs
 from drivers import EDITORS, Editor
-from person import Stroke, strokes
+from keystrokes import Stroke, strokes
 from session import ROOT, session
 
 PACES = (30, 70, 150)
-# Without `--all`, all programs are typed at the first pace, and the first of them at the second.
+# Without `--all`, a few programs are typed at the first pace, and the first one also at the second.
 FEW_PACES = (70, 30)
-# How long a file may take to be written, in seconds.
+# How long saving a file may take, seconds.
 PATIENCE = 5.0
 SIGNS = {
     " ": "␣",
@@ -39,25 +39,25 @@ SIGNS = {
 
 @dataclass(frozen=True)
 class Task:
-    """A program to be typed, with so many milliseconds from key to key."""
+    """A program and the milliseconds between keys."""
 
     program: Program
     pace: int
 
     @property
     def file(self) -> str:
-        """The file that it is typed into."""
+        """The file to type it into."""
         return f"{self.program.name}_{self.pace}.pyr"
 
 
 @dataclass
 class Outcome:
-    """What became of a task."""
+    """The result of a task."""
 
     task: Task
     keys: int
     seconds: float = 0.0
-    complaints: list[str] = field(default_factory=list)
+    problems: list[str] = field(default_factory=list)
 
 
 def main() -> None:
@@ -67,7 +67,7 @@ def main() -> None:
     with ThreadPoolExecutor(options.jobs) as pool:
         shared = pool.map(lambda share: record(options.editor, share), shares)
         outcomes = [outcome for share in shared for outcome in share]
-    failed = [outcome for outcome in outcomes if outcome.complaints]
+    failed = [outcome for outcome in outcomes if outcome.problems]
     for pace in sorted({outcome.task.pace for outcome in outcomes}):
         print(
             summary(options.editor, [one for one in outcomes if one.task.pace == pace])
@@ -81,14 +81,16 @@ def arguments() -> argparse.Namespace:
     parser.add_argument(
         "--all", action="store_true", help="all programs, at every pace"
     )
-    parser.add_argument("--programs", metavar="GLOB", help="programs with such a name")
-    parser.add_argument("--pace", type=int, action="append", help="milliseconds a key")
+    parser.add_argument("--programs", metavar="GLOB", help="programs whose names match")
+    parser.add_argument(
+        "--pace", type=int, action="append", help="milliseconds per key"
+    )
     parser.add_argument("--jobs", type=int, default=1, help="editors at the same time")
     return parser.parse_args()
 
 
 def tasks(options: argparse.Namespace) -> Iterator[Task]:
-    """What is to be typed."""
+    """The tasks that the options select."""
     paces = options.pace or (PACES if options.all else FEW_PACES)
     for program in programs():
         if options.programs:
@@ -106,7 +108,7 @@ def tasks(options: argparse.Namespace) -> Iterator[Task]:
 
 
 def record(name: str, share: list[Task]) -> list[Outcome]:
-    """Types programs one after the other into one editor, or another one where that is lost."""
+    """Types programs one after the other into an editor, which is restarted after a failure."""
     outcomes: list[Outcome] = []
     left = list(share)
     while left:
@@ -117,7 +119,7 @@ def record(name: str, share: list[Task]) -> list[Outcome]:
                 while left:
                     outcomes.append(typed(editor, left.pop(0)))
                     show(outcomes[-1])
-                    if outcomes[-1].complaints:
+                    if outcomes[-1].problems:
                         break
             finally:
                 editor.close()
@@ -125,7 +127,7 @@ def record(name: str, share: list[Task]) -> list[Outcome]:
 
 
 def prepare(work: Path, left: list[Task]) -> None:
-    """Empty files, and what programs import."""
+    """Creates empty files and the imports of programs."""
     shutil.copytree(ROOT / "examples" / "parts", work / "parts")
     for task in left:
         (work / task.file).touch()
@@ -134,25 +136,25 @@ def prepare(work: Path, left: list[Task]) -> None:
 def typed(editor: Editor, task: Task) -> Outcome:
     """Types a program into its file and compares."""
     file = editor.work / task.file
-    all_strokes = strokes(task.program.text, editor.habits)
+    all_strokes = strokes(task.program.text, editor.behaviour)
     keys = [stroke.key for stroke in all_strokes]
     editor.open(file)
     outcome = Outcome(task, len(keys), editor.type(keys, task.pace / 1000))
-    outcome.complaints += editor.covered()
+    outcome.problems += editor.covered()
     editor.save()
     text = saved(file, task.program.text)
     if text != task.program.text:
-        outcome.complaints.append(difference(task.program.text, text, all_strokes))
+        outcome.problems.append(difference(task.program.text, text, all_strokes))
         if not text:
-            outcome.complaints.append(editor.screen())
+            outcome.problems.append(editor.screen())
     return outcome
 
 
 def saved(file: Path, expected: str) -> str:
-    """What is in a file once it is written; it is waited for what is expected."""
+    """The text of a saved file; waits for the expected text."""
     until = time.monotonic() + PATIENCE
     while True:
-        # Helix has it elsewhere while it writes.
+        # Helix moves the file while it writes.
         text = file.read_text() if file.exists() else ""
         if text == expected or time.monotonic() > until:
             return text
@@ -160,7 +162,7 @@ def saved(file: Path, expected: str) -> str:
 
 
 def difference(program: str, text: str, typed: list[Stroke]) -> str:
-    """The first line that is not as it was typed, and the keys for it."""
+    """The first line that differs, and its keys."""
     if not text:
         return "nothing was saved"
     wanted, found = program.split("\n"), text.split("\n")
@@ -176,25 +178,23 @@ def difference(program: str, text: str, typed: list[Stroke]) -> str:
 
 
 def show(outcome: Outcome) -> None:
-    """Says what became of a task."""
-    verdict = "FAIL" if outcome.complaints else "ok  "
+    """Prints the result of a task."""
+    verdict = "FAIL" if outcome.problems else "ok  "
     print(
         f"{verdict} {outcome.task.program.name} at {outcome.task.pace} ms", flush=True
     )
-    for complaint in outcome.complaints:
-        print("     " + complaint.replace("\n", "\n     "), flush=True)
+    for problem in outcome.problems:
+        print("     " + problem.replace("\n", "\n     "), flush=True)
 
 
 def summary(editor: str, outcomes: list[Outcome]) -> str:
-    """A line for an editor at a pace. The pace that it had on this machine is said as well."""
+    """A line about an editor at a pace, with the pace that this machine achieved."""
     keys = sum(outcome.keys for outcome in outcomes)
     real = sum(outcome.seconds for outcome in outcomes) * 1000 / keys
-    fine = sum(not outcome.complaints for outcome in outcomes)
+    passed = sum(not outcome.problems for outcome in outcomes)
     wanted = outcomes[0].task.pace
-    count = f"{fine} of {len(outcomes)} programs as typed"
-    return (
-        f"{editor} at {wanted} ms a key: {count} ({keys} keys, one each {real:.1f} ms)"
-    )
+    count = f"{passed} of {len(outcomes)} programs as typed"
+    return f"{editor} at {wanted} ms per key: {count} ({keys} keys, one every {real:.1f} ms)"
 
 
 if __name__ == "__main__":

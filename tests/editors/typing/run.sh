@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Types programs key by key into real editors: `run.sh typing [--editor NAME]... [OPTIONS]`, see README.md. Without an
-# editor, a few programs into VS Code and Neovim.
+# Types programs key by key into real editors: `run.sh typing [--editor NAME]... [OPTIONS]`, see README.md. The default
+# editors are VS Code and Neovim.
 set -euo pipefail
 typing=$(cd "$(dirname "$0")" && pwd)
 . "$typing/../debian.sh"
@@ -14,7 +14,7 @@ while [ $# -gt 0 ]; do
 done
 [ ${#editors[@]} -gt 0 ] || editors=(vscode neovim)
 
-# The generator of programs is no part of what users get.
+# The generator of programs is not part of the product.
 (cd "$repository" && cargo build --quiet --locked --bin random-programs --bin pydslrep --bin pydslrep-lsp)
 built=$(realpath "${CARGO_TARGET_DIR:-$repository/target}/debug")
 export PYDSLREP=${PYDSLREP:-$built/pydslrep} PYDSLREP_LSP=${PYDSLREP_LSP:-$built/pydslrep-lsp} RANDOM_PROGRAMS=$built/random-programs
@@ -28,7 +28,7 @@ type_into() { # editor
   esac
   case $editor in
     neovim*)
-      # Inside Neovim's own terminal the variable holds the socket of that Neovim.
+      # In Neovim's terminal the variable contains the socket of that Neovim.
       [ -S "${NVIM:-}" ] && NVIM=
       export NVIM=${NVIM:-$(unpacked forky neovim)/usr/bin/nvim}
       ;;
@@ -36,7 +36,7 @@ type_into() { # editor
     kakoune) find_kakoune ;;
     emacs-*)
       find_emacs
-      # With what it needs: corfu alone is for windows.
+      # The package for terminals depends on corfu itself.
       case $editor in *corfu) package=elpa-corfu-terminal ;; *) package=elpa-company ;; esac
       ELPA=$(unpacked trixie $package)/usr/share/emacs/site-lisp/elpa-src
       export ELPA
@@ -45,7 +45,7 @@ type_into() { # editor
   "${record[@]}"
 }
 
-# Side by side: most of the time they wait for the next key.
+# In parallel: most of the time they wait for the next key.
 running=()
 for editor in "${editors[@]}"; do
   type_into "$editor" 2>&1 | sed "s/^/$editor: /" &

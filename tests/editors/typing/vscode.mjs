@@ -1,5 +1,5 @@
-// Types into Visual Studio Code for record.py: a JSON object with an action on each line of standard input, an answer on
-// each of standard output.
+// Types into Visual Studio Code for record.py: reads a JSON object with an action from each line of standard input and
+// prints an answer for each.
 import { mkdirSync } from "node:fs";
 import path from "node:path";
 import readline from "node:readline";
@@ -11,7 +11,7 @@ let stage;
 const ACTIONS = {
   async start({ program, settings }) {
     stage = await Stage.open({ files: { "patrol.pyr": program }, open: "patrol.pyr", settings });
-    // The server is there once it has found the mistake.
+    // The server is running once the error is shown.
     await stage.page.locator(".squiggly-error").first().waitFor();
     await stage.page.evaluate(watch);
     return { folder: stage.folder };
@@ -23,14 +23,14 @@ const ACTIONS = {
     return {};
   },
 
-  /** Presses keys, one each `pace` seconds. `frames` is a folder for ten pictures of it. */
+  /** Presses keys, one each `pace` seconds. `frames` is a folder for ten screenshots. */
   async type({ keys, pace, frames }) {
     await stage.page.evaluate(() => {
       globalThis.covered = {};
     });
     const start = performance.now();
     for (const [number, key] of keys.entries()) {
-      // The pace is what is tested. Who is late goes on at once, as a person's keys wait in the editor.
+      // Late keys follow at once: the pace is under test, and the editor queues keys.
       const wait = start + number * pace * 1000 - performance.now();
       if (wait > 0) {
         await new Promise((resolve) => setTimeout(resolve, wait));
@@ -61,7 +61,7 @@ async function takeFrame(folder, number) {
   await stage.page.screenshot({ path: path.join(folder, `${String(number).padStart(2, "0")}.png`) });
 }
 
-/** In the page: notes at every frame whether something lies over the line of the cursor or the one above it. */
+/** In the page: records at every frame whether a popup covers the line of the cursor or the one above. */
 function watch() {
   const POPUPS = {
     completion: ".suggest-widget.visible",
@@ -72,7 +72,7 @@ function watch() {
     rename: ".rename-box",
   };
   globalThis.covered = {};
-  const look = () => {
+  const check = () => {
     const cursor = document.querySelector(".monaco-editor.focused .cursors-layer .cursor")?.getBoundingClientRect();
     for (const [name, selector] of cursor?.height ? Object.entries(POPUPS) : []) {
       for (const popup of document.querySelectorAll(selector)) {
@@ -89,9 +89,9 @@ function watch() {
         }
       }
     }
-    requestAnimationFrame(look);
+    requestAnimationFrame(check);
   };
-  look();
+  check();
 }
 
 for await (const line of readline.createInterface({ input: process.stdin })) {

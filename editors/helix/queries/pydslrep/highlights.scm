@@ -1,4 +1,4 @@
-; Made from grammar/tree-sitter/queries/highlights.scm.
+; Generated from grammar/tree-sitter/queries/highlights.scm.
 
 [
   "wheel" "wheelH" "with" "radius" "sensor" "ip" "robot" "type" "tw" "fw" "fwh" "port" "has" "wheels" "sensors"
@@ -7,7 +7,7 @@
 ] @keyword
 (slam) @keyword
 
-; Where a word cannot stand, the parser takes it for a name.
+; Where a keyword is not allowed, the parser reads it as a name.
 ((ERROR (name) @keyword)
   (#any-of? @keyword
     "wheel" "wheelH" "with" "radius" "sensor" "ip" "robot" "type" "tw" "fw" "fwh" "port" "has" "wheels" "sensors"

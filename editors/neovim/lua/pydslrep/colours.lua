@@ -1,9 +1,9 @@
---- The colours of what the server knows are those of the parser and of the syntax file, whatever a colour scheme has
---- for servers: nothing changes when the server comes. The pairs are from `grammar/colours.json`.
+--- Semantic tokens get the colours of the parser and of the syntax file, whatever a colour scheme defines for servers,
+--- so that no colour changes when the server responds. The table is from `grammar/colours.json`.
 
 local M = {}
 
---- What the server calls a word, and what the parser does.
+--- The parser's capture for each type of semantic token.
 local CAPTURES = {
   keyword = 'keyword',
   number = 'number',
@@ -17,11 +17,11 @@ local CAPTURES = {
   namespace = 'module',
 }
 
---- Links the groups of the server's words to the parser's; a colour scheme that names them for programs wins.
+--- Links the highlight groups of semantic tokens to the parser's; groups that a colour scheme defines are kept.
 function M.link()
-  for kind, capture in pairs(CAPTURES) do
-    local own = ('@lsp.type.%s.pydslrep'):format(kind)
-    vim.api.nvim_set_hl(0, own, { link = ('@%s.pydslrep'):format(capture), default = true })
+  for token_type, capture in pairs(CAPTURES) do
+    local group = ('@lsp.type.%s.pydslrep'):format(token_type)
+    vim.api.nvim_set_hl(0, group, { link = ('@%s.pydslrep'):format(capture), default = true })
   end
 end
 

@@ -1,24 +1,24 @@
---- `:Pydslrep`: one command, with a word for each thing it does.
+--- The command `:Pydslrep` and its subcommands.
 
 local pydslrep = require('pydslrep')
-local say = require('pydslrep.say')
+local notify = require('pydslrep.notify')
 
 local M = {}
 
 ---@class pydslrep.Subcommand
----@field takes? 'environment'|'dir' What may follow it.
----@field act fun(argument?: string)
+---@field argument? 'environment'|'dir' The kind of its optional argument.
+---@field execute fun(argument?: string)
 
 ---@type table<string, pydslrep.Subcommand>
 local subcommands = {
-  generate = { takes = 'environment', act = pydslrep.generate },
-  run = { takes = 'environment', act = pydslrep.run },
-  preview = { takes = 'environment', act = pydslrep.preview },
-  parser = { takes = 'dir', act = pydslrep.parser },
-  stop = { act = pydslrep.stop },
-  restart = { act = pydslrep.restart },
-  log = { act = pydslrep.log },
-  health = { act = function() vim.cmd.checkhealth('pydslrep') end },
+  generate = { argument = 'environment', execute = pydslrep.generate },
+  run = { argument = 'environment', execute = pydslrep.run },
+  preview = { argument = 'environment', execute = pydslrep.preview },
+  parser = { argument = 'dir', execute = pydslrep.parser },
+  stop = { execute = pydslrep.stop },
+  restart = { execute = pydslrep.restart },
+  log = { execute = pydslrep.log },
+  health = { execute = function() vim.cmd.checkhealth('pydslrep') end },
 }
 
 ---@return string[]
@@ -49,11 +49,11 @@ function M.complete(typed, line)
   if #before == 1 then
     offered = names()
   elseif #before == 2 then
-    local takes = (subcommands[before[2]] or {}).takes
-    if takes == 'dir' then
+    local kind = (subcommands[before[2]] or {}).argument
+    if kind == 'dir' then
       return vim.fn.getcompletion(typed, 'dir')
     end
-    offered = takes == 'environment' and environments() or {}
+    offered = kind == 'environment' and environments() or {}
   end
   return vim.tbl_filter(function(word) return vim.startswith(word, typed) end, offered)
 end
@@ -63,12 +63,12 @@ function M.run(arguments)
   local name, argument = arguments[1], arguments[2]
   local subcommand = subcommands[name]
   if not subcommand then
-    local said = name and ('there is no `:Pydslrep %s`'):format(name) or '`:Pydslrep` is to be followed by a word'
-    say.error(('%s; there are: %s'):format(said, table.concat(names(), ', ')))
-  elseif #arguments > (subcommand.takes and 2 or 1) then
-    say.error(('`:Pydslrep %s` takes %s'):format(name, subcommand.takes and 'one word only' or 'nothing more'))
+    local problem = name and ('unknown subcommand `%s`'):format(name) or 'missing subcommand'
+    notify.error(('%s; use one of: %s'):format(problem, table.concat(names(), ', ')))
+  elseif #arguments > (subcommand.argument and 2 or 1) then
+    notify.error(('`:Pydslrep %s` takes %s'):format(name, subcommand.argument and 'one argument' or 'no argument'))
   else
-    subcommand.act(argument)
+    subcommand.execute(argument)
   end
 end
 

@@ -1,13 +1,13 @@
---- What a person can set, in `vim.g.pydslrep` or by `require('pydslrep').setup()`; `:help pydslrep-options`.
+--- The options, set in `vim.g.pydslrep` or with `require('pydslrep').setup()`; see `:help pydslrep-options`.
 
 ---@class pydslrep.Options
----@field cmd? string[] How the server is started; by default whatever is found.
----@field settings? table What docs/configuration.md names, e.g. `{ severity = { ['wheel-order'] = 'off' } }`.
+---@field cmd? string[] The command that starts the server; found automatically by default.
+---@field settings? table The settings of docs/configuration.md, e.g. `{ severity = { ['wheel-order'] = 'off' } }`.
 ---@field enable? boolean Whether the server starts with the first program.
----@field highlight? boolean Whether tree-sitter colours programs where its parser is there.
----@field folding? boolean Whether programs can be folded, all open at first.
+---@field highlight? boolean Whether to highlight with tree-sitter if its parser is installed.
+---@field folding? boolean Whether to set up folding, with all folds open.
 ---@field grammar? string The folder of the tree-sitter grammar that `:Pydslrep parser` builds.
----@field open? fun(picture: string) What opens a picture; by default what the system has for it.
+---@field open? fun(picture: string) Opens a picture; by default with the system's viewer.
 
 local M = {}
 
@@ -24,12 +24,12 @@ local types = {
   open = 'function',
 }
 
---- What is wrong with the options, one line for each.
+--- The problems of the options, one line each.
 ---@param options any
 ---@return string[]
 function M.problems(options)
   if type(options) ~= 'table' then
-    return { 'the options are to be a table, not a ' .. type(options) }
+    return { 'the options must be a table, not a ' .. type(options) }
   end
   local found = {}
   for key, value in pairs(options) do
@@ -37,16 +37,16 @@ function M.problems(options)
     if not wanted then
       local known = vim.tbl_keys(types)
       table.sort(known)
-      table.insert(found, ('there is no option `%s`; there are: %s'):format(key, table.concat(known, ', ')))
+      table.insert(found, ('unknown option `%s`; use one of: %s'):format(key, table.concat(known, ', ')))
     elseif type(value) ~= wanted then
-      table.insert(found, ('`%s` is to be a %s, not a %s'):format(key, wanted, type(value)))
+      table.insert(found, ('`%s` must be a %s, not a %s'):format(key, wanted, type(value)))
     end
   end
   table.sort(found)
   return found
 end
 
---- The options as they are now: what is wrong counts as not set.
+--- The current options; invalid ones have their defaults.
 ---@return pydslrep.Options
 function M.get()
   local options = vim.deepcopy(defaults)

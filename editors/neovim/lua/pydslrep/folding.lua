@@ -1,12 +1,12 @@
---- Folding: by the server where it is attached, else by tree-sitter, else by the syntax file.
+--- Sets up folding: by the server if attached, or else by tree-sitter or the syntax file.
 
 local config = require('pydslrep.config')
 
 local M = {}
 
---- Whether the person leaves folding to us: nothing else is set.
+--- Whether the user has set no other folding.
 ---@return boolean
-local function is_free()
+local function is_enabled()
   return config.get().folding and vim.go.foldmethod == 'manual'
 end
 
@@ -19,17 +19,17 @@ local function use(window, method, expression)
   if expression then
     options.foldexpr = expression
   end
-  -- Without a wish of the person's, a program opens with nothing folded.
+  -- Unless the user has set it otherwise, all folds are open.
   if vim.go.foldlevelstart < 0 and vim.go.foldlevel == 0 and options.foldlevel == 0 then
     options.foldlevel = 99
   end
 end
 
---- For a program that is shown and has no server yet.
+--- Folds a newly opened program, before the server is attached.
 ---@param buffer integer
 ---@param has_parser boolean
 function M.open(buffer, has_parser)
-  if not is_free() then
+  if not is_enabled() then
     return
   end
   for _, window in ipairs(vim.fn.win_findbuf(buffer)) do
@@ -41,10 +41,10 @@ function M.open(buffer, has_parser)
   end
 end
 
---- The server is there: it knows regions and imports, too.
+--- Switches to the server, which also folds regions and imports.
 ---@param buffer integer
 function M.attached(buffer)
-  if not is_free() or not vim.lsp.foldexpr then
+  if not is_enabled() or not vim.lsp.foldexpr then
     return
   end
   for _, window in ipairs(vim.fn.win_findbuf(buffer)) do

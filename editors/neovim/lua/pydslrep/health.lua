@@ -1,4 +1,4 @@
---- `:checkhealth pydslrep`: what is there, what is not, and what to do next.
+--- `:checkhealth pydslrep`: what is installed, what is missing, and what to do about it.
 
 local config = require('pydslrep.config')
 local parser = require('pydslrep.parser')
@@ -6,10 +6,10 @@ local server = require('pydslrep.server')
 
 local M = {}
 
---- What a program says of itself in one line, or nothing if it cannot be started.
+--- The first line that a command prints; nil if it fails.
 ---@param command string[]
 ---@return string?
-local function ask(command)
+local function first_line(command)
   local started, process = pcall(vim.system, command, { text = true, timeout = 5000 })
   if not started then
     return nil
@@ -24,19 +24,19 @@ local function neovim()
   if vim.fn.has('nvim-0.11') == 1 then
     vim.health.ok(version)
   else
-    vim.health.warn(version .. ' works, but knows less of the protocol', 'Neovim 0.11 or later folds by the server')
+    vim.health.warn(version .. ' lacks some LSP features', 'Neovim 0.11 or later supports folding by the server')
   end
   for _, problem in ipairs(vim.g.pydslrep and config.problems(vim.g.pydslrep) or {}) do
     vim.health.error('options: ' .. problem, ':help pydslrep-options')
   end
 end
 
---- What goes with a server: the command of the same build.
+--- The command that was built with a server.
 ---@param executable string
 ---@return string
-local function command_beside(executable)
-  local beside = vim.fs.joinpath(vim.fs.dirname(vim.uv.fs_realpath(executable) or executable), 'pydslrep')
-  return vim.fn.executable(beside) == 1 and beside or 'pydslrep'
+local function command_next_to(executable)
+  local command = vim.fs.joinpath(vim.fs.dirname(vim.uv.fs_realpath(executable) or executable), 'pydslrep')
+  return vim.fn.executable(command) == 1 and command or 'pydslrep'
 end
 
 local function language_server()
@@ -44,15 +44,15 @@ local function language_server()
   local set = vim.lsp.config and vim.lsp.config[server.NAME] or {}
   local command = set.cmd or server.command()
   if type(command) ~= 'table' then
-    vim.health.info('a function of yours starts it')
+    vim.health.info('started by a function in your configuration')
     return
   end
   local path = vim.fn.exepath(command[1])
   if path == '' then
-    vim.health.error(('there is no `%s`'):format(command[1]), server.ADVICE)
+    vim.health.error(('`%s` was not found'):format(command[1]), server.ADVICE)
     return
   end
-  local version = ask({ path, '--version' })
+  local version = first_line({ path, '--version' })
   if not version then
     vim.health.error(path .. ' does not start', 'run it in a terminal: ' .. path .. ' --version')
     return
@@ -60,28 +60,28 @@ local function language_server()
   vim.health.ok(('%s: %s'):format(path, version))
   local clients = server.clients()
   if #clients == 0 then
-    vim.health.info('not running; it starts with the first program (`*.pyr`)')
+    vim.health.info('not running; starts with the first program (`*.pyr`)')
   end
   for _, client in ipairs(clients) do
     local buffers = vim.tbl_count(client.attached_buffers)
-    local place = client.root_dir or 'no folder: neither a pydslrep.toml nor a .git is above the program'
-    vim.health.ok(('running for %d buffer%s, %s'):format(buffers, buffers == 1 and '' or 's', place))
+    local folder = client.root_dir or 'no folder: no parent folder contains pydslrep.toml or .git'
+    vim.health.ok(('running for %d buffer%s, %s'):format(buffers, buffers == 1 and '' or 's', folder))
   end
-  local beside = command_beside(path)
-  local found = ask({ beside, '--version' })
+  local companion = command_next_to(path)
+  local found = first_line({ companion, '--version' })
   if found then
-    vim.health.ok(('%s, for runs and previews: %s'):format(beside, found))
+    vim.health.ok(('%s, for runs and previews: %s'):format(companion, found))
   else
-    vim.health.warn('there is no `pydslrep`: no runs and no previews',
+    vim.health.warn('`pydslrep` was not found; runs and previews need it',
       'in a clone of PyDSLRep: cargo install --locked --path crates/cli')
   end
 end
 
 local function python()
   vim.health.start('Python')
-  local advice = 'runs need Python 3.11 or later with venv: `pydslrep run --help`'
+  local advice = 'runs need Python 3.11 or later with venv; see `pydslrep run --help`'
   for _, name in ipairs({ 'python3', 'python' }) do
-    local version = ask({ name, '--version' })
+    local version = first_line({ name, '--version' })
     if version then
       local major, minor = version:match('(%d+)%.(%d+)')
       local what = ('%s: %s'):format(vim.fn.exepath(name), version)
@@ -93,7 +93,7 @@ local function python()
       return
     end
   end
-  vim.health.warn('there is no `python3`: no runs', advice)
+  vim.health.warn('`python3` was not found; runs need it', advice)
 end
 
 local function colours()
@@ -103,13 +103,13 @@ local function colours()
     vim.health.ok(parser.found())
     return
   end
-  vim.health.info('not there: programs get their colours from the syntax file and the server')
+  vim.health.info('not installed; the syntax file and the server highlight programs')
   if parser.found() then
-    vim.health.warn('there is one that cannot be used: ' .. why, ':Pydslrep parser builds it anew')
+    vim.health.warn('installed, but cannot be used: ' .. why, 'rebuild it with :Pydslrep parser')
   elseif not parser.compiler() then
-    vim.health.info('to build it, install a C compiler; then :Pydslrep parser')
+    vim.health.info('to build it, install a C compiler and run :Pydslrep parser')
   else
-    vim.health.info((':Pydslrep parser builds it, with %s'):format(parser.compiler()))
+    vim.health.info((':Pydslrep parser builds it with %s'):format(parser.compiler()))
   end
 end
 

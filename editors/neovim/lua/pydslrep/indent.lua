@@ -1,8 +1,8 @@
---- Indentation, also while there is no server: what stands between braces is one step further in.
+--- Indentation without the server: one step for each open brace.
 
 local M = {}
 
---- How far back the beginning of a comment is looked for.
+--- How many lines to search for the start of a comment.
 local LONGEST_COMMENT = 200
 
 --- A line without its comments.
@@ -12,10 +12,10 @@ local function code(line)
   return (line:gsub('/%*.-%*/', ''):gsub('//.*', ''):gsub('/%*.*', ''):gsub('^.*%*/', ''))
 end
 
---- The line in which the block comment begins that a line begins in, if it begins in one.
+--- The first line of the block comment that a line starts in, if any.
 ---@param number integer
 ---@return integer?
-local function comment_around(number)
+local function enclosing_comment(number)
   for before = number - 1, math.max(1, number - LONGEST_COMMENT), -1 do
     local line = vim.fn.getline(before):gsub('/%*.-%*/', ''):gsub('//.*', '')
     if line:find('/*', 1, true) then
@@ -26,7 +26,7 @@ local function comment_around(number)
   end
 end
 
---- How many more braces a line opens than it closes, and how many it closes before it opens any.
+--- How many more braces a line opens than it closes, and how many of them it closes first.
 ---@param line string
 ---@return integer, integer
 local function braces(line)
@@ -38,12 +38,12 @@ local function braces(line)
   return depth, -lowest
 end
 
---- For 'indentexpr': the columns that a line is to be indented by.
----@param number integer The line's, from 1.
----@return integer -1 to leave it as it is.
+--- For 'indentexpr': the indentation of a line, in columns.
+---@param number integer Starts at 1.
+---@return integer -1 keeps the indentation.
 function M.of_line(number)
   local line = vim.fn.getline(number)
-  local comment = comment_around(number)
+  local comment = enclosing_comment(number)
   if comment then
     return line:match('^%s*%*') and vim.fn.indent(comment) + 1 or -1
   end
@@ -52,13 +52,13 @@ function M.of_line(number)
     return 0
   end
   local depth, closed_first = braces(vim.fn.getline(before))
-  -- What a line closes at its beginning has moved the line itself already.
+  -- A brace closed at the start of a line has already moved that line.
   local starts_closing = code(vim.fn.getline(before)):match('^%s*}') and 1 or 0
   local steps = depth + math.min(closed_first, starts_closing)
   if line:match('^%s*}') then
     steps = steps - 1
   end
-  return math.max(0, vim.fn.indent(comment_around(before) or before) + steps * vim.fn.shiftwidth())
+  return math.max(0, vim.fn.indent(enclosing_comment(before) or before) + steps * vim.fn.shiftwidth())
 end
 
 return M

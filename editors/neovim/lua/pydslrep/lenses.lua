@@ -1,10 +1,10 @@
---- What the lenses above declarations do when they are run (`grx`).
+--- The commands of code lenses (`grx`).
 
 local runs = require('pydslrep.runs')
 
 local M = {}
 
---- Lists references; the command's arguments are an address, a position and the places.
+--- Lists references; the command's arguments are a URI, a position and locations.
 ---@param command lsp.Command
 ---@param context { client_id: integer }
 local function show_references(command, context)
@@ -16,7 +16,7 @@ local function show_references(command, context)
   end
 end
 
---- Makes the commands known to Neovim, which otherwise passes them to the server and forgets the answer.
+--- Registers the commands in Neovim, which would otherwise ignore the server's answer.
 function M.register()
   vim.lsp.commands['pydslrep.showReferences'] = show_references
   for _, name in ipairs({ 'pydslrep.generateScript', 'pydslrep.run', 'pydslrep.previewPath' }) do

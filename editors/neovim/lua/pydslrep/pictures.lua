@@ -1,29 +1,29 @@
---- Pictures that the server has drawn, and how they are opened.
+--- Opens pictures that the server has drawn.
 
 local config = require('pydslrep.config')
-local say = require('pydslrep.say')
+local notify = require('pydslrep.notify')
 
 local M = {}
 
---- Opens a picture outside Neovim; where nothing can, it says where it is.
+--- Opens a picture outside Neovim; if that fails, a warning names its file.
 ---@param path string
 ---@return boolean
 local function open(path)
-  local set = config.get().open
+  local custom = config.get().open
   local started, why
-  if set then
-    started, why = pcall(set, path)
+  if custom then
+    started, why = pcall(custom, path)
   else
     started, why = vim.ui.open(path)
   end
   if not started then
-    say.warning(('nothing opens the picture (%s); it is %s'):format(why, path))
+    notify.warning(('cannot open the picture (%s): %s'):format(why, path))
     return false
   end
   return true
 end
 
---- `window/showDocument`. Neovim's own handler waits for the viewer and then kills it.
+--- Handles `window/showDocument`. Neovim's own handler waits for the viewer and then kills it.
 ---@param problem lsp.ResponseError?
 ---@param params lsp.ShowDocumentParams
 ---@param context lsp.HandlerContext

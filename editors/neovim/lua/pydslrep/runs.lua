@@ -1,17 +1,17 @@
---- Scripts, runs and previews: the server's commands about an environment, and what they come to.
+--- Executes the server's commands on an environment and shows their results.
 
-local say = require('pydslrep.say')
+local notify = require('pydslrep.notify')
 local server = require('pydslrep.server')
 
 local M = {}
 
----@class pydslrep.Chosen What the server's commands are about.
+---@class pydslrep.EnvironmentId The argument of the server's commands.
 ---@field uri string
 ---@field environment string
 
 ---@class pydslrep.Run
 ---@field client vim.lsp.Client
----@field token string What its progress goes by.
+---@field token string Identifies its progress.
 ---@field progress pydslrep.Progress
 ---@field stopping boolean
 
@@ -19,17 +19,17 @@ local M = {}
 ---@field picture? string
 ---@field output? string
 
---- The run there is, and how many there were.
+--- The current run, and the number of runs so far.
 ---@type pydslrep.Run?
 local current
 local count = 0
 
 local TITLES = { ['pydslrep.run'] = 'Run', ['pydslrep.previewPath'] = 'Preview' }
 
---- How many lines of a run are seen at once.
+--- The most lines that the window of a run has.
 local HEIGHT = 14
 
---- Shows what was printed, in a window of its own below; the cursor stays.
+--- Shows the output in a window below; the cursor stays.
 ---@param name string
 ---@param result pydslrep.Result
 local function show(name, result)
@@ -62,52 +62,52 @@ end
 local function finish(run, status, message)
   if current == run then
     current = nil
-    say.progress(run.progress, status, message)
+    notify.progress(run.progress, status, message)
   end
 end
 
---- Has the server do something with an environment.
+--- Executes a command on an environment.
 ---@param client vim.lsp.Client
 ---@param buffer integer
 ---@param command string
----@param chosen pydslrep.Chosen
-function M.execute(client, buffer, command, chosen)
-  local params = { command = command, arguments = { chosen } }
+---@param id pydslrep.EnvironmentId
+function M.execute(client, buffer, command, id)
+  local params = { command = command, arguments = { id } }
   local title = TITLES[command]
   if not title then
-    server.ask(client, 'workspace/executeCommand', params, function(problem)
+    server.request(client, 'workspace/executeCommand', params, function(problem)
       if problem then
-        say.error(problem.message)
+        notify.error(problem.message)
       end
     end, buffer)
     return
   end
   if current then
-    say.warning(('%s is not finished yet; `:Pydslrep stop` stops it'):format(current.progress.title))
+    notify.warning(('%s is still running; stop it with `:Pydslrep stop`'):format(current.progress.title))
     return
   end
   count = count + 1
-  local name = ('%s of %s'):format(title, chosen.environment)
+  local name = ('%s of %s'):format(title, id.environment)
   ---@type pydslrep.Run
   local run = { client = client, token = 'pydslrep-' .. count, progress = { title = name }, stopping = false }
   params.workDoneToken = run.token
   current = run
-  say.progress(run.progress, 'running', 'starts')
-  server.ask(client, 'workspace/executeCommand', params, function(problem, result)
+  notify.progress(run.progress, 'running', 'starting')
+  server.request(client, 'workspace/executeCommand', params, function(problem, result)
     if problem and run.stopping then
       finish(run, 'cancel', 'stopped')
     elseif problem then
       finish(run, 'failed', 'failed')
-      say.error(problem.message)
+      notify.error(problem.message)
     else
       finish(run, 'success', 'done')
-      show(('pydslrep://%s/%s'):format(chosen.environment, title:lower()), result or {})
+      show(('pydslrep://%s/%s'):format(id.environment, title:lower()), result or {})
     end
   end, buffer)
 end
 
---- Does something with an environment of the current buffer: with the one that is named, the only one, the one the
---- cursor is on, or the one that is chosen.
+--- Executes a command on an environment of the current buffer: the given one, the only one, the one that starts on the
+--- line of the cursor, or one chosen from a list.
 ---@param command string
 ---@param environment? string
 function M.start(command, environment)
@@ -122,12 +122,12 @@ function M.start(command, environment)
   end
   local line = vim.api.nvim_win_get_cursor(0)[1] - 1
   local params = { textDocument = { uri = vim.uri_from_bufnr(buffer) } }
-  server.ask(client, 'textDocument/codeLens', params, function(problem, lenses)
+  server.request(client, 'textDocument/codeLens', params, function(problem, lenses)
     if problem then
-      say.error(problem.message)
+      notify.error(problem.message)
       return
     end
-    ---@type pydslrep.Chosen[]
+    ---@type pydslrep.EnvironmentId[]
     local found = {}
     for _, lens in ipairs(lenses or {}) do
       if lens.command and lens.command.command == command then
@@ -139,14 +139,14 @@ function M.start(command, environment)
       end
     end
     if #found == 0 then
-      say.error('this program has no environment; its scripts are made of environments')
+      notify.error('this program has no environment; add one to run it or to generate its script')
     elseif #found == 1 then
       M.execute(client, buffer, command, found[1])
     else
-      local options = { prompt = 'Environment', format_item = function(chosen) return chosen.environment end }
-      vim.ui.select(found, options, function(chosen)
-        if chosen then
-          M.execute(client, buffer, command, chosen)
+      local options = { prompt = 'Environment', format_item = function(id) return id.environment end }
+      vim.ui.select(found, options, function(id)
+        if id then
+          M.execute(client, buffer, command, id)
         end
       end)
     end
@@ -156,11 +156,11 @@ end
 --- Stops the run there is, as Ctrl-C does.
 function M.stop()
   if not current then
-    say.information('nothing runs')
+    notify.info('nothing is running')
     return
   end
   current.stopping = true
-  server.tell(current.client, 'window/workDoneProgress/cancel', { token = current.token })
+  server.notify(current.client, 'window/workDoneProgress/cancel', { token = current.token })
 end
 
 --- What the server says of how far it is. Neovim passes a request's cancellation on to nobody, so that its end is told
@@ -177,15 +177,15 @@ function M.progressed(data)
       finish(run, 'cancel', 'stopped')
     end
   elseif value.message then
-    say.progress(run.progress, 'running', value.message)
+    notify.progress(run.progress, 'running', value.message)
   end
 end
 
---- The server has ended, and with it what it ran.
+--- Ends the run of a server that has exited.
 ---@param client_id integer
-function M.left(client_id)
+function M.client_exited(client_id)
   if current and current.client.id == client_id then
-    finish(current, 'failed', 'the server has ended')
+    finish(current, 'failed', 'the server exited')
   end
 end
 

@@ -1,18 +1,18 @@
---- The language server: where it is, for which files it is started, and how it is started again.
+--- Finds, starts and restarts the language server.
 
 local config = require('pydslrep.config')
-local say = require('pydslrep.say')
+local notify = require('pydslrep.notify')
 
 local M = {}
 
 M.NAME = 'pydslrep'
 
---- How to get the server where it is not found.
-M.ADVICE = 'in a clone of PyDSLRep, `cargo install --locked --path crates/server` installs it; '
-  .. "or name it: vim.g.pydslrep = { cmd = { '/path/to/pydslrep-lsp', '--stdio' } }"
+--- How to install the server.
+M.ADVICE = 'install it with `cargo install --locked --path crates/server` in a clone of PyDSLRep, '
+  .. "or set its path: vim.g.pydslrep = { cmd = { '/path/to/pydslrep-lsp', '--stdio' } }"
 
---- The command that starts the server: what is set, else `pydslrep-lsp` or `pydslrep lsp` from the path or from where
---- Cargo installs. Where there is none, the first, so that messages name it.
+--- The command that starts the server: the option, or else `pydslrep-lsp` or `pydslrep lsp` on the PATH or in Cargo's
+--- folder. If there is none, the first one, so that messages name it.
 ---@return string[]
 function M.command()
   local set = config.get().cmd
@@ -30,10 +30,10 @@ function M.command()
   return { 'pydslrep-lsp', '--stdio' }
 end
 
---- Of all the TOML there is, only its own settings and scenes are the server's business.
+--- Whether a buffer is a program, a settings file or a scene; other TOML is ignored.
 ---@param buffer integer
 ---@return boolean
-function M.is_ours(buffer)
+function M.is_supported(buffer)
   if vim.bo[buffer].filetype == 'pydslrep' then
     return true
   end
@@ -41,33 +41,32 @@ function M.is_ours(buffer)
   return name == 'pydslrep.toml' or vim.endswith(name, '.scene.toml')
 end
 
---- The command as it is in force: `vim.lsp.config('pydslrep', { cmd = … })` wins.
+--- The command in use; `vim.lsp.config('pydslrep', { cmd = … })` takes precedence. Nil if a function starts it.
 ---@return string[]?
-local function command_in_force()
+local function effective_command()
   local set = vim.lsp.config and vim.lsp.config[M.NAME] or {}
   local command = set.cmd or M.command()
   return type(command) == 'table' and command or nil
 end
 
-local told = false
+local warned = false
 
---- Says, once, if the server is to be started and is not there. Neovim itself says so in its log only (0.12), or with
---- every program that is opened.
-function M.look_for_it()
-  local command = config.get().enable and command_in_force()
-  if told or not command or vim.fn.executable(command[1]) == 1 then
+--- Warns once if the server is enabled but not installed. Neovim itself only logs it (0.12), or warns for each program.
+function M.warn_if_missing()
+  local command = config.get().enable and effective_command()
+  if warned or not command or vim.fn.executable(command[1]) == 1 then
     return
   end
-  told = true
-  say.warning(('there is no `%s`: %s. :checkhealth pydslrep says more'):format(command[1], M.ADVICE))
+  warned = true
+  notify.warning(('`%s` was not found: %s. See :checkhealth pydslrep'):format(command[1], M.ADVICE))
 end
 
 --- Whether the server can be started for a buffer.
 ---@param buffer integer
 ---@return boolean
 local function can_start(buffer)
-  local command = command_in_force()
-  return M.is_ours(buffer) and (not command or vim.fn.executable(command[1]) == 1)
+  local command = effective_command()
+  return M.is_supported(buffer) and (not command or vim.fn.executable(command[1]) == 1)
 end
 
 ---@param buffer integer
@@ -76,11 +75,11 @@ local function root(buffer)
   return vim.fs.root(buffer, { 'pydslrep.toml', '.git' })
 end
 
---- What `vim.lsp.config` is to know of the server.
+--- The configuration for `vim.lsp.config`.
 ---@return vim.lsp.Config
 function M.config()
   local settings = config.get().settings
-  -- An empty table would reach the server as a list.
+  -- Neovim would send an empty table as a list.
   settings = next(settings) and settings or nil
   return {
     cmd = M.command(),
@@ -96,32 +95,32 @@ function M.config()
     handlers = { ['window/showDocument'] = require('pydslrep.pictures').show_document },
     on_exit = function(_, _, client_id)
       vim.schedule(function()
-        require('pydslrep.runs').left(client_id)
+        require('pydslrep.runs').client_exited(client_id)
       end)
     end,
   }
 end
 
---- Starts the server for a buffer where Neovim (0.10) cannot do so on its own.
+--- Starts the server for a buffer in Neovim 0.10, which cannot do so by itself.
 ---@param buffer integer
 local function start(buffer)
   if not can_start(buffer) then
     return
   end
-  local chosen = M.config()
+  local settings = M.config()
   vim.lsp.start({
     name = M.NAME,
-    cmd = chosen.cmd,
+    cmd = settings.cmd,
     root_dir = root(buffer),
-    init_options = chosen.init_options,
-    settings = chosen.settings,
-    capabilities = vim.tbl_deep_extend('force', vim.lsp.protocol.make_client_capabilities(), chosen.capabilities),
-    handlers = chosen.handlers,
-    on_exit = chosen.on_exit,
+    init_options = settings.init_options,
+    settings = settings.settings,
+    capabilities = vim.tbl_deep_extend('force', vim.lsp.protocol.make_client_capabilities(), settings.capabilities),
+    handlers = settings.handlers,
+    on_exit = settings.on_exit,
   }, { bufnr = buffer })
 end
 
---- Has the server started for programs, settings and scenes, those that are open included.
+--- Starts the server for all open and future programs, settings and scenes.
 local function enable()
   if vim.lsp.enable then
     vim.lsp.enable(M.NAME)
@@ -141,7 +140,7 @@ local function enable()
   end
 end
 
---- The same, unless that is switched off.
+--- Enables the server unless the option `enable` is false.
 function M.enable()
   if config.get().enable then
     enable()
@@ -154,24 +153,24 @@ function M.clients(filter)
   return vim.lsp.get_clients(vim.tbl_extend('force', filter or {}, { name = M.NAME }))
 end
 
---- The server of a buffer; where there is none, it says so.
+--- The client of a buffer; shows an error if there is none.
 ---@param buffer integer
 ---@return vim.lsp.Client?
 function M.client(buffer)
   local client = M.clients({ bufnr = buffer })[1]
   if not client then
-    say.error('the server is not attached to this buffer; :checkhealth pydslrep says why')
+    notify.error('the server is not attached to this buffer; see :checkhealth pydslrep')
   end
   return client
 end
 
---- Asks the server, in a way that all versions of Neovim know.
+--- Sends a request, in all versions of Neovim.
 ---@param client vim.lsp.Client
 ---@param method string
 ---@param params table
 ---@param answer fun(problem: lsp.ResponseError?, result: any)
 ---@param buffer integer
-function M.ask(client, method, params, answer, buffer)
+function M.request(client, method, params, answer, buffer)
   if vim.fn.has('nvim-0.11') == 1 then
     client:request(method, params, answer, buffer)
   else
@@ -179,10 +178,11 @@ function M.ask(client, method, params, answer, buffer)
   end
 end
 
+--- Sends a notification, in all versions of Neovim.
 ---@param client vim.lsp.Client
 ---@param method string
 ---@param params table
-function M.tell(client, method, params)
+function M.notify(client, method, params)
   if vim.fn.has('nvim-0.11') == 1 then
     client:notify(method, params)
   else
@@ -200,40 +200,40 @@ local function stop(client, force)
   end
 end
 
---- How often, and how many times, it is looked whether the server has ended, before it is killed.
-local LOOK_EVERY_MS, LOOKS = 20, 100
+--- How often and how many times to check whether the server has exited before killing it.
+local CHECK_EVERY_MS, CHECKS = 20, 100
 
----@param looks integer
-local function start_when_ended(looks)
+---@param checks integer
+local function start_after_exit(checks)
   local clients = M.clients()
   if #clients > 0 then
-    if looks == 0 then
+    if checks == 0 then
       for _, client in ipairs(clients) do
         stop(client, true)
       end
     end
     vim.defer_fn(function()
-      start_when_ended(looks - 1)
-    end, LOOK_EVERY_MS)
+      start_after_exit(checks - 1)
+    end, CHECK_EVERY_MS)
     return
   end
   enable()
-  say.information('the server starts again')
+  notify.info('the server was restarted')
 end
 
---- Ends the server and starts it again, for all its buffers.
+--- Restarts the server for all its buffers.
 function M.restart()
-  told = false
+  warned = false
   if vim.lsp.enable then
     vim.lsp.enable(M.NAME, false)
   end
   for _, client in ipairs(M.clients()) do
     stop(client, false)
   end
-  start_when_ended(LOOKS)
+  start_after_exit(CHECKS)
 end
 
---- Opens Neovim's log of all language servers, at its end.
+--- Opens the end of Neovim's log of language servers.
 function M.log()
   local path = vim.lsp.log and vim.lsp.log.get_filename and vim.lsp.log.get_filename() or vim.lsp.get_log_path()
   vim.cmd.tabedit({ args = { vim.fn.fnameescape(path) } })

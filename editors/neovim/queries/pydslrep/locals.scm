@@ -1,4 +1,4 @@
-; Not for colouring: each kind of entity has a namespace of its own, which such queries cannot say.
+; Not for highlighting: each kind of entity has its own namespace, which these queries cannot express.
 (program) @local.scope
 
 (wheel_definition name: (name) @local.definition.var)

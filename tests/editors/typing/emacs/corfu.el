@@ -1,4 +1,4 @@
-;; Corfu, which completes from the first letter on and at once; braces are closed.
+;; Corfu, which completes from the first letter after 50 ms; braces are closed.
 (require 'corfu)
 (require 'corfu-terminal)
 (setq corfu-auto t corfu-auto-delay 0.05 corfu-auto-prefix 1)

@@ -1,6 +1,6 @@
--- blink.cmp as it comes, with its preset of keys that `vim.g.typing_variant` names.
+-- blink.cmp with default settings and the key preset in `vim.g.typing_variant`.
 require('blink.cmp').setup({
   keymap = { preset = vim.g.typing_variant },
-  -- The other one is a library that is not there.
+  -- The default is a native library, which is not installed.
   fuzzy = { implementation = 'lua' },
 })

@@ -1,12 +1,12 @@
--- nvim-cmp with the keys of its readme; `vim.g.typing_variant` says whether Enter takes the first item where none is
+-- nvim-cmp with the keys of its readme; `vim.g.typing_variant` says whether Enter accepts the first item if none is
 -- selected.
 local cmp = require('cmp')
 cmp.setup({
   mapping = cmp.mapping.preset.insert({
     ['<C-Space>'] = cmp.mapping.complete(),
     ['<CR>'] = cmp.mapping.confirm({ select = vim.g.typing_variant == 'select' }),
-    ['<Tab>'] = cmp.mapping(function(pass_on)
-      if cmp.visible() then cmp.select_next_item() else pass_on() end
+    ['<Tab>'] = cmp.mapping(function(fallback)
+      if cmp.visible() then cmp.select_next_item() else fallback() end
     end, { 'i' }),
   }),
   sources = { { name = 'nvim_lsp' } },

@@ -1,4 +1,4 @@
-"""The keys of a person give the program in an editor that does what it should, whatever it does by itself."""
+"""The keys produce the program in a simulated editor, whatever the editor inserts by itself."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from corpus import FEW, Program, programs
-from person import COMMENT, STEP, Habits, same_leader, strokes, usual_leader
+from keystrokes import COMMENT, STEP, Behaviour, same_leader, strokes, usual_leader
 
 
 @pytest.fixture(scope="session", name="everything")
@@ -17,23 +17,23 @@ def _everything() -> list[Program]:
     return programs()
 
 
-KINDS = [
-    Habits(),
-    Habits(indents=False),
-    Habits(closes_braces=True),
-    Habits(closes_braces=True, indents=False),
-    Habits(ends_last_line=True),
-    Habits(leader=same_leader, ends_last_line=True),
-    Habits(leader=usual_leader, closes_braces=True),
-    Habits(leader=usual_leader, deletes_by_line=False),
+BEHAVIOURS = [
+    Behaviour(),
+    Behaviour(indents=False),
+    Behaviour(closes_braces=True),
+    Behaviour(closes_braces=True, indents=False),
+    Behaviour(ends_last_line=True),
+    Behaviour(leader=same_leader, ends_last_line=True),
+    Behaviour(leader=usual_leader, closes_braces=True),
+    Behaviour(leader=usual_leader, deletes_by_line=False),
 ]
 
 
-class Ideal:
-    """An editor as the habits have it."""
+class SimulatedEditor:
+    """A simulated editor with a behaviour."""
 
-    def __init__(self, habits: Habits) -> None:
-        self.habits = habits
+    def __init__(self, behaviour: Behaviour) -> None:
+        self.behaviour = behaviour
         self.before, self.after = "", ""
 
     def press(self, key: str) -> None:
@@ -48,9 +48,9 @@ class Ideal:
 
     def _after_brace(self, key: str) -> None:
         line = self._line()
-        if key == "}" and line.strip() == "}" and self.habits.indents:
+        if key == "}" and line.strip() == "}" and self.behaviour.indents:
             self.before = self.before.removesuffix(line) + " " * self._depth() + "}"
-        if key == "{" and self.habits.closes_braces and "//" not in line:
+        if key == "{" and self.behaviour.closes_braces and "//" not in line:
             self.after = "}" + self.after
 
     def _line(self) -> str:
@@ -62,13 +62,13 @@ class Ideal:
 
     def _Enter(self) -> None:  # noqa: N802
         line = self._line()
-        if self.after.startswith("}") and self.habits.indents:
+        if self.after.startswith("}") and self.behaviour.indents:
             self.after = "\n" + " " * (self._depth() - STEP) + self.after
         if not line.strip():
             self.before = self.before.removesuffix(line)
-        self.before += "\n" + " " * (self._depth() if self.habits.indents else 0)
+        self.before += "\n" + " " * (self._depth() if self.behaviour.indents else 0)
         if line.lstrip().startswith("//"):
-            self.before += self.habits.leader(line.lstrip())
+            self.before += self.behaviour.leader(line.lstrip())
 
     def _Tab(self) -> None:  # noqa: N802
         self.before += " " * STEP
@@ -83,7 +83,7 @@ class Ideal:
 
     def _Down(self) -> None:  # noqa: N802
         gone, _, self.after = self.after.partition("\n")
-        assert gone == "", "goes down from the end of a line only"
+        assert gone == "", "Down is pressed only at the end of a line"
         self.before += "\n"
 
     def _End(self) -> None:  # noqa: N802
@@ -91,18 +91,18 @@ class Ideal:
         self.before, self.after = self.before + end, newline + rest
 
     def text(self) -> str:
-        end = "\n" if self.habits.ends_last_line else ""
+        end = "\n" if self.behaviour.ends_last_line else ""
         return self.before + self.after + end
 
 
-@pytest.mark.parametrize("habits", KINDS)
-def test_keys_give_the_program(habits: Habits, everything: list[Program]) -> None:
+@pytest.mark.parametrize("behaviour", BEHAVIOURS)
+def test_keys_give_the_program(behaviour: Behaviour, everything: list[Program]) -> None:
     for program in everything:
-        editor = Ideal(habits)
-        for stroke in strokes(program.text, habits):
+        editor = SimulatedEditor(behaviour)
+        for stroke in strokes(program.text, behaviour):
             editor.press(stroke.key)
         assert editor.text() == program.text, program.name
 
 
-def test_the_few_are_there(everything: list[Program]) -> None:
+def test_the_few_programs_exist(everything: list[Program]) -> None:
     assert set(FEW) < {program.name for program in everything}

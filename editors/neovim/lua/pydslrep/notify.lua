@@ -1,24 +1,24 @@
---- Words to the person.
+--- Notifications and progress messages.
 
 local M = {}
 
 ---@param level integer
-local function speaker(level)
+local function notifier(level)
   ---@param message string
   return function(message)
     vim.notify('pydslrep: ' .. message, level)
   end
 end
 
-M.information = speaker(vim.log.levels.INFO)
-M.warning = speaker(vim.log.levels.WARN)
-M.error = speaker(vim.log.levels.ERROR)
+M.info = notifier(vim.log.levels.INFO)
+M.warning = notifier(vim.log.levels.WARN)
+M.error = notifier(vim.log.levels.ERROR)
 
 ---@class pydslrep.Progress
 ---@field title string
----@field id? integer|string The message that is written anew with each step, where Neovim can do so.
+---@field id? integer|string The message to replace, if Neovim supports it.
 
---- Says how far something is, in place of what was said of it before.
+--- Shows the status of an operation, replacing its last message.
 ---@param progress pydslrep.Progress
 ---@param status 'running'|'success'|'failed'|'cancel'
 ---@param message string

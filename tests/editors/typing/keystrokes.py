@@ -1,0 +1,91 @@
+"""Turns a program into keys, as a person types it: key by key, without what the editor inserts by itself.
+
+Keys are characters and these names: Enter, Tab, Down, End, BSpace, C-u (deletes everything before the cursor).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+
+STEP = 2
+COMMENT = re.compile(r"//.*|/\*.*?\*/")
+
+
+def same_leader(comment: str) -> str:
+    """The leader of the previous comment."""
+    found = re.match(r"//\s*", comment)
+    return found[0] if found else ""
+
+
+def usual_leader(_comment: str) -> str:
+    """One blank, whatever the previous comment has."""
+    return "// "
+
+
+@dataclass(frozen=True)
+class Behaviour:
+    """What an editor inserts by itself."""
+
+    # Enter indents the next line. Otherwise, Tab does.
+    indents: bool = True
+    # `{` inserts a `}`. If Enter indents, Enter between them moves the `}` to its own line, and Down reaches it.
+    closes_braces: bool = False
+    # After a line comment, Enter starts another one with the `//` and blanks that this returns. It is deleted where the
+    # program differs.
+    leader: Callable[[str], str] = lambda _comment: ""
+    # Ctrl+U deletes the leader. Otherwise, Backspace does.
+    deletes_by_line: bool = True
+    # The editor ends the last line of a file.
+    ends_last_line: bool = False
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """A key and its line in the program, from 0."""
+
+    key: str
+    line: int
+
+
+def strokes(program: str, behaviour: Behaviour) -> list[Stroke]:
+    """The keys for a program, starting from an empty file. Its comments must be on one line."""
+    lines = program.split("\n")
+    if behaviour.ends_last_line and lines[-1] == "":
+        lines.pop()
+    typed = [Stroke(key, 0) for key in lines[0]]
+    open_braces = _opened([], lines[0])
+    for number, line in enumerate(lines[1:], 1):
+        text = line.lstrip(" ")
+        goes_down = behaviour.closes_braces and behaviour.indents
+        if goes_down and text.startswith("}") and open_braces[-1]:
+            keys = ["Down", "End", *text.removeprefix("}")]
+        else:
+            steps = 0 if behaviour.indents else (len(line) - len(text)) // STEP
+            before = lines[number - 1].lstrip()
+            leader = behaviour.leader(before) if before.startswith("//") else ""
+            keys = ["Enter", *["Tab"] * steps, *_after_leader(text, leader, behaviour)]
+        typed += [Stroke(key, number) for key in keys]
+        open_braces = _opened(open_braces, line)
+    return typed
+
+
+def _after_leader(text: str, leader: str, behaviour: Behaviour) -> list[str]:
+    """The keys for a line that already starts with a comment leader."""
+    if text.startswith(leader):
+        return list(text.removeprefix(leader))
+    deleted = ["C-u"] if behaviour.deletes_by_line else ["BSpace"] * len(leader)
+    return [*deleted, *text]
+
+
+def _opened(before: list[bool], line: str) -> list[bool]:
+    """For each brace that is open after a line, whether it was the last on its line."""
+    after = list(before)
+    code = COMMENT.sub("", line).rstrip()
+    for place, sign in enumerate(code, 1):
+        if sign == "{":
+            after.append(place == len(code))
+        elif sign == "}":
+            after.pop()
+    return after
