@@ -1,9 +1,9 @@
 /**
  * @file Tree-sitter grammar of PyDSLRep.
  *
- * It follows ../pydslrep.ebnf, but is more forgiving: behind the first word of an entity, a clause or an action anything
- * may be missing, the brace that closes a list included. So the next entity can begin wherever its keyword stands, and
- * what is half-typed never takes its neighbours with it. What is wrong with a program says the language server.
+ * It follows ../pydslrep.ebnf but is more tolerant: after the first word of an entity, a clause or an action anything may be
+ * missing, even the closing brace of a list. So an entity can begin wherever its keyword is, and incomplete code does not
+ * affect its neighbours. The language server reports errors.
  *
  * @license MIT
  */
@@ -110,7 +110,7 @@ module.exports = grammar({
 });
 
 /**
- * The first part, and the others in their order, as many of them as there are.
+ * The first part and the others in order, each of which may be missing.
  *
  * @param {RuleOrLiteral} first
  * @param {RuleOrLiteral[]} others
@@ -121,7 +121,7 @@ function incomplete(first, ...others) {
 }
 
 /**
- * A list of names; every comma behind one may be left out.
+ * A list of names; the comma after each is optional.
  *
  * @param {GrammarSymbols<string>} $
  * @returns {Rule}

@@ -30,7 +30,7 @@ pub(crate) fn short_pose(pose: &Pose) -> String {
     format!("{}, {}, {degrees}°", fixed(pose.x, 2), fixed(pose.y, 2))
 }
 
-/// `12.3 s`, from a minute on with minutes; as in the preview (`webview/preview/words.ts`).
+/// `12.3 s`, from a minute on with minutes; as in the preview (`webview/preview/format.ts`).
 pub(crate) fn time(seconds: f64) -> String {
     const MINUTE: f64 = 600.0;
     let tenths = (seconds * 10.0).round();

@@ -163,8 +163,7 @@ function M.stop()
   server.notify(current.client, 'window/workDoneProgress/cancel', { token = current.token })
 end
 
---- What the server says of how far it is. Neovim passes a request's cancellation on to nobody, so that its end is told
---- by that of its progress.
+--- Handles progress of the run. Neovim does not report cancelled requests, so the end of the progress ends the run.
 ---@param data { client_id: integer, params: lsp.ProgressParams }
 function M.progressed(data)
   local run, params = current, data.params
