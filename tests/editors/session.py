@@ -93,7 +93,7 @@ class Session:
 
 
 @contextmanager
-def session(editor: str) -> Iterator[Session]:
+def open_session(editor: str) -> Iterator[Session]:
     """A session in a scratch folder."""
     server = os.environ.get(
         "PYDSLREP_LSP", str(ROOT / "target" / "debug" / "pydslrep-lsp")
@@ -104,9 +104,9 @@ def session(editor: str) -> Iterator[Session]:
     with tempfile.TemporaryDirectory(
         prefix="pydslrep-", ignore_cleanup_errors=True
     ) as folder:
-        made = Session(editor, Path(folder))
+        session = Session(editor, Path(folder))
         for name in ("bin", "work", ".config"):
-            (made.home / name).mkdir()
-        (made.home / "bin" / "pydslrep-lsp").symlink_to(Path(server).resolve())
-        made.program.write_text(PROGRAM)
-        yield made
+            (session.home / name).mkdir()
+        (session.home / "bin" / "pydslrep-lsp").symlink_to(Path(server).resolve())
+        session.program.write_text(PROGRAM)
+        yield session

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from session import FIX, FIXED, MESSAGE, PICTURES, PROGRAM, ROOT, Session, session
+from session import FIX, FIXED, MESSAGE, PICTURES, PROGRAM, ROOT, Session, open_session
 from terminal import Terminal
 
 EMACS = [os.environ["EMACS"], *os.environ.get("EMACS_OPTIONS", "").split()]
@@ -38,41 +38,43 @@ def answer(terminal: Terminal, text: str) -> None:
     terminal.press("Enter")
 
 
-def edit(made: Session, terminal: Terminal, picture: Path | None) -> None:
-    made.check("attached", terminal.wait(r"\[eglot:"), terminal.screen())
+def edit(session: Session, terminal: Terminal, picture: Path | None) -> None:
+    session.check("attached", terminal.wait(r"\[eglot:"), terminal.screen())
     command(terminal, "flymake-goto-next-error")
-    made.check("diagnostics", terminal.wait(MESSAGE), terminal.screen())
-    made.check(
+    session.check("diagnostics", terminal.wait(MESSAGE), terminal.screen())
+    session.check(
         "poses and times after actions",
         terminal.wait(r"9\.0.*\d s"),
         terminal.screen(),
     )
     words = ("robot", "wheelL", "23000", "patrol", "rover", "yard")
-    made.check("colours", terminal.wait_for_colours(words, 5), terminal.screen())
+    session.check("colours", terminal.wait_for_colours(words, 5), terminal.screen())
     if picture:
         terminal.picture(picture)
     command(terminal, "eglot-code-actions")
-    made.check("quick fix is offered", terminal.wait(FIX), terminal.screen())
+    session.check("quick fix is offered", terminal.wait(FIX), terminal.screen())
     terminal.press("Enter")
-    made.check("quick fix", terminal.wait(FIXED), terminal.screen())
+    session.check("quick fix", terminal.wait(FIXED), terminal.screen())
     command(terminal, "eglot-format-buffer")
-    made.check("format", terminal.wait("(?m)^ {2,4}move 4.0 meters"), terminal.screen())
+    session.check(
+        "format", terminal.wait("(?m)^ {2,4}move 4.0 meters"), terminal.screen()
+    )
     terminal.press("M-<")
     terminal.press("C-n")
     terminal.press("M-f", "C-f")
     command(terminal, "eldoc-doc-buffer")
-    made.check("hover", terminal.wait("28.3 cm a turn"), terminal.screen())
+    session.check("hover", terminal.wait("28.3 cm a turn"), terminal.screen())
     terminal.press("C-x")
     terminal.type("1")
     command(terminal, "eglot-rename")
-    made.check("rename asks", terminal.wait("Rename .wheelL. to"), terminal.screen())
+    session.check("rename asks", terminal.wait("Rename .wheelL. to"), terminal.screen())
     answer(terminal, "port_side")
-    made.check("rename", terminal.wait(r"\{ port_side wheelR \}"), terminal.screen())
+    session.check("rename", terminal.wait(r"\{ port_side wheelR \}"), terminal.screen())
     terminal.press("M->")
     terminal.press("M-:")
     answer(terminal, '(insert "movement n of ")')
     terminal.press("C-M-i")
-    made.check("completion", terminal.wait("movement n of rover"), terminal.screen())
+    session.check("completion", terminal.wait("movement n of rover"), terminal.screen())
 
 
 def compiles(folder: Path) -> bool:
@@ -92,27 +94,27 @@ def compiles(folder: Path) -> bool:
     )
 
 
-def run(made: Session, takes_pictures: bool) -> None:
-    made.program.write_text(PROGRAM)
-    start = [*EMACS, "-nw", str(made.program)]
-    with Terminal(start, made.program.parent, made.environment()) as terminal:
-        edit(made, terminal, PICTURES / "emacs.png" if takes_pictures else None)
+def run(session: Session, takes_pictures: bool) -> None:
+    session.program.write_text(PROGRAM)
+    start = [*EMACS, "-nw", str(session.program)]
+    with Terminal(start, session.program.parent, session.environment()) as terminal:
+        edit(session, terminal, PICTURES / "emacs.png" if takes_pictures else None)
 
 
 def main() -> None:
-    with session("emacs") as made:
+    with open_session("emacs") as session:
         readme = (ROOT / "editors" / "emacs" / "README.md").read_text()
         block = re.search(r"^```elisp\n(.*?)^```", readme, re.M | re.S)
         assert block, "the readme has no elisp block"
-        settings = made.home / ".emacs.d" / "init.el"
+        settings = session.home / ".emacs.d" / "init.el"
         settings.parent.mkdir()
         settings.write_text(QUIET + block[1].replace("/path/to/pydslrep", str(ROOT)))
-        made.check("compiles without a warning", compiles(made.home))
+        session.check("compiles without a warning", compiles(session.home))
         print("== without the parser")
-        run(made, takes_pictures=False)
+        run(session, takes_pictures=False)
         print("== with the parser")
-        made.set_up()
-        run(made, takes_pictures="--pictures" in sys.argv)
+        session.set_up()
+        run(session, takes_pictures="--pictures" in sys.argv)
 
 
 main()

@@ -9,15 +9,15 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from session import FIX, FIXED, MESSAGE, PICTURES, Session, session
+from session import FIX, FIXED, MESSAGE, PICTURES, Session, open_session
 from terminal import Terminal
 
 HX = os.environ["HX"]
 SHOWS_HINTS = '[editor]\nend-of-line-diagnostics = "hint"\ntrue-color = true\n[editor.lsp]\ndisplay-inlay-hints = true\n'
 
 
-def health(made: Session) -> None:
-    variables = {**os.environ, **made.environment()}
+def health(session: Session) -> None:
+    variables = {**os.environ, **session.environment()}
     for language in ("pydslrep", "pydslrep-toml"):
         report = subprocess.run(
             [HX, "--health", language],
@@ -28,7 +28,7 @@ def health(made: Session) -> None:
         text = re.sub(r"\x1b\[[0-9;]*m", "", report.stdout.decode())
         server = re.search("✓ pydslrep.*pydslrep-lsp", text)
         found = server is not None and "Highlight queries: ✓" in text
-        made.check(f"health of {language}", found, text)
+        session.check(f"health of {language}", found, text)
 
 
 def normal(terminal: Terminal) -> None:
@@ -37,22 +37,22 @@ def normal(terminal: Terminal) -> None:
     terminal.wait("(?m)^ NOR")
 
 
-def edit(made: Session, terminal: Terminal, takes_pictures: bool) -> None:
-    made.check("diagnostics", terminal.wait(MESSAGE), terminal.screen())
+def edit(session: Session, terminal: Terminal, takes_pictures: bool) -> None:
+    session.check("diagnostics", terminal.wait(MESSAGE), terminal.screen())
     terminal.type("jk")
-    made.check(
+    session.check(
         "poses and times after actions",
         terminal.wait(r"9\.0.*\d s"),
         terminal.screen(),
     )
     words = ("robot", "wheelL", "23000", "patrol", "rover", "yard")
-    made.check("colours", terminal.wait_for_colours(words, 5), terminal.screen())
+    session.check("colours", terminal.wait_for_colours(words, 5), terminal.screen())
     if takes_pictures:
         terminal.picture(PICTURES / "helix.png")
     terminal.type("6gg6l")
     terminal.press("Space")
     terminal.type("k")
-    made.check(
+    session.check(
         "hover", terminal.wait("Two-wheel differential drive"), terminal.screen()
     )
     terminal.press("Escape")
@@ -60,36 +60,38 @@ def edit(made: Session, terminal: Terminal, takes_pictures: bool) -> None:
     terminal.type("]d")
     terminal.press("Space")
     terminal.type("a")
-    made.check("quick fix is offered", terminal.wait(FIX), terminal.screen())
+    session.check("quick fix is offered", terminal.wait(FIX), terminal.screen())
     terminal.press("Enter")
-    made.check("quick fix", terminal.wait(FIXED), terminal.screen())
+    session.check("quick fix", terminal.wait(FIXED), terminal.screen())
     terminal.type(":format")
     terminal.press("Enter")
-    made.check("format", terminal.wait(r"\d {4}move 4.0 meters"), terminal.screen())
+    session.check("format", terminal.wait(r"\d {4}move 4.0 meters"), terminal.screen())
     terminal.type("2gg7l")
     terminal.press("Space")
     terminal.type("r")
-    made.check("rename asks", terminal.wait("rename-to:"), terminal.screen())
+    session.check("rename asks", terminal.wait("rename-to:"), terminal.screen())
     terminal.press("C-u")
     terminal.type("port_side")
     terminal.press("Enter")
-    made.check("rename", terminal.wait(r"\{ port_side wheelR \}"), terminal.screen())
+    session.check("rename", terminal.wait(r"\{ port_side wheelR \}"), terminal.screen())
     terminal.type("5ggo")
     terminal.type("wheel c wi")
-    made.check("completion", terminal.wait("with radius +keyword"), terminal.screen())
+    session.check(
+        "completion", terminal.wait("with radius +keyword"), terminal.screen()
+    )
     terminal.press("Escape")
     normal(terminal)
     terminal.type("uggjjj/move 4")
     terminal.press("Enter")
     terminal.type("o")
     terminal.type("slam")
-    made.check("indentation", terminal.wait(r"11 {4}slam"), terminal.screen())
+    session.check("indentation", terminal.wait(r"11 {4}slam"), terminal.screen())
     normal(terminal)
     terminal.type("mafd")
-    made.check(
+    session.check(
         "text objects", terminal.wait_without("movement patrol of"), terminal.screen()
     )
-    made.check(
+    session.check(
         "with the right range",
         "movement home of" in terminal.screen(),
         terminal.screen(),
@@ -99,14 +101,14 @@ def edit(made: Session, terminal: Terminal, takes_pictures: bool) -> None:
 
 
 def main() -> None:
-    with session("helix") as made:
-        made.set_up()
-        health(made)
-        (made.home / ".config" / "helix" / "config.toml").write_text(SHOWS_HINTS)
+    with open_session("helix") as session:
+        session.set_up()
+        health(session)
+        (session.home / ".config" / "helix" / "config.toml").write_text(SHOWS_HINTS)
         with Terminal(
-            [HX, str(made.program)], made.program.parent, made.environment()
+            [HX, str(session.program)], session.program.parent, session.environment()
         ) as terminal:
-            edit(made, terminal, "--pictures" in sys.argv)
+            edit(session, terminal, "--pictures" in sys.argv)
 
 
 main()

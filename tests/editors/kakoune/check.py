@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from session import FIX, FIXED, MESSAGE, PICTURES, Session, session
+from session import FIX, FIXED, MESSAGE, PICTURES, Session, open_session
 from terminal import Terminal
 
 
@@ -16,47 +16,49 @@ def command(terminal: Terminal, text: str) -> None:
     terminal.press("Enter")
 
 
-def edit(made: Session, terminal: Terminal, takes_pictures: bool) -> None:
-    made.check("diagnostics", terminal.wait(MESSAGE), terminal.screen())
-    made.check(
+def edit(session: Session, terminal: Terminal, takes_pictures: bool) -> None:
+    session.check("diagnostics", terminal.wait(MESSAGE), terminal.screen())
+    session.check(
         "poses and times after actions",
         terminal.wait(r"9\.0.*\d s"),
         terminal.screen(),
     )
     words = ("robot", "wheelR", "23000", "patrol", "rover", "yard")
-    made.check(
+    session.check(
         "colours of names", terminal.wait_for_colours(words, 5), terminal.screen()
     )
     if takes_pictures:
         terminal.picture(PICTURES / "kakoune.png")
     terminal.type("2g6l")
     command(terminal, "lsp-hover")
-    made.check("hover", terminal.wait("28.3 cm a turn"), terminal.screen())
+    session.check("hover", terminal.wait("28.3 cm a turn"), terminal.screen())
     command(terminal, "lsp-rename port_side")
-    made.check("rename", terminal.wait(r"\{ port_side wheelR \}"), terminal.screen())
+    session.check("rename", terminal.wait(r"\{ port_side wheelR \}"), terminal.screen())
     terminal.type("13g17l")
     command(terminal, "lsp-code-actions")
-    made.check("quick fix is offered", terminal.wait(FIX), terminal.screen())
+    session.check("quick fix is offered", terminal.wait(FIX), terminal.screen())
     terminal.press("Enter")
-    made.check("quick fix", terminal.wait(FIXED), terminal.screen())
+    session.check("quick fix", terminal.wait(FIXED), terminal.screen())
     command(terminal, "lsp-formatting")
-    made.check("format", terminal.wait("(?m)^ {3}move 4.0 meters"), terminal.screen())
+    session.check(
+        "format", terminal.wait("(?m)^ {3}move 4.0 meters"), terminal.screen()
+    )
     terminal.type("ge")
     terminal.type("omovement n of ro")
-    made.check(
+    session.check(
         "completion is offered", terminal.wait("rover +Class"), terminal.screen()
     )
     terminal.press("C-n")
-    made.check("completion", terminal.wait("movement n of rover"), terminal.screen())
+    session.check("completion", terminal.wait("movement n of rover"), terminal.screen())
 
 
 def main() -> None:
-    with session("kakoune") as made:
-        (made.home / "bin" / "kak-lsp").symlink_to(os.environ["KAK_LSP"])
-        made.set_up()
-        start = [os.environ["KAK"], str(made.program)]
-        with Terminal(start, made.program.parent, made.environment()) as terminal:
-            edit(made, terminal, "--pictures" in sys.argv)
+    with open_session("kakoune") as session:
+        (session.home / "bin" / "kak-lsp").symlink_to(os.environ["KAK_LSP"])
+        session.set_up()
+        start = [os.environ["KAK"], str(session.program)]
+        with Terminal(start, session.program.parent, session.environment()) as terminal:
+            edit(session, terminal, "--pictures" in sys.argv)
 
 
 main()

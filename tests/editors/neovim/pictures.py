@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from session import PICTURES, ROOT, Session, session
+from session import PICTURES, ROOT, Session, open_session
 from terminal import Terminal
 
 SIZE = (110, 36)
@@ -39,67 +39,69 @@ vim.diagnostic.config({ virtual_lines = { current_line = true, format = function
 NO_SERVER = "vim.g.pydslrep = { enable = false }\nvim.o.number = true\n"
 
 
-def start(made: Session, settings: str) -> Terminal:
+def start(session: Session, settings: str) -> Terminal:
     """Starts Neovim with the program, the plugin and some settings."""
-    folder = made.home / ".config" / "nvim"
+    folder = session.home / ".config" / "nvim"
     folder.mkdir(parents=True, exist_ok=True)
     plugin = ROOT / "editors" / "neovim"
     (folder / "init.lua").write_text(
         f"vim.opt.runtimepath:append('{plugin}')\nvim.cmd.colorscheme('catppuccin')\nvim.o.wrap = false\nvim.g.pydslrep = {{ open = print }}\n{settings}"
     )
-    command = [os.environ["NVIM"], str(made.program.name)]
+    command = [os.environ["NVIM"], str(session.program.name)]
     # Keeps what the first run installs.
     kept = {"XDG_CACHE_HOME": str(ROOT / "target" / "editors" / "cache")}
-    return Terminal(command, made.program.parent, {**made.environment(), **kept}, SIZE)
+    return Terminal(
+        command, session.program.parent, {**session.environment(), **kept}, SIZE
+    )
 
 
-def run(made: Session) -> None:
-    made.program.write_text(FENCE)
-    with start(made, SHOWN) as terminal:
-        made.check(
+def run(session: Session) -> None:
+    session.program.write_text(FENCE)
+    with start(session, SHOWN) as terminal:
+        session.check(
             "poses and times", terminal.wait(r"meters at 12.5.*→"), terminal.screen()
         )
-        made.check("lenses", terminal.wait("Generate script"), terminal.screen())
+        session.check("lenses", terminal.wait("Generate script"), terminal.screen())
         terminal.type(":Pydslrep run")
         terminal.press("Enter")
-        made.check("a run", terminal.wait(r"yard-driven"), terminal.screen())
-        made.check("its end", terminal.wait(r"done"), terminal.screen())
+        session.check("a run", terminal.wait(r"yard-driven"), terminal.screen())
+        session.check("its end", terminal.wait(r"done"), terminal.screen())
         terminal.picture(PICTURES / "neovim-run.png")
 
 
-def problem(made: Session) -> None:
-    made.program.write_text(FENCE.replace("{ patrol }", "{ patrl }"))
-    with start(made, SHOWN) as terminal:
-        made.check("lenses", terminal.wait("Generate script"), terminal.screen())
+def problem(session: Session) -> None:
+    session.program.write_text(FENCE.replace("{ patrol }", "{ patrl }"))
+    with start(session, SHOWN) as terminal:
+        session.check("lenses", terminal.wait("Generate script"), terminal.screen())
         terminal.type("/patrl")
         terminal.press("Enter")
-        made.check("a problem", terminal.wait("did you mean"), terminal.screen())
+        session.check("a problem", terminal.wait("did you mean"), terminal.screen())
         terminal.type("gra")
-        made.check(
+        session.check(
             "its fixes", terminal.wait(r"1: Change to `patrol`"), terminal.screen()
         )
         terminal.picture(PICTURES / "neovim-fix.png")
 
 
-def colours(made: Session) -> None:
-    made.program.write_text(FENCE)
-    with start(made, NO_SERVER) as terminal:
+def colours(session: Session) -> None:
+    session.program.write_text(FENCE)
+    with start(session, NO_SERVER) as terminal:
         terminal.type(":Pydslrep parser")
         terminal.press("Enter")
-        made.check("the parser", terminal.wait("built "), terminal.screen())
+        session.check("the parser", terminal.wait("built "), terminal.screen())
         terminal.press("Enter")
         terminal.type(":InspectTree")
         terminal.press("Enter")
-        made.check("its tree", terminal.wait("wheel_definition"), terminal.screen())
+        session.check("its tree", terminal.wait("wheel_definition"), terminal.screen())
         terminal.picture(PICTURES / "neovim-colours.png")
 
 
 if shutil.which("chromium") is None:
     sys.exit("chromium is missing; it takes the pictures")
-with session("neovim") as made:
+with open_session("neovim") as session:
     command = Path(
         os.environ.get("PYDSLREP", str(ROOT / "target" / "debug" / "pydslrep"))
     )
-    (made.home / "bin" / "pydslrep").symlink_to(command.resolve())
+    (session.home / "bin" / "pydslrep").symlink_to(command.resolve())
     for part in (run, problem, colours):
-        part(made)
+        part(session)

@@ -67,12 +67,12 @@ class InTerminal(Editor):
 
     error_shown = re.escape(MESSAGE)
 
-    def __init__(self, made: Session) -> None:
-        self.made = made
-        self.work = made.program.parent
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self.work = session.program.parent
         self.set_up()
-        command = [*self.command(), str(made.program)]
-        self.terminal = Terminal(command, made.program.parent, made.environment())
+        command = [*self.command(), str(session.program)]
+        self.terminal = Terminal(command, session.program.parent, session.environment())
         self.keyboard = Keyboard(self.terminal)
         if not self.terminal.wait(self.error_shown):
             shown = self.screen()
@@ -81,7 +81,7 @@ class InTerminal(Editor):
 
     def set_up(self) -> None:
         """Writes its configuration."""
-        self.made.set_up()
+        self.session.set_up()
 
     def command(self) -> list[str]:
         """The command that starts it."""
@@ -137,7 +137,7 @@ class Neovim(Modal):
 
     def __init__(
         self,
-        made: Session,
+        session: Session,
         plugin: str | None = None,
         variant: str = "",
         needs: tuple[str, ...] = (),
@@ -145,20 +145,20 @@ class Neovim(Modal):
         self.plugin = plugin
         self.variant = variant
         self.needs = needs
-        super().__init__(made)
+        super().__init__(session)
 
     def set_up(self) -> None:
         """Writes the readme's settings without a plugin manager, and the plugin's or else the readme's optional ones."""
         readme = (ROOT / "editors" / "neovim" / "README.md").read_text()
         blocks = re.findall(r"^```lua\n(.*?)^```", readme, re.M | re.S)
-        packages = self.made.home / ".local/share/nvim/site/pack/person/start"
+        packages = self.session.home / ".local/share/nvim/site/pack/person/start"
         packages.mkdir(parents=True)
         for variable in self.needs:
             folder = Path(os.environ.get(variable, "")).resolve()
             if not (folder / "lua").is_dir():
                 raise SystemExit(f"{variable} must be the folder of that plugin")
             (packages / folder.name).symlink_to(folder)
-        settings = self.made.home / ".config" / "nvim" / "init.lua"
+        settings = self.session.home / ".config" / "nvim" / "init.lua"
         settings.parent.mkdir()
         if self.plugin:
             blocks[2] = f"vim.g.typing_variant = '{self.variant}'\n"
@@ -195,7 +195,7 @@ class Kakoune(Modal):
     normal = r"(?s)\A(?!.*\binsert\b)"
 
     def set_up(self) -> None:
-        link = self.made.home / "bin" / "kak-lsp"
+        link = self.session.home / "bin" / "kak-lsp"
         if not link.exists():
             link.symlink_to(os.environ["KAK_LSP"])
         super().set_up()
@@ -217,22 +217,22 @@ class Emacs(InTerminal):
     behaviour = Behaviour(closes_braces=True)
     error_shown = r"\[eglot:"
 
-    def __init__(self, made: Session, package: str) -> None:
+    def __init__(self, session: Session, package: str) -> None:
         self.package = package
-        super().__init__(made)
+        super().__init__(session)
 
     def set_up(self) -> None:
         readme = (ROOT / "editors" / "emacs" / "README.md").read_text()
         block = re.search(r"^```elisp\n(.*?)^```", readme, re.M | re.S)
         assert block, "the readme has no elisp"
-        settings = self.made.home / ".emacs.d" / "init.el"
+        settings = self.session.home / ".emacs.d" / "init.el"
         settings.parent.mkdir()
         found = '(file-expand-wildcards (concat (getenv "ELPA") "/*"))'
         packages = f"(setq load-path (append {found} load-path))\n"
         own = packages + (HERE / "emacs" / f"{self.package}.el").read_text()
         text = QUIET + block[1].replace("/path/to/pydslrep", str(ROOT)) + own
         settings.write_text(text)
-        self.made.set_up()
+        self.session.set_up()
 
     def command(self) -> list[str]:
         options = os.environ.get("EMACS_OPTIONS", "").split()
@@ -306,15 +306,15 @@ class VsCode(Editor):
 
 EDITORS: dict[str, Callable[[Session], Editor]] = {
     "vscode": VsCode,
-    "vscode-enter": lambda made: VsCode(made, ENTER_ACCEPTS),
-    "vscode-tab": lambda made: VsCode(made, TAB_INDENTS, indents=False),
+    "vscode-enter": lambda session: VsCode(session, ENTER_ACCEPTS),
+    "vscode-tab": lambda session: VsCode(session, TAB_INDENTS, indents=False),
     "neovim": Neovim,
-    "neovim-cmp": lambda made: Neovim(made, "cmp", "", CMP),
-    "neovim-cmp-select": lambda made: Neovim(made, "cmp", "select", CMP),
-    "neovim-blink": lambda made: Neovim(made, "blink", "default", BLINK),
-    "neovim-blink-enter": lambda made: Neovim(made, "blink", "enter", BLINK),
+    "neovim-cmp": lambda session: Neovim(session, "cmp", "", CMP),
+    "neovim-cmp-select": lambda session: Neovim(session, "cmp", "select", CMP),
+    "neovim-blink": lambda session: Neovim(session, "blink", "default", BLINK),
+    "neovim-blink-enter": lambda session: Neovim(session, "blink", "enter", BLINK),
     "helix": Helix,
-    "emacs-company": lambda made: Emacs(made, "company"),
-    "emacs-corfu": lambda made: Emacs(made, "corfu"),
+    "emacs-company": lambda session: Emacs(session, "company"),
+    "emacs-corfu": lambda session: Emacs(session, "corfu"),
     "kakoune": Kakoune,
 }

@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from corpus import FEW, Program, programs
 from drivers import EDITORS, Editor
 from keystrokes import Stroke, strokes
-from session import ROOT, session
+from session import ROOT, open_session
 
 PACES = (30, 70, 150)
 # Without `--all`, a few programs are typed at the first pace, and the first one also at the second.
@@ -112,8 +112,8 @@ def record(name: str, share: list[Task]) -> list[Outcome]:
     outcomes: list[Outcome] = []
     left = list(share)
     while left:
-        with session(name.partition("-")[0]) as made:
-            editor = EDITORS[name](made)
+        with open_session(name.partition("-")[0]) as session:
+            editor = EDITORS[name](session)
             try:
                 prepare(editor.work, left)
                 while left:

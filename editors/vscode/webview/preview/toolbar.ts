@@ -72,14 +72,14 @@ export class Toolbar {
   }
 
   private suggestionButton(suggestion: Suggestion): HTMLElement {
-    const made = element("button", { type: "button", class: "suggestion", "data-part": "suggestion" }, SUGGESTION_LABELS[suggestion]);
-    made.addEventListener("click", () => this.events.accept(suggestion));
-    return made;
+    const created = element("button", { type: "button", class: "suggestion", "data-part": "suggestion" }, SUGGESTION_LABELS[suggestion]);
+    created.addEventListener("click", () => this.events.accept(suggestion));
+    return created;
   }
 }
 
 export function button(label: string, shape: string, part: string, pressed: () => void): HTMLButtonElement {
-  const made = element("button", { type: "button", class: "icon", title: label, "aria-label": label, "data-part": part }, icon(shape));
-  made.addEventListener("click", pressed);
-  return made;
+  const created = element("button", { type: "button", class: "icon", title: label, "aria-label": label, "data-part": part }, icon(shape));
+  created.addEventListener("click", pressed);
+  return created;
 }
