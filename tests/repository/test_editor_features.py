@@ -9,7 +9,7 @@ FEATURES = ROOT / "crates" / "ide" / "src"
 PAGE = ROOT / "docs" / "editor-features.md"
 
 # What the features are built from.
-PARTS = {"cursor", "fixture", "reference"}
+PARTS = {"cursor", "fixture", "keyword_pages"}
 
 # Each feature's file, and how an editor asks for it.
 GROUPS: dict[str, dict[str, list[str]]] = {

@@ -5,18 +5,18 @@
 mod defaults;
 mod documentation;
 mod names;
-pub(crate) mod offers;
+pub(crate) mod filter;
 mod paths;
-mod patterns;
-mod place;
-mod words;
+mod snippets;
+mod context;
+mod keywords;
 
 use pydslrep_analysis::{Database, FileId};
 use pydslrep_syntax::{EntityKind, Expected, Span, TextEdit, TokenKind, expected_after};
 
 pub use self::documentation::completion_documentation;
-use self::patterns::without_stops;
-use self::place::Place;
+use self::snippets::without_stops;
+use self::context::CursorContext;
 use crate::FilePosition;
 
 /// No more are given at once: a long list takes an editor longer than whoever reads it.
@@ -136,7 +136,7 @@ pub fn completions(
         };
         return narrowed_at(database, position, items);
     }
-    let Some(place) = Place::find(database, position, speed) else { return Vec::new() };
+    let Some(place) = CursorContext::find(database, position, speed) else { return Vec::new() };
     let opens = match trigger {
         CompletionTrigger::Invoked => true,
         CompletionTrigger::Character('^') => place.is_escaped,
@@ -176,37 +176,37 @@ fn narrowed_at(database: &Database, position: FilePosition, items: Vec<Completio
     let (before, after) = (slice(word.start, position.offset), slice(position.offset, word.end));
     let ends_line = database.text(position.file).is_none_or(|text| {
         let following = text.get_byte_slice(word.end as usize..);
-        following.is_none_or(|following| offers::ends_line(following.chars()))
+        following.is_none_or(|following| filter::ends_line(following.chars()))
     });
-    offers::narrowed(items, offers::Word { before: &before, after: &after, ends_line })
+    filter::narrowed(items, filter::Word { before: &before, after: &after, ends_line })
 }
 
-fn offers(place: &Place<'_>, expected: Expected) -> Vec<Completion> {
+fn offers(place: &CursorContext<'_>, expected: Expected) -> Vec<Completion> {
     match expected {
         Expected::Word(TokenKind::At) => {
-            patterns::speed(place).into_iter().chain(words::word(place, TokenKind::At)).collect()
+            snippets::speed(place).into_iter().chain(keywords::word(place, TokenKind::At)).collect()
         }
-        Expected::Word(word) => words::word(place, word).into_iter().collect(),
+        Expected::Word(word) => keywords::word(place, word).into_iter().collect(),
         Expected::ReferenceTo(kind) => names::names(place, kind),
         Expected::Action => {
-            let mut found = patterns::actions(place);
-            found.extend(words::plain_words(place, &[TokenKind::Move, TokenKind::Turn, TokenKind::Slam]));
+            let mut found = snippets::actions(place);
+            found.extend(keywords::plain_words(place, &[TokenKind::Move, TokenKind::Turn, TokenKind::Slam]));
             found
         }
         Expected::Declaration => {
-            let mut found = patterns::entities(place);
+            let mut found = snippets::entities(place);
             let words = if place.may_import() { &BEGINNINGS[..] } else { &BEGINNINGS[1..] };
-            found.extend(words::plain_words(place, words));
+            found.extend(keywords::plain_words(place, words));
             found
         }
         Expected::Port => {
-            let port = words::port(place, place.entity);
-            port.map(|port| words::value(place, &port, "the port of the simulator")).into_iter().collect()
+            let port = keywords::port(place, place.entity);
+            port.map(|port| keywords::value(place, &port, "the port of the simulator")).into_iter().collect()
         }
-        Expected::Address => vec![words::value(place, "127.0.0.1", "this machine")],
-        Expected::Radius => vec![words::value(place, "4.5", "centimetres")],
+        Expected::Address => vec![keywords::value(place, "127.0.0.1", "this machine")],
+        Expected::Radius => vec![keywords::value(place, "4.5", "centimetres")],
         Expected::Speed => {
-            vec![words::value(place, &format!("{:?}", place.speed), "centimetres per second")]
+            vec![keywords::value(place, &format!("{:?}", place.speed), "centimetres per second")]
         }
         Expected::Path => paths::quoted_paths(place),
         Expected::Distance | Expected::Angle | Expected::NameOf(_) => Vec::new(),

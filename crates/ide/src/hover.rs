@@ -2,7 +2,7 @@
 //! robot its equations with its numbers, of an action its time and poses, of an environment who drives when, and of a
 //! keyword its syntax with an example.
 
-pub(crate) mod drawing;
+pub(crate) mod format;
 pub(crate) mod motion;
 mod parts;
 
@@ -12,7 +12,7 @@ use pydslrep_syntax::{EntityKind, Span};
 
 use crate::FilePosition;
 use crate::cursor::{body, entities_at, lexeme_at, name_at};
-use crate::reference::keyword_page;
+use crate::keyword_pages::keyword_page;
 
 /// What to show, and for which piece of text.
 #[derive(Debug, Clone, PartialEq, Eq)]

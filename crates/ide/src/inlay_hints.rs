@@ -14,7 +14,7 @@ use smol_str::SmolStr;
 
 pub use self::known::KnownMovements;
 use self::known::{Planned, Route, Start, Step};
-use crate::hover::drawing::{number, short_pose, time};
+use crate::hover::format::{number, short_pose, time};
 use crate::hover::motion::{leg_facts, poses_of, why_open};
 
 /// Where poses end to be known.

@@ -23,7 +23,7 @@ mod planned_action;
 mod planned_path;
 mod quick_fixes;
 mod refactorings;
-mod reference;
+mod keyword_pages;
 mod references;
 mod rename;
 mod scenes;
@@ -60,7 +60,7 @@ pub use planned_path::{
 };
 pub use quick_fixes::{QuickFix, quick_fixes};
 pub use refactorings::{Refactoring, RefactoringKind, refactorings};
-pub use reference::{KeywordPage, keyword_page};
+pub use keyword_pages::{KeywordPage, keyword_page};
 pub use references::references;
 pub use rename::{Refusal, RenameTarget, prepare_rename, rename};
 pub use scenes::{scene_completions, scene_fixes, scene_hover};

@@ -11,7 +11,7 @@ use pydslrep_syntax::{EntityKind, Expected, Span, Token, TokenKind, expected_aft
 
 use self::shape::window;
 use crate::FilePosition;
-use crate::reference::keyword_page;
+use crate::keyword_pages::keyword_page;
 
 /// Why an editor asks for signature help.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

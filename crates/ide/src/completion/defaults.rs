@@ -9,14 +9,14 @@ use pydslrep_syntax::{EntityKind, Span, as_written};
 use smol_str::SmolStr;
 
 use super::names::NEAR;
-use super::place::Place;
+use super::context::CursorContext;
 
 /// At most so many names are put into a list for the person.
 const MOST_LISTED: usize = 40;
 
 /// What is declared near a place, and what is written there.
 pub(super) struct Defaults<'a> {
-    place: &'a Place<'a>,
+    place: &'a CursorContext<'a>,
     /// Near the cursor, in the order of the text.
     near: Vec<Near<'a>>,
 }
@@ -50,16 +50,16 @@ pub(super) struct LastTurn {
 
 impl<'a> Defaults<'a> {
     /// For a new entity.
-    pub(super) fn for_entity(place: &'a Place<'a>) -> Self {
+    pub(super) fn for_entity(place: &'a CursorContext<'a>) -> Self {
         Self::around(place, None)
     }
 
     /// For what is missing of the entity at the cursor, which says nothing about itself.
-    pub(super) fn for_part(place: &'a Place<'a>) -> Self {
+    pub(super) fn for_part(place: &'a CursorContext<'a>) -> Self {
         Self::around(place, place.entity)
     }
 
-    fn around(place: &'a Place<'a>, own: Option<EntityId>) -> Self {
+    fn around(place: &'a CursorContext<'a>, own: Option<EntityId>) -> Self {
         let around = place.database.entities_around(place.file, place.word.start, NEAR);
         let near = around.filter(|id| own != Some(*id)).filter_map(|id| {
             let entity = place.database.entity(id)?;
@@ -156,7 +156,7 @@ impl<'a> Defaults<'a> {
 
     fn layout(&self, names: &[SmolStr]) -> Option<Layout> {
         let mecanum: Option<Vec<bool>> =
-            names.iter().map(|name| super::words::is_mecanum(self.place, name)).collect();
+            names.iter().map(|name| super::keywords::is_mecanum(self.place, name)).collect();
         let drive = match mecanum?[..] {
             [false, false] => DriveWord::Tw,
             [false, false, false, false] => DriveWord::Fw,
@@ -299,7 +299,7 @@ impl<'a> Defaults<'a> {
 }
 
 /// The robot of a movement, unless it cannot be said what it carries.
-pub(super) fn robot_of<'a>(place: &Place<'a>, movement: &Movement) -> Option<&'a Robot> {
+pub(super) fn robot_of<'a>(place: &CursorContext<'a>, movement: &Movement) -> Option<&'a Robot> {
     let name = &movement.robot.as_ref()?.text;
     let id = place.database.resolve(place.file, EntityKind::Robot, name).entity()?;
     match place.database.tree(id)? {
@@ -356,7 +356,7 @@ fn left_first(names: Vec<SmolStr>) -> Vec<SmolStr> {
 }
 
 /// The wheels, robots or movements that a list of this kind in the entity at the cursor probably has.
-pub(super) fn likely_list(place: &Place<'_>, kind: EntityKind) -> String {
+pub(super) fn likely_list(place: &CursorContext<'_>, kind: EntityKind) -> String {
     let defaults = Defaults::for_part(place);
     match (place.tree, kind) {
         (Some(Entity::Robot(_)), EntityKind::Wheel) => defaults.wheels().names.join(" "),

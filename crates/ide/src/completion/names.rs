@@ -13,9 +13,9 @@ use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
 use super::defaults::robot_of;
-use super::offers::starts_with;
-use super::place::Place;
-use super::words::is_mecanum;
+use super::filter::starts_with;
+use super::context::CursorContext;
+use super::keywords::is_mecanum;
 use super::{Completion, CompletionKind, Documentation, MOST, Rank, paths};
 
 /// Of so many names each is weighed.
@@ -28,7 +28,7 @@ pub(super) const NEAR: usize = 200;
 const MOST_ELSEWHERE: usize = 50;
 
 /// The names of a kind that fit.
-pub(super) fn names(place: &Place<'_>, kind: EntityKind) -> Vec<Completion> {
+pub(super) fn names(place: &CursorContext<'_>, kind: EntityKind) -> Vec<Completion> {
     let wanted = Wanted::at(place, kind);
     let chosen = wanted.only(place).unwrap_or_else(|| in_sight(place, &wanted));
     let mut found: Vec<Completion> = chosen.iter().filter_map(|name| reference(place, kind, name)).collect();
@@ -59,7 +59,7 @@ enum For<'a> {
 }
 
 impl<'a> Wanted<'a> {
-    fn at(place: &Place<'a>, kind: EntityKind) -> Self {
+    fn at(place: &CursorContext<'a>, kind: EntityKind) -> Self {
         let listed = place.listed();
         let for_ = match (place.tree, kind) {
             (Some(Entity::Robot(robot)), EntityKind::Wheel) => wheels_of(place, robot, &listed),
@@ -77,7 +77,7 @@ impl<'a> Wanted<'a> {
     }
 
     /// The only names that can be meant, where few entities say so.
-    fn only(&self, place: &Place<'_>) -> Option<Vec<SmolStr>> {
+    fn only(&self, place: &CursorContext<'_>) -> Option<Vec<SmolStr>> {
         let seen = |name: &&SmolStr| place.database.resolve(place.file, self.kind, name).entity().is_some();
         match &self.for_ {
             For::Turn(Some(robot)) => {
@@ -94,7 +94,7 @@ impl<'a> Wanted<'a> {
     }
 
     /// The movements of these robots in sight, first those not listed yet.
-    fn movements_of(&self, place: &Place<'_>, robots: &[EntityId]) -> Vec<SmolStr> {
+    fn movements_of(&self, place: &CursorContext<'_>, robots: &[EntityId]) -> Vec<SmolStr> {
         let files: Vec<FileId> =
             std::iter::once(place.file).chain(place.database.imported_files(place.file)).collect();
         let mut names: Vec<(bool, SmolStr)> = Vec::new();
@@ -133,7 +133,7 @@ impl<'a> Wanted<'a> {
     }
 
     /// How unlikely an entity is: the radius of the others in the list is likely, and what is in use already is not.
-    fn weight(&self, place: &Place<'_>, name: &SmolStr, id: EntityId) -> u8 {
+    fn weight(&self, place: &CursorContext<'_>, name: &SmolStr, id: EntityId) -> u8 {
         let tree = place.database.tree(id);
         let other_radius = match (&self.for_, tree) {
             (For::Robot(_, Some(wanted)), Some(Entity::Wheel(wheel))) => {
@@ -158,7 +158,7 @@ impl<'a> Wanted<'a> {
 }
 
 /// All wheels of a robot are of one kind: that of those that are listed, else that of its type.
-fn wheels_of<'a>(place: &Place<'a>, robot: &Robot, listed: &[SmolStr]) -> For<'a> {
+fn wheels_of<'a>(place: &CursorContext<'a>, robot: &Robot, listed: &[SmolStr]) -> For<'a> {
     let first = listed.iter().find_map(|name| Some((name, is_mecanum(place, name)?)));
     let radius = first.and_then(|(name, _)| {
         let id = place.database.resolve(place.file, EntityKind::Wheel, name).entity()?;
@@ -177,7 +177,7 @@ fn wheels_of<'a>(place: &Place<'a>, robot: &Robot, listed: &[SmolStr]) -> For<'a
 }
 
 /// The best names of a kind that the file sees.
-fn in_sight(place: &Place<'_>, wanted: &Wanted<'_>) -> Vec<SmolStr> {
+fn in_sight(place: &CursorContext<'_>, wanted: &Wanted<'_>) -> Vec<SmolStr> {
     let mut all: Vec<&SmolStr> = place
         .database
         .names_in_sight(place.file, wanted.kind)
@@ -219,7 +219,7 @@ fn in_sight(place: &Place<'_>, wanted: &Wanted<'_>) -> Vec<SmolStr> {
 }
 
 /// What begins as it is typed comes before what only has the letters.
-fn order(place: &Place<'_>, name: &str) -> bool {
+fn order(place: &CursorContext<'_>, name: &str) -> bool {
     !starts_with(name, &place.typed)
 }
 
@@ -230,13 +230,13 @@ fn is_like(name: &str, typed: &str) -> bool {
 }
 
 /// The names of a kind that are declared near the cursor.
-fn near<'a>(place: &Place<'a>, kind: EntityKind) -> FxHashSet<&'a SmolStr> {
+fn near<'a>(place: &CursorContext<'a>, kind: EntityKind) -> FxHashSet<&'a SmolStr> {
     let around = place.database.entities_around(place.file, place.word.start, NEAR);
     let trees = around.filter_map(|id| place.database.tree(id));
     trees.filter(|tree| tree.kind() == Some(kind)).filter_map(|tree| Some(&tree.name()?.text)).collect()
 }
 
-fn reference(place: &Place<'_>, kind: EntityKind, name: &SmolStr) -> Option<Completion> {
+fn reference(place: &CursorContext<'_>, kind: EntityKind, name: &SmolStr) -> Option<Completion> {
     let id = place.database.resolve(place.file, kind, name).entity()?;
     let home = place.database.file_of(id)?;
     let detail = match place.database.path_for_import(place.file, home) {
@@ -252,7 +252,7 @@ fn reference(place: &Place<'_>, kind: EntityKind, name: &SmolStr) -> Option<Comp
 }
 
 /// Names of files that are not imported yet, each with what imports its file.
-fn elsewhere(place: &Place<'_>, wanted: &Wanted<'_>) -> Vec<Completion> {
+fn elsewhere(place: &CursorContext<'_>, wanted: &Wanted<'_>) -> Vec<Completion> {
     let mut items = Vec::new();
     for (path, file) in paths::not_imported(place.database, place.file) {
         let names = place.database.names(file, wanted.kind).filter(|name| is_like(name, &place.typed));

@@ -3,7 +3,7 @@
 use pydslrep_analysis::{Database, FileId};
 use pydslrep_syntax::{Span, Token, TokenKind};
 
-use super::place::Place;
+use super::context::CursorContext;
 use super::{Completion, CompletionKind};
 use crate::FilePosition;
 use crate::document_links::contents;
@@ -50,7 +50,7 @@ pub(super) fn paths(database: &Database, file: FileId, at: &PathAt) -> Vec<Compl
 }
 
 /// The paths with quotes, where none is begun.
-pub(super) fn quoted_paths(place: &Place<'_>) -> Vec<Completion> {
+pub(super) fn quoted_paths(place: &CursorContext<'_>) -> Vec<Completion> {
     importable(place.database, place.file, "")
         .into_iter()
         .map(|(path, imported)| {

@@ -5,7 +5,7 @@ use pydslrep_analysis::{Database, EntityId, plan, plan_movement, scene};
 use pydslrep_kinematics::{Leg, Plan, RobotPath};
 use pydslrep_syntax::EntityKind;
 
-use super::drawing::{names, number, pose, time};
+use super::format::{names, number, pose, time};
 use super::parts::used_by;
 
 /// An action of a movement that starts at the origin.

@@ -9,7 +9,7 @@ use pydslrep_scene::defaults;
 use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::{Entity, SensorKind};
 
-use super::drawing::{names, number};
+use super::format::{names, number};
 
 pub(super) fn wheel(database: &Database, id: EntityId) -> Option<String> {
     let Entity::Wheel(wheel) = database.tree(id)? else { return None };

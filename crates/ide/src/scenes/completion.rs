@@ -7,7 +7,7 @@ use smol_str::SmolStr;
 
 use super::{Meaning, meaning, robots};
 use crate::completion::Rank;
-use crate::completion::offers::narrowed_in_toml;
+use crate::completion::filter::narrowed_in_toml;
 use crate::{Completion, CompletionKind, CompletionTrigger, Documentation};
 
 /// What fits at an offset in the text of a scene file. Keys and tables that are there already do not, except for tables

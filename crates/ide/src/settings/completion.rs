@@ -6,7 +6,7 @@ use pydslrep_schema::{Place, Slot, names, place_at};
 
 use super::{Meaning, documentation, meaning};
 use crate::completion::Rank;
-use crate::completion::offers::narrowed_in_toml;
+use crate::completion::filter::narrowed_in_toml;
 use crate::{Completion, CompletionKind, CompletionTrigger, Documentation};
 
 /// What fits at an offset in the text of a settings file. Keys and tables that are there already do not.

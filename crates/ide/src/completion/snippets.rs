@@ -5,8 +5,8 @@ use pydslrep_syntax::ast::{Direction, Unit};
 use pydslrep_syntax::{EntityKind, TokenKind};
 
 use super::defaults::Defaults;
-use super::place::Place;
-use super::words::port;
+use super::context::CursorContext;
+use super::keywords::port;
 use super::{Completion, CompletionKind, Documentation, Rank};
 
 /// A pattern to fill in.
@@ -23,7 +23,7 @@ impl Pattern {
 }
 
 /// Whole entities, in the order of the grammar; of the two kinds of wheel, the one declared last comes first.
-pub(super) fn entities(place: &Place<'_>) -> Vec<Completion> {
+pub(super) fn entities(place: &CursorContext<'_>) -> Vec<Completion> {
     let defaults = Defaults::for_entity(place);
     let mut patterns = Vec::new();
     if place.database.entities(place.file).all(|entity| entity.parse.entity.is_none()) {
@@ -55,7 +55,7 @@ pub(super) fn entities(place: &Place<'_>) -> Vec<Completion> {
 }
 
 /// To start from, in an empty file.
-fn program(place: &Place<'_>) -> Pattern {
+fn program(place: &CursorContext<'_>) -> Pattern {
     let port = place.database.target(place.file).default_port();
     let insert = format!(
         "wheel wheelL with radius ${{4:4.5}}\n\
@@ -85,7 +85,7 @@ fn wheel(defaults: &Defaults<'_>, mecanum: bool) -> Pattern {
 }
 
 /// The wheels come right after the name: type and port are rarely changed.
-fn robot(place: &Place<'_>, defaults: &Defaults<'_>) -> Pattern {
+fn robot(place: &CursorContext<'_>, defaults: &Defaults<'_>) -> Pattern {
     let layout = defaults.wheels();
     let sensors = defaults.sensors();
     let sensors = if sensors.is_empty() {
@@ -135,7 +135,7 @@ fn environment(defaults: &Defaults<'_>) -> Pattern {
 }
 
 /// Whole actions, those like the last action of their kind first.
-pub(super) fn actions(place: &Place<'_>) -> Vec<Completion> {
+pub(super) fn actions(place: &CursorContext<'_>) -> Vec<Completion> {
     let defaults = Defaults::for_part(place);
     let (moves, turns) = (moves(&defaults), turns(&defaults));
     // Turns and moves mostly take turns.
@@ -212,7 +212,7 @@ fn spelling(direction: Direction) -> &'static str {
 }
 
 /// The clause that a move can end with.
-pub(super) fn speed(place: &Place<'_>) -> Vec<Completion> {
+pub(super) fn speed(place: &CursorContext<'_>) -> Vec<Completion> {
     let insert = format!("at ${{1:{}}}", Defaults::for_part(place).speed());
     completions(place, vec![Pattern::new("at …", "a speed (cm/s)", insert)])
 }
@@ -222,7 +222,7 @@ pub(super) fn stop(number: u32, likely: &str) -> String {
     if likely.is_empty() { format!("${number}") } else { format!("${{{number}:{likely}}}") }
 }
 
-fn completions(place: &Place<'_>, patterns: Vec<Pattern>) -> Vec<Completion> {
+fn completions(place: &CursorContext<'_>, patterns: Vec<Pattern>) -> Vec<Completion> {
     let completion = |pattern: Pattern| Completion {
         detail: pattern.detail.to_owned(),
         documentation: Documentation::Text(format!(

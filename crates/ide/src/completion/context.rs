@@ -8,7 +8,7 @@ use smol_str::SmolStr;
 use crate::FilePosition;
 
 /// The entity before the cursor, as far as it is written.
-pub(super) struct Place<'a> {
+pub(super) struct CursorContext<'a> {
     pub(super) database: &'a Database,
     pub(super) file: FileId,
     /// The entity that the cursor continues; `None` where it continues none.
@@ -35,7 +35,7 @@ pub(super) struct Place<'a> {
     pub(super) is_escaped: bool,
 }
 
-impl<'a> Place<'a> {
+impl<'a> CursorContext<'a> {
     pub(super) fn find(database: &'a Database, position: FilePosition, speed: f64) -> Option<Self> {
         let word = word_at(database, position)?;
         // A word that looks like a keyword begins an entity of its own; it is still only a word being typed.

@@ -7,12 +7,12 @@ use smol_str::SmolStr;
 
 use super::defaults::likely_list;
 use super::names::{FEW, NEAR};
-use super::patterns::stop;
-use super::place::Place;
+use super::snippets::stop;
+use super::context::CursorContext;
 use super::{Completion, CompletionKind, Documentation, Rank};
-use crate::reference::{KeywordPage, keyword_page};
+use crate::keyword_pages::{KeywordPage, keyword_page};
 
-impl Place<'_> {
+impl CursorContext<'_> {
     /// A completion of the word at the cursor.
     pub(super) fn item(&self, label: &str, kind: CompletionKind, rank: Rank) -> Completion {
         Completion {
@@ -25,7 +25,7 @@ impl Place<'_> {
 }
 
 /// A word, followed by those that can only follow it; `None` for the comma, which is never needed.
-pub(super) fn word(place: &Place<'_>, word: TokenKind) -> Option<Completion> {
+pub(super) fn word(place: &CursorContext<'_>, word: TokenKind) -> Option<Completion> {
     let spelling = word.spelling().filter(|_| word != TokenKind::Comma)?;
     let Continued { insert, label, last } = continued(place, word);
     let label = if word == TokenKind::OpenBrace { &label } else { label.trim_end_matches(" …") };
@@ -59,7 +59,7 @@ fn detail(word: TokenKind, page: &KeywordPage) -> String {
 }
 
 /// Whether it is the type of a robot with the wheels that this one has.
-fn suits(place: &Place<'_>, word: TokenKind) -> bool {
+fn suits(place: &CursorContext<'_>, word: TokenKind) -> bool {
     let (TokenKind::Tw | TokenKind::Fw | TokenKind::Fwh, Some(Entity::Robot(robot))) = (word, place.tree)
     else {
         return false;
@@ -76,7 +76,7 @@ fn suits(place: &Place<'_>, word: TokenKind) -> bool {
 }
 
 /// Whether the wheel of this name is a mecanum wheel; `None` where there is none.
-pub(super) fn is_mecanum(place: &Place<'_>, name: &SmolStr) -> Option<bool> {
+pub(super) fn is_mecanum(place: &CursorContext<'_>, name: &SmolStr) -> Option<bool> {
     let id = place.database.resolve(place.file, EntityKind::Wheel, name).entity()?;
     match place.database.tree(id)? {
         Entity::Wheel(wheel) => Some(wheel.mecanum),
@@ -102,7 +102,7 @@ impl Continued {
 
 /// `with` continues to `with port`, `has` to `has { … } wheels`: as long as only one word can follow, and nothing
 /// is written there yet.
-fn continued(place: &Place<'_>, word: TokenKind) -> Continued {
+fn continued(place: &CursorContext<'_>, word: TokenKind) -> Continued {
     const MOST: usize = 6;
     let mut before = place.before.clone();
     let spelling = word.spelling().unwrap_or_default().to_owned();
@@ -139,7 +139,7 @@ fn listed_kind(last: TokenKind, expected: &[Expected]) -> Option<EntityKind> {
 }
 
 /// Words after which a person goes on.
-pub(super) fn plain_words(place: &Place<'_>, words: &[TokenKind]) -> Vec<Completion> {
+pub(super) fn plain_words(place: &CursorContext<'_>, words: &[TokenKind]) -> Vec<Completion> {
     let word = |word: &TokenKind| {
         let page = keyword_page(*word)?;
         Some(Completion {
@@ -152,13 +152,13 @@ pub(super) fn plain_words(place: &Place<'_>, words: &[TokenKind]) -> Vec<Complet
 }
 
 /// A number or an address.
-pub(super) fn value(place: &Place<'_>, text: &str, detail: &str) -> Completion {
+pub(super) fn value(place: &CursorContext<'_>, text: &str, detail: &str) -> Completion {
     Completion { detail: detail.to_owned(), ..place.item(text, CompletionKind::Value, Rank::Fitting) }
 }
 
 /// A port for a robot: `own`, or a new one. Where all robots share one port, as they may in CoppeliaSim, it is theirs; else it is the one
 /// after the highest, or the first that is free.
-pub(super) fn port(place: &Place<'_>, own: Option<EntityId>) -> Option<String> {
+pub(super) fn port(place: &CursorContext<'_>, own: Option<EntityId>) -> Option<String> {
     let target = place.database.target(place.file);
     let port = |id: EntityId| match place.database.tree(id)? {
         Entity::Robot(robot) if Some(id) != own => robot.port.as_ref()?.value,
