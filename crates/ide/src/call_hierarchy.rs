@@ -1,5 +1,5 @@
-//! Call hierarchy: which movements an environment runs and which robot each of them drives, and back from a robot to
-//! its movements and from those to their environments.
+//! Call hierarchy: the movements an environment runs and the robot each of them drives; and back, from a robot to its
+//! movements and from those to their environments.
 
 use pydslrep_analysis::{Database, EntityId, EntityRef, FileId, FileSpan};
 use pydslrep_syntax::ast::{Entity, Name};
@@ -13,39 +13,39 @@ use crate::symbols::detail;
 /// An environment, a movement or a robot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CallItem {
-    /// Which one.
+    /// The entity.
     pub id: EntityId,
-    /// Its file.
+    /// The file that declares it.
     pub file: FileId,
-    /// What it is.
+    /// Its kind.
     pub kind: EntityKind,
     /// Its name.
     pub name: String,
-    /// What is worth knowing of it at a glance.
+    /// A one-line summary.
     pub detail: String,
-    /// The whole of it.
+    /// The range of the declaration.
     pub full: Span,
-    /// Its name's place.
+    /// The range of its name.
     pub focus: Span,
 }
 
-/// An item at the other end of a call.
+/// The item at the other end of a call.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Call {
-    /// Who calls, or who is called.
+    /// The caller or the callee.
     pub item: CallItem,
-    /// Where the caller names whom it calls, in the caller's file.
+    /// The references to the callee, in the caller's file.
     pub ranges: Vec<Span>,
 }
 
-/// What the name at a place stands for; several where it is declared twice.
+/// The declarations of the name at a position; several if it is declared twice.
 pub fn call_items(database: &Database, position: FilePosition) -> Vec<CallItem> {
     let Some(at) = name_at(database, position) else { return Vec::new() };
     let candidates = database.candidates(position.file, at.kind, &at.name.text).into_iter();
     candidates.filter_map(|id| item(&database.entity(id)?)).collect()
 }
 
-/// The item that was found before under a name and at a place; the first of that name if nothing is there any more.
+/// Finds an item again by its name and the range of its name; the first of that name if the range has changed.
 pub fn call_item(
     database: &Database,
     file: FileId,
@@ -69,30 +69,30 @@ pub fn incoming_calls(database: &Database, called: &CallItem) -> Vec<Call> {
     let places = database.references(called.file, called.kind, &SmolStr::new(&called.name));
     let mut calls = Vec::new();
     for uses in places.chunk_by(|a, b| a.file == b.file) {
-        calls.extend(users(database, uses).into_iter().filter(|call| call.item.kind == caller_kind));
+        calls.extend(callers(database, uses).into_iter().filter(|call| call.item.kind == caller_kind));
     }
     calls
 }
 
-/// The named entities that hold these places of one file.
-fn users(database: &Database, mut places: &[FileSpan]) -> Vec<Call> {
+/// The named entities that contain these references, all in one file.
+fn callers(database: &Database, mut places: &[FileSpan]) -> Vec<Call> {
     let Some(first) = places.first() else { return Vec::new() };
-    let mut found = Vec::new();
+    let mut calls = Vec::new();
     for entity in database.entities(first.file) {
         let count = places.partition_point(|place| place.span.start < entity.span.end);
-        let (inside, behind) = places.split_at(count);
-        places = behind;
+        let (inside, after) = places.split_at(count);
+        places = after;
         if let (false, Some(item)) = (inside.is_empty(), item(&entity)) {
-            found.push(Call { item, ranges: inside.iter().map(|place| place.span).collect() });
+            calls.push(Call { item, ranges: inside.iter().map(|place| place.span).collect() });
         }
         if places.is_empty() {
             break;
         }
     }
-    found
+    calls
 }
 
-/// The movements that an environment runs, each once, or the robot that a movement drives.
+/// The movements an environment runs, each once, or the robot a movement drives.
 pub fn outgoing_calls(database: &Database, caller: &CallItem) -> Vec<Call> {
     let Some(entity) = database.entity(caller.id) else { return Vec::new() };
     let (kind, names): (EntityKind, Vec<&Name>) = match &entity.parse.entity {

@@ -1,7 +1,7 @@
-//! Code lenses: above an environment what can be done with it, above a declaration how often it is used.
+//! Code lenses: commands above each environment, and the number of references above every other declaration.
 //!
-//! A lens is a line of its own, which moves all that is below it. So there is none for a name that is being typed, and
-//! none yet for a declaration that is new or not complete; one that is there stays while its declaration is edited.
+//! A lens takes up a line and so moves the text below it. It appears only when its declaration is complete and not
+//! being typed; once shown, it stays while the declaration is edited. A name that is being typed has none.
 
 use pydslrep_analysis::{Database, EntityRef, FileId};
 use pydslrep_syntax::{EntityKind, Span};
@@ -11,25 +11,24 @@ use smol_str::SmolStr;
 use crate::cursor::body;
 use crate::inlay_hints::lines;
 
-/// A line above a declaration.
+/// A lens above a declaration.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CodeLens {
-    /// The declared name's place.
+    /// The range of the declared name.
     pub span: Span,
-    /// What is declared.
+    /// The kind of the declaration.
     pub kind: EntityKind,
     /// Its name.
     pub name: SmolStr,
 }
 
-/// The declarations of one file that had a lens when lenses were last asked for. Whoever keeps it beside a text that is
-/// edited and hands it over again gets lenses that stay.
+/// The declarations of one file that had a lens at the last request. Keep it with the open document and pass it to each
+/// request, so that lenses stay while the text is edited.
 #[derive(Debug, Default)]
 pub struct ShownLenses(FxHashSet<(EntityKind, SmolStr)>);
 
-/// The lenses of a file in the order of the text, at most one for each declaration; `typed` is where somebody is typing.
-/// Environments, which nothing refers to, can be run; of all others the uses can be counted by [`Database::references`],
-/// which is worth doing only for what is seen.
+/// The lenses of a file in text order, at most one per declaration; `typed` holds the offsets being edited. References
+/// are not counted here: [`Database::references`] does it for the lenses that are visible.
 pub fn code_lenses(
     database: &Database,
     file: FileId,
@@ -45,15 +44,15 @@ pub fn code_lenses(
             let lens = CodeLens { span, kind: tree.kind()?, name: name.text.clone() };
             let is_typed = typed.iter().any(|place| span.touches(*place));
             let was_shown = || shown.0.contains(&(lens.kind, lens.name.clone()));
-            (!is_typed && (was_shown() || is_done(database, &entity, typed))).then_some(lens)
+            (!is_typed && (was_shown() || is_complete(database, &entity, typed))).then_some(lens)
         })
         .collect();
     shown.0 = lenses.iter().map(|lens| (lens.kind, lens.name.clone())).collect();
     lenses
 }
 
-/// Whether a declaration is complete and nobody is typing in its lines.
-fn is_done(database: &Database, entity: &EntityRef<'_>, typed: &[u32]) -> bool {
+/// Whether a declaration has no errors and none of its lines is being edited.
+fn is_complete(database: &Database, entity: &EntityRef<'_>, typed: &[u32]) -> bool {
     let lines = || lines(database, entity.file, body(entity));
     entity.parse.errors.is_empty() && (typed.is_empty() || !typed.iter().any(|place| lines().touches(*place)))
 }
@@ -79,7 +78,7 @@ mod tests {
         assert_eq!(found, ["wheel robots \"^robots\"", "environment e \"e\""]);
     }
 
-    /// What has a lens after each key, where that changes.
+    /// The declarations with a lens after each key, whenever that changes.
     fn typing(text: &str, place: &str, typed: &str) -> String {
         let mut database = Database::new();
         let file = database.open("a.pyr", text);

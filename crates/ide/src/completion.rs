@@ -1,65 +1,65 @@
-//! Completion: what the grammar allows at the cursor, and of names only those that make sense there.
+//! Completion: what the grammar allows at the cursor, and only the names that fit there.
 //!
-//! Which words fit is asked of the parser itself ([`expected_after`]), so it cannot drift from the language.
+//! The parser itself says which keywords fit ([`expected_after`]), so completion cannot drift from the language.
 
+mod context;
 mod defaults;
 mod documentation;
-mod names;
 pub(crate) mod filter;
+mod keywords;
+mod names;
 mod paths;
 mod snippets;
-mod context;
-mod keywords;
 
 use pydslrep_analysis::{Database, FileId};
 use pydslrep_syntax::{EntityKind, Expected, Span, TextEdit, TokenKind, expected_after};
 
-pub use self::documentation::completion_documentation;
-use self::snippets::without_stops;
 use self::context::CursorContext;
+pub use self::documentation::completion_documentation;
+use self::snippets::plain_text;
 use crate::FilePosition;
 
-/// No more are given at once: a long list takes an editor longer than whoever reads it.
-const MOST: usize = 200;
+/// The maximum number of items in a list: long lists are slow in editors, and nobody reads them.
+const MAX_ITEMS: usize = 200;
 
-/// Why completion was asked for.
+/// What triggered a completion request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CompletionTrigger {
-    /// By a person, or because a letter of a word was typed: editors do not tell these apart.
+    /// An explicit request, or a letter of a word: editors do not distinguish these.
     Invoked,
-    /// By itself, because this sign or blank was typed. What opens unasked must be what comes next in any case.
+    /// Punctuation or a space. A list opens automatically only where one of its items must come next.
     Character(char),
 }
 
-/// One thing to complete with.
+/// A completion item.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Completion {
-    /// What the list shows.
+    /// The text shown in the list.
     pub label: String,
-    /// What it is.
+    /// Its kind.
     pub kind: CompletionKind,
-    /// A few words beside the label.
+    /// A short description next to the label.
     pub detail: String,
-    /// What there is to say of it.
+    /// The documentation shown for it.
     pub documentation: Documentation,
-    /// What it replaces: the word at the cursor.
+    /// The text it replaces: the word at the cursor.
     pub replace: Span,
-    /// What it inserts; with `$1`, `${1:text}` and `$0` for the cursor's stops if `is_snippet`.
+    /// The text it inserts; with tab stops (`$1`, `${1:text}`, `$0`) if `is_snippet`.
     pub insert: String,
-    /// Whether `insert` has stops.
+    /// Whether `insert` has tab stops.
     pub is_snippet: bool,
-    /// Whether the word at the cursor begins with `^`, so that what is typed is like `insert` and not like `label`.
+    /// Whether the word at the cursor begins with `^`, so that editors must filter by `insert` rather than by `label`.
     pub is_escaped: bool,
-    /// The file that this brings into sight, which was not before.
+    /// The file that it imports, for a name that is not visible yet.
     pub imports: Option<FileId>,
-    /// What has to change elsewhere in the file for that.
+    /// The edit that adds the import.
     pub import_edit: Option<TextEdit>,
-    /// Its place in the list, before its place among those of the same rank.
+    /// The primary sort key; items of one rank keep their order.
     pub(crate) rank: Rank,
 }
 
 impl Completion {
-    /// One that inserts its label, with nothing more to say of it.
+    /// An item that inserts its label.
     pub(crate) fn new(label: &str, kind: CompletionKind, replace: Span) -> Self {
         Self {
             label: label.to_owned(),
@@ -76,18 +76,18 @@ impl Completion {
         }
     }
 
-    /// What it inserts where there are no stops.
+    /// The inserted text without tab stops.
     pub fn plain(&self) -> String {
-        if self.is_snippet { without_stops(&self.insert) } else { self.insert.clone() }
+        if self.is_snippet { plain_text(&self.insert) } else { self.insert.clone() }
     }
 }
 
-/// What a completion is.
+/// The kind of a completion item.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CompletionKind {
-    /// A word of the language, perhaps with those that must follow.
+    /// A keyword, possibly with the ones that must follow it.
     Keyword,
-    /// A whole entity or action to fill in.
+    /// A complete entity or action with placeholders.
     Snippet,
     /// A number or an address.
     Value,
@@ -95,32 +95,33 @@ pub enum CompletionKind {
     File,
     /// The name of an entity.
     Reference(EntityKind),
-    /// A key or a table of a settings file.
+    /// A key or a table of a TOML file.
     Setting,
 }
 
-/// What there is to say of a completion.
+/// The documentation of a completion item.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Documentation {
-    /// Markdown; perhaps nothing.
+    /// Markdown; may be empty.
     Text(String),
-    /// What [`completion_documentation`] says of what a file declares: it takes longer, and only one is looked at.
+    /// A declaration in a file, documented by [`completion_documentation`] on request: it costs more, and users look at
+    /// few items.
     Of(FileId, EntityKind),
 }
 
-/// Names, then whole patterns, then keywords, then what is not in sight yet.
+/// Names first, then snippets, keywords, closing braces, and names that need an import.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Rank {
     Fitting,
-    Pattern,
-    Word,
+    Snippet,
+    Keyword,
     Closing,
     Elsewhere,
 }
 
-/// What fits at a place, the best first; `speed` is for patterns with one, in centimetres per second.
+/// The completions at a position, best first; `speed` is the default for snippets, in centimetres per second.
 ///
-/// After every character that is typed the list has to be asked for again: it leaves out what is written already.
+/// Clients must request the list again after every typed character, since it depends on the typed prefix.
 pub fn completions(
     database: &Database,
     position: FilePosition,
@@ -134,19 +135,19 @@ pub fn completions(
             }
             CompletionTrigger::Character(_) => Vec::new(),
         };
-        return narrowed_at(database, position, items);
+        return filter_at(database, position, items);
     }
-    let Some(place) = CursorContext::find(database, position, speed) else { return Vec::new() };
+    let Some(context) = CursorContext::find(database, position, speed) else { return Vec::new() };
     let opens = match trigger {
         CompletionTrigger::Invoked => true,
-        CompletionTrigger::Character('^') => place.is_escaped,
-        CompletionTrigger::Character(' ') => place.needs_name(),
+        CompletionTrigger::Character('^') => context.is_escaped,
+        CompletionTrigger::Character(' ') => context.needs_name(),
         CompletionTrigger::Character(_) => false,
     };
     if !opens {
         return Vec::new();
     }
-    let expected = expected_after(&place.text, &place.before);
+    let expected = expected_after(&context.text, &context.before);
     let may_end =
         expected.iter().any(|expected| matches!(expected, Expected::Action | Expected::Declaration));
     let mut items: Vec<Completion> = Vec::new();
@@ -154,10 +155,10 @@ pub fn completions(
         let is_clause = may_end && matches!(expected, Expected::Word(word) if word != TokenKind::CloseBrace);
         let is_name = matches!(expected, Expected::ReferenceTo(_));
         if is_name || trigger == CompletionTrigger::Invoked {
-            let mut found = offers(&place, expected);
+            let mut found = items_for(&context, expected);
             if is_clause {
-                // A statement that may be complete goes on in its line, and another one begins on the next.
-                let rank = if place.begins_line() { Rank::Closing } else { Rank::Fitting };
+                // On the same line, continuing the statement is more likely; on a new line, starting another one.
+                let rank = if context.begins_line() { Rank::Closing } else { Rank::Fitting };
                 for item in &mut found {
                     item.rank = rank;
                 }
@@ -166,11 +167,11 @@ pub fn completions(
         }
     }
     items.sort_by_key(|item| item.rank);
-    narrowed_at(database, position, items)
+    filter_at(database, position, items)
 }
 
-/// Without what is in the way of what is being typed. All replace the same word.
-fn narrowed_at(database: &Database, position: FilePosition, items: Vec<Completion>) -> Vec<Completion> {
+/// Drops the items that would get in the way of typing. All of them replace the same word.
+fn filter_at(database: &Database, position: FilePosition, items: Vec<Completion>) -> Vec<Completion> {
     let Some(word) = items.first().map(|item| item.replace) else { return items };
     let slice = |start, end| database.slice(position.file, Span::new(start, end));
     let (before, after) = (slice(word.start, position.offset), slice(position.offset, word.end));
@@ -178,42 +179,46 @@ fn narrowed_at(database: &Database, position: FilePosition, items: Vec<Completio
         let following = text.get_byte_slice(word.end as usize..);
         following.is_none_or(|following| filter::ends_line(following.chars()))
     });
-    filter::narrowed(items, filter::Word { before: &before, after: &after, ends_line })
+    filter::filter(items, filter::Word { before: &before, after: &after, ends_line })
 }
 
-fn offers(place: &CursorContext<'_>, expected: Expected) -> Vec<Completion> {
+fn items_for(context: &CursorContext<'_>, expected: Expected) -> Vec<Completion> {
     match expected {
         Expected::Word(TokenKind::At) => {
-            snippets::speed(place).into_iter().chain(keywords::word(place, TokenKind::At)).collect()
+            snippets::speed(context).into_iter().chain(keywords::keyword(context, TokenKind::At)).collect()
         }
-        Expected::Word(word) => keywords::word(place, word).into_iter().collect(),
-        Expected::ReferenceTo(kind) => names::names(place, kind),
+        Expected::Word(word) => keywords::keyword(context, word).into_iter().collect(),
+        Expected::ReferenceTo(kind) => names::names(context, kind),
         Expected::Action => {
-            let mut found = snippets::actions(place);
-            found.extend(keywords::plain_words(place, &[TokenKind::Move, TokenKind::Turn, TokenKind::Slam]));
+            let mut found = snippets::actions(context);
+            found.extend(keywords::plain_keywords(
+                context,
+                &[TokenKind::Move, TokenKind::Turn, TokenKind::Slam],
+            ));
             found
         }
         Expected::Declaration => {
-            let mut found = snippets::entities(place);
-            let words = if place.may_import() { &BEGINNINGS[..] } else { &BEGINNINGS[1..] };
-            found.extend(keywords::plain_words(place, words));
+            let mut found = snippets::entities(context);
+            let words =
+                if context.may_import() { &DECLARATION_KEYWORDS[..] } else { &DECLARATION_KEYWORDS[1..] };
+            found.extend(keywords::plain_keywords(context, words));
             found
         }
         Expected::Port => {
-            let port = keywords::port(place, place.entity);
-            port.map(|port| keywords::value(place, &port, "the port of the simulator")).into_iter().collect()
+            let port = keywords::port(context, context.entity);
+            port.map(|port| keywords::value(context, &port, "simulator port")).into_iter().collect()
         }
-        Expected::Address => vec![keywords::value(place, "127.0.0.1", "this machine")],
-        Expected::Radius => vec![keywords::value(place, "4.5", "centimetres")],
+        Expected::Address => vec![keywords::value(context, "127.0.0.1", "this machine")],
+        Expected::Radius => vec![keywords::value(context, "4.5", "centimetres")],
         Expected::Speed => {
-            vec![keywords::value(place, &format!("{:?}", place.speed), "centimetres per second")]
+            vec![keywords::value(context, &format!("{:?}", context.speed), "centimetres per second")]
         }
-        Expected::Path => paths::quoted_paths(place),
+        Expected::Path => paths::quoted_paths(context),
         Expected::Distance | Expected::Angle | Expected::NameOf(_) => Vec::new(),
     }
 }
 
-const BEGINNINGS: [TokenKind; 9] = [
+const DECLARATION_KEYWORDS: [TokenKind; 9] = [
     TokenKind::Import,
     TokenKind::Wheel,
     TokenKind::WheelH,
@@ -270,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn words_bring_those_that_must_follow() {
+    fn keywords_bring_those_that_must_follow() {
         check(
             "wheel w $0",
             &expect![[r#"
@@ -308,13 +313,13 @@ mod tests {
         check(
             "robot r with port $0",
             &expect![[r#"
-                23000 [the port of the simulator] "" -> "23000"
+                23000 [simulator port] "" -> "23000"
             "#]],
         );
     }
 
     #[test]
-    fn words_bring_nothing_that_is_there_already() {
+    fn keywords_bring_nothing_that_is_already_there() {
         check(
             &format!("{PARTS}robot r type $0 with port 1 has {{ wheelL wheelR }} wheels"),
             &expect![[r#"
@@ -326,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn a_list_offers_what_it_does_not_have() {
+    fn a_list_offers_names_it_does_not_have_yet() {
         check(
             &format!("{PARTS}robot r type tw with port 1 has {{ wheelL $0 }} wheels"),
             &expect![[r#"
@@ -418,7 +423,7 @@ mod tests {
         );
     }
 
-    /// What opens by itself after what is typed right before the cursor.
+    /// The list that opens automatically after the character before the cursor.
     fn opens(fixture: &str) -> Vec<String> {
         let (database, position) = at_cursor(fixture);
         let typed = fixture[..position.offset as usize].chars().last().unwrap();
@@ -429,7 +434,7 @@ mod tests {
     }
 
     #[test]
-    fn the_list_opens_by_itself_where_a_name_must_follow() {
+    fn the_list_opens_automatically_where_a_name_must_follow() {
         assert_eq!(opens(&format!("{PARTS}movement m of $0")), ["rover"]);
         assert_eq!(opens(&format!("{PARTS}robot r with port 1 has {{ $0 }} wheels")), ["wheelL", "wheelR"]);
         assert_eq!(opens(&format!("{PARTS}robot r type tw with port 1 has {{ wheelL $0 }}")), ["wheelR"]);
@@ -443,7 +448,7 @@ mod tests {
     }
 
     #[test]
-    fn no_list_opens_by_itself_anywhere_else() {
+    fn no_list_opens_automatically_anywhere_else() {
         let in_movement = |action: &str| format!("{PARTS}movement m of rover {{{action}");
         let robot = |rest: &str| format!("{PARTS}robot r type tw {rest}");
         let fixtures = [
@@ -500,14 +505,14 @@ mod tests {
     }
 
     #[test]
-    fn a_word_inside_a_line_is_offered_to_the_end() {
+    fn a_word_inside_a_line_is_offered_until_it_is_complete() {
         let fixture = |typed: &str| format!("{PARTS}movement m of {typed}$0 {{ slam }}");
         assert_eq!(opens(&fixture("rove")), ["rover"]);
         assert_eq!(opens(&fixture("rover")), ["rover"]);
     }
 
     #[test]
-    fn the_list_is_gone_before_the_word_is_complete() {
+    fn the_list_closes_before_the_word_is_complete() {
         let fixture = |typed: &str| format!("{PARTS}movement m of rover {{ move 2 {typed}$0");
         assert_eq!(opens(&fixture("me")), ["meters"]);
         assert_eq!(opens(&fixture("met")), [""; 0]);
@@ -515,7 +520,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_inside_a_name_is_found_and_what_begins_as_typed_comes_first() {
+    fn prefixes_come_before_subwords() {
         let wheels = "wheel bigWheel with radius 9 wheel wheel_right with radius 9 wheel left with radius 9";
         assert_eq!(opens(&format!("{wheels} robot r with port 1 has {{ w$0")), ["wheel_right", "bigWheel"]);
         assert_eq!(opens(&format!("{wheels} robot r with port 1 has {{ ri$0")), ["wheel_right"]);
@@ -571,7 +576,7 @@ mod tests {
     }
 
     #[test]
-    fn imports_offer_the_files_there_are() {
+    fn imports_offer_existing_files() {
         let files =
             |last| [("lib/wheels.pyr", "wheel big with radius 9"), ("b.pyr", ""), ("lib/a.pyr", last)];
         check_in(
@@ -617,13 +622,13 @@ mod tests {
         check(
             "robot r with port 65535 has { } wheels robot q with port $0",
             &expect![[r#"
-                65535 [the port of the simulator] "" -> "65535"
+                65535 [simulator port] "" -> "65535"
             "#]],
         );
         check(
             "robot r with port 20000 has { } wheels robot q with port $0",
             &expect![[r#"
-                20000 [the port of the simulator] "" -> "20000"
+                20000 [simulator port] "" -> "20000"
             "#]],
         );
     }
@@ -664,7 +669,7 @@ mod tests {
     }
 
     #[test]
-    fn a_list_is_as_long_as_anybody_reads() {
+    fn lists_have_a_maximum_length() {
         let many: Vec<String> = (0..5_000).map(|number| format!("sensor s{number:04}end")).collect();
         let many = many.join("\n");
         let found = |typed: &str| {
@@ -675,15 +680,15 @@ mod tests {
             found.into_iter().map(|item| item.label).collect::<Vec<String>>()
         };
         let labels = found("");
-        assert_eq!(labels.len(), MOST);
-        assert!(labels.contains(&"near".to_owned()), "what is declared right before");
-        assert_eq!(found("s4321end").len(), 0, "it is there in full");
+        assert_eq!(labels.len(), MAX_ITEMS);
+        assert!(labels.contains(&"near".to_owned()), "the nearest declaration");
+        assert_eq!(found("s4321end").len(), 0, "it is complete");
         assert_eq!(found("s432").iter().filter(|label| label.starts_with("s432")).count(), 10);
         assert_eq!(found("Z"), ["zigzag"]);
     }
 
     #[test]
-    fn a_name_says_what_it_is_when_it_is_looked_at() {
+    fn a_name_is_documented_on_request() {
         let (database, position) = at_cursor(&format!("{PARTS}movement m of $0"));
         let item = completions(&database, position, CompletionTrigger::Invoked, 9.0).remove(0);
         let Documentation::Of(home, kind) = item.documentation else { panic!("{item:?}") };

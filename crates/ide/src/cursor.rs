@@ -1,4 +1,4 @@
-//! What stands at a place.
+//! The entity, name or token at a position.
 
 use pydslrep_analysis::{Database, EntityId, EntityRef, FileId};
 use pydslrep_syntax::ast::{Entity, Name};
@@ -12,7 +12,7 @@ use crate::FilePosition;
 pub(crate) struct NameAt {
     pub(crate) kind: EntityKind,
     pub(crate) name: Name,
-    /// Where it stands in the file.
+    /// Its range in the file.
     pub(crate) span: Span,
 }
 
@@ -33,17 +33,17 @@ fn name_in(entity: &EntityRef<'_>, offset: u32) -> Option<NameAt> {
     references.find(|(_, name)| touches(name)).map(|(kind, name)| found(kind, name))
 }
 
-/// What the name at the cursor stands for: all declarations of that name in one file. (Two of one kind are a mistake,
-/// and there is no telling which of them a use means.)
+/// What the name at the cursor refers to: all declarations of that name in one file. (Two of the same kind are an error,
+/// and a reference could mean either.)
 #[derive(Debug, Clone)]
 pub(crate) struct Referent {
     pub(crate) kind: EntityKind,
     pub(crate) name: SmolStr,
-    /// The file with the declarations; if there are none, the one with the cursor.
+    /// The declaring file, or the cursor's file if there are no declarations.
     pub(crate) home: FileId,
 }
 
-/// What the name that touches the cursor stands for.
+/// The referent of the name that touches the cursor.
 pub(crate) fn referent_at(database: &Database, position: FilePosition) -> Option<Referent> {
     let at = name_at(database, position)?;
     let declared = database.resolve(position.file, at.kind, &at.name.text).entity();
@@ -51,7 +51,7 @@ pub(crate) fn referent_at(database: &Database, position: FilePosition) -> Option
     Some(Referent { kind: at.kind, name: at.name.text, home })
 }
 
-/// The entity that holds the cursor, and the one that ends right before it.
+/// The entity that contains the cursor, then the one that ends right before it.
 pub(crate) fn entities_at(database: &Database, position: FilePosition) -> Vec<EntityRef<'_>> {
     let at = database.entity_at(position.file, position.offset);
     let before = position.offset.checked_sub(1).and_then(|offset| database.entity_at(position.file, offset));
@@ -59,8 +59,8 @@ pub(crate) fn entities_at(database: &Database, position: FilePosition) -> Vec<En
     at.into_iter().chain(before).collect()
 }
 
-/// The token that touches the cursor, with its place in the file; of two the one behind it, unless that is a sign.
-pub(crate) fn lexeme_at(database: &Database, position: FilePosition) -> Option<Token> {
+/// The token that touches the cursor, with its range in the file; of two, a word or number rather than punctuation.
+pub(crate) fn token_at(database: &Database, position: FilePosition) -> Option<Token> {
     let in_file = |entity: &EntityRef<'_>| {
         let start = entity.span.start;
         let touching = |(_, span): &&Token| span.shifted(start).touches(position.offset);
@@ -78,14 +78,14 @@ pub(crate) fn lexeme_at(database: &Database, position: FilePosition) -> Option<T
     found.iter().find(word).or(found.first()).copied()
 }
 
-/// The whole of an entity: from its keyword to its last token, comments behind it left out.
+/// The range of an entity from its keyword to its last token, without trailing comments.
 pub(crate) fn body(entity: &EntityRef<'_>) -> Span {
     let last = entity.parse.tokens.iter().rev().find(|(token, _)| !token.is_comment());
     let end = last.map_or(entity.span.start, |(_, span)| entity.span.start + span.end);
     Span::new(entity.span.start, end)
 }
 
-/// The tree that a name leads to, as seen from a file.
+/// The entity that a name refers to, as seen from a file.
 pub(crate) fn resolved<'a>(
     database: &'a Database,
     file: FileId,

@@ -1,4 +1,4 @@
-//! Go to definition: from a name to the declarations that bear it, from an import to its file.
+//! Go to definition: from a name to its declarations, from an import to its file.
 
 use pydslrep_analysis::{Database, EntityRef, FileId};
 use pydslrep_syntax::Span;
@@ -7,27 +7,27 @@ use pydslrep_syntax::ast::Entity;
 use crate::FilePosition;
 use crate::cursor::{body, entities_at, name_at};
 
-/// Where a name leads.
+/// The targets of a name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Definition {
     /// The name (or path) at the cursor.
     pub origin: Span,
-    /// The declarations; several where a name is declared twice, here or in two imported files.
+    /// The declarations; several if the name is declared twice, in this file or in two imported ones.
     pub targets: Vec<Target>,
 }
 
 /// A declaration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Target {
-    /// The file it is in.
+    /// The file that contains it.
     pub file: FileId,
-    /// The whole of it.
+    /// The range of the declaration.
     pub full: Span,
-    /// Its name.
+    /// The range of its name.
     pub focus: Span,
 }
 
-/// The declarations of the name at a place.
+/// The declarations of the name at a position.
 pub fn goto_definition(database: &Database, position: FilePosition) -> Option<Definition> {
     import_at(database, position).or_else(|| declarations(database, position))
 }
@@ -39,7 +39,7 @@ fn declarations(database: &Database, position: FilePosition) -> Option<Definitio
     (!targets.is_empty()).then_some(Definition { origin: at.span, targets })
 }
 
-/// A named entity as a place to go to.
+/// A named entity as a target.
 pub(crate) fn target(entity: &EntityRef<'_>) -> Option<Target> {
     let name = entity.parse.entity.as_ref()?.name()?;
     Some(Target { file: entity.file, full: body(entity), focus: name.span.shifted(entity.span.start) })
@@ -135,8 +135,9 @@ mod tests {
         let text = "import \"b.pyr\" import \"a.pyr\" robot r with port 1 has { w } wheels";
         let file = database.open("main.pyr", text);
         let offset = u32::try_from(text.find("w }").unwrap()).unwrap();
-        let found = goto_definition(&database, FilePosition { file, offset }).unwrap();
-        let focus: Vec<_> = found.targets.iter().map(|target| (target.file, target.focus.start)).collect();
+        let definition = goto_definition(&database, FilePosition { file, offset }).unwrap();
+        let focus: Vec<_> =
+            definition.targets.iter().map(|target| (target.file, target.focus.start)).collect();
         assert_eq!(focus, [(b, 28), (a, 6)]);
     }
 }

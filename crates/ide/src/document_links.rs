@@ -1,4 +1,4 @@
-//! Document links: the path of an import opens the file, and says beforehand what it declares.
+//! Document links: the path of an import opens the file; the tooltip lists what it declares.
 
 use pydslrep_analysis::{Database, EntityRef, FileId};
 use pydslrep_syntax::ast::Entity;
@@ -6,23 +6,23 @@ use pydslrep_syntax::{EntityKind, Span};
 
 use crate::symbols::counted;
 
-/// A path that leads to a file.
+/// A link from a path to its file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DocumentLink {
-    /// The path between its quotes.
+    /// The path, without its quotes.
     pub span: Span,
-    /// Where it leads.
+    /// The target.
     pub file: FileId,
-    /// What is to be found there.
+    /// A summary of its declarations.
     pub tooltip: String,
 }
 
-/// The imports of a file that lead somewhere, in the order of the text.
+/// The resolved imports of a file in text order.
 pub fn document_links(database: &Database, file: FileId) -> Vec<DocumentLink> {
     let links = database.import_statements(file).into_iter().filter_map(|(entity, path)| {
         let imported = database.imported_files(file).find(|other| database.path(*other) == path)?;
         Some(DocumentLink {
-            span: path_place(database, &entity)?,
+            span: path_span(database, &entity)?,
             file: imported,
             tooltip: tooltip(database, imported),
         })
@@ -30,8 +30,8 @@ pub fn document_links(database: &Database, file: FileId) -> Vec<DocumentLink> {
     links.collect()
 }
 
-/// Where an import's path stands, between its quotes; it may lack the closing one.
-pub(crate) fn path_place(database: &Database, entity: &EntityRef<'_>) -> Option<Span> {
+/// The range of an import's path, without its quotes; the closing one may be missing.
+pub(crate) fn path_span(database: &Database, entity: &EntityRef<'_>) -> Option<Span> {
     let Some(Entity::Import(import)) = &entity.parse.entity else { return None };
     let quoted = import.path_span?.shifted(entity.span.start);
     let text = database.slice(entity.file, quoted);
@@ -42,11 +42,11 @@ pub(crate) fn path_place(database: &Database, entity: &EntityRef<'_>) -> Option<
 
 fn tooltip(database: &Database, file: FileId) -> String {
     let name = database.path(file).rsplit('/').next().unwrap_or_default();
-    format!("Open {name}: {}", contents(database, file))
+    format!("Open {name}: {}", summary(database, file))
 }
 
-/// What a file declares, in a few words.
-pub(crate) fn contents(database: &Database, file: FileId) -> String {
+/// The number of declarations of each kind, such as `2 wheels, 1 sensor`.
+pub(crate) fn summary(database: &Database, file: FileId) -> String {
     let counts: Vec<String> = EntityKind::ALL
         .iter()
         .map(|kind| (database.count(file, *kind), kind.noun()))

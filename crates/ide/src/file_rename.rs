@@ -1,36 +1,36 @@
-//! Renaming files: where a program or a folder gets another name or place, the imports that lead to it, and those of the
-//! programs that move along, are rewritten so that they lead to the same programs as before.
+//! Renaming files: when a program or folder is renamed or moved, imports of it, and the imports of the moved programs
+//! themselves, are updated to refer to the same programs as before.
 //!
-//! An import that is right as it is stays as it is written, and so does one that led nowhere.
+//! Imports that stay correct, and unresolved ones, are left as they are.
 
 use pydslrep_analysis::{Database, Edit, FileId, path};
 
-use crate::document_links::path_place;
+use crate::document_links::path_span;
 
-/// A file, or a folder with all that is in it, and where it goes.
+/// The rename of a file, or of a folder and its contents.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FileRename {
-    /// Its path.
+    /// The old path.
     pub from: String,
-    /// Its path afterwards.
+    /// The new path.
     pub to: String,
 }
 
 impl FileRename {
-    /// The path afterwards of what is at a path; `None` where it stays.
-    fn of(&self, path: &str) -> Option<String> {
+    /// The new path of a file; `None` if this rename does not affect it.
+    fn apply(&self, path: &str) -> Option<String> {
         let rest = path.strip_prefix(&self.from)?;
         (rest.is_empty() || rest.starts_with('/')).then(|| format!("{}{rest}", self.to))
     }
 }
 
-/// The edits, to be made before the files are renamed, in the order of files and texts. All renames happen at once: two
-/// files may change places.
+/// The edits to make before the rename, by file and in text order. All renames happen at once, so two files may swap
+/// names.
 pub fn rename_files(database: &Database, renames: &[FileRename]) -> Vec<Edit> {
-    database.files().flat_map(|file| in_file(database, file, renames)).collect()
+    database.files().flat_map(|file| edits_in(database, file, renames)).collect()
 }
 
-fn in_file(database: &Database, file: FileId, renames: &[FileRename]) -> Vec<Edit> {
+fn edits_in(database: &Database, file: FileId, renames: &[FileRename]) -> Vec<Edit> {
     if database.imports(file).is_empty() {
         return Vec::new();
     }
@@ -42,7 +42,7 @@ fn in_file(database: &Database, file: FileId, renames: &[FileRename]) -> Vec<Edi
             return None;
         }
         let (importer, target) = (own_after.as_deref().unwrap_or(own), target.unwrap_or(imported));
-        let span = path_place(database, &entity)?;
+        let span = path_span(database, &entity)?;
         let written = database.slice(file, span);
         if path::join(importer, &written) == target {
             return None;
@@ -53,9 +53,9 @@ fn in_file(database: &Database, file: FileId, renames: &[FileRename]) -> Vec<Edi
     edits.collect()
 }
 
-/// By the innermost of the renames that concern a path.
+/// The new path according to the innermost rename that affects it.
 fn renamed(path: &str, renames: &[FileRename]) -> Option<String> {
-    let concerning = renames.iter().filter_map(|rename| Some((rename.from.len(), rename.of(path)?)));
+    let concerning = renames.iter().filter_map(|rename| Some((rename.from.len(), rename.apply(path)?)));
     concerning.max_by_key(|(length, _)| *length).map(|(_, to)| to)
 }
 
@@ -79,7 +79,7 @@ mod tests {
         FileRename { from: from.to_owned(), to: to.to_owned() }
     }
 
-    /// The files that change, each under the path it then has.
+    /// The files that change, each under its new path.
     fn check(files: &[(&str, &str)], renames: &[FileRename], expected: &Expect) {
         let database = database(files);
         let edits = rename_files(&database, renames);
@@ -167,7 +167,7 @@ mod tests {
     }
 
     proptest! {
-        /// Every import leads to the same file afterwards, wherever both of them went.
+        /// Every import refers to the same file after the rename, wherever both of them moved.
         #[test]
         fn imports_lead_to_the_same_files(
             places in prop::collection::btree_set(place(), 2..6),
@@ -181,7 +181,7 @@ mod tests {
                 let written = path::relative(&places[importer], &places[imported]).unwrap();
                 texts[importer] += &format!("import \"{written}\"\n");
             }
-            // Files, and folders with all that is in them.
+            // Files, and folders with their contents.
             let renames: Vec<FileRename> = moves.iter().enumerate().map(|(number, (which, new))| {
                 let from = which.get(&places);
                 let folder = from.rsplit_once('/').unwrap().0;

@@ -1,13 +1,13 @@
-//! Fix all: many problems mended at once, all of one code, or all that leave nothing to decide.
+//! Fix all: fixes many diagnostics at once, either all of one code or all that have a safe fix.
 
 use pydslrep_analysis::{Database, Diagnostic, Edit, FileId, Fixing};
 
-/// The code of the first problem at a place, if there are several of that code in the file that can be fixed safely.
+/// The codes among the `shown` diagnostics that occur at least twice in the file with a safe fix.
 pub fn codes_to_fix_all(database: &Database, file: FileId, shown: &[Diagnostic]) -> Vec<&'static str> {
     let all = database.diagnostics(file);
     let mut codes: Vec<&'static str> = Vec::new();
     for code in shown.iter().map(Diagnostic::code) {
-        let fixable = all.iter().filter(|other| other.code() == code && is_safely_fixed(other));
+        let fixable = all.iter().filter(|other| other.code() == code && has_safe_fix(other));
         if !codes.contains(&code) && fixable.count() >= 2 {
             codes.push(code);
         }
@@ -15,20 +15,20 @@ pub fn codes_to_fix_all(database: &Database, file: FileId, shown: &[Diagnostic])
     codes
 }
 
-/// Whether a problem has a fix that leaves nothing to decide.
-pub fn is_safely_fixed(diagnostic: &Diagnostic) -> bool {
+/// Whether a diagnostic has a safe fix.
+pub fn has_safe_fix(diagnostic: &Diagnostic) -> bool {
     diagnostic.fixes.iter().any(|fix| fix.safe)
 }
 
-/// The edits of one file that mend all its `wanted` problems, as far as they can be mended safely and without touching
-/// another file. They are tried, round after round: what one fix brings to light is mended too.
+/// The edits of one file that fix its `wanted` diagnostics, as far as safe fixes within the file do. Fixes are applied to
+/// a copy in rounds, so that diagnostics exposed by one fix are fixed too.
 pub fn fix_all(database: &Database, file: FileId, wanted: impl Fn(&Diagnostic) -> bool) -> Vec<Edit> {
-    let mut tried = database.clone();
-    let mut fixing = Fixing::new(&tried, &[file]);
+    let mut copy = database.clone();
+    let mut fixing = Fixing::new(&copy, &[file]);
     loop {
-        let mut problems = tried.diagnostics(file);
+        let mut problems = copy.diagnostics(file);
         problems.retain(&wanted);
-        if !fixing.round(&mut tried, &problems) {
+        if !fixing.round(&mut copy, &problems) {
             return fixing.edits();
         }
     }
@@ -46,7 +46,7 @@ mod tests {
                            environment e has { r r } robots with { m } moves\n";
 
     #[test]
-    fn all_of_one_code_are_mended_and_nothing_else() {
+    fn all_of_one_code_are_fixed_and_nothing_else() {
         let mut database = Database::new();
         let file = database.open("test.pyr", PROGRAM);
         let shown = database.diagnostics(file);
@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn all_are_mended_until_none_is_left() {
+    fn fixes_are_applied_until_none_is_left() {
         let mut database = Database::new();
         let file = database.open("test.pyr", PROGRAM);
         let edits = fix_all(&database, file, |_| true);
@@ -84,6 +84,6 @@ mod tests {
             environment e has { r } robots with { m } moves
         "#]]
         .assert_eq(&applied(&database, file, &edits));
-        assert_eq!(database.text(file).unwrap().to_string(), PROGRAM, "it was only tried");
+        assert_eq!(database.text(file).unwrap().to_string(), PROGRAM, "the database itself is unchanged");
     }
 }

@@ -1,11 +1,11 @@
-//! Programs with a cursor for tests: `$0` marks it.
+//! Test programs with a cursor, marked `$0`.
 
 use pydslrep_analysis::{Database, Edit, FileId};
 use pydslrep_syntax::Span;
 
 use crate::FilePosition;
 
-/// A database with one file, and the place of `$0` in it.
+/// A database with one file, and the position of `$0` in it.
 pub(crate) fn at_cursor(fixture: &str) -> (Database, FilePosition) {
     let offset = fixture.find("$0").expect("the fixture has no `$0`");
     let mut database = Database::new();
@@ -13,7 +13,7 @@ pub(crate) fn at_cursor(fixture: &str) -> (Database, FilePosition) {
     (database, FilePosition { file, offset: u32::try_from(offset).unwrap() })
 }
 
-/// A database with several files, each `(path, text)`, and the place of `$0` in the one that has it.
+/// A database with several files, each `(path, text)`, and the position of the only `$0`.
 pub(crate) fn at_cursor_in(files: &[(&str, &str)]) -> (Database, FilePosition) {
     let mut database = Database::new();
     let mut position = None;
@@ -26,7 +26,7 @@ pub(crate) fn at_cursor_in(files: &[(&str, &str)]) -> (Database, FilePosition) {
     (database, position.expect("no file of the fixture has a `$0`"))
 }
 
-/// The text of a file with marks around spans, for snapshots: each in brackets, behind its own mark.
+/// The text of a file with spans in brackets, each after its own mark, for snapshots.
 pub(crate) fn marked(database: &Database, file: FileId, spans: &[(Span, &str)]) -> String {
     let mut text = database.text(file).unwrap().to_string();
     let mut spans = spans.to_vec();
@@ -38,11 +38,11 @@ pub(crate) fn marked(database: &Database, file: FileId, spans: &[(Span, &str)]) 
     text
 }
 
-/// The parts of a program that most fixtures need.
+/// Declarations that most fixtures need.
 pub(crate) const PARTS: &str = "wheel wheelL with radius 4.5\nwheel wheelR with radius 4.5\nsensor front\nsensor back : bumper\n\
      robot rover type tw with port 23000 has { wheelL wheelR } wheels with sensors { front }\n";
 
-/// The text of a file after edits, which are apart from each other.
+/// The text of a file after edits that do not overlap.
 pub(crate) fn applied(database: &Database, file: FileId, edits: &[Edit]) -> String {
     let mut text = database.text(file).unwrap().to_string();
     let mut edits: Vec<&Edit> = edits.iter().filter(|edit| edit.file == file).collect();

@@ -1,6 +1,6 @@
-//! Folding: entities, comments, regions and the list of imports can be folded away.
+//! Folding: entities, comments, regions and the imports fold.
 //!
-//! A region is everything from `// #region` (or `// region`) to its `// endregion`, with or without `#`; regions nest.
+//! A region reaches from `// #region` (or `// region`) to its `// endregion`, with or without `#`; regions nest.
 
 use pydslrep_analysis::Snapshot;
 use pydslrep_syntax::ast::{Entity, Movement};
@@ -8,45 +8,45 @@ use pydslrep_syntax::{Span, TokenKind};
 
 use crate::cursor::body;
 
-/// Lines that fold into one.
+/// A range that folds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fold {
-    /// What goes: more than one line.
+    /// The hidden text; it spans several lines.
     pub span: Span,
-    /// What it is.
+    /// Its kind.
     pub kind: FoldKind,
-    /// Whether something stands behind it on its last line, which therefore has to stay where whole lines fold.
+    /// Whether other text follows on its last line, so that editors which fold whole lines must keep that line.
     pub keeps_last_line: bool,
 }
 
-/// What folds.
+/// The kind of a fold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FoldKind {
-    /// A declaration, or what is between a movement's braces.
+    /// A declaration, or the body of a movement.
     Entity,
-    /// A comment, or a run of comments one per line.
+    /// A comment, or consecutive line comments.
     Comment,
-    /// From one mark to the other.
+    /// From `region` to `endregion`.
     Region,
-    /// The imports at the top.
+    /// The imports at the top of the file.
     Imports,
 }
 
-/// Everything in a file that can fold, in the order of the text: one walk over what is known of the file already.
+/// The folds of a file in text order, collected in one pass over its tokens.
 pub fn folding_ranges(snapshot: &Snapshot) -> Vec<Fold> {
     let text = snapshot.text().to_string();
     let mut folds = Folds::new(&text);
     for entity in snapshot.entities() {
         let start = entity.span.start;
         for (token, span) in &entity.parse.tokens {
-            folds.pass(*token, span.shifted(start));
+            folds.token(*token, span.shifted(start));
         }
         match &entity.parse.entity {
             Some(Entity::Import(_)) => folds.import(body(&entity)),
             Some(Entity::Movement(Movement { body: Some(braces), .. })) => {
                 folds.entity(folds.inside(braces.shifted(start)));
             }
-            Some(_) => folds.entity(folds.behind_first_line(body(&entity))),
+            Some(_) => folds.entity(folds.after_first_line(body(&entity))),
             None => {}
         }
     }
@@ -56,11 +56,11 @@ pub fn folding_ranges(snapshot: &Snapshot) -> Vec<Fold> {
 struct Folds<'a> {
     text: &'a str,
     found: Vec<Fold>,
-    /// Where the last token ended.
+    /// The end of the last token.
     last_end: u32,
-    /// Line comments below each other, each alone on its line.
+    /// Consecutive line comments, each alone on its line.
     run: Option<Span>,
-    /// Marks of regions that have not ended.
+    /// The starts of open regions.
     regions: Vec<u32>,
     imports: Option<Span>,
 }
@@ -70,7 +70,7 @@ impl<'a> Folds<'a> {
         Self { text, found: Vec::new(), last_end: 0, run: None, regions: Vec::new(), imports: None }
     }
 
-    fn pass(&mut self, token: TokenKind, span: Span) {
+    fn token(&mut self, token: TokenKind, span: Span) {
         if token == TokenKind::LineComment {
             self.line_comment(span);
         } else {
@@ -84,18 +84,18 @@ impl<'a> Folds<'a> {
 
     fn line_comment(&mut self, span: Span) {
         let lines = line_ends(Span::new(self.last_end, span.start).text(self.text));
-        let mark = mark(span.text(self.text));
-        if mark.is_some() || lines != 1 {
+        let marker = region_marker(span.text(self.text));
+        if marker.is_some() || lines != 1 {
             self.end_run();
         }
-        match mark {
-            Some(Mark::Begin) => self.regions.push(span.start),
-            Some(Mark::End) => {
+        match marker {
+            Some(RegionMarker::Begin) => self.regions.push(span.start),
+            Some(RegionMarker::End) => {
                 if let Some(start) = self.regions.pop() {
                     self.push(Span::new(start, span.end), FoldKind::Region);
                 }
             }
-            // Behind something on its line it says something of that line.
+            // A comment after other text on its line belongs to that line.
             None if lines > 0 || self.last_end == 0 => {
                 self.run = Some(self.run.map_or(span, |run| run.to(span)));
             }
@@ -124,23 +124,23 @@ impl<'a> Folds<'a> {
         }
     }
 
-    /// What stands on one line only does not fold.
+    /// Ranges on a single line do not fold.
     fn push(&mut self, span: Span, kind: FoldKind) {
         if !span.text(self.text).contains(['\n', '\r']) {
             return;
         }
-        let behind = self.text.get(span.end as usize..).unwrap_or_default();
-        let rest = behind.split(['\n', '\r']).next().unwrap_or_default();
+        let after = self.text.get(span.end as usize..).unwrap_or_default();
+        let rest = after.split(['\n', '\r']).next().unwrap_or_default();
         self.found.push(Fold { span, kind, keeps_last_line: !rest.trim().is_empty() });
     }
 
-    /// A span without its first line, which stays to be seen.
-    fn behind_first_line(&self, span: Span) -> Span {
+    /// A span without its first line, which stays visible.
+    fn after_first_line(&self, span: Span) -> Span {
         let first = span.text(self.text).find(['\n', '\r']).and_then(|at| u32::try_from(at).ok());
         Span::new(span.start + first.unwrap_or_else(|| span.len()), span.end)
     }
 
-    /// What is between braces, of which the second may be missing, or both.
+    /// The text between braces; either or both may be missing.
     fn inside(&self, braces: Span) -> Span {
         if braces.is_empty() {
             return braces;
@@ -158,23 +158,23 @@ impl<'a> Folds<'a> {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Mark {
+enum RegionMarker {
     Begin,
     End,
 }
 
-/// The mark that a line comment is, if it is one.
-fn mark(comment: &str) -> Option<Mark> {
+/// The region marker in a line comment, if any.
+fn region_marker(comment: &str) -> Option<RegionMarker> {
     let words = comment.trim_start_matches('/').trim_start();
     let word = words.strip_prefix('#').unwrap_or(words).split_whitespace().next()?;
     match word {
-        "region" => Some(Mark::Begin),
-        "endregion" => Some(Mark::End),
+        "region" => Some(RegionMarker::Begin),
+        "endregion" => Some(RegionMarker::End),
         _ => None,
     }
 }
 
-/// How many lines end in `blank`.
+/// The number of line breaks in `blank`.
 fn line_ends(blank: &str) -> usize {
     let bytes = blank.as_bytes();
     let ends = |at: usize| match bytes[at] {
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn entities_fold_where_they_have_more_than_a_line() {
+    fn entities_fold_if_they_span_several_lines() {
         check(
             "wheel a with radius 3\nmovement m of r {\n  slam\n}\n// c\nrobot r with port 1 has {\n  a\n  b\n} wheels\nmovement n of r { slam }",
             &expect![[r#"
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_broken_folds_too() {
+    fn entities_with_errors_fold() {
         check(
             "movement m of r {\n  slam\n\nwheel a with\nradius",
             &expect![[r#"
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn a_movement_without_braces_has_nothing_between_them() {
+    fn a_movement_without_a_body_does_not_fold() {
         for text in ["movement", "movement m of r", "movement {", "movement }\n"] {
             check(text, &expect![""]);
         }

@@ -1,4 +1,4 @@
-//! Document highlight: the name at the cursor stands out wherever it is used in the file (read) and declared (write).
+//! Document highlight: the references (read) and declarations (write) of the name at the cursor, within the file.
 
 use pydslrep_analysis::Database;
 use pydslrep_syntax::Span;
@@ -6,26 +6,26 @@ use pydslrep_syntax::Span;
 use crate::FilePosition;
 use crate::cursor::referent_at;
 
-/// A place that stands out.
+/// A highlighted range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Highlight {
-    /// From the start of the file.
+    /// Its range in the file.
     pub span: Span,
-    /// Whether the name is declared here, not used.
+    /// Whether it is a declaration rather than a reference.
     pub is_declaration: bool,
 }
 
-/// The places of the name at a place in the same file, in the order of the text.
+/// The occurrences of the name at a position, within the same file, in text order.
 pub fn highlights(database: &Database, position: FilePosition) -> Vec<Highlight> {
     let Some(referent) = referent_at(database, position) else { return Vec::new() };
-    // All uses in one file mean the same, whatever that is.
+    // All references in one file resolve alike, even if to nothing.
     let uses = database.uses(position.file, referent.kind, &referent.name);
     let declared = database.declarations(position.file, referent.kind, &referent.name);
     let uses = uses.into_iter().map(|span| Highlight { span, is_declaration: false });
     let declared = declared.into_iter().map(|span| Highlight { span, is_declaration: true });
-    let mut found: Vec<Highlight> = uses.chain(declared).collect();
-    found.sort_unstable();
-    found
+    let mut highlights: Vec<Highlight> = uses.chain(declared).collect();
+    highlights.sort_unstable();
+    highlights
 }
 
 #[cfg(test)]
@@ -39,7 +39,7 @@ mod tests {
         let (database, position) = at_cursor_in(files);
         let spans: Vec<(Span, &str)> = highlights(&database, position)
             .into_iter()
-            .map(|found| (found.span, if found.is_declaration { "write" } else { "read" }))
+            .map(|highlight| (highlight.span, if highlight.is_declaration { "write" } else { "read" }))
             .collect();
         expected.assert_eq(&marked(&database, position.file, &spans));
     }
@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn other_files_do_not_show() {
+    fn other_files_are_not_highlighted() {
         check(
             &[
                 ("parts.pyr", "wheel a with radius 4"),

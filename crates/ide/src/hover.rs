@@ -1,6 +1,5 @@
-//! Hover: what a robot programmer would like to know of the thing under the cursor: of a wheel its circumference, of a
-//! robot its equations with its numbers, of an action its time and poses, of an environment who drives when, and of a
-//! keyword its syntax with an example.
+//! Hover: details of the item under the cursor: the circumference of a wheel, the equations of a robot with its numbers,
+//! the duration and poses of an action, the timeline of an environment, and the syntax of a keyword with an example.
 
 pub(crate) mod format;
 pub(crate) mod motion;
@@ -11,19 +10,19 @@ use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Span};
 
 use crate::FilePosition;
-use crate::cursor::{body, entities_at, lexeme_at, name_at};
+use crate::cursor::{body, entities_at, name_at, token_at};
 use crate::keyword_pages::keyword_page;
 
-/// What to show, and for which piece of text.
+/// A hover text and the range it describes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Hover {
-    /// The text it is about.
+    /// The described range.
     pub span: Span,
     /// Markdown.
     pub markdown: String,
 }
 
-/// What there is to say of a place.
+/// The hover text at a position.
 pub fn hover(database: &Database, position: FilePosition) -> Option<Hover> {
     name(database, position).or_else(|| action(database, position)).or_else(|| keyword(database, position))
 }
@@ -31,16 +30,16 @@ pub fn hover(database: &Database, position: FilePosition) -> Option<Hover> {
 fn name(database: &Database, position: FilePosition) -> Option<Hover> {
     let at = name_at(database, position)?;
     let id = database.resolve(position.file, at.kind, &at.name.text).entity()?;
-    let facts = facts(database, id);
+    let facts = describe(database, id);
     let entity = database.entity(id)?;
     let declaration = database.slice(entity.file, body(&entity));
     let first_line = declaration.lines().next().unwrap_or_default();
-    let facts = facts.unwrap_or_else(|| "There is more to say of it once its errors are mended.".to_owned());
+    let facts = facts.unwrap_or_else(|| "Fix its errors to see details.".to_owned());
     Some(Hover { span: at.span, markdown: format!("```pydslrep\n{first_line}\n```\n{facts}") })
 }
 
-/// What there is to say of an entity; `None` where it has errors.
-pub(crate) fn facts(database: &Database, id: EntityId) -> Option<String> {
+/// The details of an entity; `None` if it has errors.
+pub(crate) fn describe(database: &Database, id: EntityId) -> Option<String> {
     match database.tree(id)?.kind()? {
         EntityKind::Wheel => parts::wheel(database, id),
         EntityKind::Sensor => parts::sensor(database, id),
@@ -51,7 +50,7 @@ pub(crate) fn facts(database: &Database, id: EntityId) -> Option<String> {
     }
 }
 
-/// An action, where the cursor is on one of its words.
+/// The details of the action under the cursor.
 fn action(database: &Database, position: FilePosition) -> Option<Hover> {
     entities_at(database, position).into_iter().find_map(|entity| {
         let Some(Entity::Movement(movement)) = &entity.parse.entity else { return None };
@@ -63,7 +62,7 @@ fn action(database: &Database, position: FilePosition) -> Option<Hover> {
 }
 
 fn keyword(database: &Database, position: FilePosition) -> Option<Hover> {
-    let (token, span) = lexeme_at(database, position)?;
+    let (token, span) = token_at(database, position)?;
     Some(Hover { span, markdown: keyword_page(token)?.markdown() })
 }
 
@@ -85,7 +84,7 @@ mod tests {
                         movement n of rover { move -50 centimeters }\nenvironment e has { rover } robots with { n m } moves";
 
     #[test]
-    fn parts_tell_their_measures_and_users() {
+    fn parts_show_their_measures_and_users() {
         check(
             &format!("{PARTS}robot r with port 1 has {{ wheelL$0 wheelR }} wheels"),
             &expect![[r#"
@@ -94,7 +93,7 @@ mod tests {
             ```pydslrep
             wheel wheelL with radius 4.5
             ```
-            Wheel: radius 4.5 cm, 28.3 cm a turn. Used by `r`, `rover`.
+            Wheel: radius 4.5 cm, 28.3 cm per revolution. Used by `r`, `rover`.
         "#]],
         );
         check(
@@ -105,7 +104,7 @@ mod tests {
             ```pydslrep
             sensor left : bumper
             ```
-            Bumper: feels an obstacle at contact. Nothing here uses it.
+            Bumper: detects an obstacle on contact. Unused.
         "#]],
         );
         check(
@@ -122,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_tells_its_kinematics() {
+    fn a_robot_shows_its_kinematics() {
         check(
             &format!("{PARTS}movement m of $0rover {{ slam }}"),
             &expect![[r#"
@@ -145,7 +144,7 @@ mod tests {
             left  = (v − ω d/2) / r
             right = (v + ω d/2) / r
             ```
-            r = 0.045 m, d = 0.3 m unless the scene says otherwise.
+            r = 0.045 m, d = 0.3 m unless the scene overrides them.
 
             Used by `m`.
         "#]],
@@ -174,15 +173,15 @@ mod tests {
                 right front = (vx + vy + K ω) / r
                 right rear  = (vx − vy + K ω) / r
                 ```
-                r = 0.05 m, K = 0.275 m (half of track 0.3 m and wheelbase 0.25 m) unless the scene says otherwise.
+                r = 0.05 m, K = 0.275 m (half of track 0.3 m and wheelbase 0.25 m) unless the scene overrides them.
 
-                Nothing here uses it.
+                Unused.
             "#]],
         );
     }
 
     #[test]
-    fn a_skid_steered_robot_tells_what_it_scrubs() {
+    fn a_skid_steered_robot_shows_its_scrub_factor() {
         check(
             "wheel a with radius 5 robot c$0 type fw with port 1 has { a a a a } wheels",
             &expect![[r#"
@@ -205,15 +204,15 @@ mod tests {
             left front, left rear   = (v − ω d/2) / r
             right front, right rear = (v + ω d/2) / r
             ```
-            r = 0.05 m, d = 0.508 m (track 0.3 m, times 1.69 for what tyres scrub in turns) unless the scene says otherwise.
+            r = 0.05 m, d = 0.508 m (track 0.3 m × 1.69 for tyre scrub in turns) unless the scene overrides them.
 
-            Nothing here uses it.
+            Unused.
         "#]],
         );
     }
 
     #[test]
-    fn an_action_tells_where_it_leads() {
+    fn an_action_shows_its_poses() {
         check(
             &format!("{PARTS}{}", REST.replace("turn left", "tu$0rn left")),
             &expect![[r#"
@@ -222,7 +221,7 @@ mod tests {
             ```pydslrep
             turn left 90
             ```
-            Takes 2.8 s. From (1 m, 0 m, 0°) to (1 m, 0 m, 90°), counted from where the movement starts.
+            Takes 2.8 s. From (1 m, 0 m, 0°) to (1 m, 0 m, 90°), relative to the start of the movement.
 
             Wheel rates: `wheelL` -2 rad/s, `wheelR` 2 rad/s.
         "#]],
@@ -235,7 +234,7 @@ mod tests {
             ```pydslrep
             turn right until { front }
             ```
-            Where it ends cannot be planned: `turn right until { front }` ends when the way is free.
+            The end pose cannot be planned: `turn right until { front }` ends when the way is clear.
         "#]],
         );
         check(
@@ -246,13 +245,13 @@ mod tests {
                 ```pydslrep
                 slam
                 ```
-                Where it starts cannot be planned: `turn right until { front }` ends when the way is free.
+                The start pose cannot be planned: `turn right until { front }` ends when the way is clear.
             "#]],
         );
     }
 
     #[test]
-    fn a_movement_tells_its_length() {
+    fn a_movement_shows_its_length() {
         check(
             &format!("{PARTS}{}", REST.replace("movement m", "movement m$0")),
             &expect![[r#"
@@ -261,7 +260,7 @@ mod tests {
             ```pydslrep
             parallel movement m of rover { move 1.0 meters at 10 turn left 90 turn right until { front } slam }
             ```
-            A movement of `rover`: drives 1 m and turns 90°. Its end cannot be planned, because of `turn right until { front }`.
+            A movement of `rover`: drives 1 m and turns 90°. Its end cannot be planned because of `turn right until { front }`.
 
             Used by `e`.
         "#]],
@@ -274,7 +273,7 @@ mod tests {
             ```pydslrep
             movement n of rover { move -50 centimeters }
             ```
-            A movement of `rover`: drives 0.5 m and turns 0° in 5.7 s. It ends at (-0.5 m, 0 m, 0°) from where it starts.
+            A movement of `rover`: drives 0.5 m and turns 0° in 5.7 s. It ends at (-0.5 m, 0 m, 0°) relative to its start.
 
             Used by `e`.
         "#]],
@@ -282,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn an_environment_tells_its_timeline() {
+    fn an_environment_shows_its_timeline() {
         check(
             &format!("{PARTS}{}", REST.replace(" slam ", " ").replace("environment e", "environment $0e")),
             &expect![[r#"
@@ -291,14 +290,14 @@ mod tests {
                 ```pydslrep
                 environment e has { rover } robots with { n m } moves
                 ```
-                Runs `rover`; takes a time that cannot be planned.
+                Runs `rover`; duration unknown until it runs.
 
                 | from | to | robot | movement |
                 |---|---|---|---|
                 | 0.0 s | 5.7 s | `rover` | `n` |
                 | 5.7 s | ? | `rover` | `m` |
 
-                Unknown from there in `m` on: `turn right until { front }` ends when the way is free, so where `rover` then is, and when anything after it begins, cannot be planned.
+                In `m`, `turn right until { front }` ends when the way is clear. Later poses of `rover` and start times of later movements are unknown.
 
             "#]],
         );
@@ -324,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn broken_things_tell_what_they_can() {
+    fn entities_with_errors_ask_to_fix_them() {
         check(
             "robot $0r with port 1 has { a b } wheels",
             &expect![[r#"
@@ -333,7 +332,7 @@ mod tests {
                 ```pydslrep
                 robot r with port 1 has { a b } wheels
                 ```
-                There is more to say of it once its errors are mended.
+                Fix its errors to see details.
             "#]],
         );
         check(
@@ -344,7 +343,7 @@ mod tests {
                 ```pydslrep
                 movement m of nobody { slam }
                 ```
-                There is more to say of it once its errors are mended.
+                Fix its errors to see details.
             "#]],
         );
     }

@@ -1,8 +1,8 @@
-//! Inlay hints: after each action the speed or angle it leaves out, how long it takes, and the pose it ends at.
+//! Inlay hints: after each action its default speed or angle, its duration, and the pose at its end.
 //!
-//! Poses count from where the movement starts. Hints keep out of the way of what is being written: there are none on a
-//! line that is being typed and none on one with an error, while all others stay. What depends on something broken is
-//! shown as it was before ([`KnownMovements`]); of a program that was broken from the start only what is sure.
+//! Poses are relative to the start of the movement. Lines that are being edited or have errors show no hints; all other
+//! lines keep theirs. Hints that depend on code with errors show their last valid value ([`KnownMovements`]); if there
+//! never was one, only hints that are certain appear.
 
 mod known;
 
@@ -15,19 +15,19 @@ use smol_str::SmolStr;
 pub use self::known::KnownMovements;
 use self::known::{Planned, Route, Start, Step};
 use crate::hover::format::{number, short_pose, time};
-use crate::hover::motion::{leg_facts, poses_of, why_open};
+use crate::hover::motion::{describe_leg, open_end_reason, poses_of};
 
-/// Where poses end to be known.
+/// The label after an action with an unknown end pose.
 const UNKNOWN: &str = "· pose unknown";
 
-/// Which hints are wanted.
+/// The enabled kinds of hints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct InlayHintOptions {
     /// The pose after each action.
     pub pose: bool,
-    /// How long each action takes.
+    /// The duration of each action.
     pub duration: bool,
-    /// Speeds and angles that are left out.
+    /// Omitted speeds and angles.
     pub defaults: bool,
 }
 
@@ -37,32 +37,31 @@ impl Default for InlayHintOptions {
     }
 }
 
-/// Where hints are wanted.
+/// The location of a request for hints.
 #[derive(Debug, Clone, Copy)]
 pub struct InlayHintPlaces<'a> {
-    /// In which file.
+    /// The file.
     pub file: FileId,
-    /// In which part of it.
+    /// The requested part of it.
     pub range: Span,
-    /// The lines that are being typed, where there are to be none.
+    /// The lines being edited, which show no hints.
     pub typed: &'a [Span],
 }
 
-/// Something shown after an action.
+/// A hint after an action.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InlayHint {
-    /// Where: at the end of the action.
+    /// The end of the action.
     pub offset: u32,
-    /// What is shown.
+    /// The text shown.
     pub label: String,
     /// Markdown.
     pub tooltip: String,
-    /// What would make the program say the same, where it can.
+    /// The text that makes the hint explicit in the program, if possible.
     pub insert: Option<String>,
 }
 
-/// The hints of some places, in the order of the text. What the answer depends on besides the program is in `known`; an
-/// empty one will do.
+/// The hints in a range, in text order. `known` holds the last valid state; it may be empty.
 pub fn inlay_hints(
     database: &Database,
     places: InlayHintPlaces<'_>,
@@ -78,35 +77,35 @@ pub fn inlay_hints(
     let mut errors = Vec::new();
     for entity in entities {
         errors.extend(database.errors(&entity));
-        hints.extend(of_movement(database, &entity, range, options, known).unwrap_or_default());
+        hints.extend(movement_hints(database, &entity, range, options, known).unwrap_or_default());
     }
-    let (of_typed, others): (Vec<Span>, Vec<Span>) =
-        errors.into_iter().partition(|error| is_of_typed(database, file, *error, typed));
+    let (caused_by_edit, others): (Vec<Span>, Vec<Span>) =
+        errors.into_iter().partition(|error| is_caused_by_edit(database, file, *error, typed));
     let line_of = |error: Span| lines(database, file, error);
-    let spoilt: Vec<Span> = of_typed.into_iter().map(line_of).collect();
-    let others = others.into_iter().map(line_of).filter(|line| !spoilt.contains(line));
-    let quiet: Vec<Span> = typed.iter().copied().chain(others).collect();
-    hints.retain(|hint| !quiet.iter().any(|line| line.touches(hint.offset)));
-    known.recall(database, file, &spoilt, &mut hints);
+    let affected: Vec<Span> = caused_by_edit.into_iter().map(line_of).collect();
+    let others = others.into_iter().map(line_of).filter(|line| !affected.contains(line));
+    let hidden: Vec<Span> = typed.iter().copied().chain(others).collect();
+    hints.retain(|hint| !hidden.iter().any(|line| line.touches(hint.offset)));
+    known.restore(database, file, &affected, &mut hints);
     let movements = database.count(file, pydslrep_syntax::EntityKind::Movement);
-    known.tidy(movements, |name| {
+    known.evict(movements, |name| {
         !database.definitions(file, pydslrep_syntax::EntityKind::Movement, name).is_empty()
     });
     hints
 }
 
-/// Whether an error is that of a line being typed, though it stands at the beginning of the next: `at` takes what
-/// follows for a speed until it has its own.
-fn is_of_typed(database: &Database, file: FileId, error: Span, typed: &[Span]) -> bool {
+/// Whether an error at the start of a line is caused by the edited line before it: an incomplete `at` takes the next
+/// token for its speed.
+fn is_caused_by_edit(database: &Database, file: FileId, error: Span, typed: &[Span]) -> bool {
     let follows = |line: &Span| {
         line.end < error.start
             && database.slice(file, Span::new(line.end, error.start)).chars().all(char::is_whitespace)
     };
-    // Only what is near can follow: the text in between is read.
+    // Bounded, because the text in between is read.
     typed.iter().filter(|line| error.start.saturating_sub(line.end) < 256).any(follows)
 }
 
-/// The lines that a part of a file touches, without the last one's ending.
+/// The full lines that a range touches, without the last line break.
 pub(crate) fn lines(database: &Database, file: FileId, span: Span) -> Span {
     let Some(text) = database.text(file) else { return span };
     let line_of = |offset: u32| text.byte_to_line((offset as usize).min(text.len_bytes()));
@@ -118,7 +117,7 @@ pub(crate) fn lines(database: &Database, file: FileId, span: Span) -> Span {
     Span::new(offset(start), offset(end))
 }
 
-fn of_movement(
+fn movement_hints(
     database: &Database,
     entity: &EntityRef<'_>,
     range: Span,
@@ -143,7 +142,7 @@ fn of_movement(
         let (written, Some(action)) = (&tree.actions[index], &actions[index]) else { continue };
         let offset = end(written);
         if options.defaults {
-            hints.extend(left_out(written, action).map(|(label, insert)| {
+            hints.extend(default_clause(written, action).map(|(label, insert)| {
                 let tooltip = "Default value".to_owned();
                 InlayHint { offset, label, tooltip, insert: Some(insert) }
             }));
@@ -153,7 +152,7 @@ fn of_movement(
             let action = step_of.iter().position(|other| *other == step)?;
             Some((actions[action].as_ref()?, database.action_text(entity, tree.actions[action].span)))
         };
-        hints.extend(of_step(route, step_of[index], options, text).map(|(label, tooltip)| InlayHint {
+        hints.extend(step_hint(route, step_of[index], options, text).map(|(label, tooltip)| InlayHint {
             offset,
             label,
             tooltip,
@@ -163,7 +162,7 @@ fn of_movement(
     Some(hints)
 }
 
-/// The steps of a movement, and which of them each action is.
+/// The steps of a movement, and the step of each action.
 fn steps(
     entity: &EntityRef<'_>,
     tree: &ast::Movement,
@@ -193,42 +192,40 @@ fn steps(
     (steps, step_of)
 }
 
-/// Label and tooltip of a step that is an action.
-fn of_step<'a>(
+/// The label and tooltip of a step.
+fn step_hint<'a>(
     route: &Route,
     index: usize,
     options: InlayHintOptions,
     action: impl Fn(usize) -> Option<(&'a ActionKind, String)>,
 ) -> Option<(String, String)> {
     let Planned { leg, start } = route.steps.get(index)?;
-    let why = |step| action(step).map_or_else(String::new, |(kind, text)| why_open(kind, &text));
+    let why = |step| action(step).map_or_else(String::new, |(kind, text)| open_end_reason(kind, &text));
     let Some(leg) = leg else {
         let Start::At { .. } = start else { return None };
         let label = options.pose.then(|| UNKNOWN.to_owned())?;
         return Some((label, format!("Poses from here on cannot be planned: {}.", why(index))));
     };
-    // A speed that is no speed is an error of its own.
+    // An invalid speed is reported as an error.
     if !leg.duration.is_finite() {
         return None;
     }
     let (pose, poses) = match *start {
         Start::At { is_old: false, .. } => (true, poses_of(leg)),
         Start::At { is_old: true, .. } => {
-            (true, format!("{} Planned before the program had its errors.", poses_of(leg)))
+            (true, format!("{} Based on the last version without errors.", poses_of(leg)))
         }
-        Start::Open { since } => (false, format!("Where it starts cannot be planned: {}.", why(since))),
-        Start::Broken => {
-            (false, "Where it starts cannot be planned: there is an error before it.".to_owned())
-        }
+        Start::Open { since } => (false, format!("The start pose cannot be planned: {}.", why(since))),
+        Start::Broken => (false, "The start pose cannot be planned because of an earlier error.".to_owned()),
     };
     let duration = options.duration.then(|| format!("· {}", time(leg.duration)));
     let pose = (options.pose && pose).then(|| format!("→ {}", short_pose(&leg.to)));
     let label: Vec<String> = duration.into_iter().chain(pose).collect();
-    (!label.is_empty()).then(|| (label.join(" "), leg_facts(&route.robot, leg, &poses)))
+    (!label.is_empty()).then(|| (label.join(" "), describe_leg(&route.robot, leg, &poses)))
 }
 
-/// The clause that an action leaves out: as shown, and as it would be written.
-fn left_out(written: &ast::Action, action: &ActionKind) -> Option<(String, String)> {
+/// The clause that an action omits: the label, and the text to insert.
+fn default_clause(written: &ast::Action, action: &ActionKind) -> Option<(String, String)> {
     let text = match (&written.kind, action) {
         (ast::ActionKind::Move(ast::Move { speed: None, .. }), ActionKind::Move { speed, .. }) => {
             let speed = number(speed * 100.0, 3);
@@ -257,7 +254,7 @@ mod tests {
         inlay_hints(&database, places, options, &mut KnownMovements::default())
     }
 
-    /// The program's movements with the hints in it, each in `«…»`.
+    /// The movements of a program with their hints in `«…»`.
     fn shown(movements: &str, options: InlayHintOptions) -> String {
         let text = format!("{PARTS}{movements}");
         let mut shown = text.clone();
@@ -319,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_unknown_is_said_once() {
+    fn an_unknown_pose_is_shown_once() {
         check(
             "movement m of rover {\n  move 1 meters at 9\n  turn left until { front }\n  move 1 meters at 9\n  slam\n}\n",
             &expect![[r#"
@@ -337,15 +334,15 @@ mod tests {
             .map(|hint| hint.tooltip)
             .collect();
         expect![[r#"
-            Poses from here on cannot be planned: `turn left until { front }` ends when the way is free.
+            Poses from here on cannot be planned: `turn left until { front }` ends when the way is clear.
             ---
-            Takes 11.3 s. Where it starts cannot be planned: `turn left until { front }` ends when the way is free.
+            Takes 11.3 s. The start pose cannot be planned: `turn left until { front }` ends when the way is clear.
 
             Wheel rates: `wheelL` 2 rad/s, `wheelR` 2 rad/s."#]].assert_eq(&tooltips.join("\n---\n"));
     }
 
     #[test]
-    fn broken_from_the_start_only_what_is_sure_is_shown() {
+    fn without_a_valid_version_only_certain_hints_appear() {
         check(
             "movement m of rover {\n  turn right\n  move 1 meters at 0\n  move\n  turn left 45\n  move 1 meters\n",
             &expect![[r#"
@@ -371,7 +368,7 @@ mod tests {
         );
     }
 
-    /// An editor that shows hints of all of a text while it is changed.
+    /// An editor that shows all hints of a text while it is edited.
     struct Editor {
         database: Database,
         file: FileId,
@@ -406,7 +403,7 @@ mod tests {
             shown.split_off(PARTS.len().min(shown.find("movement").unwrap()))
         }
 
-        /// Replaces a text that occurs once, in one edit, and is then at its end.
+        /// Replaces a text that occurs once, in one edit, and leaves the cursor at its end.
         fn replace(&mut self, old: &str, new: &str) {
             let text = self.text();
             let start = text.find(old).unwrap();
@@ -417,8 +414,8 @@ mod tests {
             self.typed = vec![lines(&self.database, self.file, at)];
         }
 
-        /// Types behind a text that occurs once, key by key: what is shown on other lines after each key, where that
-        /// changes.
+        /// Types after a text that occurs once, key by key: the hints on other lines after each key, whenever they
+        /// change.
         fn types(&mut self, mark: &str, typed: &str) -> String {
             let mut seen: Vec<String> = Vec::new();
             let mut before = mark.to_owned();
@@ -442,7 +439,7 @@ mod tests {
         "movement m of rover {\n  move 4.0 meters\n  turn right\n  move 2 meters\n  turn left\n}\n";
 
     #[test]
-    fn the_line_being_typed_has_none_and_the_others_stay() {
+    fn the_edited_line_has_no_hints_and_the_others_stay() {
         let mut editor = Editor::new(SQUARE);
         expect![[r#"
               move 4.0 meters«at 9.0»«· 44.6 s → 4.00, 0.00, 0°»
@@ -484,7 +481,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_after_a_line_that_is_broken_stays_as_it_was() {
+    fn hints_after_a_line_with_errors_stay() {
         let mut editor = Editor::new(SQUARE);
         editor.replace("move 4.0 meters", "mov 4.0 meters");
         expect![[r#"
@@ -496,7 +493,7 @@ mod tests {
             }
         "#]]
         .assert_eq(&editor.shown());
-        // Another line is typed while this one stays broken.
+        // Another line is edited while this one still has an error.
         expect![[r#"
             turn right«90»«· 2.8 s → 4.00, 0.00, -90°»
             move 2 meters«at 9.0»«· 22.4 s → 4.00, -2.00, -90°»
@@ -512,9 +509,9 @@ mod tests {
             .hints()
             .iter()
             .map(|hint| hint.tooltip.clone())
-            .find(|tooltip| tooltip.contains("Planned"));
+            .find(|tooltip| tooltip.contains("last version"));
         expect![[r#"
-            Takes 2.8 s. From (4 m, 0 m, 0°) to (4 m, 0 m, -90°), counted from where the movement starts. Planned before the program had its errors.
+            Takes 2.8 s. From (4 m, 0 m, 0°) to (4 m, 0 m, -90°), relative to the start of the movement. Based on the last version without errors.
 
             Wheel rates: `wheelL` 2 rad/s, `wheelR` -2 rad/s."#]].assert_eq(&old.unwrap());
         editor.replace("mov 4.0 meters", "move 3.0 meters");
@@ -532,7 +529,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_typed_after_one_that_is_broken_is_planned_from_there() {
+    fn a_line_added_after_one_with_errors_is_planned_from_there() {
         let mut editor = Editor::new(SQUARE);
         editor.replace("  turn right\n", "  turn rig\n");
         editor.shown();
@@ -550,7 +547,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_is_broken_takes_nothing_away() {
+    fn a_robot_with_errors_removes_no_hints() {
         let mut editor = Editor::new(SQUARE);
         let before = editor.shown();
         for (old, new) in [
@@ -563,11 +560,11 @@ mod tests {
         }
         editor.replace("movement m of r {", "movement m2 of rover {");
         let labels: Vec<String> = editor.hints().into_iter().map(|hint| hint.label).collect();
-        assert_eq!(labels, ["at 9.0", "90", "at 9.0", "90"], "of a movement that had no robot yet");
+        assert_eq!(labels, ["at 9.0", "90", "at 9.0", "90"], "a movement that has not had a robot yet");
     }
 
     #[test]
-    fn a_pose_that_depends_on_the_world_is_not_made_up() {
+    fn a_pose_that_depends_on_the_world_stays_unknown() {
         let mut editor = Editor::new(
             "movement m of rover {\n  turn left until { front }\n  move 1 meters\n  turn left\n}\n",
         );
@@ -592,7 +589,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_are_those_of_the_hint_whatever_they_end_with() {
+    fn hints_are_hidden_per_line_with_any_line_ending() {
         for ending in ["\n", "\r\n", "\r"] {
             let mut editor = Editor::new(&SQUARE.replace('\n', ending));
             editor.replace("turn right", "turn right ");
@@ -602,7 +599,7 @@ mod tests {
     }
 
     #[test]
-    fn movements_that_are_gone_are_forgotten() {
+    fn removed_movements_are_evicted() {
         let mut editor = Editor::new(SQUARE);
         for number in 0..200 {
             let text = editor.text();
@@ -613,8 +610,8 @@ mod tests {
         assert!(editor.known.len() < 32, "{}", editor.known.len());
     }
 
-    /// The lines with hints, each with the number of equal ones before it. Where a pose is lost is told only once, so a new
-    /// such place may move that.
+    /// The lines with hints, each with the number of equal ones before it. `pose unknown` appears only once, so it is
+    /// ignored: an edit may move it.
     fn hinted(database: &Database, file: FileId, typed: &[Span], known: &mut KnownMovements) -> Vec<String> {
         let text = database.text(file).unwrap();
         let range = Span::new(0, u32::try_from(text.len_bytes()).unwrap());
@@ -632,7 +629,8 @@ mod tests {
         found
     }
 
-    /// What typing a line of a program, which begins at a byte, takes away from lines that have hints before and after.
+    /// The first hint that disappears from another line while `content` is typed at byte `start`, although the line has a
+    /// hint both before and after.
     fn lost_by_typing(whole: &str, start: usize, content: &str) -> Option<String> {
         let mut then = Database::new();
         let file = then.open("a.pyr", whole);
@@ -648,14 +646,14 @@ mod tests {
             let typed = lines(&database, file, Span::at(at));
             let shown = hinted(&database, file, &[typed], &mut known);
             if let Some(missing) = kept.iter().find(|line| !shown.contains(line)) {
-                return Some(format!("{:?} takes away {missing:?}", &content[..=offset]));
+                return Some(format!("{:?} removes {missing:?}", &content[..=offset]));
             }
         }
         None
     }
 
     #[test]
-    fn no_line_of_any_example_takes_hints_away_while_it_is_typed() {
+    fn typing_any_line_of_any_example_removes_no_hints() {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         let files = ["tests/paper", "examples"].map(|folder| std::fs::read_dir(root.join(folder)).unwrap());
         let files = files.into_iter().flatten().map(|entry| entry.unwrap().path());
@@ -673,9 +671,9 @@ mod tests {
         assert!(lines > 100, "{lines}");
     }
 
-    /// Beside a preview there is no room for more.
+    /// An editor next to the preview is hardly wider.
     #[test]
-    fn the_programs_of_the_article_fit_a_column_of_60() {
+    fn the_programs_of_the_paper_fit_60_columns() {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/paper");
         let mut longest = String::new();
         for entry in std::fs::read_dir(folder).unwrap() {
@@ -695,7 +693,7 @@ mod tests {
     }
 
     #[test]
-    fn only_the_range_is_answered() {
+    fn only_the_requested_range_has_hints() {
         let text = format!("{PARTS}{MOVES}{}", MOVES.replace("movement m", "movement n"));
         let line = text.find("  turn left").unwrap();
         let range = Span::new(u32::try_from(line).unwrap(), u32::try_from(line + 11).unwrap());
@@ -705,7 +703,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_out_can_be_written() {
+    fn defaults_can_be_made_explicit() {
         let text = format!("{PARTS}{MOVES}");
         let options = InlayHintOptions { pose: false, duration: false, defaults: true };
         let mut written = text.clone();

@@ -1,16 +1,16 @@
-//! The reference of the language's words, as completion and hover show it.
+//! The reference pages of the keywords, shown by completion and hover.
 
 use pydslrep_syntax::{EntityKind, TokenKind};
 
-/// What there is to say of a word.
+/// The page of a keyword.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct KeywordPage {
-    /// How it is used, a line for each way: words as they are, what a person fills in in capitals, `[…]` around what may
-    /// be left out, `|` between words to choose from.
+    /// Its syntax, one line per form: keywords verbatim, placeholders in capitals, `[…]` around optional parts, `|` between
+    /// alternatives.
     pub syntax: &'static str,
-    /// What it means.
+    /// Its meaning.
     pub meaning: &'static str,
-    /// A piece of a program with it.
+    /// An example.
     pub example: &'static str,
 }
 
@@ -32,8 +32,8 @@ const ENVIRONMENT_SHAPE: &str =
 const MOVE: &str = "move DISTANCE meters | centimeters [at SPEED]";
 const TYPE: &str = "type tw | fw | fwh";
 
-/// The page of a word; `None` for what is no word of the language.
-#[expect(clippy::too_many_lines, reason = "a table, a row a word")]
+/// The page of a keyword; `None` for other tokens.
+#[expect(clippy::too_many_lines, reason = "a table with one row per keyword")]
 pub fn keyword_page(token: TokenKind) -> Option<KeywordPage> {
     let page = |syntax, meaning, example| KeywordPage { syntax, meaning, example };
     Some(match token {
@@ -44,11 +44,11 @@ pub fn keyword_page(token: TokenKind) -> Option<KeywordPage> {
         ),
         TokenKind::WheelH => page(
             "wheelH NAME with radius CENTIMETRES",
-            "A mecanum wheel: its rollers stand at 45°, so that four of them can drive a robot sideways.",
+            "A mecanum wheel, with rollers at 45°: a robot with four of them can drive sideways.",
             "wheelH frontLeft with radius 5.0",
         ),
         TokenKind::With => {
-            page("with …", "Adds a part: a radius, a port, sensors, an ip or movements.", ROBOT)
+            page("with …", "Adds a clause: a radius, a port, sensors, an ip or movements.", ROBOT)
         }
         TokenKind::Radius => page(
             "with radius CENTIMETRES",
@@ -57,20 +57,20 @@ pub fn keyword_page(token: TokenKind) -> Option<KeywordPage> {
         ),
         TokenKind::Sensor => page(
             "sensor NAME [: distance | bumper]",
-            "A proximity sensor. `distance` (also where nothing is written) sees an obstacle ahead of it, `bumper` feels one.",
+            "A proximity sensor: `distance` (the default) detects obstacles ahead, `bumper` on contact.",
             "sensor front : distance",
         ),
         TokenKind::Ip => page(
             EntityKind::Ip.shape(),
-            "The address of the machine the simulator runs on. Without one it is this machine.",
+            "The address of the simulator's machine; the default is this machine.",
             "ip lab 192.168.0.7\nenvironment area with ip lab has { rover } robots",
         ),
         TokenKind::Robot => page(
             ROBOT_SHAPE,
-            "A robot: its wheels in the order left, right, or left front, left rear, right front, right rear.",
+            "A robot. List its wheels as left, right or as left front, left rear, right front, right rear.",
             ROBOT,
         ),
-        TokenKind::Type => page(TYPE, "How the robot drives. Without it the wheels tell.", ROBOT),
+        TokenKind::Type => page(TYPE, "The drive type; the default follows from the wheels.", ROBOT),
         TokenKind::Tw => page(TYPE, "Two-wheel differential drive: two `wheel`, listed left, right.", ROBOT),
         TokenKind::Fw => page(
             TYPE,
@@ -85,25 +85,29 @@ pub fn keyword_page(token: TokenKind) -> Option<KeywordPage> {
         TokenKind::Port => {
             page("with port NUMBER", "The port of the simulator's remote API, from 1 to 65535.", ROBOT)
         }
-        TokenKind::Has => page("has { … }", "What a robot or an environment is made of.", ENVIRONMENT),
-        TokenKind::Wheels => page("has { WHEELS } wheels", "Ends the list of a robot's wheels.", ROBOT),
-        TokenKind::Sensors => page(SENSORS, "The sensors a robot carries.", ROBOT),
+        TokenKind::Has => {
+            page("has { … }", "Lists the wheels of a robot or the robots of an environment.", ENVIRONMENT)
+        }
+        TokenKind::Wheels => page("has { WHEELS } wheels", "Ends the wheel list of a robot.", ROBOT),
+        TokenKind::Sensors => page(SENSORS, "Lists the sensors of a robot.", ROBOT),
         TokenKind::Parallel => page(
             MOVEMENT_SHAPE,
-            "Parallel movements that are next to each other in an environment's list start together.",
+            "Parallel movements next to each other in an environment's list start together.",
             "parallel movement patrol of rover {\n  move 4.0 meters\n}",
         ),
         TokenKind::Movement => page(
             MOVEMENT_SHAPE,
-            "What one robot does, action by action.",
+            "A sequence of actions for one robot.",
             "movement patrol of rover {\n  move 4.0 meters\n  turn left\n}",
         ),
-        TokenKind::Of => {
-            page("movement NAME of ROBOT", "Whose movement it is.", "movement patrol of rover { slam }")
-        }
+        TokenKind::Of => page(
+            "movement NAME of ROBOT",
+            "Names the robot of a movement.",
+            "movement patrol of rover { slam }",
+        ),
         TokenKind::Move => page(
             MOVE,
-            "Straight ahead along the heading; a negative distance drives backwards. The speed is in centimetres per second, 9.0 where nothing is written.",
+            "Drives straight ahead, or backwards if the distance is negative. The speed is in centimetres per second and defaults to 9.0.",
             "move 4.0 meters at 12.5",
         ),
         TokenKind::Meters => page(MOVE, "The distance is in metres.", "move 4.0 meters"),
@@ -111,45 +115,45 @@ pub fn keyword_page(token: TokenKind) -> Option<KeywordPage> {
             page("move DISTANCE centimeters", "The distance is in centimetres.", "move 40 centimeters")
         }
         TokenKind::At => {
-            page(MOVE, "The speed at the wheels' rim in centimetres per second.", "move 4.0 meters at 12.5")
+            page(MOVE, "The rim speed of the wheels in centimetres per second.", "move 4.0 meters at 12.5")
         }
         TokenKind::Turn => page(
             "turn left | right [DEGREES]\nturn left | right until { SENSORS }",
-            "In place, by 90° where nothing is written; `left` is counter-clockwise seen from above.",
+            "Turns in place, by 90° unless an angle is given; `left` is counter-clockwise seen from above.",
             "turn left 45",
         ),
         TokenKind::Left => page("turn left DEGREES", "Counter-clockwise seen from above.", "turn left 45"),
         TokenKind::Right => page("turn right DEGREES", "Clockwise seen from above.", "turn right 45"),
         TokenKind::Until => page(
             "turn left | right until { SENSORS }",
-            "Turns until none of the sensors detects an obstacle; not at all if none does.",
+            "Turns until no listed sensor detects an obstacle; not at all if none does at the start.",
             "turn right until { front }",
         ),
         TokenKind::Slam => page(
             "slam",
-            "Explores a closed area on its own and maps it. Two-wheel robots with five distance sensors or more.",
+            "Explores and maps a closed area autonomously. Requires a two-wheel robot with at least five distance sensors.",
             "movement explore of rover { slam }",
         ),
         TokenKind::Environment => page(
             ENVIRONMENT_SHAPE,
-            "The robots of a run and their movements in order. Each environment becomes one script.",
+            "The robots of a run and their movements in order. Each environment generates one script.",
             ENVIRONMENT,
         ),
         TokenKind::Robots => {
-            page("has { ROBOTS } robots", "Ends the list of an environment's robots.", ENVIRONMENT)
+            page("has { ROBOTS } robots", "Ends the robot list of an environment.", ENVIRONMENT)
         }
         TokenKind::Moves => {
-            page("with { MOVEMENTS } moves", "Ends the list of an environment's movements.", ENVIRONMENT)
+            page("with { MOVEMENTS } moves", "Ends the movement list of an environment.", ENVIRONMENT)
         }
         TokenKind::Distance => {
-            page("sensor NAME : distance", "Sees an obstacle ahead of it.", "sensor front : distance")
+            page("sensor NAME : distance", "Detects obstacles ahead.", "sensor front : distance")
         }
         TokenKind::Bumper => {
-            page("sensor NAME : bumper", "Feels an obstacle at contact.", "sensor nose : bumper")
+            page("sensor NAME : bumper", "Detects an obstacle on contact.", "sensor nose : bumper")
         }
         TokenKind::Import => page(
             "import \"FILE.pyr\"",
-            "Makes the entities of another file visible, by its path relative to this one.",
+            "Makes the declarations of another file visible. The path is relative to this file.",
             "import \"parts/wheels.pyr\"",
         ),
         _ => return None,
@@ -163,7 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_word_has_a_page_that_uses_it() {
+    fn every_keyword_has_a_page_that_uses_it() {
         for (token, word) in KEYWORDS {
             let page = keyword_page(token).unwrap_or_else(|| panic!("`{word}` has no page"));
             let uses =

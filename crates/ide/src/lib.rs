@@ -1,8 +1,8 @@
-//! Editor features, one file each: a database and a place in, plain structs out. Those of a settings file, in
-//! `settings`, take its text.
+//! Editor features, one file each: a database and a position in, plain structs out. The features for settings files, in
+//! `settings`, take the text instead.
 //!
-//! Knows `analysis` and what lies below it. Must never know the editors' protocol, lines and columns (places are byte
-//! offsets), files on a disk, or threads.
+//! Knows `analysis` and the crates below it. Must never know the editors' protocol, lines and columns (positions are byte
+//! offsets), the file system, or threads.
 
 mod call_hierarchy;
 mod code_lenses;
@@ -17,13 +17,13 @@ mod formatting;
 mod highlights;
 mod hover;
 mod inlay_hints;
+mod keyword_pages;
 mod linked_editing;
 mod on_type;
 mod planned_action;
 mod planned_path;
 mod quick_fixes;
 mod refactorings;
-mod keyword_pages;
 mod references;
 mod rename;
 mod scenes;
@@ -46,12 +46,13 @@ pub use completion::{
 pub use definition::{Definition, Target, goto_definition};
 pub use document_links::{DocumentLink, document_links};
 pub use file_rename::{FileRename, rename_files};
-pub use fix_all::{codes_to_fix_all, fix_all, is_safely_fixed};
+pub use fix_all::{codes_to_fix_all, fix_all, has_safe_fix};
 pub use folding::{Fold, FoldKind, folding_ranges};
 pub use formatting::{format, format_range};
 pub use highlights::{Highlight, highlights};
 pub use hover::{Hover, hover};
 pub use inlay_hints::{InlayHint, InlayHintOptions, InlayHintPlaces, KnownMovements, inlay_hints};
+pub use keyword_pages::{KeywordPage, keyword_page};
 pub use linked_editing::linked_editing_ranges;
 pub use on_type::{format_after_brace, format_after_line_break};
 pub use planned_action::{PlannedAt, action_place, planned_at};
@@ -60,9 +61,8 @@ pub use planned_path::{
 };
 pub use quick_fixes::{QuickFix, quick_fixes};
 pub use refactorings::{Refactoring, RefactoringKind, refactorings};
-pub use keyword_pages::{KeywordPage, keyword_page};
 pub use references::references;
-pub use rename::{Refusal, RenameTarget, prepare_rename, rename};
+pub use rename::{RenameError, RenameTarget, prepare_rename, rename};
 pub use scenes::{scene_completions, scene_fixes, scene_hover};
 pub use selection::selection_ranges;
 pub use semantic_tokens::{HighlightKind, Modifier, SemanticToken, entity_tokens, semantic_tokens};
@@ -74,11 +74,11 @@ pub use workspace_symbols::{WorkspaceSymbol, workspace_symbols};
 
 use pydslrep_analysis::FileId;
 
-/// A place in a file.
+/// A position in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FilePosition {
-    /// Which file.
+    /// The file.
     pub file: FileId,
-    /// Bytes from its start.
+    /// The offset in bytes.
     pub offset: u32,
 }

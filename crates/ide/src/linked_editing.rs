@@ -1,5 +1,4 @@
-//! Linked editing: while a name is typed over, its declaration and uses change with it, where no other file is
-//! concerned.
+//! Linked editing: while a name is edited, its declaration and references change with it, unless other files use it.
 
 use pydslrep_analysis::{Database, FileSpan};
 use pydslrep_syntax::Span;
@@ -8,8 +7,8 @@ use crate::FilePosition;
 use crate::cursor::referent_at;
 use crate::references::declarations;
 
-/// The places in the same file that are edited together with the name at a place, in the order of the text; none where
-/// that is not safe: the name must be declared once, here, used here only, and be written alike everywhere.
+/// The ranges that are edited together with the name at a position, in text order. Empty unless it is safe: the name must
+/// be declared once, in this file, used in no other, and be spelled the same everywhere.
 pub fn linked_editing_ranges(database: &Database, position: FilePosition) -> Vec<Span> {
     linked(database, position).unwrap_or_default()
 }
@@ -78,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn other_files_are_not_left_behind() {
+    fn names_used_in_other_files_are_not_linked() {
         check_none(&[
             ("a.pyr", "wheel a$0 with radius 4\nrobot r with port 1 has { a } wheels"),
             ("b.pyr", "import \"a.pyr\" robot q with port 1 has { a } wheels"),
@@ -90,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_in_doubt_is_not_linked() {
+    fn ambiguous_names_are_not_linked() {
         for text in [
             "wheel a with radius 4\nwheel a with radius 4\nrobot r with port 1 has { a$0 } wheels",
             "wheel a with radius 4\nrobot r with port 1 has { ^a$0 } wheels",

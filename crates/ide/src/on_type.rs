@@ -1,6 +1,6 @@
-//! Formatting while typing: a closing brace brings what it closes into the canonical layout, a new line is indented.
+//! Formatting while typing: a closing brace formats its movement, list or action, and a new line is indented.
 //!
-//! Other entities are never touched, and what has errors is only indented.
+//! Other entities never change, and entities with errors are only indented.
 
 use pydslrep_analysis::{Database, EntityRef};
 use pydslrep_syntax::ast::Entity;
@@ -9,17 +9,17 @@ use pydslrep_syntax::{EntityKind, Span, TextEdit, Token, TokenKind, format_edits
 use crate::FilePosition;
 use crate::cursor::body;
 
-/// One step of indentation, in spaces.
-const STEP: usize = 2;
+/// The width of one indentation level, in spaces.
+const INDENT: usize = 2;
 
-/// The edits after a `}` was typed right before a place.
+/// The edits after a `}` was typed right before a position.
 pub fn format_after_brace(database: &Database, position: FilePosition) -> Vec<TextEdit> {
     let Some(brace) = position.offset.checked_sub(1) else { return Vec::new() };
     let Some(entity) = database.entity_at(position.file, brace) else { return Vec::new() };
     let start = entity.span.start;
     let closes = |(token, span): &&Token| *token == TokenKind::CloseBrace && span.start + start == brace;
     if !entity.parse.tokens.iter().any(|token| closes(&token)) {
-        // It was typed in a comment.
+        // The brace is in a comment.
         return Vec::new();
     }
     if !entity.parse.errors.is_empty() {
@@ -33,16 +33,16 @@ pub fn format_after_brace(database: &Database, position: FilePosition) -> Vec<Te
         _ => body(&entity),
     };
     let part = Span::new(part.start, part.end.min(position.offset));
-    in_layout(database, &entity, part)
+    format_part(database, &entity, part)
 }
 
-/// The edits after a line break was typed before a place: the line is indented, if it is in something that is open.
+/// The edits after a line break was typed before a position: inside an open entity, the line is indented.
 pub fn format_after_line_break(database: &Database, position: FilePosition) -> Vec<TextEdit> {
     indent(database, position)
 }
 
-/// The edits of the canonical layout that lie in a part of an entity without errors.
-fn in_layout(database: &Database, entity: &EntityRef<'_>, part: Span) -> Vec<TextEdit> {
+/// The formatting edits within a part of an entity without errors.
+fn format_part(database: &Database, entity: &EntityRef<'_>, part: Span) -> Vec<TextEdit> {
     let start = entity.span.start;
     let text = database.slice(entity.file, entity.span);
     let edits = format_edits(&text, [(Span::of(&text), entity.parse)]);
@@ -51,25 +51,25 @@ fn in_layout(database: &Database, entity: &EntityRef<'_>, part: Span) -> Vec<Tex
         .into_iter()
         .map(|edit| TextEdit {
             span: edit.span.shifted(start),
-            // The entity alone may have no line ending to go by.
+            // The entity alone may have no line break to infer the ending from.
             text: edit.text.replace("\r\n", "\n").replace('\n', ending),
         })
         .filter(|edit| part.start < edit.span.start && edit.span.end < part.end)
         .collect()
 }
 
-/// Replaces the white space that a line begins with, where it is not what the layout asks for.
+/// Replaces the leading white space of a line if it is not that of the canonical layout.
 fn indent(database: &Database, position: FilePosition) -> Vec<TextEdit> {
     let Some(line) = Line::at(database, position) else { return Vec::new() };
     let Some(depth) = line.depth(database, position) else { return Vec::new() };
-    let wanted = " ".repeat(depth * STEP);
+    let wanted = " ".repeat(depth * INDENT);
     if wanted == database.slice(position.file, line.blank) {
         return Vec::new();
     }
     vec![TextEdit { span: line.blank, text: wanted }]
 }
 
-/// A line, as far as it is blank.
+/// The leading white space of a line.
 struct Line {
     blank: Span,
 }
@@ -84,14 +84,14 @@ impl Line {
         Some(Self { blank: Span::new(to_u32(start)?, to_u32(start + blank)?) })
     }
 
-    /// How many steps it is to be indented; `None` where that cannot be said.
+    /// The indentation level of the line; `None` if unknown.
     fn depth(&self, database: &Database, position: FilePosition) -> Option<usize> {
         let before = self.blank.start.checked_sub(1)?;
         let entity = database.entity_at(position.file, before)?;
         let place = |(token, span): &Token| (*token, span.shifted(entity.span.start));
         let tokens = || entity.parse.tokens.iter().map(place);
         if tokens().any(|(_, span)| span.start < self.blank.start && self.blank.start < span.end) {
-            // In a comment, whose lines are the person's own.
+            // The layout of comments is left to the user.
             return None;
         }
         let is_sign = |(token, span): &Token| !token.is_comment() && span.end <= self.blank.start;
@@ -106,13 +106,13 @@ impl Line {
         let is_movement = typed.first().and_then(|token| token.entity_kind()) == Some(EntityKind::Movement);
         match open {
             0 => self.ends(&entity).then_some(0),
-            // Each line of a movement's body is an action, or goes on with one.
+            // Each line of a movement's body begins an action or continues one.
             1 if is_movement && !closes && continues(&typed) => Some(2),
             open => Some(open - usize::from(closes)),
         }
     }
 
-    /// Whether all of an entity stands before the line, and nothing of it is missing.
+    /// Whether a complete entity ends before the line.
     fn ends(&self, entity: &EntityRef<'_>) -> bool {
         entity.parse.entity.is_some()
             && entity.parse.errors.is_empty()
@@ -120,7 +120,7 @@ impl Line {
     }
 }
 
-/// Whether an action cannot be over yet behind these tokens.
+/// Whether the last action is incomplete.
 fn continues(typed: &[TokenKind]) -> bool {
     let last = typed.last().copied();
     matches!(last, Some(TokenKind::Move | TokenKind::Turn | TokenKind::At | TokenKind::Until))
@@ -167,14 +167,14 @@ mod tests {
     }
 
     #[test]
-    fn a_brace_in_what_is_broken_is_only_put_in_its_column() {
+    fn a_brace_of_an_entity_with_errors_is_only_indented() {
         brace("movement  m of {\n  slam\n    }$0", "movement  m of {\n  slam\n}");
         brace("movement m of r { // }$0", "movement m of r { // }");
         brace("}$0", "}");
     }
 
     #[test]
-    fn a_line_is_indented_as_deep_as_it_stands() {
+    fn a_line_is_indented_by_its_depth() {
         line_break("movement m of r {\n$0}", "movement m of r {\n}");
         line_break("movement m of r {\n$0\n}", "movement m of r {\n  \n}");
         line_break("movement m of r {\n  slam\n\t\t$0turn left", "movement m of r {\n  slam\n  turn left");

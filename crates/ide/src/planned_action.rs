@@ -1,4 +1,4 @@
-//! Actions of planned paths: which action of which environment stands at the cursor, and where an action of a path stands.
+//! Actions of planned paths: the action and environments at the cursor, and the location of an action of a path.
 
 use pydslrep_analysis::{Database, EntityId, EntityRef, FileId};
 use pydslrep_syntax::ast::{Action, Entity};
@@ -9,18 +9,18 @@ use smol_str::SmolStr;
 use crate::FilePosition;
 use crate::cursor::entities_at;
 
-/// What of planned paths stands at a place.
+/// The parts of planned paths at a position.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct PlannedAt {
-    /// The environments of the file in the order of the text, each name once.
+    /// The environments of the file in text order, each name once.
     pub environments: Vec<SmolStr>,
-    /// Those of them that are declared at the place or use, directly or through others, what is declared there.
+    /// The environments declared at the position, or using the declaration there, directly or indirectly.
     pub using: Vec<SmolStr>,
-    /// The movement and the number of its action, counted from 0; on its line an action has the room beside it.
+    /// The movement and the index of its action. On its line an action includes the space around it.
     pub action: Option<(SmolStr, usize)>,
 }
 
-/// What of planned paths stands at a place.
+/// The parts of planned paths at a position.
 pub fn planned_at(database: &Database, position: FilePosition) -> PlannedAt {
     let mut environments: Vec<SmolStr> = Vec::new();
     for (_, name) in database.environments(position.file) {
@@ -36,7 +36,7 @@ pub fn planned_at(database: &Database, position: FilePosition) -> PlannedAt {
     PlannedAt { environments, using, action }
 }
 
-/// Where an action of an environment stands: the movement's name as the environment uses it, and the action's number.
+/// The location of an action, given the movement's name as the environment uses it and the action's index.
 pub fn action_place(
     database: &Database,
     environment: EntityId,
@@ -50,7 +50,7 @@ pub fn action_place(
     Some((entity.file, tree.actions.get(index)?.span.shifted(entity.span.start)))
 }
 
-/// The environments of a file that use an entity of it, directly or through others; one uses itself.
+/// The environments of a file that use one of its entities, directly or indirectly; an environment uses itself.
 fn users(database: &Database, entity: &EntityRef<'_>) -> FxHashSet<SmolStr> {
     let mut environments = FxHashSet::default();
     let mut open = vec![entity.id];
@@ -75,14 +75,14 @@ fn action_in(database: &Database, entity: &EntityRef<'_>, offset: u32) -> Option
         let end = place(&tree.actions[index]).end;
         offset <= end || is_one_line(Span::new(end, offset))
     });
-    let behind = || {
+    let after = || {
         tree.actions
             .get(begun)
             .filter(|next| is_one_line(Span::new(offset, place(next).start)))
             .map(|_| begun)
     };
     let body = tree.body?.shifted(entity.span.start);
-    let index = before.or_else(behind).filter(|_| body.touches(offset))?;
+    let index = before.or_else(after).filter(|_| body.touches(offset))?;
     Some((tree.name.as_ref()?.text.clone(), index))
 }
 
@@ -113,7 +113,7 @@ environment second has { rover } robots with { go } moves
     }
 
     #[test]
-    fn an_action_has_the_room_beside_it_on_its_line() {
+    fn an_action_includes_the_space_around_it() {
         for (place, expected) in [
             ("|  move 1 meters", Some(0)),
             ("  mo|ve 1 meters", Some(0)),
@@ -131,7 +131,7 @@ environment second has { rover } robots with { go } moves
     }
 
     #[test]
-    fn environments_use_what_they_list_and_what_that_is_made_of() {
+    fn environments_use_their_lists_and_dependencies() {
         let using = |text: &str, place: &str| {
             let plain = place.replace('|', "");
             at(&text.replacen(&plain, place, 1)).using.join(" ")
@@ -148,7 +148,7 @@ environment second has { rover } robots with { go } moves
     }
 
     #[test]
-    fn actions_are_found_in_the_file_that_declares_them() {
+    fn actions_are_located_in_their_declaring_file() {
         let mut database = Database::new();
         let parts = database.open("parts.pyr", &format!("{PARTS}{PROGRAM}"));
         let text = "import \"parts.pyr\"\nenvironment third has { rover } robots with { go } moves";

@@ -1,4 +1,4 @@
-//! Planned paths: where each robot of an environment will be and when, for a preview beside the program.
+//! Planned paths: the timed poses of each robot of an environment, for a preview next to the program.
 
 use pydslrep_analysis::environment::Environment;
 use pydslrep_analysis::{Blocked, Database, EntityId, plan};
@@ -11,13 +11,13 @@ use pydslrep_schema::Problem;
 pub struct PlannedPath {
     /// Its name.
     pub environment: String,
-    /// Seconds until the last movement ends; `None` where that cannot be planned.
+    /// Seconds until the last movement ends; `None` if it cannot be planned.
     pub duration: Option<f64>,
     /// In listed order.
     pub robots: Vec<PlannedRobot>,
-    /// What stands on the floor.
+    /// The obstacles of the scene.
     pub obstacles: Vec<Obstacle>,
-    /// Where robots would run into something, the earliest first.
+    /// The planned collisions, earliest first.
     pub collisions: Vec<PlannedCollision>,
 }
 
@@ -28,61 +28,61 @@ pub struct PlannedRobot {
     pub name: String,
     /// Its outer size.
     pub body: Body,
-    /// Where its sensors sit and what they see.
+    /// Its sensors with their mounts.
     pub sensors: Vec<Sensor>,
-    /// Its first pose is where it starts.
+    /// Its poses, beginning with the start pose.
     pub poses: Vec<PlannedPose>,
-    /// Its drives, in order: the same movement may be listed twice, so that poses alone do not tell them apart.
+    /// The legs of its path. Poses alone do not separate them, since a movement may be listed twice.
     pub legs: Vec<PlannedLeg>,
     /// The action after which its poses cannot be planned.
     pub unknown_after: Option<PlannedAction>,
 }
 
-/// The drive of one action.
+/// The path of one action.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedLeg {
     /// The action.
     pub action: PlannedAction,
-    /// Seconds from the start; `None` where an earlier action takes an unknown time.
+    /// Seconds from the start; `None` after an action of unknown duration.
     pub start: Option<f64>,
     /// Seconds.
     pub duration: f64,
-    /// The index of its last pose among those of its robot; its first is the last one of the drive before.
+    /// The index of its last pose among those of its robot; it starts at the last pose of the previous leg.
     pub last: usize,
 }
 
-/// A robot that would run into something.
+/// A planned collision of a robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedCollision {
     /// Its name.
     pub robot: String,
-    /// What it is doing.
+    /// The current action.
     pub action: Option<PlannedAction>,
-    /// Seconds from the start; `None` where an earlier action takes an unknown time.
+    /// Seconds from the start; `None` after an action of unknown duration.
     pub time: Option<f64>,
-    /// Where it is.
+    /// The robot's pose.
     pub pose: Pose,
-    /// What it meets.
+    /// The obstacle or robot it collides with.
     pub with: Met,
 }
 
-/// What a robot meets, by its name.
+/// The other party of a collision, by name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Met {
-    /// Something that stands on the floor.
+    /// An obstacle.
     Obstacle(String),
     /// Another robot.
     Robot(String),
 }
 
-/// A pose on the way.
+/// A pose on a planned path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedPose {
-    /// Seconds from the start; `None` where an earlier action takes an unknown time.
+    /// Seconds from the start; `None` after an action of unknown duration.
     pub time: Option<f64>,
-    /// Absolute; metres and radians.
+    /// In the world; metres and radians.
     pub pose: Pose,
-    /// The action that leads to it; `None` for the start.
+    /// The action that leads to it; `None` for the start pose.
     pub action: Option<PlannedAction>,
 }
 
@@ -91,16 +91,16 @@ pub struct PlannedPose {
 pub struct PlannedAction {
     /// The movement's name.
     pub movement: String,
-    /// Counts the movement's actions from 0.
+    /// The zero-based index among the movement's actions.
     pub index: usize,
-    /// The action as written.
+    /// The action's text.
     pub text: String,
 }
 
-/// Poses of a planned action, at equal intervals of time: enough for a curve and for the ramps at its ends.
+/// Poses per action, at equal time intervals: enough for curves and speed ramps.
 const POSES_PER_ACTION: u32 = 8;
 
-/// The planned path of an environment; the error says why there is none.
+/// The planned path of an environment.
 ///
 /// # Errors
 /// When the environment or its scene has errors, or a robot in it cannot drive.
@@ -128,20 +128,20 @@ fn collisions(environment: &Environment, scene: &Scene, plan: &Plan) -> Vec<Plan
         Thing::Obstacle(index) => scene.obstacles.get(index).map(|thing| Met::Obstacle(thing.name.clone())),
         Thing::Robot(index) => scene.robots.get(index).map(|robot| Met::Robot(robot.name.clone())),
     };
-    let named = |found: Collision| {
-        let robot = scene.robots.get(found.robot)?.name.clone();
-        let (action, with) = (action(environment, found.action), met(found.with)?);
-        Some(PlannedCollision { robot, action, time: found.time, pose: found.pose, with })
+    let named = |collision: Collision| {
+        let robot = scene.robots.get(collision.robot)?.name.clone();
+        let (action, with) = (action(environment, collision.action), met(collision.with)?);
+        Some(PlannedCollision { robot, action, time: collision.time, pose: collision.pose, with })
     };
-    let mut found: Vec<_> = scenery::collisions(scene, plan).into_iter().filter_map(named).collect();
+    let mut collisions: Vec<_> = scenery::collisions(scene, plan).into_iter().filter_map(named).collect();
     let moment = |collision: &PlannedCollision| collision.time.unwrap_or(f64::INFINITY);
-    found.sort_by(|a, b| moment(a).total_cmp(&moment(b)));
-    found
+    collisions.sort_by(|a, b| moment(a).total_cmp(&moment(b)));
+    collisions
 }
 
-/// Why nothing is planned in a scene, in words.
+/// The error message for a scene with errors.
 fn wrong_scene(environment: &Environment, problems: &[Problem]) -> String {
-    let first = problems.first().map_or("it has mistakes", |problem| problem.message.as_str());
+    let first = problems.first().map_or("it has errors", |problem| problem.message.as_str());
     format!("`{}{ENDING}`: {first}", environment.name)
 }
 

@@ -1,28 +1,28 @@
-//! Quick fixes: the edits that fix the problems at a place.
+//! Quick fixes: the fixes of the diagnostics at a position.
 
 use pydslrep_analysis::{Database, Diagnostic, FileId, Fix, Offers};
 use pydslrep_syntax::Span;
 
-/// A fix with the problem it is for.
+/// A fix and its diagnostic.
 #[derive(Debug, Clone, PartialEq)]
 pub struct QuickFix {
-    /// What it fixes.
+    /// The diagnostic that it fixes.
     pub diagnostic: Diagnostic,
-    /// How.
+    /// The fix.
     pub fix: Fix,
-    /// Whether it can be taken for granted: the only fix of its problem, and a safe one.
+    /// Whether it is the preferred fix: the only one of its diagnostic, and safe.
     pub is_preferred: bool,
 }
 
-/// Suggestions are tried out, which takes its time: those beyond are not offered. Nobody chooses among more.
-const MOST_SUGGESTIONS: usize = 64;
+/// The maximum number of suggestions: each is validated on a copy of the database, and nobody reads more.
+const MAX_SUGGESTIONS: usize = 64;
 
-/// The fixes of all problems that touch a range: those that the command offers, too ([`Offers`]).
+/// The fixes of all diagnostics that touch a range; the command offers the same ([`Offers`]).
 pub fn quick_fixes(database: &Database, file: FileId, range: Span) -> Vec<QuickFix> {
     let touching =
         |diagnostic: &Diagnostic| diagnostic.span.start <= range.end && range.start <= diagnostic.span.end;
     let diagnostics = database.diagnostics(file).into_iter().filter(touching);
-    let mut offers = Offers::new(database, MOST_SUGGESTIONS);
+    let mut offers = Offers::new(database, MAX_SUGGESTIONS);
     let mut found = Vec::new();
     for diagnostic in diagnostics {
         let mut fixes = diagnostic.fixes.clone();
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fixes_are_found_where_their_problem_is() {
+    fn fixes_are_offered_at_their_diagnostic() {
         let mut database = Database::new();
         let file = database.open("a.pyr", "wheel a radius 4\nwheel b with radius 450");
         let titles = |from, to| -> Vec<(String, bool)> {

@@ -1,4 +1,4 @@
-//! Refactorings: other ways to write what a program says, offered where the cursor or the selection is.
+//! Refactorings: equivalent ways to write the selected code, and changes of unit, speed or schedule.
 
 mod actions;
 mod drive_type;
@@ -13,25 +13,25 @@ mod testing;
 use pydslrep_analysis::{Database, Edit, EntityRef, FileId};
 use pydslrep_syntax::Span;
 
-/// What kind of change it is.
+/// The kind of a refactoring.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RefactoringKind {
-    /// A part becomes a declaration of its own.
+    /// Moves code into a new declaration.
     Extract,
-    /// What is said once for all is left out.
+    /// Removes redundant code.
     Inline,
-    /// The same in other words.
+    /// Rewrites code.
     Rewrite,
 }
 
-/// A change that is offered.
+/// An offered change.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refactoring {
-    /// What it does, as an order.
+    /// Its title, as an imperative.
     pub title: String,
-    /// What kind of change it is.
+    /// Its kind.
     pub kind: RefactoringKind,
-    /// The edits, apart from each other; or why it cannot be done here.
+    /// The edits, without overlaps; or why it is not available here.
     pub edits: Result<Vec<Edit>, String>,
 }
 
@@ -40,35 +40,35 @@ impl Refactoring {
         Self { title: title.into(), kind, edits: Ok(edits) }
     }
 
-    fn refused(title: impl Into<String>, kind: RefactoringKind, reason: impl Into<String>) -> Self {
+    fn unavailable(title: impl Into<String>, kind: RefactoringKind, reason: impl Into<String>) -> Self {
         Self { title: title.into(), kind, edits: Err(reason.into()) }
     }
 }
 
-/// What can be done with what a selection (or a cursor: an empty one) touches.
+/// The refactorings for a selection; a cursor is an empty one.
 pub fn refactorings(database: &Database, file: FileId, range: Span) -> Vec<Refactoring> {
     let mut found = Vec::new();
-    if let Some(place) = Place::find(database, file, range) {
-        found.extend(units::convert(&place));
-        found.extend(speed::spell(&place));
-        found.extend(extract::extract(&place));
-        found.extend(parallel::change(&place));
-        found.extend(drive_type::add(&place));
+    if let Some(selection) = Selection::find(database, file, range) {
+        found.extend(units::convert(&selection));
+        found.extend(speed::refactorings(&selection));
+        found.extend(extract::extract(&selection));
+        found.extend(parallel::change(&selection));
+        found.extend(drive_type::add(&selection));
     }
     found
 }
 
-/// The entity that a selection is about; it has no syntax errors.
+/// The selected entity, which has no syntax errors, and the selection within it.
 #[derive(Clone, Copy)]
-struct Place<'a> {
+struct Selection<'a> {
     database: &'a Database,
     file: FileId,
     entity: EntityRef<'a>,
-    /// The selection, from the start of the entity.
+    /// The selection, relative to the start of the entity.
     range: Span,
 }
 
-impl<'a> Place<'a> {
+impl<'a> Selection<'a> {
     fn find(database: &'a Database, file: FileId, range: Span) -> Option<Self> {
         let before = range.start.checked_sub(1).and_then(|offset| database.entity_at(file, offset));
         let at = database.entity_at(file, range.start);
@@ -82,17 +82,17 @@ impl<'a> Place<'a> {
         entity.parse.errors.is_empty().then_some(Self { database, file, entity, range })
     }
 
-    /// Whether something in the entity touches the selection.
+    /// Whether a range in the entity touches the selection.
     fn touches(&self, span: Span) -> bool {
         span.start <= self.range.end && self.range.start <= span.end
     }
 
-    /// The text of a part of the entity.
+    /// The text of a range of the entity.
     fn text(&self, span: Span) -> String {
         self.database.slice(self.file, span.shifted(self.entity.span.start))
     }
 
-    /// An edit of the entity.
+    /// An edit within the entity.
     fn edit(&self, span: Span, text: impl Into<String>) -> Edit {
         Edit { file: self.file, span: span.shifted(self.entity.span.start), text: text.into() }
     }

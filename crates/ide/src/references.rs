@@ -1,14 +1,13 @@
-//! Find references: everywhere that a name is used, in this file and in those that import it, with or without its
-//! declaration.
+//! Find references: all references to a name, in its file and in those that import it, with or without its declaration.
 //!
-//! Of a name that nothing declares, the uses in the same file are found.
+//! For an undeclared name, the references in the same file.
 
 use pydslrep_analysis::{Database, FileSpan};
 
 use crate::FilePosition;
 use crate::cursor::{Referent, referent_at};
 
-/// The places of the name at a place, file by file in the order of the text; `None` where there is no name.
+/// The references to the name at a position, by file and in text order; `None` if there is no name.
 pub fn references(
     database: &Database,
     position: FilePosition,
@@ -23,7 +22,7 @@ pub fn references(
     Some(places)
 }
 
-/// Where it is declared.
+/// The declarations of a referent.
 pub(crate) fn declarations(database: &Database, referent: &Referent) -> Vec<FileSpan> {
     let Referent { home, kind, name, .. } = referent;
     let spans = database.declarations(*home, *kind, name).into_iter();
@@ -37,8 +36,8 @@ mod tests {
     use super::*;
     use crate::fixture::{at_cursor_in, marked};
 
-    /// Checks the texts of all files that have a reference, each in brackets, declarations marked `=`; also that every
-    /// one of these places gives the same answer.
+    /// Checks the texts of all files with references in brackets and declarations marked `=`; and that every reference gives
+    /// the same result.
     fn check(files: &[(&str, &str)], expected: &Expect) {
         let (database, position) = at_cursor_in(files);
         let Some(all) = references(&database, position, true) else {
@@ -61,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn all_uses_of_a_kind_are_found() {
+    fn references_have_the_same_kind() {
         check(
             &[(
                 "a.pyr",
@@ -131,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn broken_text_is_no_obstacle() {
+    fn references_in_entities_with_errors_are_included() {
         check(
             &[(
                 "a.pyr",

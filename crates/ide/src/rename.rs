@@ -1,38 +1,38 @@
-//! Rename: a new name for a thing, wherever it is declared and used, in all files; refused, with the reason, where the
-//! program would then mean something else.
+//! Rename: renames an entity and all references to it, in all files; refused, with the reason, if the meaning of the
+//! program would change.
 //!
-//! Several declarations of one name in one file are renamed together: there is no telling which of them a use means.
-//! Comments are left as they are.
+//! Several declarations of one name in one file are renamed together, because a reference could mean either. Comments
+//! stay as they are.
 
 use std::fmt;
 
 use pydslrep_analysis::{Database, Edit, FileId, FileSpan};
-use pydslrep_syntax::{EntityKind, Span, TokenKind, as_written, lex};
+use pydslrep_syntax::{EntityKind, Span, TokenKind, escape, lex};
 use smol_str::SmolStr;
 
 use crate::FilePosition;
-use crate::cursor::{lexeme_at, name_at, referent_at};
+use crate::cursor::{name_at, referent_at, token_at};
 use crate::references::declarations;
 
-/// What would be renamed.
+/// The name to rename.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RenameTarget {
-    /// The name at the cursor, with its `^`.
+    /// The range of the name at the cursor, including `^`.
     pub span: Span,
-    /// The name as it is written there.
+    /// The name as written there.
     pub text: String,
 }
 
-/// Why something is not renamed; its words are for the user.
+/// Why a rename is refused; shown to the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Refusal {
-    /// The new name is no name.
+pub enum RenameError {
+    /// The new name is not valid.
     Invalid(String),
-    /// The name at the cursor cannot be renamed, or not so.
+    /// The name at the cursor cannot be renamed, or not to this name.
     Impossible(String),
 }
 
-impl fmt::Display for Refusal {
+impl fmt::Display for RenameError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Invalid(reason) | Self::Impossible(reason) => f.write_str(reason),
@@ -40,82 +40,79 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// The name that a rename at this place would change.
+/// The name that a rename at this position would change.
 ///
 /// # Errors
 ///
-/// If there is none, or it cannot be renamed whatever the new name.
-pub fn prepare_rename(database: &Database, position: FilePosition) -> Result<RenameTarget, Refusal> {
+/// If there is none, or it cannot be renamed at all.
+pub fn prepare_rename(database: &Database, position: FilePosition) -> Result<RenameTarget, RenameError> {
     renamed_at(database, position)?;
     let span = name_at(database, position).ok_or_else(no_name)?.span;
     Ok(RenameTarget { span, text: database.slice(position.file, span) })
 }
 
-/// The edits that give the name at a place another name everywhere, in the order of files and texts.
+/// The edits that rename the entity at a position, by file and in text order.
 ///
 /// # Errors
 ///
-/// If there is no name, the new one is no name, or the program would mean something else.
-pub fn rename(database: &Database, position: FilePosition, new: &str) -> Result<Vec<Edit>, Refusal> {
+/// If there is no name, the new one is not valid, or the meaning of the program would change.
+pub fn rename(database: &Database, position: FilePosition, new: &str) -> Result<Vec<Edit>, RenameError> {
     let renamed = renamed_at(database, position)?;
-    let new = read_name(new)?;
+    let new = parse_name(new)?;
     if new != renamed.name {
         renamed.check_free(database, &new)?;
     }
-    let text = as_written(&new);
+    let text = escape(&new);
     let edit = |place: FileSpan| {
-        // In `sensor^s` nothing but the `^` keeps the two words apart.
-        let separator = if text.starts_with('^') || stands_apart(database, place) { "" } else { "^" };
+        // In `sensor^s` only the `^` separates the two words.
+        let separator = if text.starts_with('^') || is_separated(database, place) { "" } else { "^" };
         Edit { file: place.file, span: place.span, text: format!("{separator}{text}") }
     };
     Ok(renamed.places.into_iter().map(edit).collect())
 }
 
-/// Whether nothing before a place could run into a name there.
-pub(crate) fn stands_apart(database: &Database, place: FileSpan) -> bool {
+/// Whether a name at a location is separated from the text before it.
+pub(crate) fn is_separated(database: &Database, place: FileSpan) -> bool {
     let before = Span::new(place.span.start.saturating_sub(1), place.span.start);
     let apart = |c: char| c.is_ascii_whitespace() || "{},:/\"".contains(c);
     place.span.start == 0 || database.slice(place.file, before).starts_with(apart)
 }
 
-/// The name that a text is, without `^`.
-fn read_name(text: &str) -> Result<SmolStr, Refusal> {
+/// Parses a name; the result has no `^`.
+fn parse_name(text: &str) -> Result<SmolStr, RenameError> {
     match lex(text)[..] {
         [(token, span)] if span == Span::of(text) && token.is_name() && token != TokenKind::MalformedName => {
             Ok(text.strip_prefix('^').unwrap_or(text).into())
         }
-        [(token, span)] if span == Span::of(text) && token.is_keyword() => Err(Refusal::Invalid(format!(
-            "`{text}` is a word of the language; write `^{text}` to use it as a name"
-        ))),
-        _ => Err(Refusal::Invalid(format!(
-            "`{text}` is not a name: names are made of letters without accents, digits and `_`, and do not begin with a digit"
+        [(token, span)] if span == Span::of(text) && token.is_keyword() => {
+            Err(RenameError::Invalid(format!("`{text}` is a keyword; write `^{text}` to use it as a name")))
+        }
+        _ => Err(RenameError::Invalid(format!(
+            "`{text}` is not a valid name: use unaccented letters, digits and underscores; don't start with a digit"
         ))),
     }
 }
 
-/// A declared name and all its places.
+/// A declared name and all its locations.
 struct Renamed {
     kind: EntityKind,
     name: SmolStr,
-    /// Where it is declared.
+    /// The declaring file.
     home: FileId,
     places: Vec<FileSpan>,
 }
 
-fn renamed_at(database: &Database, position: FilePosition) -> Result<Renamed, Refusal> {
-    let referent = referent_at(database, position).ok_or_else(|| nothing_here(database, position))?;
+fn renamed_at(database: &Database, position: FilePosition) -> Result<Renamed, RenameError> {
+    let referent = referent_at(database, position).ok_or_else(|| no_referent(database, position))?;
     let declared = declarations(database, &referent);
     let (kind, name, home) = (referent.kind, referent.name, referent.home);
     if declared.is_empty() {
-        return Err(impossible(format!(
-            "no {} called `{name}` is known to be declared: there is nothing to rename",
-            kind.noun()
-        )));
+        return Err(impossible(format!("no {} called `{name}` is declared", kind.noun())));
     }
     let candidates = database.candidates(position.file, kind, &name);
     if candidates.iter().any(|id| database.file_of(*id) != Some(home)) {
         return Err(impossible(format!(
-            "two imported files declare {} called `{name}`: rename the one you mean where it is declared",
+            "two imported files declare {} called `{name}`; rename it in one of them",
             kind.a_noun()
         )));
     }
@@ -123,29 +120,29 @@ fn renamed_at(database: &Database, position: FilePosition) -> Result<Renamed, Re
     places.extend(declared);
     places.sort_unstable();
     let renamed = Renamed { kind, name, home, places };
-    renamed.check_seen(database)?;
+    renamed.check_invalid_code(database)?;
     Ok(renamed)
 }
 
 impl Renamed {
-    /// The file that declares it and those that import this one.
+    /// The declaring file and those that import it.
     fn files<'a>(&self, database: &'a Database) -> impl Iterator<Item = FileId> + 'a {
         std::iter::once(self.home).chain(database.importing(self.home))
     }
 
-    /// Text that was not understood may use the name, and would be left behind.
-    fn check_seen(&self, database: &Database) -> Result<(), Refusal> {
+    /// Invalid code may contain references that would not be renamed.
+    fn check_invalid_code(&self, database: &Database) -> Result<(), RenameError> {
         for file in self.files(database) {
             let is_own = file == self.home || database.definitions(file, self.kind, &self.name).is_empty();
             if is_own && database.may_hide(file, &self.name) {
-                return Err(hidden(database, file, &self.name));
+                return Err(in_invalid_code(database, file, &self.name));
             }
         }
         Ok(())
     }
 
-    /// Refuses a name that means something already, or would, in any file that this rename concerns.
-    fn check_free(&self, database: &Database, new: &SmolStr) -> Result<(), Refusal> {
+    /// Refuses a name that is already taken, or used, in any affected file.
+    fn check_free(&self, database: &Database, new: &SmolStr) -> Result<(), RenameError> {
         for file in self.files(database) {
             let is_edited = file == self.home || self.places.iter().any(|place| place.file == file);
             let uses_new = !database.users(file, self.kind, new).is_empty();
@@ -157,48 +154,44 @@ impl Renamed {
             }
             if uses_new {
                 return Err(impossible(format!(
-                    "{} uses {} called `{new}` that is not declared: it would come to mean this one",
+                    "{} uses an undeclared {} called `{new}`, which would then refer to this one",
                     file_name(database, file),
-                    self.kind.a_noun(),
+                    self.kind.noun(),
                 )));
             }
             if is_edited && database.may_hide(file, new) {
-                return Err(hidden(database, file, new));
+                return Err(in_invalid_code(database, file, new));
             }
         }
         Ok(())
     }
 
-    fn taken(&self, database: &Database, file: FileId, declaring: FileId, new: &SmolStr) -> Refusal {
+    fn taken(&self, database: &Database, file: FileId, declaring: FileId, new: &SmolStr) -> RenameError {
         let (file, declaring) = (file_name(database, file), file_name(database, declaring));
         let imported = if file == declaring { String::new() } else { format!(", which {file} imports") };
         impossible(format!("there is already {} called `{new}` in {declaring}{imported}", self.kind.a_noun()))
     }
 }
 
-fn nothing_here(database: &Database, position: FilePosition) -> Refusal {
-    match lexeme_at(database, position) {
-        Some((token, _)) if token.is_name() => impossible(
-            "the text around this name is not understood: correct it before renaming anything in it"
-                .to_owned(),
-        ),
+fn no_referent(database: &Database, position: FilePosition) -> RenameError {
+    match token_at(database, position) {
+        Some((token, _)) if token.is_name() => {
+            impossible("the code around this name is invalid; fix it first".to_owned())
+        }
         _ => no_name(),
     }
 }
 
-fn no_name() -> Refusal {
-    impossible("there is no name here to rename".to_owned())
+fn no_name() -> RenameError {
+    impossible("there is no name to rename here".to_owned())
 }
 
-fn hidden(database: &Database, file: FileId, name: &SmolStr) -> Refusal {
-    impossible(format!(
-        "`{name}` stands in text of {} that is not understood and might mean this: correct that first",
-        file_name(database, file)
-    ))
+fn in_invalid_code(database: &Database, file: FileId, name: &SmolStr) -> RenameError {
+    impossible(format!("`{name}` appears in invalid code in {}; fix that first", file_name(database, file)))
 }
 
-fn impossible(reason: String) -> Refusal {
-    Refusal::Impossible(reason)
+fn impossible(reason: String) -> RenameError {
+    RenameError::Impossible(reason)
 }
 
 /// The last part of a file's path.
@@ -213,12 +206,12 @@ mod tests {
     use super::*;
     use crate::fixture::at_cursor_in;
 
-    /// Checks all files after a rename, or why there is none.
+    /// Checks all files after a rename, or the reason for its refusal.
     fn check(files: &[(&str, &str)], new: &str, expected: &Expect) {
         let (mut database, position) = at_cursor_in(files);
         let shown = match rename(&database, position, new) {
-            Err(Refusal::Invalid(reason)) => format!("invalid: {reason}"),
-            Err(Refusal::Impossible(reason)) => reason,
+            Err(RenameError::Invalid(reason)) => format!("invalid: {reason}"),
+            Err(RenameError::Impossible(reason)) => reason,
             Ok(edits) => {
                 for edit in edits.iter().rev() {
                     database.edit(edit.file, edit.span, &edit.text);
@@ -231,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_changes_wherever_it_stands() {
+    fn all_references_are_renamed() {
         check(
             &[
                 (
@@ -286,7 +279,7 @@ mod tests {
         check(
             &[("a.pyr", program)],
             "move",
-            &expect!["invalid: `move` is a word of the language; write `^move` to use it as a name"],
+            &expect!["invalid: `move` is a keyword; write `^move` to use it as a name"],
         );
     }
 
@@ -302,12 +295,12 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_name_is_refused() {
+    fn invalid_names_are_refused() {
         check(
             &[("a.pyr", "wheel a$0 with radius 4")],
             "two words",
             &expect![
-                "invalid: `two words` is not a name: names are made of letters without accents, digits and `_`, and do not begin with a digit"
+                "invalid: `two words` is not a valid name: use unaccented letters, digits and underscores; don't start with a digit"
             ],
         );
         let (database, position) = at_cursor_in(&[("a.pyr", "wheel a$0 with radius 4")]);
@@ -329,7 +322,7 @@ mod tests {
             "\"a\"",
             "a\n",
         ] {
-            assert!(matches!(rename(&database, position, text), Err(Refusal::Invalid(_))), "{text:?}");
+            assert!(matches!(rename(&database, position, text), Err(RenameError::Invalid(_))), "{text:?}");
         }
     }
 
@@ -343,24 +336,24 @@ mod tests {
         };
         check(&[("a.pyr", "wheel a$0 with radius 4 wheelH b with radius 4")], Some(same));
         check(&[("a.pyr", "wheel a$0 with radius 4 sensor b")], None);
-        // An import would be hidden.
+        // It would shadow an import.
         check(
             &[("a.pyr", "wheel b with radius 4"), ("main.pyr", "import \"a.pyr\" wheel a$0 with radius 4")],
             Some("there is already a wheel called `b` in a.pyr, which main.pyr imports"),
         );
-        // A use in another file would meet its own.
+        // A file that uses it declares one of its own.
         let user = "import \"a.pyr\" wheel b with radius 3 robot r with port 1 has { a b } wheels";
         check(
             &[("a.pyr", "wheel a$0 with radius 4"), ("main.pyr", user)],
             Some("there is already a wheel called `b` in main.pyr"),
         );
-        // A use of another import would be in doubt.
+        // A reference to another import would become ambiguous.
         let user = "import \"b.pyr\" import \"a.pyr\" robot r with port 1 has { b } wheels";
         check(
             &[("b.pyr", "wheel b with radius 4"), ("a.pyr", "wheel a$0 with radius 4"), ("main.pyr", user)],
             Some("there is already a wheel called `b` in b.pyr, which main.pyr imports"),
         );
-        // A file that uses neither, or has its own, does not mind.
+        // Files that use neither, or declare their own, are not affected.
         let user = "import \"b.pyr\" import \"a.pyr\"";
         check(
             &[("b.pyr", "wheel b with radius 4"), ("a.pyr", "wheel a$0 with radius 4"), ("main.pyr", user)],
@@ -368,11 +361,11 @@ mod tests {
         );
         let user = "import \"a.pyr\" wheel b with radius 3 robot r with port 1 has { b } wheels";
         check(&[("a.pyr", "wheel a$0 with radius 4"), ("main.pyr", user)], None);
-        // What is in error would suddenly mean something.
+        // An unresolved reference would resolve to it.
         let user = "import \"a.pyr\" robot r with port 1 has { b } wheels";
         check(
             &[("a.pyr", "wheel a$0 with radius 4"), ("main.pyr", user)],
-            Some("main.pyr uses a wheel called `b` that is not declared: it would come to mean this one"),
+            Some("main.pyr uses an undeclared wheel called `b`, which would then refer to this one"),
         );
     }
 
@@ -401,9 +394,7 @@ mod tests {
                 ("main.pyr", &user.replace("w }", "$0w }")),
             ],
             "v",
-            &expect![
-                "two imported files declare a wheel called `w`: rename the one you mean where it is declared"
-            ],
+            &expect!["two imported files declare a wheel called `w`; rename it in one of them"],
         );
         check(
             &[("a.pyr", "wheel w with radius 4"), ("b.pyr", "wheel w$0 with radius 4"), ("main.pyr", user)],
@@ -418,32 +409,17 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_declared_and_understood_is_renamed() {
+    fn only_declared_names_in_valid_code_are_renamed() {
         let check = |text: &str, expected: &Expect| check(&[("a.pyr", text)], "b", expected);
-        check("wheel a with rad$0ius 4", &expect!["there is no name here to rename"]);
-        check(
-            "robot r with port 1 has { a$0 } wheels",
-            &expect!["no wheel called `a` is known to be declared: there is nothing to rename"],
-        );
-        check(
-            "wheel a with radius 4 a$0",
-            &expect![
-                "the text around this name is not understood: correct it before renaming anything in it"
-            ],
-        );
+        check("wheel a with rad$0ius 4", &expect!["there is no name to rename here"]);
+        check("robot r with port 1 has { a$0 } wheels", &expect!["no wheel called `a` is declared"]);
+        check("wheel a with radius 4 a$0", &expect!["the code around this name is invalid; fix it first"]);
         check(
             "wheel a$0 with radius 4 /* robot r has { a",
-            &expect![
-                "`a` stands in text of a.pyr that is not understood and might mean this: correct that first"
-            ],
+            &expect!["`a` appears in invalid code in a.pyr; fix that first"],
         );
-        check(
-            "wheel a$0 with radius 4 b",
-            &expect![
-                "`b` stands in text of a.pyr that is not understood and might mean this: correct that first"
-            ],
-        );
-        // A mistake elsewhere does not matter.
+        check("wheel a$0 with radius 4 b", &expect!["`b` appears in invalid code in a.pyr; fix that first"]);
+        // Errors elsewhere do not matter.
         check(
             "wheel a$0 with raduis 4\nrobot r has { a c\nmovement { turn",
             &expect![[r"

@@ -1,4 +1,5 @@
-//! Growing selections: from a word to its list, clause, action, movement, entity, run of entities, and file.
+//! Expand selection: from a word to its list, clause, action, movement, entity, adjacent entities of the same kind, and
+//! file.
 
 use pydslrep_analysis::{Database, EntityRef, FileId};
 use pydslrep_syntax::ast::{Action, ActionKind, Entity, Move, References};
@@ -6,8 +7,7 @@ use pydslrep_syntax::{Span, Token, TokenKind};
 
 use crate::cursor::body;
 
-/// For each offset the ranges around it, the smallest first and each larger than the one before; the last is the whole
-/// file. The file is walked once, however many offsets there are.
+/// The ranges around each offset, from the smallest to the whole file. The entities are collected once for all offsets.
 pub fn selection_ranges(database: &Database, file: FileId, offsets: &[u32]) -> Vec<Vec<Span>> {
     let entities: Vec<EntityRef<'_>> = database.entities(file).collect();
     let whole = Span::new(0, entities.last().map_or(0, |entity| entity.span.end));
@@ -28,7 +28,7 @@ pub fn selection_ranges(database: &Database, file: FileId, offsets: &[u32]) -> V
     offsets.iter().map(around).collect()
 }
 
-/// For each entity the neighbours of its kind from the first to the last, itself among them.
+/// For each entity the range of the adjacent entities of its kind, including itself.
 fn runs(entities: &[EntityRef<'_>]) -> Vec<Span> {
     let kind = |entity: &EntityRef<'_>| entity.parse.entity.as_ref().map(Entity::kind);
     let mut runs = Vec::with_capacity(entities.len());
@@ -46,7 +46,7 @@ struct Ranges {
 }
 
 impl Ranges {
-    /// Takes in a range, if it is around the offset and more than what is there.
+    /// Adds a range if it contains the offset and is larger than the last one.
     fn add(&mut self, span: Span) {
         let grows = self.chain.last().is_none_or(|last| last.to(span) == span && *last != span);
         if span.touches(self.offset) && !span.is_empty() && grows {
@@ -54,7 +54,7 @@ impl Ranges {
         }
     }
 
-    /// What is inside one entity, from the smallest on.
+    /// Adds the ranges inside an entity, the smallest first.
     fn add_inside(&mut self, entity: &EntityRef<'_>) {
         let start = entity.span.start;
         let tokens: Vec<Token> =
@@ -116,7 +116,7 @@ impl Ranges {
         }
     }
 
-    /// Clauses of an entity's head: each reaches from its first word to the next clause.
+    /// Adds the clauses of an entity's header: each reaches from its keyword to the next clause.
     fn add_clauses(&mut self, tokens: &[Token]) {
         let significant: Vec<&Token> = tokens.iter().filter(|(token, _)| !token.is_comment()).collect();
         let begins = |token| {
@@ -135,7 +135,7 @@ impl Ranges {
     }
 }
 
-/// The token that touches an offset; of two, a word or number rather than a sign.
+/// The token that touches an offset; of two, a word or number rather than punctuation.
 fn token_at(tokens: &[Token], offset: u32) -> Option<&Token> {
     let touching = || tokens.iter().filter(|(_, span)| span.touches(offset));
     let is_word = |token: TokenKind| token.is_name() || token.is_keyword() || token.is_number();
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_broken_grows_too() {
+    fn entities_with_errors_are_expanded() {
         check(
             "movement m of { move mo$0re",
             &expect![[r#"
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn many_places_are_answered_in_order() {
+    fn several_offsets_are_handled_in_order() {
         let mut database = Database::new();
         let file = database.open("a.pyr", "wheel a with radius 3\n");
         let ranges = selection_ranges(&database, file, &[6, 0, 999]);

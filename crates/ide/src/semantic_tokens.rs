@@ -1,24 +1,24 @@
-//! Semantic tokens: what every word of a file is, for colouring.
+//! Semantic tokens: the kind of every token of a file, for highlighting.
 
 use pydslrep_analysis::{EntityRef, Snapshot};
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Span, Token, TokenKind};
 
-/// A coloured piece of text; never reaches over a line's end.
+/// A highlighted token; never contains a line break.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SemanticToken {
-    /// Where it stands.
+    /// Its range.
     pub span: Span,
-    /// What it is.
+    /// Its kind.
     pub kind: HighlightKind,
-    /// What else is to be said of it.
+    /// Its modifiers.
     pub modifiers: Vec<Modifier>,
 }
 
-/// What a token is.
+/// The kind of a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum HighlightKind {
-    /// A word of the language.
+    /// A keyword.
     Keyword,
     /// A number or an address.
     Number,
@@ -30,18 +30,18 @@ pub enum HighlightKind {
     Name(EntityKind),
 }
 
-/// What else a token is.
+/// A modifier of a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Modifier {
-    /// Here the entity gets its name.
+    /// The name in a declaration.
     Declaration,
-    /// It names a part that never changes while the program runs.
+    /// The name of a wheel, sensor or ip, which never changes at run time.
     Readonly,
-    /// An older spelling.
+    /// A deprecated spelling.
     Deprecated,
 }
 
-/// The tokens of a file, or those that touch a range of it, in the order of the text.
+/// The tokens of a file, or those that overlap a range, in text order.
 pub fn semantic_tokens(snapshot: &Snapshot, range: Option<Span>) -> Vec<SemanticToken> {
     let mut tokens = Vec::new();
     for entity in snapshot.entities() {
@@ -53,7 +53,7 @@ pub fn semantic_tokens(snapshot: &Snapshot, range: Option<Span>) -> Vec<Semantic
     tokens
 }
 
-/// Adds the tokens of one entity, which depend on nothing but its own text.
+/// Adds the tokens of one entity, which depend only on its own text.
 pub fn entity_tokens(snapshot: &Snapshot, entity: &EntityRef<'_>, tokens: &mut Vec<SemanticToken>) {
     let names = Names::of(entity.parse.entity.as_ref());
     for token in &entity.parse.tokens {
@@ -64,7 +64,7 @@ pub fn entity_tokens(snapshot: &Snapshot, entity: &EntityRef<'_>, tokens: &mut V
     }
 }
 
-/// Only block comments reach over lines; editors want a token for each.
+/// Splits block comments at line breaks: editors require tokens within a line.
 fn push_lines(snapshot: &Snapshot, token: SemanticToken, tokens: &mut Vec<SemanticToken>) {
     if token.kind != HighlightKind::Comment {
         tokens.push(token);
@@ -80,7 +80,7 @@ fn push_lines(snapshot: &Snapshot, token: SemanticToken, tokens: &mut Vec<Semant
     }
 }
 
-/// The names of an entity by place, in the order of the text.
+/// The names of an entity in text order.
 struct Names<'a> {
     tree: Option<&'a Entity>,
     all: Vec<(Span, EntityKind, bool)>,
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn every_word_has_its_colour() {
+    fn every_token_has_its_kind() {
         check(
             "import \"a.pyr\" /* two\r\nlines */ wheel distance with radius 4.5\nsensor s : distance\nrobot type tw r with port 1 has { distance, } wheels with sensors { s }",
             None,
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_has_only_its_own() {
+    fn a_range_has_only_its_own_tokens() {
         check(
             "wheel a with radius 4\nwheel b with radius 5\n",
             Some(Span::new(23, 29)),

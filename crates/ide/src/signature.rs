@@ -22,27 +22,27 @@ pub enum SignatureTrigger {
     Retriggered,
 }
 
-/// The shapes a statement can have.
+/// The possible forms of a statement.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SignatureHelp {
     /// At least one.
     pub signatures: Vec<Signature>,
-    /// Index of the one that fits what is typed.
+    /// The index of the form that fits the typed text.
     pub active: usize,
 }
 
-/// A shape of a statement.
+/// A form of a statement.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Signature {
-    /// How it is written, or as much of that as one line holds; ASCII.
+    /// Its syntax, or the part that fits on one line; ASCII.
     pub label: String,
-    /// The pieces of `label` that can be current.
+    /// The ranges of its parts in `label`.
     pub parts: Vec<Span>,
-    /// Index of the part to be typed; `None` where the text so far fits no part.
+    /// The index of the next part; `None` if the typed text fits none.
     pub current: Option<usize>,
 }
 
-/// The shape of the statement at a place.
+/// The signature help at a position.
 pub fn signature_help(
     database: &Database,
     position: FilePosition,
@@ -68,7 +68,7 @@ fn invoked(typed: &Typed, expected: &[Expected]) -> Option<SignatureHelp> {
     })
 }
 
-/// That of the statement at the cursor and of no other, as long as something can follow.
+/// Only for the statement at the cursor, as long as it can continue.
 fn retriggered(typed: &Typed, expected: &[Expected]) -> Option<SignatureHelp> {
     let ends = expected.iter().any(|next| matches!(next, Expected::Declaration | Expected::Action));
     if ends && typed.on_new_line {
@@ -88,13 +88,13 @@ impl SignatureHelp {
     }
 }
 
-/// What is typed of an entity before the word at the cursor.
+/// The typed part of an entity before the word at the cursor.
 struct Typed {
     /// The entity's text.
     text: String,
     /// Its tokens, without comments.
     tokens: Vec<Token>,
-    /// Whether the cursor is on another line than the last of them.
+    /// Whether the cursor is on a later line than the last of them.
     on_new_line: bool,
 }
 
@@ -151,9 +151,9 @@ fn is_word(token: TokenKind) -> bool {
     token.is_name() || token.is_keyword() || token.is_number() || is_string || token == TokenKind::Invalid
 }
 
-/// The shapes of the statement that begins with these tokens.
+/// The forms of the statement that begins with these tokens.
 fn signatures(typed: &[Token], expected: &[Expected]) -> Option<SignatureHelp> {
-    // `parallel` has a page of its own, with the same shape.
+    // `parallel` has a page of its own with the same syntax.
     let page = keyword_page(typed.first()?.0).filter(|_| is_statement(typed[0].0))?;
     let signatures: Vec<Signature> = page
         .syntax
@@ -174,7 +174,7 @@ fn is_statement(token: TokenKind) -> bool {
         || matches!(token, TokenKind::Import | TokenKind::Move | TokenKind::Turn | TokenKind::Slam)
 }
 
-/// A piece of a shape: a word, a word to choose from several, or what a person fills in.
+/// A part of a form: a keyword, alternatives, or a placeholder.
 struct Part {
     text: &'static str,
     span: Span,
@@ -208,7 +208,7 @@ fn parts(label: &'static str) -> Vec<Part> {
     parts
 }
 
-/// The part that comes next: the first behind the words that are there which the parser would take.
+/// The next part: the first after the typed keywords that the parser would accept.
 fn current(parts: &[Part], typed: &[Token], expected: &[Expected]) -> Option<usize> {
     let mut next = 0;
     for (token, _) in typed {
@@ -218,13 +218,13 @@ fn current(parts: &[Part], typed: &[Token], expected: &[Expected]) -> Option<usi
         let place = parts[next..].iter().position(|part| part.is_word(word));
         match place {
             Some(place) => next += place + 1,
-            // A word of another shape, unless it stands in for a name.
+            // A keyword of another form, unless it stands in for a name.
             None if *token == TokenKind::Until => return None,
             None => {}
         }
     }
-    let behind = parts[next..].iter().position(|part| expected.iter().any(|expected| part.takes(*expected)));
-    behind.map(|place| next + place)
+    let accepted = parts[next..].iter().position(|part| expected.iter().any(|expected| part.accepts(*expected)));
+    accepted.map(|place| next + place)
 }
 
 impl Part {
@@ -232,7 +232,7 @@ impl Part {
         self.text.split(" | ").any(|choice| choice == word)
     }
 
-    fn takes(&self, expected: Expected) -> bool {
+    fn accepts(&self, expected: Expected) -> bool {
         match expected {
             Expected::Word(TokenKind::OpenBrace) => self.opens,
             Expected::Word(word) => word.spelling().is_some_and(|word| self.is_word(word)),
@@ -242,7 +242,7 @@ impl Part {
     }
 }
 
-/// What shapes call what a person fills in.
+/// The placeholder in the syntax for an expected item.
 fn placeholder(expected: Expected) -> Option<&'static str> {
     Some(match expected {
         Expected::NameOf(_) => "NAME",
@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn the_next_part_is_marked() {
+    fn the_next_part_is_highlighted() {
         check(
             &[
                 "wheel $0",
@@ -340,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn actions_have_shapes_of_their_own() {
+    fn actions_have_their_own_syntax() {
         check(
             &[
                 "movement m of r { slam move $0 }",
@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn broken_text_has_its_shape() {
+    fn entities_with_errors_have_help() {
         check(
             &[
                 "robot r with prt $0",
@@ -384,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_asked_for_is_gone_at_the_end_of_the_statement() {
+    fn requested_help_closes_at_the_end_of_the_statement() {
         let again = |fixture: &&str| format!("{fixture:?}: {}\n", after(fixture, SignatureTrigger::Retriggered));
         let shown: String = [
             "wheel a with radius $0",
@@ -427,7 +427,7 @@ mod tests {
     }
 
     #[test]
-    fn every_shape_fits_a_line() {
+    fn every_form_fits_on_a_line() {
         for (token, _) in pydslrep_syntax::KEYWORDS {
             let Some(page) = keyword_page(token).filter(|_| is_statement(token)) else { continue };
             for label in page.syntax.lines() {
@@ -445,7 +445,7 @@ mod tests {
     }
 
     #[test]
-    fn elsewhere_there_is_none() {
+    fn there_is_none_elsewhere() {
         for fixture in
             ["$0", "wheel a with radius 4 $0", "sensor s\n$0", "wheel // $0", "foo $0", "wheel$0", "// $0"]
         {
@@ -453,7 +453,7 @@ mod tests {
         }
     }
 
-    /// Everything that a shape allows, filled in.
+    /// The texts that a form allows, with placeholders filled in.
     fn written(label: &str) -> Vec<String> {
         let optional = |keep: bool| {
             let mut out = String::new();
@@ -507,7 +507,7 @@ mod tests {
     }
 
     #[test]
-    fn shapes_are_what_the_parser_reads() {
+    fn all_forms_parse() {
         for (token, _) in pydslrep_syntax::KEYWORDS {
             if !is_statement(token) {
                 continue;

@@ -7,24 +7,24 @@ use smol_str::{SmolStr, SmolStrBuilder};
 
 use crate::cursor::body;
 
-/// A line of the outline.
+/// An item of the outline.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Symbol {
     /// Its name.
     pub name: SmolStr,
-    /// What is worth knowing of it at a glance.
+    /// A one-line summary.
     pub detail: SmolStr,
-    /// What it is.
+    /// Its kind.
     pub kind: SymbolKind,
-    /// The whole of it.
+    /// The range of the declaration or action.
     pub full: Span,
-    /// Its name's place.
+    /// The range of its name.
     pub focus: Span,
-    /// What is inside it.
+    /// Its nested symbols.
     pub children: Vec<Symbol>,
 }
 
-/// What a symbol is.
+/// The kind of a symbol.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SymbolKind {
     /// A declared entity.
@@ -33,7 +33,7 @@ pub enum SymbolKind {
     Action,
 }
 
-/// The named entities of a file in the order of the text, movements with their actions.
+/// The named entities of a file in text order, movements with their actions.
 pub fn document_symbols(snapshot: &Snapshot) -> impl Iterator<Item = Symbol> {
     snapshot.entities().filter_map(|entity| symbol(snapshot, &entity))
 }
@@ -51,7 +51,7 @@ fn symbol(snapshot: &Snapshot, entity: &EntityRef<'_>) -> Option<Symbol> {
     })
 }
 
-/// What is worth knowing of an entity at a glance.
+/// A one-line summary of an entity.
 pub(crate) fn detail(tree: &Entity) -> String {
     match tree {
         Entity::Wheel(wheel) => {
@@ -84,14 +84,14 @@ pub(crate) fn detail(tree: &Entity) -> String {
     }
 }
 
-/// A number of things: `1 wheel`, `2 wheels`.
+/// A count with a noun: `1 wheel`, `2 wheels`.
 pub(crate) fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
 fn children(snapshot: &Snapshot, entity: &EntityRef<'_>, tree: &Entity) -> Vec<Symbol> {
     let Entity::Movement(movement) = tree else { return Vec::new() };
-    // Once for all of them: to look up each in the text of the file takes longer than all the rest.
+    // One slice for all actions: slicing the file for each would dominate the cost.
     let text = snapshot.slice(entity.span);
     let child = |action: &Action| {
         let full = action.span.shifted(entity.span.start);

@@ -1,4 +1,4 @@
-//! Go to type definition: from a movement, declared or listed in an environment, to the robot it drives.
+//! Go to type definition: from a movement, declared or listed in an environment, to its robot.
 
 use pydslrep_analysis::{Database, EntityId};
 use pydslrep_syntax::EntityKind;
@@ -8,7 +8,7 @@ use crate::cursor::name_at;
 use crate::definition::{Definition, Target, target};
 use crate::{FilePosition, goto_definition};
 
-/// The robot of the movement at a place; a robot's name leads to the robot itself.
+/// The robot of the movement at a position; for the name of a robot, the robot itself.
 pub fn goto_type_definition(database: &Database, position: FilePosition) -> Option<Definition> {
     let at = name_at(database, position)?;
     if at.kind == EntityKind::Robot {
@@ -16,15 +16,15 @@ pub fn goto_type_definition(database: &Database, position: FilePosition) -> Opti
     }
     let movements = database.candidates(position.file, at.kind, &at.name.text);
     let mut targets: Vec<Target> = Vec::new();
-    for found in movements.into_iter().flat_map(|id| robots_of(database, id)) {
-        if !targets.contains(&found) {
-            targets.push(found);
+    for target in movements.into_iter().flat_map(|id| robots_of(database, id)) {
+        if !targets.contains(&target) {
+            targets.push(target);
         }
     }
     (!targets.is_empty()).then_some(Definition { origin: at.span, targets })
 }
 
-/// The declarations of a movement's robot, as its own file sees it.
+/// The declarations of a movement's robot, as seen from the movement's file.
 fn robots_of(database: &Database, id: EntityId) -> Vec<Target> {
     let (Some(Entity::Movement(movement)), Some(file)) = (database.tree(id), database.file_of(id)) else {
         return Vec::new();

@@ -1,5 +1,4 @@
-//! Workspace symbols: everything that is declared in any file, found by some letters of its name, the best match
-//! first.
+//! Workspace symbols: fuzzy search for declarations in all files by name, best match first.
 
 use nucleo_matcher::pattern::{AtomKind, CaseMatching, Normalization, Pattern};
 use nucleo_matcher::{Config, Matcher, Utf32Str};
@@ -7,40 +6,40 @@ use pydslrep_analysis::{Database, EntityRef, FileId};
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Span};
 
-/// More are of no use to anybody who looks for one: the next letter leaves fewer.
-const MOST: usize = 1000;
+/// The maximum number of results; another letter in the query narrows them down.
+const MAX_RESULTS: usize = 1000;
 
-/// A declaration somewhere.
+/// A declaration in the workspace.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WorkspaceSymbol {
     /// Its name.
     pub name: String,
-    /// What it is.
+    /// Its kind.
     pub kind: EntityKind,
-    /// What it belongs to: a movement to its robot, a wheel or sensor to the only robot in its file that has it.
+    /// The robot of a movement, or the only robot in the file that uses a wheel or sensor.
     pub container: Option<String>,
     /// Its file.
     pub file: FileId,
-    /// Its name's place.
+    /// The range of its name.
     pub focus: Span,
 }
 
-/// The declarations whose names have the letters of the query in this order, small or capital; of an empty query, all.
-/// At most a thousand.
+/// The declarations whose names contain the letters of the query in order, ignoring case; all for an empty query. At most
+/// a thousand.
 pub fn workspace_symbols(database: &Database, query: &str) -> Vec<WorkspaceSymbol> {
     let pattern = Pattern::new(query, CaseMatching::Ignore, Normalization::Never, AtomKind::Fuzzy);
     let mut matcher = Matcher::new(Config::DEFAULT);
     let mut letters = Vec::new();
-    let mut found: Vec<(u32, EntityRef<'_>)> = Vec::new();
+    let mut matches: Vec<(u32, EntityRef<'_>)> = Vec::new();
     for entity in database.files().flat_map(|file| database.entities(file)) {
         let Some(name) = entity.parse.entity.as_ref().and_then(Entity::name) else { continue };
         if let Some(score) = pattern.score(Utf32Str::new(&name.text, &mut letters), &mut matcher) {
-            found.push((score, entity));
+            matches.push((score, entity));
         }
     }
-    // Equals stay in the order of files and texts.
-    found.sort_by_key(|(score, _)| std::cmp::Reverse(*score));
-    found.iter().take(MOST).filter_map(|(_, entity)| symbol(database, entity)).collect()
+    // Stable: equal scores stay by file and in text order.
+    matches.sort_by_key(|(score, _)| std::cmp::Reverse(*score));
+    matches.iter().take(MAX_RESULTS).filter_map(|(_, entity)| symbol(database, entity)).collect()
 }
 
 fn symbol(database: &Database, entity: &EntityRef<'_>) -> Option<WorkspaceSymbol> {
@@ -102,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn letters_in_order_are_enough() {
+    fn names_match_by_letters_in_order() {
         check(
             "wheel",
             &expect![[r#"
@@ -118,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_asked_is_everything() {
+    fn an_empty_query_matches_everything() {
         check(
             "",
             &expect![[r#"
@@ -136,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn of_very_many_the_first_are_enough() {
+    fn the_number_of_results_is_limited() {
         let mut database = Database::new();
         let wheels: Vec<String> = (0..1200).map(|number| format!("wheel w{number}")).collect();
         database.open("a.pyr", &wheels.join("\n"));

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use pydslrep_analysis::{Database, Edit, FileId, plan, scene};
-use pydslrep_ide::{fix_all, is_safely_fixed, refactorings};
+use pydslrep_ide::{fix_all, has_safe_fix, refactorings};
 use pydslrep_naive::Recipe;
 use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::Entity;
@@ -182,7 +182,7 @@ fn nothing_is_left_that_can_be_fixed_safely() {
         mended += edits.len();
         let after = applied(&text, &edits);
         let (database, file) = opened(&after);
-        let left = database.diagnostics(file).into_iter().find(is_safely_fixed);
+        let left = database.diagnostics(file).into_iter().find(has_safe_fix);
         assert_eq!(left, None, "of\n{text}\nbecame\n{after}");
     }
     assert!(mended > 0);

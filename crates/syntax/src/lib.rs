@@ -21,4 +21,4 @@ pub use format::{COLUMNS, TextEdit, apply_edits, format, format_edits};
 pub use lexer::{Token, lex};
 pub use parser::{Parse, expected_after, parse, parse_cut, parse_each};
 pub use pydslrep_text::Span;
-pub use token::{EntityKind, KEYWORDS, TokenKind, TokenSet, as_written};
+pub use token::{EntityKind, KEYWORDS, TokenKind, TokenSet, escape};

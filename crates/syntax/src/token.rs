@@ -202,7 +202,7 @@ pub const KEYWORDS: [(TokenKind, &str); 33] = [
 
 /// A name as a program has to write it: keywords need their `^`. So does `import`, although it can stand without in
 /// most places: behind `} wheel` it would be taken for the next entity.
-pub fn as_written(name: &str) -> String {
+pub fn escape(name: &str) -> String {
     let is_escaped = |token: TokenKind| token.is_keyword() || token == TokenKind::Import;
     let escaped = KEYWORDS.iter().any(|(token, word)| is_escaped(*token) && *word == name);
     if escaped { format!("^{name}") } else { name.to_owned() }

@@ -5,7 +5,7 @@ use pydslrep_syntax::{EntityKind, Span, SyntaxError, Token, TokenKind};
 use pydslrep_text::closest_of_any_order;
 use smol_str::SmolStr;
 
-pub(crate) use pydslrep_syntax::as_written;
+pub(crate) use pydslrep_syntax::escape;
 
 use super::Rule;
 use super::syntax_error::{self, Rewrite};
@@ -386,8 +386,8 @@ impl<'a> Context<'a> {
 /// The edit that adds a name to a list in braces, which may be in another entity.
 pub(super) fn append(entity: EntityId, list: &References, name: &str, separator: &str) -> ProblemEdit {
     let (offset, text) = match list.names.last() {
-        Some(last) => (last.span.end, format!("{separator}{}", as_written(name))),
-        None => (list.span.start + 1, format!(" {} ", as_written(name))),
+        Some(last) => (last.span.end, format!("{separator}{}", escape(name))),
+        None => (list.span.start + 1, format!(" {} ", escape(name))),
     };
     ProblemEdit::new(entity, Span::at(offset), text)
 }

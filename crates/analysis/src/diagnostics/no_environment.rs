@@ -2,7 +2,7 @@
 
 use pydslrep_syntax::{EntityKind, Span};
 
-use super::context::{Context, Problem, as_written};
+use super::context::{Context, Problem, escape};
 use super::{Page, Remedy, Rule};
 use crate::{Database, Diagnostic, Edit, EntityRef, FileId, Fix, Severity};
 
@@ -74,7 +74,7 @@ fn with_all(database: &Database, last: &EntityRef<'_>) -> Fix {
     let names = |wanted: EntityKind| {
         let named = database.entities(last.file).filter_map(|entity| {
             let tree = entity.parse.entity.as_ref().filter(|tree| tree.kind() == Some(wanted))?;
-            tree.name().map(|name| as_written(&name.text))
+            tree.name().map(|name| escape(&name.text))
         });
         let mut names: Vec<String> = named.collect();
         names.dedup();

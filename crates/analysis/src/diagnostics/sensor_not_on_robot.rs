@@ -3,7 +3,7 @@
 use pydslrep_syntax::ast::{Entity, Name, Robot};
 use pydslrep_syntax::{EntityKind, Span};
 
-use super::context::{Context, Problem, ProblemEdit, append, as_written};
+use super::context::{Context, Problem, ProblemEdit, append, escape};
 use super::{Page, Remedy, Rule};
 use crate::{EntityId, Severity};
 
@@ -94,7 +94,7 @@ fn added(context: &Context<'_>, id: EntityId, robot: &Robot, sensor: &str) -> Op
     }
     let tokens = &context.database.parse(id)?.tokens;
     let end = tokens.iter().rev().find(|(token, _)| !token.is_comment())?.1.end;
-    Some(ProblemEdit::new(id, Span::at(end), format!(" with sensors {{ {} }}", as_written(sensor))))
+    Some(ProblemEdit::new(id, Span::at(end), format!(" with sensors {{ {} }}", escape(sensor))))
 }
 
 #[cfg(test)]

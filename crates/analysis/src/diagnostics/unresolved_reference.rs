@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use pydslrep_syntax::ast::{DriveWord, Entity, Name, Robot};
 use pydslrep_syntax::{EntityKind, SyntaxError, SyntaxErrorKind};
 
-use super::context::{Context, Problem, ProblemEdit, as_written};
+use super::context::{Context, Problem, ProblemEdit, escape};
 use super::{Page, Remedy, Rule};
 use crate::{Resolution, Severity};
 
@@ -66,7 +66,7 @@ fn problem(context: &Context<'_>, tree: &Entity, kind: EntityKind, name: &Name, 
     }
     // A name that the list has already would only make another problem.
     if let Some(nearest) = context.nearest(kind, name, taken) {
-        let edit = context.replace(name.span, as_written(&nearest));
+        let edit = context.replace(name.span, escape(&nearest));
         problem = problem
             .help(format!("did you mean `{nearest}`?"))
             .suggestion(format!("change to `{nearest}`"), [edit])
@@ -111,7 +111,7 @@ fn known(context: &Context<'_>, kind: EntityKind) -> Option<String> {
 /// The declaration of a part, before the entity that wants it. Robots and movements are more than a line and
 /// are left to the person.
 fn declaration(context: &Context<'_>, tree: &Entity, kind: EntityKind, name: &Name) -> Option<ProblemEdit> {
-    let name = as_written(&name.text);
+    let name = escape(&name.text);
     let line = match (kind, tree) {
         (EntityKind::Wheel, Entity::Robot(robot)) => wheel(context, robot, &name),
         (EntityKind::Sensor, _) => format!("sensor {name}"),

@@ -1,4 +1,4 @@
-//! Where something is completed: the entity before the cursor, as far as it is written.
+//! The context of a completion: the entity before the cursor, as far as it is typed.
 
 use pydslrep_analysis::{Database, EntityId, EntityRef, FileId};
 use pydslrep_syntax::ast::{DriveWord, Entity, Movement};
@@ -7,29 +7,29 @@ use smol_str::SmolStr;
 
 use crate::FilePosition;
 
-/// The entity before the cursor, as far as it is written.
+/// The entity before the cursor, as far as it is typed.
 pub(super) struct CursorContext<'a> {
     pub(super) database: &'a Database,
     pub(super) file: FileId,
-    /// The entity that the cursor continues; `None` where it continues none.
+    /// The entity that contains the cursor, if any.
     pub(super) entity: Option<EntityId>,
     /// Its tree; `None` at the start of a file.
     pub(super) tree: Option<&'a Entity>,
-    /// Where it starts in the file.
+    /// Its start offset in the file.
     pub(super) start: u32,
     /// Its text.
     pub(super) text: String,
     /// Its tokens before the word at the cursor.
     pub(super) before: Vec<Token>,
-    /// The tokens after that word, in the file, as far as the next entity.
+    /// The tokens after that word up to the next entity, with their ranges in the file.
     after: Vec<Token>,
-    /// Whether nothing of the entity is written after that word.
+    /// Whether no token of the entity follows that word.
     pub(super) at_end: bool,
-    /// The speed in patterns, centimetres per second.
+    /// The default speed in snippets, centimetres per second.
     pub(super) speed: f64,
-    /// The word at the cursor, in the file.
+    /// The range of the word at the cursor in the file.
     pub(super) word: Span,
-    /// That word up to the cursor, without `^`, in small letters.
+    /// That word up to the cursor, without `^`, in lower case.
     pub(super) typed: String,
     /// Whether it begins with `^`.
     pub(super) is_escaped: bool,
@@ -73,7 +73,7 @@ impl<'a> CursorContext<'a> {
         })
     }
 
-    /// The names that the list around the cursor has already, but for the word at the cursor.
+    /// The names already in the list around the cursor, without the word at the cursor.
     pub(super) fn listed(&self) -> Vec<SmolStr> {
         let in_list = |token: TokenKind| token == TokenKind::Comma || token.is_name();
         let before = self.before.iter().rev().take_while(|(token, _)| in_list(*token));
@@ -86,7 +86,7 @@ impl<'a> CursorContext<'a> {
         listed
     }
 
-    /// The movement that is being written.
+    /// The movement being typed.
     pub(super) fn movement(&self) -> Option<&'a Movement> {
         match self.tree {
             Some(Entity::Movement(movement)) => Some(movement),
@@ -94,14 +94,14 @@ impl<'a> CursorContext<'a> {
         }
     }
 
-    /// Whether the word at the cursor is on another line than what is before it.
+    /// Whether the word at the cursor is the first on its line.
     pub(super) fn begins_line(&self) -> bool {
         let end = self.before.last().map_or(0, |(_, span)| self.start + span.end);
         self.database.slice(self.file, Span::new(end, self.word.start)).contains(['\n', '\r'])
     }
 
-    /// Whether nothing but a name can come next: after `of` and `ip`, and in a list that is empty, that goes on after a
-    /// comma, or that has fewer wheels than its robot needs.
+    /// Whether only a name can come next: after `of` and `ip`, and in a list that is empty, ends with a comma, or has fewer
+    /// wheels than its robot needs.
     pub(super) fn needs_name(&self) -> bool {
         let is_there = self.after.first().is_some_and(|(token, _)| token.is_name());
         let Some((last, _)) = self.before.last().filter(|_| !is_there) else { return false };
@@ -113,7 +113,7 @@ impl<'a> CursorContext<'a> {
         }
     }
 
-    /// Whether the cursor is in the list of a robot's wheels, which needs another one.
+    /// Whether the cursor is in the wheel list of a robot that needs another wheel.
     fn lacks_wheels(&self) -> bool {
         let Some(Entity::Robot(robot)) = self.tree else { return false };
         let in_wheels =
@@ -125,7 +125,7 @@ impl<'a> CursorContext<'a> {
         in_wheels && self.listed().len() < wanted
     }
 
-    /// Whether no entity stands before the cursor that an import must not follow.
+    /// Whether an import is allowed here: only other imports precede the cursor.
     pub(super) fn may_import(&self) -> bool {
         let is_entity =
             |entity: &EntityRef<'_>| !matches!(entity.parse.entity, None | Some(Entity::Import(_)));
@@ -138,12 +138,12 @@ fn name(written: &str) -> SmolStr {
     written.trim_start_matches('^').into()
 }
 
-/// The tokens of an entity that the parser sees.
+/// The tokens of an entity without comments.
 fn significant(entity: &EntityRef<'_>) -> Vec<Token> {
     entity.parse.tokens.iter().filter(|(token, _)| !token.is_comment()).copied().collect()
 }
 
-/// The word around the cursor; `None` inside comments, strings and numbers, where nothing is completed.
+/// The word around the cursor; `None` inside comments, strings and numbers.
 fn word_at(database: &Database, position: FilePosition) -> Option<Span> {
     let entity = database.entity_at(position.file, position.offset)?;
     let start = entity.span.start;
@@ -170,7 +170,7 @@ fn word_in(database: &Database, entity: &EntityRef<'_>, offset: u32) -> Option<S
         token if token.is_comment() => None,
         token if token.is_name() || token.is_keyword() => Some(span),
         token if token.is_number() && inside => None,
-        // The beginning of an escaped name.
+        // The start of an escaped name.
         TokenKind::Invalid if database.slice(entity.file, Span::new(span.start, offset)).ends_with('^') => {
             Some(Span::new(offset - 1, offset))
         }

@@ -1,23 +1,24 @@
-//! What patterns are filled with: names that exist where names are used, the next name of a series where one is declared,
-//! and the numbers written last. All of it is looked for near the cursor, however long the file is.
+//! Defaults for placeholders: existing names where names are used, the next name of a series where one is declared, and
+//! the numbers written last. Only entities near the cursor are considered, so the cost does not depend on the file's
+//! length.
 
 use pydslrep_analysis::{Database, EntityId};
 use pydslrep_syntax::ast::{
     Action, ActionKind, Direction, DriveWord, Entity, Movement, Robot, Turn, TurnExtent, Unit, Wheel,
 };
-use pydslrep_syntax::{EntityKind, Span, as_written};
+use pydslrep_syntax::{EntityKind, Span, escape};
 use smol_str::SmolStr;
 
-use super::names::NEAR;
 use super::context::CursorContext;
+use super::names::NEARBY_ENTITIES;
 
-/// At most so many names are put into a list for the person.
-const MOST_LISTED: usize = 40;
+/// The maximum number of names in a suggested list.
+const MAX_LISTED: usize = 40;
 
-/// What is declared near a place, and what is written there.
+/// The declarations near the cursor.
 pub(super) struct Defaults<'a> {
-    place: &'a CursorContext<'a>,
-    /// Near the cursor, in the order of the text.
+    context: &'a CursorContext<'a>,
+    /// In text order.
     near: Vec<Near<'a>>,
 }
 
@@ -27,21 +28,21 @@ struct Near<'a> {
     is_before: bool,
 }
 
-/// The wheels of a robot, and the type they make.
+/// The wheels of a robot, and the drive type that they imply.
 #[derive(Default)]
 pub(super) struct Layout {
     pub(super) drive: &'static str,
     pub(super) names: Vec<String>,
 }
 
-/// How the last move was written.
+/// How the last `move` was written.
 pub(super) struct LastMove {
     pub(super) distance: Option<String>,
     pub(super) unit: Unit,
     pub(super) speed: Option<String>,
 }
 
-/// How the last turn was written.
+/// How the last `turn` was written.
 pub(super) struct LastTurn {
     pub(super) direction: Direction,
     pub(super) angle: Option<String>,
@@ -50,41 +51,41 @@ pub(super) struct LastTurn {
 
 impl<'a> Defaults<'a> {
     /// For a new entity.
-    pub(super) fn for_entity(place: &'a CursorContext<'a>) -> Self {
-        Self::around(place, None)
+    pub(super) fn for_entity(context: &'a CursorContext<'a>) -> Self {
+        Self::around(context, None)
     }
 
-    /// For what is missing of the entity at the cursor, which says nothing about itself.
-    pub(super) fn for_part(place: &'a CursorContext<'a>) -> Self {
-        Self::around(place, place.entity)
+    /// For a missing part of the entity at the cursor, which is not considered itself.
+    pub(super) fn for_part(context: &'a CursorContext<'a>) -> Self {
+        Self::around(context, context.entity)
     }
 
-    fn around(place: &'a CursorContext<'a>, own: Option<EntityId>) -> Self {
-        let around = place.database.entities_around(place.file, place.word.start, NEAR);
+    fn around(context: &'a CursorContext<'a>, own: Option<EntityId>) -> Self {
+        let around = context.database.entities_around(context.file, context.word.start, NEARBY_ENTITIES);
         let near = around.filter(|id| own != Some(*id)).filter_map(|id| {
-            let entity = place.database.entity(id)?;
-            let is_before = entity.span.start < place.word.start;
+            let entity = context.database.entity(id)?;
+            let is_before = entity.span.start < context.word.start;
             Some(Near { id, tree: entity.parse.entity.as_ref()?, is_before })
         });
-        Self { place, near: near.collect() }
+        Self { context, near: near.collect() }
     }
 
     fn database(&self) -> &'a Database {
-        self.place.database
+        self.context.database
     }
 
-    /// Those of a kind, in the order of the text.
+    /// The nearby entities of a kind, in text order.
     fn of_kind(&self, kind: EntityKind) -> impl DoubleEndedIterator<Item = &Near<'a>> {
         self.near.iter().filter(move |near| near.tree.kind() == Some(kind))
     }
 
-    /// The names of a kind, in the order of the text; where the file declares none, those that it imports.
+    /// The names of a kind in text order; if the file declares none, the imported ones.
     fn names(&self, kind: EntityKind) -> Vec<SmolStr> {
         let near = self.of_kind(kind).filter_map(|near| Some(near.tree.name()?.text.clone()));
-        let mut names: Vec<SmolStr> = near.take(MOST_LISTED).collect();
+        let mut names: Vec<SmolStr> = near.take(MAX_LISTED).collect();
         if names.is_empty() {
             names =
-                self.database().names_in_sight(self.place.file, kind).take(MOST_LISTED).cloned().collect();
+                self.database().names_in_sight(self.context.file, kind).take(MAX_LISTED).cloned().collect();
             names.sort_unstable();
         }
         names
@@ -95,14 +96,14 @@ impl<'a> Defaults<'a> {
     }
 
     fn is_declared(&self, kind: EntityKind, name: &str) -> bool {
-        !self.database().definitions(self.place.file, kind, &name.into()).is_empty()
+        !self.database().definitions(self.context.file, kind, &name.into()).is_empty()
     }
 
     fn is_used(&self, kind: EntityKind, name: &SmolStr) -> bool {
-        !self.database().users(self.place.file, kind, name).is_empty()
+        !self.database().users(self.context.file, kind, name).is_empty()
     }
 
-    /// A name that continues the series: `wheelR` after `wheelL`, `mov_2` after `mov_1`.
+    /// The next name of a series: `wheelR` after `wheelL`, `mov_2` after `mov_1`.
     pub(super) fn next_name(&self, kind: EntityKind) -> String {
         let last = self.last_of_kind(kind).and_then(|near| near.tree.name()).map(|name| name.text.clone());
         let is_free = |name: &String| !self.is_declared(kind, name);
@@ -114,11 +115,11 @@ impl<'a> Defaults<'a> {
         };
         let next = || {
             let (stem, number) = numbered(last.as_ref()?)?;
-            (number..number + NUMBERS).map(|number| format!("{stem}{number}")).find(is_free)
+            (number..number + MAX_NUMBERS).map(|number| format!("{stem}{number}")).find(is_free)
         };
         let first = || {
             let first = first_name(kind);
-            let others = (2..NUMBERS).map(|number| format!("{first}{number}"));
+            let others = (2..MAX_NUMBERS).map(|number| format!("{first}{number}"));
             std::iter::once(first.to_owned()).chain(others).find(is_free)
         };
         other_side().or_else(next).or_else(first).unwrap_or_default()
@@ -129,7 +130,7 @@ impl<'a> Defaults<'a> {
         matches!(last.map(|near| near.tree), Some(Entity::Wheel(Wheel { mecanum: true, .. })))
     }
 
-    /// The radius of the wheel before, as written, in centimetres.
+    /// The radius of the previous wheel as written, in centimetres.
     pub(super) fn radius(&self) -> String {
         let last = self.last_of_kind(EntityKind::Wheel);
         let written = last.and_then(|near| match near.tree {
@@ -139,7 +140,7 @@ impl<'a> Defaults<'a> {
         written.unwrap_or_else(|| "4.5".to_owned())
     }
 
-    /// The wheels that no robot has yet, else those of the robot before, if they make a robot.
+    /// The wheels that no robot uses yet, or those of the previous robot; only if they form a valid robot.
     pub(super) fn wheels(&self) -> Layout {
         let names = self.names(EntityKind::Wheel);
         let unused = names.into_iter().filter(|name| !self.is_used(EntityKind::Wheel, name)).collect();
@@ -156,25 +157,25 @@ impl<'a> Defaults<'a> {
 
     fn layout(&self, names: &[SmolStr]) -> Option<Layout> {
         let mecanum: Option<Vec<bool>> =
-            names.iter().map(|name| super::keywords::is_mecanum(self.place, name)).collect();
+            names.iter().map(|name| super::keywords::is_mecanum(self.context, name)).collect();
         let drive = match mecanum?[..] {
             [false, false] => DriveWord::Tw,
             [false, false, false, false] => DriveWord::Fw,
             [true, true, true, true] => DriveWord::Fwh,
             _ => return None,
         };
-        let names = names.iter().map(|name| as_written(name)).collect();
+        let names = names.iter().map(|name| escape(name)).collect();
         Some(Layout { drive: drive.spelling(), names })
     }
 
-    /// The sensors that no robot has yet.
+    /// The sensors that no robot uses yet.
     pub(super) fn sensors(&self) -> Vec<String> {
         let names = self.names(EntityKind::Sensor);
         let unused = names.iter().filter(|name| !self.is_used(EntityKind::Sensor, name));
-        unused.map(|name| as_written(name)).collect()
+        unused.map(|name| escape(name)).collect()
     }
 
-    /// The first robot that nothing moves yet, else the one that was moved last.
+    /// The first robot without a movement, or the one of the last movement.
     pub(super) fn robot_to_move(&self) -> Option<String> {
         let names = self.names(EntityKind::Robot);
         let is_idle = |name: &&SmolStr| !self.is_used(EntityKind::Robot, name);
@@ -182,10 +183,10 @@ impl<'a> Defaults<'a> {
             Entity::Movement(Movement { robot: Some(robot), .. }) => Some(&robot.text),
             _ => None,
         });
-        names.iter().find(is_idle).or(last).or(names.last()).map(|name| as_written(name))
+        names.iter().find(is_idle).or(last).or(names.last()).map(|name| escape(name))
     }
 
-    /// The robots that have movements, else all.
+    /// The robots that have movements, or all.
     pub(super) fn robots_to_run(&self) -> Vec<String> {
         let names = self.names(EntityKind::Robot);
         let moved = |name: &&SmolStr| self.is_used(EntityKind::Robot, name);
@@ -193,37 +194,37 @@ impl<'a> Defaults<'a> {
         if found.is_empty() {
             found = names.iter().collect();
         }
-        found.into_iter().map(|name| as_written(name)).collect()
+        found.into_iter().map(|name| escape(name)).collect()
     }
 
-    /// The movements of these robots, in the order of the text.
+    /// The movements of these robots in text order.
     pub(super) fn moves_of(&self, robots: &[String]) -> Vec<String> {
         let names = self.of_kind(EntityKind::Movement).filter_map(|near| match near.tree {
             Entity::Movement(Movement { name: Some(name), robot: Some(robot), .. }) => {
-                robots.contains(&as_written(&robot.text)).then(|| as_written(&name.text))
+                robots.contains(&escape(&robot.text)).then(|| escape(&name.text))
             }
             _ => None,
         });
-        names.take(MOST_LISTED).collect()
+        names.take(MAX_LISTED).collect()
     }
 
-    /// Whether the action before the cursor is a move.
+    /// Whether the action before the cursor is a `move`.
     pub(super) fn follows_a_move(&self) -> bool {
-        let actions = self.place.movement().map_or(&[][..], |movement| &movement.actions);
+        let actions = self.context.movement().map_or(&[][..], |movement| &movement.actions);
         let before = actions.iter().rfind(|action| self.is_before(action));
         matches!(before.map(|action| &action.kind), Some(ActionKind::Move(_)))
     }
 
     fn is_before(&self, action: &Action) -> bool {
-        action.span.end <= self.place.word.start.saturating_sub(self.place.start)
+        action.span.end <= self.context.word.start.saturating_sub(self.context.start)
     }
 
-    /// The last thing that `find` finds in an action before the cursor, in this movement or in one before it.
+    /// The last result of `find` among the actions before the cursor, in this movement and the ones before it.
     fn last_action<T>(
         &self,
         find: impl Fn(&Action, &dyn Fn(Span) -> Option<String>) -> Option<T>,
     ) -> Option<T> {
-        let own = self.place.movement().zip(self.place.entity);
+        let own = self.context.movement().zip(self.context.entity);
         let own = own.and_then(|(movement, id)| {
             let mut before = movement.actions.iter().rev().filter(|action| self.is_before(action));
             before.find_map(|action| find(action, &|span| self.written(id, span)))
@@ -252,13 +253,13 @@ impl<'a> Defaults<'a> {
         last.unwrap_or(LastMove { distance: None, unit: Unit::Meters, speed: None })
     }
 
-    /// The speed written last, else the one where none is written; in centimetres per second.
+    /// The last written speed, or the default; in centimetres per second.
     pub(super) fn speed(&self) -> String {
         let last = self.last_action(|action, written| match &action.kind {
             ActionKind::Move(move_) => written(move_.speed.as_ref()?.value.as_ref()?.span),
             _ => None,
         });
-        last.unwrap_or_else(|| format!("{:?}", self.place.speed))
+        last.unwrap_or_else(|| format!("{:?}", self.context.speed))
     }
 
     pub(super) fn last_turn(&self) -> LastTurn {
@@ -276,9 +277,9 @@ impl<'a> Defaults<'a> {
         last.unwrap_or(LastTurn { direction: Direction::Left, angle: None, is_until: false })
     }
 
-    /// The sensors of the last `until`, as far as the robot carries them, else all that it carries.
+    /// The sensors of the last `until` if the robot has all of them, or all sensors of the robot.
     pub(super) fn sensors_to_wait_for(&self) -> Vec<String> {
-        let robot = self.place.movement().and_then(|movement| robot_of(self.place, movement));
+        let robot = self.context.movement().and_then(|movement| robot_of(self.context, movement));
         let carried: Vec<&SmolStr> = robot
             .and_then(|robot| robot.sensors.as_ref())
             .map_or_else(Vec::new, |list| list.names.iter().map(|name| &name.text).collect());
@@ -287,8 +288,8 @@ impl<'a> Defaults<'a> {
             names.iter().all(|name| carried.contains(&name)).then_some(names)
         });
         match last.filter(|names| !names.is_empty()) {
-            Some(names) => names.iter().map(|name| as_written(name)).collect(),
-            None => carried.into_iter().map(|name| as_written(name)).collect(),
+            Some(names) => names.iter().map(|name| escape(name)).collect(),
+            None => carried.into_iter().map(|name| escape(name)).collect(),
         }
     }
 
@@ -298,20 +299,20 @@ impl<'a> Defaults<'a> {
     }
 }
 
-/// The robot of a movement, unless it cannot be said what it carries.
-pub(super) fn robot_of<'a>(place: &CursorContext<'a>, movement: &Movement) -> Option<&'a Robot> {
+/// The robot of a movement, unless its parts are unknown.
+pub(super) fn robot_of<'a>(context: &CursorContext<'a>, movement: &Movement) -> Option<&'a Robot> {
     let name = &movement.robot.as_ref()?.text;
-    let id = place.database.resolve(place.file, EntityKind::Robot, name).entity()?;
-    match place.database.tree(id)? {
+    let id = context.database.resolve(context.file, EntityKind::Robot, name).entity()?;
+    match context.database.tree(id)? {
         Entity::Robot(robot) if robot.sensors.is_some() || robot.wheels.is_some() => Some(robot),
         _ => None,
     }
 }
 
-/// Of more numbers, whoever is typing is better at thinking of a name.
-const NUMBERS: u32 = 1_000;
+/// How many numbers are tried for a free name.
+const MAX_NUMBERS: u32 = 1_000;
 
-/// What the first of its kind is called.
+/// The suggested name for the first entity of a kind.
 fn first_name(kind: EntityKind) -> &'static str {
     match kind {
         EntityKind::Wheel => "wheelL",
@@ -323,7 +324,7 @@ fn first_name(kind: EntityKind) -> &'static str {
     }
 }
 
-/// What a name begins with, and the number after that at its end.
+/// A name without its trailing number, and the next number.
 fn numbered(name: &str) -> Option<(&str, u32)> {
     let stem = name.trim_end_matches(|character: char| character.is_ascii_digit());
     Some((stem, name[stem.len()..].parse::<u32>().ok()?.checked_add(1)?))
@@ -331,22 +332,22 @@ fn numbered(name: &str) -> Option<(&str, u32)> {
 
 const SIDES: [(&str, &str); 3] = [("left", "right"), ("Left", "Right"), ("L", "R")];
 
-/// The names with one `from` in them replaced by `to`, the last one first.
-fn exchanged(name: &str, from: &str, to: &str) -> Vec<String> {
+/// The names with one occurrence of `from` replaced by `to`, the last occurrence first.
+fn replace_each(name: &str, from: &str, to: &str) -> Vec<String> {
     let places = name.rmatch_indices(from);
     places.map(|(at, _)| format!("{}{to}{}", &name[..at], &name[at + from.len()..])).collect()
 }
 
-/// The names for the other side, such as `wheelR0` for `wheelL0`.
+/// The candidate names for the other side, such as `wheelR0` for `wheelL0`.
 fn mirrored(name: &str) -> Vec<String> {
-    let both = |(left, right)| [exchanged(name, left, right), exchanged(name, right, left)];
+    let both = |(left, right)| [replace_each(name, left, right), replace_each(name, right, left)];
     SIDES.into_iter().flat_map(both).flatten().collect()
 }
 
-/// Wheels in the order of the language: those whose counterpart on the left is among them come last.
+/// Wheels in the order of the language: the left ones first, then those with a left counterpart.
 fn left_first(names: Vec<SmolStr>) -> Vec<SmolStr> {
     let has_left = |name: &SmolStr| {
-        let mut left = SIDES.into_iter().flat_map(|(left, right)| exchanged(name, right, left));
+        let mut left = SIDES.into_iter().flat_map(|(left, right)| replace_each(name, right, left));
         left.any(|left| names.iter().any(|other| *other == left))
     };
     let is_right: Vec<bool> = names.iter().map(has_left).collect();
@@ -355,17 +356,17 @@ fn left_first(names: Vec<SmolStr>) -> Vec<SmolStr> {
     sides.into_iter().map(|(_, name)| name).collect()
 }
 
-/// The wheels, robots or movements that a list of this kind in the entity at the cursor probably has.
-pub(super) fn likely_list(place: &CursorContext<'_>, kind: EntityKind) -> String {
-    let defaults = Defaults::for_part(place);
-    match (place.tree, kind) {
+/// The likely content of a list of this kind in the entity at the cursor.
+pub(super) fn likely_list(context: &CursorContext<'_>, kind: EntityKind) -> String {
+    let defaults = Defaults::for_part(context);
+    match (context.tree, kind) {
         (Some(Entity::Robot(_)), EntityKind::Wheel) => defaults.wheels().names.join(" "),
         (Some(Entity::Robot(_)), EntityKind::Sensor) => defaults.sensors().join(", "),
         (Some(Entity::Movement(_)), EntityKind::Sensor) => defaults.sensors_to_wait_for().join(", "),
         (Some(Entity::Environment(_)), EntityKind::Robot) => defaults.robots_to_run().join(" "),
         (Some(Entity::Environment(environment)), EntityKind::Movement) => {
             let robots = environment.robots.iter().flat_map(|list| &list.names);
-            let robots: Vec<String> = robots.map(|name| as_written(&name.text)).collect();
+            let robots: Vec<String> = robots.map(|name| escape(&name.text)).collect();
             defaults.moves_of(&robots).join(" ")
         }
         _ => String::new(),

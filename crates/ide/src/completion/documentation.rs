@@ -1,17 +1,16 @@
-//! What a completion list shows beside the name of an entity.
+//! Documentation for the names in a completion list.
 
 use pydslrep_analysis::{Database, FileId};
 use pydslrep_syntax::EntityKind;
 use smol_str::SmolStr;
 
 use crate::cursor::body;
-use crate::hover::facts;
+use crate::hover::describe;
 
-/// More of a declaration is not shown.
-const MOST_LINES: usize = 12;
+/// The maximum number of lines shown of a declaration.
+const MAX_LINES: usize = 12;
 
-/// What a file declares under a name as it is written, and what is most worth knowing of it; Markdown. `None` for what is
-/// no longer there.
+/// The declaration of a name in a file and its key figures, as Markdown. `None` if it no longer exists.
 pub fn completion_documentation(
     database: &Database,
     home: FileId,
@@ -21,11 +20,11 @@ pub fn completion_documentation(
     let id = *database.definitions(home, kind, name).first()?;
     let entity = database.entity(id)?;
     let declaration = database.slice(entity.file, body(&entity));
-    let mut lines: Vec<&str> = declaration.lines().take(MOST_LINES).collect();
-    if declaration.lines().nth(MOST_LINES).is_some() {
+    let mut lines: Vec<&str> = declaration.lines().take(MAX_LINES).collect();
+    if declaration.lines().nth(MAX_LINES).is_some() {
         lines.push("…");
     }
-    let facts = facts(database, id).unwrap_or_default();
+    let facts = describe(database, id).unwrap_or_default();
     let first = facts.lines().next().unwrap_or_default();
     Some(format!("```pydslrep\n{}\n```\n{first}", lines.join("\n")).trim_end().to_owned())
 }

@@ -1,42 +1,42 @@
-//! What of all that fits is offered: nothing that would get in the way of typing.
+//! Filters completion items by the typed word, so that the list never gets in the way of typing.
 
 use pydslrep_schema::{Place, Slot};
 use pydslrep_syntax::Span;
 
 use super::{Completion, CompletionTrigger};
 
-/// So few letters are typed faster than a list is read. Without this, a list would still be open when Enter ends the line
-/// right after the word, for as long as the editor waits for the answer to the last letter.
-const FEW_LETTERS: usize = 3;
+/// Items that save no more letters than this are not offered. Otherwise the list would still be open when the user
+/// presses Enter right after the word, until the response to the last letter arrives.
+const MIN_SAVED_LETTERS: usize = 3;
 
 /// The word at the cursor.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Word<'a> {
-    /// Its part before the cursor.
+    /// The part before the cursor.
     pub(crate) before: &'a str,
-    /// Its part after the cursor.
+    /// The part after the cursor.
     pub(crate) after: &'a str,
-    /// Whether nothing follows it on its line but what editors close by themselves, so that Enter may come next.
+    /// Whether only auto-closed characters follow it on its line, so that Enter may come next.
     pub(crate) ends_line: bool,
 }
 
 impl Word<'_> {
-    /// Whether a text is there already, or so nearly that the rest is typed faster.
-    fn is_nearly(&self, text: &str) -> bool {
-        let is_short = text.len() <= self.before.len() + FEW_LETTERS;
+    /// Whether a text is complete but for a few letters.
+    fn almost_completes(&self, text: &str) -> bool {
+        let is_short = text.len() <= self.before.len() + MIN_SAVED_LETTERS;
         self.ends_line && self.after.is_empty() && is_short && starts_with(text, &self.before.to_lowercase())
     }
 }
 
-/// Whether what follows a word on its line is only what editors close by themselves.
+/// Whether only characters that editors close automatically follow on the line.
 pub(crate) fn ends_line(following: impl Iterator<Item = char>) -> bool {
     let mut line = following.take_while(|character| !matches!(character, '\r' | '\n'));
     line.all(|character| " \t}]\"'".contains(character))
 }
 
-/// Of what fits, that which the typed beginning of the word can become. Where Enter may end the line, nothing is offered
-/// of a word that is complete, and no word of which few letters are missing.
-pub(crate) fn narrowed(items: Vec<Completion>, word: Word<'_>) -> Vec<Completion> {
+/// The items that match the typed part of the word. Where Enter may end the line, a complete word gets no list, and
+/// items that are almost complete are left out.
+pub(crate) fn filter(items: Vec<Completion>, word: Word<'_>) -> Vec<Completion> {
     if word.before.is_empty() && word.after.is_empty() {
         return items;
     }
@@ -46,27 +46,27 @@ pub(crate) fn narrowed(items: Vec<Completion>, word: Word<'_>) -> Vec<Completion
     let typed = bare(word.before).to_lowercase();
     let mut found: Vec<(bool, Completion)> = items
         .into_iter()
-        .filter(|item| !word.is_nearly(&item.plain()))
+        .filter(|item| !word.almost_completes(&item.plain()))
         .filter_map(|item| Some((!fit(&item, &typed)?, item)))
         .collect();
     found.sort_by_key(|(is_inside, item)| (*is_inside, item.rank));
     found.into_iter().map(|(_, item)| item).collect()
 }
 
-/// Whether the typed letters, in small letters, begin what is offered (true) or one of the words inside it (false).
+/// Whether the typed letters, in lower case, begin the label (`true`) or one of its subwords (`false`).
 fn fit(item: &Completion, typed: &str) -> Option<bool> {
     let label = bare(&item.label);
     if starts_with(label, typed) {
         return Some(true);
     }
     if label.starts_with(['{', '}']) {
-        // Whoever types a letter in a list means a name.
+        // A letter typed in a list begins a name.
         return None;
     }
-    humps(label).any(|word| has_letters(word, typed)).then_some(false)
+    subwords(label).any(|word| has_letters(word, typed)).then_some(false)
 }
 
-/// Without what marks a text or an escaped name.
+/// A label without its quote or escape.
 fn bare(text: &str) -> &str {
     text.trim_start_matches(['^', '"', '\''])
 }
@@ -75,8 +75,8 @@ pub(super) fn starts_with(text: &str, typed: &str) -> bool {
     text.get(..typed.len()).is_some_and(|start| start.to_lowercase() == typed)
 }
 
-/// The words that a name consists of, each with all that follows it: `wheelLeft` has `wheelLeft` and `Left`.
-fn humps(name: &str) -> impl Iterator<Item = &str> {
+/// The words of a name, each with all that follows it: `wheelLeft` has `wheelLeft` and `Left`.
+fn subwords(name: &str) -> impl Iterator<Item = &str> {
     let mut previous = '_';
     name.char_indices().filter_map(move |(at, character)| {
         let is_start = character.is_alphanumeric()
@@ -88,7 +88,7 @@ fn humps(name: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Whether a word begins with the first letter and has the others in this order, small or capital.
+/// Whether a word begins with the first typed letter and contains the others in this order, ignoring case.
 fn has_letters(word: &str, typed: &str) -> bool {
     let mut wanted = typed.chars();
     let mut letters = word.chars().flat_map(char::to_lowercase);
@@ -96,8 +96,8 @@ fn has_letters(word: &str, typed: &str) -> bool {
         && wanted.all(|wanted| letters.any(|letter| letter == wanted))
 }
 
-/// The same in a TOML file, all of whose completions at a place replace the same word.
-pub(crate) fn narrowed_in_toml(items: Vec<Completion>, text: &str, offset: u32) -> Vec<Completion> {
+/// The same for a TOML file; all items at a position replace the same word.
+pub(crate) fn filter_in_toml(items: Vec<Completion>, text: &str, offset: u32) -> Vec<Completion> {
     let Some(word) = items.first().map(|item| item.replace) else { return items };
     let cut = offset.clamp(word.start, word.end);
     let following = text.get(word.end as usize..).unwrap_or_default();
@@ -106,11 +106,12 @@ pub(crate) fn narrowed_in_toml(items: Vec<Completion>, text: &str, offset: u32) 
         after: Span::new(cut, word.end).text(text),
         ends_line: ends_line(following.chars()),
     };
-    narrowed(items, word)
+    filter(items, word)
 }
 
 impl CompletionTrigger {
-    /// Whether the list opens at this place of a TOML file: by itself where a value must come, and in a table's brackets.
+    /// Whether the list opens at this position of a TOML file: automatically where a value is expected and in a table's
+    /// brackets.
     pub(crate) fn opens_in_toml(self, place: &Place) -> bool {
         match self {
             Self::Invoked => true,

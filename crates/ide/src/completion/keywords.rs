@@ -1,19 +1,19 @@
-//! Keywords, with those that must follow them, and values.
+//! Keywords, with the ones that must follow them, and values.
 
 use pydslrep_analysis::{EntityId, Target};
 use pydslrep_syntax::ast::{DriveWord, Entity};
 use pydslrep_syntax::{EntityKind, Expected, Span, TokenKind, expected_after};
 use smol_str::SmolStr;
 
-use super::defaults::likely_list;
-use super::names::{FEW, NEAR};
-use super::snippets::stop;
 use super::context::CursorContext;
+use super::defaults::likely_list;
+use super::names::{MAX_RANKED, NEARBY_ENTITIES};
+use super::snippets::tab_stop;
 use super::{Completion, CompletionKind, Documentation, Rank};
 use crate::keyword_pages::{KeywordPage, keyword_page};
 
 impl CursorContext<'_> {
-    /// A completion of the word at the cursor.
+    /// An item that replaces the word at the cursor.
     pub(super) fn item(&self, label: &str, kind: CompletionKind, rank: Rank) -> Completion {
         Completion {
             insert: label.to_owned(),
@@ -24,19 +24,19 @@ impl CursorContext<'_> {
     }
 }
 
-/// A word, followed by those that can only follow it; `None` for the comma, which is never needed.
-pub(super) fn word(place: &CursorContext<'_>, word: TokenKind) -> Option<Completion> {
+/// A keyword with the ones that must follow it; `None` for the comma, which is always optional.
+pub(super) fn keyword(context: &CursorContext<'_>, word: TokenKind) -> Option<Completion> {
     let spelling = word.spelling().filter(|_| word != TokenKind::Comma)?;
-    let Continued { insert, label, last } = continued(place, word);
+    let Continuation { insert, label, last } = continuation(context, word);
     let label = if word == TokenKind::OpenBrace { &label } else { label.trim_end_matches(" …") };
-    // `with` and braces say little by themselves; the word they lead to says it.
+    // `with` and braces say little by themselves: the page of the last keyword is more helpful.
     let leads =
         matches!(word, TokenKind::With | TokenKind::Has | TokenKind::OpenBrace | TokenKind::CloseBrace);
     let page = keyword_page(if leads { last } else { word });
     let rank = match word {
         TokenKind::CloseBrace => Rank::Closing,
-        _ if suits(place, word) => Rank::Fitting,
-        _ => Rank::Word,
+        _ if matches_wheels(context, word) => Rank::Fitting,
+        _ => Rank::Keyword,
     };
     Some(Completion {
         detail: page.map_or_else(String::new, |page| detail(word, &page)),
@@ -45,11 +45,11 @@ pub(super) fn word(place: &CursorContext<'_>, word: TokenKind) -> Option<Complet
         ),
         is_snippet: insert.contains('$'),
         insert,
-        ..place.item(label, CompletionKind::Keyword, rank)
+        ..context.item(label, CompletionKind::Keyword, rank)
     })
 }
 
-/// What a value of `type` stands for says more than where it stands.
+/// For the values of `type`, their meaning; otherwise the syntax.
 fn detail(word: TokenKind, page: &KeywordPage) -> String {
     let text = match word {
         TokenKind::Tw | TokenKind::Fw | TokenKind::Fwh => page.meaning.split(':').next(),
@@ -58,14 +58,14 @@ fn detail(word: TokenKind, page: &KeywordPage) -> String {
     text.unwrap_or_default().to_owned()
 }
 
-/// Whether it is the type of a robot with the wheels that this one has.
-fn suits(place: &CursorContext<'_>, word: TokenKind) -> bool {
-    let (TokenKind::Tw | TokenKind::Fw | TokenKind::Fwh, Some(Entity::Robot(robot))) = (word, place.tree)
+/// Whether a keyword is the drive type that the robot's wheels imply.
+fn matches_wheels(context: &CursorContext<'_>, word: TokenKind) -> bool {
+    let (TokenKind::Tw | TokenKind::Fw | TokenKind::Fwh, Some(Entity::Robot(robot))) = (word, context.tree)
     else {
         return false;
     };
     let names = robot.wheels.iter().flat_map(|list| &list.names);
-    let mecanum: Vec<bool> = names.filter_map(|name| is_mecanum(place, &name.text)).collect();
+    let mecanum: Vec<bool> = names.filter_map(|name| is_mecanum(context, &name.text)).collect();
     let drive = match mecanum[..] {
         [false, false] => DriveWord::Tw,
         [false, false, false, false] => DriveWord::Fw,
@@ -75,47 +75,47 @@ fn suits(place: &CursorContext<'_>, word: TokenKind) -> bool {
     word.spelling() == Some(drive.spelling())
 }
 
-/// Whether the wheel of this name is a mecanum wheel; `None` where there is none.
-pub(super) fn is_mecanum(place: &CursorContext<'_>, name: &SmolStr) -> Option<bool> {
-    let id = place.database.resolve(place.file, EntityKind::Wheel, name).entity()?;
-    match place.database.tree(id)? {
+/// Whether the wheel of this name is a mecanum wheel; `None` if there is no such wheel.
+pub(super) fn is_mecanum(context: &CursorContext<'_>, name: &SmolStr) -> Option<bool> {
+    let id = context.database.resolve(context.file, EntityKind::Wheel, name).entity()?;
+    match context.database.tree(id)? {
         Entity::Wheel(wheel) => Some(wheel.mecanum),
         _ => None,
     }
 }
 
-/// A word with those that can only follow it.
-struct Continued {
+/// A keyword with the ones that must follow it.
+struct Continuation {
     insert: String,
-    /// The same with `…` for what the person fills in.
+    /// The same with `…` for placeholders.
     label: String,
-    /// The last of the words.
+    /// The last of the keywords.
     last: TokenKind,
 }
 
-impl Continued {
+impl Continuation {
     fn push(&mut self, insert: &str, label: &str) {
         self.insert.extend([" ", insert]);
         self.label.extend([" ", label]);
     }
 }
 
-/// `with` continues to `with port`, `has` to `has { … } wheels`: as long as only one word can follow, and nothing
-/// is written there yet.
-fn continued(place: &CursorContext<'_>, word: TokenKind) -> Continued {
-    const MOST: usize = 6;
-    let mut before = place.before.clone();
+/// `with` continues to `with port`, `has` to `has { … } wheels`, as long as only one keyword can follow and nothing is
+/// there yet.
+fn continuation(context: &CursorContext<'_>, word: TokenKind) -> Continuation {
+    const MAX_KEYWORDS: usize = 6;
+    let mut before = context.before.clone();
     let spelling = word.spelling().unwrap_or_default().to_owned();
-    let mut continued = Continued { insert: spelling.clone(), label: spelling, last: word };
-    for _ in 0..if place.at_end { MOST } else { 0 } {
+    let mut continued = Continuation { insert: spelling.clone(), label: spelling, last: word };
+    for _ in 0..if context.at_end { MAX_KEYWORDS } else { 0 } {
         let end = Span::at(before.last().map_or(0, |(_, span)| span.end));
         before.push((continued.last, end));
-        let mut expected = expected_after(&place.text, &before);
+        let mut expected = expected_after(&context.text, &before);
         if let Some(kind) = listed_kind(continued.last, &expected) {
-            continued.push(&stop(1, &likely_list(place, kind)), "…");
+            continued.push(&tab_stop(1, &likely_list(context, kind)), "…");
             continued.push("}", "}");
             before.extend([(TokenKind::Name, end), (TokenKind::CloseBrace, end)]);
-            expected = expected_after(&place.text, &before);
+            expected = expected_after(&context.text, &before);
         }
         match expected[..] {
             [Expected::Word(word)] if word != TokenKind::Comma && word != TokenKind::CloseBrace => {
@@ -129,7 +129,7 @@ fn continued(place: &CursorContext<'_>, word: TokenKind) -> Continued {
     continued
 }
 
-/// What a list that begins here has references to.
+/// The kind of the references in a list that begins here.
 fn listed_kind(last: TokenKind, expected: &[Expected]) -> Option<EntityKind> {
     let kind = expected.iter().find_map(|expected| match expected {
         Expected::ReferenceTo(kind) => Some(*kind),
@@ -138,38 +138,39 @@ fn listed_kind(last: TokenKind, expected: &[Expected]) -> Option<EntityKind> {
     kind.filter(|_| last == TokenKind::OpenBrace)
 }
 
-/// Words after which a person goes on.
-pub(super) fn plain_words(place: &CursorContext<'_>, words: &[TokenKind]) -> Vec<Completion> {
+/// Keywords without continuation.
+pub(super) fn plain_keywords(context: &CursorContext<'_>, words: &[TokenKind]) -> Vec<Completion> {
     let word = |word: &TokenKind| {
         let page = keyword_page(*word)?;
         Some(Completion {
             detail: detail(*word, &page),
             documentation: Documentation::Text(page.markdown()),
-            ..place.item(word.spelling()?, CompletionKind::Keyword, Rank::Word)
+            ..context.item(word.spelling()?, CompletionKind::Keyword, Rank::Keyword)
         })
     };
     words.iter().filter_map(word).collect()
 }
 
 /// A number or an address.
-pub(super) fn value(place: &CursorContext<'_>, text: &str, detail: &str) -> Completion {
-    Completion { detail: detail.to_owned(), ..place.item(text, CompletionKind::Value, Rank::Fitting) }
+pub(super) fn value(context: &CursorContext<'_>, text: &str, detail: &str) -> Completion {
+    Completion { detail: detail.to_owned(), ..context.item(text, CompletionKind::Value, Rank::Fitting) }
 }
 
-/// A port for a robot: `own`, or a new one. Where all robots share one port, as they may in CoppeliaSim, it is theirs; else it is the one
-/// after the highest, or the first that is free.
-pub(super) fn port(place: &CursorContext<'_>, own: Option<EntityId>) -> Option<String> {
-    let target = place.database.target(place.file);
-    let port = |id: EntityId| match place.database.tree(id)? {
+/// A port for the robot `own`, or for a new one: the port that all others share, as they may in CoppeliaSim; otherwise
+/// the one after the highest, or the first free one.
+pub(super) fn port(context: &CursorContext<'_>, own: Option<EntityId>) -> Option<String> {
+    let target = context.database.target(context.file);
+    let port = |id: EntityId| match context.database.tree(id)? {
         Entity::Robot(robot) if Some(id) != own => robot.port.as_ref()?.value,
         _ => None,
     };
-    let mut taken: Vec<u16> = if place.database.count(place.file, EntityKind::Robot) as usize > FEW {
-        let near = place.database.entities_around(place.file, place.word.start, NEAR);
+    let mut taken: Vec<u16> = if context.database.count(context.file, EntityKind::Robot) as usize > MAX_RANKED
+    {
+        let near = context.database.entities_around(context.file, context.word.start, NEARBY_ENTITIES);
         near.filter_map(port).collect()
     } else {
-        let robots = place.database.names_in_sight(place.file, EntityKind::Robot);
-        let found = |name| place.database.resolve(place.file, EntityKind::Robot, name).entity();
+        let robots = context.database.names_in_sight(context.file, EntityKind::Robot);
+        let found = |name| context.database.resolve(context.file, EntityKind::Robot, name).entity();
         robots.filter_map(found).filter_map(port).collect()
     };
     taken.sort_unstable();

@@ -1,4 +1,4 @@
-//! Paths of imports: the programs that the database knows, as this file has to name them.
+//! Import paths: the programs of the workspace, relative to the importing file.
 
 use pydslrep_analysis::{Database, FileId};
 use pydslrep_syntax::{Span, Token, TokenKind};
@@ -6,17 +6,17 @@ use pydslrep_syntax::{Span, Token, TokenKind};
 use super::context::CursorContext;
 use super::{Completion, CompletionKind};
 use crate::FilePosition;
-use crate::document_links::contents;
+use crate::document_links::summary;
 
 /// The path being typed.
 pub(super) struct PathAt {
-    /// What is between the quotes.
+    /// The text between the quotes.
     span: Span,
     /// Whether the closing quote is missing.
     is_open: bool,
 }
 
-/// The string behind `import` that has the cursor between its quotes.
+/// The string after `import`, if the cursor is between its quotes.
 pub(super) fn string_at(database: &Database, position: FilePosition) -> Option<PathAt> {
     let before = position.offset.checked_sub(1)?;
     let entity = database.entity_at(position.file, before)?;
@@ -49,27 +49,27 @@ pub(super) fn paths(database: &Database, file: FileId, at: &PathAt) -> Vec<Compl
         .collect()
 }
 
-/// The paths with quotes, where none is begun.
-pub(super) fn quoted_paths(place: &CursorContext<'_>) -> Vec<Completion> {
-    importable(place.database, place.file, "")
+/// The paths with quotes, for an import without a string.
+pub(super) fn quoted_paths(context: &CursorContext<'_>) -> Vec<Completion> {
+    importable(context.database, context.file, "")
         .into_iter()
         .map(|(path, imported)| {
             let quoted = format!("\"{path}\"");
-            item(place.database, &quoted, quoted.clone(), place.word, imported)
+            item(context.database, &quoted, quoted.clone(), context.word, imported)
         })
         .collect()
 }
 
 fn item(database: &Database, label: &str, insert: String, replace: Span, imported: FileId) -> Completion {
     Completion {
-        detail: contents(database, imported),
+        detail: summary(database, imported),
         insert,
         imports: Some(imported),
         ..Completion::new(label, CompletionKind::File, replace)
     }
 }
 
-/// The files that an import could add, with their paths, the nearest first; also the one that `written` leads to.
+/// The files that can be imported, with their paths, the nearest first; and the one that `written` refers to.
 fn importable(database: &Database, file: FileId, written: &str) -> Vec<(String, FileId)> {
     let mut found = not_imported(database, file);
     let path = |imported: FileId| Some((database.path_for_import(file, imported)?, imported));
@@ -78,7 +78,7 @@ fn importable(database: &Database, file: FileId, written: &str) -> Vec<(String, 
     found
 }
 
-/// The other files that this one does not import yet, with the paths that lead there, the nearest first.
+/// The other files that this one does not import yet, with their relative paths, the nearest first.
 pub(super) fn not_imported(database: &Database, file: FileId) -> Vec<(String, FileId)> {
     let imported: Vec<FileId> = database.imported_files(file).collect();
     let others = database.files().filter(|other| *other != file && !imported.contains(other));
@@ -88,7 +88,7 @@ pub(super) fn not_imported(database: &Database, file: FileId) -> Vec<(String, Fi
     paths
 }
 
-/// The import of a path as a new first line; `before` is where the first import starts, if there is one.
+/// The edit that imports a path: before the first import, or at the top of the file.
 pub(super) fn import_line(database: &Database, file: FileId, path: &str) -> (Span, String) {
     let line_ending = database.line_ending(file);
     let statements = database.import_statements(file);
@@ -97,13 +97,13 @@ pub(super) fn import_line(database: &Database, file: FileId, path: &str) -> (Spa
             (Span::at(first.span.start), format!("import \"{path}\"{line_ending}"))
         }
         _ => {
-            let mark = u32::from(database.slice(file, Span::new(0, 3)) == "\u{feff}") * 3;
-            (Span::at(mark), format!("import \"{path}\"{line_ending}{line_ending}"))
+            let start = u32::from(database.slice(file, Span::new(0, 3)) == "\u{feff}") * 3;
+            (Span::at(start), format!("import \"{path}\"{line_ending}{line_ending}"))
         }
     }
 }
 
-/// Whether nothing but comments stands before an offset.
+/// Whether only comments precede an offset.
 fn is_first(database: &Database, file: FileId, offset: u32) -> bool {
     let comment = |token: &Token| token.0.is_comment();
     let mut before = database.entities(file).take_while(|entity| entity.span.start < offset);

@@ -1,62 +1,62 @@
-//! Patterns to fill in: whole entities, whole actions, and the clauses that follow some keywords. What they are filled
-//! with is what the program makes likely ([`super::defaults`]).
+//! Snippets: complete entities and actions, and clauses that follow keywords. Their placeholders hold likely values
+//! ([`super::defaults`]).
 
 use pydslrep_syntax::ast::{Direction, Unit};
 use pydslrep_syntax::{EntityKind, TokenKind};
 
-use super::defaults::Defaults;
 use super::context::CursorContext;
+use super::defaults::Defaults;
 use super::keywords::port;
 use super::{Completion, CompletionKind, Documentation, Rank};
 
-/// A pattern to fill in.
-struct Pattern {
+/// An entity, action or clause with placeholders.
+struct Snippet {
     label: String,
     detail: &'static str,
     insert: String,
 }
 
-impl Pattern {
+impl Snippet {
     fn new(label: &str, detail: &'static str, insert: String) -> Self {
         Self { label: label.to_owned(), detail, insert }
     }
 }
 
-/// Whole entities, in the order of the grammar; of the two kinds of wheel, the one declared last comes first.
-pub(super) fn entities(place: &CursorContext<'_>) -> Vec<Completion> {
-    let defaults = Defaults::for_entity(place);
-    let mut patterns = Vec::new();
-    if place.database.entities(place.file).all(|entity| entity.parse.entity.is_none()) {
-        patterns.push(program(place));
+/// Complete entities in the order of the grammar; the kind of wheel declared last comes first.
+pub(super) fn entities(context: &CursorContext<'_>) -> Vec<Completion> {
+    let defaults = Defaults::for_entity(context);
+    let mut snippets = Vec::new();
+    if context.database.entities(context.file).all(|entity| entity.parse.entity.is_none()) {
+        snippets.push(program(context));
     }
-    if place.may_import() && !super::paths::not_imported(place.database, place.file).is_empty() {
-        patterns.push(Pattern::new("import …", "an import of another file", "import \"$1\"".to_owned()));
+    if context.may_import() && !super::paths::not_imported(context.database, context.file).is_empty() {
+        snippets.push(Snippet::new("import …", "an import of another file", "import \"$1\"".to_owned()));
     }
     let mut wheels = [wheel(&defaults, false), wheel(&defaults, true)];
     if defaults.is_last_wheel_mecanum() {
         wheels.reverse();
     }
-    patterns.extend(wheels);
-    patterns.push(Pattern::new(
+    snippets.extend(wheels);
+    snippets.push(Snippet::new(
         "sensor …",
         "a complete sensor declaration",
         format!("sensor ${{1:{}}}", defaults.next_name(EntityKind::Sensor)),
     ));
-    patterns.push(Pattern::new(
+    snippets.push(Snippet::new(
         "ip …",
         "a complete address declaration",
         format!("ip ${{1:{}}} ${{2:127.0.0.1}}", defaults.next_name(EntityKind::Ip)),
     ));
-    patterns.push(robot(place, &defaults));
-    patterns.push(movement(&defaults, ""));
-    patterns.push(movement(&defaults, "parallel "));
-    patterns.push(environment(&defaults));
-    completions(place, patterns)
+    snippets.push(robot(context, &defaults));
+    snippets.push(movement(&defaults, ""));
+    snippets.push(movement(&defaults, "parallel "));
+    snippets.push(environment(&defaults));
+    completions(context, snippets)
 }
 
-/// To start from, in an empty file.
-fn program(place: &CursorContext<'_>) -> Pattern {
-    let port = place.database.target(place.file).default_port();
+/// A complete program for an empty file.
+fn program(context: &CursorContext<'_>) -> Snippet {
+    let port = context.database.target(context.file).default_port();
     let insert = format!(
         "wheel wheelL with radius ${{4:4.5}}\n\
          wheel wheelR with radius ${{4:4.5}}\n\
@@ -67,43 +67,43 @@ fn program(place: &CursorContext<'_>) -> Pattern {
          \n\
          environment ${{3:yard}} has {{ ${{1:rover}} }} robots with {{ ${{2:patrol}} }} moves\n"
     );
-    Pattern::new("program …", "a robot on two wheels, a movement and an environment", insert)
+    Snippet::new("program …", "a two-wheel robot, a movement and an environment", insert)
 }
 
-fn wheel(defaults: &Defaults<'_>, mecanum: bool) -> Pattern {
+fn wheel(defaults: &Defaults<'_>, mecanum: bool) -> Snippet {
     let (keyword, detail) = if mecanum {
         ("wheelH", "a complete mecanum wheel declaration")
     } else {
         ("wheel", "a complete wheel declaration")
     };
     let (name, radius) = (defaults.next_name(EntityKind::Wheel), defaults.radius());
-    Pattern::new(
+    Snippet::new(
         &format!("{keyword} …"),
         detail,
         format!("{keyword} ${{1:{name}}} with radius ${{2:{radius}}}"),
     )
 }
 
-/// The wheels come right after the name: type and port are rarely changed.
-fn robot(place: &CursorContext<'_>, defaults: &Defaults<'_>) -> Pattern {
+/// The wheels are the first placeholder after the name, because type and port rarely change.
+fn robot(context: &CursorContext<'_>, defaults: &Defaults<'_>) -> Snippet {
     let layout = defaults.wheels();
     let sensors = defaults.sensors();
     let sensors = if sensors.is_empty() {
         String::new()
     } else {
-        format!(" with sensors {{ {} }}", stop(3, &sensors.join(", ")))
+        format!(" with sensors {{ {} }}", tab_stop(3, &sensors.join(", ")))
     };
     let insert = format!(
         "robot ${{1:{}}} type ${{5:{}}} with port ${{4:{}}} has {{ {} }} wheels{sensors}",
         defaults.next_name(EntityKind::Robot),
         layout.drive,
-        port(place, None).unwrap_or_default(),
-        stop(2, &layout.names.join(" ")),
+        port(context, None).unwrap_or_default(),
+        tab_stop(2, &layout.names.join(" ")),
     );
-    Pattern::new("robot …", "a complete robot declaration", insert)
+    Snippet::new("robot …", "a complete robot declaration", insert)
 }
 
-fn movement(defaults: &Defaults<'_>, parallel: &str) -> Pattern {
+fn movement(defaults: &Defaults<'_>, parallel: &str) -> Snippet {
     let detail = if parallel.is_empty() {
         "a complete movement declaration"
     } else {
@@ -112,44 +112,44 @@ fn movement(defaults: &Defaults<'_>, parallel: &str) -> Pattern {
     let insert = format!(
         "{parallel}movement ${{1:{}}} of {} {{\n  $0\n}}",
         defaults.next_name(EntityKind::Movement),
-        stop(2, &defaults.robot_to_move().unwrap_or_default()),
+        tab_stop(2, &defaults.robot_to_move().unwrap_or_default()),
     );
-    Pattern::new(&format!("{parallel}movement …"), detail, insert)
+    Snippet::new(&format!("{parallel}movement …"), detail, insert)
 }
 
-fn environment(defaults: &Defaults<'_>) -> Pattern {
+fn environment(defaults: &Defaults<'_>) -> Snippet {
     let name = defaults.next_name(EntityKind::Environment);
     let robots = defaults.robots_to_run();
     let moves = defaults.moves_of(&robots);
     let head = format!("environment {name} has {{ {} }} robots with ", robots.join(" "));
-    // As the canonical layout has it: a list that does not fit on the line gets a line for each of its names.
+    // As in the canonical layout, a list that does not fit on the line has one name per line.
     let fits = head.len() + moves.join(" ").len() + "{  } moves".len() <= pydslrep_syntax::COLUMNS;
     let moves = if fits {
-        format!("{{ {} }} moves", stop(3, &moves.join(" ")))
+        format!("{{ {} }} moves", tab_stop(3, &moves.join(" ")))
     } else {
-        format!("{{\n  {}\n}} moves", stop(3, &moves.join("\n  ")))
+        format!("{{\n  {}\n}} moves", tab_stop(3, &moves.join("\n  ")))
     };
-    let robots = stop(2, &robots.join(" "));
+    let robots = tab_stop(2, &robots.join(" "));
     let insert = format!("environment ${{1:{name}}} has {{ {robots} }} robots with {moves}");
-    Pattern::new("environment …", "a complete environment declaration", insert)
+    Snippet::new("environment …", "a complete environment declaration", insert)
 }
 
-/// Whole actions, those like the last action of their kind first.
-pub(super) fn actions(place: &CursorContext<'_>) -> Vec<Completion> {
-    let defaults = Defaults::for_part(place);
+/// Complete actions, those like the last action of their kind first.
+pub(super) fn actions(context: &CursorContext<'_>) -> Vec<Completion> {
+    let defaults = Defaults::for_part(context);
     let (moves, turns) = (moves(&defaults), turns(&defaults));
-    // Turns and moves mostly take turns.
-    let patterns = if defaults.follows_a_move() { [turns, moves] } else { [moves, turns] };
-    completions(place, patterns.into_iter().flatten().collect())
+    // Moves and turns usually alternate.
+    let snippets = if defaults.follows_a_move() { [turns, moves] } else { [moves, turns] };
+    completions(context, snippets.into_iter().flatten().collect())
 }
 
-fn moves(defaults: &Defaults<'_>) -> Vec<Pattern> {
+fn moves(defaults: &Defaults<'_>) -> Vec<Snippet> {
     let last = defaults.last_move();
     let mut shapes =
         [(Unit::Meters, false), (Unit::Centimeters, false), (Unit::Meters, true), (Unit::Centimeters, true)];
     shapes.sort_by_key(|(unit, with_speed)| (*unit != last.unit, *with_speed != last.speed.is_some()));
     let speed = defaults.speed();
-    let pattern = |(unit, with_speed): (Unit, bool)| {
+    let snippet = |(unit, with_speed): (Unit, bool)| {
         let (word, other) = match unit {
             Unit::Meters => (TokenKind::Meters, "1.0"),
             Unit::Centimeters => (TokenKind::Centimeters, "50"),
@@ -159,15 +159,15 @@ fn moves(defaults: &Defaults<'_>) -> Vec<Pattern> {
         let insert = format!("move ${{1:{distance}}} {word}");
         if with_speed {
             let label = format!("move … {word} at …");
-            Pattern::new(&label, "straight ahead at this speed (cm/s)", format!("{insert} at ${{2:{speed}}}"))
+            Snippet::new(&label, "straight ahead at this speed (cm/s)", format!("{insert} at ${{2:{speed}}}"))
         } else {
-            Pattern::new(&format!("move … {word}"), "straight ahead", insert)
+            Snippet::new(&format!("move … {word}"), "straight ahead", insert)
         }
     };
-    shapes.map(pattern).into()
+    shapes.map(snippet).into()
 }
 
-fn turns(defaults: &Defaults<'_>) -> Vec<Pattern> {
+fn turns(defaults: &Defaults<'_>) -> Vec<Snippet> {
     let last = defaults.last_turn();
     let sensors = defaults.sensors_to_wait_for();
     let shapes = [Direction::Left, Direction::Right]
@@ -180,27 +180,27 @@ fn turns(defaults: &Defaults<'_>) -> Vec<Pattern> {
     };
     shapes.sort_by_key(is_unlike);
     let angle = last.angle.as_deref().unwrap_or("90");
-    let pattern = |(direction, with_angle)| {
+    let snippet = |(direction, with_angle)| {
         let word = spelling(direction);
         if with_angle {
             let label = format!("turn {word} …");
-            Pattern::new(&label, "in place by this angle (degrees)", format!("turn {word} ${{1:{angle}}}"))
+            Snippet::new(&label, "in place by this angle (degrees)", format!("turn {word} ${{1:{angle}}}"))
         } else {
-            Pattern::new(&format!("turn {word}"), "in place by 90 degrees", format!("turn {word}"))
+            Snippet::new(&format!("turn {word}"), "in place by 90 degrees", format!("turn {word}"))
         }
     };
-    let mut patterns: Vec<Pattern> = shapes.into_iter().map(pattern).collect();
+    let mut snippets: Vec<Snippet> = shapes.into_iter().map(snippet).collect();
     if sensors.is_empty() {
-        return patterns;
+        return snippets;
     }
     let word = spelling(last.direction);
-    let until = Pattern::new(
+    let until = Snippet::new(
         &format!("turn {word} until …"),
         "in place until no sensor detects an obstacle",
-        format!("turn {word} until {{ {} }}", stop(1, &sensors.join(", "))),
+        format!("turn {word} until {{ {} }}", tab_stop(1, &sensors.join(", "))),
     );
-    patterns.insert(if last.is_until { 0 } else { patterns.len() }, until);
-    patterns
+    snippets.insert(if last.is_until { 0 } else { snippets.len() }, until);
+    snippets
 }
 
 fn spelling(direction: Direction) -> &'static str {
@@ -211,33 +211,33 @@ fn spelling(direction: Direction) -> &'static str {
     token.spelling().unwrap_or_default()
 }
 
-/// The clause that a move can end with.
-pub(super) fn speed(place: &CursorContext<'_>) -> Vec<Completion> {
-    let insert = format!("at ${{1:{}}}", Defaults::for_part(place).speed());
-    completions(place, vec![Pattern::new("at …", "a speed (cm/s)", insert)])
+/// The optional speed clause of a `move`.
+pub(super) fn speed(context: &CursorContext<'_>) -> Vec<Completion> {
+    let insert = format!("at ${{1:{}}}", Defaults::for_part(context).speed());
+    completions(context, vec![Snippet::new("at …", "a speed (cm/s)", insert)])
 }
 
-/// A place for the person to fill in, with what it is likely to be, if anything.
-pub(super) fn stop(number: u32, likely: &str) -> String {
-    if likely.is_empty() { format!("${number}") } else { format!("${{{number}:{likely}}}") }
+/// A tab stop with a default, if any.
+pub(super) fn tab_stop(number: u32, default: &str) -> String {
+    if default.is_empty() { format!("${number}") } else { format!("${{{number}:{default}}}") }
 }
 
-fn completions(place: &CursorContext<'_>, patterns: Vec<Pattern>) -> Vec<Completion> {
-    let completion = |pattern: Pattern| Completion {
-        detail: pattern.detail.to_owned(),
+fn completions(context: &CursorContext<'_>, snippets: Vec<Snippet>) -> Vec<Completion> {
+    let completion = |snippet: Snippet| Completion {
+        detail: snippet.detail.to_owned(),
         documentation: Documentation::Text(format!(
             "```pydslrep\n{}\n```",
-            without_stops(&pattern.insert).trim_end()
+            plain_text(&snippet.insert).trim_end()
         )),
-        is_snippet: pattern.insert.contains('$'),
-        insert: pattern.insert,
-        ..place.item(&pattern.label, CompletionKind::Snippet, Rank::Pattern)
+        is_snippet: snippet.insert.contains('$'),
+        insert: snippet.insert,
+        ..context.item(&snippet.label, CompletionKind::Snippet, Rank::Snippet)
     };
-    patterns.into_iter().map(completion).collect()
+    snippets.into_iter().map(completion).collect()
 }
 
-/// A snippet as plain text: `${1:name}` becomes `name`, `$0` nothing.
-pub(super) fn without_stops(snippet: &str) -> String {
+/// A snippet as plain text: `${1:name}` becomes `name`, `$0` the empty string.
+pub(super) fn plain_text(snippet: &str) -> String {
     let mut plain = String::with_capacity(snippet.len());
     let mut depth = 0_u32;
     let mut characters = snippet.chars().peekable();
@@ -268,12 +268,12 @@ mod tests {
     use crate::{CompletionTrigger, completions};
 
     #[test]
-    fn stops_leave_their_text() {
-        assert_eq!(without_stops("a ${1:b} {\n  $0\n}"), "a b {\n  \n}");
-        assert_eq!(without_stops("{ $1 } ${2:a ${3:b}} \\$ \\}"), "{  } a b $ }");
+    fn tab_stops_leave_their_default() {
+        assert_eq!(plain_text("a ${1:b} {\n  $0\n}"), "a b {\n  \n}");
+        assert_eq!(plain_text("{ $1 } ${2:a ${3:b}} \\$ \\}"), "{  } a b $ }");
     }
 
-    /// What patterns of these labels insert.
+    /// The text that the snippets with these labels insert.
     fn check(fixture: &str, labels: &[&str], expected: &Expect) {
         let (database, position) = at_cursor(fixture);
         let items = completions(&database, position, CompletionTrigger::Invoked, 9.0);
@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn entities_continue_what_is_declared_above() {
+    fn entities_continue_the_declarations_above() {
         let wheels =
             "wheelH wheelR0 with radius 6\nwheelH wheelL0 with radius 6\nwheelH wheelR1 with radius 6.5\n";
         check(
@@ -324,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn a_long_list_has_a_line_for_each_name() {
+    fn a_long_list_has_one_name_per_line() {
         let movement = |number: u32| format!("movement along_the_fence_{number} of rover {{ slam }}\n");
         let movements: String = (1..5).map(movement).collect();
         check(
@@ -342,7 +342,7 @@ mod tests {
     }
 
     #[test]
-    fn actions_are_like_those_before() {
+    fn actions_resemble_the_previous_ones() {
         let before = "movement m of rover { move 50 centimeters at 12.5 turn right 45";
         check(
             &format!("{PARTS}{before} $0"),
@@ -365,17 +365,17 @@ mod tests {
     }
 
     #[test]
-    fn every_pattern_is_a_program_once_it_is_filled_in() {
+    fn every_snippet_parses_with_its_defaults() {
         let entity = PARTS.to_owned() + "$0";
         let action = format!("{PARTS}movement m of rover {{ $0 }}");
         let speed = format!("{PARTS}movement m of rover {{ move 2 meters $0 }}");
         for fixture in [entity, action, speed] {
             let (database, position) = at_cursor(&fixture);
             let items = completions(&database, position, CompletionTrigger::Invoked, 9.0);
-            let patterns: Vec<_> = items.iter().filter(|item| item.kind == CompletionKind::Snippet).collect();
-            assert!(!patterns.is_empty());
-            for pattern in patterns {
-                let text = fixture.replace("$0", &without_stops(&pattern.insert));
+            let snippets: Vec<_> = items.iter().filter(|item| item.kind == CompletionKind::Snippet).collect();
+            assert!(!snippets.is_empty());
+            for snippet in snippets {
+                let text = fixture.replace("$0", &plain_text(&snippet.insert));
                 for (_, parse) in pydslrep_syntax::parse(&text) {
                     assert_eq!(parse.errors, [], "{text}");
                 }

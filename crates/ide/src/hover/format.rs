@@ -1,8 +1,8 @@
-//! Figures as people write them.
+//! Numbers, poses and durations as text.
 
 use pydslrep_kinematics::{Pose, heading_degrees};
 
-/// A number with at most `places` digits behind the point, and no more than it needs.
+/// A number with at most `places` decimals, without trailing zeros.
 pub(crate) fn number(value: f64, places: usize) -> String {
     let fixed = format!("{value:.places$}");
     let trimmed =
@@ -16,21 +16,20 @@ pub(crate) fn pose(pose: &Pose) -> String {
     format!("({} m, {} m, {degrees}°)", number(pose.x, 3), number(pose.y, 3))
 }
 
-/// A number with fixed decimals, and no minus before zero. The minus sign is the one that programs are written with.
+/// A number with fixed decimals, and no minus before zero. The minus sign is ASCII, as in programs.
 pub(crate) fn fixed(value: f64, places: usize) -> String {
     let digits = format!("{:.places$}", value.abs());
     let is_zero = digits.chars().all(|c| c == '0' || c == '.');
     if value < 0.0 && !is_zero { format!("-{digits}") } else { digits }
 }
 
-/// `1.00, -0.50, 90°`: a pose as short as it can be, in centimetres' digits as the preview has it, and in the order in
-/// which a scene file says where a robot starts.
+/// `1.00, -0.50, 90°`: a short pose, rounded to centimetres as in the preview, in the order of `start` in a scene file.
 pub(crate) fn short_pose(pose: &Pose) -> String {
     let degrees = number(heading_degrees(pose.theta, 1), 1);
     format!("{}, {}, {degrees}°", fixed(pose.x, 2), fixed(pose.y, 2))
 }
 
-/// `12.3 s`, from a minute on with minutes; as in the preview (`webview/preview/format.ts`).
+/// `12.3 s`, or with minutes from one minute on, as in the preview (`webview/preview/format.ts`).
 pub(crate) fn time(seconds: f64) -> String {
     const MINUTE: f64 = 600.0;
     let tenths = (seconds * 10.0).round();
@@ -42,7 +41,7 @@ pub(crate) fn time(seconds: f64) -> String {
     format!("{} min {} s", fixed((tenths / MINUTE).floor(), 0), fixed(rest, places))
 }
 
-/// Names as code, with commas.
+/// Names as inline code, separated by commas.
 pub(crate) fn names<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     names.into_iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
@@ -52,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_are_those_of_the_preview() {
+    fn durations_match_the_preview() {
         let shown: Vec<String> =
             [0.0, 11.0, 44.62, 59.94, 59.96, 111.14, 600.0, 605.25].into_iter().map(time).collect();
         assert_eq!(

@@ -1,4 +1,4 @@
-//! Actions, movements and environments: where they lead and how long that takes.
+//! Actions, movements and environments: their poses and durations.
 
 use pydslrep_analysis::environment::{Action, ActionKind, Environment, Movement, Robot};
 use pydslrep_analysis::{Database, EntityId, plan, plan_movement, scene};
@@ -13,26 +13,26 @@ pub(super) fn action(database: &Database, id: EntityId, index: usize) -> Option<
     let (robot, movement) = database.movement_start(id, index + 1)?;
     let path = plan_movement(&robot, &movement).ok()?;
     let text = &movement.actions.get(index)?.text;
-    Some(format!("```pydslrep\n{text}\n```\n{}", action_facts(&robot, &movement, &path, index)))
+    Some(format!("```pydslrep\n{text}\n```\n{}", describe_action(&robot, &movement, &path, index)))
 }
 
-/// What there is to say of an action of a movement with its planned path.
-fn action_facts(robot: &Robot, movement: &Movement, path: &RobotPath, index: usize) -> String {
+/// The details of an action, given the planned path of its movement.
+fn describe_action(robot: &Robot, movement: &Movement, path: &RobotPath, index: usize) -> String {
     let Some(leg) = leg(robot, movement, path, index) else {
         let is_cause = path.unknown_after.is_none_or(|cause| cause.action == index);
-        let what = if is_cause { "ends" } else { "starts" };
-        return format!("Where it {what} cannot be planned: {}.", why_unknown(movement, path, index));
+        let end = if is_cause { "end" } else { "start" };
+        return format!("The {end} pose cannot be planned: {}.", unknown_reason(movement, path, index));
     };
     let poses = if index < path.legs.len() {
         poses_of(&leg)
     } else {
-        format!("Where it starts cannot be planned: {}.", why_unknown(movement, path, index))
+        format!("The start pose cannot be planned: {}.", unknown_reason(movement, path, index))
     };
-    leg_facts(robot, &leg, &poses)
+    describe_leg(robot, &leg, &poses)
 }
 
-/// What there is to say of a drive, with what there is to say of its poses.
-pub(crate) fn leg_facts(robot: &Robot, leg: &Leg, poses: &str) -> String {
+/// The details of a leg; `poses` describes its poses.
+pub(crate) fn describe_leg(robot: &Robot, leg: &Leg, poses: &str) -> String {
     let rates: Vec<String> = robot
         .wheels
         .iter()
@@ -42,13 +42,13 @@ pub(crate) fn leg_facts(robot: &Robot, leg: &Leg, poses: &str) -> String {
     format!("Takes {}. {poses}\n\nWheel rates: {}.", time(leg.duration), rates.join(", "))
 }
 
-/// From where to where a drive leads.
+/// The poses at the start and end of a leg.
 pub(crate) fn poses_of(leg: &Leg) -> String {
-    format!("From {} to {}, counted from where the movement starts.", pose(&leg.from), pose(&leg.to))
+    format!("From {} to {}, relative to the start of the movement.", pose(&leg.from), pose(&leg.to))
 }
 
-/// The drive of an action, planned alone where the movement's path does not reach it: how long it takes is known then
-/// too. `None` where only the world decides when it ends.
+/// The leg of an action. Beyond the end of the planned path the action is planned alone, since its duration is still
+/// known. `None` if its end depends on the world.
 fn leg(robot: &Robot, movement: &Movement, path: &RobotPath, index: usize) -> Option<Leg> {
     if let Some(leg) = path.legs.get(index) {
         return Some(leg.clone());
@@ -58,21 +58,21 @@ fn leg(robot: &Robot, movement: &Movement, path: &RobotPath, index: usize) -> Op
     plan_movement(robot, &alone).ok()?.legs.pop()
 }
 
-/// Why the pose behind an action is unknown.
-fn why_unknown(movement: &Movement, path: &RobotPath, index: usize) -> String {
+/// Why the pose after an action is unknown.
+fn unknown_reason(movement: &Movement, path: &RobotPath, index: usize) -> String {
     let cause = path.unknown_after.map_or(index, |cause| cause.action);
-    movement.actions.get(cause).map_or_else(|| "an action before it has an open end".to_owned(), open_end)
+    movement.actions.get(cause).map_or_else(|| "an earlier action has an unknown end".to_owned(), open_end)
 }
 
 fn open_end(action: &Action) -> String {
-    why_open(&action.kind, &action.text)
+    open_end_reason(&action.kind, &action.text)
 }
 
-/// Why only the world decides where an action ends.
-pub(crate) fn why_open(kind: &ActionKind, text: &str) -> String {
+/// Why the end of an action depends on the world.
+pub(crate) fn open_end_reason(kind: &ActionKind, text: &str) -> String {
     match kind {
-        ActionKind::Slam => "`slam` goes where the world lets it".to_owned(),
-        _ => format!("`{text}` ends when the way is free"),
+        ActionKind::Slam => "the path of `slam` depends on what it explores".to_owned(),
+        _ => format!("`{text}` ends when the way is clear"),
     }
 }
 
@@ -97,11 +97,11 @@ pub(super) fn movement(database: &Database, id: EntityId) -> Option<String> {
     text += &match path.unknown_after {
         None => {
             let seconds = path.legs.iter().map(|leg| leg.duration).sum();
-            format!(" in {}. It ends at {} from where it starts.", time(seconds), pose(&path.end()))
+            format!(" in {}. It ends at {} relative to its start.", time(seconds), pose(&path.end()))
         }
         Some(cause) => {
             let action = movement.actions.get(cause.action).map_or("", |action| action.text.as_str());
-            format!(". Its end cannot be planned, because of `{action}`.")
+            format!(". Its end cannot be planned because of `{action}`.")
         }
     };
     Some(format!("{text}\n\n{}", used_by(database, id, EntityKind::Movement)))
@@ -110,28 +110,31 @@ pub(super) fn movement(database: &Database, id: EntityId) -> Option<String> {
 pub(super) fn environment(database: &Database, id: EntityId) -> Option<String> {
     let environment = match database.environment(id) {
         Ok(environment) => environment,
-        Err(blocked) => return Some(format!("It cannot run yet: {}.", blocked.reason())),
+        Err(blocked) => return Some(format!("Cannot run yet: {}.", blocked.reason())),
     };
-    // While something is wrong with the scene, that is said there.
+    // Errors in the scene are reported in its own file.
     let scene = database.scene(id, &environment).unwrap_or_else(|_| scene(&environment));
     let plan = plan(&environment, &scene).ok()?;
     let robots = names(environment.robots.iter().map(|robot| robot.name.as_str()));
-    let total = plan.duration.map_or_else(|| "a time that cannot be planned".to_owned(), time);
+    let total = plan.duration.map_or_else(
+        || "duration unknown until it runs".to_owned(),
+        |seconds| format!("takes {}", time(seconds)),
+    );
     let mut text =
-        format!("Runs {robots}; takes {total}.\n\n| from | to | robot | movement |\n|---|---|---|---|\n");
+        format!("Runs {robots}; {total}.\n\n| from | to | robot | movement |\n|---|---|---|---|\n");
     for (group, runs) in environment.schedule.iter().enumerate() {
         for (run, movement) in runs.iter().enumerate() {
             text += &row(&environment, &plan, group, run, *movement)?;
         }
     }
     if environment.schedule.is_empty() {
-        text = format!("Runs {robots}, but lists no movements: nothing drives.");
+        text = format!("Runs {robots} but lists no movements.");
     }
     text += &unknown(&environment, &plan);
     Some(text)
 }
 
-/// Since where and why times and poses are unknown, robot by robot.
+/// Why and from where on poses and times are unknown, for each robot.
 fn unknown(environment: &Environment, plan: &Plan) -> String {
     let line = |(robot, path): (&Robot, &RobotPath)| {
         let cause = path.unknown_after?;
@@ -140,7 +143,7 @@ fn unknown(environment: &Environment, plan: &Plan) -> String {
         let why = open_end(movement.actions.get(cause.action)?);
         let (robot, movement) = (&robot.name, &movement.name);
         Some(format!(
-            "\nUnknown from there in `{movement}` on: {why}, so where `{robot}` then is, and when anything after it begins, cannot be planned.\n"
+            "\nIn `{movement}`, {why}. Later poses of `{robot}` and start times of later movements are unknown.\n"
         ))
     };
     environment.robots.iter().zip(&plan.robots).filter_map(line).collect()
@@ -158,7 +161,7 @@ fn row(environment: &Environment, plan: &Plan, group: usize, run: usize, movemen
     Some(format!("| {} | {} | `{}` | `{}` |\n", cell(start), cell(end), robot.name, movement.name))
 }
 
-/// Whether a run ends at a planned time: nothing of it is unknown.
+/// Whether the end time of a run is planned.
 fn ends(path: &RobotPath, group: usize, run: usize) -> bool {
     path.unknown_after.is_none_or(|cause| (cause.group, cause.run) > (group, run))
 }

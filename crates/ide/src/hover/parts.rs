@@ -17,7 +17,7 @@ pub(super) fn wheel(database: &Database, id: EntityId) -> Option<String> {
     let kind = if wheel.mecanum { "Mecanum wheel" } else { "Wheel" };
     let (radius, circumference) = (number(radius, 3), number(radius * TAU, 1));
     Some(format!(
-        "{kind}: radius {radius} cm, {circumference} cm a turn. {}",
+        "{kind}: radius {radius} cm, {circumference} cm per revolution. {}",
         used_by(database, id, EntityKind::Wheel)
     ))
 }
@@ -25,8 +25,8 @@ pub(super) fn wheel(database: &Database, id: EntityId) -> Option<String> {
 pub(super) fn sensor(database: &Database, id: EntityId) -> Option<String> {
     let Entity::Sensor(sensor) = database.tree(id)? else { return None };
     let kind = match sensor.kind {
-        Some((SensorKind::Bumper, _)) => "Bumper: feels an obstacle at contact.",
-        _ => "Distance sensor: sees an obstacle ahead of it.",
+        Some((SensorKind::Bumper, _)) => "Bumper: detects an obstacle on contact.",
+        _ => "Distance sensor: detects obstacles ahead.",
     };
     Some(format!("{kind} {}", used_by(database, id, EntityKind::Sensor)))
 }
@@ -67,7 +67,7 @@ fn positions(drive: Drive) -> &'static [&'static str] {
     }
 }
 
-/// The inverse kinematics with this robot's radius; distances are read from the scene, so they stay letters.
+/// The inverse kinematics with this robot's radius. Other lengths come from the scene, so they stay symbols.
 fn equations(robot: &Robot) -> String {
     let radius = robot.wheels.first().map_or_else(String::new, |wheel| number(wheel.radius, 4));
     let lines: &[&str] = match robot.drive {
@@ -93,39 +93,36 @@ fn equations(robot: &Robot) -> String {
         Drive::FourWheel => {
             let scrub = scrub_factor(robot.drive, geometry, defaults::grip(robot.drive));
             let wide = number(scrub * geometry.track, 3);
-            format!(
-                "d = {wide} m (track {track} m, times {} for what tyres scrub in turns)",
-                number(scrub, 2)
-            )
+            format!("d = {wide} m (track {track} m × {} for tyre scrub in turns)", number(scrub, 2))
         }
     };
     format!(
-        "\nWheel rates in rad/s:\n```text\n{}\n```\nr = {radius} m, {lengths} unless the scene says otherwise.\n",
+        "\nWheel rates in rad/s:\n```text\n{}\n```\nr = {radius} m, {lengths} unless the scene overrides them.\n",
         lines.join("\n")
     )
 }
 
-/// More users than these are counted, not named.
-const MOST_USERS: usize = 12;
+/// The maximum number of users that are named; the others are counted.
+const MAX_USERS: usize = 12;
 
-/// Who uses an entity, in its own file and in those that import it.
+/// The users of an entity, in its own file and in those that import it.
 pub(super) fn used_by(database: &Database, id: EntityId, kind: EntityKind) -> String {
     let name = database.tree(id).and_then(Entity::name).map(|name| &name.text);
     let (Some(home), Some(name)) = (database.file_of(id), name) else { return String::new() };
-    let means_it = |file: &FileId| {
+    let resolves_here = |file: &FileId| {
         database.resolve(*file, kind, name).entity().and_then(|id| database.file_of(id)) == Some(home)
     };
-    let files = std::iter::once(home).chain(database.importing(home).into_iter().filter(means_it));
+    let files = std::iter::once(home).chain(database.importing(home).into_iter().filter(resolves_here));
     let users = files.flat_map(|file| database.users(file, kind, name));
     let mut users: Vec<&str> =
         users.filter_map(|user| database.tree(*user)?.name()).map(|name| name.text.as_str()).collect();
     users.sort_unstable();
     users.dedup();
     if users.is_empty() {
-        return "Nothing here uses it.".to_owned();
+        return "Unused.".to_owned();
     }
-    let more = users.len().saturating_sub(MOST_USERS);
-    users.truncate(MOST_USERS);
+    let more = users.len().saturating_sub(MAX_USERS);
+    users.truncate(MAX_USERS);
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
     format!("Used by {}{more}.", names(users))
 }

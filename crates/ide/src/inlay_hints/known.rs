@@ -1,7 +1,7 @@
-//! What was last known of movements, so that poses stay while something is broken.
+//! The last valid state of movements, so that poses stay visible while the program has errors.
 //!
-//! A movement is a list of steps: its actions, and what is broken between them. While an action is broken, the first step
-//! after it goes on from the pose it went on from before; all further ones are planned from there.
+//! A movement is a list of steps: its actions, and invalid code between them. The first step after invalid code starts
+//! from its last known pose; the following ones are planned from there.
 
 use pydslrep_analysis::environment::{ActionKind, Robot};
 use pydslrep_analysis::{Database, Driver, FileId};
@@ -12,29 +12,29 @@ use smol_str::SmolStr;
 
 use super::{InlayHint, lines};
 
-/// More than a screen shows: of a whole long file nothing is kept.
-const MOST_HINTS: usize = 2_000;
+/// More than any screen shows: for larger requests no lines are kept.
+const MAX_HINTS: usize = 2_000;
 
-/// The movements of one file as they were when hints were last asked for, by name. Whoever keeps it beside a text that is
-/// edited and hands it over again gets hints that outlast a mistake.
+/// The movements of one file at the last request for hints, by name. Keep it with the open document and pass it to each
+/// request, so that hints survive errors.
 #[derive(Debug, Default)]
 pub struct KnownMovements {
     by_name: FxHashMap<SmolStr, Known>,
-    /// The lines that had hints.
+    /// The lines with hints.
     lines: Vec<KnownLine>,
 }
 
-/// A line with its hints, whose places count from its start.
+/// A line with its hints; their offsets are relative to the start of the line.
 #[derive(Debug)]
 struct KnownLine {
     text: String,
     hints: Vec<InlayHint>,
 }
 
-/// A movement as it was.
+/// The last state of a movement.
 #[derive(Debug)]
 struct Known {
-    /// The last one that was complete.
+    /// The last valid robot.
     robot: Robot,
     steps: Vec<KnownStep>,
 }
@@ -48,48 +48,48 @@ struct KnownStep {
 /// A part of a movement's body.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Step {
-    /// An action that is understood.
+    /// A valid action.
     Action(ActionKind),
-    /// Something that is not.
+    /// Invalid code.
     Broken,
 }
 
-/// What is known of one step.
+/// The plan of one step.
 #[derive(Debug)]
 pub(super) struct Planned {
-    /// Its drive; `None` where only the world decides, or nobody knows. Where poses are unknown they count for nothing.
+    /// Its leg; `None` if the end depends on the world or on invalid code. The poses are only valid for [`Start::At`].
     pub(super) leg: Option<Leg>,
-    /// What is known of the pose it starts from.
+    /// Its start pose.
     pub(super) start: Start,
 }
 
-/// What is known of the pose that a step starts from.
+/// The start pose of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Start {
-    /// It is planned, or was before something broke.
+    /// Planned, now or in the last valid version.
     At { pose: Pose, is_old: bool },
-    /// It depends on the world since the step with this number.
+    /// Depends on the world, from the step with this index on.
     Open { since: usize },
-    /// It depends on something that is broken.
+    /// Depends on invalid code.
     Broken,
 }
 
-/// How a movement drives.
+/// The plan of a movement.
 #[derive(Debug)]
 pub(super) struct Route {
-    /// Its robot, or the last one that was complete.
+    /// Its robot, or the last valid one.
     pub(super) robot: Robot,
-    /// One for each step.
+    /// One per step.
     pub(super) steps: Vec<Planned>,
 }
 
 impl KnownMovements {
-    /// The robot that a movement had when it last had one.
+    /// The last valid robot of a movement.
     pub(super) fn robot(&self, name: &SmolStr) -> Option<&Robot> {
         self.by_name.get(name).map(|known| &known.robot)
     }
 
-    /// Plans a movement; `robot` is `None` while its own is broken. Remembers the outcome.
+    /// Plans a movement and remembers the result; `robot` is `None` while the current one is invalid.
     pub(super) fn plan(&mut self, name: &SmolStr, robot: Option<Robot>, steps: Vec<Step>) -> Option<Route> {
         let before = self.by_name.remove(name);
         let live = robot.and_then(|robot| Some((Driver::new(&robot).ok()?, robot, false)));
@@ -112,15 +112,15 @@ impl KnownMovements {
         Some(Route { robot, steps: planned })
     }
 
-    /// Gives the lines that what is typed above them has spoilt the hints that they had. Remembers all hints.
-    pub(super) fn recall(
+    /// Restores the last hints of the lines that an edit above them invalidates, and remembers all hints.
+    pub(super) fn restore(
         &mut self,
         database: &Database,
         file: FileId,
-        spoilt: &[Span],
+        affected: &[Span],
         hints: &mut Vec<InlayHint>,
     ) {
-        if hints.len() > MOST_HINTS {
+        if hints.len() > MAX_HINTS {
             self.lines.clear();
             return;
         }
@@ -134,7 +134,7 @@ impl KnownMovements {
                 now.push((line.start, KnownLine { text: database.slice(file, line), hints: vec![hint] }));
             }
         }
-        for line in spoilt {
+        for line in affected {
             let place = now.partition_point(|(start, _)| *start < line.start);
             if now.get(place).is_some_and(|(start, _)| *start == line.start) {
                 continue;
@@ -142,10 +142,11 @@ impl KnownMovements {
             let text = database.slice(file, *line);
             let equal = now[..place].iter().filter(|(_, known)| known.text == text).count();
             if let Some(former) = self.lines.iter().filter(|known| known.text == text).nth(equal) {
-                let back = former.hints.iter();
-                let back = back.map(|hint| InlayHint { offset: hint.offset + line.start, ..hint.clone() });
+                let restored = former.hints.iter();
+                let restored =
+                    restored.map(|hint| InlayHint { offset: hint.offset + line.start, ..hint.clone() });
                 let at = hints.partition_point(|hint| hint.offset < line.start);
-                hints.splice(at..at, back);
+                hints.splice(at..at, restored);
                 now.insert(place, (line.start, KnownLine { text, hints: former.hints.clone() }));
             }
         }
@@ -157,8 +158,8 @@ impl KnownMovements {
         self.by_name.len()
     }
 
-    /// Forgets movements that are no longer there, once they are many.
-    pub(super) fn tidy(&mut self, movements: u32, is_there: impl Fn(&SmolStr) -> bool) {
+    /// Drops removed movements once there are many.
+    pub(super) fn evict(&mut self, movements: u32, is_there: impl Fn(&SmolStr) -> bool) {
         if self.by_name.len() > 2 * movements as usize + 16 {
             self.by_name.retain(|name, _| is_there(name));
         }
@@ -200,7 +201,7 @@ fn drive(driver: &Driver, action: &ActionKind, start: Start, index: usize) -> (O
     (leg, next)
 }
 
-/// Which step was which, as far as the two lists begin and end alike: what was changed since lies in between.
+/// Maps steps to their last version by the common prefix and suffix of both lists; the changes are in between.
 struct Former<'a> {
     known: &'a [KnownStep],
     count: usize,
@@ -217,7 +218,7 @@ impl<'a> Former<'a> {
         Self { known, count: steps.len(), head, tail }
     }
 
-    /// Where a step started before; also the first of those that were changed, for it goes on from the same step.
+    /// The last start pose of a step; also for the first changed one, whose predecessor is unchanged.
     fn start_of(&self, index: usize) -> Option<Pose> {
         let former = if index <= self.head {
             index

@@ -1,11 +1,11 @@
-//! What the refactorings of movements share.
+//! Helpers for refactorings of movements.
 
 use pydslrep_syntax::ast::{Action, ActionKind, Entity, Move, Movement};
 
-use super::Place;
+use super::Selection;
 
-impl<'a> Place<'a> {
-    /// The movement that the selection is in.
+impl<'a> Selection<'a> {
+    /// The selected movement.
     pub(super) fn movement(&self) -> Option<&'a Movement> {
         match self.entity.parse.entity.as_ref()? {
             Entity::Movement(movement) => Some(movement),
@@ -13,14 +13,14 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// The moves of the movement that the selection touches; with an empty one between two, both.
+    /// The selected `move` actions; a cursor between two selects both.
     pub(super) fn selected_moves(&self) -> Vec<&'a Move> {
         let actions = self.movement().map_or(&[][..], |movement| &movement.actions);
         moves(actions.iter().filter(|action| self.touches(action.span))).collect()
     }
 }
 
-/// Those actions that are moves.
+/// The `move` actions among some actions.
 pub(super) fn moves<'a>(actions: impl IntoIterator<Item = &'a Action>) -> impl Iterator<Item = &'a Move> {
     actions.into_iter().filter_map(|action| match &action.kind {
         ActionKind::Move(step) => Some(step),

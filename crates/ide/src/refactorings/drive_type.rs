@@ -1,29 +1,29 @@
-//! Add a missing `type`: the one that the wheels make it.
+//! Add a missing `type`, inferred from the wheels.
 
 use pydslrep_analysis::Database;
 use pydslrep_kinematics::Drive;
 use pydslrep_syntax::ast::{DriveWord, Entity, Name, Robot};
 use pydslrep_syntax::{EntityKind, Span};
 
-use super::{Place, Refactoring, RefactoringKind};
+use super::{Refactoring, RefactoringKind, Selection};
 use crate::cursor::resolved;
 
-/// The offer for a robot without a type whose wheels leave no doubt.
-pub(super) fn add(place: &Place<'_>) -> Option<Refactoring> {
-    let Some(Entity::Robot(robot)) = &place.entity.parse.entity else { return None };
-    let word = inferred(place, robot)?.spelling();
-    let edit = place.edit(Span::at(robot.name.as_ref()?.span.end), format!(" type {word}"));
+/// The refactoring for a robot without a type, if its wheels determine it.
+pub(super) fn add(selection: &Selection<'_>) -> Option<Refactoring> {
+    let Some(Entity::Robot(robot)) = &selection.entity.parse.entity else { return None };
+    let word = inferred(selection, robot)?.spelling();
+    let edit = selection.edit(Span::at(robot.name.as_ref()?.span.end), format!(" type {word}"));
     Some(Refactoring::new(format!("add `type {word}`"), RefactoringKind::Rewrite, vec![edit]))
 }
 
-fn inferred(place: &Place<'_>, robot: &Robot) -> Option<DriveWord> {
+fn inferred(selection: &Selection<'_>, robot: &Robot) -> Option<DriveWord> {
     if robot.drive.is_some() {
         return None;
     }
     let wheels = &robot.wheels.as_ref()?.names;
     let mecanum: Vec<bool> =
-        wheels.iter().map(|name| is_mecanum(place.database, place, name)).collect::<Option<_>>()?;
-    let word = match place.database.drive(place.entity.id)? {
+        wheels.iter().map(|name| is_mecanum(selection.database, selection, name)).collect::<Option<_>>()?;
+    let word = match selection.database.drive(selection.entity.id)? {
         Drive::TwoWheel => DriveWord::Tw,
         Drive::FourWheel => DriveWord::Fw,
         Drive::FourMecanum => DriveWord::Fwh,
@@ -31,8 +31,8 @@ fn inferred(place: &Place<'_>, robot: &Robot) -> Option<DriveWord> {
     mecanum.iter().all(|wheel| *wheel == (word == DriveWord::Fwh)).then_some(word)
 }
 
-fn is_mecanum(database: &Database, place: &Place<'_>, name: &Name) -> Option<bool> {
-    match resolved(database, place.file, EntityKind::Wheel, name)?.1 {
+fn is_mecanum(database: &Database, selection: &Selection<'_>, name: &Name) -> Option<bool> {
+    match resolved(database, selection.file, EntityKind::Wheel, name)?.1 {
         Entity::Wheel(wheel) => Some(wheel.mecanum),
         _ => None,
     }
@@ -45,7 +45,7 @@ mod tests {
     use crate::refactorings::testing::check_whole;
 
     #[test]
-    fn what_the_wheels_make_it() {
+    fn the_type_follows_from_the_wheels() {
         check_whole(
             "wheelH a with radius 4 wheelH b with radius 4 wheelH c with radius 4 wheelH d with radius 4\n\
              $0robot r with port 1 has { a b c d } wheels",
@@ -57,7 +57,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_where_wheels_are_mixed_or_it_has_one() {
+    fn nothing_for_mixed_wheels_or_an_explicit_type() {
         check_whole(
             "wheelH a with radius 4 wheel b with radius 4 $0robot r with port 1 has { a b } wheels",
             &expect![""],

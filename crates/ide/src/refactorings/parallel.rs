@@ -1,35 +1,35 @@
-//! Make movements parallel or sequential. Offers say which movements then start together or no longer do; none makes a
-//! robot do two things at once, and none leaves a `parallel` that means nothing.
+//! Make movements parallel or sequential. Titles say which movements then start together or one after the other. No
+//! change makes a robot run two movements at once or leaves a `parallel` without effect.
 
 use pydslrep_analysis::{Database, Edit, EntityId};
 use pydslrep_syntax::ast::{Entity, Movement};
 use pydslrep_syntax::{EntityKind, Span, TokenKind};
 
-use super::{Place, Refactoring, RefactoringKind};
+use super::{Refactoring, RefactoringKind, Selection};
 
-/// The offers for the movement whose head has the cursor.
-pub(super) fn change(place: &Place<'_>) -> Vec<Refactoring> {
-    let Some(movement) = place.movement() else { return Vec::new() };
+/// The refactorings for the movement with the cursor in its header.
+pub(super) fn change(selection: &Selection<'_>) -> Vec<Refactoring> {
+    let Some(movement) = selection.movement() else { return Vec::new() };
     let (Some(name), Some(body)) = (&movement.name, movement.body) else { return Vec::new() };
-    if place.range.start > body.start {
+    if selection.range.start > body.start {
         return Vec::new();
     }
-    let lists = Lists::of(place.database, place.entity.id);
+    let lists = Lists::of(selection.database, selection.entity.id);
     let Some(lists) = lists else { return Vec::new() };
     if movement.parallel.is_some() {
-        return vec![make_sequential(&lists, place.entity.id)];
+        return vec![make_sequential(&lists, selection.entity.id)];
     }
-    let offers = make_parallel(&lists, place.entity.id);
+    let offers = make_parallel(&lists, selection.entity.id);
     offers.unwrap_or_else(|reason| {
         let title = format!("make `{}` parallel", name.text);
-        vec![Refactoring::refused(title, RefactoringKind::Rewrite, reason)]
+        vec![Refactoring::unavailable(title, RefactoringKind::Rewrite, reason)]
     })
 }
 
 fn make_sequential(lists: &Lists<'_>, id: EntityId) -> Refactoring {
     let mut changed = vec![id];
     let mut next = 0;
-    // Who ran beside one of them and would run beside nobody any more becomes sequential, too.
+    // A neighbour that would be the only parallel movement left becomes sequential, too.
     while let Some(&id) = changed.get(next) {
         next += 1;
         for other in lists.beside(id, |id| lists.is_parallel(id)) {
@@ -66,7 +66,7 @@ fn make_parallel(lists: &Lists<'_>, id: EntityId) -> Result<Vec<Refactoring>, St
     let neighbours = lists.beside(id, |_| true);
     if neighbours.is_empty() {
         return Err(
-            "no environment lists it next to another movement that it could start together with".to_owned()
+            "no environment lists it next to a movement that it could run in parallel with".to_owned()
         );
     }
     let mut conflicts = Vec::new();
@@ -74,7 +74,7 @@ fn make_parallel(lists: &Lists<'_>, id: EntityId) -> Result<Vec<Refactoring>, St
     for other in neighbours {
         let both = [id, other];
         if Lists::of(lists.database, other).is_none() {
-            conflicts.push(format!("an environment that lists {} is not complete", lists.names(&[other])));
+            conflicts.push(format!("an environment that lists {} is incomplete", lists.names(&[other])));
             continue;
         }
         match lists.conflict(&both) {
@@ -92,19 +92,19 @@ fn make_parallel(lists: &Lists<'_>, id: EntityId) -> Result<Vec<Refactoring>, St
 /// The environments that list a movement.
 struct Lists<'a> {
     database: &'a Database,
-    /// What each lists, in order.
+    /// The movements of each list, in order.
     lists: Vec<Vec<EntityId>>,
 }
 
 impl<'a> Lists<'a> {
-    /// `None` where something in one of them cannot be understood.
+    /// `None` if one of them has errors or unresolved names.
     fn of(database: &'a Database, movement: EntityId) -> Option<Self> {
         let file = database.file_of(movement)?;
         let name = database.tree(movement)?.name()?;
         let mut seen = Vec::new();
         let mut lists = Vec::new();
-        for place in database.references(file, EntityKind::Movement, &name.text) {
-            let entity = database.entity_at(place.file, place.span.start)?;
+        for reference in database.references(file, EntityKind::Movement, &name.text) {
+            let entity = database.entity_at(reference.file, reference.span.start)?;
             let Entity::Environment(environment) = entity.parse.entity.as_ref()? else { continue };
             if seen.contains(&entity.id) {
                 continue;
@@ -116,7 +116,7 @@ impl<'a> Lists<'a> {
             let names = &environment.movements.as_ref()?.names;
             let listed = names
                 .iter()
-                .map(|name| database.resolve(place.file, EntityKind::Movement, &name.text).entity());
+                .map(|name| database.resolve(reference.file, EntityKind::Movement, &name.text).entity());
             lists.push(listed.collect::<Option<_>>()?);
         }
         Some(Self { database, lists })
@@ -133,7 +133,7 @@ impl<'a> Lists<'a> {
         self.tree(id).is_some_and(|movement| movement.parallel.is_some())
     }
 
-    /// The other movements of a kind that stand right before or behind one.
+    /// The other `wanted` movements listed right before or after a movement.
     fn beside(&self, id: EntityId, wanted: impl Fn(EntityId) -> bool) -> Vec<EntityId> {
         let mut found = Vec::new();
         for pair in self.lists.iter().flat_map(|list| list.windows(2)) {
@@ -146,7 +146,7 @@ impl<'a> Lists<'a> {
         found
     }
 
-    /// Why some movements cannot become parallel: a robot would do two things at once.
+    /// Why some movements cannot become parallel: a robot would run two of them at once.
     fn conflict(&self, changed: &[EntityId]) -> Option<String> {
         let others = changed.iter().filter_map(|id| Lists::of(self.database, *id));
         let lists: Vec<Vec<EntityId>> = others.flat_map(|lists| lists.lists).collect();
@@ -173,7 +173,7 @@ impl<'a> Lists<'a> {
         self.database.resolve(file, EntityKind::Robot, &self.tree(id)?.robot.as_ref()?.text).entity()
     }
 
-    /// In words: "`a`, `b` and `c`".
+    /// "`a`, `b` and `c`".
     fn names(&self, ids: &[EntityId]) -> String {
         let name = |id: &EntityId| self.tree(*id).and_then(|movement| movement.name.as_ref());
         let names: Vec<String> = ids.iter().filter_map(name).map(|name| format!("`{}`", name.text)).collect();
@@ -243,13 +243,13 @@ mod tests {
             "go",
             &expect![[r#"
                 Rewrite: make `go` parallel
-                  not here: no environment lists it next to another movement that it could start together with
+                  not here: no environment lists it next to a movement that it could run in parallel with
             "#]],
         );
     }
 
     #[test]
-    fn one_joins_those_that_are() {
+    fn a_movement_joins_its_parallel_neighbour() {
         let movements = "movement $0go of a { turn left }\nparallel movement come of b { turn left }";
         check(
             movements,
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn who_is_left_alone_becomes_sequential_too() {
+    fn the_last_parallel_movement_becomes_sequential_too() {
         let movements =
             "parallel movement $0go of a { turn left }\nparallel movement come of b { turn left }";
         check(

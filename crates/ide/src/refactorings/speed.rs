@@ -1,4 +1,4 @@
-//! Speeds: written out, left out where they are the default, or one for all moves of a movement.
+//! Speeds: make the default explicit, omit it, or use one speed for all moves of a movement.
 
 use pydslrep_analysis::Edit;
 use pydslrep_kinematics::motion::RIM_SPEED;
@@ -6,74 +6,84 @@ use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{Move, Number};
 
 use super::actions::moves;
-use super::{Place, Refactoring, RefactoringKind};
+use super::{Refactoring, RefactoringKind, Selection};
 
-/// Offers for the moves that are selected, and for all moves of the movement.
-pub(super) fn spell(place: &Place<'_>) -> Vec<Refactoring> {
-    let Some(movement) = place.movement() else { return Vec::new() };
+/// The refactorings for the selected moves, and for all moves of the movement.
+pub(super) fn refactorings(selection: &Selection<'_>) -> Vec<Refactoring> {
+    let Some(movement) = selection.movement() else { return Vec::new() };
     let name = movement.name.as_ref().map_or("", |name| name.text.as_str());
-    let selected = place.selected_moves();
+    let selected = selection.selected_moves();
     let all: Vec<&Move> = moves(&movement.actions).collect();
     let mut offers = Vec::new();
-    offers.extend(leave_out(place, name, &selected, &all));
-    offers.extend(write_out(place, name, &selected, &all));
-    offers.extend(share(place, name, &selected, &all));
+    offers.extend(omit_default(selection, name, &selected, &all));
+    offers.extend(make_explicit(selection, name, &selected, &all));
+    offers.extend(share(selection, name, &selected, &all));
     offers
 }
 
-/// All moves have the default speed: it need not be said.
-fn leave_out(place: &Place<'_>, name: &str, selected: &[&Move], all: &[&Move]) -> Vec<Refactoring> {
+/// Omits the default speed.
+fn omit_default(
+    selection: &Selection<'_>,
+    name: &str,
+    selected: &[&Move],
+    all: &[&Move],
+) -> Vec<Refactoring> {
     let edits = |moves: &[&Move]| -> Vec<Edit> {
         let defaults = moves.iter().filter(|step| speed(step).is_some_and(is_default));
-        defaults.filter_map(|step| without_speed(place, step)).collect()
+        defaults.filter_map(|step| without_speed(selection, step)).collect()
     };
     let (here, everywhere) = (edits(selected), edits(all));
     let inline = |title, edits| Refactoring::new(title, RefactoringKind::Inline, edits);
     let default = default_speed();
     let mut offers = Vec::new();
     if !here.is_empty() {
-        offers.push(inline(format!("leave out the default speed of {default} cm/s"), here.clone()));
+        offers.push(inline(format!("omit the default speed of {default} cm/s"), here.clone()));
     }
     if everywhere.len() > here.len() {
-        let title = format!("leave out the default speed of {default} cm/s in all moves of `{name}`");
+        let title = format!("omit the default speed of {default} cm/s in all moves of `{name}`");
         offers.push(inline(title, everywhere));
     }
     offers
 }
 
-/// Moves without a speed: what they do is said.
-fn write_out(place: &Place<'_>, name: &str, selected: &[&Move], all: &[&Move]) -> Vec<Refactoring> {
+/// Adds the default speed to moves without one.
+fn make_explicit(
+    selection: &Selection<'_>,
+    name: &str,
+    selected: &[&Move],
+    all: &[&Move],
+) -> Vec<Refactoring> {
     let default = default_speed();
     let edits = |moves: &[&Move]| -> Vec<Edit> {
         let silent = moves.iter().filter(|step| step.speed.is_none());
-        let edit = |step: &&Move| Some(place.edit(Span::at(step.unit?.1.end), format!(" at {default}")));
+        let edit = |step: &&Move| Some(selection.edit(Span::at(step.unit?.1.end), format!(" at {default}")));
         silent.filter_map(edit).collect()
     };
     let (here, everywhere) = (edits(selected), edits(all));
     let rewrite = |title, edits| Refactoring::new(title, RefactoringKind::Rewrite, edits);
     let mut offers = Vec::new();
     if !here.is_empty() {
-        offers.push(rewrite("write the default speed out".to_owned(), here.clone()));
+        offers.push(rewrite("make the default speed explicit".to_owned(), here.clone()));
     }
     if everywhere.len() > here.len() {
-        offers.push(rewrite(format!("write the default speed out in all moves of `{name}`"), everywhere));
+        offers.push(rewrite(format!("make the default speed explicit in all moves of `{name}`"), everywhere));
     }
     offers
 }
 
-/// One move has a speed: the others may get it, too. This changes how long the movement takes.
-fn share(place: &Place<'_>, name: &str, selected: &[&Move], all: &[&Move]) -> Option<Refactoring> {
+/// Uses the speed of the selected move for all others. This changes the duration of the movement.
+fn share(selection: &Selection<'_>, name: &str, selected: &[&Move], all: &[&Move]) -> Option<Refactoring> {
     let [step] = selected else { return None };
     let number = speed(step)?;
     let value = number.value.filter(|value| *value > 0.0 && value.is_finite())?;
-    let text = place.text(number.span);
+    let text = selection.text(number.span);
     let edit = |other: &&Move| match &other.speed {
         Some(clause) => {
             let number = clause.value.as_ref()?;
-            (!same(number.value, value)).then(|| place.edit(number.span, text.clone()))
+            (!same(number.value, value)).then(|| selection.edit(number.span, text.clone()))
         }
         None if same(Some(RIM_SPEED * 100.0), value) => None,
-        None => Some(place.edit(Span::at(other.unit?.1.end), format!(" at {text}"))),
+        None => Some(selection.edit(Span::at(other.unit?.1.end), format!(" at {text}"))),
     };
     let edits: Vec<Edit> = all.iter().filter_map(edit).collect();
     let title = format!("use {text} cm/s for all moves of `{name}`");
@@ -92,26 +102,26 @@ fn same(value: Option<f64>, other: f64) -> bool {
     value.is_some_and(|value| (value - other).abs() < 1e-9)
 }
 
-/// In centimetres per second, as the article writes it.
+/// In centimetres per second, formatted as in the paper.
 fn default_speed() -> String {
     format!("{:.1}", RIM_SPEED * 100.0)
 }
 
-/// The edit that takes `at 9.0` away, with the white space before it; not where a comment stands in it.
-fn without_speed(place: &Place<'_>, step: &Move) -> Option<Edit> {
+/// The edit that removes `at 9.0` and the white space before it; `None` if it contains a comment.
+fn without_speed(selection: &Selection<'_>, step: &Move) -> Option<Edit> {
     let (unit, clause) = (step.unit?.1, step.speed.as_ref()?.span);
     let is_blank = |text: String| text.trim().is_empty();
     let (from, to) = (
-        if is_blank(place.text(Span::new(unit.end, clause.start))) { unit.end } else { clause.start },
+        if is_blank(selection.text(Span::new(unit.end, clause.start))) { unit.end } else { clause.start },
         clause.end,
     );
-    if place.text(clause).contains('/') {
+    if selection.text(clause).contains('/') {
         return None;
     }
-    // In `9.0turn` nothing but the number keeps the words apart.
-    let behind = place.text(Span::new(to, place.entity.span.len()));
-    let runs_on = behind.starts_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
-    Some(place.edit(Span::new(from, to), if runs_on { " " } else { "" }))
+    // In `9.0turn` only the number separates the words.
+    let after = selection.text(Span::new(to, selection.entity.span.len()));
+    let runs_on = after.starts_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
+    Some(selection.edit(Span::new(from, to), if runs_on { " " } else { "" }))
 }
 
 #[cfg(test)]
@@ -121,7 +131,7 @@ mod tests {
     use crate::refactorings::testing::check;
 
     #[test]
-    fn the_default_is_left_out_or_written_out() {
+    fn the_default_is_omitted_or_explicit() {
         check(
             "  $0move 4.0 meters at 9.0\n  move 1 meters\n  move 2 meters at 9",
             &expect![[r#"
@@ -131,13 +141,13 @@ mod tests {
                     |   move 400.0 centimeters at 9.0
                     |   move 100 centimeters
                     |   move 200 centimeters at 9
-                Inline: leave out the default speed of 9.0 cm/s
+                Inline: omit the default speed of 9.0 cm/s
                     |   move 4.0 meters
-                Inline: leave out the default speed of 9.0 cm/s in all moves of `tour`
+                Inline: omit the default speed of 9.0 cm/s in all moves of `tour`
                     |   move 4.0 meters
                     |   move 1 meters
                     |   move 2 meters
-                Rewrite: write the default speed out in all moves of `tour`
+                Rewrite: make the default speed explicit in all moves of `tour`
                     |   move 1 meters at 9.0
             "#]],
         );
@@ -154,9 +164,9 @@ mod tests {
                     |   move 400.0 centimeters at 20
                     |   move 100 centimeters
                     |   move 200 centimeters at 9
-                Inline: leave out the default speed of 9.0 cm/s in all moves of `tour`
+                Inline: omit the default speed of 9.0 cm/s in all moves of `tour`
                     |   move 2 meters
-                Rewrite: write the default speed out in all moves of `tour`
+                Rewrite: make the default speed explicit in all moves of `tour`
                     |   move 1 meters at 9.0
                 Rewrite: use 20 cm/s for all moves of `tour`
                     |   move 1 meters at 20

@@ -1,4 +1,4 @@
-//! How the tests of all refactorings look at a program.
+//! Shared checks for the tests of refactorings.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use pydslrep_syntax::Span;
 use super::refactorings;
 use crate::fixture::{PARTS, applied};
 
-/// What is offered in the actions of a movement, and what becomes of the text.
+/// The refactorings in the actions of a movement, with the lines they change.
 #[track_caller]
 pub(super) fn check(actions: &str, expected: &Expect) {
     let program = format!("{PARTS}movement tour of rover {{\n{actions}\n}}\n");
@@ -19,7 +19,7 @@ pub(super) fn check(actions: &str, expected: &Expect) {
     );
 }
 
-/// The same in a whole program, from one `$0` to another where there are two.
+/// The same in a complete program; two `$0` mark a selection.
 #[track_caller]
 pub(super) fn check_whole(fixture: &str, expected: &Expect) {
     let start = fixture.find("$0").expect("the fixture has no `$0`");
@@ -29,25 +29,27 @@ pub(super) fn check_whole(fixture: &str, expected: &Expect) {
     let mut database = Database::new();
     let file = database.open("test.pyr", &text);
     let range = Span::new(u32::try_from(start).unwrap(), u32::try_from(end).unwrap());
-    let mut told = String::new();
+    let mut report = String::new();
     for offer in refactorings(&database, file, range) {
         match offer.edits {
-            Err(reason) => writeln!(told, "{:?}: {}\n  not here: {reason}", offer.kind, offer.title).unwrap(),
+            Err(reason) => {
+                writeln!(report, "{:?}: {}\n  not here: {reason}", offer.kind, offer.title).unwrap()
+            }
             Ok(edits) => {
-                writeln!(told, "{:?}: {}", offer.kind, offer.title).unwrap();
+                writeln!(report, "{:?}: {}", offer.kind, offer.title).unwrap();
                 let after = applied(&database, file, &edits);
-                told += &changed(&text, &after);
+                report += &changed(&text, &after);
             }
         }
     }
-    expected.assert_eq(&told);
+    expected.assert_eq(&report);
 }
 
-/// The lines that differ.
+/// The changed lines.
 fn changed(before: &str, after: &str) -> String {
     let (before, after): (Vec<&str>, Vec<&str>) = (before.lines().collect(), after.lines().collect());
     let head = before.iter().zip(&after).take_while(|(a, b)| a == b).count();
     let most = before.len().min(after.len()) - head;
     let tail = before.iter().rev().zip(after.iter().rev()).take(most).take_while(|(a, b)| a == b).count();
-    after[head..after.len() - tail].iter().fold(String::new(), |told, line| told + "    | " + line + "\n")
+    after[head..after.len() - tail].iter().fold(String::new(), |lines, line| lines + "    | " + line + "\n")
 }

@@ -1,28 +1,27 @@
-//! Convert units: the same distance in metres or in centimetres. Numbers are converted as they are written, so that
-//! nothing is rounded.
+//! Convert between metres and centimetres. Numbers are converted as text, so nothing is rounded.
 
 use pydslrep_analysis::Edit;
 use pydslrep_syntax::ast::{Move, Unit};
 
 use super::actions::moves;
-use super::{Place, Refactoring, RefactoringKind};
+use super::{Refactoring, RefactoringKind, Selection};
 
-/// Offers for the moves that are selected, and for all moves of the movement.
-pub(super) fn convert(place: &Place<'_>) -> Vec<Refactoring> {
-    let Some(movement) = place.movement() else { return Vec::new() };
-    let selected = place.selected_moves();
+/// The refactorings for the selected moves, and for all moves of the movement.
+pub(super) fn convert(selection: &Selection<'_>) -> Vec<Refactoring> {
+    let Some(movement) = selection.movement() else { return Vec::new() };
+    let selected = selection.selected_moves();
     let all: Vec<&Move> = moves(&movement.actions).collect();
     let name = movement.name.as_ref().map_or("", |name| name.text.as_str());
     let mut offers = Vec::new();
     for unit in [Unit::Centimeters, Unit::Meters] {
         let word = word(unit);
-        let (here, everywhere) = (edits(place, &selected, unit), edits(place, &all, unit));
+        let (here, everywhere) = (edits(selection, &selected, unit), edits(selection, &all, unit));
         let more = everywhere.len() > here.len();
         let rewrite = |title: String, edits| Refactoring::new(title, RefactoringKind::Rewrite, edits);
         if !here.is_empty() {
             offers.push(rewrite(format!("convert to {word}"), here));
         }
-        // On the movement's head, or beside a move: one move alone is converted where it stands.
+        // A single other move is not worth an extra title.
         if more && (selected.is_empty() || everywhere.len() > 2) {
             offers.push(rewrite(format!("convert all moves of `{name}` to {word}"), everywhere));
         }
@@ -30,13 +29,13 @@ pub(super) fn convert(place: &Place<'_>) -> Vec<Refactoring> {
     offers
 }
 
-/// Edits that bring those moves to a unit that have the other one.
-fn edits(place: &Place<'_>, moves: &[&Move], to: Unit) -> Vec<Edit> {
+/// The edits that convert the moves in the other unit.
+fn edits(selection: &Selection<'_>, moves: &[&Move], to: Unit) -> Vec<Edit> {
     let edit = |step: &&Move| {
         let (distance, (unit, unit_span)) = (step.distance.as_ref()?, step.unit?);
         distance.value.filter(|_| unit != to)?;
-        let converted = shifted(&place.text(distance.span), if to == Unit::Meters { -2 } else { 2 });
-        Some([place.edit(distance.span, converted), place.edit(unit_span, word(to))])
+        let converted = shifted(&selection.text(distance.span), if to == Unit::Meters { -2 } else { 2 });
+        Some([selection.edit(distance.span, converted), selection.edit(unit_span, word(to))])
     };
     moves.iter().filter_map(edit).flatten().collect()
 }
@@ -48,8 +47,7 @@ fn word(unit: Unit) -> &'static str {
     }
 }
 
-/// A number as it is written, times a power of ten. No digit is lost, none is there for nothing; `4.0` stays a number
-/// with a point.
+/// A number as text, times a power of ten: exact, without superfluous zeros; `4.0` keeps its point.
 fn shifted(number: &str, places: i32) -> String {
     let (sign, digits) = number.strip_prefix('-').map_or(("", number), |digits| ("-", digits));
     let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
@@ -87,9 +85,9 @@ mod tests {
                     |   move 400.0 centimeters at 9.0
                     |   turn left
                     |   move -12.5 centimeters
-                Inline: leave out the default speed of 9.0 cm/s
+                Inline: omit the default speed of 9.0 cm/s
                     |   move 4.0 meters
-                Rewrite: write the default speed out in all moves of `tour`
+                Rewrite: make the default speed explicit in all moves of `tour`
                     |   move -0.125 meters at 9.0
                     |   move 30 centimeters at 9.0
             "#]],
@@ -97,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_written_plainly() {
+    fn numbers_are_converted_exactly() {
         for (meters, centimeters) in [
             ("4.0", "400.0"),
             ("4", "400"),

@@ -7,7 +7,7 @@ use smol_str::SmolStr;
 
 use super::{Meaning, meaning, robots};
 use crate::completion::Rank;
-use crate::completion::filter::narrowed_in_toml;
+use crate::completion::filter::filter_in_toml;
 use crate::{Completion, CompletionKind, CompletionTrigger, Documentation};
 
 /// What fits at an offset in the text of a scene file. Keys and tables that are there already do not, except for tables
@@ -22,7 +22,7 @@ pub fn scene_completions(
     let Some(place) = place_at(text, offset).filter(|place| trigger.opens_in_toml(place)) else {
         return Vec::new();
     };
-    narrowed_in_toml(fitting(database, environment, text, &place), text, offset)
+    filter_in_toml(fitting(database, environment, text, &place), text, offset)
 }
 
 fn fitting(database: &Database, environment: Option<EntityId>, text: &str, place: &Place) -> Vec<Completion> {
@@ -116,7 +116,7 @@ impl Header {
     fn on_a_line(&self, place: &Place) -> Completion {
         let name = self.parts.iter().map(|part| as_key(part)).collect::<Vec<_>>().join(".");
         let header = if self.table.sort == Sort::Each { format!("[[{name}]]") } else { format!("[{name}]") };
-        offer(place, &header, format!("{header}\n$0"), &self.table.markdown(), Rank::Word)
+        offer(place, &header, format!("{header}\n$0"), &self.table.markdown(), Rank::Keyword)
     }
 }
 

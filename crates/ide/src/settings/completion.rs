@@ -6,7 +6,7 @@ use pydslrep_schema::{Place, Slot, names, place_at};
 
 use super::{Meaning, documentation, meaning};
 use crate::completion::Rank;
-use crate::completion::filter::narrowed_in_toml;
+use crate::completion::filter::filter_in_toml;
 use crate::{Completion, CompletionKind, CompletionTrigger, Documentation};
 
 /// What fits at an offset in the text of a settings file. Keys and tables that are there already do not.
@@ -14,7 +14,7 @@ pub fn settings_completions(text: &str, offset: u32, trigger: CompletionTrigger)
     let Some(place) = place_at(text, offset).filter(|place| trigger.opens_in_toml(place)) else {
         return Vec::new();
     };
-    narrowed_in_toml(fitting(text, &place), text, offset)
+    filter_in_toml(fitting(text, &place), text, offset)
 }
 
 fn fitting(text: &str, place: &Place) -> Vec<Completion> {
@@ -36,7 +36,7 @@ fn fitting(text: &str, place: &Place) -> Vec<Completion> {
                 let free = tables().into_iter().filter(|table| is_free(table));
                 found.extend(free.map(|table| {
                     let header = format!("[{table}]");
-                    setting(place, table, &header, format!("{header}\n$0"), Rank::Word)
+                    setting(place, table, &header, format!("{header}\n$0"), Rank::Keyword)
                 }));
             }
             found

@@ -1,19 +1,19 @@
-//! Shapes cut down to one line, clause by clause.
+//! Shortens signatures to one line, clause by clause.
 
 use pydslrep_syntax::Span;
 
 use super::Signature;
 
-/// What a line holds: editors break longer ones.
+/// The maximum width: editors wrap longer lines.
 const WIDTH: usize = 48;
 
-/// Stands for what is left out.
+/// Replaces omitted clauses.
 const MORE: &str = "...";
 
-/// The words that begin a clause.
+/// The keywords that begin a clause.
 const BEGINNINGS: [&str; 3] = ["type", "with", "has"];
 
-/// As much of a signature as fits a line around its current part.
+/// The clauses around the current part that fit on a line.
 pub(super) fn window(signature: &Signature) -> Signature {
     let label = &signature.label;
     if label.len() <= WIDTH {
@@ -47,7 +47,7 @@ fn current_start(signature: &Signature) -> u32 {
     current.map_or(0, |part| part.start)
 }
 
-/// The clauses of a label, each without the blank after it.
+/// The clauses of a label, without the space between them.
 fn clauses(label: &str) -> Vec<Span> {
     let mut clauses: Vec<Span> = Vec::new();
     let mut start = 0;
@@ -62,7 +62,7 @@ fn clauses(label: &str) -> Vec<Span> {
     clauses
 }
 
-/// A part of a signature's label, with something before and after it.
+/// A range of a signature's label, with text before and after it.
 fn cut(signature: &Signature, range: Span, before: &str, after: &str) -> Signature {
     let is_in = |part: &Span| range.start <= part.start && part.end <= range.end;
     let parts = signature.parts.iter().filter(|part| is_in(part));

@@ -53,9 +53,9 @@ pub(crate) fn linked_editing_ranges(
     (!ranges.is_empty()).then_some(LinkedEditingRanges { ranges, word_pattern })
 }
 
-fn refused(refusal: ide::Refusal) -> Error {
+fn refused(refusal: ide::RenameError) -> Error {
     match refusal {
-        ide::Refusal::Invalid(reason) => Error::invalid_params(reason),
-        ide::Refusal::Impossible(reason) => scripts::failure(reason),
+        ide::RenameError::Invalid(reason) => Error::invalid_params(reason),
+        ide::RenameError::Impossible(reason) => scripts::failure(reason),
     }
 }
