@@ -1,4 +1,4 @@
-//! "Grammar" of the contract, one function per rule, in its order. `None` means: not in the language.
+//! "Grammar" of the specification: one function per rule, in the same order. `None` means: not in the language.
 
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -14,32 +14,32 @@ pub(crate) fn read(tokens: &[Token], end: usize) -> Option<Program> {
     Reader::new(tokens, end).program()
 }
 
-/// The words and signs that a reader looks for where the tokens end; `None` where no program begins like this.
-pub(crate) fn looked_for(tokens: &[Token], end: usize) -> Option<BTreeSet<&'static str>> {
+/// The keywords and punctuation expected at the end of the tokens; `None` if no program begins like this.
+pub(crate) fn expected(tokens: &[Token], end: usize) -> Option<BTreeSet<&'static str>> {
     let mut reader = Reader::new(tokens, end);
     if reader.entities().is_some() {
         // The next entity.
         let _ = reader.entity();
     }
-    reader.ran_out.get().then_some(reader.looked_for)
+    reader.ran_out.get().then_some(reader.expected)
 }
 
 struct Reader<'a> {
     tokens: &'a [Token],
     at: usize,
-    /// Where the text ends.
+    /// The end of the text.
     end: usize,
     older_spellings: Vec<Finding>,
-    /// Whether anything was looked for behind the last token.
+    /// Whether anything was expected after the last token.
     ran_out: Cell<bool>,
-    /// The words and signs that were.
-    looked_for: BTreeSet<&'static str>,
+    /// The keywords and punctuation that were expected there.
+    expected: BTreeSet<&'static str>,
 }
 
 impl<'a> Reader<'a> {
     fn new(tokens: &'a [Token], end: usize) -> Self {
-        let (ran_out, looked_for) = (Cell::new(false), BTreeSet::new());
-        Self { tokens, at: 0, end, older_spellings: Vec::new(), ran_out, looked_for }
+        let (ran_out, expected) = (Cell::new(false), BTreeSet::new());
+        Self { tokens, at: 0, end, older_spellings: Vec::new(), ran_out, expected }
     }
 }
 
@@ -67,7 +67,7 @@ impl Reader<'_> {
         let is_word = |token: &Token| matches!(token.kind, Kind::Keyword | Kind::Sign) && token.text == word;
         let seen = self.peek().map(is_word);
         if seen.is_none() {
-            self.looked_for.insert(word);
+            self.expected.insert(word);
         }
         seen == Some(true)
     }
@@ -85,10 +85,10 @@ impl Reader<'_> {
         words.iter().copied().find(|word| self.word(word).is_some())
     }
 
-    /// A word that stays usable as a name: `distance`, `bumper`, `import`, all without `^`.
+    /// A contextual keyword, which is also a valid name: `distance`, `bumper`, `import`, without `^`.
     fn contextual(&mut self, word: &'static str) -> Option<()> {
         if self.peek().is_none() {
-            self.looked_for.insert(word);
+            self.expected.insert(word);
         }
         let plain = |token: &&Token| {
             token.kind == Kind::Name && token.text == word && token.range.len() == word.len()
@@ -102,7 +102,7 @@ impl Reader<'_> {
         self.tokens[..self.at].last().map_or(self.end, |token| token.range.end)
     }
 
-    /// Where the next token starts.
+    /// The start of the next token.
     fn start(&self) -> usize {
         self.peek().map_or(self.end, |token| token.range.start)
     }
@@ -190,7 +190,7 @@ impl Reader<'_> {
     //         "has" "{" [ Refs(Wheel) ] "}" "wheels" [ "with" "sensors" "{" Refs(Sensor) "}" ] ;
     fn robot(&mut self) -> Option<(Name, Body)> {
         let start = self.start();
-        // Understood here, but nothing anybody should look for.
+        // Accepted here, but never expected.
         let mut drive = if self.sees_any() { self.drive()? } else { None };
         if drive.is_some() {
             let misplaced = start..self.last_end();
@@ -298,7 +298,7 @@ impl Reader<'_> {
     // "{" Refs(T) "}"
     fn some_braced_refs(&mut self) -> Option<Vec<Name>> {
         let start = self.word("{")?.start;
-        // The first is looked at twice.
+        // At least one name.
         self.peek().filter(|token| token.kind == Kind::Name)?;
         self.refs_and_brace(start).map(|(names, _)| names)
     }

@@ -1,11 +1,9 @@
-//! A second opinion on the language, for tests: programs at random, and a checker that reads like the language's
-//! contract.
+//! The reference checker (test oracle) of the language, and a generator of random programs.
 //!
-//! Knows the contract alone. Must never know any crate of ours, or it would share their mistakes. Where one of them
-//! and this one disagree about a program, one of the two has misread the contract.
+//! Knows only the language specification. Must never know our other crates, or it would share their bugs. If it disagrees
+//! with one of them about a program, one of the two violates the specification.
 //!
-//! Everything here is as plain as can be: a program is read from its first to its last byte every time, and a question
-//! about a name looks through all of it.
+//! It is as simple as possible: every check reads the complete program, and every name lookup is a linear search.
 
 mod check;
 mod generate;
@@ -21,14 +19,14 @@ use std::ops::Range;
 
 pub use generate::{Recipe, program, programs};
 
-/// One thing the contract says about a place in a program.
+/// A diagnostic required by the specification.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Finding {
     /// First byte.
     pub start: usize,
-    /// One behind the last byte.
+    /// The offset after the last byte.
     pub end: usize,
-    /// A code of the catalogue.
+    /// The diagnostic code.
     pub code: &'static str,
 }
 
@@ -38,29 +36,28 @@ impl Finding {
     }
 }
 
-/// What the contract says about a program.
+/// The result of checking a program.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Verdict {
-    /// Whether its tokens are all sound and follow the grammar.
+    /// Whether its tokens are valid and follow the grammar.
     pub grammatical: bool,
-    /// In the order of the text. Where the program is not grammatical, the lexical errors alone.
+    /// In text order; only lexical errors if the program is not grammatical.
     ///
-    /// Left out are the codes that need more than a program: `planned-collision` a scene, `unresolved-import` and
+    /// Excludes the codes that need more than one program: `planned-collision` needs a scene, `unresolved-import` and
     /// `ambiguous-import` other files, `duplicate-port` the other target.
     pub findings: Vec<Finding>,
-    /// True as well, but likely the other side of one of the findings: the declaration that nothing uses, where a
-    /// misspelt reference may have meant it. It may be said or not.
+    /// Optional findings, likely caused by others: an unused declaration that a misspelt reference may have meant.
     pub excused: Vec<Finding>,
 }
 
 impl Verdict {
-    /// Whether nothing at all is wrong with the program, hints included.
+    /// Whether there are no findings, not even hints.
     pub fn is_clean(&self) -> bool {
         self.grammatical && self.findings.is_empty()
     }
 }
 
-/// Reads a program and says all that is wrong with it.
+/// Checks a program.
 pub fn check(text: &str) -> Verdict {
     let (tokens, lexical) = tokens::read(text);
     let mut findings = lexical;
@@ -76,11 +73,11 @@ pub fn check(text: &str) -> Verdict {
     Verdict { grammatical: program.is_some(), findings, excused }
 }
 
-/// The words and signs with which a text can go on so that it is still the beginning of a program; `None` where it is no
-/// such beginning itself. The two older spellings are not among them.
+/// The keywords and punctuation that can follow the beginning of a program; `None` if the text is not the beginning of a
+/// program. Excludes the two deprecated spellings.
 pub fn continuations(beginning: &str) -> Option<BTreeSet<&'static str>> {
     let (tokens, lexical) = tokens::read(beginning);
-    grammar::looked_for(&tokens, beginning.len()).filter(|_| lexical.is_empty())
+    grammar::expected(&tokens, beginning.len()).filter(|_| lexical.is_empty())
 }
 
 /// An entity of a grammatical program.
@@ -90,13 +87,13 @@ pub struct Declaration {
     pub kind: &'static str,
     /// Its name without `^`.
     pub name: String,
-    /// Where the name stands, with its `^`.
+    /// The range of the name, including `^`.
     pub name_range: Range<usize>,
-    /// From the first byte of its first token to behind its last.
+    /// From the start of its first token to the end of its last.
     pub range: Range<usize>,
 }
 
-/// All entities of a program in the order of the text; `None` where it is not grammatical.
+/// All entities of a program in text order; `None` if it is not grammatical.
 pub fn declarations(text: &str) -> Option<Vec<Declaration>> {
     let (tokens, lexical) = tokens::read(text);
     let program = grammar::read(&tokens, text.len()).filter(|_| lexical.is_empty())?;

@@ -1,4 +1,4 @@
-//! A program as the grammar sees it.
+//! The syntax tree of a program.
 
 use std::ops::Range;
 
@@ -6,12 +6,12 @@ use crate::Finding;
 
 pub(crate) struct Program {
     pub(crate) entities: Vec<Entity>,
-    /// Older spellings, seen while reading.
+    /// Deprecated spellings found by the parser.
     pub(crate) older_spellings: Vec<Finding>,
 }
 
 impl Program {
-    /// What a reference means: the first declaration of that name within that kind.
+    /// Resolves a reference: the first declaration with that kind and name.
     pub(crate) fn find(&self, kind: &str, name: &str) -> Option<&Entity> {
         self.entities.iter().find(|entity| entity.kind() == kind && entity.name.text == name)
     }
@@ -55,7 +55,7 @@ impl Program {
         self.entities.iter().any(|entity| entity.kind() == kind)
     }
 
-    /// Every reference of the program, with the kind it asks for.
+    /// Every reference of the program with its kind.
     pub(crate) fn references(&self) -> Vec<(&'static str, &Name)> {
         self.entities.iter().flat_map(Entity::references).collect()
     }
@@ -140,7 +140,7 @@ pub(crate) struct Ip {
 }
 
 pub(crate) struct Robot {
-    /// `tw`, `fw` or `fwh`, where written, and where.
+    /// `tw`, `fw` or `fwh` with its range, if present.
     pub(crate) drive: Option<Name>,
     pub(crate) port: Number,
     pub(crate) wheels: Vec<Name>,
@@ -150,7 +150,7 @@ pub(crate) struct Robot {
 }
 
 pub(crate) struct Movement {
-    /// Where `parallel` stands.
+    /// The range of `parallel`.
     pub(crate) parallel: Option<Range<usize>>,
     pub(crate) robot: Name,
     pub(crate) actions: Vec<Action>,

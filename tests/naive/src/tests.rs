@@ -1,5 +1,4 @@
-//! That the generator and the checker can be trusted: every code is reached, and every one of them can be read off a
-//! small program.
+//! Tests of the generator and the checker: every code is reached, and small programs have the expected findings.
 
 use std::collections::BTreeSet;
 
@@ -9,9 +8,9 @@ use super::*;
 
 fn findings(text: &str) -> String {
     let verdict = check(text);
-    let said = verdict.findings.iter().chain(&verdict.excused);
-    let said = said.map(|finding| format!("{} {:?}\n", finding.code, &text[finding.start..finding.end]));
-    let all: String = said.collect();
+    let findings = verdict.findings.iter().chain(&verdict.excused);
+    let lines = findings.map(|finding| format!("{} {:?}\n", finding.code, &text[finding.start..finding.end]));
+    let all: String = lines.collect();
     if verdict.grammatical { all } else { format!("not grammatical\n{all}") }
 }
 
@@ -34,7 +33,7 @@ fn programs_are_grammatical_and_reach_every_code() {
     assert!(clean > 100, "only {clean} programs are clean");
 }
 
-/// Every code that a grammatical program can earn, but for those that take more than a program.
+/// Every code that a single grammatical program can have.
 const MEANING: [&str; 32] = [
     "deprecated-ip-clause",
     "duplicate-name",
@@ -90,7 +89,7 @@ fn programs_without_mistakes_have_no_errors() {
 }
 
 #[test]
-fn a_seed_is_a_program() {
+fn programs_are_reproducible() {
     assert_eq!(program(7, 30), program(7, 30));
     assert_ne!(program(7, 30), program(8, 30));
     let tidy = Recipe { lines: 4, mistakes: false, odd_layout: false, older_spellings: false, imports: true };
@@ -112,7 +111,7 @@ fn a_seed_is_a_program() {
 }
 
 #[test]
-fn lexical_errors_are_told_apart() {
+fn lexical_errors_have_their_codes() {
     expect_findings(
         "wheel a with radius 4 € $ wheel b",
         &expect![[r#"
@@ -179,7 +178,7 @@ fn the_grammar_has_its_contextual_names() {
     );
 }
 
-/// Every state that the grammar can be in lies on one of these, the last of which are for what follows a whole entity.
+/// These cover every state of the grammar; the last ones cover the states after a complete entity.
 const SKELETONS: [&str; 14] = [
     "wheel a with radius 1",
     "wheelH a with radius 1",
@@ -197,13 +196,13 @@ const SKELETONS: [&str; 14] = [
     "environment a has { a } robots sensor a",
 ];
 
-/// Whether any rest of a skeleton makes a program of it, tried one by one.
+/// Whether the rest of any skeleton completes it to a program.
 fn can_go_on(beginning: &str, rests: &[Vec<tokens::Token>]) -> bool {
     let (beginning, _) = tokens::read(beginning);
     rests.iter().any(|rest| grammar::read(&[&beginning[..], rest].concat(), 0).is_some())
 }
 
-/// Understood, but nothing anybody should be told to write.
+/// Accepted but deprecated spellings.
 fn is_older_spelling(beginning: &str, word: &str) -> bool {
     match word {
         "type" => beginning.ends_with("robot"),
@@ -219,14 +218,14 @@ fn continuations_are_what_can_be_continued() {
     let rests: Vec<_> = rests.collect::<BTreeSet<_>>().iter().map(|rest| tokens::read(rest).0).collect();
     let fixed: BTreeSet<&str> = split.iter().flatten().copied().filter(|word| is_fixed(word)).collect();
     for beginning in split.iter().flat_map(|words| (0..=words.len()).map(|end| words[..end].join(" "))) {
-        let told = continuations(&beginning).unwrap_or_else(|| panic!("{beginning}"));
+        let expected = continuations(&beginning).unwrap_or_else(|| panic!("{beginning}"));
         let takes_name = can_go_on(&format!("{beginning} a"), &rests);
         for word in &fixed {
-            // Where a name fits, so do those words that can be one.
+            // Where a name fits, contextual keywords fit, too.
             if !(takes_name && CONTEXTUAL.contains(word)) {
                 let goes_on =
                     !is_older_spelling(&beginning, word) && can_go_on(&format!("{beginning} {word}"), &rests);
-                assert_eq!(told.contains(word), goes_on, "`{word}` behind {beginning:?}: {told:?}");
+                assert_eq!(expected.contains(word), goes_on, "`{word}` after {beginning:?}: {expected:?}");
             }
         }
         assert_eq!(continuations(&format!("{beginning} meters meters")), None);

@@ -1,10 +1,10 @@
-//! "Lexical structure" of the contract.
+//! "Lexical structure" of the specification.
 
 use std::ops::Range;
 
 use crate::Finding;
 
-/// Words that are no names unless `^` stands before them.
+/// The keywords, which need `^` to be names.
 const KEYWORDS: [&str; 30] = [
     "wheel",
     "wheelH",
@@ -58,7 +58,7 @@ pub(crate) struct Token {
     pub(crate) range: Range<usize>,
 }
 
-/// All tokens, and what is wrong between them.
+/// All tokens, and the lexical errors.
 pub(crate) fn read(text: &str) -> (Vec<Token>, Vec<Finding>) {
     let mut reader = Reader { text, at: 0, tokens: Vec::new(), findings: Vec::new() };
     reader.skip("\u{feff}");
@@ -88,7 +88,7 @@ impl Reader<'_> {
         found
     }
 
-    /// How many bytes from here on belong together by this rule.
+    /// The number of following bytes whose characters satisfy a predicate.
     fn length_while(&self, belongs: impl Fn(char) -> bool) -> usize {
         self.rest().find(|character| !belongs(character)).unwrap_or(self.rest().len())
     }
@@ -122,7 +122,7 @@ impl Reader<'_> {
         self.at += length;
     }
 
-    /// They do not nest; an unclosed one is one error, at its opening.
+    /// Block comments do not nest; an unclosed one is one error, at its start.
     fn skip_block_comment(&mut self, start: usize) {
         if let Some(length) = self.rest().find("*/") {
             self.at += length + 2;
@@ -143,7 +143,7 @@ impl Reader<'_> {
         self.tokens.push(Token { kind: Kind::Text, text: self.text[range.clone()].to_owned(), range });
     }
 
-    /// A leading `^` lets a keyword be a name and is not part of it.
+    /// A leading `^` escapes a keyword and is not part of the name.
     fn read_name(&mut self, length: usize) {
         let written = &self.rest()[..length];
         let kind = if KEYWORDS.contains(&written) { Kind::Keyword } else { Kind::Name };
@@ -152,7 +152,7 @@ impl Reader<'_> {
         self.at += length;
     }
 
-    /// Characters no token starts with; adjacent ones are one finding.
+    /// Characters that start no token; adjacent ones are one finding.
     fn read_invalid(&mut self) {
         let start = self.at;
         while self.at < self.text.len() && !starts_something(self.rest()) {
@@ -170,7 +170,7 @@ fn starts_something(rest: &str) -> bool {
         || number_length(rest).is_some()
 }
 
-/// `[A-Za-z_][A-Za-z0-9_]*`, perhaps behind `^`.
+/// `[A-Za-z_][A-Za-z0-9_]*`, optionally after `^`.
 fn name_length(rest: &str) -> Option<usize> {
     let letters = rest.strip_prefix('^').unwrap_or(rest);
     if !letters.starts_with(|character: char| character.is_ascii_alphabetic() || character == '_') {
@@ -181,7 +181,7 @@ fn name_length(rest: &str) -> Option<usize> {
     Some(rest.len() - letters.len() + length)
 }
 
-/// Digits and dots as far as they go, `-` directly before them. The first is a digit, or a dot right before one.
+/// A run of digits and dots, optionally after `-`. It begins with a digit, or with a dot and a digit.
 fn number_length(rest: &str) -> Option<usize> {
     let digits = rest.strip_prefix('-').unwrap_or(rest);
     let after_dot = digits.strip_prefix('.').unwrap_or(digits);

@@ -1,6 +1,5 @@
-//! `random-programs COUNT LINES [tidy]`: programs at random for tests that are not in Rust, the same ones every time, with
-//! a NUL after each. All are grammatical; every third has imports. `tidy` ones have neither mistakes nor imports nor odd
-//! layout.
+//! `random-programs COUNT LINES [tidy]`: prints reproducible random programs for tests that are not in Rust, each followed
+//! by NUL. All are grammatical; every third has imports. `tidy` ones have no errors, imports or unusual layout.
 
 use std::io::{Result, Write};
 use std::process::ExitCode;

@@ -1,4 +1,4 @@
-//! Group "environment": who drives where, and when.
+//! Group "environment": the schedule.
 
 use super::{is_among, repeated};
 use crate::Finding;
@@ -20,7 +20,7 @@ pub(super) fn check(program: &Program, findings: &mut Vec<Finding>) {
     single_parallel(program, findings);
 }
 
-/// Lists a movement whose robot it does not list. A robot that does not exist is the movement's own mistake.
+/// Lists a movement but not its robot. An unknown robot is an error of the movement itself.
 fn movement_robot_missing(program: &Program, environment: &Environment, findings: &mut Vec<Finding>) {
     for name in &environment.movements {
         let Some(movement) = program.movement(&name.text) else { continue };
@@ -31,7 +31,7 @@ fn movement_robot_missing(program: &Program, environment: &Environment, findings
     }
 }
 
-/// Lists a robot that no listed movement drives. One that is not known may drive any robot.
+/// Lists a robot without a listed movement. An unknown movement may be for any robot.
 fn idle_robot(program: &Program, environment: &Environment, findings: &mut Vec<Finding>) {
     let driven: Option<Vec<&str>> =
         environment.movements.iter().map(|name| driven_robot(program, name)).collect();
@@ -48,7 +48,7 @@ fn driven_robot<'a>(program: &'a Program, movement: &Name) -> Option<&'a str> {
     program.robot(robot).map(|_| robot.as_str())
 }
 
-/// Maximal runs of consecutive `parallel` movements. One that is not known may part them.
+/// Maximal runs of consecutive `parallel` movements. Unknown movements separate them.
 fn parallel_groups<'a>(program: &Program, environment: &'a Environment) -> Vec<Vec<&'a Name>> {
     let mut groups = vec![Vec::new()];
     for name in &environment.movements {
@@ -74,8 +74,8 @@ fn parallel_conflict(program: &Program, environment: &Environment, findings: &mu
     }
 }
 
-/// A `parallel` movement that never runs beside another. One that never runs at all is unused, and one that is not known
-/// may be parallel, too.
+/// A `parallel` movement that never runs in parallel with another. A movement that never runs is unused instead, and an
+/// unknown one may be parallel.
 fn single_parallel(program: &Program, findings: &mut Vec<Finding>) {
     for entity in &program.entities {
         let Body::Movement(Movement { parallel: Some(parallel), .. }) = &entity.body else { continue };
@@ -98,8 +98,8 @@ fn single_parallel(program: &Program, findings: &mut Vec<Finding>) {
     }
 }
 
-/// The script's file would shadow a Python standard or client module, is reserved on Windows, or equals another's but
-/// for case: that of the first environment with such a name that can keep it.
+/// The script's file would shadow a Python standard or client module, is reserved on Windows, or differs from another
+/// script's only in case; the first environment with a valid name keeps it.
 fn script_name(program: &Program, entity: &Entity, findings: &mut Vec<Finding>) {
     let name = entity.name.text.as_str();
     let is_taken = |name: &str| is_module(name) || is_reserved(name);
@@ -110,14 +110,14 @@ fn script_name(program: &Program, entity: &Entity, findings: &mut Vec<Finding>) 
     }
 }
 
-/// Modules of Python 3.11 and those that the clients of both remote APIs are or need.
+/// The modules of Python 3.11 and of the clients of both remote APIs.
 fn is_module(name: &str) -> bool {
     const CLIENT: [&str; 8] =
         ["coppeliasim_zmqremoteapi_client", "zmq", "cbor", "cbor2", "sim", "simConst", "vrep", "vrepConst"];
     include_str!("../../standard_modules.txt").split_whitespace().chain(CLIENT).any(|module| module == name)
 }
 
-/// Names of devices on Windows, in any case.
+/// Device names on Windows, ignoring case.
 fn is_reserved(name: &str) -> bool {
     let name = name.to_ascii_lowercase();
     let numbered = |device: &str| {

@@ -1,4 +1,4 @@
-//! "Diagnostics" of the contract: one file per group of the catalogue, one function per code.
+//! "Diagnostics" of the specification: one file per group, one function per code.
 
 mod environment;
 mod movement;
@@ -11,7 +11,7 @@ pub(crate) use name::is_excused;
 use crate::Finding;
 use crate::program::{Name, Program};
 
-/// All that is wrong with a grammatical program.
+/// The findings of a grammatical program.
 pub(crate) fn check(program: &Program) -> Vec<Finding> {
     let mut findings = program.older_spellings.clone();
     value::check(program, &mut findings);
@@ -22,7 +22,7 @@ pub(crate) fn check(program: &Program) -> Vec<Finding> {
     findings
 }
 
-/// Every name that stands in the list a second or third time.
+/// Every repeated name in a list.
 fn repeated(names: &[Name]) -> impl Iterator<Item = &Name> {
     names.iter().enumerate().filter(|(index, name)| is_among(name, &names[..*index])).map(|(_, name)| name)
 }

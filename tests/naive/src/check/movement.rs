@@ -1,4 +1,4 @@
-//! Group "movement": what the robot of a movement can do.
+//! Group "movement": the capabilities of a movement's robot.
 
 use super::is_among;
 use super::robot::{distance_sensors, is_four_wheeled};

@@ -1,4 +1,4 @@
-//! Groups "name" and "file": what is declared and what is used.
+//! Groups "name" and "file": declarations and references.
 
 use crate::Finding;
 use crate::program::{Entity, Name, Program};
@@ -25,13 +25,13 @@ fn is_same(one: &Entity, other: &Entity) -> bool {
     one.kind() == other.kind() && one.name.text == other.name.text
 }
 
-/// Whether something names it. An environment is what all the rest is for.
+/// Whether it is referenced. Environments are always used.
 fn is_used(references: &[(&str, &Name)], entity: &Entity) -> bool {
     entity.kind() == "environment"
         || references.iter().any(|(kind, name)| *kind == entity.kind() && name.text == entity.name.text)
 }
 
-/// Robots and movements but no environment; said at the last entity.
+/// Robots and movements but no environment; reported at the last entity.
 fn no_environment(program: &Program, findings: &mut Vec<Finding>) {
     if program.has_any("robot") && program.has_any("movement") && !program.has_any("environment") {
         let last = program.entities.last();
@@ -39,8 +39,8 @@ fn no_environment(program: &Program, findings: &mut Vec<Finding>) {
     }
 }
 
-/// Whether a declaration is unused because a reference that leads nowhere may have meant it: it is the only one of its
-/// kind, or its name is nearly the one that was written.
+/// Whether a declaration may be unused because of an unresolved reference: it is the only one of its kind, or its name is
+/// similar.
 pub(crate) fn is_excused(program: &Program, finding: &Finding) -> bool {
     let declares = |entity: &&Entity| entity.name.range == (finding.start..finding.end);
     let Some(unused) =
@@ -53,20 +53,22 @@ pub(crate) fn is_excused(program: &Program, finding: &Finding) -> bool {
         .iter()
         .any(|other| other.kind() == unused.kind() && other.name.text != unused.name.text);
     program.references().iter().any(|(kind, name)| {
-        let leads_nowhere = *kind == unused.kind() && program.find(kind, &name.text).is_none();
-        leads_nowhere && (is_only_one || is_near(&name.text, &unused.name.text))
+        let is_unresolved = *kind == unused.kind() && program.find(kind, &name.text).is_none();
+        is_unresolved && (is_only_one || is_similar(&name.text, &unused.name.text))
     })
 }
 
-/// Equal but for case, two letters in the other order, or no more than a third of the letters to change.
-fn is_near(one: &str, other: &str) -> bool {
+/// Equal except for case, two swapped letters, or an edit distance of at most a third of the length.
+fn is_similar(one: &str, other: &str) -> bool {
     let is_swapped = one.len() == 2 && one.chars().rev().eq(other.chars());
     let longest = one.len().max(other.len());
-    one.eq_ignore_ascii_case(other) || is_swapped || changes(one.as_bytes(), other.as_bytes()) <= longest / 3
+    one.eq_ignore_ascii_case(other)
+        || is_swapped
+        || edit_distance(one.as_bytes(), other.as_bytes()) <= longest / 3
 }
 
-/// How many letters to add, take away, replace or swap with the next one.
-fn changes(one: &[u8], other: &[u8]) -> usize {
+/// The edit distance: insertions, deletions, replacements and swaps of adjacent letters.
+fn edit_distance(one: &[u8], other: &[u8]) -> usize {
     let mut table = vec![vec![0; other.len() + 1]; one.len() + 1];
     for i in 0..=one.len() {
         for j in 0..=other.len() {

@@ -1,4 +1,4 @@
-//! Group "robot": what a robot lists.
+//! Group "robot": the lists of a robot.
 
 use super::{is_among, repeated};
 use crate::Finding;
@@ -35,7 +35,7 @@ fn repeated_sensor(sensors: &[Name], findings: &mut Vec<Finding>) {
     findings.extend(repeated(sensors).map(|sensor| Finding::new("repeated-sensor", &sensor.range)));
 }
 
-/// `tw` needs 2, `fw` and `fwh` need 4; without `type` either will do.
+/// `tw` needs 2, `fw` and `fwh` need 4; without `type` either is allowed.
 fn wheel_count(robot: &Robot, findings: &mut Vec<Finding>) {
     if !has_right_count(robot) {
         findings.push(Finding::new("wheel-count", &robot.wheel_list));
@@ -53,7 +53,7 @@ fn has_right_count(robot: &Robot) -> bool {
 
 /// Warning: `fw` with four `wheelH`. Error: `fwh` with any `wheel`, `tw` with `wheelH`, mixed kinds.
 ///
-/// A wrong number of wheels is one mistake, and not also one of their kinds.
+/// A wrong number of wheels is a single error and does not imply one about their kinds.
 fn wheel_kind_mismatch(program: &Program, entity: &Entity, robot: &Robot, findings: &mut Vec<Finding>) {
     if !has_right_count(robot) {
         return;
@@ -73,13 +73,13 @@ fn wheel_kind_mismatch(program: &Program, entity: &Entity, robot: &Robot, findin
     }
 }
 
-/// For each wheel that is known, whether it is a `wheelH`.
+/// Whether each known wheel is a `wheelH`.
 fn mecanum(program: &Program, robot: &Robot) -> Vec<bool> {
     robot.wheels.iter().filter_map(|name| program.wheel(&name.text)).map(|wheel| wheel.mecanum).collect()
 }
 
-/// The wheels of one robot differ in radius: said at the first that differs from those before it.
-#[allow(clippy::float_cmp, reason = "the contract says differ")]
+/// The wheels of one robot differ in radius: reported at the first that differs from the previous ones.
+#[allow(clippy::float_cmp, reason = "the specification requires exact comparison")]
 fn mixed_radii(program: &Program, robot: &Robot, findings: &mut Vec<Finding>) {
     let radius = |name: &Name| {
         let radius = program.wheel(&name.text)?.radius.value();
@@ -92,7 +92,8 @@ fn mixed_radii(program: &Program, robot: &Robot, findings: &mut Vec<Finding>) {
     }
 }
 
-/// Two names that differ in exactly one letter, L or R (either case), stand right before left: said at the right one.
+/// Two names that differ in exactly one letter, L or R (either case), are listed right before left: reported at the right
+/// one.
 fn wheel_order(robot: &Robot, findings: &mut Vec<Finding>) {
     for (index, name) in robot.wheels.iter().enumerate() {
         if robot.wheels[index..].iter().any(|later| is_right_of(&name.text, &later.text)) {
@@ -109,12 +110,12 @@ fn is_right_of(one: &str, other: &str) -> bool {
         && "Ll".contains(differences[0].1)
 }
 
-/// By its type, else by its wheels; one with three wheels and no type is nothing yet.
+/// By its type, or by its wheels; with three wheels and no type it is incomplete.
 pub(super) fn is_four_wheeled(robot: &Robot) -> bool {
     robot.drive.as_ref().map_or(robot.wheels.len() == 4, |drive| drive.text != "tw")
 }
 
-/// How many different distance sensors it carries; `None` where a sensor is not known, which may be one.
+/// The number of distinct distance sensors; `None` if a sensor is unknown.
 pub(super) fn distance_sensors(program: &Program, robot: &Robot) -> Option<usize> {
     let mut count = 0;
     for (index, name) in robot.sensors.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Group "value": what single numbers say.
+//! Group "value": single numbers.
 
 use crate::Finding;
 use crate::program::{ActionKind, Body, Number, Program};
@@ -28,7 +28,7 @@ pub(super) fn check(program: &Program, findings: &mut Vec<Finding>) {
     }
 }
 
-/// Anything that is no finite number is out of range, and nothing more is said of it.
+/// Non-finite numbers are out of range and have no other finding.
 fn judge(number: &Number, code: impl Fn(f64) -> Option<&'static str>) -> Option<Finding> {
     let value = number.value();
     let code = if value.is_finite() { code(value)? } else { "number-out-of-range" };
@@ -44,11 +44,11 @@ fn radius(number: &Number) -> Option<Finding> {
     })
 }
 
-/// A port may be longer than any number.
+/// A port may have any number of digits.
 fn port(number: &Number) -> Option<Finding> {
     let digits = number.text.trim_start_matches('0');
     let code = match digits.parse().ok().filter(|_| digits.len() <= 5) {
-        // V-REP's, where the scripts are for CoppeliaSim.
+        // V-REP's ports, although scripts are for CoppeliaSim.
         Some(19997..=19999) => "port-of-other-target",
         Some(1..=65535_u32) => return None,
         _ => "invalid-port",
@@ -61,7 +61,7 @@ fn is_octet(digits: &str) -> bool {
     digits.is_empty() || digits.parse::<u8>().is_ok()
 }
 
-/// Beyond 1 000 km, or nothing at all.
+/// Beyond 1 000 km, or zero.
 fn distance(number: &Number, meters: bool) -> Option<Finding> {
     judge(number, |value| {
         let metres = if meters { value } else { value / 100.0 };
@@ -78,7 +78,7 @@ fn speed(number: &Number) -> Option<Finding> {
     judge(number, |speed| (speed <= 0.0).then_some("invalid-speed"))
 }
 
-/// Degrees: none, more than a turn, or the other way.
+/// Degrees: zero, negative, or more than a full turn.
 fn angle(number: &Number) -> Option<Finding> {
     judge(number, |degrees| (degrees <= 0.0 || degrees > 360.0).then_some("invalid-angle"))
 }

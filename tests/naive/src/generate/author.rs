@@ -1,11 +1,11 @@
-//! Writes a program from the bottom up, keeping in mind what it has declared.
+//! Writes a program bottom-up and tracks its declarations.
 
 use super::Recipe;
 use super::choices::Choices;
 use super::layout;
 use super::words::{self, ADDRESSES, ANGLES, DISTANCES, ENDLESS, Numbers, PORTS, RADII, SPEEDS};
 
-/// All that a robot is to those who use it.
+/// The properties of a robot that its users depend on.
 struct Robot {
     name: String,
     wheels: Vec<String>,
@@ -24,16 +24,16 @@ struct Movement {
 pub(super) struct Author {
     recipe: Recipe,
     choices: Choices,
-    /// How often a mistake is made: once in so many chances.
+    /// The inverse probability of an error.
     careless: Option<usize>,
     lines: usize,
-    /// The radius of most wheels, by its place among the usual ones.
+    /// The radius of most wheels, as an index of the usual ones.
     radius: usize,
-    /// Each as its tokens.
+    /// The tokens of each entity.
     entities: Vec<Vec<String>>,
     wheels: Vec<String>,
     sensors: Vec<String>,
-    /// Those of them that tell a distance.
+    /// The distance sensors among them.
     distance_sensors: Vec<String>,
     ips: Vec<String>,
     robots: Vec<Robot>,
@@ -100,7 +100,7 @@ impl Author {
         self.entities.push(tokens);
     }
 
-    /// A name for a declaration: one that its kind does not have yet, unless by mistake.
+    /// A new name for a declaration; a taken one by error.
     fn new_name(&mut self, taken: &[String], words: &[&'static str]) -> String {
         if !taken.is_empty() && self.slips() {
             let index = self.choices.below(taken.len());
@@ -112,7 +112,7 @@ impl Author {
         std::iter::once(name.clone()).chain(numbered).find(is_free).unwrap_or(name)
     }
 
-    /// A name as it may be written where it is used; by mistake another one.
+    /// A reference to a name; to another one by error.
     fn reference(&mut self, name: &str) -> String {
         if self.slips() {
             return words::name(&mut self.choices, &words::NAMES);
@@ -145,7 +145,7 @@ impl Author {
         tokens
     }
 
-    /// Leaves one out, puts one in twice, turns the order round.
+    /// Removes, repeats or reverses names by error.
     fn mangle(&mut self, names: &mut Vec<String>) {
         if names.is_empty() || !self.slips() {
             return;
@@ -211,7 +211,7 @@ impl Author {
         name
     }
 
-    /// Its wheels and sensors with it, unless it uses those of another.
+    /// A robot with its wheels and sensors, unless it uses those of another.
     fn robot(&mut self) {
         let (drive, count, mecanum) = self.choices.pick(&[
             (Some("tw"), 2, false),
@@ -261,7 +261,7 @@ impl Author {
         self.push(tokens);
     }
 
-    /// A port is a whole number, but may begin with zeros.
+    /// A port, possibly with leading zeros.
     fn port(&mut self) -> String {
         let is_doubtful = self.slips();
         let port = self.choices.pick(if is_doubtful { PORTS.doubtful } else { PORTS.usual });
@@ -293,7 +293,7 @@ impl Author {
         sensors
     }
 
-    /// Of any robot, or of two at once.
+    /// A movement of any robot, or two parallel ones.
     fn movement(&mut self) {
         let robot = self.choices.below(self.robots.len());
         let may_pair = self.robots.len() > 1;
@@ -404,7 +404,7 @@ impl Author {
         robots
     }
 
-    /// Movements of these robots, no robot twice at the same time, unless by mistake.
+    /// The movements of these robots, without conflicts unless by error.
     fn schedule(&mut self, robots: &[String]) -> Vec<String> {
         let mut listed = Vec::new();
         let mut busy: Vec<&str> = Vec::new();

@@ -1,5 +1,5 @@
-//! Decisions, drawn from a tape of numbers. Zero is always the plainest choice, and so is the end of the tape: that is
-//! what lets a failing program shrink.
+//! Random choices from a tape of numbers. Zero, and the end of the tape, is always the simplest choice, so that failing
+//! programs shrink.
 
 use std::iter::Peekable;
 
@@ -30,12 +30,12 @@ impl Choices {
         self.tape.peek().is_some()
     }
 
-    /// A number less than `limit`, which is not zero.
+    /// A number below `limit`, which must not be zero.
     pub(super) fn below(&mut self, limit: usize) -> usize {
         usize::from(self.tape.next().unwrap_or(0)) % limit
     }
 
-    /// True once in so many times.
+    /// True with a probability of 1 / `times`.
     pub(super) fn once_in(&mut self, times: usize) -> bool {
         self.below(times) == times - 1
     }

@@ -1,8 +1,8 @@
-//! Tokens to text: what stands between them.
+//! The layout of tokens.
 
 use super::choices::Choices;
 
-/// Between two tokens, where one likes.
+/// Unusual separators between tokens.
 const ODD_GAPS: [&str; 20] = [
     "  ",
     "\n",
@@ -26,12 +26,12 @@ const ODD_GAPS: [&str; 20] = [
     " /* { ^ \" */\n",
 ];
 
-/// Puts entities one below the other, a space between their tokens.
+/// One entity per line, with single spaces.
 pub(super) fn tidy(entities: &[Vec<String>]) -> String {
     entities.iter().map(|tokens| tokens.join(" ") + "\n").collect()
 }
 
-/// Puts tokens together in odd ways, now and then.
+/// Unusual separators now and then.
 pub(super) fn odd(choices: &mut Choices, entities: &[Vec<String>]) -> String {
     let mut text = String::new();
     if choices.once_in(8) {
@@ -53,7 +53,7 @@ pub(super) fn odd(choices: &mut Choices, entities: &[Vec<String>]) -> String {
             previous = token;
         }
     }
-    // Nothing needs a line end behind the last token.
+    // The last line break is optional.
     text.push_str(choices.pick(&["\n", "", "\r", " // the end", "\n/* the\nend */", "\n//"]));
     text
 }
@@ -62,7 +62,7 @@ fn odd_gap(choices: &mut Choices, previous: &str, next: &str) -> &'static str {
     if choices.once_in(3) && !would_merge(previous, next) { "" } else { choices.pick(&ODD_GAPS) }
 }
 
-/// Whether two tokens would be read as one. A number ends where a letter follows.
+/// Whether two tokens without a separator would be read as one. A letter ends a number.
 fn would_merge(previous: &str, next: &str) -> bool {
     let is_letter = |character: char| character.is_ascii_alphabetic() || character == '_';
     let is_digit = |character: char| character.is_ascii_digit();

@@ -1,4 +1,4 @@
-//! Programs at random: always grammatical, mostly meaningful, some of them with mistakes in what they mean.
+//! Random programs: always grammatical, mostly meaningful, some with semantic errors.
 
 mod author;
 mod choices;
@@ -10,21 +10,21 @@ use proptest::prelude::{Strategy, any};
 use author::Author;
 use choices::Choices;
 
-/// What kind of programs to write.
+/// The options of generated programs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(clippy::struct_excessive_bools, reason = "any of them goes with any other")]
+#[allow(clippy::struct_excessive_bools, reason = "they are independent")]
 pub struct Recipe {
-    /// About how many entities and actions there may be together; each would be one line in a tidy program.
+    /// The approximate number of entities and actions; each is one line in a tidy program.
     pub lines: usize,
-    /// Whether there may be mistakes in the meaning, from the whole catalogue. Without, a program may still earn
-    /// warnings and hints, such as for a sensor nothing uses.
+    /// Whether there may be semantic errors of all codes. Otherwise there may still be warnings and hints, such as for
+    /// unused sensors.
     pub mistakes: bool,
-    /// Whether there may be comments, odd line ends, missing white space, `^` and odd ways to write a number. Without,
-    /// there is one space between two tokens and an entity per line.
+    /// Whether there may be comments, unusual line breaks, missing white space, `^` and unusual number formats. Otherwise
+    /// there is one entity per line, with single spaces.
     pub odd_layout: bool,
-    /// Whether the two older spellings may occur.
+    /// Whether the two deprecated spellings may occur.
     pub older_spellings: bool,
-    /// Whether imports may stand at the top (of `lib.pyr` and `parts/more.pyr`).
+    /// Whether there may be imports (of `lib.pyr` and `parts/more.pyr`).
     pub imports: bool,
 }
 
@@ -35,14 +35,14 @@ impl Default for Recipe {
 }
 
 impl Recipe {
-    /// The program that belongs to a seed: the same one every time.
+    /// The program of a seed.
     pub fn seeded(self, seed: u64) -> String {
         self.write(Choices::seeded(seed))
     }
 
-    /// For properties: what fails shrinks to a smaller program of plainer choices.
+    /// A strategy for property tests: failures shrink to smaller programs with simpler choices.
     pub fn strategy(self) -> impl Strategy<Value = String> {
-        // More than a program of this size needs, so that most end because they are long enough.
+        // More than a program of this size needs, so that most reach their length.
         let longest = self.lines.saturating_mul(12) + 12;
         proptest::collection::vec(any::<u16>(), 0..longest)
             .prop_map(move |tape| self.write(Choices::recorded(tape)))
@@ -55,12 +55,12 @@ impl Recipe {
     }
 }
 
-/// A program of about so many lines, mistakes and odd layout included: the same one every time for a seed.
+/// The program of a seed with about `lines` lines, including errors and unusual layout.
 pub fn program(seed: u64, lines: usize) -> String {
     Recipe { lines, ..Recipe::default() }.seeded(seed)
 }
 
-/// Programs of up to about sixty lines, mistakes and odd layout included.
+/// Programs of up to about sixty lines, including errors and unusual layout.
 pub fn programs() -> impl Strategy<Value = String> {
     Recipe::default().strategy()
 }

@@ -1,8 +1,8 @@
-//! Names and numbers, usual ones and such as people trip over.
+//! Names and numbers, both usual and problematic ones.
 
 use super::choices::Choices;
 
-/// Plain names, keywords behind `^`, contextual keywords, and names that mean something in Python.
+/// Plain names, escaped keywords, contextual keywords, and names with a meaning in Python.
 pub(super) const NAMES: [&str; 40] = [
     "a",
     "wheelL",
@@ -46,25 +46,25 @@ pub(super) const NAMES: [&str; 40] = [
     "AREA_1",
 ];
 
-/// Names that make a script's file shadow something, or nearly so.
+/// Names whose script would shadow a module, or almost.
 pub(super) const SCRIPTS: [&str; 12] =
     ["json", "Json", "zmq", "con", "COM1", "nul", "cbor", "threading", "json_env", "com10", "aux_1", "vrep"];
 
-/// `robot` is a keyword; the list above is easier to read without the exceptions.
-const MUST_HIDE: [&str; 1] = ["robot"];
+/// Keywords in the list above, which need an escape.
+const MUST_ESCAPE: [&str; 1] = ["robot"];
 
 pub(super) fn name(choices: &mut Choices, from: &[&'static str]) -> String {
     let name = choices.pick(from);
-    if MUST_HIDE.contains(&name) { format!("^{name}") } else { name.to_owned() }
+    if MUST_ESCAPE.contains(&name) { format!("^{name}") } else { name.to_owned() }
 }
 
 pub(super) struct Numbers {
     pub(super) usual: &'static [&'static str],
-    /// Wrong, or just about right.
+    /// Invalid or borderline.
     pub(super) doubtful: &'static [&'static str],
 }
 
-/// Stands for a number with more digits than any floating-point number has.
+/// A placeholder for a number with more digits than any float.
 pub(super) const ENDLESS: &str = "endless";
 
 pub(super) const RADII: Numbers = Numbers {
@@ -107,7 +107,7 @@ pub(super) const ADDRESSES: Numbers = Numbers {
     doubtful: &["256.0.0.1", "127.0.0.999", "1.2.3.99999999999999999999", "127.000.000.001"],
 };
 
-/// The same number, written in another way.
+/// The same number in another format.
 pub(super) fn rewritten(choices: &mut Choices, number: &str) -> String {
     let sign = if number.starts_with('-') { "-" } else { "" };
     let digits = number.trim_start_matches('-');
