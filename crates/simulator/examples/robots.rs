@@ -1,6 +1,6 @@
-//! Two-wheel robots `robot_1`, `robot_2`, … on an empty floor, for scripts to try themselves on:
-//! `cargo run -p pydslrep-simulator --example robots -- 2` prints a port per robot and serves until its standard
-//! input ends.
+//! Simulates two-wheel robots `robot_1`, `robot_2`, … on an empty floor, to test scripts with:
+//! `cargo run -p pydslrep-simulator --example robots -- 2` prints one port per robot and runs until its standard input
+//! is closed.
 
 #![allow(clippy::print_stdout)]
 

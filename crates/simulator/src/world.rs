@@ -1,4 +1,4 @@
-//! Robots on a floor, moved by their wheels in fixed steps of simulation time, stopped by what they touch.
+//! The simulated world: robots driven by their wheels in fixed time steps, with contacts.
 
 mod contact;
 mod noise;
@@ -10,24 +10,24 @@ use pydslrep_scene::{Body, Scene, SensorKind, Sighting, Space};
 
 use contact::Surroundings;
 use noise::{Slip, reading_error};
-use pydslrep_record::TraceRecord;
+use pydslrep_trace::TraceRecord;
 
-/// Motors and motion are integrated this many times per step, as CoppeliaSim does (5 ms in a step of 50 ms).
+/// The number of integration steps per simulation step, as in CoppeliaSim (5 ms in a step of 50 ms).
 const SUBSTEPS: u32 = 10;
 
-/// A scene in motion. Rates here are rolling rates: positive rolls the robot forward, whatever way the wheel's
-/// joint is mounted.
+/// A simulated scene. Rates are rolling rates: positive values roll the robot forward, regardless of the direction of
+/// the wheel's joint.
 #[derive(Debug, Clone)]
 pub struct World {
     scene: Scene,
     space: Space,
-    robots: Vec<Moving>,
+    robots: Vec<RobotState>,
     step: f64,
     steps: u64,
 }
 
 #[derive(Debug, Clone)]
-struct Moving {
+struct RobotState {
     radii: Vec<f64>,
     traction: Traction,
     body: Body,
@@ -45,22 +45,22 @@ struct Joint {
     slip: Slip,
 }
 
-/// Why a scene cannot move.
+/// Why a scene cannot be simulated.
 #[derive(Debug, Clone, PartialEq)]
 pub enum WorldError {
     /// A robot has no kinematic model.
     Model {
         /// Its name.
         robot: String,
-        /// Why.
+        /// The cause.
         error: ModelError,
     },
-    /// A robot's motors cannot turn or change their rate.
+    /// A robot's motors have no speed or acceleration.
     Motor {
         /// Its name.
         robot: String,
     },
-    /// The step is not a time above zero.
+    /// The step is not positive.
     Step {
         /// Seconds.
         step: f64,
@@ -74,10 +74,10 @@ impl fmt::Display for WorldError {
             Self::Motor { robot } => {
                 write!(
                     f,
-                    "robot `{robot}` cannot drive: the acceleration and speed of its motors must be above zero"
+                    "robot `{robot}` cannot drive: the acceleration and speed of its motors must be positive"
                 )
             }
-            Self::Step { step } => write!(f, "the simulation step must be above zero, it is {step} s"),
+            Self::Step { step } => write!(f, "the simulation step must be positive, but it is {step} s"),
         }
     }
 }
@@ -88,7 +88,7 @@ impl World {
     /// The scene at rest, with the default step of [`motion::STEP`].
     ///
     /// # Errors
-    /// When a robot's figures allow no motion.
+    /// If a robot cannot drive.
     pub fn new(scene: Scene) -> Result<Self, WorldError> {
         Self::with_step(scene, motion::STEP)
     }
@@ -96,16 +96,17 @@ impl World {
     /// The scene at rest, stepped by `step` seconds.
     ///
     /// # Errors
-    /// When a robot's figures allow no motion or the step is not above zero.
+    /// If a robot cannot drive or the step is not positive.
     pub fn with_step(scene: Scene, step: f64) -> Result<Self, WorldError> {
         if !(step.is_finite() && step > 0.0) {
             return Err(WorldError::Step { step });
         }
-        let robots = (0..scene.robots.len()).map(|robot| at_rest(&scene, robot)).collect::<Result<_, _>>()?;
+        let robots =
+            (0..scene.robots.len()).map(|robot| robot_at_rest(&scene, robot)).collect::<Result<_, _>>()?;
         Ok(Self { space: Space::of(&scene), scene, robots, step, steps: 0 })
     }
 
-    /// What the world was made from.
+    /// The simulated scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
@@ -127,34 +128,34 @@ impl World {
         self.steps
     }
 
-    /// Everything back to where the scene has it, at time 0 and at rest.
+    /// Resets the world to the scene, at time 0 and at rest.
     pub fn reset(&mut self) {
         self.steps = 0;
         self.park();
-        for (robot, moving) in self.robots.iter_mut().enumerate() {
-            for (wheel, joint) in moving.joints.iter_mut().enumerate() {
+        for (robot, state) in self.robots.iter_mut().enumerate() {
+            for (wheel, joint) in state.joints.iter_mut().enumerate() {
                 joint.slip = Slip::new(self.scene.noise, self.scene.seed, robot, wheel);
             }
         }
     }
 
-    /// Robots back to their starts and at rest; the time stays.
+    /// Returns the robots to their start poses, at rest; keeps the time.
     pub fn park(&mut self) {
-        for (moving, robot) in self.robots.iter_mut().zip(&self.scene.robots) {
-            moving.pose = robot.start;
-            moving.twist = Twist::default();
-            for joint in &mut moving.joints {
+        for (state, robot) in self.robots.iter_mut().zip(&self.scene.robots) {
+            state.pose = robot.start;
+            state.twist = Twist::default();
+            for joint in &mut state.joints {
                 (joint.target, joint.rate, joint.angle) = (0.0, 0.0, 0.0);
             }
         }
     }
 
-    /// Where a robot is; the origin when there is no such robot.
+    /// The pose of a robot; the origin if there is no such robot.
     pub fn pose(&self, robot: usize) -> Pose {
         self.robots.get(robot).map_or_else(Pose::default, |robot| robot.pose)
     }
 
-    /// How a robot moves in its own frame; at rest when there is no such robot.
+    /// The twist of a robot in its own frame; zero if there is no such robot.
     pub fn twist(&self, robot: usize) -> Twist {
         self.robots.get(robot).map_or_else(Twist::default, |robot| robot.twist)
     }
@@ -164,24 +165,24 @@ impl World {
         self.joint(robot, wheel).map_or(0.0, |joint| joint.rate)
     }
 
-    /// The angle a wheel has rolled since the start, radians, not wrapped.
+    /// The rolled angle of a wheel since the start, radians, not wrapped.
     pub fn angle(&self, robot: usize, wheel: usize) -> f64 {
         self.joint(robot, wheel).map_or(0.0, |joint| joint.angle)
     }
 
-    /// The rate a wheel is asked for, rad/s.
+    /// The target rate of a wheel, rad/s.
     pub fn target(&self, robot: usize, wheel: usize) -> f64 {
         self.joint(robot, wheel).map_or(0.0, |joint| joint.target)
     }
 
-    /// Asks a wheel for a rate in rad/s; its motor gets there as fast as it can. What is not finite is ignored.
+    /// Sets the target rate of a wheel, rad/s; its motor accelerates to it. Non-finite rates are ignored.
     pub fn set_target(&mut self, robot: usize, wheel: usize, rate: f64) {
         if let Some(joint) = self.joint_mut(robot, wheel).filter(|_| rate.is_finite()) {
             joint.target = rate;
         }
     }
 
-    /// Whether a wheel's motor follows its target (velocity control); otherwise it brakes to a stop.
+    /// Whether a wheel's motor follows its target (velocity control); otherwise it brakes.
     pub fn is_controlled(&self, robot: usize, wheel: usize) -> bool {
         self.joint(robot, wheel).is_some_and(|joint| !joint.released)
     }
@@ -193,9 +194,9 @@ impl World {
         }
     }
 
-    /// One step of simulation time for everybody.
+    /// Advances all robots by one step.
     pub fn step(&mut self) {
-        for joint in self.robots.iter_mut().flat_map(|moving| &mut moving.joints) {
+        for joint in self.robots.iter_mut().flat_map(|state| &mut state.joints) {
             joint.slip.advance(self.step);
         }
         let seconds = self.step / f64::from(SUBSTEPS);
@@ -207,7 +208,7 @@ impl World {
         self.steps += 1;
     }
 
-    /// What a sensor sees, as it measures it; `None` for nothing.
+    /// The measurement of a sensor; `None` if it detects nothing.
     pub fn sight(&self, robot: usize, sensor: usize) -> Option<Sighting> {
         let part = self.scene.robots.get(robot)?.sensors.get(sensor)?;
         let others: Vec<(usize, Body, Pose)> = self
@@ -226,8 +227,8 @@ impl World {
         (distance <= part.mount.range).then_some(Sighting { distance, ..seen })
     }
 
-    /// Motors and body of a robot over a short time. The body moves with the mean rates of that time, which makes the
-    /// wheels' angles and the body's path agree.
+    /// Advances the motors and body of a robot. The body moves with the mean rates of the interval, so that the wheels'
+    /// angles and the body's path agree.
     fn advance(&mut self, robot: usize, seconds: f64) {
         let others: Vec<(Body, Pose)> = if self.scene.collisions {
             let others = self.robots.iter().enumerate().filter(|&(index, _)| index != robot);
@@ -235,32 +236,32 @@ impl World {
         } else {
             Vec::new()
         };
-        let (Some(moving), Some(parts)) = (self.robots.get_mut(robot), self.scene.robots.get(robot)) else {
+        let (Some(state), Some(parts)) = (self.robots.get_mut(robot), self.scene.robots.get(robot)) else {
             return;
         };
-        let twist = moving.drive(parts.motor_acceleration, parts.motor_speed, seconds);
+        let twist = state.drive(parts.motor_acceleration, parts.motor_speed, seconds);
         if !self.scene.collisions {
-            moving.pose = moving.pose.advance(twist, seconds);
+            state.pose = state.pose.advance(twist, seconds);
             return;
         }
         let around = Surroundings { space: &self.space, others: &others };
-        let (pose, changed) = around.advance(moving.body, moving.pose, twist, seconds);
-        moving.pose = pose;
+        let (pose, changed) = around.advance(state.body, state.pose, twist, seconds);
+        state.pose = pose;
         if let Some(twist) = changed {
-            moving.twist = twist;
+            state.twist = twist;
         }
     }
 
-    /// All robots as they are now.
+    /// The current trace records of all robots.
     pub fn records(&self) -> impl Iterator<Item = TraceRecord> {
         let t = self.time();
-        self.robots.iter().zip(&self.scene.robots).map(move |(moving, robot)| TraceRecord {
+        self.robots.iter().zip(&self.scene.robots).map(move |(state, robot)| TraceRecord {
             t,
             robot: robot.name.clone(),
-            x: moving.pose.x,
-            y: moving.pose.y,
-            theta: moving.pose.theta,
-            wheels: moving.joints.iter().map(|joint| joint.rate).collect(),
+            x: state.pose.x,
+            y: state.pose.y,
+            theta: state.pose.theta,
+            wheels: state.joints.iter().map(|joint| joint.rate).collect(),
             movement: None,
             action: None,
         })
@@ -275,7 +276,7 @@ impl World {
     }
 }
 
-fn at_rest(scene: &Scene, index: usize) -> Result<Moving, WorldError> {
+fn robot_at_rest(scene: &Scene, index: usize) -> Result<RobotState, WorldError> {
     let robot = &scene.robots[index];
     let model = robot.model().map_err(|error| WorldError::Model { robot: robot.name.clone(), error })?;
     let can_speed_up = robot.motor_acceleration.is_finite() && robot.motor_acceleration > 0.0;
@@ -290,7 +291,7 @@ fn at_rest(scene: &Scene, index: usize) -> Result<Moving, WorldError> {
         slip: Slip::new(scene.noise, scene.seed, index, wheel),
     };
     let joints = (0..robot.wheels.len()).map(joint).collect();
-    Ok(Moving {
+    Ok(RobotState {
         radii: model.radii().to_vec(),
         traction: robot.traction(),
         body: robot.body,
@@ -300,8 +301,8 @@ fn at_rest(scene: &Scene, index: usize) -> Result<Moving, WorldError> {
     })
 }
 
-impl Moving {
-    /// Runs the motors; the mean twist that the wheels give the body in that time, if nothing stops it.
+impl RobotState {
+    /// Runs the motors and returns the mean twist that the wheels give the body, ignoring contacts.
     fn drive(&mut self, rim_acceleration: f64, rim_speed: f64, seconds: f64) -> Twist {
         let (mut rims, mut mean_rims) = (Vec::new(), Vec::new());
         for (joint, radius) in self.joints.iter_mut().zip(&self.radii) {
@@ -316,9 +317,9 @@ impl Moving {
 }
 
 impl Joint {
-    /// Runs the motor towards its target at `acceleration` rad/s², up to `most` rad/s; returns the mean rate.
-    fn advance(&mut self, acceleration: f64, most: f64, seconds: f64) -> f64 {
-        let target = if self.released { 0.0 } else { self.target.clamp(-most, most) };
+    /// Runs the motor towards its target at `acceleration` rad/s², up to `max` rad/s, and returns the mean rate.
+    fn advance(&mut self, acceleration: f64, max: f64, seconds: f64) -> f64 {
+        let target = if self.released { 0.0 } else { self.target.clamp(-max, max) };
         let before = self.rate;
         let ramp = ((target - before).abs() / acceleration).min(seconds);
         self.rate = if ramp < seconds {
@@ -418,7 +419,7 @@ mod tests {
     }
 
     #[test]
-    fn reset_is_a_new_world_and_parking_keeps_the_time() {
+    fn reset_restores_the_world_and_park_keeps_the_time() {
         let mut world = world(Drive::TwoWheel);
         let fresh: Vec<_> = world.records().collect();
         world.set_target(0, 1, 2.0);
@@ -432,7 +433,7 @@ mod tests {
     }
 
     #[test]
-    fn says_which_robot_cannot_drive() {
+    fn errors_name_the_robot_that_cannot_drive() {
         let mut robot = Robot::new("r", Drive::TwoWheel, vec![Wheel::new("w", 0.05)], vec![]);
         let error = World::new(Scene::empty_floor(vec![robot.clone()])).unwrap_err();
         let want = "robot `r` cannot drive: this layout has 2 wheels, but 1 wheel radii are given";
@@ -459,7 +460,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wall_stops_a_robot_and_lets_it_go() {
+    fn a_wall_stops_a_robot_but_does_not_hold_it() {
         let wall = Obstacle::wall("w", (1.0, -1.0), (1.0, 1.0), 0.1);
         let scene =
             Scene { robots: vec![robot("r", 0.0, 0.0, 0.0)], obstacles: vec![wall], ..Scene::default() };
@@ -488,7 +489,7 @@ mod tests {
     }
 
     #[test]
-    fn robots_meet_and_neither_gets_through() {
+    fn robots_stop_each_other() {
         let robots = vec![robot("a", 0.0, 0.0, 0.0), robot("b", 1.0, 0.05, std::f64::consts::PI)];
         let mut world = World::new(Scene { robots, ..Scene::default() }).unwrap();
         drive(&mut world, 0, [6.0, 6.0]);
@@ -501,20 +502,20 @@ mod tests {
     }
 
     #[test]
-    fn sensors_see_walls_and_robots_but_not_their_own() {
+    fn sensors_detect_walls_and_other_robots() {
         let wall = Obstacle::wall("w", (1.0, -1.0), (1.0, 1.0), 0.1);
         let robots = vec![robot("a", 0.0, 0.0, 0.0), robot("b", 0.0, 3.0, 0.0), robot("c", 0.5, 3.0, 0.0)];
         let world = World::new(Scene { robots, obstacles: vec![wall], ..Scene::default() }).unwrap();
         let seen = world.sight(0, 0).unwrap();
         assert!((seen.distance - 0.8).abs() < 1e-9 && seen.what == Thing::Obstacle(0), "{seen:?}");
-        assert_eq!(world.sight(0, 1), None, "a bumper sees nothing that far");
+        assert_eq!(world.sight(0, 1), None, "out of range of a bumper");
         let seen = world.sight(1, 0).unwrap();
         assert!((seen.distance - 0.2).abs() < 1e-9 && seen.what == Thing::Robot(2), "{seen:?}");
         assert_eq!((world.sight(2, 0), world.sight(9, 0), world.sight(0, 9)), (None, None, None));
     }
 
     #[test]
-    fn noise_is_made_from_the_seed_and_nothing_else() {
+    fn noise_depends_only_on_the_seed() {
         let wall = Obstacle::wall("w", (9.0, -1.0), (9.0, 1.0), 0.1);
         let run = |seed, noise, reads: bool| {
             let mut a = robot("a", 0.0, 0.0, 0.0);
@@ -537,7 +538,7 @@ mod tests {
                     }
                 }
                 let end = (world.pose(0), world.sight(0, 0).unwrap().distance);
-                assert_eq!(*first.get_or_insert(end), end, "a second run is like the first");
+                assert_eq!(*first.get_or_insert(end), end, "a second run equals the first");
                 world.reset();
             }
             first.unwrap()

@@ -1,4 +1,4 @@
-//! The legacy remote API on real ports, by bytes as V-REP's client sends them, beside ZeroMQ and among strangers.
+//! The legacy remote API on real ports, with the bytes of V-REP's client, next to ZeroMQ clients and invalid connections.
 
 // Clippy spares functions marked as tests only, not what they share.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -13,10 +13,10 @@ use pydslrep_scene::{Robot, Scene, Wheel};
 use pydslrep_simulator::{Options, Simulator};
 use zeromq::{ReqSocket, Socket, SocketRecv, SocketSend, ZmqMessage};
 
-/// Nothing here takes this long; a test that hangs fails instead.
+/// The time limit, which turns hanging tests into failures.
 const LIMIT: Duration = Duration::from_secs(30);
 
-/// What a client sends to ask for the handle of `/robot_1`, as message number 0.
+/// The client's request for the handle of `/robot_1`, as message number 0.
 const ASK_HANDLE: &[u8] = b"\x01\x00\x35\x00\x00\x00\
     \x00\x00\x0b\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\
     \x23\x00\x00\x00\x23\x00\x00\x00\x09\x00\x00\x00\x00\x00\x01\x30\x01\x00\x00\x00\x00\x00\x00\x00\x00\x00\
@@ -71,7 +71,7 @@ impl Client {
         self.stream.write_all(&packet).unwrap();
     }
 
-    /// The reply to what was sent: its simulation time in ms, and its payload.
+    /// The reply to the last command: its simulation time in ms and its payload.
     fn receive(&mut self) -> (i32, Vec<u8>) {
         let mut header = [0; 6];
         self.stream.read_exact(&mut header).unwrap();
@@ -93,7 +93,7 @@ impl Client {
         self.ask(0x1021, &[1], &[]).0
     }
 
-    /// Whether the simulator hangs up.
+    /// Whether the simulator closes the connection.
     fn is_refused(&mut self) -> bool {
         loop {
             match self.stream.read(&mut [0; 1024]) {
@@ -154,7 +154,7 @@ fn a_port_serves_one_client_and_then_the_next() {
     second.stream.set_nonblocking(true).unwrap();
     assert_eq!(second.stream.read(&mut [0; 1]).unwrap_err().kind(), ErrorKind::WouldBlock);
     second.stream.set_nonblocking(false).unwrap();
-    // Goodbye, as the client's library says it.
+    // The end command of the client library.
     first.ask(0x000a, &[0], &[]);
     assert!(first.is_refused());
     second.receive();
@@ -180,7 +180,7 @@ fn strangers_and_garbage_disturb_nobody() {
         stranger.stream.write_all(garbage).unwrap();
         assert!(stranger.is_refused(), "{garbage:?}");
     }
-    // A half packet, and one that says nothing at all, wait for more.
+    // Half a packet, and an empty connection, wait for more.
     let mut half = Client::connect(&simulator);
     half.stream.write_all(&ASK_HANDLE[..30]).unwrap();
     let _silent = Client::connect(&simulator);
@@ -188,7 +188,7 @@ fn strangers_and_garbage_disturb_nobody() {
     assert_eq!(friend.time(), 50);
     drop(half);
     drop(friend);
-    // These are only looked into when it is their turn.
+    // These are only parsed when it is their turn.
     for garbage in [&version, &size, &b"\x01\x00\x00\x00\x00\x00".to_vec()] {
         let mut stranger = Client::connect(&simulator);
         stranger.stream.write_all(garbage).unwrap();

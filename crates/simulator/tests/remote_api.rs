@@ -1,4 +1,4 @@
-//! The simulator on real ports, driven by another implementation of ZeroMQ, and by strangers.
+//! The simulator on real ports, driven by another implementation of ZeroMQ and by invalid connections.
 
 // Clippy spares functions marked as tests only, not what they share.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -9,12 +9,12 @@ use std::time::Duration;
 
 use ciborium::{Value, cbor};
 use pydslrep_kinematics::Drive;
-use pydslrep_record::TraceRecord;
 use pydslrep_scene::{Robot, Scene, Wheel};
 use pydslrep_simulator::{Options, Simulator, StartError};
+use pydslrep_trace::TraceRecord;
 use zeromq::{ReqSocket, Socket, SocketRecv, SocketSend, ZmqMessage};
 
-/// Nothing here takes this long; a test that hangs fails instead.
+/// The time limit, which turns hanging tests into failures.
 const LIMIT: Duration = Duration::from_secs(30);
 
 fn scene(robots: usize) -> Scene {
@@ -75,7 +75,7 @@ impl Client {
     }
 }
 
-/// Two robots, one client and port each; what happened.
+/// The trace of two robots with one client and port each.
 async fn drive_two(steps: usize) -> Vec<TraceRecord> {
     let simulator = start(2);
     let mut first = Client::connect(simulator.ports()[0], "first").await;
@@ -91,7 +91,7 @@ async fn drive_two(steps: usize) -> Vec<TraceRecord> {
 #[tokio::test]
 async fn two_clients_on_two_ports_advance_in_lockstep_and_always_alike() {
     let trace = drive_two(100).await;
-    // Between the leaving of one and the stop the clock may run by itself.
+    // After one client leaves, the clock may run freely until the stop.
     let last = 2 * 101;
     assert!(trace.len() >= last, "{}", trace.len());
     assert_eq!(trace[0].t.to_bits(), 0.0_f64.to_bits());
@@ -122,7 +122,7 @@ async fn a_client_that_hangs_up_in_the_middle_of_a_step_holds_nobody_up() {
     assert!((stays.time().await - 0.1).abs() < 1e-9);
 }
 
-/// What a client of ZeroMQ says before its first message.
+/// The handshake of a ZeroMQ client.
 fn introduction() -> Vec<u8> {
     let mut bytes = vec![0xff, 0, 0, 0, 0, 0, 0, 0, 0, 0x7f, 3, 0];
     bytes.extend_from_slice(b"NULL");
@@ -131,11 +131,11 @@ fn introduction() -> Vec<u8> {
     bytes
 }
 
-/// Sends bytes; whether the simulator hangs up on them.
+/// Sends bytes and returns whether the simulator closes the connection.
 fn is_refused(port: u16, bytes: &[u8]) -> bool {
     let mut stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
     stream.set_read_timeout(Some(LIMIT)).unwrap();
-    // It may have hung up before all was sent.
+    // The connection may close before everything is sent.
     let _ = stream.write_all(bytes);
     loop {
         match stream.read(&mut [0; 1024]) {
@@ -174,7 +174,7 @@ async fn without_stepping_time_passes_by_itself() {
     let simulator = Simulator::start(scene(1), &options).unwrap();
     let mut client = Client::connect(simulator.ports()[0], "reader").await;
     client.call("sim.startSimulation", Value::Array(vec![])).await;
-    // A step asked for outside stepping mode is answered when the clock has taken it.
+    // A step requested outside stepping mode is answered after the clock has taken it.
     client.call("sim.step", Value::Array(vec![])).await;
     assert!(client.time().await >= 0.05);
     assert!(simulator.time() >= 0.05 && simulator.poses().len() == 1);
@@ -193,7 +193,7 @@ fn a_port_that_is_taken_is_reported_or_replaced() {
     let ports = second.ports();
     assert!(ports.len() == 3 && ports[0] == ports[2] && !ports[..2].contains(&taken) && ports[0] != ports[1]);
     first.stop();
-    assert!(TcpStream::connect(("127.0.0.1", taken)).is_err(), "a stopped simulator has left its port");
+    assert!(TcpStream::connect(("127.0.0.1", taken)).is_err(), "a stopped simulator releases its port");
 }
 
 #[test]

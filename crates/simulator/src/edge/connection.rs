@@ -1,4 +1,4 @@
-//! One listener, and one task per connection, which speaks the protocol that its client begins with.
+//! One listener per port and one task per connection, which speaks its client's protocol.
 
 use std::io;
 use std::sync::Arc;
@@ -10,72 +10,73 @@ use tokio::sync::Mutex;
 use tokio::sync::mpsc::UnboundedReceiver;
 use tokio::time::{sleep, timeout};
 
-use super::exchange::Exchange;
-use super::{Violation, packet, zmtp};
+use super::shared_session::SharedSession;
+use super::{ProtocolError, packet, zmtp};
 
-/// Whoever connects must have introduced itself by then, and must take a reply within this time: a client that
-/// does neither would hold its place, or the others' steps, for ever. A client of the legacy remote API says something
-/// every few milliseconds, and V-REP too drops it after ten seconds of silence.
-const PATIENCE: Duration = Duration::from_secs(10);
+/// The time limit for the handshake and for accepting a reply: a client that exceeds it would block its slot, or the
+/// other clients' steps, forever. Clients of the legacy remote API send a message every few milliseconds, and V-REP
+/// drops them after ten seconds of silence, too.
+const TIMEOUT: Duration = Duration::from_secs(10);
 
-/// After a failed accept (too many open files) the next attempt waits, or it would burn a core.
-const PAUSE_AFTER_ERROR: Duration = Duration::from_millis(50);
+/// The delay after a failed accept (too many open files), which avoids a busy loop.
+const ACCEPT_RETRY_DELAY: Duration = Duration::from_millis(50);
 
-/// A client of the legacy remote API waits for each reply before it says more. What says more than this at once is none.
-const MOST_MESSAGES_AT_ONCE: usize = 16;
+/// A client of the legacy remote API waits for each reply before it sends the next message. Connections that send more
+/// than this at once are refused.
+const MAX_PENDING_MESSAGES: usize = 16;
 
-/// Serves everybody who connects, until dropped.
-pub(super) async fn listen(listener: TcpListener, exchange: Arc<Exchange>) {
-    // A port serves one client of the legacy remote API; others that connect wait until it is gone.
+/// Serves all connections until dropped.
+pub(super) async fn listen(listener: TcpListener, session: Arc<SharedSession>) {
+    // A port serves one client of the legacy remote API at a time; the others wait until it disconnects.
     let turn = Arc::new(Mutex::new(()));
     loop {
         match listener.accept().await {
             Ok((stream, _)) => {
-                if let Some((connection, replies)) = exchange.admit() {
-                    let (exchange, turn) = (Arc::clone(&exchange), Arc::clone(&turn));
+                if let Some((connection, replies)) = session.admit() {
+                    let (session, turn) = (Arc::clone(&session), Arc::clone(&turn));
                     tokio::spawn(async move {
-                        let visit = Visit { exchange: &exchange, connection };
-                        // However a connection ends, there is nobody left to tell.
-                        let _ = serve(stream, &visit, replies, &turn).await;
+                        let guard = ConnectionGuard { session: &session, connection };
+                        // After an error the connection is closed, so there is nobody to report it to.
+                        let _ = serve(stream, &guard, replies, &turn).await;
                     });
                 }
             }
-            Err(_) => sleep(PAUSE_AFTER_ERROR).await,
+            Err(_) => sleep(ACCEPT_RETRY_DELAY).await,
         }
     }
 }
 
-/// An admitted connection; dismissed however its task ends, also by a panic.
-struct Visit<'a> {
-    exchange: &'a Exchange,
+/// An admitted connection, removed when its task ends, even by a panic.
+struct ConnectionGuard<'a> {
+    session: &'a SharedSession,
     connection: u64,
 }
 
-impl Drop for Visit<'_> {
+impl Drop for ConnectionGuard<'_> {
     fn drop(&mut self) {
-        self.exchange.dismiss(self.connection);
+        self.session.dismiss(self.connection);
     }
 }
 
 async fn serve(
     stream: TcpStream,
-    visit: &Visit<'_>,
+    guard: &ConnectionGuard<'_>,
     replies: UnboundedReceiver<Vec<u8>>,
     turn: &Mutex<()>,
 ) -> io::Result<()> {
     stream.set_nodelay(true)?;
     let mut line = Line { stream, buffer: vec![0; 16 * 1024] };
-    // In both protocols the client speaks first, and its first byte tells them apart.
-    let first = timeout(PATIENCE, line.read()).await??.to_vec();
+    // In both protocols the client sends first, and its first byte identifies the protocol.
+    let first = timeout(TIMEOUT, line.read()).await??.to_vec();
     match first.first() {
-        Some(&zmtp::MARK) => serve_zmtp(line, visit, replies, &first).await,
-        _ => serve_legacy(line, visit, turn, &first).await,
+        Some(&zmtp::MARK) => serve_zmtp(line, guard, replies, &first).await,
+        _ => serve_legacy(line, guard, turn, &first).await,
     }
 }
 
 async fn serve_zmtp(
     mut line: Line,
-    visit: &Visit<'_>,
+    guard: &ConnectionGuard<'_>,
     mut replies: UnboundedReceiver<Vec<u8>>,
     first: &[u8],
 ) -> io::Result<()> {
@@ -84,11 +85,11 @@ async fn serve_zmtp(
     let mut messages = Vec::new();
     receiver.receive(first, &mut messages)?;
     while !receiver.is_open() {
-        receiver.receive(timeout(PATIENCE, line.read()).await??, &mut messages)?;
+        receiver.receive(timeout(TIMEOUT, line.read()).await??, &mut messages)?;
     }
     loop {
         for message in messages.drain(..) {
-            visit.exchange.request(visit.connection, message);
+            guard.session.request(guard.connection, message);
         }
         while let Ok(reply) = replies.try_recv() {
             line.write(&reply).await?;
@@ -100,32 +101,38 @@ async fn serve_zmtp(
     }
 }
 
-async fn serve_legacy(mut line: Line, visit: &Visit<'_>, turn: &Mutex<()>, first: &[u8]) -> io::Result<()> {
+async fn serve_legacy(
+    mut line: Line,
+    guard: &ConnectionGuard<'_>,
+    turn: &Mutex<()>,
+    first: &[u8],
+) -> io::Result<()> {
     let mut receiver = packet::Receiver::default();
     let mut messages = Vec::new();
     receiver.receive(first, &mut messages)?;
     let lock = turn.lock();
     tokio::pin!(lock);
     let _turn = loop {
-        if messages.len() > MOST_MESSAGES_AT_ONCE {
-            return Err(Violation("messages without waiting for replies").into());
+        if messages.len() > MAX_PENDING_MESSAGES {
+            return Err(ProtocolError("messages without waiting for replies").into());
         }
         tokio::select! {
             turn = &mut lock => break turn,
-            // Also to see that it is gone.
+            // Also detects a disconnect.
             bytes = line.read() => receiver.receive(bytes?, &mut messages)?,
         }
     };
     loop {
         for message in messages.drain(..) {
-            let answered = visit.exchange.legacy_message(visit.connection, &message);
-            let (reply, is_last) = answered.map_err(|_| Violation("no message of the legacy remote API"))?;
+            let answered = guard.session.legacy_message(guard.connection, &message);
+            let (reply, is_last) =
+                answered.map_err(|_| ProtocolError("not a message of the legacy remote API"))?;
             line.write(&packet::encode(&reply)).await?;
             if is_last {
                 return Ok(());
             }
         }
-        receiver.receive(timeout(PATIENCE, line.read()).await??, &mut messages)?;
+        receiver.receive(timeout(TIMEOUT, line.read()).await??, &mut messages)?;
     }
 }
 
@@ -135,7 +142,7 @@ struct Line {
 }
 
 impl Line {
-    /// Some bytes, at least one. Nothing is lost when this is dropped before it is done.
+    /// Reads at least one byte. Cancel safe.
     async fn read(&mut self) -> io::Result<&[u8]> {
         match self.stream.read(&mut self.buffer).await? {
             0 => Err(io::ErrorKind::UnexpectedEof.into()),
@@ -144,12 +151,12 @@ impl Line {
     }
 
     async fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
-        timeout(PATIENCE, self.stream.write_all(bytes)).await?
+        timeout(TIMEOUT, self.stream.write_all(bytes)).await?
     }
 }
 
-impl From<Violation> for io::Error {
-    fn from(Violation(text): Violation) -> Self {
+impl From<ProtocolError> for io::Error {
+    fn from(ProtocolError(text): ProtocolError) -> Self {
         Self::new(io::ErrorKind::InvalidData, text)
     }
 }

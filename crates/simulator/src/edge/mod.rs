@@ -1,15 +1,15 @@
-//! The network edge: the remote APIs on TCP ports, and the simulator as something to start and stop.
+//! The network edge: serves the remote APIs on TCP ports, and starts and stops the simulator.
 //!
-//! Knows sockets, threads and the clock. Must never know what a call means: that is [`crate::Session`]'s.
+//! Knows sockets, threads and the clock. Must never know the meaning of calls: [`crate::Session`] handles them.
 
 mod connection;
-mod exchange;
 mod packet;
+mod shared_session;
 mod simulator;
 mod zmtp;
 
-/// Why a connection is given up.
+/// A protocol violation, which closes the connection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Violation(&'static str);
+struct ProtocolError(&'static str);
 
 pub use simulator::{Options, Simulator, StartError};

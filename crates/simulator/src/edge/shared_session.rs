@@ -1,4 +1,4 @@
-//! Where connections and the session meet: requests get tickets, answers find their way back.
+//! The session shared by all connections: assigns tickets to requests and routes answers back.
 
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -9,11 +9,11 @@ use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use super::zmtp::{self, Message};
 use crate::{Answer, Malformed, Session};
 
-/// More connections than this at once are not served.
-const MOST_CONNECTIONS: usize = 256;
+/// The maximum number of simultaneous connections.
+const MAX_CONNECTIONS: usize = 256;
 
-/// The session and the way back to every connection. Shared by all tasks of a simulator and its owner.
-pub(super) struct Exchange {
+/// The session and the reply channels of its connections. Shared by all tasks of a simulator and its owner.
+pub(super) struct SharedSession {
     inner: Mutex<Inner>,
     begin: Instant,
 }
@@ -31,7 +31,7 @@ struct Origin {
     envelope: Vec<Vec<u8>>,
 }
 
-impl Exchange {
+impl SharedSession {
     pub(super) fn new(session: Session) -> Self {
         let inner = Inner {
             session,
@@ -43,10 +43,10 @@ impl Exchange {
         Self { inner: Mutex::new(inner), begin: Instant::now() }
     }
 
-    /// Admits a connection: its number and the replies to send to it; `None` when there are too many.
+    /// Admits a connection and returns its number and the channel of its replies; `None` if there are too many.
     pub(super) fn admit(&self) -> Option<(u64, UnboundedReceiver<Vec<u8>>)> {
         let mut inner = self.lock();
-        if inner.connections.len() >= MOST_CONNECTIONS {
+        if inner.connections.len() >= MAX_CONNECTIONS {
             return None;
         }
         inner.last_connection += 1;
@@ -55,7 +55,7 @@ impl Exchange {
         Some((connection, receiver))
     }
 
-    /// Handles a message; its reply comes out of the connection's receiver, now or later.
+    /// Handles a message; its reply arrives on the connection's channel, now or later.
     pub(super) fn request(&self, connection: u64, message: Message) {
         let now = self.begin.elapsed();
         let mut inner = self.lock();
@@ -66,16 +66,16 @@ impl Exchange {
         inner.deliver(answers);
     }
 
-    /// Handles a message of the legacy remote API: its reply, and whether the client is done.
+    /// Handles a message of the legacy remote API and returns its reply, and whether the client is done.
     pub(super) fn legacy_message(&self, connection: u64, bytes: &[u8]) -> Result<(Vec<u8>, bool), Malformed> {
         let now = self.begin.elapsed();
         let mut inner = self.lock();
-        let pass = inner.session.legacy_message(connection, now, bytes)?;
-        inner.deliver(pass.answers);
-        Ok((pass.reply, pass.is_last))
+        let response = inner.session.legacy_message(connection, now, bytes)?;
+        inner.deliver(response.answers);
+        Ok((response.reply, response.is_last))
     }
 
-    /// Forgets a connection and the clients behind it.
+    /// Removes a connection and its clients.
     pub(super) fn dismiss(&self, connection: u64) {
         let mut inner = self.lock();
         inner.connections.remove(&connection);
@@ -84,9 +84,9 @@ impl Exchange {
         inner.deliver(answers);
     }
 
-    /// Lets `steps` steps pass if nobody steps the clock, or allows as many where steps are paced; whether the time of
-    /// the machine matters at all.
-    pub(super) fn pass_time(&self, steps: u32) -> bool {
+    /// Takes `steps` steps if no client steps the clock, or allows as many if steps are paced. Returns whether the session
+    /// depends on real time.
+    pub(super) fn advance(&self, steps: u32) -> bool {
         let mut inner = self.lock();
         let answers = inner.session.allow(steps);
         inner.deliver(answers);
@@ -97,20 +97,20 @@ impl Exchange {
         inner.session.is_timed()
     }
 
-    pub(super) fn keep_house(&self) {
+    pub(super) fn expire_clients(&self) {
         let now: Duration = self.begin.elapsed();
         let mut inner = self.lock();
-        let answers = inner.session.keep_house(now);
+        let answers = inner.session.expire_clients(now);
         inner.deliver(answers);
     }
 
-    /// Works on the session.
-    pub(super) fn with_session<T>(&self, work: impl FnOnce(&mut Session) -> T) -> T {
+    /// Runs a function on the session.
+    pub(super) fn with<T>(&self, work: impl FnOnce(&mut Session) -> T) -> T {
         work(&mut self.lock().session)
     }
 
     fn lock(&self) -> MutexGuard<'_, Inner> {
-        // A panic elsewhere leaves at worst one request unanswered; the others go on.
+        // After a panic elsewhere at most one request stays unanswered.
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -120,7 +120,7 @@ impl Inner {
         for Answer { ticket, bytes } in answers {
             let Some(origin) = self.open.remove(&ticket) else { continue };
             if let Some(connection) = self.connections.get(&origin.connection) {
-                // A closed receiver is a connection about to be dismissed.
+                // A closed channel belongs to a connection that is about to be removed.
                 let _ = connection.send(zmtp::encode(&origin.envelope, &bytes));
             }
         }

@@ -1,4 +1,4 @@
-//! A whole simulator to embed: started on a thread of its own, watched while it runs, stopped at the end.
+//! The embeddable simulator: runs on its own thread and can be observed and stopped.
 
 use std::fmt;
 use std::io;
@@ -13,42 +13,42 @@ use tokio::sync::oneshot;
 use tokio::time::sleep;
 
 use super::connection::listen;
-use super::exchange::Exchange;
-use pydslrep_record::TraceRecord;
+use super::shared_session::SharedSession;
+use pydslrep_trace::TraceRecord;
 
 use crate::{Session, Sightings, World, WorldError};
 
-/// How often the clock looks at the time, whether it runs by itself or somebody steps it.
+/// The period of the clock while it runs in real time, and while it does not.
 const CLOCK_PERIOD: Duration = Duration::from_millis(2);
 const IDLE_PERIOD: Duration = Duration::from_millis(20);
 
-/// How often silent clients are looked for.
-const HOUSEKEEPING_PERIOD: Duration = Duration::from_millis(200);
+/// How often silent clients are expired.
+const EXPIRY_PERIOD: Duration = Duration::from_millis(200);
 
-/// The clock never catches up more than this at once; what is beyond is lost instead of blocking the clients.
-const MOST_STEPS_AT_ONCE: u32 = 500;
+/// The maximum number of steps that the clock catches up at once; more are dropped rather than block the clients.
+const MAX_STEPS_AT_ONCE: u32 = 500;
 
-/// How a simulator is to run.
+/// The options of a simulator.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
-    /// Where it listens; by default for programs on this machine only.
+    /// The address to listen on; the default accepts only local programs.
     pub address: IpAddr,
-    /// One listener for each, 0 is any free port. Ports listed more than once share a listener.
+    /// One listener per port; 0 is any free port. Repeated ports share a listener.
     pub ports: Vec<u16>,
-    /// Take any free port where the wished one is taken, instead of failing.
+    /// Use any free port if a requested one is taken, instead of failing.
     pub any_port_if_taken: bool,
-    /// Length of a simulation step, seconds.
+    /// The simulation step, seconds.
     pub step: f64,
     /// Simulated seconds per second while no client steps the clock.
     pub speed: f64,
-    /// Keep to that speed also when clients step the clock, instead of stepping as fast as they ask.
+    /// Keep that speed even if clients step the clock, instead of stepping as fast as they request.
     pub paced: bool,
-    /// Record a trace. It stays in memory until taken.
+    /// Record a trace. It stays in memory until it is taken.
     pub trace: bool,
 }
 
 impl Default for Options {
-    /// One free port on loopback, real time, with trace.
+    /// A free loopback port, in real time, with a trace.
     fn default() -> Self {
         Self {
             address: Ipv4Addr::LOCALHOST.into(),
@@ -65,20 +65,20 @@ impl Default for Options {
 /// Why a simulator did not start.
 #[derive(Debug)]
 pub enum StartError {
-    /// The scene cannot move.
+    /// The scene cannot be simulated.
     World(WorldError),
-    /// The speed is not above zero.
+    /// The speed is not positive.
     Speed(f64),
-    /// A port cannot be listened on.
+    /// The simulator cannot listen on a port.
     Port {
-        /// Where.
+        /// The address.
         address: IpAddr,
-        /// Which one.
+        /// The port.
         port: u16,
-        /// Why.
+        /// The cause.
         error: io::Error,
     },
-    /// The machine gave no thread or timer.
+    /// The thread or runtime could not be created.
     Runtime(io::Error),
 }
 
@@ -86,7 +86,7 @@ impl fmt::Display for StartError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::World(error) => error.fmt(f),
-            Self::Speed(speed) => write!(f, "the simulator's speed must be above zero, it is {speed}"),
+            Self::Speed(speed) => write!(f, "the simulator's speed must be positive, but it is {speed}"),
             Self::Port { address, port, error } => {
                 write!(f, "cannot listen on {address} port {port}: {error}; is another simulator running?")
             }
@@ -107,17 +107,17 @@ impl std::error::Error for StartError {
 
 /// A running simulator. Dropping it stops it.
 pub struct Simulator {
-    exchange: Arc<Exchange>,
+    session: Arc<SharedSession>,
     ports: Vec<u16>,
     stop: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Simulator {
-    /// Starts a simulator of `scene`. Its ports accept connections when this returns.
+    /// Starts a simulator of `scene`. When this returns, its ports accept connections.
     ///
     /// # Errors
-    /// When the scene cannot move, a port is taken, or the machine is out of threads.
+    /// If the scene cannot be simulated, a port is taken, or no thread can be created.
     pub fn start(scene: Scene, options: &Options) -> Result<Self, StartError> {
         if !(options.speed.is_finite() && options.speed > 0.0) {
             return Err(StartError::Speed(options.speed));
@@ -131,7 +131,7 @@ impl Simulator {
             session.pace();
         }
         let (listeners, ports) = bind(options)?;
-        let exchange = Arc::new(Exchange::new(session));
+        let session = Arc::new(SharedSession::new(session));
         let (stop, stopped) = oneshot::channel();
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_io()
@@ -143,7 +143,7 @@ impl Simulator {
             listeners.into_iter().map(tokio::net::TcpListener::from_std).collect::<Result<_, _>>()
         }
         .map_err(StartError::Runtime)?;
-        let (shared, pace) = (Arc::clone(&exchange), options.speed / options.step);
+        let (shared, pace) = (Arc::clone(&session), options.speed / options.step);
         let thread = std::thread::Builder::new()
             .name("simulator".to_owned())
             .spawn(move || {
@@ -152,44 +152,44 @@ impl Simulator {
                         tokio::spawn(listen(listener, Arc::clone(&shared)));
                     }
                     tokio::spawn(keep_time(Arc::clone(&shared), pace));
-                    // An error means that the owner is gone, which is a stop too.
+                    // An error means that the owner was dropped, which also stops the simulator.
                     let _ = stopped.await;
                 });
             })
             .map_err(StartError::Runtime)?;
-        Ok(Self { exchange, ports, stop: Some(stop), thread: Some(thread) })
+        Ok(Self { session, ports, stop: Some(stop), thread: Some(thread) })
     }
 
-    /// Where it listens: one port for each of [`Options::ports`], in their order.
+    /// The ports it listens on, one for each of [`Options::ports`] in order.
     pub fn ports(&self) -> &[u16] {
         &self.ports
     }
 
     /// Simulation time, seconds.
     pub fn time(&self) -> f64 {
-        self.exchange.with_session(|session| session.world().time())
+        self.session.with(|session| session.world().time())
     }
 
-    /// Where the robots are, in the scene's order.
+    /// The poses of the robots in the scene's order.
     pub fn poses(&self) -> Vec<Pose> {
-        self.exchange.with_session(|session| {
+        self.session.with(|session| {
             let world = session.world();
             (0..world.scene().robots.len()).map(|robot| world.pose(robot)).collect()
         })
     }
 
-    /// What sensors were read to see since the start.
+    /// The points that sensor readings have detected since the start.
     pub fn sightings(&self) -> Sightings {
-        self.exchange.with_session(|session| session.sightings().clone())
+        self.session.with(|session| session.sightings().clone())
     }
 
-    /// What was recorded since the start or since the last time this was called: every robot at the start of a
-    /// simulation and after each step, in the order in which it happened.
+    /// The trace since the start or the last call: every robot at the start of a simulation and after each step, in
+    /// chronological order.
     pub fn take_trace(&self) -> Vec<TraceRecord> {
-        self.exchange.with_session(Session::take_trace)
+        self.session.with(Session::take_trace)
     }
 
-    /// Closes all connections and returns the rest of the trace.
+    /// Closes all connections and returns the remaining trace.
     pub fn stop(mut self) -> Vec<TraceRecord> {
         self.end();
         self.take_trace()
@@ -198,7 +198,7 @@ impl Simulator {
     fn end(&mut self) {
         self.stop.take();
         if let Some(thread) = self.thread.take() {
-            // It ends by itself when told to; a panic in it has nothing to say to the owner any more.
+            // Closing the channel ends the thread; a panic in it no longer matters.
             let _ = thread.join();
         }
     }
@@ -210,7 +210,7 @@ impl Drop for Simulator {
     }
 }
 
-/// The listeners, and the port of each wish.
+/// The listeners, and the port for each requested one.
 fn bind(options: &Options) -> Result<(Vec<TcpListener>, Vec<u16>), StartError> {
     let (mut listeners, mut ports) = (Vec::new(), Vec::new());
     for (index, &port) in options.ports.iter().enumerate() {
@@ -232,10 +232,10 @@ fn bind(options: &Options) -> Result<(Vec<TcpListener>, Vec<u16>), StartError> {
     Ok((listeners, ports))
 }
 
-/// The clock while nobody steps it, at `pace` steps per second, and the housekeeping.
-async fn keep_time(exchange: Arc<Exchange>, pace: f64) {
+/// Runs the clock at `pace` steps per second while no client steps it, and expires silent clients.
+async fn keep_time(session: Arc<SharedSession>, pace: f64) {
     let mut last = Instant::now();
-    let mut last_housekeeping = last;
+    let mut last_expiry = last;
     let mut owed = 0.0;
     let mut running = false;
     loop {
@@ -243,13 +243,13 @@ async fn keep_time(exchange: Arc<Exchange>, pace: f64) {
         let now = Instant::now();
         owed = if running { owed + (now - last).as_secs_f64() * pace } else { 0.0 };
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // clamped to what fits
-        let steps = owed.floor().clamp(0.0, f64::from(MOST_STEPS_AT_ONCE)) as u32;
+        let steps = owed.floor().clamp(0.0, f64::from(MAX_STEPS_AT_ONCE)) as u32;
         owed = (owed - f64::from(steps)).min(1.0);
         last = now;
-        running = exchange.pass_time(steps);
-        if now - last_housekeeping >= HOUSEKEEPING_PERIOD {
-            exchange.keep_house();
-            last_housekeeping = now;
+        running = session.advance(steps);
+        if now - last_expiry >= EXPIRY_PERIOD {
+            session.expire_clients();
+            last_expiry = now;
         }
     }
 }

@@ -1,18 +1,18 @@
 //! The ZeroMQ message transport protocol 3.0 (RFC 23), server side, as bytes in and messages out.
 //!
-//! Only what a ROUTER socket without authentication needs. Our own, because the pure Rust `zeromq` crate (0.7)
-//! reserves as much memory as a frame's header announces: nine bytes from anyone end the whole process. Here
-//! memory grows with what has really arrived, and what announces more than [`LARGEST_MESSAGE`] is refused.
+//! Implements only a ROUTER socket without authentication. It is our own because the pure Rust `zeromq` crate (0.7)
+//! allocates as much memory as a frame's header announces: nine bytes from anyone abort the process. Here memory grows
+//! with the received data, and frames that announce more than [`MAX_MESSAGE`] are rejected.
 
-use super::Violation;
+use super::ProtocolError;
 
-/// Real requests have some hundred bytes.
-const LARGEST_MESSAGE: usize = 1 << 20;
+/// The maximum size of a message; real requests have a few hundred bytes.
+const MAX_MESSAGE: usize = 1 << 20;
 
-/// A message with its envelope has two frames; routers on the way may add some.
-const MOST_FRAMES: usize = 16;
+/// The maximum number of frames; a message with its envelope has two, and intermediate routers may add some.
+const MAX_FRAMES: usize = 16;
 
-/// What the first byte of a connection is in this protocol.
+/// The first byte of every connection in this protocol.
 pub(super) const MARK: u8 = 0xff;
 
 const GREETING_LENGTH: usize = 64;
@@ -22,7 +22,7 @@ const FLAG_MORE: u8 = 1;
 const FLAG_LONG: u8 = 2;
 const FLAG_COMMAND: u8 = 4;
 
-/// A message as it came: all frames before the last are the envelope and go back with the reply.
+/// A received message: all frames but the last are the envelope, which the reply repeats.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Message {
     pub(super) envelope: Vec<Vec<u8>>,
@@ -46,8 +46,7 @@ enum Stage {
     Messages,
 }
 
-/// What to send as soon as a connection is open: greeting and READY. With the NULL mechanism neither depends on
-/// what the other side says.
+/// Greeting and READY, sent as soon as a connection is open. With the NULL mechanism neither depends on the peer.
 pub(super) fn opening() -> Vec<u8> {
     let mut bytes = vec![MARK, 0, 0, 0, 0, 0, 0, 0, 0, 0x7f, 3, 0];
     bytes.extend_from_slice(MECHANISM);
@@ -56,7 +55,7 @@ pub(super) fn opening() -> Vec<u8> {
     bytes
 }
 
-/// A reply as it goes out.
+/// Encodes a reply.
 pub(super) fn encode(envelope: &[Vec<u8>], body: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(body.len() + 16);
     for frame in envelope {
@@ -77,13 +76,13 @@ fn push_frame(bytes: &mut Vec<u8>, flags: u8, content: &[u8]) {
 }
 
 impl Receiver {
-    /// Whether the other side has said all it must say before its first message.
+    /// Whether the handshake is complete.
     pub(super) fn is_open(&self) -> bool {
         self.stage == Stage::Messages
     }
 
-    /// Takes bytes as they come and adds whole messages to `messages`.
-    pub(super) fn receive(&mut self, bytes: &[u8], messages: &mut Vec<Message>) -> Result<(), Violation> {
+    /// Takes received bytes and adds complete messages to `messages`.
+    pub(super) fn receive(&mut self, bytes: &[u8], messages: &mut Vec<Message>) -> Result<(), ProtocolError> {
         self.buffer.extend_from_slice(bytes);
         let mut used = 0;
         while let Some(length) = self.take(used, messages)? {
@@ -93,8 +92,8 @@ impl Receiver {
         Ok(())
     }
 
-    /// Takes one unit from the buffer at `start`; its length, or `None` when it is not all there.
-    fn take(&mut self, start: usize, messages: &mut Vec<Message>) -> Result<Option<usize>, Violation> {
+    /// Takes one unit from the buffer at `start` and returns its length; `None` if it is incomplete.
+    fn take(&mut self, start: usize, messages: &mut Vec<Message>) -> Result<Option<usize>, ProtocolError> {
         let Some(rest) = self.buffer.get(start..) else { return Ok(None) };
         if self.stage == Stage::Greeting {
             check_greeting(rest)?;
@@ -111,8 +110,8 @@ impl Receiver {
                 check_ready(content)?;
                 self.stage = Stage::Messages;
             }
-            (Stage::Ready, false) => return Err(Violation("a message before READY")),
-            // Version 3.0 has no commands after the handshake; newer ones are not meant for us.
+            (Stage::Ready, false) => return Err(ProtocolError("a message before READY")),
+            // Version 3.0 has no commands after the handshake; those of newer versions are ignored.
             (_, true) => {}
             (_, false) => {
                 let content = content.to_vec();
@@ -127,10 +126,10 @@ impl Receiver {
         content: Vec<u8>,
         more: bool,
         messages: &mut Vec<Message>,
-    ) -> Result<(), Violation> {
+    ) -> Result<(), ProtocolError> {
         self.size += content.len();
-        if self.size > LARGEST_MESSAGE || self.frames.len() >= MOST_FRAMES {
-            return Err(Violation("a message that is too large"));
+        if self.size > MAX_MESSAGE || self.frames.len() >= MAX_FRAMES {
+            return Err(ProtocolError("a message that is too large"));
         }
         if more {
             self.frames.push(content);
@@ -142,30 +141,30 @@ impl Receiver {
     }
 }
 
-/// Looks at as much of a greeting as has come, so that a stranger is turned away at the first wrong byte.
-fn check_greeting(bytes: &[u8]) -> Result<(), Violation> {
+/// Checks the received part of a greeting, so that other protocols are rejected at the first wrong byte.
+fn check_greeting(bytes: &[u8]) -> Result<(), ProtocolError> {
     let is_wrong = |index: usize, wrong: fn(u8) -> bool| bytes.get(index).is_some_and(|&byte| wrong(byte));
     if is_wrong(0, |byte| byte != MARK) || is_wrong(9, |byte| byte != 0x7f) {
-        return Err(Violation("this is not ZeroMQ"));
+        return Err(ProtocolError("not ZeroMQ"));
     }
     if is_wrong(10, |byte| byte < 3) {
-        return Err(Violation("a ZeroMQ version before 3"));
+        return Err(ProtocolError("a ZeroMQ version before 3"));
     }
     if bytes.get(12..32).is_some_and(|mechanism| mechanism != MECHANISM) {
-        return Err(Violation("a security mechanism other than NULL"));
+        return Err(ProtocolError("a security mechanism other than NULL"));
     }
     Ok(())
 }
 
-fn check_ready(command: &[u8]) -> Result<(), Violation> {
-    if command.starts_with(b"\x05READY") { Ok(()) } else { Err(Violation("another command than READY")) }
+fn check_ready(command: &[u8]) -> Result<(), ProtocolError> {
+    if command.starts_with(b"\x05READY") { Ok(()) } else { Err(ProtocolError("a command other than READY")) }
 }
 
-/// Flags and content range of the frame at the start of `bytes`; `None` while its header is not all there.
-fn frame(bytes: &[u8]) -> Result<Option<(u8, usize, usize)>, Violation> {
+/// The flags and content range of the frame at the start of `bytes`; `None` while its header is incomplete.
+fn frame(bytes: &[u8]) -> Result<Option<(u8, usize, usize)>, ProtocolError> {
     let Some((&flags, rest)) = bytes.split_first() else { return Ok(None) };
     if flags & !(FLAG_MORE | FLAG_LONG | FLAG_COMMAND) != 0 {
-        return Err(Violation("reserved bits in a frame's flags"));
+        return Err(ProtocolError("reserved bits in a frame's flags"));
     }
     let (from, length) = if flags & FLAG_LONG == 0 {
         let Some(&length) = rest.first() else { return Ok(None) };
@@ -174,8 +173,8 @@ fn frame(bytes: &[u8]) -> Result<Option<(u8, usize, usize)>, Violation> {
         let Some(length) = rest.first_chunk::<8>() else { return Ok(None) };
         (9, usize::try_from(u64::from_be_bytes(*length)).unwrap_or(usize::MAX))
     };
-    if length > LARGEST_MESSAGE {
-        return Err(Violation("a frame that is too large"));
+    if length > MAX_MESSAGE {
+        return Err(ProtocolError("a frame that is too large"));
     }
     Ok(Some((flags, from, from + length)))
 }
@@ -186,7 +185,7 @@ mod tests {
 
     use super::*;
 
-    /// What libzmq's REQ socket sends up to its first message.
+    /// The bytes that libzmq's REQ socket sends before its first message.
     fn client_opening() -> Vec<u8> {
         let mut bytes = opening();
         bytes.truncate(GREETING_LENGTH);
@@ -195,13 +194,13 @@ mod tests {
         bytes
     }
 
-    fn receive_all(receiver: &mut Receiver, bytes: &[u8]) -> Result<Vec<Message>, Violation> {
+    fn receive_all(receiver: &mut Receiver, bytes: &[u8]) -> Result<Vec<Message>, ProtocolError> {
         let mut messages = Vec::new();
         receiver.receive(bytes, &mut messages)?;
         Ok(messages)
     }
 
-    fn refusal(bytes: &[u8]) -> Violation {
+    fn refusal(bytes: &[u8]) -> ProtocolError {
         let mut receiver = Receiver::default();
         receive_all(&mut receiver, &client_opening()).unwrap();
         receive_all(&mut receiver, bytes).unwrap_err()
@@ -225,9 +224,9 @@ mod tests {
     }
 
     #[test]
-    fn strangers_are_turned_away_at_once() {
+    fn other_protocols_are_rejected_immediately() {
         let mut receiver = Receiver::default();
-        assert_eq!(receive_all(&mut receiver, b"G"), Err(Violation("this is not ZeroMQ")));
+        assert_eq!(receive_all(&mut receiver, b"G"), Err(ProtocolError("not ZeroMQ")));
         let mut old = client_opening();
         old[10] = 1;
         assert!(receive_all(&mut Receiver::default(), &old).is_err());
@@ -237,21 +236,30 @@ mod tests {
     }
 
     #[test]
-    fn announced_lengths_cost_nothing() {
-        assert_eq!(refusal(b"\x02\x00\x00\x7f\xff\xff\xff\xff\xff"), Violation("a frame that is too large"));
-        assert_eq!(refusal(b"\x02\xff\xff\xff\xff\xff\xff\xff\xff"), Violation("a frame that is too large"));
-        assert_eq!(refusal(&b"\x01\x00".repeat(MOST_FRAMES + 1)), Violation("a message that is too large"));
-        assert_eq!(refusal(b"\x08\x00"), Violation("reserved bits in a frame's flags"));
+    fn announced_lengths_allocate_nothing() {
+        assert_eq!(
+            refusal(b"\x02\x00\x00\x7f\xff\xff\xff\xff\xff"),
+            ProtocolError("a frame that is too large")
+        );
+        assert_eq!(
+            refusal(b"\x02\xff\xff\xff\xff\xff\xff\xff\xff"),
+            ProtocolError("a frame that is too large")
+        );
+        assert_eq!(
+            refusal(&b"\x01\x00".repeat(MAX_FRAMES + 1)),
+            ProtocolError("a message that is too large")
+        );
+        assert_eq!(refusal(b"\x08\x00"), ProtocolError("reserved bits in a frame's flags"));
         let mut most = vec![FLAG_LONG | FLAG_MORE];
-        most.extend_from_slice(&(LARGEST_MESSAGE as u64).to_be_bytes());
-        most.resize(9 + LARGEST_MESSAGE, 0);
+        most.extend_from_slice(&(MAX_MESSAGE as u64).to_be_bytes());
+        most.resize(9 + MAX_MESSAGE, 0);
         most.extend_from_slice(b"\x00\x01x");
-        assert_eq!(refusal(&most), Violation("a message that is too large"));
+        assert_eq!(refusal(&most), ProtocolError("a message that is too large"));
     }
 
     proptest! {
         #[test]
-        fn any_bytes_are_survived(bytes in prop::collection::vec(any::<u8>(), 0..200), greet in any::<bool>()) {
+        fn arbitrary_bytes_do_not_panic(bytes in prop::collection::vec(any::<u8>(), 0..200), greet in any::<bool>()) {
             let mut receiver = Receiver::default();
             let mut messages = Vec::new();
             if greet {
@@ -261,7 +269,7 @@ mod tests {
         }
 
         #[test]
-        fn it_does_not_matter_how_the_bytes_are_cut(
+        fn chunking_does_not_matter(
             bodies in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..400), 1..5),
             cut in 1usize..100,
         ) {

@@ -3,14 +3,14 @@
 use ciborium::Value;
 use nalgebra::{Isometry3, Matrix3x4, Vector3};
 
-/// What the client sends for "nothing here" where it must send something.
+/// The placeholder that clients send for a missing argument.
 const NIL: &str = "_*NIL*_";
 
-/// A call that failed, with the text the client shows.
+/// A failed call, with the message for the client.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Failure(pub(super) String);
 
-/// The result of a call: its return values, or why there are none.
+/// The result of a call: its return values or its failure.
 pub(super) type Outcome = Result<Vec<Value>, Failure>;
 
 /// The arguments of one call.
@@ -25,14 +25,14 @@ impl<'a> Arguments<'a> {
         Self { function, values }
     }
 
-    /// Whether this is a call of that function.
+    /// Whether this is a call of a function.
     pub(super) fn is(&self, function: &str) -> bool {
         self.function == function
     }
 
-    /// A failure of this call: error number, then the call, then what is wrong.
+    /// A failure of this call, formatted as the engine does: error number, function, message.
     pub(super) fn failure(&self, number: u32, text: &str) -> Failure {
-        // The engine names the C function behind this one call.
+        // For this function, the engine names its C implementation.
         let function = if self.function == "sim.getObject" { "sim._getObject" } else { self.function };
         Failure(format!("{number}: in {function}: {text}"))
     }
@@ -46,12 +46,12 @@ impl<'a> Arguments<'a> {
         self.get(index).and_then(integer).ok_or_else(|| self.wrong_type())
     }
 
-    /// An integer that may be left out.
+    /// An optional integer.
     pub(super) fn integer_or(&self, index: usize, default: i64) -> Result<i64, Failure> {
         if self.get(index).is_none() { Ok(default) } else { self.integer(index) }
     }
 
-    /// A finite number; clients send whole ones as integers.
+    /// A finite number; clients may send it as an integer.
     pub(super) fn number(&self, index: usize) -> Result<f64, Failure> {
         self.get(index).and_then(number).filter(|value| value.is_finite()).ok_or_else(|| self.wrong_type())
     }
@@ -60,13 +60,13 @@ impl<'a> Arguments<'a> {
         self.get(index).and_then(Value::as_text).ok_or_else(|| self.wrong_type())
     }
 
-    /// True for `true` and for numbers other than 0, as the engine takes them.
+    /// True for `true` and for non-zero numbers, as in the engine.
     pub(super) fn truth(&self, index: usize) -> Result<bool, Failure> {
         let value = self.get(index).ok_or_else(|| self.wrong_type())?;
         value.as_bool().or_else(|| Some(number(value)? != 0.0)).ok_or_else(|| self.wrong_type())
     }
 
-    /// An entry of the options map at `index`; `None` without map or entry.
+    /// An entry of the options map at `index`, if present.
     pub(super) fn option(&self, index: usize, name: &str) -> Option<&'a Value> {
         let map = self.get(index)?.as_map()?;
         map.iter().find(|(key, _)| key.as_text() == Some(name)).map(|(_, value)| value)
@@ -77,7 +77,7 @@ impl<'a> Arguments<'a> {
     }
 }
 
-/// A whole number, also one that comes as a float.
+/// An integer, possibly encoded as a float.
 pub(super) fn integer(value: &Value) -> Option<i64> {
     match value {
         Value::Integer(whole) => i64::try_from(*whole).ok(),
@@ -162,7 +162,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn euler_angles_give_the_rotation_back(a in -3.1..3.1, b in -1.5..1.5, c in -3.1..3.1) {
+        fn euler_angles_round_trip(a in -3.1..3.1, b in -1.5..1.5, c in -3.1..3.1) {
             let found = angles_of(rotation(a, b, c));
             let again = rotation(found[0], found[1], found[2]);
             let difference = (again.matrix() - rotation(a, b, c).matrix()).norm();

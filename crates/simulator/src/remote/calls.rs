@@ -1,4 +1,4 @@
-//! The calls of `sim` that read or command objects; those about time and stepping are in `session`.
+//! The calls of `sim` on objects; calls about time and stepping are in `session`.
 
 use std::collections::BTreeMap;
 
@@ -11,83 +11,85 @@ use super::info;
 use super::objects::{Handle, Kind, Objects};
 use crate::{Sightings, World};
 
-/// What calls work on.
-pub(super) struct Bench<'a> {
+/// The state that calls read and change.
+pub(super) struct CallContext<'a> {
     pub(super) world: &'a mut World,
     pub(super) objects: &'a Objects,
     /// Whether the simulation is started, running or paused.
     pub(super) started: bool,
     pub(super) drivers: &'a mut Drivers,
-    /// Who calls.
+    /// The calling connection.
     pub(super) connection: u64,
     pub(super) seen: &'a mut Sightings,
 }
 
-/// Which connection asked each wheel for its rate last, by robot and wheel.
+/// The connection that set the rate of each wheel last, by robot and wheel.
 pub(super) type Drivers = BTreeMap<(usize, usize), u64>;
 
-/// A wheel joint that a call names.
+/// The wheel joint of a call.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Joint {
     pub(super) robot: usize,
     pub(super) wheel: usize,
-    /// −1 for a joint whose axis points to the right: its own rate is the opposite of the rolling rate.
-    pub(super) sense: f64,
+    /// −1 if the joint's axis points to the right, so that its rate is the negative rolling rate; otherwise 1.
+    pub(super) axis_sign: f64,
 }
 
-/// What a proximity sensor detects, in its own frame.
+/// A detection of a proximity sensor, in the sensor's frame.
 pub(super) struct Detected {
     /// Metres.
     pub(super) distance: f64,
     /// The nearest point.
     pub(super) point: Vector3<f64>,
-    /// What it belongs to.
+    /// The detected object.
     pub(super) handle: Handle,
-    /// The direction away from the surface there.
+    /// The surface normal at that point.
     pub(super) normal: Vector3<f64>,
 }
 
-/// Answers a call by its name without `sim.`; `None` when there is no such function.
-pub(super) fn call(bench: &mut Bench, function: &str, arguments: &Arguments) -> Option<Outcome> {
+/// Handles a call by its name without `sim.`; `None` if there is no such function.
+pub(super) fn call(context: &mut CallContext, function: &str, arguments: &Arguments) -> Option<Outcome> {
     Some(match function {
-        "getObject" => bench.get_object(arguments),
-        "getObjectAlias" => bench.get_object_alias(arguments),
-        "getObjectParent" => bench.get_object_parent(arguments),
-        "getObjectChild" => bench.get_object_child(arguments),
-        "getObjectType" => bench.get_object_type(arguments),
-        "isHandle" => bench.is_handle(arguments),
-        "getObjectPosition" => bench.frame(arguments).map(|frame| vec![arguments::position(&frame)]),
-        "getObjectOrientation" => bench.frame(arguments).map(|frame| vec![arguments::euler_angles(&frame)]),
-        "getObjectPose" => bench.frame(arguments).map(|frame| vec![arguments::pose(&frame)]),
-        "getObjectMatrix" => bench.frame(arguments).map(|frame| vec![arguments::matrix(&frame)]),
-        "getObjectVelocity" => bench.get_object_velocity(arguments),
-        "getJointPosition" => bench.read_joint(arguments, World::angle).map(|angle| vec![angle.into()]),
-        "getJointVelocity" => bench.read_joint(arguments, World::rate).map(|rate| vec![rate.into()]),
-        "getJointTargetVelocity" => bench.read_joint(arguments, World::target).map(|rate| vec![rate.into()]),
-        "setJointTargetVelocity" => bench.set_joint_target_velocity(arguments),
-        "getJointMode" => {
-            bench.joint(arguments).map(|_| vec![info::JOINT_MODE_DYNAMIC.into(), Value::from(0)])
+        "getObject" => context.get_object(arguments),
+        "getObjectAlias" => context.get_object_alias(arguments),
+        "getObjectParent" => context.get_object_parent(arguments),
+        "getObjectChild" => context.get_object_child(arguments),
+        "getObjectType" => context.get_object_type(arguments),
+        "isHandle" => context.is_handle(arguments),
+        "getObjectPosition" => context.frame(arguments).map(|frame| vec![arguments::position(&frame)]),
+        "getObjectOrientation" => context.frame(arguments).map(|frame| vec![arguments::euler_angles(&frame)]),
+        "getObjectPose" => context.frame(arguments).map(|frame| vec![arguments::pose(&frame)]),
+        "getObjectMatrix" => context.frame(arguments).map(|frame| vec![arguments::matrix(&frame)]),
+        "getObjectVelocity" => context.get_object_velocity(arguments),
+        "getJointPosition" => context.read_joint(arguments, World::angle).map(|angle| vec![angle.into()]),
+        "getJointVelocity" => context.read_joint(arguments, World::rate).map(|rate| vec![rate.into()]),
+        "getJointTargetVelocity" => {
+            context.read_joint(arguments, World::target).map(|rate| vec![rate.into()])
         }
-        "getObjectInt32Param" => bench.get_object_int_param(arguments),
-        "setObjectInt32Param" => bench.set_object_int_param(arguments),
-        "getObjectFloatParam" => bench.get_object_float_param(arguments),
-        "getFloatProperty" => bench.get_float_property(arguments),
-        "getFloatArrayProperty" => bench.get_float_array_property(arguments),
-        "readProximitySensor" => bench.read_proximity_sensor(arguments),
-        "handleProximitySensor" => bench.handle_proximity_sensor(arguments),
+        "setJointTargetVelocity" => context.set_joint_target_velocity(arguments),
+        "getJointMode" => {
+            context.joint(arguments).map(|_| vec![info::JOINT_MODE_DYNAMIC.into(), Value::from(0)])
+        }
+        "getObjectInt32Param" => context.get_object_int_param(arguments),
+        "setObjectInt32Param" => context.set_object_int_param(arguments),
+        "getObjectFloatParam" => context.get_object_float_param(arguments),
+        "getFloatProperty" => context.get_float_property(arguments),
+        "getFloatArrayProperty" => context.get_float_array_property(arguments),
+        "readProximitySensor" => context.read_proximity_sensor(arguments),
+        "handleProximitySensor" => context.handle_proximity_sensor(arguments),
         "getInt32Param" => parameter(arguments, info::PARAM_PROGRAM_VERSION, info::PROGRAM_VERSION.into()),
-        "getFloatParam" => parameter(arguments, info::PARAM_TIME_STEP, bench.world.step_length().into()),
+        "getFloatParam" => parameter(arguments, info::PARAM_TIME_STEP, context.world.step_length().into()),
         "getBoolParam" => parameter(arguments, info::PARAM_REAL_TIME, true.into()),
-        "getSimulationTimeStep" => Ok(vec![bench.world.step_length().into()]),
-        "getSimulationTime" => Ok(vec![bench.world.time().into()]),
-        // The clock's pace is the simulator's own option; logs have no window to go to.
+        "getSimulationTimeStep" => Ok(vec![context.world.step_length().into()]),
+        "getSimulationTime" => Ok(vec![context.world.time().into()]),
+        // The pace of the clock is an option of the simulator, and there is no log window.
         "setBoolParam" => arguments.integer(0).and_then(|_| arguments.truth(1)).map(|_| vec![]),
         "addLog" => arguments.integer(0).map(|_| vec![]),
         _ => return None,
     })
 }
 
-/// The one readable parameter of a kind.
+/// The only readable parameter of a kind.
 fn parameter(arguments: &Arguments, known: i64, value: Value) -> Outcome {
     if arguments.integer(0)? == known {
         return Ok(vec![value]);
@@ -104,7 +106,7 @@ pub(super) fn type_of(kind: Kind) -> i64 {
     }
 }
 
-impl Bench<'_> {
+impl CallContext<'_> {
     fn get_object(&self, arguments: &Arguments) -> Outcome {
         let path = arguments.text(0)?;
         let index = arguments.option(1, "index").and_then(arguments::integer).unwrap_or(0);
@@ -159,14 +161,14 @@ impl Bench<'_> {
         Ok(vec![self.objects.get(arguments.integer(0)?).is_some().into()])
     }
 
-    /// The frame of the first argument's object, relative to the second argument's (left out: the world).
+    /// The frame of the first argument's object, relative to the second argument's (default: the world).
     fn frame(&self, arguments: &Arguments) -> Result<Isometry3<f64>, arguments::Failure> {
         let (handle, _) = self.object(arguments)?;
         let base = arguments.integer_or(1, info::HANDLE_WORLD)?;
         self.frame_of(handle, base).ok_or_else(|| arguments.failure(316, "object does not exist."))
     }
 
-    /// The frame of an object relative to another one, or to what the special handles stand for.
+    /// The frame of an object relative to another one or to a special handle.
     pub(super) fn frame_of(&self, handle: Handle, base: Handle) -> Option<Isometry3<f64>> {
         let own = self.objects.frame(handle, self.world)?;
         let base = match base {
@@ -203,28 +205,28 @@ impl Bench<'_> {
         self.joint_of(handle).ok_or_else(|| arguments.failure(316, "object is not a joint."))
     }
 
-    /// The joint with this handle, if it is one.
+    /// The joint with this handle, if any.
     pub(super) fn joint_of(&self, handle: Handle) -> Option<Joint> {
         let Kind::Wheel { robot, wheel } = self.objects.get(handle)?.kind else { return None };
         let parts = self.world.scene().robots.get(robot).and_then(|robot| robot.wheels.get(wheel));
-        let sense = if parts.is_some_and(|wheel| wheel.mirrored) { -1.0 } else { 1.0 };
-        Some(Joint { robot, wheel, sense })
+        let axis_sign = if parts.is_some_and(|wheel| wheel.mirrored) { -1.0 } else { 1.0 };
+        Some(Joint { robot, wheel, axis_sign })
     }
 
-    /// Asks a joint for a rate in its own sense of rotation, rad/s.
+    /// Sets the target rate of a joint about its own axis, rad/s.
     pub(super) fn set_rate(&mut self, joint: Joint, rate: f64) {
-        self.world.set_target(joint.robot, joint.wheel, joint.sense * rate);
+        self.world.set_target(joint.robot, joint.wheel, joint.axis_sign * rate);
         self.drivers.insert((joint.robot, joint.wheel), self.connection);
     }
 
-    /// A rate or angle of a wheel, in its joint's own sense of rotation.
+    /// A rate or angle of a wheel about its joint's own axis.
     fn read_joint(
         &self,
         arguments: &Arguments,
         read: fn(&World, usize, usize) -> f64,
     ) -> Result<f64, arguments::Failure> {
-        let Joint { robot, wheel, sense } = self.joint(arguments)?;
-        Ok(sense * read(self.world, robot, wheel))
+        let Joint { robot, wheel, axis_sign } = self.joint(arguments)?;
+        Ok(axis_sign * read(self.world, robot, wheel))
     }
 
     fn set_joint_target_velocity(&mut self, arguments: &Arguments) -> Outcome {
@@ -261,7 +263,7 @@ impl Bench<'_> {
         Ok(vec![rate.into()])
     }
 
-    /// How far a proximity sensor sees.
+    /// The range of a proximity sensor.
     fn get_float_property(&self, arguments: &Arguments) -> Outcome {
         let mount = self.mount(arguments)?;
         match arguments.text(1)? {
@@ -270,7 +272,7 @@ impl Bench<'_> {
         }
     }
 
-    /// The opening angle of a proximity sensor's cone, and that of the gap in it.
+    /// The opening angles of a proximity sensor's cone and of the gap inside it.
     fn get_float_array_property(&self, arguments: &Arguments) -> Outcome {
         let mount = self.mount(arguments)?;
         match arguments.text(1)? {
@@ -293,7 +295,7 @@ impl Bench<'_> {
         }
     }
 
-    /// State, distance, point, handle of what was detected, its normal.
+    /// State, distance, point, handle of the detected object, surface normal.
     fn read_proximity_sensor(&mut self, arguments: &Arguments) -> Outcome {
         let handle = self.sensor(arguments)?;
         let nothing = || arguments::list([0.0; 3]);
@@ -305,7 +307,7 @@ impl Bench<'_> {
         Ok(vec![Value::from(1), seen.distance.into(), point, seen.handle.into(), normal])
     }
 
-    /// What a proximity sensor detects since the first step.
+    /// The current detection of a proximity sensor; `None` before the first step.
     pub(super) fn detected(&mut self, handle: Handle) -> Option<Detected> {
         let Kind::Sensor { robot, sensor } = self.objects.get(handle)?.kind else { return None };
         if !self.has_handled_sensors() {
@@ -313,20 +315,20 @@ impl Bench<'_> {
         }
         let seen = self.world.sight(robot, sensor)?;
         let frame = self.objects.frame(handle, self.world)?;
-        // What is on the floor is as high as the sensor.
+        // Objects on the floor are as high as the sensor.
         let point = Point3::new(seen.point.0, seen.point.1, frame.translation.z);
         let way = frame.inverse_transform_point(&point).coords;
         self.seen.add(robot, seen.point);
         Some(Detected {
             distance: seen.distance,
-            // Where it would be at the distance that was measured.
+            // Scaled to the measured distance.
             point: way.try_normalize(f64::MIN_POSITIVE).map_or(way, |way| way * seen.distance),
             handle: self.objects.handle_of(seen.what).unwrap_or(-1),
             normal: frame.inverse_transform_vector(&Vector3::new(seen.normal.0, seen.normal.1, 0.0)),
         })
     }
 
-    /// Whether sensors have looked around since the start: the first step lets them.
+    /// Whether sensors have been evaluated since the start: the first step does it.
     pub(super) fn has_handled_sensors(&self) -> bool {
         self.started && self.world.steps() > 0
     }

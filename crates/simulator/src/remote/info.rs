@@ -1,8 +1,8 @@
-//! What `zmqRemoteApi.info` tells a client about `sim`: its functions and constants.
+//! The description of `sim` for `zmqRemoteApi.info`: its functions and constants.
 
 use ciborium::Value;
 
-/// Constants a robot's script uses, with the engine's values.
+/// The constants that scripts use, with the engine's values.
 const CONSTANTS: &[(&str, i64)] = &[
     ("handle_world", HANDLE_WORLD),
     ("handle_all", -2),
@@ -46,10 +46,10 @@ pub(super) const PARAM_PROGRAM_VERSION: i64 = 1;
 pub(super) const PARAM_TIME_STEP: i64 = 1;
 pub(super) const PARAM_REAL_TIME: i64 = 25;
 
-/// The engine version whose behaviour is copied here (4.6.0), as `sim.intparam_program_version` has it.
+/// The emulated engine version (4.6.0), in the format of `sim.intparam_program_version`.
 pub(super) const PROGRAM_VERSION: i64 = 40600;
 
-/// Every function of `sim` that is answered.
+/// The supported functions of `sim`.
 pub(super) const FUNCTIONS: &[&str] = &[
     "addLog",
     "getBoolParam",

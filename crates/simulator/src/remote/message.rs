@@ -6,11 +6,11 @@ use ciborium::Value;
 
 use super::arguments::{Failure, Outcome, integer};
 
-/// Requests nest their arguments two or three levels deep; more is an attack on the stack.
-const NESTING: usize = 32;
+/// The maximum nesting of requests; real ones have two or three levels, and more would overflow the stack.
+const MAX_NESTING: usize = 32;
 
-/// How long the longest client name may be; real ones are UUIDs of 36 characters.
-const LONGEST_UUID: usize = 128;
+/// The maximum length of a client's name; real ones are UUIDs of 36 characters.
+const MAX_UUID_LENGTH: usize = 128;
 
 /// A request, decoded.
 pub(super) struct Request {
@@ -22,7 +22,7 @@ pub(super) struct Request {
 
 impl Request {
     pub(super) fn decode(bytes: &[u8]) -> Result<Self, &'static str> {
-        let value: Value = ciborium::de::from_reader_with_recursion_limit(bytes, NESTING)
+        let value: Value = ciborium::de::from_reader_with_recursion_limit(bytes, MAX_NESTING)
             .map_err(|_| "the request is not valid CBOR")?;
         let Value::Map(map) = value else { return Err("the request is not a CBOR map") };
         let mut request =
@@ -39,7 +39,7 @@ impl Request {
                 _ => {}
             }
         }
-        if request.uuid.is_empty() || request.uuid.len() > LONGEST_UUID {
+        if request.uuid.is_empty() || request.uuid.len() > MAX_UUID_LENGTH {
             return Err("the client's version does not match: requests need a `uuid`");
         }
         if request.function.is_empty() {
@@ -60,7 +60,7 @@ pub(super) fn outcome_map(outcome: Outcome) -> Vec<(Value, Value)> {
 
 pub(super) fn encode(map: Vec<(Value, Value)>) -> Vec<u8> {
     let mut bytes = Vec::new();
-    // Writing to a Vec cannot fail, and none of our values can fail to encode.
+    // Neither writing to a Vec nor encoding these values can fail.
     let written = ciborium::into_writer(&Value::Map(map), &mut bytes);
     debug_assert!(written.is_ok());
     bytes

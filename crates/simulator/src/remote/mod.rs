@@ -1,5 +1,5 @@
-//! The remote APIs, from request bytes to reply bytes: ZeroMQ's (protocol 2, as CoppeliaSim 4.6 and later speak it), and
-//! in `legacy` that of V-REP. Clients of both share one world and may step it together.
+//! The remote APIs, from request bytes to reply bytes: the ZeroMQ one (protocol 2, of CoppeliaSim 4.6 and later), and in
+//! `legacy` that of V-REP. Clients of both share one world and may step it together.
 
 mod arguments;
 mod calls;
@@ -9,7 +9,7 @@ mod message;
 mod objects;
 mod session;
 
-pub use legacy::{Malformed, Pass};
+pub use legacy::{LegacyResponse, Malformed};
 pub use session::{Answer, Session};
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The scene as a tree of named objects with handles, as clients see it.
+//! The scene as clients see it: a tree of named objects with handles.
 
 use std::f64::consts::FRAC_PI_2;
 use std::iter;
@@ -9,10 +9,10 @@ use pydslrep_scene::{Scene, Thing};
 
 use crate::World;
 
-/// How clients name an object in calls.
+/// The identifier of an object in calls.
 pub(super) type Handle = i64;
 
-/// What an object is; indices into the scene.
+/// The kind of an object, with indices into the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Robot(usize),
@@ -29,7 +29,7 @@ pub(super) struct Object {
     pub(super) kind: Kind,
 }
 
-/// All objects: each robot, then its wheels, then its sensors; obstacles after all robots.
+/// All objects: each robot with its wheels and its sensors, then the obstacles.
 #[derive(Debug, Clone)]
 pub(super) struct Objects(Vec<Object>);
 
@@ -51,7 +51,7 @@ impl Objects {
         objects
     }
 
-    /// The handle of something that can be seen.
+    /// The handle of a detected object.
     pub(super) fn handle_of(&self, thing: Thing) -> Option<Handle> {
         let kind = match thing {
             Thing::Robot(robot) => Kind::Robot(robot),
@@ -74,10 +74,9 @@ impl Objects {
         (1..).zip(&self.0)
     }
 
-    /// The `index`-th object that a path leads to. `/a/b` searches the whole scene for an `a` with a `b` anywhere
-    /// below it, `./b` searches below `proxy`; a name may carry its index among the objects of that name below the
-    /// same parent, as in `/a[1]/b`. Objects come before the parts of their neighbours: a robot `a` is found before
-    /// a wheel `a` of any robot.
+    /// The `index`-th match of a path. `/a/b` searches the whole scene for an `a` with a `b` anywhere below it, `./b`
+    /// searches below `proxy`. A name may have an index among the objects of that name below the same parent, as in
+    /// `/a[1]/b`. Matches are sorted by depth: a robot `a` comes before a wheel `a` of any robot.
     pub(super) fn find(&self, path: &str, proxy: Option<Handle>, index: usize) -> Option<Handle> {
         let mut parts = path.split('/');
         let mut candidates: Vec<Option<Handle>> = match parts.next()? {
@@ -101,7 +100,7 @@ impl Objects {
         *candidates.get(index)?
     }
 
-    /// An object and all others of its name below the same parent, in their order.
+    /// All objects with the name and parent of an object, including itself, in order.
     fn namesakes(&self, handle: Handle) -> impl Iterator<Item = Handle> {
         let object = self.get(handle);
         let is_namesake = move |other: &Object| {
@@ -126,8 +125,7 @@ impl Objects {
         parent.is_some()
     }
 
-    /// The full path of an object, such as `/robot_1/wheelL`; objects of one name below the same parent are told
-    /// apart by an index.
+    /// The full path of an object, such as `/robot_1/wheelL`; objects of the same name and parent have an index.
     pub(super) fn path(&self, handle: Handle) -> Option<String> {
         let object = self.get(handle)?;
         let twins: Vec<Handle> = self.namesakes(handle).collect();
@@ -137,15 +135,15 @@ impl Objects {
         Some(format!("{parent}/{}{index}", object.alias))
     }
 
-    /// The shortest path that leads to this object only.
+    /// The shortest unique path of an object.
     pub(super) fn short_path(&self, handle: Handle) -> Option<String> {
         let object = self.get(handle)?;
         let unique = self.iter().filter(|(_, other)| other.alias == object.alias).count() == 1;
         if unique { Some(format!("/{}", object.alias)) } else { self.path(handle) }
     }
 
-    /// An object's frame in the world. A joint's z axis is its axis of rotation, a sensor's z axis the direction
-    /// it looks in, as in CoppeliaSim.
+    /// An object's frame in the world. As in CoppeliaSim, a joint's z axis is its axis of rotation and a sensor's z axis its
+    /// direction.
     pub(super) fn frame(&self, handle: Handle, world: &World) -> Option<Isometry3<f64>> {
         let kind = self.get(handle)?.kind;
         let robot = match kind {
@@ -174,7 +172,7 @@ impl Objects {
     }
 }
 
-/// A name and its index, as in `wheel[1]`; `None` when ill formed.
+/// A name and its index, as in `wheel[1]`; `None` if malformed.
 fn split_index(part: &str) -> Option<(&str, Option<usize>)> {
     match part.strip_suffix(']').and_then(|part| part.split_once('[')) {
         Some((alias, index)) => Some((alias, Some(index.parse().ok()?))),
@@ -246,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_comes_before_parts_of_its_name() {
+    fn a_robot_comes_before_parts_of_the_same_name() {
         let robot = |name: &str| {
             let wheels = vec![Wheel::new("x", 0.05), Wheel::new("r", 0.05)];
             Robot::new(name, Drive::TwoWheel, wheels, vec![("x".to_owned(), SensorKind::Distance)])
@@ -260,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn joints_show_their_sense_of_rotation_and_stand_on_the_floor() {
+    fn joints_have_their_axis_and_height() {
         let world = world();
         let objects = Objects::of(world.scene());
         let axis = |handle| {

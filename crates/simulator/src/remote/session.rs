@@ -1,32 +1,32 @@
-//! Clients, their requests, and who may let time pass.
+//! Sessions: clients, their requests, and the coordination of simulation steps.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
 
 use ciborium::Value;
-use pydslrep_record::TraceRecord;
+use pydslrep_trace::TraceRecord;
 
 use super::arguments::{Arguments, Failure, Outcome};
-use super::calls::{self, Bench, Drivers};
+use super::calls::{self, CallContext, Drivers};
 use super::info;
 use super::legacy::client::Client as LegacyClient;
 use super::message::{Request, encode, outcome_map};
 use super::objects::Objects;
 use crate::{Sightings, World};
 
-/// How many clients one connection may speak for; real ones speak for one.
-const CLIENTS_PER_CONNECTION: usize = 16;
+/// The maximum number of clients per connection; real connections have one.
+const MAX_CLIENTS_PER_CONNECTION: usize = 16;
 
-/// A client that asked for a step is told to keep waiting after this long, so that it can see we are alive.
-const WAIT_ROUND: Duration = Duration::from_secs(1);
+/// A client that waits longer than this for a step gets a keep-alive reply.
+const KEEP_ALIVE_PERIOD: Duration = Duration::from_secs(1);
 
-/// How long a silent client is remembered unless it says otherwise.
+/// The default timeout after which a silent client is expired.
 const DEFAULT_TIMEOUT: Duration = Duration::from_secs(600);
 
-/// A reply and the request that it answers.
+/// The reply to a request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Answer {
-    /// The number given with the request.
+    /// The ticket of the request.
     pub ticket: u64,
     /// One CBOR map.
     pub bytes: Vec<u8>,
@@ -34,8 +34,8 @@ pub struct Answer {
 
 /// The remote API of one world: requests in, replies out, for any number of clients.
 ///
-/// Every request gets exactly one answer, from the same call or from a later one: a client that asks for a step
-/// is answered when the step was taken, and it is taken when every client in stepping mode has asked for it.
+/// Every request gets exactly one answer, immediately or later: a step request is answered after the step, and a step is
+/// taken once every client in stepping mode has requested it.
 #[derive(Debug, Clone)]
 pub struct Session {
     pub(super) world: World,
@@ -47,7 +47,7 @@ pub struct Session {
     pub(super) drivers: Drivers,
     trace: Option<Vec<TraceRecord>>,
     seen: Sightings,
-    /// Steps that clients may still have taken; `None` is any number.
+    /// The number of steps that clients may still take; `None` is unlimited.
     allowance: Option<u32>,
 }
 
@@ -63,31 +63,31 @@ struct Client {
     connection: u64,
     last_seen: Duration,
     timeout: Duration,
-    /// Above 0: no step is taken before this client has asked for it.
+    /// Positive in stepping mode: steps wait for a request of this client.
     level: u32,
-    /// The step it asked for, until it was told that it was taken.
-    wanted: Option<Wanted>,
+    /// Its unanswered step request.
+    step_request: Option<StepRequest>,
 }
 
 #[derive(Debug, Clone)]
-struct Wanted {
-    /// Satisfied when this many steps were taken.
+struct StepRequest {
+    /// The request is fulfilled after this many steps.
     steps: u64,
-    /// The request to answer, and when it came; `None` while the client is in a wait round.
+    /// The ticket to answer, and its time; `None` while the client handles a keep-alive reply.
     open: Option<(u64, Duration)>,
 }
 
-/// What becomes of a request.
+/// The kind of reply to a request.
 enum Reply {
     Now(Outcome),
     Map(Vec<(Value, Value)>),
     Later,
-    /// Later, and the earlier request with this ticket will not be answered any more.
+    /// Later; the earlier request with this ticket is answered with an error.
     LaterInsteadOf(u64),
 }
 
 impl Session {
-    /// A session on a world at rest; the simulation is stopped.
+    /// A session with a stopped simulation.
     pub fn new(world: World) -> Self {
         let objects = Objects::of(world.scene());
         Self {
@@ -103,60 +103,60 @@ impl Session {
         }
     }
 
-    /// Begins to record all robots at the start of the simulation and after every step.
+    /// Starts recording all robots at the start of the simulation and after every step.
     pub fn record(&mut self) {
         self.trace.get_or_insert_default();
     }
 
-    /// From now on clients have steps taken only as [`Session::allow`] lets them.
+    /// From now on clients can only take steps that [`Session::allow`] permits.
     pub fn pace(&mut self) {
         self.allowance.get_or_insert(0);
     }
 
-    /// Lets so many more steps be taken in a session that is paced. What nobody asks for is lost but for one step, so
-    /// that a client that was slow does not make up for it in a rush.
+    /// Permits more steps in a paced session. All but one of the unused steps expire, so that a slow client does not catch
+    /// up in a burst.
     pub fn allow(&mut self, steps: u32) -> Vec<Answer> {
         let Some(left) = &mut self.allowance else { return Vec::new() };
         *left = (*left).min(1).saturating_add(steps);
-        self.settle()
+        self.step_if_ready()
     }
 
-    /// Whether the clock of the machine decides when steps are taken: nobody steps, or steps are paced.
+    /// Whether real time decides when steps are taken: no client steps, or steps are paced.
     pub fn is_timed(&self) -> bool {
         self.state == State::Running && (self.allowance.is_some() || self.is_free_running())
     }
 
-    /// What was recorded since the last time this was asked.
+    /// The trace since the last call.
     pub fn take_trace(&mut self) -> Vec<TraceRecord> {
         self.trace.as_mut().map(std::mem::take).unwrap_or_default()
     }
 
-    /// What sensors were read to see.
+    /// The points that sensor readings have detected.
     pub fn sightings(&self) -> &Sightings {
         &self.seen
     }
 
-    /// The world as it is now.
+    /// The current world.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// How many clients are remembered.
+    /// The number of known clients.
     pub fn client_count(&self) -> usize {
         self.clients.len() + self.legacy.len()
     }
 
-    /// Whether time passes by itself: the simulation runs and no client steps it.
+    /// Whether the simulation runs freely: no client steps it.
     pub fn is_free_running(&self) -> bool {
         let nobody_steps = self.clients.values().all(|client| client.level == 0)
-            && !self.legacy.values().any(LegacyClient::holds_time);
+            && !self.legacy.values().any(LegacyClient::is_synchronous);
         self.state == State::Running && nobody_steps
     }
 
-    /// Takes a request of one CBOR map.
+    /// Handles a request, which is one CBOR map.
     ///
-    /// `ticket` comes back with the answer, `connection` says where the request came from, and `now` is the time
-    /// since any fixed moment. The answers returned may be to this request, to earlier ones, or both.
+    /// The answer repeats `ticket`; `connection` is the origin of the request and `now` the time since any fixed moment. The
+    /// answers may belong to this request, to earlier ones, or both.
     pub fn request(&mut self, connection: u64, ticket: u64, now: Duration, bytes: &[u8]) -> Vec<Answer> {
         let reply = match Request::decode(bytes) {
             Ok(request) => self.answer(connection, ticket, now, &request),
@@ -170,16 +170,15 @@ impl Session {
             Reply::Map(map) => answers.push(Answer { ticket, bytes: encode(map) }),
             Reply::Later => {}
             Reply::LaterInsteadOf(ticket) => {
-                let lost = Err(Failure("sim.step: asked again before the step was taken".to_owned()));
+                let lost = Err(Failure("sim.step: requested again before the step was taken".to_owned()));
                 answers.push(Answer { ticket, bytes: encode(outcome_map(lost)) });
             }
         }
-        answers.extend(self.settle());
+        answers.extend(self.step_if_ready());
         answers
     }
 
-    /// A connection is gone, and with it the clients that spoke through it: nobody waits for them any more, and the
-    /// wheels that they drove stop.
+    /// Removes a connection and its clients: nobody waits for them any more, and the wheels that they drove stop.
     pub fn disconnect(&mut self, connection: u64) -> Vec<Answer> {
         self.clients.retain(|_, client| client.connection != connection);
         self.legacy.remove(&connection);
@@ -190,35 +189,37 @@ impl Session {
             }
             stays
         });
-        self.settle()
+        self.step_if_ready()
     }
 
-    /// Forgets clients that were silent for longer than their timeout, and gives those that have waited long for
-    /// their step a sign of life. To be called every now and then.
-    pub fn keep_house(&mut self, now: Duration) -> Vec<Answer> {
+    /// Expires clients that were silent for longer than their timeout, and sends keep-alive replies to those that wait for a
+    /// step. To be called periodically.
+    pub fn expire_clients(&mut self, now: Duration) -> Vec<Answer> {
         self.clients.retain(|_, client| {
-            let waits = client.wanted.as_ref().is_some_and(|wanted| wanted.open.is_some());
+            let waits = client.step_request.as_ref().is_some_and(|step_request| step_request.open.is_some());
             waits || now.saturating_sub(client.last_seen) <= client.timeout
         });
-        let mut answers = self.settle();
+        let mut answers = self.step_if_ready();
         for client in self.clients.values_mut() {
-            let Some(wanted) = &mut client.wanted else { continue };
-            if wanted.open.is_some_and(|(_, since)| now.saturating_sub(since) >= WAIT_ROUND) {
+            let Some(step_request) = &mut client.step_request else { continue };
+            if step_request.open.is_some_and(|(_, since)| now.saturating_sub(since) >= KEEP_ALIVE_PERIOD) {
                 let wait = vec![("func".into(), "_*wait*_".into()), ("args".into(), Value::Array(vec![]))];
-                answers.extend(wanted.open.take().map(|(ticket, _)| Answer { ticket, bytes: encode(wait) }));
+                answers.extend(
+                    step_request.open.take().map(|(ticket, _)| Answer { ticket, bytes: encode(wait) }),
+                );
                 client.last_seen = now;
             }
         }
         answers
     }
 
-    /// A step of the free-running clock; does nothing while clients step or the simulation stands.
+    /// A step of the free-running clock; does nothing while clients step or the simulation does not run.
     pub fn tick(&mut self) -> Vec<Answer> {
         if !self.is_free_running() {
             return Vec::new();
         }
         self.take_step();
-        self.settle()
+        self.step_if_ready()
     }
 
     fn answer(&mut self, connection: u64, ticket: u64, now: Duration, request: &Request) -> Reply {
@@ -226,7 +227,7 @@ impl Session {
             self.clients.remove(&request.uuid);
             return Reply::Map(vec![]);
         }
-        if let Err(failure) = self.see_client(connection, now, request) {
+        if let Err(failure) = self.register_client(connection, now, request) {
             return Reply::Now(Err(failure));
         }
         let arguments = Arguments::new(&request.function, &request.arguments);
@@ -234,7 +235,7 @@ impl Session {
         let outcome = match request.function.as_str() {
             "zmqRemoteApi.require" | "zmqRemoteApi.info" => namespace(&arguments),
             "_*executed*_" => return self.resume(uuid, ticket, now),
-            "sim.step" => return self.ask_step(uuid, ticket, now),
+            "sim.step" => return self.request_step(uuid, ticket, now),
             "sim.setStepping" => self.set_stepping(uuid, &arguments),
             "sim.startSimulation" => {
                 self.start();
@@ -250,18 +251,18 @@ impl Session {
             }
             "sim.getSimulationState" => Ok(vec![self.state_number().into()]),
             function => {
-                let mut bench = self.bench(connection);
+                let mut context = self.context(connection);
                 let name = function.strip_prefix("sim.").unwrap_or_default();
-                calls::call(&mut bench, name, &arguments)
+                calls::call(&mut context, name, &arguments)
                     .unwrap_or_else(|| Err(Failure(format!("No such function: {function}"))))
             }
         };
         Reply::Now(outcome)
     }
 
-    /// What a call of a connection works on.
-    pub(super) fn bench(&mut self, connection: u64) -> Bench<'_> {
-        Bench {
+    /// The context for calls of a connection.
+    pub(super) fn context(&mut self, connection: u64) -> CallContext<'_> {
+        CallContext {
             world: &mut self.world,
             objects: &self.objects,
             started: self.state != State::Stopped,
@@ -271,10 +272,10 @@ impl Session {
         }
     }
 
-    fn see_client(&mut self, connection: u64, now: Duration, request: &Request) -> Result<(), Failure> {
+    fn register_client(&mut self, connection: u64, now: Duration, request: &Request) -> Result<(), Failure> {
         if !self.clients.contains_key(&request.uuid) {
             let beside = self.clients.values().filter(|client| client.connection == connection).count();
-            if beside >= CLIENTS_PER_CONNECTION {
+            if beside >= MAX_CLIENTS_PER_CONNECTION {
                 return Err(Failure("too many clients on one connection".to_owned()));
             }
         }
@@ -283,7 +284,7 @@ impl Session {
             last_seen: now,
             timeout: DEFAULT_TIMEOUT,
             level: 0,
-            wanted: None,
+            step_request: None,
         });
         client.connection = connection;
         client.last_seen = now;
@@ -291,25 +292,25 @@ impl Session {
         Ok(())
     }
 
-    fn ask_step(&mut self, uuid: &str, ticket: u64, now: Duration) -> Reply {
+    fn request_step(&mut self, uuid: &str, ticket: u64, now: Duration) -> Reply {
         let running = self.state == State::Running;
         let steps = self.world.steps() + 1;
         let Some(client) = self.clients.get_mut(uuid).filter(|_| running) else {
             return Reply::Now(Ok(vec![]));
         };
-        // A client asks again without an answer when it lost its connection in between.
-        let before = client.wanted.replace(Wanted { steps, open: Some((ticket, now)) });
-        match before.and_then(|wanted| wanted.open) {
+        // A client repeats its request after it has lost its connection.
+        let before = client.step_request.replace(StepRequest { steps, open: Some((ticket, now)) });
+        match before.and_then(|step_request| step_request.open) {
             Some((lost, _)) => Reply::LaterInsteadOf(lost),
             None => Reply::Later,
         }
     }
 
-    /// The client is back from a wait round.
+    /// The client has handled a keep-alive reply.
     fn resume(&mut self, uuid: &str, ticket: u64, now: Duration) -> Reply {
-        match self.clients.get_mut(uuid).and_then(|client| client.wanted.as_mut()) {
-            Some(wanted) if wanted.open.is_none() => {
-                wanted.open = Some((ticket, now));
+        match self.clients.get_mut(uuid).and_then(|client| client.step_request.as_mut()) {
+            Some(step_request) if step_request.open.is_none() => {
+                step_request.open = Some((ticket, now));
                 Reply::Later
             }
             _ => Reply::Now(Ok(vec![])),
@@ -327,7 +328,7 @@ impl Session {
     pub(super) fn start(&mut self) {
         if self.state == State::Stopped {
             self.world.reset();
-            self.note();
+            self.record_step();
         }
         self.state = State::Running;
     }
@@ -337,12 +338,12 @@ impl Session {
             self.state = State::Stopped;
             self.world.park();
         }
-        self.legacy.values_mut().for_each(LegacyClient::release);
+        self.legacy.values_mut().for_each(LegacyClient::leave_synchronous_mode);
         for client in self.clients.values_mut() {
             client.level = 0;
-            // The next run counts its steps from 0 again.
-            if let Some(wanted) = &mut client.wanted {
-                wanted.steps = 0;
+            // The next run counts its steps from 0.
+            if let Some(step_request) = &mut client.step_request {
+                step_request.steps = 0;
             }
         }
     }
@@ -362,13 +363,15 @@ impl Session {
         }
     }
 
-    /// Takes the step that everybody waits for, if so, and answers whom it concerns.
-    pub(super) fn settle(&mut self) -> Vec<Answer> {
+    /// Takes a step if all stepping clients have requested it, and answers the fulfilled requests.
+    pub(super) fn step_if_ready(&mut self) -> Vec<Answer> {
         let steps = self.world.steps();
-        let asks = |client: &Client| client.wanted.as_ref().is_some_and(|wanted| wanted.steps > steps);
+        let asks = |client: &Client| {
+            client.step_request.as_ref().is_some_and(|step_request| step_request.steps > steps)
+        };
         let stepping = self.clients.values().filter(|client| client.level > 0).map(asks);
-        let triggering = self.legacy.values().filter(|client| client.holds_time());
-        let mut joined = stepping.chain(triggering.map(LegacyClient::asks)).peekable();
+        let triggering = self.legacy.values().filter(|client| client.is_synchronous());
+        let mut joined = stepping.chain(triggering.map(LegacyClient::has_triggered)).peekable();
         let may = self.state == State::Running && self.allowance != Some(0);
         if may && joined.peek().is_some() && joined.all(|asks| asks) {
             self.allowance = self.allowance.map(|left| left.saturating_sub(1));
@@ -377,11 +380,11 @@ impl Session {
         let (steps, running) = (self.world.steps(), self.state == State::Running);
         let mut answers = Vec::new();
         for client in self.clients.values_mut() {
-            let Some(wanted) = &client.wanted else { continue };
-            let done = wanted.steps <= steps || !running;
-            if let Some((ticket, since)) = wanted.open.filter(|_| done) {
+            let Some(step_request) = &client.step_request else { continue };
+            let done = step_request.steps <= steps || !running;
+            if let Some((ticket, since)) = step_request.open.filter(|_| done) {
                 client.last_seen = client.last_seen.max(since);
-                client.wanted = None;
+                client.step_request = None;
                 answers.push(Answer { ticket, bytes: encode(outcome_map(Ok(vec![]))) });
             }
         }
@@ -391,10 +394,10 @@ impl Session {
     fn take_step(&mut self) {
         self.world.step();
         self.legacy.values_mut().for_each(LegacyClient::await_trigger);
-        self.note();
+        self.record_step();
     }
 
-    fn note(&mut self) {
+    fn record_step(&mut self) {
         if let Some(trace) = &mut self.trace {
             trace.extend(self.world.records());
         }

@@ -1,4 +1,4 @@
-//! The remote API seen from a client: CBOR in, CBOR out.
+//! The remote API from a client's point of view: CBOR in, CBOR out.
 
 use std::time::Duration;
 
@@ -12,7 +12,7 @@ use crate::World;
 
 const SECOND: Duration = Duration::from_secs(1);
 
-/// A session with its open requests, and what has been answered.
+/// A session with its open requests and its answers.
 struct Lab {
     session: Session,
     now: Duration,
@@ -55,7 +55,7 @@ impl Lab {
         self.last_ticket
     }
 
-    /// Sends a request; its ticket.
+    /// Sends a request and returns its ticket.
     #[allow(clippy::needless_pass_by_value)] // callers build the arguments on the spot
     fn ask(&mut self, client: &str, function: &str, arguments: Value) -> u64 {
         let length = arguments.as_array().map_or(0, Vec::len);
@@ -69,10 +69,10 @@ impl Lab {
         Some(self.answers.remove(place).1)
     }
 
-    /// Calls and returns the reply, which must come at once.
+    /// Calls and returns the reply, which must be immediate.
     fn reply(&mut self, client: &str, function: &str, arguments: Value) -> Value {
         let ticket = self.ask(client, function, arguments);
-        self.answered(ticket).expect("an answer at once")
+        self.answered(ticket).expect("an immediate answer")
     }
 
     /// Calls and returns the values.
@@ -156,7 +156,7 @@ fn the_first_messages_of_the_real_client() {
 }
 
 #[test]
-fn every_function_of_the_info_map_is_answered() {
+fn every_function_of_the_info_map_is_supported() {
     for function in info::FUNCTIONS {
         let mut lab = Lab::new(1);
         let reply = lab.reply("a", &format!("sim.{function}"), none());
@@ -167,7 +167,7 @@ fn every_function_of_the_info_map_is_answered() {
 }
 
 #[test]
-fn errors_have_the_engines_words() {
+fn errors_match_the_engines_messages() {
     let mut lab = Lab::new(1);
     let (robot, joint, sensor) =
         (lab.object("/robot_1"), lab.object("/robot_1/wheelL"), lab.object("/robot_1/fSensor"));
@@ -219,7 +219,7 @@ fn objects_by_path_option_and_alias() {
 }
 
 #[test]
-fn a_wheel_and_a_sensor_of_one_name_are_told_apart_by_their_type() {
+fn a_wheel_and_a_sensor_of_one_name_differ_in_type() {
     let mut scene = Lab::new(1).session.world().scene().clone();
     scene.robots[0].sensors[0].name = "wheelL".to_owned();
     let mut lab = Lab::new(1);
@@ -309,7 +309,7 @@ fn a_paced_session_steps_no_faster_than_it_is_allowed() {
     let second = lab.ask("a", "sim.step", none());
     let third = lab.ask("a", "sim.step", none());
     assert!(lab.answered(second).is_some() && lab.answered(third).is_none());
-    // What nobody asks for is lost, but for one step.
+    // All but one of the unused steps expire.
     let answers = [lab.session.allow(5), lab.session.allow(0)].concat();
     lab.take(answers);
     assert!(lab.answered(third).is_some());
@@ -354,7 +354,7 @@ fn clients_advance_in_lockstep() {
     let done = Some(cbor!({ "ret" => {} }).unwrap());
     assert_eq!((lab.answered(first), lab.answered(second)), (done.clone(), done.clone()));
     assert_near(&[lab.time()], &[0.05]);
-    // Whoever leaves is waited for no more, and others may read in between.
+    // Clients that leave are no longer waited for, and others may read in between.
     let third = lab.ask("a", "sim.step", none());
     lab.number("b", "sim.getSimulationTime", none());
     assert_eq!(lab.answered(third), None);
@@ -364,7 +364,7 @@ fn clients_advance_in_lockstep() {
 }
 
 #[test]
-fn a_vanished_client_holds_nobody_up() {
+fn a_disconnected_client_blocks_nobody() {
     let mut lab = Lab::new(2);
     lab.join("a");
     lab.join("b");
@@ -373,7 +373,7 @@ fn a_vanished_client_holds_nobody_up() {
     let answers = lab.session.disconnect(u64::from(b'b'));
     lab.take(answers);
     assert!(lab.answered(step).is_some());
-    // The one that vanishes in the middle of its own step is forgotten with it.
+    // A client that disconnects during its own step is removed with it.
     lab.join("b");
     lab.ask("a", "sim.step", none());
     let answers = lab.session.disconnect(u64::from(b'a'));
@@ -383,7 +383,7 @@ fn a_vanished_client_holds_nobody_up() {
 }
 
 #[test]
-fn a_silent_client_is_forgotten_after_its_timeout() {
+fn a_silent_client_expires_after_its_timeout() {
     let mut lab = Lab::new(2);
     let hello = cbor!({ "func" => "sim.setStepping", "args" => [true], "uuid" => "a", "timeout" => 5 });
     lab.send("a", &hello.unwrap());
@@ -391,40 +391,40 @@ fn a_silent_client_is_forgotten_after_its_timeout() {
     lab.start();
     lab.ask("b", "sim.step", none());
     lab.now = 5 * SECOND;
-    let answers = lab.session.keep_house(lab.now);
+    let answers = lab.session.expire_clients(lab.now);
     lab.take(answers);
-    // b was told to wait and says that it does; a is not forgotten yet.
+    // b gets a keep-alive reply and confirms it; a has not expired yet.
     let step = lab.ask("b", "_*executed*_", none());
     assert_near(&[lab.time()], &[0.0]);
     lab.now += Duration::from_millis(1);
-    let answers = lab.session.keep_house(lab.now);
+    let answers = lab.session.expire_clients(lab.now);
     lab.take(answers);
     assert!(lab.answered(step).is_some_and(|reply| get(&reply, "ret").is_some()));
     assert_near(&[lab.time()], &[0.05]);
 }
 
 #[test]
-fn who_waits_long_gets_a_sign_of_life() {
+fn a_waiting_client_gets_a_keep_alive_reply() {
     let mut lab = Lab::new(2);
     lab.join("a");
     lab.join("b");
     lab.start();
     let step = lab.ask("a", "sim.step", none());
     lab.now = 2 * SECOND;
-    let answers = lab.session.keep_house(lab.now);
+    let answers = lab.session.expire_clients(lab.now);
     lab.take(answers);
     let wait = cbor!({ "func" => "_*wait*_", "args" => [] }).unwrap();
     assert_eq!(lab.answered(step), Some(wait));
-    // The step comes while the client is on its way back: the next round says so.
+    // The step is taken before the client confirms: its next request is answered at once.
     let other = lab.ask("b", "sim.step", none());
     assert!(lab.answered(other).is_some());
     assert!(lab.call("a", "_*executed*_", none()).is_empty());
     assert_near(&[lab.time()], &[0.05]);
-    assert!(lab.call("a", "_*executed*_", none()).is_empty(), "nothing is open any more");
+    assert!(lab.call("a", "_*executed*_", none()).is_empty(), "no request is open");
 }
 
 #[test]
-fn a_stop_releases_everybody_and_the_next_run_starts_anew() {
+fn a_stop_answers_all_clients_and_the_next_run_starts_anew() {
     let mut lab = Lab::new(2);
     lab.join("a");
     lab.join("b");
@@ -439,7 +439,7 @@ fn a_stop_releases_everybody_and_the_next_run_starts_anew() {
 }
 
 #[test]
-fn a_repeated_question_is_answered_once_for_each_time() {
+fn every_repeated_request_is_answered() {
     let mut lab = Lab::new(2);
     lab.join("a");
     lab.join("b");
@@ -453,7 +453,7 @@ fn a_repeated_question_is_answered_once_for_each_time() {
 }
 
 #[test]
-fn the_clock_runs_by_itself_only_when_nobody_steps() {
+fn the_clock_runs_freely_only_when_no_client_steps() {
     let mut lab = Lab::new(1);
     lab.session.tick();
     assert_near(&[lab.time()], &[0.0]);
@@ -462,7 +462,7 @@ fn the_clock_runs_by_itself_only_when_nobody_steps() {
     let step = lab.ask("a", "sim.step", none());
     let answers = lab.session.tick();
     lab.take(answers);
-    assert!(lab.answered(step).is_some(), "who is not in stepping mode waits for the clock");
+    assert!(lab.answered(step).is_some(), "clients outside stepping mode wait for the clock");
     lab.join("a");
     lab.session.tick();
     assert_near(&[lab.time()], &[0.05]);
@@ -473,7 +473,7 @@ fn the_clock_runs_by_itself_only_when_nobody_steps() {
 }
 
 #[test]
-fn requests_that_are_none() {
+fn invalid_requests_are_refused() {
     let mut lab = Lab::new(1);
     let complaint = |reply: Option<Value>| {
         let reply = reply.unwrap();
@@ -498,7 +498,7 @@ fn requests_that_are_none() {
 }
 
 #[test]
-fn one_connection_cannot_fill_the_memory_with_clients() {
+fn the_number_of_clients_per_connection_is_limited() {
     let mut lab = Lab::new(1);
     for number in 0..1000 {
         lab.ask(&format!("a{number}"), "sim.getSimulationTime", none());
@@ -526,7 +526,7 @@ fn values() -> impl Strategy<Value = Value> {
 }
 
 #[test]
-fn a_sensor_tells_what_it_sees_in_its_own_frame() {
+fn a_sensor_reports_detections_in_its_own_frame() {
     // The wall's surface is 0.5 m before the first robot, which looks along x, and turned a little to the left of it.
     let wall = Obstacle::wall("wall_7", (0.72, -0.4), (0.68, 0.4), 0.01);
     let mut lab = Lab::among(2, vec![wall]);
@@ -534,7 +534,7 @@ fn a_sensor_tells_what_it_sees_in_its_own_frame() {
     lab.join("a");
     lab.start();
     let read = |lab: &mut Lab| lab.call("a", "sim.readProximitySensor", cbor!([sensor]).unwrap());
-    assert_eq!(read(&mut lab)[0], Value::from(-1), "nobody has looked yet");
+    assert_eq!(read(&mut lab)[0], Value::from(-1), "not evaluated yet");
     lab.call("a", "sim.step", none());
     let seen = read(&mut lab);
     let vector = |value: &Value| value.as_array().unwrap().iter().map(float).collect::<Vec<_>>();
@@ -562,14 +562,14 @@ fn a_sensor_tells_what_it_sees_in_its_own_frame() {
 
 proptest! {
     #[test]
-    fn any_bytes_get_one_answer(bytes in prop::collection::vec(any::<u8>(), 0..100)) {
+    fn arbitrary_bytes_get_one_answer(bytes in prop::collection::vec(any::<u8>(), 0..100)) {
         let mut lab = Lab::new(1);
         let answers = lab.session.request(1, 7, Duration::ZERO, &bytes);
         prop_assert_eq!(answers.iter().map(|answer| answer.ticket).collect::<Vec<_>>(), [7]);
     }
 
     #[test]
-    fn any_calls_get_one_answer_each_and_the_session_lives_on(
+    fn arbitrary_calls_get_one_answer_each_and_the_session_survives(
         calls in prop::collection::vec(
             (0..3usize, prop::sample::select(info::FUNCTIONS), prop::collection::vec(values(), 0..4)), 1..40),
     ) {
@@ -586,7 +586,7 @@ proptest! {
         tickets.sort_unstable();
         tickets.dedup();
         prop_assert_eq!(tickets.len(), answered);
-        // Only the last question of a client that vanished may be left open.
+        // Only the last request of a disconnected client may stay open.
         prop_assert!(lab.last_ticket - answered as u64 <= 3);
         lab.call("d", "sim.stopSimulation", none());
         lab.join("d");

@@ -1,36 +1,35 @@
-//! Bodies that stop before they touch something, or slide along it.
+//! Contacts: bodies stop just before an obstacle or slide along it.
 
 use pydslrep_kinematics::{Pose, Twist};
 use pydslrep_scene::{Body, Space, distance_between};
 
-/// Bodies stop this far from each other, metres.
-const PLAY: f64 = 0.001;
+/// The gap at which bodies stop, metres.
+const GAP: f64 = 0.001;
 
-/// How much nearer a body may come in one little move along something, metres: what rounding makes of nothing.
-const ROUNDING: f64 = 1e-9;
+/// The tolerance for rounding when a body moves along something, metres.
+const TOLERANCE: f64 = 1e-9;
 
-/// A body makes no more little moves than this at once; it is slower along a wall than in the open if it would take
-/// more.
-const MOST_MOVES: u32 = 256;
+/// The maximum number of moves per call; a body that needs more is slowed down along the wall.
+const MAX_MOVES: u32 = 256;
 
-/// Coulomb's coefficient between a body and what it slides along.
+/// The coefficient of Coulomb friction between a body and an obstacle.
 const FRICTION: f64 = 0.3;
 
-/// How much harder wheels are pushed across the direction that they roll in than along it.
-const ACROSS: f64 = 3.0;
+/// The resistance of wheels to lateral motion, relative to rolling.
+const LATERAL_RESISTANCE: f64 = 3.0;
 
-/// By how much a body is moved and turned to see which way it gets nearer to something, metres and radians.
-const NUDGE: f64 = 1e-4;
+/// The step for the numerical gradient of the clearance, metres and radians.
+const GRADIENT_STEP: f64 = 1e-4;
 
-/// What a body can run into.
+/// The obstacles and robots around a body.
 pub(super) struct Surroundings<'a> {
     pub(super) space: &'a Space,
-    /// Other robots where they are now.
+    /// The other robots at their current poses.
     pub(super) others: &'a [(Body, Pose)],
 }
 
 impl Surroundings<'_> {
-    /// How far the nearest thing is; `within` where everything is at least so far.
+    /// The distance to the nearest obstacle or robot, at most `within`.
     fn clearance(&self, body: Body, pose: Pose, within: f64) -> f64 {
         let obstacle = self.space.nearest(body, pose, within).map_or(within, |near| near.distance);
         let radius = |body: Body| body.length.hypot(body.width) / 2.0;
@@ -42,12 +41,11 @@ impl Surroundings<'_> {
         })
     }
 
-    /// Where a body comes in `seconds` of a twist that its wheels want, and the twist that it moves with in the end, if
-    /// something in its way changed it.
+    /// The pose of a body after driving with a twist for `seconds`, and its final twist if a contact changed it.
     ///
-    /// Conservative advancement: no point of the body is faster than v + |ω|r, so as long as the nearest thing is further
-    /// than that times the time of a move, nothing can be passed through, however thin it is. What touches something can
-    /// still move along it and away from it.
+    /// Conservative advancement: no point of the body is faster than v + |ω|r. If the clearance exceeds that times the
+    /// duration of a move, the body cannot tunnel through anything, however thin. In contact it can still move along the
+    /// obstacle and away from it.
     pub(super) fn advance(
         &self,
         body: Body,
@@ -59,8 +57,8 @@ impl Surroundings<'_> {
         for attempt in [Attempt::Freely, Attempt::Sliding, Attempt::SlidingStraight] {
             let twist = match attempt {
                 Attempt::Freely => wanted,
-                Attempt::Sliding => self.along(body, here, wanted, body_inertia(body)),
-                Attempt::SlidingStraight => self.along(body, here, wanted, f64::INFINITY),
+                Attempt::Sliding => self.slide(body, here, wanted, body_inertia(body)),
+                Attempt::SlidingStraight => self.slide(body, here, wanted, f64::INFINITY),
             };
             if attempt != Attempt::Freely {
                 changed = Some(twist);
@@ -73,7 +71,7 @@ impl Surroundings<'_> {
         (here, Some(Twist::default()))
     }
 
-    /// Where a body comes with a constant twist until something stops it, and how much time is left then.
+    /// The pose of a body moving with a constant twist until a contact, and the remaining time.
     fn move_freely(&self, body: Body, from: Pose, twist: Twist, seconds: f64) -> (Pose, f64) {
         let reach = body.length.hypot(body.width) / 2.0;
         let speed = twist.vx.hypot(twist.vy) + twist.omega.abs() * reach;
@@ -81,17 +79,17 @@ impl Surroundings<'_> {
             return (from, 0.0);
         }
         let (mut here, mut left) = (from, seconds);
-        let mut clearance = self.clearance(body, here, PLAY + speed * left);
-        for _ in 0..MOST_MOVES {
-            if clearance >= PLAY + speed * left {
+        let mut clearance = self.clearance(body, here, GAP + speed * left);
+        for _ in 0..MAX_MOVES {
+            if clearance >= GAP + speed * left {
                 return (here.advance(twist, left), 0.0);
             }
-            let is_touching = clearance < 2.0 * PLAY;
-            let way = if is_touching { PLAY / 2.0 } else { clearance - PLAY };
+            let is_touching = clearance < 2.0 * GAP;
+            let way = if is_touching { GAP / 2.0 } else { clearance - GAP };
             let time = (way / speed).min(left);
             let next = here.advance(twist, time);
-            let after = self.clearance(body, next, PLAY + speed * left.max(time));
-            if is_touching && after < PLAY && after < clearance - ROUNDING {
+            let after = self.clearance(body, next, GAP + speed * left.max(time));
+            if is_touching && after < GAP && after < clearance - TOLERANCE {
                 return (here, left);
             }
             left -= time;
@@ -103,52 +101,56 @@ impl Surroundings<'_> {
         (here, 0.0)
     }
 
-    /// The twist nearest to the wanted one that comes no nearer to anything, less what friction takes of it.
+    /// The twist closest to the wanted one that does not reduce the clearance, minus friction.
     ///
-    /// Near in the sense of what it takes to push the body aside: a metre ahead counts as one, across the wheels as
-    /// [`ACROSS`], and turning by its `inertia`, the square of a radius. With the gradient g of the clearance and these
-    /// as the matrix M, the twist is v − M⁻¹g (g·v) / (g·M⁻¹g); M is also what friction is measured with.
-    fn along(&self, body: Body, here: Pose, wanted: Twist, inertia: f64) -> Twist {
-        let ease = [1.0, 1.0 / ACROSS, 1.0 / inertia];
+    /// Closest in the metric M of the effort to push the body: 1 for motion ahead, [`LATERAL_RESISTANCE`] across the wheels,
+    /// and `inertia`, the square of a radius, for turning. With the gradient g of the clearance, the twist is
+    /// v − M⁻¹g (g·v) / (g·M⁻¹g). Friction uses the same metric.
+    fn slide(&self, body: Body, here: Pose, wanted: Twist, inertia: f64) -> Twist {
+        let compliance = [1.0, 1.0 / LATERAL_RESISTANCE, 1.0 / inertia];
         let gradient = self.gradient(body, here);
         let wanted = [wanted.vx, wanted.vy, if inertia.is_finite() { wanted.omega } else { 0.0 }];
         let nearing: f64 = gradient.iter().zip(wanted).map(|(slope, part)| slope * part).sum();
-        let stiffness: f64 = gradient.iter().zip(ease).map(|(slope, ease)| slope * slope * ease).sum();
+        let stiffness: f64 =
+            gradient.iter().zip(compliance).map(|(slope, compliance)| slope * slope * compliance).sum();
         if nearing >= 0.0 || stiffness <= 0.0 {
             return Twist { vx: wanted[0], vy: wanted[1], omega: wanted[2] };
         }
-        let push: Vec<f64> =
-            gradient.iter().zip(ease).map(|(slope, ease)| -ease * slope * nearing / stiffness).collect();
-        let slide: Vec<f64> = wanted.iter().zip(&push).map(|(part, push)| part + push).collect();
+        let push: Vec<f64> = gradient
+            .iter()
+            .zip(compliance)
+            .map(|(slope, compliance)| -compliance * slope * nearing / stiffness)
+            .collect();
+        let sliding: Vec<f64> = wanted.iter().zip(&push).map(|(part, push)| part + push).collect();
         let size = |twist: &[f64]| {
-            let squares = twist.iter().zip(ease).filter(|(_, ease)| *ease > 0.0);
-            squares.map(|(part, ease)| part * part / ease).sum::<f64>().sqrt()
+            let squares = twist.iter().zip(compliance).filter(|(_, compliance)| *compliance > 0.0);
+            squares.map(|(part, compliance)| part * part / compliance).sum::<f64>().sqrt()
         };
-        let kept = (1.0 - FRICTION * size(&push) / size(&slide).max(f64::MIN_POSITIVE)).max(0.0);
-        Twist { vx: kept * slide[0], vy: kept * slide[1], omega: kept * slide[2] }
+        let kept = (1.0 - FRICTION * size(&push) / size(&sliding).max(f64::MIN_POSITIVE)).max(0.0);
+        Twist { vx: kept * sliding[0], vy: kept * sliding[1], omega: kept * sliding[2] }
     }
 
-    /// How the clearance grows as the body moves ahead, to its left, and turns to the left.
+    /// The gradient of the clearance for motion ahead, to the left, and for turning left.
     fn gradient(&self, body: Body, here: Pose) -> [f64; 3] {
-        let nudged = |vx: f64, vy: f64, omega: f64| {
+        let slope = |vx: f64, vy: f64, omega: f64| {
             let at = |way: f64| here.advance(Twist { vx, vy, omega }, way);
-            let clearance = |way: f64| self.clearance(body, at(way), 3.0 * PLAY);
-            (clearance(NUDGE) - clearance(-NUDGE)) / (2.0 * NUDGE)
+            let clearance = |way: f64| self.clearance(body, at(way), 3.0 * GAP);
+            (clearance(GRADIENT_STEP) - clearance(-GRADIENT_STEP)) / (2.0 * GRADIENT_STEP)
         };
-        [nudged(1.0, 0.0, 0.0), nudged(0.0, 1.0, 0.0), nudged(0.0, 0.0, 1.0)]
+        [slope(1.0, 0.0, 0.0), slope(0.0, 1.0, 0.0), slope(0.0, 0.0, 1.0)]
     }
 }
 
-/// How a body tries to get on.
+/// The ways in which a body tries to move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Attempt {
     Freely,
     Sliding,
-    /// Without turning: flush with a wall, turning either way is into it.
+    /// Without turning: flush with a wall, turning either way collides.
     SlidingStraight,
 }
 
-/// Of a rectangle, by its mass: the square of its radius of gyration.
+/// The moment of inertia of a rectangle per mass: the square of its radius of gyration.
 fn body_inertia(body: Body) -> f64 {
     (body.length * body.length + body.width * body.width) / 12.0
 }
@@ -178,14 +180,14 @@ mod tests {
             let (pose, changed) = around.advance(BODY, Pose::default(), forward(speed), 60.0);
             let gap = 1.0 - thickness / 2.0 - 0.15 - pose.x;
             let stopped = changed.is_some_and(|twist| twist.vx.hypot(twist.vy) < 1e-3);
-            assert!(stopped && gap > 0.0 && gap < 2.0 * PLAY, "{speed}: {pose:?}");
+            assert!(stopped && gap > 0.0 && gap < 2.0 * GAP, "{speed}: {pose:?}");
             let (back, changed) = around.advance(BODY, pose, forward(-speed), 1.0);
             assert!(changed.is_none() && (pose.x - back.x - speed).abs() < 1e-6, "{speed}: {back:?}");
         }
     }
 
     #[test]
-    fn a_long_way_along_a_wall_is_no_collision() {
+    fn driving_along_a_wall_is_no_collision() {
         let space = space(vec![Obstacle::wall("w", (-1.0, 0.2015), (9.0, 0.2015), 0.1)]);
         let around = Surroundings { space: &space, others: &[] };
         let mut pose = Pose::default();
@@ -197,7 +199,7 @@ mod tests {
         assert!((pose.x - 0.5).abs() < 1e-9, "{pose:?}");
         let turn = Twist { omega: 1.0, ..Twist::default() };
         let (turned, changed) = around.advance(BODY, pose, turn, 0.5);
-        assert!(changed.is_some() && turned.theta < 0.25, "its corner would go into the wall: {turned:?}");
+        assert!(changed.is_some() && turned.theta < 0.25, "its corner would hit the wall: {turned:?}");
     }
 
     #[test]
@@ -210,10 +212,10 @@ mod tests {
             assert!(distance_between((BODY, pose), others[0]) > 0.0, "{pose:?}");
         }
         let (_, changed) = around.advance(BODY, Pose::new(0.65, 0.1, 0.5), forward(2.0), 0.4);
-        assert_eq!(changed.map(|twist| twist.vx.abs() < 0.01), Some(true), "flush, it stands");
+        assert_eq!(changed.map(|twist| twist.vx.abs() < 0.01), Some(true), "flush, it stops");
     }
 
-    /// Where a body is after some seconds of driving on, in the steps that a world takes.
+    /// The pose of a body after driving for some seconds, in the world's integration steps.
     fn after(around: &Surroundings, start: Pose, wanted: Twist, seconds: f64) -> Pose {
         let mut pose = start;
         let mut time = 0.0;
@@ -232,14 +234,14 @@ mod tests {
             let start = Pose::new(0.0, 0.0, degrees.to_radians());
             let end = after(&around, start, forward(0.1), 20.0);
             let gap = space.nearest(BODY, end, 1.0).unwrap().distance;
-            assert!(gap > 0.0 && gap < 2.0 * PLAY, "{degrees}: {end:?}");
+            assert!(gap > 0.0 && gap < 2.0 * GAP, "{degrees}: {end:?}");
             assert!(end.x > 0.8 && end.x < 1.98, "{degrees}: {end:?}");
             assert!(end.theta.abs() < 0.02, "the wall turns it: {degrees}: {end:?}");
         }
     }
 
     #[test]
-    fn does_not_slide_where_it_drives_straight_into_something() {
+    fn does_not_slide_when_driving_straight_into_a_wall() {
         let wall = Obstacle::wall("w", (1.0, -3.0), (1.0, 3.0), 0.1);
         let corner = Obstacle::wall("c", (-3.0, 0.5), (3.0, 0.5), 0.1);
         let space = space(vec![wall, corner]);
@@ -248,13 +250,13 @@ mod tests {
             let there = after(&around, start, forward(0.1), seconds);
             let later = after(&around, there, forward(0.1), 5.0);
             assert!(there.distance(&later) < 0.001, "{there:?} {later:?}");
-            assert!(there.x > 0.75, "it gets as far as it can: {there:?}");
+            assert!(there.x > 0.75, "it drives as far as possible: {there:?}");
         }
     }
 
     proptest! {
         #[test]
-        fn nothing_is_ever_inside_of_something(
+        fn bodies_never_overlap(
             x in -1.5..1.5, y in -1.5..1.5, theta in -3.0..3.0,
             vx in -20.0..20.0, vy in -20.0..20.0, omega in -20.0..20.0,
         ) {

@@ -1,20 +1,20 @@
-//! What goes wrong, made from a seed: the same seed, the same run.
+//! Reproducible noise: the same seed gives the same run.
 
 use pydslrep_scene::Noise;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 
-/// How long slip takes to become another one, seconds: floors and tyres change along the way, not between two steps.
+/// The time constant of slip, seconds: floor and tyres vary slowly, not from step to step.
 const SLIP_TIME: f64 = 1.0;
 
-/// Numbers of a stream that are left for each reading; one takes a few.
+/// The part of a stream reserved for each reading; one uses a few words.
 const WORDS_PER_READING: u128 = 256;
 
-/// Where the streams of wheels begin; those of sensors are below.
+/// The first stream for wheels; sensors use those below.
 const WHEELS: u64 = 1 << 48;
 
-/// A generator of its own for every wheel and sensor: what one of them draws changes nothing for the others.
+/// The generator of a wheel or sensor; all are independent.
 fn generator(seed: u64, kind: u64, robot: usize, part: usize) -> ChaCha8Rng {
     let number = |index: usize| u64::try_from(index).unwrap_or(u64::MAX) & 0xff_ffff;
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
@@ -22,13 +22,13 @@ fn generator(seed: u64, kind: u64, robot: usize, part: usize) -> ChaCha8Rng {
     generator
 }
 
-/// The slip of a wheel over time: an Ornstein-Uhlenbeck process, whose values are normal with a standard deviation and
-/// alike over about a second.
+/// The slip of a wheel over time: an Ornstein-Uhlenbeck process with a given standard deviation and a correlation time
+/// of about a second.
 #[derive(Debug, Clone)]
 pub(super) struct Slip {
     generator: ChaCha8Rng,
     deviation: f64,
-    /// The share of the way rolled that is gained on the floor; lost where negative.
+    /// The relative gain of distance on the floor; negative for loss.
     pub(super) value: f64,
 }
 
@@ -49,13 +49,13 @@ impl Slip {
     fn draw(&mut self, share: f64) {
         if self.deviation > 0.0 {
             let drawn: f64 = StandardNormal.sample(&mut self.generator);
-            // A wheel cannot lose more than all of its way.
+            // A wheel cannot lose more than the distance it rolls.
             self.value = (self.value + share * self.deviation * drawn).clamp(-1.0, 1.0);
         }
     }
 }
 
-/// How far off a sensor's reading is after so many steps, metres. Asking changes nothing.
+/// The error of a sensor's reading after a number of steps, metres. Reading has no side effects.
 pub(super) fn reading_error(noise: Option<Noise>, seed: u64, robot: usize, sensor: usize, steps: u64) -> f64 {
     let Some(noise) = noise.filter(|noise| noise.sensor > 0.0) else { return 0.0 };
     let mut generator = generator(seed, 0, robot, sensor);
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn without_noise_nothing_goes_wrong() {
+    fn without_noise_there_are_no_errors() {
         let mut slip = Slip::new(None, 1, 0, 0);
         slip.advance(1.0);
         assert!(slip.value == 0.0 && reading_error(None, 1, 0, 0, 3) == 0.0);

@@ -1,19 +1,19 @@
-//! A client of the legacy remote API: what it is sent again and again (its streams), and whether time waits for it.
+//! A client of the legacy remote API: its streams and its synchronous mode.
 
 use std::time::Duration;
 
 use super::message::{Command, Name};
 
-/// A client may have so many streams; scripts have some per robot.
-const MOST_STREAMS: usize = 1024;
+/// The maximum number of streams per client; scripts use a few per robot.
+const MAX_STREAMS: usize = 1024;
 
-/// A client, which is a connection in this protocol.
+/// A client; in this protocol, each connection is one.
 #[derive(Debug, Clone, Default)]
 pub(in super::super) struct Client {
     pub(super) streams: Vec<Stream>,
-    /// No step is taken before this client has triggered it.
+    /// Each step waits for a trigger of this client.
     pub(super) synchronous: bool,
-    /// It has triggered the next one.
+    /// It has triggered the next step.
     pub(super) triggered: bool,
 }
 
@@ -22,39 +22,39 @@ pub(super) struct Stream {
     pub(super) name: Name,
     pub(super) period: u16,
     pub(super) payload: Vec<u8>,
-    /// When it was executed last.
+    /// The time of its last execution.
     pub(super) last: Duration,
 }
 
 impl Client {
     /// Whether steps wait for this client.
-    pub(in super::super) fn holds_time(&self) -> bool {
+    pub(in super::super) fn is_synchronous(&self) -> bool {
         self.synchronous
     }
 
-    /// Whether it wants the next step.
-    pub(in super::super) fn asks(&self) -> bool {
+    /// Whether it has triggered the next step.
+    pub(in super::super) fn has_triggered(&self) -> bool {
         self.triggered
     }
 
-    /// The step was taken; the next one needs another trigger.
+    /// After a step: the next one needs another trigger.
     pub(in super::super) fn await_trigger(&mut self) {
         self.triggered = false;
     }
 
-    /// The simulation was stopped, by whomever: that ends the synchronous mode.
-    pub(in super::super) fn release(&mut self) {
+    /// Leaves the synchronous mode, which every stop of the simulation does.
+    pub(in super::super) fn leave_synchronous_mode(&mut self) {
         self.synchronous = false;
         self.triggered = false;
     }
 
-    /// Takes a stream of this name out, as anything new about it does.
-    pub(super) fn forget(&mut self, name: &Name) {
+    /// Removes the stream of this name; any new command of that name does.
+    pub(super) fn remove_stream(&mut self, name: &Name) {
         self.streams.retain(|stream| stream.name != *name);
     }
 
-    pub(super) fn keep(&mut self, command: &Command, now: Duration) -> bool {
-        let fits = self.streams.len() < MOST_STREAMS;
+    pub(super) fn add_stream(&mut self, command: &Command, now: Duration) -> bool {
+        let fits = self.streams.len() < MAX_STREAMS;
         if fits {
             let (name, payload) = (command.name.clone(), command.payload.clone());
             self.streams.push(Stream { name, period: command.period, payload, last: now });

@@ -1,4 +1,4 @@
-//! A pass: a client's message is executed, and what came of it is the reply.
+//! Handles messages of the legacy remote API: executes their commands and builds the reply.
 
 use std::time::Duration;
 
@@ -10,31 +10,31 @@ use super::message::{self, Command, Malformed, Message, Name, Outcome, Reply, mo
 const SYNCHRONOUS_ON: u16 = 0x0001;
 const SYNCHRONOUS_OFF: u16 = 0x0002;
 const TRIGGER: u16 = 0x0003;
-const FAREWELL: u16 = 0x000a;
+const DISCONNECT: u16 = 0x000a;
 const START_PAUSE_STOP: u16 = 0x1007;
 
-/// What a message leads to.
+/// The response to a message.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Pass {
+pub struct LegacyResponse {
     /// The reply, for the client.
     pub reply: Vec<u8>,
-    /// Whether the client said goodbye: nothing more comes from it.
+    /// Whether the client disconnects after this message.
     pub is_last: bool,
-    /// Answers to others, who waited for this client.
+    /// Answers to other clients that waited for this one.
     pub answers: Vec<Answer>,
 }
 
 impl Session {
-    /// Takes a message of the legacy remote API from a connection; `now` is the time since any fixed moment.
+    /// Handles a message of the legacy remote API; `now` is the time since any fixed moment.
     ///
     /// # Errors
-    /// When it is no such message. Nothing that follows it on the connection can be trusted.
+    /// If the message is invalid. The rest of the connection cannot be trusted then.
     pub fn legacy_message(
         &mut self,
         connection: u64,
         now: Duration,
         bytes: &[u8],
-    ) -> Result<Pass, Malformed> {
+    ) -> Result<LegacyResponse, Malformed> {
         let message = Message::parse(bytes)?;
         let mut client = self.legacy.remove(&connection).unwrap_or_default();
         let milliseconds = |time: Duration| i32::try_from(time.as_millis()).unwrap_or(i32::MAX);
@@ -43,29 +43,29 @@ impl Session {
         } else {
             Duration::from_secs_f64(self.world.time())
         };
-        // Times of steps are no whole milliseconds in binary: 0.15 is a little less.
+        // Step times are not exact in binary: 0.15 s is slightly less than 150 ms.
         let time = milliseconds(time + Duration::from_micros(500));
         let mut reply = Reply::new(message.client_time, milliseconds(now), time);
         let mut is_last = false;
         for command in &message.commands {
-            is_last |= command.name.kind == FAREWELL;
+            is_last |= command.name.kind == DISCONNECT;
             let outcome = self.command(&mut client, connection, now, command);
             reply.add(&command.name, command.mode, &outcome);
         }
-        self.stream(&mut client, connection, now, &message, &mut reply);
+        self.execute_streams(&mut client, connection, now, &message, &mut reply);
         let reply = reply.finish(message.id, self.legacy_state());
         self.legacy.insert(connection, client);
-        // Only now: the reply to a trigger comes before the step, as from the real server.
-        Ok(Pass { reply, is_last, answers: self.settle() })
+        // The reply to a trigger precedes the step, as from the real server.
+        Ok(LegacyResponse { reply, is_last, answers: self.step_if_ready() })
     }
 
     fn command(&mut self, client: &mut Client, connection: u64, now: Duration, command: &Command) -> Outcome {
-        client.forget(&command.name);
+        client.remove_stream(&command.name);
         match command.mode {
             mode::ONESHOT | mode::BLOCKING => {
                 self.execute(client, connection, &command.name, &command.payload)
             }
-            mode::STREAMING if client.keep(command, now) => {
+            mode::STREAMING if client.add_stream(command, now) => {
                 self.execute(client, connection, &command.name, &command.payload)
             }
             mode::DISCONTINUE => Outcome::done(),
@@ -73,8 +73,8 @@ impl Session {
         }
     }
 
-    /// Executes the streams that are due, but for those that came with this message and were executed already.
-    fn stream(
+    /// Executes the streams that are due, except for those that this message started or changed.
+    fn execute_streams(
         &mut self,
         client: &mut Client,
         connection: u64,
@@ -110,7 +110,7 @@ impl Session {
                 client.triggered = true;
                 Outcome::done()
             }
-            FAREWELL => Outcome::done(),
+            DISCONNECT => Outcome::done(),
             START_PAUSE_STOP => match message::number(&name.key, 0) {
                 Some(0) => {
                     self.start();
@@ -122,17 +122,17 @@ impl Session {
                 }
                 Some(2) => {
                     self.stop();
-                    // It is not among the others while it is served.
-                    client.release();
+                    // It is not in the map while it is served.
+                    client.leave_synchronous_mode();
                     Outcome::done()
                 }
                 _ => Outcome::failure(),
             },
-            _ => commands::execute(&mut self.bench(connection), name, payload),
+            _ => commands::execute(&mut self.context(connection), name, payload),
         }
     }
 
-    /// The byte that says how the simulation is: bit 0 not stopped, bit 1 paused, bit 2 in real time.
+    /// The state byte: bit 0 not stopped, bit 1 paused, bit 2 real time.
     fn legacy_state(&self) -> u8 {
         match self.state {
             State::Stopped => 0b100,

@@ -1,5 +1,5 @@
-//! Messages of the legacy remote API: a header of 18 bytes, then commands, each with a header of 26 bytes, a key that
-//! tells it from others of its kind, and a payload. Numbers have their least significant byte first.
+//! Messages of the legacy remote API: an 18-byte header, then commands, each with a 26-byte header, a key that
+//! distinguishes it from others of its kind, and a payload. Numbers are little-endian.
 
 const VERSION: u8 = 11;
 const HEADER: usize = 18;
@@ -12,29 +12,29 @@ const FAILED: u8 = 1;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Message {
     pub(super) id: i32,
-    /// Goes back as it came: clients measure with it.
+    /// Returned unchanged: clients measure latency with it.
     pub(super) client_time: i32,
     pub(super) commands: Vec<Command>,
 }
 
-/// What a client wants to have done.
+/// A command of a client.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Command {
     pub(super) name: Name,
     pub(super) mode: u16,
-    /// For streams: milliseconds from one reply to the next.
+    /// For streams: the minimum time between replies, milliseconds.
     pub(super) period: u16,
     pub(super) payload: Vec<u8>,
 }
 
-/// What replies are filed by: the kind of a command and its key.
+/// The identity of a command, which its replies repeat: its kind and key.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Name {
     pub(super) kind: u16,
     pub(super) key: Vec<u8>,
 }
 
-/// Operation modes, the high half of a command's number. Others than these are of clients only, or come in pieces.
+/// Operation modes, the high half of a command's number. The others are internal to clients or split commands.
 pub(super) mod mode {
     pub(in super::super) const ONESHOT: u16 = 0;
     pub(in super::super) const BLOCKING: u16 = 1;
@@ -42,7 +42,7 @@ pub(super) mod mode {
     pub(in super::super) const DISCONTINUE: u16 = 5;
 }
 
-/// Not a message, so the connection is of no use any more.
+/// An invalid message; the connection cannot be used any more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Malformed;
 
@@ -80,17 +80,17 @@ impl Command {
     }
 }
 
-/// The whole number at that place.
+/// The integer at an offset.
 pub(super) fn number(bytes: &[u8], at: usize) -> Option<i32> {
     bytes.get(at..)?.first_chunk().map(|four| i32::from_le_bytes(*four))
 }
 
-/// The fraction at that place.
+/// The float at an offset.
 pub(super) fn fraction(bytes: &[u8], at: usize) -> Option<f64> {
     bytes.get(at..)?.first_chunk().map(|four| f64::from(f32::from_le_bytes(*four)))
 }
 
-/// What came of a command.
+/// The result of a command.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Outcome {
     pub(super) payload: Vec<u8>,
@@ -121,7 +121,7 @@ impl Outcome {
     }
 }
 
-/// A reply to a message, as it grows.
+/// A reply under construction.
 #[derive(Debug)]
 pub(super) struct Reply {
     bytes: Vec<u8>,
@@ -132,7 +132,7 @@ pub(super) struct Reply {
 impl Reply {
     pub(super) fn new(client_time: i32, server_time: i32, simulation_time: i32) -> Self {
         let mut bytes = vec![0, 0, VERSION];
-        // Nothing was executed so far.
+        // No command has been executed yet.
         bytes.extend_from_slice(&(-1_i32).to_le_bytes());
         bytes.extend_from_slice(&client_time.to_le_bytes());
         bytes.extend_from_slice(&server_time.to_le_bytes());
@@ -140,7 +140,7 @@ impl Reply {
         Self { bytes, time: simulation_time }
     }
 
-    /// Adds what came of a command.
+    /// Adds the result of a command.
     pub(super) fn add(&mut self, name: &Name, mode: u16, outcome: &Outcome) {
         let size = COMMAND_HEADER + name.key.len() + outcome.payload.len();
         let size = i32::try_from(size).unwrap_or(i32::MAX).to_le_bytes();
@@ -157,8 +157,8 @@ impl Reply {
         self.bytes.extend_from_slice(&outcome.payload);
     }
 
-    /// The reply's bytes. `state` is the server's after all commands. The message's `id` is only in it when something
-    /// was executed.
+    /// The bytes of the reply. `state` is the server's state after all commands. The message's `id` is only included if
+    /// a command was executed.
     pub(super) fn finish(mut self, id: i32, state: u8) -> Vec<u8> {
         if self.bytes.len() > HEADER {
             self.bytes[3..7].copy_from_slice(&id.to_le_bytes());

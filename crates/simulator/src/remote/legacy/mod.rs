@@ -1,16 +1,16 @@
 //! V-REP's legacy remote API (protocol version 11), from a client's message to the reply.
 //!
-//! A client always speaks first and says something every few milliseconds, if only an empty message. Each message is a
-//! pass: its commands and the streams that the client asked for before are executed at once, and the reply has what came
-//! of them. The real server executes on its own time and replies a message later; clients cannot tell.
+//! A client always sends first, and every few milliseconds, if only an empty message. The commands of a message and the
+//! client's streams are executed immediately, and the reply holds their results. The real server executes them in its
+//! own time and replies one message later; clients cannot observe the difference.
 
 pub(super) mod client;
 mod commands;
+mod handler;
 mod message;
-mod pass;
 
+pub use handler::LegacyResponse;
 pub use message::Malformed;
-pub use pass::Pass;
 
 #[cfg(test)]
 mod tests;

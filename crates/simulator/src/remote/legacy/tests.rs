@@ -1,4 +1,4 @@
-//! The legacy remote API seen from a client: messages in, messages out, byte by byte.
+//! The legacy remote API from a client's point of view: messages in, messages out, byte by byte.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use pydslrep_kinematics::Drive;
 use pydslrep_scene::{Obstacle, Robot, Scene, SensorKind, Wheel};
 
-use super::{Malformed, Pass};
+use super::{LegacyResponse, Malformed};
 use crate::{Session, World};
 
 const ROBOT: i32 = 1;
@@ -18,14 +18,14 @@ const BLOCKING: i32 = 0x1_0000;
 const STREAMING: i32 = 0x2_0000;
 const DISCONTINUE: i32 = 0x5_0000;
 
-/// A session with one robot `r`, its wheels `l` and `m` and its sensor `s`, and what clients of it need.
+/// A session with one robot `r`, its wheels `l` and `m` and its sensor `s`, and helpers for its clients.
 struct Lab {
     session: Session,
     now: Duration,
     last_id: i32,
 }
 
-/// A reply, taken apart again.
+/// A decoded reply.
 #[derive(Debug)]
 struct Seen {
     id: i32,
@@ -60,9 +60,9 @@ impl Lab {
     fn send(&mut self, client: u64, commands: &[Vec<u8>]) -> Seen {
         self.last_id += 1;
         let message = [header(self.last_id), commands.concat()].concat();
-        let pass = self.session.legacy_message(client, self.now, &message).unwrap();
-        assert!(pass.answers.is_empty());
-        let (head, mut rest) = pass.reply.split_at(18);
+        let response = self.session.legacy_message(client, self.now, &message).unwrap();
+        assert!(response.answers.is_empty());
+        let (head, mut rest) = response.reply.split_at(18);
         assert_eq!(
             (&head[..3], &head[7..17]),
             (&[0, 0, 11][..], &[0x44, 0x33, 0x22, 0x11, 0xb8, 0x0b, 0, 0, 0, 0][..])
@@ -88,7 +88,7 @@ impl Lab {
         Seen { id: number_at(head, 3), state: head[17], commands }
     }
 
-    /// Sends one command; what came of it, which must not have failed.
+    /// Sends one command, which must succeed, and returns its result.
     fn ask(&mut self, client: u64, kind: i32, key: &[i32], payload: &[u8]) -> Vec<u8> {
         let part = self.try_ask(client, kind, key, payload);
         assert!(!part.failed, "{part:?}");
@@ -152,23 +152,23 @@ fn a_handle_byte_by_byte() {
         \x00\x00\x0b\x07\x00\x00\x00\x10\x20\x30\x40\x00\x00\x00\x00\x00\x00\x00\
         \x1d\x00\x00\x00\x1d\x00\x00\x00\x03\x00\x00\x00\x00\x00\x01\x30\x01\x00\x00\x00\x00\x00\x00\x00\x00\x00\
         /r\0";
-    let pass = lab.session.legacy_message(5, Duration::from_millis(258), message).unwrap();
+    let response = lab.session.legacy_message(5, Duration::from_millis(258), message).unwrap();
     let reply = b"\
         \x00\x00\x0b\x07\x00\x00\x00\x10\x20\x30\x40\x02\x01\x00\x00\x00\x00\x04\
         \x21\x00\x00\x00\x21\x00\x00\x00\x03\x00\x00\x00\x00\x00\x01\x30\x01\x00\x00\x00\x00\x00\x00\x00\x00\x00\
         /r\0\x01\x00\x00\x00";
-    assert_eq!(pass, Pass { reply: reply.to_vec(), is_last: false, answers: vec![] });
+    assert_eq!(response, LegacyResponse { reply: reply.to_vec(), is_last: false, answers: vec![] });
 }
 
 #[test]
-fn an_empty_message_releases_nobody() {
+fn an_empty_message_executes_nothing() {
     let mut lab = Lab::new();
     let seen = lab.send(1, &[]);
     assert!((seen.id, seen.state, seen.commands.len()) == (-1, 4, 0), "{seen:?}");
 }
 
 #[test]
-fn names_are_those_of_today() {
+fn names_are_those_of_current_engines() {
     let mut lab = Lab::new();
     for (name, handle) in [
         ("r", ROBOT),
@@ -191,7 +191,7 @@ fn names_are_those_of_today() {
 }
 
 #[test]
-fn what_is_asked_of_objects() {
+fn objects_can_be_queried() {
     let mut lab = Lab::new();
     assert_eq!(floats(&lab.ask(1, 0x200e, &[LEFT, ROBOT], &[])), [0.0, 0.15, 0.0]);
     // The left joint's axis points to the left, the right one's to the right, too: it is mirrored.
@@ -212,7 +212,7 @@ fn what_is_asked_of_objects() {
 }
 
 #[test]
-fn what_does_not_fit_fails_and_nothing_else() {
+fn only_invalid_commands_fail() {
     let mut lab = Lab::new();
     let missing = lab.try_ask(1, 0x200e, &[99, -1], &[]);
     assert_eq!((missing.failed, missing.payload), (true, vec![0; 12]));
@@ -235,7 +235,7 @@ fn what_does_not_fit_fails_and_nothing_else() {
         let part = lab.try_ask(1, kind, key, payload);
         assert!(part.failed, "{kind:#x} {key:?}");
     }
-    // Pieces, and modes that are the client's own.
+    // Split commands, and modes internal to clients.
     for mode in [3, 4, 6, 7, 8, 0x7fff] {
         assert!(
             lab.send(1, &[command(0x1021 + (mode << 16), &keyed(&[1]), &[])]).commands[0].failed,
@@ -246,7 +246,7 @@ fn what_does_not_fit_fails_and_nothing_else() {
 }
 
 #[test]
-fn wheels_turn_in_their_joints_own_sense() {
+fn wheels_turn_about_their_joints_own_axis() {
     let mut lab = Lab::new();
     let rate = |rate: f32| rate.to_le_bytes();
     lab.ask(1, 0x1007, &[0], &[]);
@@ -276,7 +276,7 @@ fn sensors_are_blind_before_the_first_step() {
 }
 
 #[test]
-fn a_sensor_tells_what_it_sees() {
+fn a_sensor_reports_what_it_detects() {
     let mut lab = Lab::among(vec![Obstacle::wall("w", (1.0, -1.0), (1.0, 1.0), 0.1)]);
     lab.ask(1, 0x1007, &[0], &[]);
     lab.session.tick();
@@ -307,7 +307,7 @@ fn streams_come_with_every_pass_until_discontinued() {
         Part { command: 0x200e + DISCONTINUE, time: 0, failed: false, key: key.clone(), payload: vec![] };
     assert_eq!(end.commands, [echo]);
     assert!(lab.send(1, &[]).commands.is_empty());
-    // Streams are told apart by their keys; a blocking read ends the one of its own.
+    // Streams are identified by their keys; a blocking read ends the stream of the same key.
     lab.send(
         1,
         &[command(0x200e + STREAMING, &key, &[]), command(0x200e + STREAMING, &keyed(&[LEFT, -1]), &[])],
@@ -328,8 +328,8 @@ fn a_stream_may_have_a_period() {
     for _ in 0..8 {
         lab.now += Duration::from_millis(40);
         // The header has the server's time, which does not matter here.
-        let pass = lab.session.legacy_message(1, lab.now, &header(9)).unwrap();
-        counts.push(usize::from(pass.reply.len() > 18));
+        let response = lab.session.legacy_message(1, lab.now, &header(9)).unwrap();
+        counts.push(usize::from(response.reply.len() > 18));
     }
     assert_eq!(counts, [1, 0, 0, 1, 0, 0, 1, 0, 0]);
 }
@@ -390,8 +390,8 @@ fn synchronous_clients_advance_in_lockstep() {
     assert_eq!((lab.time(1), lab.time(2)), (50, 50), "two triggers of one client are not two steps");
     lab.ask(1, 0x0003, &[], &[]);
     assert!(lab.session.disconnect(2).is_empty());
-    assert_eq!(lab.time(1), 100, "who is gone holds nobody up");
-    // One that waits while the other leaves the mode.
+    assert_eq!(lab.time(1), 100, "a disconnected client blocks nobody");
+    // One waits while the other leaves the mode.
     lab.ask(3, 0x0001, &[], &[]);
     lab.ask(1, 0x0003, &[], &[]);
     lab.ask(3, 0x0002, &[], &[]);
@@ -416,7 +416,7 @@ fn stopping_ends_the_synchronous_mode_of_all() {
 }
 
 #[test]
-fn who_is_gone_drives_no_more() {
+fn disconnecting_stops_the_wheels_of_a_client() {
     let mut lab = Lab::new();
     let rate = 2.0_f32.to_le_bytes();
     lab.ask(1, 0x1007, &[0], &[]);
@@ -425,24 +425,24 @@ fn who_is_gone_drives_no_more() {
     lab.ask(2, 0x1008, &[RIGHT], &rate);
     lab.session.disconnect(1);
     let world = lab.session.world();
-    assert!(world.target(0, 0) == 0.0, "nobody drives it");
-    assert!(world.target(0, 1) != 0.0, "somebody else took it over");
+    assert!(world.target(0, 0) == 0.0, "no client drives it");
+    assert!(world.target(0, 1) != 0.0, "another client has taken it over");
     lab.session.disconnect(2);
     assert!(lab.session.world().target(0, 1) == 0.0);
     assert_eq!(lab.session.client_count(), 0);
 }
 
 #[test]
-fn goodbye_as_the_client_says_it() {
+fn a_client_disconnects_with_an_end_command() {
     let mut lab = Lab::new();
-    let farewell = [header(3), command(0x000a, &[0; 4], &[])].concat();
-    assert_eq!(farewell[18], 30);
-    let pass = lab.session.legacy_message(1, Duration::ZERO, &farewell).unwrap();
-    assert!(pass.is_last && pass.reply.len() == 18 + 30);
+    let goodbye = [header(3), command(0x000a, &[0; 4], &[])].concat();
+    assert_eq!(goodbye[18], 30);
+    let response = lab.session.legacy_message(1, Duration::ZERO, &goodbye).unwrap();
+    assert!(response.is_last && response.reply.len() == 18 + 30);
 }
 
 #[test]
-fn what_is_no_message_is_refused() {
+fn invalid_messages_are_refused() {
     let mut lab = Lab::new();
     let good = command(0x1021, &keyed(&[1]), &[]);
     let changed = |at: usize, value: u8| {
@@ -469,9 +469,9 @@ fn what_is_no_message_is_refused() {
 }
 
 proptest! {
-    /// Whatever comes, and how it may be wrong: nothing panics, and the reply is one to that message.
+    /// Whatever the commands, nothing panics and the reply belongs to the message.
     #[test]
-    fn any_commands_are_survived(
+    fn arbitrary_commands_do_not_panic(
         parts in prop::collection::vec(
             (any::<u16>(), 0..8_i32, prop::collection::vec(any::<u8>(), 0..12), prop::collection::vec(any::<u8>(), 0..8)),
             0..6,
@@ -496,7 +496,7 @@ proptest! {
     }
 
     #[test]
-    fn any_bytes_are_survived(bytes in prop::collection::vec(any::<u8>(), 0..80), with_header in any::<bool>()) {
+    fn arbitrary_bytes_do_not_panic(bytes in prop::collection::vec(any::<u8>(), 0..80), with_header in any::<bool>()) {
         let bytes = if with_header { [header(0), bytes].concat() } else { bytes };
         let _ = Lab::new().session.legacy_message(1, Duration::ZERO, &bytes);
     }
