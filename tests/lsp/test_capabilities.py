@@ -404,7 +404,7 @@ async def hovers(s: Session) -> None:
     shown = await s.client.text_document_hover_async(types.HoverParams(*s.at("{ a")))
     assert shown
     assert isinstance(shown.contents, types.MarkupContent)
-    assert "28.3 cm a turn" in shown.contents.value, "2 pi 4.5 cm"
+    assert "28.3 cm per revolution" in shown.contents.value, "2 pi 4.5 cm"
     assert shown.range
     assert s.text(shown.range) == "a"
 

@@ -56,7 +56,7 @@ async def offered(
         (
             "source.fixAll",
             "wheel",
-            "Fix all that leaves nothing to decide",
+            "Apply all safe fixes",
             "turn left 0",
             "",
         ),
@@ -64,14 +64,14 @@ async def offered(
         (
             "refactor.inline",
             "move 1",
-            "Leave out the default speed of 9.0 cm/s",
+            "Omit the default speed of 9.0 cm/s",
             " at 9.0",
             "",
         ),
         (
             "refactor.extract",
             "move 1 meters at 9.0\n  turn",
-            "Extract into the new movement `tour_2`",
+            "Extract into new movement `tour_2`",
             "",
             "{ tour tour_2 tour_3 } moves",
         ),

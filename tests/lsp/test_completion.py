@@ -44,7 +44,7 @@ async def test_a_name_is_explained(
         wheel = await client.completion_item_resolve_async(wheel)
     assert isinstance(wheel.documentation, types.MarkupContent)
     assert "wheel wheelL with radius 4.5" in wheel.documentation.value
-    assert "28.3 cm a turn" in wheel.documentation.value
+    assert "28.3 cm per revolution" in wheel.documentation.value
 
 
 async def test_a_name_that_is_gone_is_not_explained(

@@ -20,9 +20,9 @@ MAY_KNOW: dict[str, set[str]] = {
     "ide": {"config", "analysis", "syntax", "schema", "kinematics", "scene"},
     "script": {"analysis", "kinematics"},
     "files": {"text"},
-    "record": {"kinematics"},
-    "picture": {"kinematics", "scene", "record"},
-    "simulator": {"kinematics", "scene", "record"},
+    "trace": {"kinematics"},
+    "picture": {"kinematics", "scene", "trace"},
+    "simulator": {"kinematics", "scene", "trace"},
     "server": {
         "ide",
         "script",
@@ -31,7 +31,7 @@ MAY_KNOW: dict[str, set[str]] = {
         "syntax",
         "kinematics",
         "scene",
-        "record",
+        "trace",
         "files",
     },
     "cli": {
@@ -45,7 +45,7 @@ MAY_KNOW: dict[str, set[str]] = {
         "ide",
         "script",
         "files",
-        "record",
+        "trace",
         "picture",
         "simulator",
         "server",
@@ -81,7 +81,7 @@ PURE = [
     "config",
     "ide",
     "script",
-    "record",
+    "trace",
     "picture",
 ]
 IMPURE = re.compile(

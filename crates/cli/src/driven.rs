@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::Path;
 
-use pydslrep_record::{Map, TraceRecord, Track};
 use pydslrep_simulator::Sightings;
+use pydslrep_trace::{Map, TraceRecord, Track};
 
 /// Poses nearer than this to the last one kept are left out, metres and radians.
 const FINENESS: f64 = 0.002;

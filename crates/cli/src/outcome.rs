@@ -5,7 +5,7 @@ use std::time::Duration;
 use comfy_table::Table;
 use pydslrep_kinematics::Pose;
 use pydslrep_picture::Route;
-use pydslrep_record::Track;
+use pydslrep_trace::Track;
 
 use crate::commands::plan::{Planned, fixed, heading};
 use crate::driven::Driven;

@@ -5,8 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use pydslrep_analysis::environment::{ActionKind, Environment};
-use pydslrep_record::{Map, MapFile};
 use pydslrep_scene::Scene;
+use pydslrep_trace::{Map, MapFile};
 
 use crate::failure::Failure;
 

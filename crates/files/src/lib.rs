@@ -1,7 +1,7 @@
-//! Programs on a disk: which files are some, what they hold, and how far what belongs together reaches.
+//! Program files: finds and reads them, and bounds their imports.
 //!
-//! The command and the server both start here, so that they see the same workspace. Knows paths and bytes. Must never
-//! know what stands in a program.
+//! Shared by the command and the server, so that they see the same workspace. Knows paths and bytes. Must never know the
+//! content of programs.
 
 mod read;
 mod search;
@@ -10,26 +10,26 @@ use std::path::Path;
 
 use pydslrep_text::file_names::SCENE_SUFFIX;
 pub use pydslrep_text::file_names::{PROGRAM_EXTENSION as EXTENSION, SETTINGS_FILE as FILE_NAME};
-pub use read::{MOST_BYTES, Unread, decode, read, without_mark};
+pub use read::{MAX_BYTES, Unread, decode, read, without_mark};
 pub use search::{Found, belongs, find};
 
-/// Whether a path is named like a program.
+/// Whether a path has the extension of programs.
 pub fn is_program(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == EXTENSION)
 }
 
-/// Whether a path is named like a scene.
+/// Whether a path has the ending of scene files.
 pub fn is_scene(path: &Path) -> bool {
     path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(SCENE_SUFFIX))
 }
 
-/// The nearest folder upwards from a file that holds a `pydslrep.toml`.
+/// The nearest folder above a file that contains a `pydslrep.toml`.
 pub fn project_folder(file: &Path) -> Option<&Path> {
     let own = file.parent()?;
     own.ancestors().find(|folder| folder.join(FILE_NAME).is_file())
 }
 
-/// The folder that imports of a program may not leave: that of the nearest `pydslrep.toml`, else the program's own.
+/// The folder that imports of a program may not leave: that of the nearest `pydslrep.toml`, or the program's own.
 pub fn import_bound(program: &Path) -> &Path {
     project_folder(program).or_else(|| program.parent()).unwrap_or(program)
 }

@@ -1,41 +1,39 @@
-//! The text of a file.
+//! Reads text files.
 
 use std::fmt;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// Larger files are no programs.
-pub const MOST_BYTES: u64 = 64 << 20;
+/// The maximum size of a program.
+pub const MAX_BYTES: u64 = 64 << 20;
 
-/// Why there is no text.
+/// Why a file cannot be read.
 #[derive(Debug)]
 pub enum Unread {
     /// There is no such file.
     Missing,
-    /// It has more than [`MOST_BYTES`].
+    /// It has more than [`MAX_BYTES`].
     TooLarge,
-    /// It is not in UTF-8.
+    /// It is not valid UTF-8.
     NotText {
-        /// The first line that is not, from 1.
+        /// The first invalid line, from 1.
         line: usize,
     },
-    /// What the system says.
+    /// Another I/O error.
     Failed(io::Error),
 }
 
-/// What is the matter, to go behind the name of the file and a colon.
+/// The message, to follow the name of the file and a colon.
 impl fmt::Display for Unread {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Missing => f.write_str("there is no such file"),
-            Self::TooLarge => write!(f, "it is larger than {} MiB", MOST_BYTES >> 20),
-            Self::NotText { line } => write!(f, "it is no text in UTF-8: line {line} holds other bytes"),
-            Self::Failed(error) if error.kind() == io::ErrorKind::IsADirectory => {
-                f.write_str("it is a folder")
-            }
+            Self::Missing => f.write_str("file not found"),
+            Self::TooLarge => write!(f, "larger than {} MiB", MAX_BYTES >> 20),
+            Self::NotText { line } => write!(f, "not valid UTF-8 in line {line}"),
+            Self::Failed(error) if error.kind() == io::ErrorKind::IsADirectory => f.write_str("is a folder"),
             Self::Failed(error) if error.kind() == io::ErrorKind::PermissionDenied => {
-                f.write_str("you have no right to read it")
+                f.write_str("permission denied")
             }
             Self::Failed(error) => error.fmt(f),
         }
@@ -44,10 +42,10 @@ impl fmt::Display for Unread {
 
 impl std::error::Error for Unread {}
 
-/// The text of a file, byte order mark and all.
+/// Reads the text of a file, including any byte order mark.
 ///
 /// # Errors
-/// When it is not there, cannot be read, or is no text.
+/// If it does not exist, cannot be read, or is not valid UTF-8.
 pub fn read(path: &Path) -> Result<String, Unread> {
     File::open(path)
         .map_err(|error| match error.kind() {
@@ -57,14 +55,14 @@ pub fn read(path: &Path) -> Result<String, Unread> {
         .and_then(decode)
 }
 
-/// The text that a stream holds.
+/// Reads the text of a stream.
 ///
 /// # Errors
-/// When it cannot be read, or is no text.
+/// If it cannot be read, or is not valid UTF-8.
 pub fn decode(stream: impl Read) -> Result<String, Unread> {
     let mut bytes = Vec::new();
-    stream.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(Unread::Failed)?;
-    if bytes.len() as u64 > MOST_BYTES {
+    stream.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(Unread::Failed)?;
+    if bytes.len() as u64 > MAX_BYTES {
         return Err(Unread::TooLarge);
     }
     String::from_utf8(bytes).map_err(|error| {
@@ -75,7 +73,7 @@ pub fn decode(stream: impl Read) -> Result<String, Unread> {
 
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
-/// A byte order mark is not part of the text: editors hide it, and columns would be off by one.
+/// The text without its byte order mark: editors hide the mark, and columns would be off by one.
 pub fn without_mark(text: &str) -> &str {
     text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text)
 }
@@ -85,15 +83,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_reason_is_told_in_words() {
+    fn errors_have_messages() {
         let folder = tempfile::tempdir().unwrap();
-        let said = |path: &Path| read(path).unwrap_err().to_string();
-        assert_eq!(said(folder.path()), "it is a folder");
+        let message = |path: &Path| read(path).unwrap_err().to_string();
+        assert_eq!(message(folder.path()), "is a folder");
         let file = folder.path().join("x.pyr");
-        assert_eq!(said(&file), "there is no such file");
+        assert_eq!(message(&file), "file not found");
         std::fs::write(&file, b"a\nb\xff").unwrap();
-        assert_eq!(said(&file), "it is no text in UTF-8: line 2 holds other bytes");
-        assert_eq!(said(&file.join("y.pyr")), "there is no such file");
-        assert_eq!(decode(io::repeat(b' ')).unwrap_err().to_string(), "it is larger than 64 MiB");
+        assert_eq!(message(&file), "not valid UTF-8 in line 2");
+        assert_eq!(message(&file.join("y.pyr")), "file not found");
+        assert_eq!(decode(io::repeat(b' ')).unwrap_err().to_string(), "larger than 64 MiB");
     }
 }

@@ -1,4 +1,4 @@
-//! All programs of a folder.
+//! Finds programs and scenes in folders.
 
 use std::path::{Path, PathBuf};
 
@@ -6,32 +6,30 @@ use ignore::WalkBuilder;
 
 use crate::{is_program, is_scene};
 
-/// What was found in a folder.
+/// The result of a search.
 #[derive(Debug, Default)]
 pub struct Found {
     /// The programs, by name.
     pub programs: Vec<PathBuf>,
     /// The scenes, by name.
     pub scenes: Vec<PathBuf>,
-    /// Why some of the folders below could not be looked at; in words.
+    /// The errors for folders that could not be read.
     pub failures: Vec<String>,
-    /// Whether all of it was looked at.
+    /// Whether the search was completed.
     pub complete: bool,
 }
 
-/// All programs and scenes in a folder and the folders in it, except for what is hidden or what a `.gitignore` leaves out; looks
-/// at no more than `most` files and folders. Links to folders are not followed: they may lead in circles.
+/// Finds all programs and scenes in a folder and its subfolders, except for hidden and ignored (`.gitignore`) ones. Visits
+/// at most `most` files and folders. Does not follow links to folders, which may be cyclic.
 pub fn find(folder: &Path, most: usize) -> Found {
-    let walk =
-        WalkBuilder::new(folder).require_git(false).git_global(false).sort_by_file_name(Ord::cmp).build();
     let mut found = Found { complete: true, ..Found::default() };
-    for (count, entry) in walk.enumerate() {
+    for (count, entry) in walk(folder).build().enumerate() {
         if count >= most {
             found.complete = false;
             break;
         }
         match entry {
-            Ok(entry) if !entry.file_type().is_some_and(|sort| sort.is_dir()) => {
+            Ok(entry) if !entry.file_type().is_some_and(|kind| kind.is_dir()) => {
                 let path = entry.into_path();
                 if is_program(&path) {
                     found.programs.push(path);
@@ -46,7 +44,7 @@ pub fn find(folder: &Path, most: usize) -> Found {
     found
 }
 
-/// Whether a search in a folder would find a program or a scene; looks only at what lies on the way.
+/// Whether a search in a folder would find a program or a scene; visits only the folders on its path.
 pub fn belongs(folder: &Path, file: &Path) -> bool {
     if !(is_program(file) || is_scene(file)) || !file.starts_with(folder) {
         return false;
@@ -92,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_ignored_is_no_part_of_the_workspace() {
+    fn ignored_files_are_not_part_of_the_workspace() {
         let folder = folder(&["target/x.pyr", "a.pyr", "old.pyr", "a.scene.toml", "old.scene.toml"]);
         fs::write(folder.path().join(".gitignore"), "/target/\nold*\n").unwrap();
         assert_eq!(names(&folder, 100), (vec!["a.pyr".to_owned()], true));
@@ -106,14 +104,14 @@ mod tests {
     }
 
     #[test]
-    fn a_search_has_an_end() {
+    fn searches_are_limited() {
         let folder = folder(&["a.pyr", "b.pyr", "c.pyr"]);
         assert_eq!(names(&folder, 2), (vec!["a.pyr".to_owned()], false), "the folder itself counts");
     }
 
     #[cfg(unix)]
     #[test]
-    fn links_do_not_lead_in_circles() {
+    fn links_to_folders_are_not_followed() {
         let folder = folder(&["a.pyr"]);
         std::os::unix::fs::symlink(folder.path(), folder.path().join("again")).unwrap();
         std::os::unix::fs::symlink(folder.path().join("a.pyr"), folder.path().join("b.pyr")).unwrap();
@@ -121,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_that_is_not_there_is_told() {
+    fn a_missing_folder_is_reported() {
         let folder = folder(&[]);
         assert_eq!(find(&folder.path().join("x"), 9).failures.len(), 1);
     }

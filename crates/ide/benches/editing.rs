@@ -1,6 +1,6 @@
-//! What an editor waits for, without the protocol: `cargo bench --package pydslrep-ide`.
+//! Latency of editor requests without the protocol: `cargo bench --package pydslrep-ide`.
 //!
-//! Each is measured on programs of 100 to 100 000 lines, so that one sees what grows with the file and what does not.
+//! Each is measured on programs of 100 to 100 000 lines, to show which ones grow with the file.
 
 use divan::{Bencher, black_box};
 use pydslrep_analysis::{Database, FileId};
@@ -13,7 +13,7 @@ fn main() {
     divan::main();
 }
 
-/// A program without a problem: sites with a robot each, two movements and an environment.
+/// A program without diagnostics: sites with one robot, two movements and an environment each.
 fn program(lines: usize) -> String {
     const SITE: usize = 20;
     let site = |number: usize| {
@@ -39,7 +39,7 @@ fn opened(text: &str) -> (Database, FileId) {
     (database, file)
 }
 
-/// Where a word of the middle of the program ends.
+/// The end of a word in the middle of the program.
 fn behind(text: &str, word: &str) -> u32 {
     let middle = text.len() / 2;
     let at = text[middle..].find(word).map(|at| middle + at + word.len());
@@ -64,7 +64,7 @@ fn opening(bencher: Bencher, lines: usize) {
     bencher.bench(|| opened(black_box(&text)));
 }
 
-/// One character typed and taken back, with all diagnostics after each.
+/// Types and deletes one character, with all diagnostics after each edit.
 fn keystroke(bencher: Bencher, lines: usize, word: &str) {
     let text = program(lines);
     let (mut database, file) = opened(&text);
@@ -103,7 +103,7 @@ fn hover(bencher: Bencher, lines: usize) {
     bencher.bench_local(|| ide::hover(&database, position));
 }
 
-/// The fixes of a misspelt name, two of which are tried out.
+/// The fixes of a misspelt name, two of which are validated.
 #[divan::bench(args = LINES)]
 fn quick_fixes(bencher: Bencher, lines: usize) {
     let text = program(lines);

@@ -252,7 +252,7 @@ mod tests {
         check(
             "$0",
             &expect![[r#"
-                program … [a robot on two wheels, a movement and an environment] "" -> "wheel wheelL with radius ${4:4.5}\nwheel wheelR with radius ${4:4.5}\n\nrobot ${1:rover} type tw with port ${5:23000} has { wheelL wheelR } wheels\n\nmovement ${2:patrol} of ${1:rover} {\n  move ${6:1.0} meters\n  $0\n}\n\nenvironment ${3:yard} has { ${1:rover} } robots with { ${2:patrol} } moves\n"
+                program … [a two-wheel robot, a movement and an environment] "" -> "wheel wheelL with radius ${4:4.5}\nwheel wheelR with radius ${4:4.5}\n\nrobot ${1:rover} type tw with port ${5:23000} has { wheelL wheelR } wheels\n\nmovement ${2:patrol} of ${1:rover} {\n  move ${6:1.0} meters\n  $0\n}\n\nenvironment ${3:yard} has { ${1:rover} } robots with { ${2:patrol} } moves\n"
                 wheel … [a complete wheel declaration] "" -> "wheel ${1:wheelL} with radius ${2:4.5}"
                 wheelH … [a complete mecanum wheel declaration] "" -> "wheelH ${1:wheelL} with radius ${2:4.5}"
                 sensor … [a complete sensor declaration] "" -> "sensor ${1:front}"

@@ -1,4 +1,4 @@
-//! What is offered is what the grammar allows, and what was going to be typed is among it.
+//! Completion offers exactly what the grammar allows, including the next word of every program.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests are tests, too")]
 
@@ -11,7 +11,7 @@ use pydslrep_ide::{
 };
 use pydslrep_syntax::{Found, KEYWORDS, Span, SyntaxErrorKind, Token, TokenKind, cut, lex, parse};
 
-/// The article's programs, and those made from them.
+/// The paper's programs and variants of them.
 fn article() -> Vec<String> {
     let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests");
     let mut programs = Vec::new();
@@ -37,7 +37,7 @@ fn offered(database: &Database, file: FileId, offset: u32) -> Vec<Completion> {
     completions(database, FilePosition { file, offset }, CompletionTrigger::Invoked, 9.0)
 }
 
-/// The words and signs that a list of completions begins with; a comma is never offered.
+/// The first words of the offered items; commas are never offered.
 fn words(items: &[Completion]) -> BTreeSet<&str> {
     let words =
         items.iter().filter(|item| matches!(item.kind, CompletionKind::Keyword | CompletionKind::Snippet));
@@ -50,7 +50,7 @@ fn allowed(beginning: &str) -> BTreeSet<&'static str> {
     allowed
 }
 
-/// Whether nothing is wrong with a text but that it ends too early.
+/// Whether a text has no error except that it is incomplete.
 fn is_beginning(text: &str) -> bool {
     let pieces = parse(text);
     let last = pieces.len() - 1;
@@ -61,29 +61,27 @@ fn is_beginning(text: &str) -> bool {
     })
 }
 
-/// With a name wherever a person has to give one: nothing is declared that could be suggested.
+/// Fills names into tab stops without a default.
 fn filled_in(insert: &str) -> String {
     (1..9).fold(insert.to_owned(), |text, number| {
         text.replace(&format!("${number} "), "x ").replace(&format!("${number}\n"), "x\n")
     })
 }
 
-/// What tells one place from another: the entity's keyword and the last tokens, whatever the names and numbers are. (No
-/// rule of the grammar looks back further than its own clause; seven tokens are more than any has.)
+/// The distinguishing context of a position: the entity's keyword and the last tokens, regardless of names and numbers.
+/// (No rule of the grammar looks back further than its own clause, which has fewer than seven tokens.)
 fn context(entity: &[Token], may_import: bool) -> (Vec<TokenKind>, bool) {
     let kind = |(token, _): &Token| if *token == TokenKind::Float { TokenKind::Integer } else { *token };
     let last = entity.len().saturating_sub(7).max(1);
     (entity.iter().take(1).chain(entity.iter().skip(last)).map(kind).collect(), may_import)
 }
 
-/// Types a program token by token, and compares what is offered behind each of them, where all that is written is the
-/// program so far, with what a reader written from the language's contract alone would look for there: each word that
-/// is offered can stand there in some program, and each that can is offered. (A text that ends is the only one of which
-/// that can be said: behind a cursor in the middle, what was right before the word was typed is wrong until the rest is
-/// written.) Whatever is inserted, with all that comes with it, may be wrong in one way only: the program is not
-/// finished.
+/// Types a program token by token and compares the offered words after each with the reference checker: every offered
+/// word can come next in some program, and every such word is offered. (This only holds at the end of the text: in the
+/// middle, the text after the cursor may not fit until more is typed.) Inserting an item leaves an incomplete program
+/// without other errors.
 ///
-/// Places of the same [`context`] are asked about once.
+/// Each [`context`] is checked once.
 fn check_while_typed(text: &str, seen: &mut HashSet<(Vec<TokenKind>, bool)>) {
     let mut database = Database::new();
     let file = database.open("a.pyr", " ");
@@ -109,13 +107,13 @@ fn check_while_typed(text: &str, seen: &mut HashSet<(Vec<TokenKind>, bool)>) {
         let start = database.entity_at(file, length(&typed)).unwrap().span.start;
         let items = offered(&database, file, length(&typed) + 1);
         let begun = &typed[start as usize..];
-        // What comes before matters for imports alone.
+        // Earlier entities only matter for imports.
         let beginning = if imports { typed.clone() } else { format!("sensor s {begun}") };
-        assert_eq!(words(&items), allowed(&beginning), "behind {begun:?}");
+        assert_eq!(words(&items), allowed(&beginning), "after {begun:?}");
         for mut item in items.into_iter().filter(|item| !matches!(item.kind, CompletionKind::Reference(_))) {
             item.insert = filled_in(&item.insert);
             let whole = format!("{begun} {}", item.plain());
-            // Without a name after it, `} wheel` is a slip for `} wheels`.
+            // Without a name after it, `} wheel` is a typo of `} wheels`.
             assert!(is_beginning(&whole) || is_beginning(&format!("{whole} x")), "{whole:?}");
         }
     }
@@ -143,7 +141,7 @@ fn the_words_offered_are_those_that_fit() {
     }
 }
 
-/// Whether a token is what somebody can be helped to write: a word or a brace, or a name that is declared.
+/// Whether completion can offer a token: a keyword, a brace, or a declared name.
 fn can_be_offered(database: &Database, file: FileId, token: TokenKind, span: Span) -> bool {
     if token == TokenKind::Comma || token.is_number() || token == TokenKind::String {
         return false;
@@ -154,10 +152,10 @@ fn can_be_offered(database: &Database, file: FileId, token: TokenKind, span: Spa
     !token.is_name() || declared(span.start).is_some_and(|found| !is_declaration(found))
 }
 
-/// With the word written up to `typed`, and what `behind` is behind it: the word is what is replaced, and offered.
-fn check_half_typed(before: &str, word: &str, typed: usize, behind: &str) {
+/// Checks that a word typed up to `typed` and followed by `after` is replaced and offered.
+fn check_half_typed(before: &str, word: &str, typed: usize, after: &str) {
     let mut database = Database::new();
-    let file = database.open("a.pyr", &format!("{before}{}{behind}", &word[..typed]));
+    let file = database.open("a.pyr", &format!("{before}{}{after}", &word[..typed]));
     let items = offered(&database, file, length(before) + u32::try_from(typed).unwrap());
     let place = || format!("{:?}|{:?}", &before[before.len().saturating_sub(60)..], &word[..typed]);
     let begins = |item: &&Completion| item.insert.split_whitespace().next() == Some(word);
@@ -177,11 +175,11 @@ fn a_half_typed_word_is_replaced_by_what_it_was_going_to_be() {
             }
             let (start, end) = (span.start as usize, span.end as usize);
             let word = &text[start..end];
-            // Right behind a word it is that one which is being typed.
+            // Right after a word, the cursor is still in that word.
             let touches = text[..start].ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
-            // Of the last letters none is offered.
+            // Almost complete words are not offered.
             for typed in usize::from(touches)..word.len().saturating_sub(3) {
-                // `wheel` may be meant as it is, and is left alone.
+                // A complete keyword such as `wheel` gets no list.
                 if !token.is_name() && KEYWORDS.iter().any(|(_, keyword)| *keyword == &word[..typed]) {
                     continue;
                 }
@@ -194,7 +192,7 @@ fn a_half_typed_word_is_replaced_by_what_it_was_going_to_be() {
     }
 }
 
-/// The labels of what is offered at `$0`.
+/// The labels of the items at `$0`.
 fn labels(fixture: &str) -> Vec<String> {
     let offset = fixture.find("$0").unwrap();
     let mut database = Database::new();
@@ -213,7 +211,7 @@ fn the_body_of_a_misspelt_declaration_completes() {
         ("enviroment e has { $0 } robots", "environment e has { $0 } robots"),
         ("robbot q type $0 with port 2 has { } wheels", "robot q type $0 with port 2 has { } wheels"),
     ] {
-        // Though there are other errors.
+        // Even with other errors.
         for before in [BEFORE.to_owned(), format!("{BEFORE}wheel c radius 4\n")] {
             let found = labels(&format!("{before}{misspelt}"));
             assert!(!found.is_empty(), "{misspelt}");

@@ -1,5 +1,5 @@
-//! Every single quick fix that is offered on programs with mistakes mends what it is for and nothing else changes: tried
-//! on programs at random, half of them with a slip of the finger besides. `PYDSLREP_FIXED` says on how many.
+//! Every quick fix for programs with errors fixes its diagnostic and changes nothing else: applied to random programs,
+//! half of them with an additional typo. `PYDSLREP_FIXED` sets their number.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests are tests, too")]
 
@@ -11,11 +11,11 @@ use pydslrep_ide::{QuickFix, quick_fixes};
 use pydslrep_naive::{Recipe, declarations};
 use pydslrep_syntax::{Span, lex, parse};
 
-/// Problems of text that is not understood; mending one shows what it hid.
+/// Diagnostics of invalid code; fixing one may reveal others.
 const OF_TEXT: [&str; 4] =
     ["syntax-error", "invalid-character", "unterminated-comment", "unterminated-string"];
 
-/// What goes along with a problem, elsewhere in the program: the same cause, or what it made impossible.
+/// Diagnostics related to another one: with the same cause, or caused by it.
 const GOES_ALONG: [(&str, &[&str]); 6] = [
     ("movement-robot-missing", &["movement-robot-missing", "empty-environment"]),
     ("unresolved-reference", &["unresolved-reference", "movement-robot-missing", "sensor-not-on-robot"]),
@@ -32,7 +32,7 @@ fn opened(text: &str) -> (Database, FileId) {
     (database, file)
 }
 
-/// Edits in the order of the text, which must be apart from each other.
+/// Edits in text order, which must not overlap.
 fn in_order(edits: &[Edit]) -> Vec<Edit> {
     let mut edits = edits.to_vec();
     edits.sort_by_key(|edit| (edit.span.start, edit.span.end));
@@ -48,7 +48,7 @@ fn applied(text: &str, edits: &[Edit]) -> String {
     text
 }
 
-/// Where a place is after edits; `None` if one of them changes it.
+/// The new offset of a position after edits; `None` if one of them changes it.
 fn moved(span: Span, edits: &[Edit]) -> Option<Span> {
     let mut shift = 0;
     for edit in edits {
@@ -66,7 +66,7 @@ fn moved(span: Span, edits: &[Edit]) -> Option<Span> {
     Some(Span::new(moved(span.start), moved(span.end)))
 }
 
-/// A program at random with the words of it that a slip makes others.
+/// A random program with typos.
 fn program(seed: u64) -> String {
     let text = Recipe { lines: 12, ..Recipe::default() }.seeded(seed);
     let tokens = lex(&text);
@@ -85,7 +85,7 @@ fn program(seed: u64) -> String {
     text
 }
 
-/// Tries a fix; `index` is its problem's among those `before`.
+/// Applies a fix; `index` is that of its diagnostic among those `before`.
 fn try_out(text: &str, database: &Database, before: &[Diagnostic], index: usize, offer: &QuickFix) {
     let mended = &before[index];
     let entity = |span: Span| database.entity_at(mended.file, span.start).map(|entity| entity.id);
@@ -112,15 +112,15 @@ fn try_out(text: &str, database: &Database, before: &[Diagnostic], index: usize,
         }
         let goes_along =
             GOES_ALONG.iter().any(|(code, along)| *code == mended.code() && along.contains(&other.code()));
-        // What was half understood may mean something else.
+        // Partially valid code may change its meaning.
         let is_read_again = is_of_text && entity(other.span) == entity(mended.span);
-        // One hint may take the place of another: what nothing used may be used now.
+        // One hint may replace another: an unused declaration may be used now.
         let may_go = span.is_none() || goes_along || is_read_again || other.severity == Severity::Hint;
         assert!(may_go, "{} {:?} is gone, too: {told}", other.code(), other.message);
     }
     for new in after {
         assert!(new.message != mended.message, "it is still there: {told}");
-        // More of the text is understood.
+        // More of the code is valid.
         let came_to_light =
             is_of_text && (!OF_TEXT.contains(&new.code()) || new.span.start > mended.span.start);
         let may_come = if offer.fix.safe { Severity::Warning } else { Severity::Hint };
@@ -152,7 +152,7 @@ fn every_fix_mends_its_problem_and_nothing_else_changes() {
     assert!(tried.len() > 15 && tried.values().sum::<usize>() > 500, "{tried:?}");
 }
 
-/// What people do to a word.
+/// Typical typos.
 fn slips(word: &str) -> Vec<String> {
     let letters: Vec<char> = word.chars().collect();
     let swapped: String = letters.iter().take(2).rev().chain(letters.iter().skip(2)).collect();
@@ -172,7 +172,7 @@ fn slips(word: &str) -> Vec<String> {
     alike.into_iter().chain(others).collect()
 }
 
-/// A program with some words wrong, and where its entities are.
+/// A program with some typos and the ranges of its entities.
 fn broken(seed: u64) -> (String, Vec<Range<usize>>) {
     let mut text = Recipe { lines: 10, ..Recipe::default() }.seeded(seed);
     let mut entities: Vec<_> = declarations(&text).unwrap().into_iter().map(|entity| entity.range).collect();

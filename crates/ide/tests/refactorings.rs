@@ -1,5 +1,5 @@
-//! Refactorings keep what a program does, and bring no new problem: tried at every place of the article's programs and of
-//! programs at random. `PYDSLREP_REFACTORED` says of how many.
+//! Refactorings preserve behaviour and introduce no diagnostics: applied everywhere in the paper's programs and in random
+//! programs. `PYDSLREP_REFACTORED` sets their number.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests are tests, too")]
 
@@ -29,7 +29,7 @@ fn applied(text: &str, edits: &[Edit]) -> String {
     text
 }
 
-/// Where something may be selected: entities, their names, actions, and neighbouring actions together.
+/// Selections to try: entities, their names, actions, and pairs of adjacent actions.
 fn selections(database: &Database, file: FileId) -> Vec<Span> {
     let mut found = Vec::new();
     for entity in database.entities(file) {
@@ -47,7 +47,7 @@ fn selections(database: &Database, file: FileId) -> Vec<Span> {
     found
 }
 
-/// How many problems there are of each code.
+/// The number of diagnostics per code.
 fn problems(database: &Database, file: FileId) -> BTreeMap<&'static str, usize> {
     let mut counts = BTreeMap::new();
     for problem in database.diagnostics(file) {
@@ -89,7 +89,7 @@ fn same_poses(a: &Driven, b: &Driven) -> bool {
     a.poses.len() == b.poses.len() && a.poses.iter().zip(&b.poses).all(|(a, b)| same(a, b))
 }
 
-/// Tries every offer; counts them by the first words of their titles.
+/// Applies every refactoring and counts them by the first words of their titles.
 fn try_all(text: &str, tried: &mut BTreeMap<String, usize>) {
     let (database, file) = opened(text);
     let (problems_before, driven_before) = (problems(&database, file), driven(&database, file));
@@ -103,7 +103,7 @@ fn try_all(text: &str, tried: &mut BTreeMap<String, usize>) {
             let told = format!("{} at {selection:?} of\n{text}\nmakes\n{after}", offer.title);
             for (code, count) in problems(&database, file) {
                 let before = problems_before.get(code).copied().unwrap_or(0);
-                // What is wrong with a movement is wrong with its parts, too.
+                // Diagnostics of a movement apply to its parts, too.
                 let may_grow = offer.title.starts_with("extract") && before > 0;
                 assert!(count <= before || may_grow, "a new {code}: {told}");
             }
@@ -148,7 +148,7 @@ fn refactorings_keep_what_programs_do() {
     assert!(tried.keys().any(|tried| tried.starts_with("make")), "{tried:?}");
 }
 
-/// Converting and converting back, and the others that undo each other, give the same text again.
+/// Pairs of inverse refactorings, such as converting units back and forth, restore the text.
 #[test]
 fn there_and_back_again() {
     for text in articles_programs() {
@@ -156,7 +156,7 @@ fn there_and_back_again() {
         for selection in selections(&database, file) {
             for (there, back) in [
                 ("convert to centimeters", "convert to meters"),
-                ("leave out the default speed of 9.0 cm/s", "write the default speed out"),
+                ("omit the default speed of 9.0 cm/s", "make the default speed explicit"),
             ] {
                 let Some(after) = chosen(&text, selection, there) else { continue };
                 let again = chosen(&after, Span::at(selection.start), back);

@@ -1,4 +1,4 @@
-//! A rename changes nothing but the name, whatever the program and whatever the name.
+//! A rename changes only the name, for any program and any name.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests are tests, too")]
 
@@ -11,7 +11,7 @@ use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, KEYWORDS, Span};
 use smol_str::SmolStr;
 
-/// What the programs say but for their names: all other words, and what every reference leads to.
+/// The programs without their names: all other tokens, and the target of every reference.
 fn meaning(database: &Database) -> Vec<String> {
     database.files().flat_map(|file| meaning_of_file(database, file)).collect()
 }
@@ -36,7 +36,7 @@ fn meaning_of_file(database: &Database, file: FileId) -> Vec<String> {
     said
 }
 
-/// The problems that a rename must not change, by file and entity, without the names that it is about.
+/// The diagnostics that a rename must not change, by file and entity, without the renamed names.
 fn problems(database: &Database, names: [&str; 2]) -> Vec<String> {
     let mut found = Vec::new();
     for file in database.files() {
@@ -79,7 +79,7 @@ fn apply(database: &mut Database, position: FilePosition, new: &str) -> bool {
     true
 }
 
-/// Every kind and name that a file declares or uses, with one of its places there.
+/// Every kind and name that a file declares or uses, with one of its locations.
 fn names(database: &Database) -> Vec<(EntityKind, SmolStr, FileSpan)> {
     let mut found: Vec<(EntityKind, SmolStr, FileSpan)> = Vec::new();
     for file in database.files() {

@@ -1,4 +1,4 @@
-//! A picture of robots that miss their plans a little: `cargo run -p pydslrep-picture --example picture -- 3`.
+//! Draws robots that deviate slightly from their plans: `cargo run -p pydslrep-picture --example picture -- 3`.
 
 #![allow(clippy::print_stdout)]
 
@@ -6,8 +6,8 @@ use std::f64::consts::FRAC_PI_2;
 
 use pydslrep_kinematics::{Action, Drive, Pose, TimedPose, plan_movement};
 use pydslrep_picture::{Picture, Route};
-use pydslrep_record::Map;
 use pydslrep_scene::{Robot, Scene, Wheel};
+use pydslrep_trace::Map;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let count: u32 = std::env::args().nth(1).map_or(Ok(1), |count| count.parse())?;

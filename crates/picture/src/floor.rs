@@ -1,18 +1,18 @@
-//! The floor with its grid, and what stands on it.
+//! The floor: grid, obstacles and planned collisions.
 
 use pydslrep_scene::Obstacle;
 use svg::node::element::{Group, Path, Polygon, Rectangle};
 
-use crate::paper::{ALARM, AXIS, GRID, OBSTACLE, OBSTACLE_EDGE, PAPER, QUIET, line, list, pixels, text};
+use crate::style::{ALARM, AXIS, GRID, OBSTACLE, OBSTACLE_EDGE, PAPER, QUIET, line, list, pixels, text};
 use crate::view::View;
 
-/// A circle is drawn with so many corners.
+/// The number of corners of circles.
 const CIRCLE_SIDES: u32 = 48;
 
-/// Half the size of the mark of a collision, pixels.
+/// Half the size of a collision mark, pixels.
 const CROSS: f64 = 6.0;
 
-/// The grid with its ticks in metres.
+/// The grid with tick labels in metres.
 pub(crate) fn grid(view: &View) -> Group {
     let (left, top, right, bottom) = (view.left, view.top, view.left + view.width, view.top + view.height);
     let stroke = |tick: f64| if tick == 0.0 { AXIS } else { GRID };
@@ -46,7 +46,7 @@ pub(crate) fn grid(view: &View) -> Group {
     group.add(frame).add(x_title.set("fill", QUIET)).add(y_title.set("fill", QUIET))
 }
 
-/// The tick's value with as many decimals as its distance to the next one needs, and a true minus sign.
+/// The value of a tick with the decimals that the tick distance needs, and a typographic minus sign.
 fn tick_label(tick: f64, step: f64) -> String {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // clamped to what fits
     let decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
@@ -72,13 +72,13 @@ pub(crate) fn obstacles(view: &View, obstacles: &[Obstacle]) -> Group {
     obstacles.iter().fold(look, |group, obstacle| group.add(shape(obstacle)))
 }
 
-/// Where planned paths run into something.
+/// Marks for planned collisions.
 pub(crate) fn collisions(view: &View, places: &[(f64, f64)]) -> Group {
     let crosses = places.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
     crosses.fold(Group::new(), |group, &(x, y)| group.add(cross(view.place(x, y))))
 }
 
-/// A cross that stands out on whatever it is drawn on.
+/// A cross with an outline, visible on any background.
 pub(crate) fn cross((x, y): (f64, f64)) -> Group {
     let (left, right, top, bottom) =
         (pixels(x - CROSS), pixels(x + CROSS), pixels(y - CROSS), pixels(y + CROSS));

@@ -1,13 +1,13 @@
-//! What the lines mean, and where each robot ended.
+//! The legend: each robot with its end pose and deviation, and the meaning of lines and marks.
 
 use pydslrep_kinematics::{Pose, TimedPose, angle_between, heading_degrees};
 use svg::node::element::{Circle, Group, Line, Rectangle};
 
 use crate::floor::cross;
-use crate::paper::{DASHES, INK, OBSTACLE, OBSTACLE_EDGE, QUIET, colour, line, pixels, shorten, text};
 use crate::robots::{DRIVEN_OPACITY, DRIVEN_WIDTH, END_FILL, MAP_WIDTH, SIGHTING, map_node};
 use crate::route::{Picture, Route, is_drawable};
-use crate::ticks::arrowhead;
+use crate::style::{DASHES, INK, OBSTACLE, OBSTACLE_EDGE, QUIET, colour, line, pixels, shorten, text};
+use crate::time_marks::arrowhead;
 
 /// Pixels.
 pub(crate) const WIDTH: f64 = 252.0;
@@ -16,16 +16,16 @@ const KEY_LINE: f64 = 22.0;
 const ENTRY_HEIGHT: f64 = 66.0;
 const LONGEST_NAME: usize = 24;
 
-/// What there is to explain beside the routes themselves.
+/// The kind of picture that the legend explains.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Key {
-    /// Bodies at start and end, and marks on paths so many seconds apart, if there are any.
+    /// A still picture: bodies at start and end, and time marks at this interval in seconds, if any.
     Still(Option<f64>),
-    /// Bodies that drive.
+    /// An animation.
     Moving,
 }
 
-/// How high the legend may become, pixels.
+/// The maximum height of the legend, pixels.
 pub(crate) fn height(picture: &Picture<'_>) -> f64 {
     #[allow(clippy::cast_precision_loss)] // a few robots
     let entries = picture.routes.len() as f64 * ENTRY_HEIGHT;
@@ -34,7 +34,7 @@ pub(crate) fn height(picture: &Picture<'_>) -> f64 {
     entries + key
 }
 
-/// Draws it.
+/// Draws the legend.
 pub(crate) fn draw(picture: &Picture<'_>, key: Key, (left, top): (f64, f64)) -> Group {
     let mut group = Group::new();
     let mut y = top;
@@ -67,7 +67,7 @@ fn entry(route: &Route, colour: &str, left: f64, top: f64) -> Group {
     Group::new().add(swatch).add(name).add(first).add(second)
 }
 
-/// What lines, bodies and marks mean; only what is in the picture.
+/// Samples with their meaning, for everything that is in the picture.
 fn samples(picture: &Picture<'_>, key: Key) -> Vec<(String, Group)> {
     let routes = picture.routes;
     let any = |what: fn(&Route) -> bool| routes.iter().any(what);
@@ -95,7 +95,7 @@ fn samples(picture: &Picture<'_>, key: Key) -> Vec<(String, Group)> {
     }
     if any(|route| !route.seen.is_empty()) {
         let dot = Circle::new().set("cx", 18).set("r", SIGHTING).set("fill", QUIET);
-        add("seen by a sensor", Group::new().add(dot));
+        add("detected by a sensor", Group::new().add(dot));
     }
     if any(|route| !route.map.nodes.is_empty()) {
         add("map", Group::new().add(stroke(MAP_WIDTH).set("stroke", INK)).add(map_node(18.0, 0.0)));
@@ -107,7 +107,7 @@ fn stroke(width: f64) -> Line {
     line((0.0, 0.0), (36.0, 0.0), QUIET).set("stroke-width", width)
 }
 
-/// A little body.
+/// A small body.
 fn outline(fill: f64, stroke: f64) -> Rectangle {
     let place = Rectangle::new().set("x", 11).set("y", -7).set("width", 14).set("height", 14);
     place.set("fill", QUIET).set("fill-opacity", fill).set("stroke", QUIET).set("stroke-width", stroke)
@@ -125,7 +125,7 @@ fn end_text(route: &Route) -> String {
 
 fn error_text(route: &Route) -> String {
     let (Some(driven), Some(planned)) = (last(&route.driven), last(&route.planned)) else {
-        return if route.unknown_after { "plan ends there".to_owned() } else { String::new() };
+        return if route.unknown_after { "end of plan".to_owned() } else { String::new() };
     };
     if route.unknown_after {
         return "end not planned".to_owned();
@@ -134,7 +134,7 @@ fn error_text(route: &Route) -> String {
     format!("{:.1} mm, {:.2}° off the plan", distance * 1000.0, angle.to_degrees().abs())
 }
 
-/// A number with fixed decimals, a true minus sign, and no minus before zero.
+/// A number with fixed decimals, a typographic minus sign, and no minus before zero.
 fn fixed(value: f64, decimals: usize) -> String {
     let digits = format!("{:.decimals$}", value.abs());
     let is_zero = digits.chars().all(|c| c == '0' || c == '.');
@@ -147,14 +147,14 @@ mod tests {
     use crate::testing::route;
 
     #[test]
-    fn numbers_and_names_for_people() {
+    fn numbers_and_names_are_readable() {
         assert_eq!((fixed(-0.0001, 3), fixed(-1.5, 1)), ("0.000".to_owned(), "−1.5".to_owned()));
         let long = shorten("a_name_that_is_far_too_long_for_the_legend", LONGEST_NAME);
         assert!(long.chars().count() == LONGEST_NAME && long.ends_with('…'));
     }
 
     #[test]
-    fn says_how_far_the_end_is_off_or_why_not() {
+    fn shows_the_deviation_at_the_end_if_known() {
         let turned = Pose::new(-1.0, 0.003, std::f64::consts::PI - 0.01);
         let at = |pose| vec![TimedPose { time: None, pose }];
         let mut route = route(at(Pose::new(-1.0, 0.0, -std::f64::consts::PI + 0.01)));
@@ -166,7 +166,7 @@ mod tests {
         route.driven.clear();
         assert_eq!(
             (error_text(&route), end_text(&route)),
-            ("plan ends there".into(), "ends at (−1.000, 0.000) m, −179.4°".into())
+            ("end of plan".into(), "ends at (−1.000, 0.000) m, −179.4°".into())
         );
         route.unknown_after = false;
         assert_eq!(error_text(&route), "");

@@ -1,24 +1,24 @@
-//! Pictures of paths: planned against driven as SVG and PNG, and a replay that moves.
+//! Pictures of planned and driven paths: SVG, animated SVG and PNG.
 //!
-//! Knows poses, bodies and obstacles. Must never know the language, how robots come to their poses, or files: it gets
-//! routes handed in and returns what is to be written, the same each time.
+//! Knows poses, bodies and obstacles. Must never know the language, how poses are computed, or files: routes in,
+//! deterministic text or bytes out.
 //!
-//! * [`Picture::svg`]: everything at once.
-//! * [`Picture::replay`]: an SVG that drives.
-//! * [`png`]: any of our SVGs as pixels.
+//! * [`Picture::svg`]: a still picture.
+//! * [`Picture::replay`]: an animated SVG.
+//! * [`png`]: renders an SVG as PNG.
 
 mod floor;
 mod legend;
-mod paper;
 mod raster;
 mod replay;
 mod robots;
 mod route;
 mod still;
+mod style;
 #[cfg(test)]
 mod testing;
-mod ticks;
+mod time_marks;
 mod view;
 
-pub use raster::{Unpaintable, png};
+pub use raster::{RenderError, png};
 pub use route::{Picture, Route};

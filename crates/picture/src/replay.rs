@@ -1,37 +1,37 @@
-//! A picture that drives: an SVG whose robots move as they did, over and over.
+//! Replays: an animated SVG that shows the robots driving, in a loop.
 //!
-//! The animation is declared in the SVG (SMIL), so that every browser plays it and nothing in it is a program.
+//! The animation is declarative (SMIL), so every browser plays it without scripts.
 
 use pydslrep_kinematics::{TimedPose, angle_between};
 use svg::node::element::{Animate, AnimateTransform, Circle, Group, Polyline, Text};
 
 use crate::legend::Key;
-use crate::paper::{AXIS, INK, QUIET, line, list, pixels, text};
 use crate::route::{Picture, Route, duration};
+use crate::style::{AXIS, INK, QUIET, line, list, pixels, text};
 use crate::view::View;
 use crate::{legend, robots};
 
-/// A replay lasts at most so long, seconds; longer drives are played faster.
-const LONGEST: f64 = 16.0;
+/// The maximum duration of a replay, seconds; longer drives are sped up.
+const MAX_DURATION: f64 = 16.0;
 
-/// How many times faster than driven a replay may be.
+/// The possible speed factors.
 const FACTORS: [f64; 10] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0];
 
-/// The rest at the end, seconds.
-const REST: f64 = 1.5;
+/// The pause at the end, seconds.
+const PAUSE: f64 = 1.5;
 
-/// What a body may be off on the screen, pixels and degrees.
-const FINENESS: f64 = 0.4;
+/// The tolerance for simplifying motion, pixels and degrees.
+const TOLERANCE: f64 = 0.4;
 
-/// The way that was driven before, as dark as that.
+/// The opacity of the complete path.
 const TRAIL_OPACITY: f64 = 0.25;
 
-/// Room for the time below the floor, pixels.
+/// The height of the timeline below the floor, pixels.
 const TIME_HEIGHT: f64 = 44.0;
 
 impl Picture<'_> {
-    /// Draws robots that drive, as SVG: along what they drove, or along their plans where they have not driven. Where no
-    /// times are known, nothing moves.
+    /// Draws an animated SVG: robots move along their driven paths, or along the planned ones if nothing was driven. Without
+    /// known times it is a still picture.
     pub fn replay(&self) -> String {
         let Some(seconds) = duration(self.routes) else { return self.svg() };
         let clock = Clock::of(seconds);
@@ -46,32 +46,32 @@ impl Picture<'_> {
     }
 }
 
-/// How simulated time passes in the replay.
+/// The mapping from simulated time to replay time.
 struct Clock {
-    /// What is played, simulated seconds.
+    /// The simulated duration, seconds.
     seconds: f64,
-    /// How many times faster than driven.
+    /// The speed factor.
     factor: f64,
 }
 
 impl Clock {
     fn of(seconds: f64) -> Self {
-        let fast_enough = |factor: &f64| seconds / factor <= LONGEST;
-        let factor = FACTORS.into_iter().find(fast_enough).unwrap_or(seconds / LONGEST);
+        let fast_enough = |factor: &f64| seconds / factor <= MAX_DURATION;
+        let factor = FACTORS.into_iter().find(fast_enough).unwrap_or(seconds / MAX_DURATION);
         Self { seconds, factor }
     }
 
-    /// How long it takes with the rest at the end, seconds.
+    /// The duration including the pause at the end, seconds.
     fn length(&self) -> f64 {
-        self.seconds / self.factor + REST
+        self.seconds / self.factor + PAUSE
     }
 
-    /// The part of the replay that is over at a simulated time, from 0 to 1.
+    /// The progress of the replay at a simulated time, from 0 to 1.
     fn part(&self, seconds: f64) -> f64 {
         (seconds.clamp(0.0, self.seconds) / self.factor / self.length()).clamp(0.0, 1.0)
     }
 
-    /// The parts at which an animation has its values, from the start to the end of the replay.
+    /// The `keyTimes` of an animation, including the start and end of the replay.
     fn key_times(&self, times: impl Iterator<Item = f64>) -> String {
         let inner = times.map(|time| format!("{:.5}", self.part(time)));
         let all: Vec<String> = std::iter::once("0".to_owned()).chain(inner).chain(["1".to_owned()]).collect();
@@ -79,7 +79,7 @@ impl Clock {
     }
 }
 
-/// What a robot shows at a time, pixels and degrees; degrees go on beyond 360.
+/// The position and heading of a robot at a time, pixels and degrees; degrees are not wrapped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Frame {
     seconds: f64,
@@ -88,7 +88,7 @@ struct Frame {
     degrees: f64,
 }
 
-/// The moments between which a robot's motion looks straight.
+/// The key frames of a robot's motion.
 fn frames(view: &View, route: &Route) -> Vec<Frame> {
     let path = route.path();
     let mut frames: Vec<Frame> = Vec::with_capacity(path.len());
@@ -105,7 +105,7 @@ fn frames(view: &View, route: &Route) -> Vec<Frame> {
     thin(&frames)
 }
 
-/// Leaves out frames that nobody misses (Douglas and Peucker's way, over time).
+/// Removes redundant frames (the Douglas-Peucker algorithm over time).
 fn thin(frames: &[Frame]) -> Vec<Frame> {
     let Some(last) = frames.len().checked_sub(1) else { return Vec::new() };
     let mut kept = vec![false; frames.len()];
@@ -115,7 +115,7 @@ fn thin(frames: &[Frame]) -> Vec<Frame> {
     while let Some((from, to)) = open.pop() {
         let off = |index: &usize| frames[*index].off(&frames[from], &frames[to]);
         let worst = (from + 1..to).max_by(|a, b| off(a).total_cmp(&off(b)));
-        if let Some(worst) = worst.filter(|worst| off(worst) > FINENESS) {
+        if let Some(worst) = worst.filter(|worst| off(worst) > TOLERANCE) {
             kept[worst] = true;
             open.extend([(from, worst), (worst, to)]);
         }
@@ -124,7 +124,7 @@ fn thin(frames: &[Frame]) -> Vec<Frame> {
 }
 
 impl Frame {
-    /// How far this is from where the straight motion between two others is at its time.
+    /// The deviation of this frame from the linear motion between two others.
     fn off(&self, from: &Self, to: &Self) -> f64 {
         let part = (self.seconds - from.seconds) / (to.seconds - from.seconds);
         let between = |from: f64, to: f64| from + part * (to - from);
@@ -134,7 +134,7 @@ impl Frame {
     }
 }
 
-/// Values for the start, each frame and the end.
+/// The values at the start, each frame and the end.
 fn values(frames: &[Frame], value: impl Fn(&Frame) -> String) -> String {
     let all = frames.first().into_iter().chain(frames).chain(frames.last());
     all.map(value).collect::<Vec<_>>().join(";")
@@ -159,7 +159,7 @@ fn transformation(clock: &Clock, kind: &str, values: String, times: &str) -> Ani
         .set("repeatCount", "indefinite")
 }
 
-/// The way, and how much of it is driven.
+/// The complete path, and the driven part of it.
 fn trail(view: &View, route: &Route, colour: &str, clock: &Clock) -> Group {
     let frames = frames(view, route);
     let points: Vec<(f64, f64)> = frames.iter().map(|frame| (frame.x, frame.y)).collect();
@@ -177,7 +177,7 @@ fn trail(view: &View, route: &Route, colour: &str, clock: &Clock) -> Group {
     if length <= 0.0 {
         return Group::new().add(faint);
     }
-    // A dash as long as the way is pushed onto it.
+    // A dash as long as the path is shifted along it.
     let left: Vec<String> = driven.iter().map(|driven| pixels(length - driven).to_string()).collect();
     let values = format!("{};{};{}", left[0], left.join(";"), left[left.len() - 1]);
     let times = clock.key_times(frames.iter().map(|frame| frame.seconds));
@@ -188,7 +188,7 @@ fn trail(view: &View, route: &Route, colour: &str, clock: &Clock) -> Group {
     Group::new().add(faint).add(bold)
 }
 
-/// The robot, which a viewer without animation shows at the end.
+/// The robot; viewers without animation show it at the end.
 fn body(view: &View, route: &Route, colour: &str, clock: &Clock) -> Group {
     let frames = frames(view, route);
     let Some(last) = frames.last() else { return Group::new() };
@@ -205,7 +205,7 @@ fn body(view: &View, route: &Route, colour: &str, clock: &Clock) -> Group {
         .add(turned)
 }
 
-/// How far the replay has got.
+/// The timeline with the progress of the replay.
 fn time_line(view: &View, clock: &Clock) -> Group {
     let (left, right) = (view.left, view.left + view.width);
     let y = view.top + view.height + TIME_HEIGHT + 14.0;
@@ -228,8 +228,8 @@ fn time_line(view: &View, clock: &Clock) -> Group {
 
 fn speed(clock: &Clock) -> String {
     match clock.factor {
-        1.0 => "as fast as driven".to_owned(),
-        factor => format!("{factor:.0} times as fast"),
+        1.0 => "real time".to_owned(),
+        factor => format!("{factor:.0}× real time"),
     }
 }
 
@@ -247,17 +247,17 @@ mod tests {
     }
 
     #[test]
-    fn what_looks_straight_is_one_motion() {
+    fn linear_motion_has_two_frames() {
         let steady: Vec<(f64, f64)> = (0..=100).map(|i| (f64::from(i), 0.02 * f64::from(i))).collect();
         let routes = [route(along(&steady))];
         let view = View::of(&routes, &[], 0.0, 0.0);
         assert_eq!(frames(&view, &routes[0]).len(), 2);
         let rests = [route(along(&[(0.0, 0.0), (10.0, 1.0), (20.0, 1.0), (30.0, 2.0)]))];
-        assert_eq!(frames(&view, &rests[0]).len(), 4, "a rest is seen");
+        assert_eq!(frames(&view, &rests[0]).len(), 4, "a pause is visible");
     }
 
     #[test]
-    fn turns_go_on_beyond_half_a_circle() {
+    fn headings_are_not_wrapped() {
         let at = |time, theta| TimedPose { time: Some(time), pose: Pose { x: 0.0, y: 0.0, theta } };
         let routes = [route(vec![at(0.0, 0.0), at(1.0, 3.0), at(2.0, -3.0), at(3.0, -1.5 * PI + 0.5)])];
         let view = View::of(&routes, &[], 0.0, 0.0);
@@ -284,11 +284,11 @@ mod tests {
             assert_eq!((times[0], times[times.len() - 1]), (0.0, 1.0));
             assert!(times.windows(2).all(|pair| pair[0] <= pair[1]), "{times:?}");
         }
-        assert!(drawn.contains("50 times as fast") && drawn.contains("\n410.0 s\n"), "{drawn}");
+        assert!(drawn.contains("50× real time") && drawn.contains("\n410.0 s\n"), "{drawn}");
     }
 
     #[test]
-    fn strange_routes_are_still_pictures() {
+    fn unusual_routes_are_valid_pictures() {
         let mut timeless = along(&[(0.0, 0.0), (60.0, 4.0)]);
         for timed in &mut timeless {
             timed.time = None;

@@ -1,32 +1,32 @@
-//! Where robots are and were, and what they found.
+//! The robots: bodies, paths, sensor detections and maps.
 
 use pydslrep_kinematics::{Pose, TimedPose};
-use pydslrep_record::Map;
 use pydslrep_scene::Body;
+use pydslrep_trace::Map;
 use svg::node::element::{Circle, Group, Polygon, Polyline};
 
-use crate::paper::{DASHES, INK, PAPER, line, list, pixels};
 use crate::route::{Route, is_drawable};
+use crate::style::{DASHES, INK, PAPER, line, list, pixels};
 use crate::view::View;
 
-/// Points of a line nearer than this to the last one drawn are left out, pixels.
-const FINENESS: f64 = 0.7;
+/// The minimum distance between points of a line, pixels.
+const MIN_POINT_DISTANCE: f64 = 0.7;
 
-/// How dark the body at the end is.
+/// The fill opacity of the body at the end.
 pub(crate) const END_FILL: f64 = 0.22;
 
-/// The driven line, pixels, and how dark it is: the dashes of the planned one must stand out on it.
+/// The width of the driven line, pixels, and its opacity: the dashes of the planned one must stay visible on it.
 pub(crate) const DRIVEN_WIDTH: f64 = 5.0;
 pub(crate) const DRIVEN_OPACITY: f64 = 0.6;
 
-/// The radius of a point that a sensor saw, pixels.
+/// The radius of a detected point, pixels.
 pub(crate) const SIGHTING: f64 = 2.2;
 
-/// The line of a way and the radius of a place in a map, pixels.
+/// The width of edges and the radius of nodes in a map, pixels.
 pub(crate) const MAP_WIDTH: f64 = 1.4;
 const MAP_NODE: f64 = 3.0;
 
-/// Points that a robot's sensors saw.
+/// The points that a robot's sensors detected.
 pub(crate) fn sightings(view: &View, route: &Route, colour: &str) -> Group {
     let mut drawn = std::collections::BTreeSet::new();
     let mut group = Group::new().set("fill", colour).set("stroke", PAPER).set("stroke-width", 0.5);
@@ -41,7 +41,7 @@ pub(crate) fn sightings(view: &View, route: &Route, colour: &str) -> Group {
     group
 }
 
-/// Ways as lines, and places as dots on them.
+/// A map: edges as lines and nodes as dots.
 pub(crate) fn map(view: &View, map: &Map) -> Group {
     let place = |&(x, y): &(f64, f64)| view.place(x, y);
     let mut group = Group::new().set("stroke", INK).set("stroke-width", MAP_WIDTH);
@@ -59,7 +59,7 @@ pub(crate) fn map_node(x: f64, y: f64) -> Circle {
     dot.set("fill", PAPER).set("stroke", INK).set("stroke-width", MAP_WIDTH)
 }
 
-/// The driven line in the robot's colour, and on it the planned one, dashed.
+/// The driven line in the robot's colour, with the dashed planned line on top.
 pub(crate) fn lines(view: &View, route: &Route, colour: &str) -> Group {
     let driven = polyline(view, &route.driven)
         .set("stroke", colour)
@@ -68,7 +68,7 @@ pub(crate) fn lines(view: &View, route: &Route, colour: &str) -> Group {
     Group::new().add(driven).add(planned(view, route, colour))
 }
 
-/// The planned line, dashed; in ink where a driven one has the robot's colour.
+/// The dashed planned line; in ink if the driven line has the robot's colour.
 pub(crate) fn planned(view: &View, route: &Route, colour: &str) -> Group {
     let planned = polyline(view, &route.planned)
         .set("stroke", if route.driven.is_empty() { colour } else { INK })
@@ -82,7 +82,7 @@ fn polyline(view: &View, path: &[TimedPose]) -> Polyline {
     let mut points: Vec<(f64, f64)> = Vec::new();
     let drawable = path.iter().filter(|timed| is_drawable(timed));
     for point in drawable.map(|timed| view.place(timed.pose.x, timed.pose.y)) {
-        if points.last().is_none_or(|last| (point.0 - last.0).hypot(point.1 - last.1) >= FINENESS) {
+        if points.last().is_none_or(|last| (point.0 - last.0).hypot(point.1 - last.1) >= MIN_POINT_DISTANCE) {
             points.push(point);
         }
     }
@@ -115,7 +115,7 @@ fn body(view: &View, body: Body, pose: &Pose, colour: &str, fill: f64, stroke: f
     body_about_origin(view.scale, body, colour, fill, stroke).set("transform", place)
 }
 
-/// The outline of a body that heads along x, with an arrowhead in front, `scale` pixels a metre.
+/// The outline of a body that heads along x, with an arrowhead in front; `scale` in pixels per metre.
 pub(crate) fn body_about_origin(scale: f64, body: Body, colour: &str, fill: f64, stroke: f64) -> Group {
     let on_screen = |(x, y): (f64, f64)| (x * scale, -y * scale);
     let (length, width) = (body.length, body.width);

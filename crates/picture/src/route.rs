@@ -1,23 +1,23 @@
-//! What is drawn.
+//! The content of a picture.
 
 use pydslrep_kinematics::{Pose, TimedPose, angle_between};
-use pydslrep_record::Map;
 use pydslrep_scene::{Body, Obstacle};
+use pydslrep_trace::Map;
 
-/// Everything in a picture.
+/// The content of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Picture<'a> {
-    /// What it shows.
+    /// The title.
     pub title: &'a str,
-    /// One for each robot.
+    /// One route per robot.
     pub routes: &'a [Route],
-    /// What stands on the floor.
+    /// The obstacles.
     pub obstacles: &'a [Obstacle],
-    /// Where planned paths run into something, metres.
+    /// The locations of planned collisions, metres.
     pub collisions: &'a [(f64, f64)],
 }
 
-/// What is drawn of one robot.
+/// The paths of one robot and what it detected.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Route {
     /// The robot's name.
@@ -26,39 +26,39 @@ pub struct Route {
     pub body: Body,
     /// The planned poses in order, the start first; see [`pydslrep_kinematics::RobotPath::sample`].
     pub planned: Vec<TimedPose>,
-    /// Whether the plan goes on beyond its last pose with something that cannot be planned.
+    /// Whether the plan continues after its last pose with an action that cannot be planned.
     pub unknown_after: bool,
-    /// The driven poses in order; empty when nothing was driven.
+    /// The driven poses in order; empty if nothing was driven.
     pub driven: Vec<TimedPose>,
-    /// Points on the floor that the robot's sensors saw.
+    /// The points on the floor that the robot's sensors detected.
     pub seen: Vec<(f64, f64)>,
-    /// What the robot found on exploring.
+    /// The map that the robot made while exploring.
     pub map: Map,
 }
 
 impl Route {
-    /// Where the robot was, or where it is to be when it has not driven yet; only what can be drawn.
+    /// The driven poses, or the planned ones if nothing was driven; only finite ones.
     pub(crate) fn path(&self) -> Vec<TimedPose> {
         let path = if self.driven.is_empty() { &self.planned } else { &self.driven };
         path.iter().filter(|timed| is_drawable(timed)).copied().collect()
     }
 }
 
-/// Poses with numbers that are none cannot be drawn.
+/// Whether a pose is finite.
 pub(crate) fn is_drawable(TimedPose { time, pose }: &TimedPose) -> bool {
     time.is_none_or(f64::is_finite) && pose.x.is_finite() && pose.y.is_finite() && pose.theta.is_finite()
 }
 
-/// The longest known time of some routes, seconds.
+/// The latest known time of all routes, seconds.
 pub(crate) fn duration(routes: &[Route]) -> Option<f64> {
     let times = routes.iter().flat_map(|route| route.path().into_iter().filter_map(|timed| timed.time));
     times.reduce(f64::max).filter(|&seconds| seconds > 0.0)
 }
 
-/// The pose at a time on a path, straight between the two that are known; `None` where the path has no such time.
+/// The pose at a time on a path, linearly interpolated; `None` outside the path.
 pub(crate) fn pose_at(path: &[TimedPose], seconds: f64) -> Option<Pose> {
-    let behind = path.partition_point(|timed| timed.time.is_some_and(|time| time < seconds));
-    let (after, before) = (path.get(behind)?, path.get(behind.saturating_sub(1))?);
+    let next = path.partition_point(|timed| timed.time.is_some_and(|time| time < seconds));
+    let (after, before) = (path.get(next)?, path.get(next.saturating_sub(1))?);
     let (from, to) = (before.time?, after.time?);
     let part = if to > from { (seconds - from) / (to - from) } else { 1.0 };
     (from..=to).contains(&seconds).then(|| between(&before.pose, &after.pose, part))
@@ -75,12 +75,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn poses_between_those_that_are_known() {
+    fn poses_are_interpolated() {
         let at = |time, x, theta| TimedPose { time, pose: Pose { x, y: 0.0, theta } };
         let path = [at(Some(1.0), 0.0, 3.0), at(Some(3.0), 1.0, -3.0), at(None, 2.0, 0.0)];
         let found = pose_at(&path, 2.0).unwrap();
         assert!((found.x - 0.5).abs() < 1e-12);
-        assert!((found.theta - std::f64::consts::PI).abs() < 1e-12, "the short way round: {found:?}");
+        assert!((found.theta - std::f64::consts::PI).abs() < 1e-12, "the shorter turn: {found:?}");
         assert_eq!((pose_at(&path, 1.0).unwrap().x, pose_at(&path, 3.0).unwrap().x), (0.0, 1.0));
         assert_eq!((pose_at(&path, 0.5), pose_at(&path, 3.5), pose_at(&[], 0.0)), (None, None, None));
     }

@@ -1,41 +1,41 @@
-//! A picture that stands still.
+//! Still pictures.
 
 use svg::Document;
 use svg::node::element::{Group, Rectangle};
 
 use crate::legend::Key;
-use crate::paper::{FONT, PAPER, colour, pixels, shorten, text};
 use crate::route::{Picture, Route};
+use crate::style::{FONT, PAPER, colour, pixels, shorten, text};
 use crate::view::View;
-use crate::{floor, legend, robots, ticks};
+use crate::{floor, legend, robots, time_marks};
 
-/// Room for title, tick labels and legend about the floor, pixels.
+/// The margins around the floor for title, tick labels and legend, pixels.
 const LEFT: f64 = 62.0;
 const TOP: f64 = 56.0;
 const BOTTOM: f64 = 54.0;
 const RIGHT: f64 = 24.0;
 
-/// How wide a letter of the title is at most, pixels.
+/// The maximum width of a letter in the title, pixels.
 const TITLE_LETTER: f64 = 12.0;
 
 impl Picture<'_> {
-    /// Draws it as SVG: the floor with a grid in metres, planned paths dashed and driven ones solid with marks at equal
-    /// times that point ahead, bodies at start and end, what sensors saw, maps, planned collisions, and a legend with the
-    /// end of each route and how far it is off the plan.
+    /// Draws an SVG: the floor with a grid in metres, planned paths (dashed) and driven paths (solid) with time marks, bodies
+    /// at start and end, sensor detections, maps, planned collisions, and a legend with the end of each route and its
+    /// deviation from the plan.
     pub fn svg(&self) -> String {
         let (view, sheet) = self.sheet(0.0);
-        let step = ticks::step(self.routes);
+        let step = time_marks::step(self.routes);
         let sheet = sheet
             .add(self.each(|route, colour| robots::lines(&view, route, colour)))
             .add(self.each(|route, colour| robots::bodies(&view, route, colour)))
             .add(self.each(|route, colour| robots::sightings(&view, route, colour)))
             .add(self.each(|route, _| robots::map(&view, &route.map)))
-            .add(ticks::draw(&view, self.routes, step))
+            .add(time_marks::draw(&view, self.routes, step))
             .add(floor::collisions(&view, self.collisions));
         sheet.add(legend::draw(self, Key::Still(step), Picture::beside(&view))).to_string()
     }
 
-    /// A sheet of paper with the title and the floor, and with room of some height, pixels, below it.
+    /// A sheet with the title and the floor, and `below` pixels of space under it.
     pub(crate) fn sheet(&self, below: f64) -> (View, Document) {
         let view = View::of(self.routes, self.obstacles, LEFT, TOP);
         let width = view.left + view.width + RIGHT + legend::WIDTH + RIGHT;
@@ -55,12 +55,12 @@ impl Picture<'_> {
         (view, sheet)
     }
 
-    /// The legend's place beside the floor.
+    /// The position of the legend beside the floor.
     pub(crate) fn beside(view: &View) -> (f64, f64) {
         (view.left + view.width + RIGHT, TOP)
     }
 
-    /// One group of drawings, of each route in its colour.
+    /// A group with one drawing per route, in the route's colour.
     pub(crate) fn each(&self, draw: impl Fn(&Route, &str) -> Group) -> Group {
         let routes = self.routes.iter().enumerate();
         routes.fold(Group::new(), |group, (index, route)| group.add(draw(route, colour(index))))
@@ -70,11 +70,11 @@ impl Picture<'_> {
 #[cfg(test)]
 mod tests {
     use pydslrep_kinematics::{Action, Drive, Geometry, Model, Pose, TimedPose, plan_movement};
-    use pydslrep_record::Map;
     use pydslrep_scene::Obstacle;
+    use pydslrep_trace::Map;
 
     use super::*;
-    use crate::paper::OBSTACLE;
+    use crate::style::OBSTACLE;
     use crate::testing::route;
 
     fn draw(title: &str, routes: &[Route], obstacles: &[Obstacle]) -> String {
@@ -117,14 +117,14 @@ mod tests {
     }
 
     #[test]
-    fn lines_have_no_more_points_than_can_be_seen() {
+    fn lines_have_no_more_points_than_visible() {
         let mut route = square();
         route.driven = untimed((0..100_000).map(|i| Pose::new(f64::from(i) * 1e-5, 0.0, 0.0)));
         assert!(draw("fine", &[route], &[]).len() < 40_000);
     }
 
     #[test]
-    fn names_cannot_break_out_of_the_picture() {
+    fn names_are_escaped() {
         let mut route = square();
         route.name = "</text><script>\u{1}".to_owned();
         let picture = draw("a & b", &[route], &[]);
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn strange_routes_are_still_pictures() {
+    fn unusual_routes_are_valid_pictures() {
         let mut route = square();
         route.driven =
             untimed([Pose { x: f64::NAN, y: 0.0, theta: 0.0 }, Pose { x: f64::INFINITY, ..Pose::default() }]);
@@ -149,18 +149,20 @@ mod tests {
     }
 
     #[test]
-    fn obstacles_and_what_is_seen_of_them() {
+    fn obstacles_and_detections_are_drawn() {
         let wall = Obstacle::wall("w", (3.0, -1.0), (3.0, 1.0), 0.1);
         let route = Route { seen: vec![(2.95, 0.0), (2.95, 0.0001), (2.95, 0.5)], ..square() };
         let with = draw("w", std::slice::from_ref(&route), std::slice::from_ref(&wall));
         let without = draw("w", &[Route { seen: vec![], ..route }], &[]);
         let dots = |picture: &str| picture.matches("<circle").count();
-        // Two points that can be told apart, and one in the legend.
+        // Two distinguishable points, and one in the legend.
         assert_eq!(dots(&with), dots(&without) + 3);
-        assert!(with.contains(OBSTACLE) && with.contains("obstacle") && with.contains("seen by a sensor"));
+        assert!(
+            with.contains(OBSTACLE) && with.contains("obstacle") && with.contains("detected by a sensor")
+        );
         assert!(!without.contains(OBSTACLE) && !without.contains("obstacle"));
         let view = View::of(&[square()], &[wall], 0.0, 0.0);
-        assert!(view.place(3.05, 0.0).0 < view.width, "all of it is in the picture");
+        assert!(view.place(3.05, 0.0).0 < view.width, "the picture contains all of it");
     }
 
     #[test]
@@ -169,7 +171,7 @@ mod tests {
         let with = draw("m", &[Route { map: found, ..square() }], &[]);
         let without = draw("m", &[square()], &[]);
         let count = |picture: &str, part: &str| picture.matches(part).count();
-        // Two places and one way, and one of each in the legend.
+        // Two nodes and one edge, and one of each in the legend.
         assert_eq!(count(&with, "<circle"), count(&without, "<circle") + 3);
         assert_eq!(count(&with, "<line"), count(&without, "<line") + 2);
         assert!(with.contains("\nmap\n") && !without.contains("\nmap\n"));

@@ -1,8 +1,8 @@
-//! Colours, letters and numbers that all pictures share.
+//! Colours, text and number formats shared by all pictures.
 
 use svg::node::element::{Line, Text};
 
-/// Okabe and Ito's colours, which stay apart for colour-blind readers, without the ones too light on white.
+/// The colour-blind safe palette of Okabe and Ito, without the colours that are too light on white.
 const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#b0508f", "#c08a00", "#3b9bd6"];
 
 pub(crate) const INK: &str = "#24292f";
@@ -22,12 +22,12 @@ pub(crate) fn colour(index: usize) -> &'static str {
     COLOURS[index % COLOURS.len()]
 }
 
-/// Two digits after the point are finer than any screen.
+/// Rounds to two decimals, which is finer than any screen.
 pub(crate) fn pixels(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }
 
-/// Text of at most so many letters.
+/// A text shortened to `most` characters.
 pub(crate) fn shorten(text: &str, most: usize) -> String {
     if text.chars().count() <= most {
         return text.to_owned();
@@ -36,7 +36,7 @@ pub(crate) fn shorten(text: &str, most: usize) -> String {
     format!("{short}…")
 }
 
-/// Text on one line; characters that XML cannot hold are left out.
+/// A line of text; control characters, which XML cannot hold, are removed.
 pub(crate) fn text(content: &str, x: f64, y: f64, size: u32) -> Text {
     let content: String = content.chars().filter(|c| !c.is_control()).collect();
     Text::new(content).set("x", pixels(x)).set("y", pixels(y)).set("font-size", size).set("fill", INK)
@@ -51,7 +51,7 @@ pub(crate) fn line((x1, y1): (f64, f64), (x2, y2): (f64, f64), colour: &str) -> 
         .set("stroke", colour)
 }
 
-/// Points as SVG lists them.
+/// Points in the format of SVG.
 pub(crate) fn list(points: &[(f64, f64)]) -> String {
     let points: Vec<String> = points.iter().map(|&(x, y)| format!("{},{}", pixels(x), pixels(y))).collect();
     points.join(" ")

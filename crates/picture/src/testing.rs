@@ -1,8 +1,8 @@
 //! Routes for tests.
 
 use pydslrep_kinematics::{Pose, TimedPose};
-use pydslrep_record::Map;
 use pydslrep_scene::Body;
+use pydslrep_trace::Map;
 
 use crate::Route;
 

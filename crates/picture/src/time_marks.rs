@@ -1,38 +1,38 @@
-//! Marks on paths at equal times, which point where the robot heads.
+//! Time marks: arrowheads on paths at equal time intervals, with the robot's heading.
 
 use pydslrep_kinematics::Pose;
 use svg::node::element::{Group, Polygon};
 
-use crate::paper::{PAPER, colour, list, pixels, text};
 use crate::route::{Route, duration, pose_at};
+use crate::style::{PAPER, colour, list, pixels, text};
 use crate::view::View;
 
-/// Seconds between marks that people can count in.
+/// The possible intervals between marks, seconds.
 const STEPS: [f64; 12] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0];
 
-/// So many marks at most, while a step is long enough for it.
-const MOST: f64 = 12.0;
+/// The maximum number of marks, if an interval is long enough.
+const MAX_MARKS: f64 = 12.0;
 
-/// Marks nearer to the one before are left out, pixels: the robot stands or turns.
+/// The minimum distance between marks, pixels; closer ones are omitted while the robot stands or turns.
 const SPACING: f64 = 18.0;
 
-/// From the tip of a mark to its middle, pixels.
+/// The distance from the tip of a mark to its centre, pixels.
 const SIZE: f64 = 6.5;
 
-/// From a mark to its time, pixels.
+/// The distance from a mark to its label, pixels.
 const OFFSET: f64 = 13.0;
 
-/// The height of letters, and about how wide one is, pixels.
+/// The height and approximate width of a letter, pixels.
 const LETTERS: u32 = 10;
 const LETTER_WIDTH: f64 = 5.8;
 
-/// Seconds from mark to mark; `None` where times are not known.
+/// The interval between marks, seconds; `None` if times are unknown.
 pub(crate) fn step(routes: &[Route]) -> Option<f64> {
     let duration = duration(routes)?;
-    STEPS.into_iter().find(|step| duration / step <= MOST)
+    STEPS.into_iter().find(|step| duration / step <= MAX_MARKS)
 }
 
-/// The marks of all routes, and their times where there is room for them.
+/// The marks of all routes, with labels where there is space.
 pub(crate) fn draw(view: &View, routes: &[Route], step: Option<f64>) -> Group {
     let Some(step) = step else { return Group::new() };
     let mut taken = Vec::new();
@@ -60,7 +60,7 @@ pub(crate) fn draw(view: &View, routes: &[Route], step: Option<f64>) -> Group {
     })
 }
 
-/// Where a robot is at the marks, but for where it has not got on since the one before, and for the end.
+/// The poses at the marks, except where the robot has not moved on since the last one, and near the end.
 fn poses(view: &View, route: &Route, step: f64) -> Vec<(f64, Pose)> {
     let path = route.path();
     let (Some(first), Some(end)) = (path.first(), path.last()) else { return Vec::new() };
@@ -69,13 +69,13 @@ fn poses(view: &View, route: &Route, step: f64) -> Vec<(f64, Pose)> {
     let mut marks = Vec::new();
     for number in 1.. {
         let seconds = f64::from(number) * step;
-        // The path may begin later than the first mark.
+        // The path may begin after the first mark.
         if end.time.is_none_or(|time| time <= seconds) {
             break;
         }
         let Some(pose) = pose_at(&path, seconds) else { continue };
         let place = view.place(pose.x, pose.y);
-        // Where the robot stands at the end its body shows it.
+        // At the end the body itself is drawn.
         if [last, end_place].iter().all(|other| (place.0 - other.0).hypot(place.1 - other.1) >= SPACING) {
             marks.push((seconds, pose));
             last = place;
@@ -89,7 +89,7 @@ fn mark(view: &View, pose: &Pose, colour: &str) -> Polygon {
     arrowhead(view.place(pose.x, pose.y), pose.theta, colour)
 }
 
-/// An arrowhead at a place of the picture, with a heading in radians.
+/// An arrowhead at a point of the picture, with a heading in radians.
 pub(crate) fn arrowhead((x, y): (f64, f64), heading: f64, colour: &str) -> Polygon {
     let (sin, cos) = heading.sin_cos();
     let corner = |(ahead, left): (f64, f64)| {
@@ -104,7 +104,7 @@ pub(crate) fn arrowhead((x, y): (f64, f64), heading: f64, colour: &str) -> Polyg
         .set("stroke-linejoin", "round")
 }
 
-/// A place beside a mark, to its left or its right, where nothing else is written.
+/// A free area for a label to the left or right of a mark.
 fn free_place(view: &View, pose: &Pose, words: &str, taken: &[Area]) -> Option<Area> {
     let (x, y) = view.place(pose.x, pose.y);
     #[allow(clippy::cast_precision_loss)] // a few letters
@@ -117,7 +117,7 @@ fn free_place(view: &View, pose: &Pose, words: &str, taken: &[Area]) -> Option<A
     [1.0, -1.0].map(side).into_iter().find(|area| taken.iter().all(|other| !area.meets(other)))
 }
 
-/// A part of the picture, pixels.
+/// An area of the picture, pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Area {
     left: f64,
@@ -150,8 +150,8 @@ mod tests {
     use crate::testing::{along, route};
 
     #[test]
-    fn a_mark_every_so_many_seconds_while_the_robot_gets_on() {
-        // 4 m in 40 s, with a rest of 20 s in the middle.
+    fn marks_have_equal_intervals_while_the_robot_moves() {
+        // 4 m in 40 s, with a pause of 20 s in the middle.
         let path = along(&[(0.0, 0.0), (20.0, 2.0), (40.0, 2.0), (60.0, 4.0)]);
         let routes = [route(path)];
         let step = step(&routes);
@@ -165,9 +165,9 @@ mod tests {
     }
 
     #[test]
-    fn times_are_not_written_over_each_other() {
+    fn labels_do_not_overlap() {
         let path = || along(&[(0.0, 0.0), (60.0, 4.0)]);
-        // On the same line, so only two of three have a side of their own.
+        // On the same line, so only two of three labels have a free side.
         let routes = [route(path()), route(path()), route(path())];
         let view = View::of(&routes, &[], 0.0, 0.0);
         let drawn = draw(&view, &routes, Some(30.0)).to_string();

@@ -1,29 +1,29 @@
-//! From metres on the floor to pixels in the picture.
+//! The mapping from metres on the floor to pixels in the picture.
 
 use pydslrep_scene::Obstacle;
 
 use crate::route::{Route, is_drawable};
 
-/// The widest and highest the floor may become, pixels.
-const MOST_WIDTH: f64 = 760.0;
-const MOST_HEIGHT: f64 = 640.0;
+/// The maximum size of the floor, pixels.
+const MAX_WIDTH: f64 = 760.0;
+const MAX_HEIGHT: f64 = 640.0;
 
-/// The least the floor may be, pixels; a straight line is a strip otherwise.
-const LEAST_SIDE: f64 = 300.0;
+/// The minimum side of the floor, pixels, so that a straight path is not a thin strip.
+const MIN_SIDE: f64 = 300.0;
 
-/// No floor is shown smaller than this, metres: a robot that stands still has surroundings too.
-const LEAST_SPAN: f64 = 1.5;
+/// The minimum side of the floor, metres, so that a robot at rest has surroundings.
+const MIN_SPAN: f64 = 1.5;
 
-/// Free floor around everything, as part of the longer side.
+/// The margin around everything, relative to the longer side.
 const MARGIN: f64 = 0.06;
 
-/// Least distance between ticks, pixels: a label fits between two.
+/// The minimum distance between ticks, pixels, so that labels fit.
 const TICK_SPACING: f64 = 52.0;
 
-/// The part of the floor that is shown, and where.
+/// The visible part of the floor and its position in the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct View {
-    /// The floor's place in the picture, pixels.
+    /// The floor's position and size in the picture, pixels.
     pub(crate) left: f64,
     pub(crate) top: f64,
     pub(crate) width: f64,
@@ -35,7 +35,7 @@ pub(crate) struct View {
 }
 
 impl View {
-    /// A view that holds all paths with the robots' bodies and all obstacles, its upper left corner at (`left`, `top`).
+    /// A view of all paths, bodies and obstacles, with its upper left corner at (`left`, `top`).
     pub(crate) fn of(routes: &[Route], obstacles: &[Obstacle], left: f64, top: f64) -> Self {
         let (mut x, mut y) = (Span::EMPTY, Span::EMPTY);
         for route in routes {
@@ -46,18 +46,18 @@ impl View {
                 y.include(pose.y, reach);
             }
         }
-        // The corners of what is drawn as a circle are on it at its four ends.
+        // Four corners give the extent of a circle.
         for (corner_x, corner_y) in obstacles.iter().flat_map(|obstacle| obstacle.outline(4)) {
             x.include(corner_x, 0.0);
             y.include(corner_y, 0.0);
         }
-        let (mut x, mut y) = (x.at_least(LEAST_SPAN / 2.0), y.at_least(LEAST_SPAN / 2.0));
-        let longer = x.length().max(y.length()).max(LEAST_SPAN);
+        let (mut x, mut y) = (x.at_least(MIN_SPAN / 2.0), y.at_least(MIN_SPAN / 2.0));
+        let longer = x.length().max(y.length()).max(MIN_SPAN);
         x.widen(x.length() + 2.0 * MARGIN * longer);
         y.widen(y.length() + 2.0 * MARGIN * longer);
-        let scale = (MOST_WIDTH / x.length()).min(MOST_HEIGHT / y.length());
-        x.widen(LEAST_SIDE / scale);
-        y.widen(LEAST_SIDE / scale);
+        let scale = (MAX_WIDTH / x.length()).min(MAX_HEIGHT / y.length());
+        x.widen(MIN_SIDE / scale);
+        y.widen(MIN_SIDE / scale);
         Self {
             left,
             top,
@@ -69,12 +69,12 @@ impl View {
         }
     }
 
-    /// Where a point of the floor is in the picture.
+    /// The position of a point of the floor in the picture.
     pub(crate) fn place(&self, x: f64, y: f64) -> (f64, f64) {
         (self.left + (x - self.x_min) * self.scale, self.top + (self.y_max - y) * self.scale)
     }
 
-    /// The distance of grid lines, metres: 1, 2 or 5 times a power of ten.
+    /// The distance between grid lines, metres: 1, 2 or 5 times a power of ten.
     pub(crate) fn tick(&self) -> f64 {
         let least = TICK_SPACING / self.scale;
         let power = 10_f64.powf(least.log10().floor());
@@ -85,12 +85,12 @@ impl View {
             .unwrap_or(10.0 * power)
     }
 
-    /// Metres along x where vertical grid lines stand.
+    /// The x coordinates of vertical grid lines, metres.
     pub(crate) fn x_ticks(&self) -> Vec<f64> {
         ticks(self.x_min, self.x_min + self.width / self.scale, self.tick())
     }
 
-    /// Metres along y where horizontal grid lines stand.
+    /// The y coordinates of horizontal grid lines, metres.
     pub(crate) fn y_ticks(&self) -> Vec<f64> {
         ticks(self.y_max - self.height / self.scale, self.y_max, self.tick())
     }
@@ -98,7 +98,7 @@ impl View {
 
 fn ticks(low: f64, high: f64, step: f64) -> Vec<f64> {
     let first = (low / step).ceil();
-    // Fewer than a hundred fit, whatever the numbers are.
+    // Bounded for any input; fewer than a hundred fit.
     (0..100).map(|i| (first + f64::from(i)) * step).take_while(|&tick| tick <= high).collect()
 }
 
@@ -116,7 +116,7 @@ impl Span {
         self.high = self.high.max(value + reach);
     }
 
-    /// This span, or one of the given length about 0 when nothing is in it.
+    /// This span, or one around 0 if it is empty, with at least the given length.
     fn at_least(self, length: f64) -> Self {
         let mut span = if self.low <= self.high { self } else { Self { low: 0.0, high: 0.0 } };
         span.widen(length);

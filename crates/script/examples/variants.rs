@@ -1,4 +1,4 @@
-//! Writes scripts for many kinds of environment into a folder, for `python/check_scripts.py` to run ruff and mypy on them.
+//! Writes scripts for many kinds of environments into a folder; `python/check_scripts.py` runs ruff and mypy on them.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -55,7 +55,7 @@ fn variants() -> Vec<Environment> {
     variants
 }
 
-/// Numbers of all sizes.
+/// Numbers of all magnitudes.
 fn numbers() -> Environment {
     let actions = [1e-9, 0.1 + 0.2, 1e6, 123_456.789_012_345, -1e-7]
         .iter()
@@ -69,7 +69,7 @@ fn numbers() -> Environment {
     )
 }
 
-/// Two robots that explore at the same time, one of which also turns until it sees nothing.
+/// Two robots that explore in parallel, one of which also turns until its sensors are clear.
 fn slam_and_more() -> Environment {
     let mut environment = slam();
     "slam_and_more".clone_into(&mut environment.name);
@@ -85,7 +85,7 @@ fn slam_and_more() -> Environment {
     environment
 }
 
-/// Actions from another file, whose name is not plain.
+/// Actions from another file with special characters in its name.
 fn imported() -> Environment {
     let source = |line| Source { file: Some("größe/机器人.pyr".to_owned()), line };
     let actions: Vec<Action> = (1..60)
@@ -99,7 +99,7 @@ fn imported() -> Environment {
     )
 }
 
-/// All names of this length: of wheels, sensors, robots, movements.
+/// Names of a given length for wheels, sensors, robots and movements.
 fn names_of(length: usize) -> Environment {
     // The last letter differs.
     let name = |last: &str| "n".repeat(length - 1) + last;

@@ -1,4 +1,4 @@
-//! What the template is given: an environment in the words of the script.
+//! The template's context: an environment in terms of the script.
 
 use std::{collections::HashSet, net::Ipv4Addr};
 
@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::{ScriptError, Target};
 
-/// Longer names would break lines that everything else leaves whole.
+/// Longer names would exceed the line length.
 const LONGEST_NAME_IN_IDENTIFIER: usize = 40;
 
 /// Everything the template `environment.py.j2` reads.
@@ -22,16 +22,16 @@ pub(crate) struct Script {
     /// Whether the target is V-REP.
     vrep: bool,
     host: String,
-    /// The classes of all drives in use, each once.
+    /// The classes of the drives in use, each once.
     drives: Vec<&'static str>,
     two_wheel: bool,
     four_wheel: bool,
     four_mecanum: bool,
-    /// Whether some movements run at the same time.
+    /// Whether any movements run in parallel.
     parallel: bool,
-    /// Whether some action looks at sensors.
+    /// Whether any action reads sensors.
     until: bool,
-    /// Whether some robot explores.
+    /// Whether any robot explores.
     slam: bool,
     /// Always false: the parts of a script do not stand alone.
     standalone: bool,
@@ -47,10 +47,10 @@ struct RobotModel {
     port: u16,
     drive: &'static str,
     wheels: Vec<WheelModel>,
-    /// Only those that some action looks at.
-    // Written as a list: the formatter leaves its lines alone also where there is only one.
+    /// Only those that an action reads.
+    // Written as a list: the formatter does not join its lines even if there is only one.
     sensors: Vec<String>,
-    /// Those that it explores with.
+    /// The sensors for exploring.
     eyes: Vec<String>,
 }
 
@@ -80,20 +80,20 @@ struct CommentedAction {
 #[derive(Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 enum Call {
-    /// Metres, and metres per second where that is not the default.
+    /// Metres, and metres per second unless that is the default.
     Move { distance: String, speed: Option<String> },
     /// Degrees.
     Turn { degrees: String },
-    /// A side, and the sensors' names.
+    /// A side and the names of sensors.
     Until { side: &'static str, sensors: Vec<String> },
-    /// Nothing more to say.
+    /// No arguments.
     Slam,
 }
 
 impl Script {
-    /// The environment's data; an error where a robot lists a wheel twice.
+    /// The context of an environment; an error if a robot lists a wheel twice.
     pub(crate) fn new(environment: &Environment, target: Target) -> Result<Self, ScriptError> {
-        // Without robots there is still a class that says what a robot's drive would be.
+        // Without robots the script still needs one drive class.
         let has = |drive| match environment.robots.as_slice() {
             [] => drive == Drive::TwoWheel,
             robots => robots.iter().any(|robot| robot.drive == drive),
@@ -154,8 +154,8 @@ fn class(drive: Drive) -> &'static str {
     }
 }
 
-/// `movement_` and the name, so that it is neither a keyword nor any other name in the script; a number for the
-/// name where that is no short identifier.
+/// `movement_` and the name, so that it is neither a keyword nor another name in the script; or a number instead of the
+/// name if that is not a short identifier.
 fn function_name(index: usize, name: &str) -> String {
     let is_identifier = name.chars().all(|c| c == '_' || c.is_ascii_alphanumeric())
         && !name.starts_with(|c: char| c.is_ascii_digit());
@@ -211,7 +211,7 @@ fn sensors_looked_at(index: usize, robot: &Robot, movements: &[Movement]) -> Vec
     sensors.map(|(sensor, _)| sensor.name.clone()).collect()
 }
 
-/// The sensors that a robot explores with, if it does.
+/// The sensors for exploring; empty if the robot does not explore.
 fn eyes(index: usize, robot: &Robot, movements: &[Movement]) -> Vec<String> {
     if !movements.iter().any(|movement| movement.robot == index && explores(movement)) {
         return Vec::new();
@@ -234,7 +234,7 @@ fn commented_action(action: &Action, robot: &Robot) -> CommentedAction {
     let call = match &action.kind {
         ActionKind::Move { distance, speed } => Call::Move {
             distance: float(*distance),
-            // The program's cm/s need not divide into exactly the same number.
+            // Converting from cm/s may round.
             speed: ((speed - RIM_SPEED).abs() > 1e-12).then(|| float(*speed)),
         },
         ActionKind::Turn { degrees } => Call::Turn { degrees: float(*degrees) },
@@ -247,7 +247,7 @@ fn commented_action(action: &Action, robot: &Robot) -> CommentedAction {
     CommentedAction { call, comment: format!("{}: {}", place(&action.source), comment(&action.text)) }
 }
 
-/// A place in the program, for a comment.
+/// The location in the program, for a comment.
 fn place(source: &Source) -> String {
     match &source.file {
         Some(file) => format!("{}, line {}", comment(file), source.line),
@@ -255,19 +255,19 @@ fn place(source: &Source) -> String {
     }
 }
 
-/// The text with everything that could end a comment, or make it look like something else, replaced.
+/// A text for a comment: replaces all characters that could end it or change its appearance.
 fn comment(text: &str) -> String {
     text.chars()
         .map(|c| if c == ' ' || c.is_ascii_graphic() || c.is_alphanumeric() { c } else { '?' })
         .collect()
 }
 
-/// A name for running text: nothing in it can end a docstring.
+/// A name for a docstring: replaces all characters that could end it.
 fn plain(name: &str) -> String {
     name.chars().map(|c| if c == '_' || c.is_ascii_alphanumeric() { c } else { '?' }).collect()
 }
 
-/// A Python literal of the same value.
+/// A Python float literal.
 fn float(value: f64) -> String {
     format!("{value:?}")
 }

@@ -1,9 +1,9 @@
-//! What a script's file is called.
+//! The file name of a script.
 
 use pydslrep_analysis::environment::Environment;
 
-/// The name of the file for the script of `environment`: `<environment>.py`, or `<environment>_env.py` where the
-/// former would hide a module that scripts import, or would not do as a file's name.
+/// The file name of the script of `environment`: `<environment>.py`, or `<environment>_env.py` if the former would shadow
+/// a module that scripts import or is not a valid file name.
 pub fn file_name(environment: &Environment) -> String {
     format!("{}.py", environment.script)
 }

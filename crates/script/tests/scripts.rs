@@ -138,7 +138,7 @@ fn stages_follow_each_other() {
 }
 
 #[test]
-fn names_that_python_or_the_script_uses_stay_names() {
+fn names_used_by_python_or_the_script_stay_names() {
     let mut robot = robot("class", Drive::TwoWheel, 19999);
     "print".clone_into(&mut robot.wheels[0].name);
     "class".clone_into(&mut robot.wheels[1].name);
@@ -200,7 +200,7 @@ fn names_that_python_or_the_script_uses_stay_names() {
 }
 
 #[test]
-fn long_names_stand_where_no_line_can_break() {
+fn long_names_do_not_break_lines() {
     let long = "n".repeat(200);
     let mut robot = robot(&long, Drive::TwoWheel, 19999);
     long.clone_into(&mut robot.wheels[0].name);
@@ -307,7 +307,7 @@ fn a_wheel_listed_twice_is_an_error() {
     let mut environment = area_1(Drive::TwoWheel);
     "wheelL".clone_into(&mut environment.robots[0].wheels[1].name);
     let error = generate(&environment, Target::CoppeliaSim).expect_err("no script");
-    expect!["robot `robot_1` lists wheel `wheelL` twice: give each of its wheels a name of its own"]
+    expect!["robot `robot_1` lists wheel `wheelL` twice; use a different wheel for each position"]
         .assert_eq(&error.to_string());
 }
 

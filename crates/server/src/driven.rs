@@ -5,7 +5,7 @@ use std::io::{self, BufRead, BufReader};
 use std::path::Path;
 
 use pydslrep_kinematics::TimedPose;
-use pydslrep_record::{Map, MapFile, TraceRecord, Track};
+use pydslrep_trace::{Map, MapFile, TraceRecord, Track};
 use serde::Serialize;
 
 /// Between poses that are kept a robot moves less than this, metres and radians: far less than a picture shows.

@@ -1,16 +1,15 @@
-//! What a run leaves: the traces of its robots, and the maps of those that explored.
+//! The results of a run: traces of its robots, and maps made while exploring.
 //!
-//! Knows poses. Must never know the language, how robots drive or are drawn, or files: whoever opened one hands in what
-//! `serde` made of it.
+//! Knows poses. Must never know the language, how robots drive or are drawn, or files: callers read and deserialize them.
 //!
 //! * [`TraceRecord`]: a line of a trace, written by the simulator and by scripts.
-//! * [`Track`]: the path of one robot, thinned out as it comes in.
-//! * [`MapFile`] and [`Map`]: what robots found.
+//! * [`Track`]: the path of one robot, simplified while it is recorded.
+//! * [`MapFile`] and [`Map`]: the maps of a run and of one robot.
 
 mod map;
-mod trace;
+mod record;
 mod track;
 
 pub use map::{Map, MapFile};
-pub use trace::TraceRecord;
+pub use record::TraceRecord;
 pub use track::Track;

@@ -1,17 +1,17 @@
-//! Maps of places and the ways between them.
+//! Topological maps: nodes and the driven edges between them.
 
 use serde::{Deserialize, Serialize};
 
-/// What a robot found on exploring, metres.
+/// The map of one robot, metres.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Map {
-    /// Places.
+    /// The visited places.
     pub nodes: Vec<(f64, f64)>,
-    /// Ways that were driven, from one place to another.
+    /// The driven connections between two places.
     pub edges: Vec<((f64, f64), (f64, f64))>,
 }
 
-/// A map file that a script wrote, as far as it matters here: of all its robots.
+/// The relevant part of a map file, with the maps of all robots of a script.
 #[derive(Debug, Clone, Default, Deserialize)]
 pub struct MapFile {
     nodes: Vec<Node>,
@@ -32,7 +32,7 @@ struct Edge {
 }
 
 impl MapFile {
-    /// What one robot found; edges between nodes that are not there are none.
+    /// The map of one robot; edges with unknown nodes are dropped.
     pub fn of(&self, robot: &str) -> Map {
         let place = |index: usize| {
             self.nodes.get(index).filter(|node| node.robot == robot).map(|node| (node.x, node.y))
@@ -49,7 +49,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_robot_has_its_part() {
+    fn each_robot_has_its_own_map() {
         let text = r#"{"nodes": [{"id": 0, "robot": "a", "x": 0, "y": 1}, {"id": 1, "robot": "b", "x": 2, "y": 3},
             {"id": 2, "robot": "b", "x": 4, "y": 5}], "edges": [{"from": 1, "to": 2, "length": 2.8}, {"from": 1, "to": 9}]}"#;
         let file: MapFile = serde_json::from_str(text).unwrap();

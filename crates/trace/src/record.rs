@@ -1,9 +1,9 @@
-//! What happened, step by step.
+//! The records of a trace.
 
 use pydslrep_kinematics::{Pose, TimedPose};
 use serde::{Deserialize, Serialize};
 
-/// One robot at one moment, in the form of a line of `--trace` files.
+/// One robot at one time: a line of a `--trace` file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TraceRecord {
     /// Simulation time, seconds.
@@ -16,19 +16,19 @@ pub struct TraceRecord {
     pub y: f64,
     /// Radians, in (−π, π].
     pub theta: f64,
-    /// Wheel rates, rad/s, in the order of the robot's wheels; positive rolls forward.
+    /// Wheel rates, rad/s, in the order of the robot's wheels; positive values roll forward.
     #[serde(default)]
     pub wheels: Vec<f64>,
-    /// The movement that runs; the simulator cannot know it.
+    /// The current movement; unknown to the simulator.
     #[serde(default)]
     pub movement: Option<String>,
-    /// The action that runs; the simulator cannot know it.
+    /// The current action; unknown to the simulator.
     #[serde(default)]
     pub action: Option<String>,
 }
 
 impl TraceRecord {
-    /// Where the robot was, and when.
+    /// The pose with its time.
     pub fn timed_pose(&self) -> TimedPose {
         TimedPose { time: Some(self.t), pose: Pose::new(self.x, self.y, self.theta) }
     }
@@ -39,7 +39,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_is_what_was_written_and_may_leave_out_what_nobody_knows() {
+    fn lines_round_trip_and_may_omit_optional_fields() {
         let record = TraceRecord {
             t: 0.05,
             robot: "rover".to_owned(),

@@ -1,25 +1,25 @@
-//! The path of a robot, thinned out as it comes in.
+//! The path of a robot, simplified while it is recorded.
 
 use pydslrep_kinematics::{Pose, TimedPose};
 
-/// Poses that a robot was at, in the order of time.
+/// The poses of a robot in chronological order.
 #[derive(Debug, Clone)]
 pub struct Track {
-    fineness: f64,
+    tolerance: f64,
     kept: Vec<TimedPose>,
     last: Option<TimedPose>,
 }
 
 impl Track {
-    /// No path yet. Poses nearer than `fineness`, metres and radians, to the last one kept will be left out.
-    pub fn new(fineness: f64) -> Self {
-        Self { fineness, kept: Vec::new(), last: None }
+    /// An empty track. Poses closer than `tolerance`, metres and radians, to the last kept one are dropped.
+    pub fn new(tolerance: f64) -> Self {
+        Self { tolerance, kept: Vec::new(), last: None }
     }
 
-    /// Goes on to a pose.
+    /// Appends a pose.
     pub fn add(&mut self, now: TimedPose) {
         if !self.kept.last().is_some_and(|kept| self.is_near(kept, &now)) {
-            // The end of a rest, or the robot would seem to creep all that time.
+            // Keep the end of a rest, or the robot would seem to creep all that time.
             let rest = self.last.filter(|last| self.kept.last().is_some_and(|kept| is_rest(kept, last)));
             self.kept.extend(rest);
             self.kept.push(now);
@@ -27,29 +27,29 @@ impl Track {
         self.last = Some(now);
     }
 
-    /// Its poses, the first and the last always among them.
+    /// The kept poses, always including the first and the last.
     pub fn poses(&self) -> Vec<TimedPose> {
         let end = self.last.filter(|last| self.kept.last() != Some(last));
         self.kept.iter().copied().chain(end).collect()
     }
 
-    /// Where it began.
+    /// The start pose.
     pub fn start(&self) -> Option<Pose> {
         self.kept.first().map(|first| first.pose)
     }
 
-    /// Where it has got to.
+    /// The last pose.
     pub fn end(&self) -> Option<Pose> {
         self.last.map(|last| last.pose)
     }
 
     fn is_near(&self, kept: &TimedPose, now: &TimedPose) -> bool {
         let off = kept.pose.relative(&now.pose);
-        off.x.hypot(off.y) < self.fineness && off.theta.abs() < self.fineness
+        off.x.hypot(off.y) < self.tolerance && off.theta.abs() < self.tolerance
     }
 }
 
-/// Whether more time went by than a robot in motion needs to leave a pose: half a second.
+/// Whether the robot stayed longer than it could in motion: half a second.
 fn is_rest(from: &TimedPose, to: &TimedPose) -> bool {
     from.time.zip(to.time).is_some_and(|(from, to)| to - from > 0.5)
 }
@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_pose_is_kept_however_near_it_is() {
+    fn the_last_pose_is_always_kept() {
         let track = track([(0.0, 0.0), (0.05, 0.001), (0.1, 0.01), (0.15, 0.0101)]);
         let xs: Vec<f64> = track.poses().iter().map(|timed| timed.pose.x).collect();
         assert_eq!(xs, [0.0, 0.01, 0.0101]);
@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rest_has_two_ends() {
+    fn both_ends_of_a_rest_are_kept() {
         // It moves, stands for a second, and moves on.
         let steps = (0..40).map(f64::from);
         let track = track(steps.map(|step| (0.05 * step, 0.01 * (step.min(10.0) + (step - 30.0).max(0.0)))));
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_was_driven() {
+    fn an_empty_track_has_no_poses() {
         assert!(track([]).poses().is_empty() && track([]).end().is_none());
     }
 }

@@ -63,7 +63,7 @@ def edit(session: Session, terminal: Terminal, picture: Path | None) -> None:
     terminal.press("C-n")
     terminal.press("M-f", "C-f")
     command(terminal, "eldoc-doc-buffer")
-    session.check("hover", terminal.wait("28.3 cm a turn"), terminal.screen())
+    session.check("hover", terminal.wait("28.3 cm per revolution"), terminal.screen())
     terminal.press("C-x")
     terminal.type("1")
     command(terminal, "eglot-rename")

@@ -31,7 +31,7 @@ def edit(session: Session, terminal: Terminal, takes_pictures: bool) -> None:
         terminal.picture(PICTURES / "kakoune.png")
     terminal.type("2g6l")
     command(terminal, "lsp-hover")
-    session.check("hover", terminal.wait("28.3 cm a turn"), terminal.screen())
+    session.check("hover", terminal.wait("28.3 cm per revolution"), terminal.screen())
     command(terminal, "lsp-rename port_side")
     session.check("rename", terminal.wait(r"\{ port_side wheelR \}"), terminal.screen())
     terminal.type("13g17l")

@@ -80,7 +80,7 @@ local function reading()
     for _, window in ipairs(vim.api.nvim_list_wins()) do
       if vim.api.nvim_win_get_config(window).relative ~= '' then
         local lines = text(vim.api.nvim_win_get_buf(window))
-        return lines:find('28.3 cm a turn', 1, true) and window
+        return lines:find('28.3 cm per revolution', 1, true) and window
       end
     end
   end

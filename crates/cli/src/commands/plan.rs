@@ -9,8 +9,8 @@ use pydslrep_analysis::environment::{Environment, Movement};
 use pydslrep_config::Config;
 use pydslrep_kinematics::{ActionIndex, Leg, Plan, Pose, RobotPath, heading_degrees};
 use pydslrep_picture::{Picture, Route};
-use pydslrep_record::Map;
 use pydslrep_scene::{Collision, Scene, Thing, collisions};
+use pydslrep_trace::Map;
 use serde::Serialize;
 
 use crate::driven::Driven;

@@ -8,9 +8,9 @@ use std::time::Instant;
 
 use clap::Args;
 use pydslrep_config::{Config, Target};
-use pydslrep_record::Map;
 use pydslrep_script::{file_name, generate};
 use pydslrep_simulator::{Options, Simulator};
+use pydslrep_trace::Map;
 use tempfile::TempDir;
 
 use super::plan::Planned;

@@ -10,9 +10,9 @@ use std::time::Duration;
 use clap::Args;
 use pydslrep_analysis::environment::Environment;
 use pydslrep_config::Config;
-use pydslrep_record::TraceRecord;
 use pydslrep_script::file_name;
 use pydslrep_simulator::{Options, Simulator};
+use pydslrep_trace::TraceRecord;
 use tokio::time::{MissedTickBehavior, interval};
 
 use crate::failure::Failure;

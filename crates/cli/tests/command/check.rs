@@ -271,10 +271,10 @@ fn files_that_are_no_programs_do_not_hide_the_others() {
     assert_eq!(done.code, Some(2));
     assert!(done.out.contains("good.pyr:1:6") && done.out.ends_with("1 error in 1 file.\n"), "{}", done.out);
     expect![[r#"
-        error: cannot read bad.pyr: it is no text in UTF-8: line 2 holds other bytes
+        error: cannot read bad.pyr: not valid UTF-8 in line 2
          |
          = help: save it in the encoding UTF-8
-        error: cannot read large.pyr: it is larger than 64 MiB
+        error: cannot read large.pyr: larger than 64 MiB
          |
          = help: is this a program?
         error: missing.pyr does not exist
@@ -324,7 +324,7 @@ fn imports_are_read_and_bounded() {
     .assert_eq(&place.run(&["check", "a/main.pyr"]).out);
     place.write("a/lib.pyr", b"wheel x \xff");
     expect![[r#"
-        error[unresolved-import]: `lib.pyr` cannot be read: it is no text in UTF-8: line 1 holds other bytes
+        error[unresolved-import]: `lib.pyr` cannot be read: not valid UTF-8 in line 1
          --> a/main.pyr:1:8
           |
         1 | import "lib.pyr"

@@ -85,7 +85,7 @@ fn what_cannot_be_read_keeps_nothing_else_from_being_formatted() {
     place.write("b.pyr", b"wheel \xff");
     let done = place.run(&["fmt", "a.pyr", "b.pyr", "c.pyr"]);
     assert_eq!(done.code, Some(2));
-    assert!(done.err.contains("cannot read b.pyr: it is no text in UTF-8"), "{}", done.err);
+    assert!(done.err.contains("cannot read b.pyr: not valid UTF-8"), "{}", done.err);
     assert!(done.err.contains("c.pyr does not exist"), "{}", done.err);
     assert_eq!(place.read("a.pyr"), NEAT);
 }

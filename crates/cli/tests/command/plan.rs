@@ -82,7 +82,7 @@ fn a_picture_of_pixels_and_one_that_moves() {
     let pixels = std::fs::read(place.path("plan.png")).unwrap();
     assert!(pixels.starts_with(b"\x89PNG\r\n"), "{:?}", &pixels[..8]);
     let replay = place.read("plan.svg");
-    assert!(replay.contains("<animateTransform") && replay.contains("times as fast"), "{replay}");
+    assert!(replay.contains("<animateTransform") && replay.contains("× real time"), "{replay}");
 }
 
 #[test]

@@ -108,7 +108,7 @@ fn no_toml_and_no_text_are_told_with_their_place() {
     assert_eq!(done.code, Some(2));
     place.write("pydslrep.toml", b"\xff");
     let done = place.run(&["check"]);
-    assert!(done.err.contains("cannot read pydslrep.toml: it is no text in UTF-8"), "{}", done.err);
+    assert!(done.err.contains("cannot read pydslrep.toml: not valid UTF-8"), "{}", done.err);
     assert_eq!(done.code, Some(2));
 }
 

@@ -143,7 +143,7 @@ fn a_robot_turns_until_its_way_is_free() {
     let done = run(&place, &[&repository("examples/horseshoe.pyr"), "--picture", "u.svg"]);
     assert_eq!(done.code, Some(0), "{}", done.err);
     let picture = place.read("u.svg");
-    assert!(picture.contains("obstacle") && picture.contains("seen by a sensor"), "{picture}");
+    assert!(picture.contains("obstacle") && picture.contains("detected by a sensor"), "{picture}");
 }
 
 #[test]

@@ -1,8 +1,8 @@
-//! Every question that an editor asks, put to two databases.
+//! Compares the answers of two databases to all requests of an editor.
 //!
-//! After each edit all files are compared in what the database itself says: trees, names, diagnostics, environments.
-//! The features of `ide` are asked for the file that was edited, at the edit and at one of its names, and for one of the
-//! other files at every second edit; so are planned paths.
+//! After each edit the queries of the database itself are compared for all files: trees, names, diagnostics,
+//! environments. The features of `ide`, and planned paths, are compared for the edited file, at the edit and at one of
+//! its names, and after every second edit for one other file.
 
 use std::fmt::Debug;
 
@@ -13,18 +13,18 @@ use smol_str::SmolStr;
 
 use crate::programs::PATHS;
 
-/// Where somebody is looking.
+/// The position of the user.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Focus {
-    /// The file that was changed.
+    /// The edited file.
     pub(crate) file: usize,
-    /// Right behind the change.
+    /// The end of the edit.
     pub(crate) offset: u32,
-    /// Counts the changes.
+    /// The number of the edit.
     pub(crate) turn: usize,
 }
 
-/// A database that was edited beside one that was not.
+/// An edited database and a fresh one.
 struct Pair<'a> {
     edited: &'a Database,
     fresh: &'a Database,
@@ -32,14 +32,14 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    /// Asks both; the error says what differs.
+    /// Compares a query; the error describes the difference.
     fn same<T: PartialEq + Debug>(&self, question: &str, ask: impl Fn(&Database) -> T) -> Result<(), String> {
         agree(question, self.fresh.path(self.file), &ask(self.edited), &ask(self.fresh))
     }
 }
 
 fn agree<T: PartialEq + Debug>(question: &str, path: &str, edited: &T, fresh: &T) -> Result<(), String> {
-    // What is not a number does not even equal itself.
+    // NaN does not equal itself.
     if edited == fresh || format!("{edited:?}") == format!("{fresh:?}") {
         return Ok(());
     }
@@ -53,7 +53,7 @@ fn agree<T: PartialEq + Debug>(question: &str, path: &str, edited: &T, fresh: &T
     ))
 }
 
-/// What differs between two databases that hold the same, if anything does.
+/// The difference between two databases with the same content, if any.
 pub(crate) fn compare(
     edited: &Database,
     fresh: &Database,
@@ -90,9 +90,9 @@ pub(crate) fn compare(
     pair.same("workspace symbols", |database| ide::workspace_symbols(database, letters))
 }
 
-/// What differs between a file as it was, and a database with the same text.
+/// The difference between a snapshot and a database with the same text, if any.
 pub(crate) fn compare_snapshot(snapshot: &Snapshot, then: &Database, file: FileId) -> Result<(), String> {
-    let place = "a file as it was before";
+    let place = "a snapshot";
     agree("the text", place, &Some(snapshot.text()), &then.text(file))?;
     let kept = snapshot.entities().map(|entity| (entity.span, entity.parse));
     let same = kept.eq(then.entities(file).map(|entity| (entity.span, entity.parse)));
@@ -144,7 +144,7 @@ fn names(pair: &Pair<'_>) -> Result<(), String> {
     used.sort_unstable();
     used.dedup();
     for (kind, name) in &used {
-        // How a name is resolved, by place: numbers of entities tell nothing.
+        // Resolutions are compared by location, because entity ids differ.
         pair.same("what a name means", |database| {
             let candidates = database.candidates(file, *kind, name);
             let resolved = database.resolve(file, *kind, name);
@@ -168,7 +168,7 @@ fn diagnostics(pair: &Pair<'_>) -> Result<(), String> {
     if pair.edited.diagnostics(file) == pair.fresh.diagnostics(file) {
         return Ok(());
     }
-    // To be read: a rule prints its whole page.
+    // Shortened for readability: a rule prints its complete manual page.
     pair.same("diagnostics", |database| {
         let plain = |it: Diagnostic| {
             (it.code(), it.severity, it.file, it.span, it.message, it.help, it.note, it.related, it.fixes)
@@ -185,7 +185,7 @@ fn environments(pair: &Pair<'_>) -> Result<(), String> {
     })
 }
 
-/// Planned paths and what is drawn of them.
+/// Planned paths and inlay hints.
 fn motion(pair: &Pair<'_>) -> Result<(), String> {
     let file = pair.file;
     pair.same("planned paths", |database| {
@@ -236,7 +236,7 @@ fn whole_file(pair: &Pair<'_>, turn: usize) -> Result<(), String> {
     }
 }
 
-/// A name of the file, another one each time.
+/// A name of the file, a different one each time.
 fn some_name(pair: &Pair<'_>, turn: usize) -> Option<u32> {
     let trees = pair.fresh.entities(pair.file).filter_map(|entity| {
         let tree = entity.parse.entity.as_ref()?;
@@ -262,13 +262,13 @@ fn at_name(pair: &Pair<'_>, offset: u32) -> Result<(), String> {
     pair.same("calls", |database| calls(database, position))
 }
 
-/// An entity by its place; numbers of entities tell nothing.
+/// A call item without its entity id, which differs.
 type Item = (FileId, EntityKind, String, String, Span, Span);
 
-/// Those at the other ends of calls, and where they are named.
+/// Calls with the ranges of their references.
 type Calls = Vec<(Item, Vec<Span>)>;
 
-/// The items at a place, with who calls them and whom they call.
+/// The items at a position with their incoming and outgoing calls.
 fn calls(database: &Database, position: FilePosition) -> Vec<(Item, Calls)> {
     let plain = |item: &ide::CallItem| {
         (item.file, item.kind, item.name.clone(), item.detail.clone(), item.full, item.focus)
@@ -292,21 +292,21 @@ fn at_edit(pair: &Pair<'_>, offset: u32) -> Result<(), String> {
         ide::signature_help(database, position, ide::SignatureTrigger::Invoked)
     })?;
     pair.same("selection", |database| ide::selection_ranges(database, position.file, &[offset]))?;
-    pair.same("formatting behind a brace", |database| ide::format_after_brace(database, position))?;
-    pair.same("formatting behind a line break", |database| ide::format_after_line_break(database, position))
+    pair.same("formatting after a brace", |database| ide::format_after_brace(database, position))?;
+    pair.same("formatting after a line break", |database| ide::format_after_line_break(database, position))
 }
 
-/// A file whose diagnostics are no longer what was reported, without anybody having been told.
-pub(crate) fn untold(
+/// An error if the diagnostics of a file have changed although `take_touched` does not list it.
+pub(crate) fn unreported(
     database: &Database,
     files: [FileId; 4],
     touched: &[FileId],
     reported: &[Vec<Diagnostic>; 4],
 ) -> Result<(), String> {
-    let untold = |(file, reported): &(FileId, &Vec<Diagnostic>)| {
+    let is_unreported = |(file, reported): &(FileId, &Vec<Diagnostic>)| {
         !touched.contains(file) && database.diagnostics(*file) != **reported
     };
-    match files.into_iter().zip(reported).position(|pair| untold(&pair)) {
+    match files.into_iter().zip(reported).position(|pair| is_unreported(&pair)) {
         Some(index) => Err(format!("take_touched() leaves out {}, whose diagnostics changed", PATHS[index])),
         None => Ok(()),
     }

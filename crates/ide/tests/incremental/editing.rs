@@ -1,4 +1,4 @@
-//! Files that are edited, opened and closed, with a plain model of what they must hold.
+//! Edits, opens and closes files, with a simple model of their content.
 
 use std::collections::BTreeMap;
 
@@ -11,41 +11,41 @@ use crate::panics::without_panic;
 use crate::programs::{self, IMPORTS, PATHS, Start};
 use crate::smallest::Failure;
 
-/// What a person does, or their editor.
+/// An action of the user or the editor.
 #[derive(Debug, Clone)]
 pub(crate) enum Step {
-    /// Text goes and other text comes.
+    /// Replaces text.
     Replace { file: usize, at: Anchor, len: Length, text: String },
-    /// An entity goes, and comes again in front of another one, perhaps of another file.
+    /// Moves an entity before another one, possibly in another file.
     Move { file: usize, entity: u8, to_file: usize, to: u8 },
-    /// The same, but it also stays.
+    /// Copies an entity before another one.
     Copy { file: usize, entity: u8, to_file: usize, to: u8 },
-    /// The last edits are taken back one by one.
+    /// Undoes the last edits one by one.
     Undo(u8),
-    /// Those that were taken back are made again.
+    /// Redoes undone edits.
     Redo(u8),
-    /// A file is closed, or opened again as it was.
+    /// Closes a file, or reopens it with its last text.
     CloseOrOpen { file: usize },
-    /// An open file is opened once more, with the text of another one.
+    /// Opens an open file again with the text of another one.
     Reopen { file: usize, like: usize },
-    /// Somebody looked at the disk.
+    /// Changes what is known of a missing import.
     Absence { file: usize, import: usize, why: Option<Absence> },
-    /// A setting changed.
+    /// Changes the target.
     Target { file: usize, target: Target },
-    /// The scene of one of the file's environments came, changed or went.
+    /// Adds, changes or removes the scene of an environment.
     Scene { file: usize, environment: u8, scene: Option<usize> },
 }
 
-/// A place that stays near what it was when something before it is left out.
+/// A position that stays similar when text before it is removed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Anchor {
-    /// So many bytes behind the start of a token; of the last where there are fewer.
+    /// A number of bytes after the start of a token, or of the last one.
     TokenKind(u8, u8),
-    /// A part of 65536 of the text. It may be inside a character.
+    /// A fraction of the text in units of 1/65536. May be inside a character.
     Part(u16),
 }
 
-/// How much goes.
+/// The length of the replaced text.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Length {
     Bytes(u8),
@@ -115,7 +115,7 @@ const SIGNS: [&str; 60] = [
     "",
 ];
 
-/// Scenes in which many, some or no paths meet something, and one that is none.
+/// Scenes with many, some or no collisions, and an invalid one.
 const SCENES: [&str; 5] = [
     "[world]\nsize = [1.5, 1.5]\n",
     "[[wall]]\nfrom = [0.4, -9]\nto = [0.4, 9]\n[robots.r]\nstart = [0, 0, 90]\n",
@@ -125,7 +125,7 @@ const SCENES: [&str; 5] = [
 ];
 
 fn files() -> impl Strategy<Value = usize> {
-    // Most happens in the file that a person has before them.
+    // Most edits affect the active file.
     prop_oneof![3 => Just(0), 2 => Just(1), 1 => Just(2), 1 => Just(3)]
 }
 
@@ -151,7 +151,7 @@ fn steps() -> impl Strategy<Value = Step> {
         Just(None),
         Just(Some(Absence::Missing)),
         Just(Some(Absence::Outside)),
-        Just(Some(Absence::Unreadable("it is a folder".to_owned()))),
+        Just(Some(Absence::Unreadable("is a folder".to_owned()))),
     ];
     let moved = || (files(), any::<u8>(), files(), any::<u8>());
     prop_oneof![
@@ -169,13 +169,13 @@ fn steps() -> impl Strategy<Value = Step> {
     ]
 }
 
-/// Programs, and about so many steps from there.
+/// Programs with about `length` steps.
 pub(crate) fn strategy(steps_in_a_row: usize) -> impl Strategy<Value = (Start, Vec<Step>)> {
     let steps = proptest::collection::vec(steps(), steps_in_a_row / 2..=steps_in_a_row * 3 / 2);
     (steps, programs::starts()).prop_map(|(steps, start)| (start, steps))
 }
 
-/// Everything a database was told, as plainly as can be.
+/// A simple model of a database's inputs.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Model {
     /// `None` for a closed file.
@@ -186,7 +186,7 @@ pub(crate) struct Model {
     pub(crate) scenes: BTreeMap<(usize, String), String>,
 }
 
-/// What a database is told.
+/// An input of a database.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Change {
     Edit { file: usize, span: Span, text: String },
@@ -209,7 +209,7 @@ impl Change {
         }
     }
 
-    /// Tells a database.
+    /// Applies the input to a database.
     pub(crate) fn tell(&self, database: &mut Database, files: [FileId; 4]) {
         match self {
             Self::Edit { file, span, text } => database.edit(files[*file], *span, text),
@@ -260,8 +260,7 @@ impl Model {
         }
     }
 
-    /// A fresh database that was told this and nothing else. In which order it is told must not matter; `turn` varies
-    /// it.
+    /// A fresh database with these inputs. Their order must not matter; `turn` varies it.
     pub(crate) fn fresh(&self, turn: usize) -> (Database, [FileId; 4]) {
         let mut database = Database::new();
         // Numbers of files are given in the order of opening; they must be the same ones.
@@ -285,7 +284,7 @@ impl Model {
         (database, files)
     }
 
-    /// The place behind an edit that was made here.
+    /// The position after an edit.
     pub(crate) fn behind(&self, change: &Change) -> u32 {
         match change {
             Change::Edit { file, span, text } => {
@@ -301,7 +300,7 @@ impl Model {
     }
 }
 
-/// The nearest range before that fits the text and cuts no character.
+/// The nearest earlier range within the text and on character boundaries.
 fn fit(text: &str, span: Span) -> Span {
     let snap = |offset: u32| {
         let mut offset = (offset as usize).min(text.len());
@@ -314,20 +313,20 @@ fn fit(text: &str, span: Span) -> Span {
     Span::new(start, snap(span.end.max(span.start)))
 }
 
-/// One database that is edited on and on.
+/// A database under continuous editing.
 pub(crate) struct Editing {
     database: Database,
     files: [FileId; 4],
     model: Model,
-    /// A database with the same texts as they were last checked, and its files' diagnostics.
+    /// A fresh database with the last checked texts, and the diagnostics of its files.
     last: Database,
     reported: [Vec<Diagnostic>; 4],
-    /// How to take the last edits back.
+    /// The inverses of the last edits.
     undo: Vec<Change>,
     redo: Vec<Change>,
-    /// What was last in a file that is closed now.
+    /// The last texts of closed files.
     closed: [String; 4],
-    /// Files as they were at some time, with a database that stays as it was then.
+    /// Snapshots of files.
     kept: Vec<(Snapshot, usize)>,
     beginning: Database,
     turn: usize,
@@ -370,7 +369,7 @@ impl Editing {
         }
     }
 
-    /// Makes the edits of a step, and compares after each of them. Says how many there were.
+    /// Makes the edits of a step, compares after each of them, and returns their number.
     pub(crate) fn take(&mut self, step: &Step) -> Result<u64, Box<Failure>> {
         let mut count = 0;
         match step {
@@ -394,7 +393,7 @@ impl Editing {
                 for change in self.changes(step) {
                     match self.inverse(&change) {
                         Some(inverse) => self.undo.push(inverse),
-                        // Nobody takes back the closing of a file, or anything that was before.
+                        // Closing a file cannot be undone, nor anything before it.
                         None => self.undo.clear(),
                     }
                     self.redo.clear();
@@ -406,7 +405,7 @@ impl Editing {
         Ok(count)
     }
 
-    /// What takes an edit back.
+    /// The inverse of an edit.
     fn inverse(&self, change: &Change) -> Option<Change> {
         let Change::Edit { file, span, text } = change else { return None };
         let before = self.model.texts[*file].as_ref()?;
@@ -517,7 +516,7 @@ impl Editing {
             answers::compare_snapshot(snapshot, &self.beginning, self.files[*index])?;
         }
         let touched = self.database.take_touched();
-        answers::untold(&self.database, self.files, &touched, &self.reported)?;
+        answers::unreported(&self.database, self.files, &touched, &self.reported)?;
         for (index, file) in self.files.into_iter().enumerate() {
             if touched.contains(&file) {
                 self.reported[index] = self.database.diagnostics(file);

@@ -1,9 +1,9 @@
-//! The acceptance test of the incremental database: after any edit, everything that an editor can ask equals what a
-//! fresh database with the same texts answers.
+//! The acceptance test of the incremental database: after any edit, the answers to all requests of an editor equal those
+//! of a fresh database with the same texts.
 //!
-//! `cargo test` does twenty thousand edits, other ones each time; `PYDSLREP_EDITS=10000000 cargo test --release -p
-//! pydslrep-ide --test incremental` as many as that. What fails is made small: first the edits before, then the programs
-//! it began with, then the texts right before the edit that fails.
+//! `cargo test` makes twenty thousand random edits; `PYDSLREP_EDITS=10000000 cargo test --release -p pydslrep-ide --test
+//! incremental` makes ten million. Failures shrink: first the edits before, then the initial programs, then the texts
+//! right before the failing edit.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests are tests, too")]
 
@@ -21,13 +21,13 @@ use crate::editing::{Editing, Step};
 use crate::panics::Silence;
 use crate::programs::Start;
 
-/// How many edits the test command makes.
+/// The default number of edits.
 const EDITS: u32 = 20_000;
 
-/// About how many edits are made in one set of files, before the next set is begun.
+/// The approximate number of edits per set of files.
 const IN_A_ROW: usize = 40;
 
-/// After so many edits of a long run, it says how far it is.
+/// The number of edits between progress messages of a long run.
 const TELL_EVERY: u64 = 100_000;
 
 #[test]
@@ -63,14 +63,14 @@ fn an_edited_database_answers_as_a_fresh_one() {
     }
 }
 
-/// What goes wrong, made small.
+/// The first failure, shrunk.
 fn explain(start: &Start, steps: &[Step]) -> String {
     let mut editing = Editing::new(start);
     let failure = steps.iter().find_map(|step| editing.take(step).err());
     failure.map_or_else(|| "it fails no more".to_owned(), |failure| failure.smallest().to_string())
 }
 
-/// Says how far a long run is.
+/// Prints the progress of a long run.
 #[expect(clippy::print_stderr, reason = "somebody waits for it")]
 fn tell(done: u64) {
     eprintln!("{done} edits");

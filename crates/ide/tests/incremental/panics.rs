@@ -1,4 +1,4 @@
-//! What panics fails like everything else, and is made as small.
+//! Turns panics into failures, so that they shrink like all others.
 
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
@@ -7,7 +7,7 @@ thread_local! {
     static LAST: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Notes panics in silence while it is there: to make a failure small takes hundreds of them.
+/// Records panics silently while it exists: shrinking a failure causes hundreds of them.
 pub(crate) struct Silence;
 
 impl Silence {

@@ -1,4 +1,4 @@
-//! What the files hold before the first edit.
+//! The content of the files before the first edit.
 
 use proptest::prelude::*;
 use pydslrep_naive::Recipe;
@@ -7,11 +7,11 @@ use pydslrep_syntax::parse;
 /// The files, in the order of opening.
 pub(crate) const PATHS: [&str; 4] = ["main.pyr", "lib.pyr", "parts/more.pyr", "base.pyr"];
 
-/// Where imports may lead, as written in a file of the main folder.
+/// The possible import paths, relative to the main folder.
 pub(crate) const IMPORTS: [&str; 6] =
     ["lib.pyr", "parts/more.pyr", "main.pyr", "base.pyr", "missing.pyr", "/else/where.pyr"];
 
-/// The article's programs, and others that people wrote.
+/// The paper's programs and other handwritten ones.
 const WRITTEN: [&str; 8] = [
     include_str!("../../../../tests/paper/table2_two_wheels.pyr"),
     include_str!("../../../../tests/paper/table3_four_wheels.pyr"),
@@ -23,7 +23,7 @@ const WRITTEN: [&str; 8] = [
     ROBOTS,
 ];
 
-/// Much of it is wrong, in ways that look at other entities.
+/// A program with many errors that depend on other entities.
 const ROBOTS: &str = "\
 // a robot
 wheel wheelL with radius 4.5
@@ -46,7 +46,7 @@ wheel c with radius 3
 robot p with port 2 has { b c } wheels
 ";
 
-/// Nothing in it is wrong but that robots run into what stands in their way, in files that need each other.
+/// A program of several files whose only problems are planned collisions.
 const DRIVING: [&str; 4] = [
     "\
 import \"lib.pyr\"
@@ -69,26 +69,26 @@ environment e has { q } robots with { n } moves
 ",
 ];
 
-/// What stands in the way, by file and environment.
+/// Its scenes, by file and environment.
 const IN_THE_WAY: [(usize, &str, &str); 2] =
     [(0, "e", "[[wall]]\nfrom = [1, -9]\nto = [1, 9]\n"), (3, "e", "[world]\nsize = [2, 2]\n")];
 
-/// How the files begin. What is left out makes a failure smaller.
+/// The initial content of the files. Leaving parts out shrinks a failure.
 #[derive(Debug, Clone)]
 pub(crate) struct Start {
-    /// What the generator begins with.
+    /// The seed of the generator.
     seed: u64,
-    /// One of the written programs in place of the first generated one.
+    /// A handwritten program instead of the first generated one.
     written: Option<usize>,
-    /// Whether one program is dealt out to all files, so that they need each other; else each has its own.
+    /// Whether one program is distributed over all files, so that they depend on each other.
     dealt: bool,
-    /// Six bits for each file: what it imports.
+    /// Six bits per file: its imports.
     imports: u32,
-    /// A bit for each file but the first, which is always open: whether it is.
+    /// One bit per file except the first, which is always open: whether it is open.
     open: u8,
-    /// Which entities are there at all.
+    /// The entities that are present.
     kept: Vec<bool>,
-    /// Whether robots drive in scenes, and nothing is wrong at first.
+    /// Whether there are scenes and initially no errors.
     driving: bool,
 }
 

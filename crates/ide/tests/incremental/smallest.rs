@@ -1,4 +1,4 @@
-//! A failure, made small and put into words.
+//! Shrinks and describes a failure.
 
 use std::fmt;
 
@@ -9,13 +9,13 @@ use crate::editing::{Change, Model};
 use crate::panics::without_panic;
 use crate::programs::PATHS;
 
-/// Texts, an edit, and what differs behind it.
+/// Texts, an edit, and the difference after it.
 #[derive(Debug, Clone)]
 pub(crate) struct Failure {
     pub(crate) before: Model,
     pub(crate) change: Change,
     pub(crate) difference: String,
-    /// Whether a database that was fresh before this one edit would have failed as well.
+    /// Whether a database that was fresh before this edit also fails.
     is_alone: bool,
 }
 
@@ -24,7 +24,7 @@ impl Failure {
         Self { before, change, difference, is_alone: false }
     }
 
-    /// The same failure with as little text around the edit as it takes.
+    /// The same failure with as little text around the edit as possible.
     pub(crate) fn smallest(mut self) -> Self {
         let Some(difference) = differs(&self.before, &self.change) else { return self };
         (self.difference, self.is_alone) = (difference, true);
@@ -32,7 +32,7 @@ impl Failure {
         self
     }
 
-    /// Leaves something out, if it fails without.
+    /// Removes a part if the failure remains.
     fn try_smaller(&mut self) -> bool {
         for (before, change) in smaller(&self.before, &self.change) {
             if let Some(difference) = differs(&before, &change) {
@@ -44,7 +44,7 @@ impl Failure {
     }
 }
 
-/// What differs when one edit is made in a fresh database.
+/// The difference after one edit of a fresh database.
 fn differs(before: &Model, change: &Change) -> Option<String> {
     without_panic(|| compare(before, change)).err()
 }
@@ -62,10 +62,10 @@ fn compare(before: &Model, change: &Change) -> Result<(), String> {
         answers::compare(&database, &fresh, files, &focus)?;
     }
     let touched = database.take_touched();
-    answers::untold(&database, files, &touched, &reported)
+    answers::unreported(&database, files, &touched, &reported)
 }
 
-/// The same with less around the edit: a scene gone, a file closed, or tokens left out; long runs of them first.
+/// Variants with less around the edit: without a scene, with a closed file, or without tokens; long runs first.
 fn smaller(before: &Model, change: &Change) -> Vec<(Model, Change)> {
     let mut found = Vec::new();
     for key in before.scenes.keys() {
@@ -98,7 +98,7 @@ fn smaller(before: &Model, change: &Change) -> Vec<(Model, Change)> {
     found
 }
 
-/// The edit where a range of its file is left out; `None` if they touch.
+/// The edit after a range of its file is removed; `None` if they touch.
 fn moved(change: &Change, file: usize, start: usize, end: usize) -> Option<Change> {
     let mut moved = change.clone();
     if let Change::Edit { file: edited, span, .. } = &mut moved

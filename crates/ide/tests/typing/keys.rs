@@ -1,9 +1,8 @@
-//! The fewest keys a program can be typed with.
+//! The minimum number of keys to type a program.
 //!
-//! The keys are those of an editor in its default settings: the list opens by itself after a letter, and after a blank
-//! where the server says so; Ctrl+Space opens it anywhere; Down goes to the next item, Tab accepts the one that is
-//! selected and goes to the next stop of a snippet, End leaves it. Enter indents the next line, and closes a brace that was
-//! opened at the end of the line before.
+//! The keys are those of an editor with default settings: the list opens automatically after a letter, and after a space
+//! where the server opens it; Ctrl+Space opens it anywhere; Down selects the next item, Tab accepts the selected item or
+//! moves to the next tab stop, End leaves a snippet. Enter indents the next line and closes a brace opened before it.
 
 use pydslrep_analysis::{Database, FileId};
 use pydslrep_ide::{Completion, CompletionTrigger, FilePosition, completions};
@@ -11,7 +10,7 @@ use pydslrep_syntax::Span;
 
 use crate::snippet::{Filled, matched};
 
-/// A program that is being typed.
+/// A program being typed.
 struct Typed {
     database: Database,
     file: FileId,
@@ -40,7 +39,7 @@ fn offset(length: usize) -> u32 {
     u32::try_from(length).unwrap()
 }
 
-/// How many keys it takes at least.
+/// The minimum number of keys.
 pub(crate) fn keys(program: &str) -> usize {
     let mut fewest = vec![usize::MAX; program.len() + 1];
     fewest[0] = 0;
@@ -60,7 +59,7 @@ pub(crate) fn keys(program: &str) -> usize {
     fewest[program.len()]
 }
 
-/// Where one key leads: a character, or a line break with the blanks that the editor adds.
+/// The offset after one key: a character, or a line break with the indentation that the editor adds.
 fn next_key(program: &str, at: usize) -> usize {
     let rest = &program[at..];
     let first = rest.chars().next().map_or(0, char::len_utf8);
@@ -73,7 +72,7 @@ fn next_key(program: &str, at: usize) -> usize {
     at + 1 + blanks + closes
 }
 
-/// What can be accepted, by where it leads and by how many keys.
+/// The acceptable items with the resulting offset and their number of keys.
 fn accepted(typed: &Typed, program: &str) -> Vec<(usize, usize)> {
     let before = program[..typed.length].chars().last();
     let opened = match before {
@@ -101,7 +100,7 @@ fn accepted(typed: &Typed, program: &str) -> Vec<(usize, usize)> {
         .collect()
 }
 
-/// The keys to fill in the stops: what is there from the start stays, everything else is typed in full.
+/// The keys to fill in the tab stops: matching defaults stay, everything else is typed.
 fn filled_in(stops: &[Filled], ends_line: bool) -> usize {
     let mut numbers: Vec<u32> = stops.iter().map(|stop| stop.number).collect();
     numbers.sort_unstable();

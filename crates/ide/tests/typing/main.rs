@@ -1,5 +1,5 @@
-//! How much completion helps: the article's programs, the examples and generated ones are typed with it, key by key, by
-//! somebody who knows it well. The figures are kept in `docs/performance.md`.
+//! How much completion helps: types the paper's programs, the examples and generated ones optimally, key by key. The
+//! figures are in `docs/performance.md`.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests are tests, too")]
 
@@ -16,11 +16,11 @@ use pydslrep_naive::Recipe;
 use self::keys::keys;
 use self::ranks::{Ranks, ranks};
 
-/// At most this share of the characters of all programs is left to press.
+/// The maximum ratio of keys to characters over all programs.
 const MOST_KEYS: f64 = 0.55;
-/// At least in this share of places the word that is due comes first.
+/// The minimum share of positions where the next word ranks first.
 const FIRST: f64 = 0.9;
-/// As many as are typed into real editors.
+/// The same number as is typed into real editors.
 const GENERATED: u64 = 50;
 
 struct Program {
@@ -31,7 +31,7 @@ struct Program {
 struct Figures {
     name: String,
     characters: usize,
-    /// Characters in comments, which nobody can suggest.
+    /// Characters in comments, which cannot be completed.
     comments: usize,
     keys: usize,
     ranks: Ranks,

@@ -1,14 +1,14 @@
-//! Where in the list the word is that was written next, when the list opens by itself.
+//! The rank of the next word of a program in the completion list.
 
 use pydslrep_analysis::Database;
 use pydslrep_ide::{CompletionTrigger, FilePosition, completions};
 use pydslrep_syntax::{Span, Token, TokenKind, lex};
 
-/// Of places where a keyword or a name was due.
+/// Counts over all positions where a keyword or name comes next.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Ranks {
     pub(crate) places: usize,
-    /// Where it came first.
+    /// The number of positions where it ranks first.
     pub(crate) first: usize,
 }
 
@@ -33,7 +33,7 @@ pub(crate) fn ranks(program: &str) -> Ranks {
     ranks
 }
 
-/// Whether a name refers to what is written already: what is not cannot be suggested.
+/// Whether a name refers to an earlier declaration: later ones cannot be suggested.
 fn is_known(program: &str, tokens: &[Token], index: usize) -> bool {
     let name = |index: usize| tokens[index].1.text(program);
     let is_declared = |other: usize| name(other) == name(index) && declares(&tokens[..other]);
@@ -68,7 +68,7 @@ fn offered(program: &str, word: Span) -> Option<Vec<String>> {
     })
 }
 
-/// The words that are offered where the program is written so far.
+/// The words that are offered after the typed part of the program.
 fn asked(program: &str, offset: u32, trigger: CompletionTrigger) -> Vec<String> {
     let mut database = Database::new();
     let file = database.open("a.pyr", &program[..offset as usize]);

@@ -1,20 +1,20 @@
-//! Snippets as a person fills them in.
+//! Matches snippets against programs.
 
-/// A part of a snippet: text, or a stop with its number and what is in it from the start.
+/// A part of a snippet: text, or a tab stop with its number and default.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Part {
     Text(String),
     Stop(u32, String),
 }
 
-/// A stop that has been matched with a program: where its text is.
+/// A tab stop matched with a range of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Filled {
     pub(crate) number: u32,
-    /// Bytes of the program.
+    /// The range in the program.
     pub(crate) start: usize,
     pub(crate) end: usize,
-    /// Whether it is there from the start.
+    /// Whether it equals the default.
     pub(crate) is_default: bool,
 }
 
@@ -40,7 +40,7 @@ fn parts(snippet: &str) -> Vec<Part> {
 
 /// What a snippet gives, at most up to its last stop, if a program goes on like that: the end of that, and the stops.
 ///
-/// Nothing but names, numbers and blanks is filled in, so that a stop ends at the text that follows it.
+/// Tab stops take only names, numbers and spaces, so that one ends at the text that follows it.
 pub(crate) fn matched(snippet: &str, program: &str, start: usize) -> Option<(usize, Vec<Filled>)> {
     let parts = parts(snippet);
     let mut at = start;

@@ -10,7 +10,7 @@ pub(crate) fn line(line: u32) -> Source {
     Source { file: None, line }
 }
 
-/// A robot with wheels named as in the article.
+/// A robot with wheels named as in the paper.
 pub(crate) fn robot(name: &str, drive: Drive, port: u16) -> Robot {
     let wheels = match drive {
         Drive::TwoWheel => vec!["wheelL", "wheelR"],
@@ -58,7 +58,7 @@ pub(crate) fn turn(degrees: f64, at: u32) -> Action {
     Action { kind: ActionKind::Turn { degrees }, text, source: line(at) }
 }
 
-/// `turn right until { … }`; `sensors` are indices and `names` what the text calls them.
+/// `turn right until { … }`; `sensors` are indices and `names` their text.
 pub(crate) fn turn_until(sensors: &[usize], names: &str, at: u32) -> Action {
     Action {
         kind: ActionKind::TurnUntil { left: false, sensors: sensors.to_vec() },
@@ -83,7 +83,7 @@ pub(crate) fn environment(
     Environment { name, script, host: None, robots, movements, schedule, source: line(14) }
 }
 
-/// The article's table 2: three sides of a square.
+/// Table 2 of the paper: three sides of a square.
 pub(crate) fn area_1(drive: Drive) -> Environment {
     let actions = vec![
         move_by(4.0, 7),
@@ -100,7 +100,7 @@ pub(crate) fn area_1(drive: Drive) -> Environment {
     )
 }
 
-/// Table 6: turns until sensors are free.
+/// Table 6: turns until sensors are clear.
 pub(crate) fn sensors() -> Environment {
     let robot = with_sensors(robot("robot_1", Drive::TwoWheel, 19999), &["fSensor", "lSensor", "rSensor"]);
     let actions = vec![
@@ -121,7 +121,7 @@ pub(crate) fn slam() -> Environment {
     environment("rooms", vec![robot], vec![movement("mov_1", 0, vec![explore])], vec![vec![0]])
 }
 
-/// Four robots of all kinds that drive at the same time, and then one alone.
+/// Four robots of all kinds that drive in parallel, then one alone.
 pub(crate) fn four_robots() -> Environment {
     let robots = vec![
         robot("robot_1", Drive::TwoWheel, 19997),

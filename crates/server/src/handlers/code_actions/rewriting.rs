@@ -76,7 +76,7 @@ pub(super) fn fix_all_of_a_code(
 /// `source.fixAll`, where there is anything to fix.
 pub(super) fn fix_all(state: &State, document: &Document, file: FileId) -> Option<CodeActionOrCommand> {
     let any = shown(&state.database, document, file).iter().any(ide::has_safe_fix);
-    let title = "Fix all that leaves nothing to decide".to_owned();
+    let title = "Apply all safe fixes".to_owned();
     any.then(|| offer(state, document, title, CodeActionKind::SOURCE_FIX_ALL, None))
 }
 
