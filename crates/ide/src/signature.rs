@@ -1,7 +1,7 @@
-//! Signature help: the shape of the statement being typed, with the part that comes next marked, on one line.
+//! Signature help: the syntax of the statement being typed on one line, with the next part highlighted.
 //!
 //! It opens on request only, because editors show it over the line above the cursor, and closes where the statement
-//! ends. The shapes are those of the keywords' pages, and the parser says which part is next, so neither can drift from
+//! ends. The syntax is that of the keyword pages, and the parser itself says which part is next, so neither can drift from
 //! the language.
 
 mod shape;
@@ -223,7 +223,8 @@ fn current(parts: &[Part], typed: &[Token], expected: &[Expected]) -> Option<usi
             None => {}
         }
     }
-    let accepted = parts[next..].iter().position(|part| expected.iter().any(|expected| part.accepts(*expected)));
+    let accepted =
+        parts[next..].iter().position(|part| expected.iter().any(|expected| part.accepts(*expected)));
     accepted.map(|place| next + place)
 }
 
@@ -385,7 +386,8 @@ mod tests {
 
     #[test]
     fn requested_help_closes_at_the_end_of_the_statement() {
-        let again = |fixture: &&str| format!("{fixture:?}: {}\n", after(fixture, SignatureTrigger::Retriggered));
+        let again =
+            |fixture: &&str| format!("{fixture:?}: {}\n", after(fixture, SignatureTrigger::Retriggered));
         let shown: String = [
             "wheel a with radius $0",
             "wheel a with radius 4 $0",
