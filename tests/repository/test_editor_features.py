@@ -1,4 +1,4 @@
-"""The page of editor features is made from the features' own files: `UPDATE_EXPECT=1` writes it."""
+"""The page of editor features is generated from the source files of the features: `UPDATE_EXPECT=1` writes it."""
 
 import os
 import re
@@ -8,10 +8,10 @@ ROOT = Path(__file__).resolve().parents[2]
 FEATURES = ROOT / "crates" / "ide" / "src"
 PAGE = ROOT / "docs" / "editor-features.md"
 
-# What the features are built from.
+# Modules that are not features.
 PARTS = {"cursor", "fixture", "keyword_pages"}
 
-# Each feature's file, and how an editor asks for it.
+# The file of each feature, and its messages.
 GROUPS: dict[str, dict[str, list[str]]] = {
     "While typing": {
         "completion": ["textDocument/completion"],
@@ -48,7 +48,7 @@ GROUPS: dict[str, dict[str, list[str]]] = {
         "planned_path": ["pydslrep/plannedPath", "pydslrep/plannedPathChanged"],
         "planned_action": ["pydslrep/plannedAt", "pydslrep/actionLocation"],
     },
-    "Finding one's way": {
+    "Navigation": {
         "definition": ["textDocument/definition", "textDocument/declaration"],
         "type_definition": ["textDocument/typeDefinition"],
         "references": ["textDocument/references"],
@@ -61,7 +61,7 @@ GROUPS: dict[str, dict[str, list[str]]] = {
         ],
         "document_links": ["textDocument/documentLink"],
     },
-    "Changing": {
+    "Editing": {
         "rename": ["textDocument/prepareRename", "textDocument/rename"],
         "file_rename": ["workspace/willRenameFiles"],
         "formatting": ["textDocument/formatting", "textDocument/rangeFormatting"],
@@ -71,14 +71,14 @@ GROUPS: dict[str, dict[str, list[str]]] = {
 TOP = """\
 # Editor features
 
-What an editor shows of a program, by the messages of the Language Server Protocol that it uses for it. Besides, mistakes
-are told as they are made, each with a page in [diagnostics](diagnostics/README.md), *Generate script* is a code action
-of every program, and [protocol.md](protocol.md) has the commands and what else the server adds to the protocol.
+The features of the language server, with the messages of the Language Server Protocol that they use. In addition, errors
+appear as you type, each with a page in [diagnostics](diagnostics/README.md), and *Generate script* is a code action in
+every program. [protocol.md](protocol.md) lists the commands and the extensions of the protocol.
 """
 
 
 def first_paragraph(feature: str) -> tuple[str, str]:
-    """A feature's name, and what it does."""
+    """The name and description of a feature."""
     file = FEATURES / f"{feature}.rs"
     if not file.exists():
         file = FEATURES / feature / "mod.rs"
@@ -98,7 +98,7 @@ def page() -> str:
     parts = [TOP]
     for group, features in GROUPS.items():
         parts.append(
-            f"\n## {group}\n\n| feature | what it shows | messages |\n|---|---|---|\n"
+            f"\n## {group}\n\n| feature | description | messages |\n|---|---|---|\n"
         )
         for feature, methods in features.items():
             name, meaning = first_paragraph(feature)
@@ -108,7 +108,7 @@ def page() -> str:
     return "".join(parts)
 
 
-def test_the_page_says_what_the_features_say() -> None:
+def test_the_page_is_up_to_date() -> None:
     if os.environ.get("UPDATE_EXPECT"):
         PAGE.write_text(page(), encoding="utf-8")
     assert PAGE.read_text(encoding="utf-8") == page(), "run it with UPDATE_EXPECT=1"
