@@ -2,7 +2,7 @@
 
 use pydslrep_schema::Value;
 
-use crate::values::{self, RenameError, Values, Word};
+use crate::values::{self, Refusal, Values, Word};
 use crate::{Config, LensKind, Target};
 
 /// A setting.
@@ -19,7 +19,7 @@ pub struct Key {
     /// A value that is not the default, as TOML and JSON write it alike.
     pub example: &'static str,
     /// Puts a value into its place.
-    pub(crate) set: fn(&mut Config, &Value) -> Result<(), RenameError>,
+    pub(crate) set: fn(&mut Config, &Value) -> Result<(), Refusal>,
 }
 
 const TARGETS: [Word; Target::ALL.len()] = {

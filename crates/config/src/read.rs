@@ -5,7 +5,7 @@ use pydslrep_schema::{Entry, Node, Value, closest, did_you_mean, from_json};
 
 use crate::keys::{KEYS, Key, parts_behind};
 use crate::severities::find_rule;
-use crate::values::{self, RenameError, Values};
+use crate::values::{self, Refusal, Values};
 use crate::{Config, Problem, ProblemKind, SECTION};
 
 /// What extensions of editors keep beside the settings, for themselves.
@@ -89,7 +89,7 @@ impl Reader {
             } else if let Err(refusal) = values::table(&entry.node.value) {
                 let inner = parts_behind(&table).join(", ");
                 let help = Some(format!("the keys in it are {inner}"));
-                self.refuse(&written, &entry.node, RenameError { help, ..refusal });
+                self.refuse(&written, &entry.node, Refusal { help, ..refusal });
             }
         }
     }
@@ -125,7 +125,7 @@ impl Reader {
         }
     }
 
-    fn refuse(&mut self, written: &str, node: &Node, refusal: RenameError) {
+    fn refuse(&mut self, written: &str, node: &Node, refusal: Refusal) {
         self.problems.push(Problem {
             kind: ProblemKind::InvalidValue,
             key: written.to_owned(),

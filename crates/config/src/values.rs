@@ -31,7 +31,7 @@ pub struct Word {
 
 /// What is wrong with a value, before it is known whose it is.
 #[derive(Debug)]
-pub(crate) struct RenameError {
+pub(crate) struct Refusal {
     /// Goes behind the key.
     pub(crate) message: String,
     pub(crate) help: Option<String>,
@@ -39,19 +39,15 @@ pub(crate) struct RenameError {
     pub(crate) replacement: Option<&'static str>,
 }
 
-fn wrong_sort(expected: &str, value: &Value) -> RenameError {
-    RenameError {
-        message: format!("must be {expected}, not {}", value.sort()),
-        help: None,
-        replacement: None,
-    }
+fn wrong_sort(expected: &str, value: &Value) -> Refusal {
+    Refusal { message: format!("must be {expected}, not {}", value.sort()), help: None, replacement: None }
 }
 
-fn refusal(message: &str, help: &str) -> RenameError {
-    RenameError { message: message.to_owned(), help: Some(help.to_owned()), replacement: None }
+fn refusal(message: &str, help: &str) -> Refusal {
+    Refusal { message: message.to_owned(), help: Some(help.to_owned()), replacement: None }
 }
 
-pub(crate) fn table(value: &Value) -> Result<(), RenameError> {
+pub(crate) fn table(value: &Value) -> Result<(), Refusal> {
     match value {
         Value::Table(_) | Value::Nothing => Ok(()),
         // What Lua makes of an empty table.
@@ -60,32 +56,30 @@ pub(crate) fn table(value: &Value) -> Result<(), RenameError> {
     }
 }
 
-pub(crate) fn flag(value: &Value) -> Result<bool, RenameError> {
+pub(crate) fn flag(value: &Value) -> Result<bool, Refusal> {
     match value {
         Value::Flag(flag) => Ok(*flag),
         other => Err(wrong_sort("true or false", other)),
     }
 }
 
-pub(crate) fn above_zero(value: &Value) -> Result<f64, RenameError> {
+pub(crate) fn above_zero(value: &Value) -> Result<f64, Refusal> {
     match value {
         Value::Number(number) if number.is_finite() && *number > 0.0 => Ok(*number),
-        Value::Number(_) => Err(RenameError {
-            message: "must be a number above zero".to_owned(),
-            help: None,
-            replacement: None,
-        }),
+        Value::Number(_) => {
+            Err(Refusal { message: "must be a number above zero".to_owned(), help: None, replacement: None })
+        }
         other => Err(wrong_sort("a number", other)),
     }
 }
 
-pub(crate) fn target(value: &Value) -> Result<Target, RenameError> {
+pub(crate) fn target(value: &Value) -> Result<Target, Refusal> {
     let Value::Text(word) = value else { return Err(wrong_sort("a text", value)) };
     Target::from_word(word).ok_or_else(|| {
         let words = Target::ALL.map(Target::word);
         // The one name is V-REP where people write it.
         let near = closest(word, words).or_else(|| closest(&word.replace('-', ""), words));
-        RenameError {
+        Refusal {
             message: format!("cannot be `{word}`"),
             help: Some(near.map_or_else(|| format!("the targets are {}", words.join(", ")), did_you_mean)),
             replacement: near,
@@ -93,17 +87,17 @@ pub(crate) fn target(value: &Value) -> Result<Target, RenameError> {
     })
 }
 
-pub(crate) fn level(value: &Value) -> Result<Option<Level>, RenameError> {
+pub(crate) fn level(value: &Value) -> Result<Option<Level>, Refusal> {
     match value {
         Value::Nothing => Ok(None),
         Value::Text(word) => {
-            Level::from_word(word).map(Some).map_err(|UnknownWord { near, help, .. }| RenameError {
+            Level::from_word(word).map(Some).map_err(|UnknownWord { near, help, .. }| Refusal {
                 message: format!("cannot be `{word}`"),
                 help: Some(help),
                 replacement: near,
             })
         }
-        other => Err(RenameError {
+        other => Err(Refusal {
             help: Some(format!("write for example `\"{}\"`", Level::Off.word())),
             ..wrong_sort("a text", other)
         }),
@@ -111,7 +105,7 @@ pub(crate) fn level(value: &Value) -> Result<Option<Level>, RenameError> {
 }
 
 /// A folder inside of another one: settings come with the programs of others, and are not to write elsewhere.
-pub(crate) fn folder(value: &Value) -> Result<String, RenameError> {
+pub(crate) fn folder(value: &Value) -> Result<String, Refusal> {
     let Value::Text(path) = value else { return Err(wrong_sort("a text", value)) };
     if path.trim().is_empty() {
         return Err(refusal(
