@@ -10,12 +10,12 @@ export default tseslint.config(
     },
     rules: {
       eqeqeq: "error",
-      // Numbers in messages are what a reader wants to see.
+      // Messages contain numbers.
       "@typescript-eslint/restrict-template-expressions": ["error", { allowNumber: true }],
       "@typescript-eslint/no-unused-vars": ["error", { argsIgnorePattern: "^_" }],
-      // A handler that returns nothing may be an arrow with an expression.
+      // Handlers may be arrow functions with an expression.
       "@typescript-eslint/no-confusing-void-expression": ["error", { ignoreArrowShorthand: true }],
-      // node:test hands back promises that it awaits itself.
+      // node:test awaits these promises itself.
       "@typescript-eslint/no-floating-promises": [
         "error",
         { allowForKnownSafeCalls: [{ from: "package", package: "node:test", name: ["test", "describe", "it"] }] },
