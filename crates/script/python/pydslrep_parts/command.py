@@ -12,7 +12,7 @@ from .coppeliasim import PORT_HELP, REALTIME_HELP, SIMULATOR
 from .errors import MovementError, SetupError, SimulatorError
 from .fleet import Fleet
 from .model import RobotModel
-from .survey import Survey, add_survey_options
+from .slam_session import Survey, add_survey_options
 from .trace_file import Trace
 
 #: endif

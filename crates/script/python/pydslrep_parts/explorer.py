@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from .floor import Floor, Place
+from .occupancy_grid import Floor, Place
 from .pose import Pose, wrap_angle
-from .topology import Exit, Node, TopologicalMap
+from .topological_map import Exit, Node, TopologicalMap
 
 #: endif
 

@@ -11,7 +11,7 @@ from .errors import MovementCancelledError, SimulatorError
 from .model import RobotModel
 from .movement import Movement
 from .robot import Robot
-from .survey import Survey
+from .slam_session import Survey
 from .trace_file import Trace
 
 #: endif

@@ -4,8 +4,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from .matching import Matrix, solve
 from .pose import Pose, wrap_angle
+from .scan_matching import Matrix, solve
 
 #: endif
 

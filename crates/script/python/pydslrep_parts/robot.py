@@ -12,8 +12,8 @@ from .errors import MovementCancelledError, MovementError
 from .odometer import Odometer
 from .pose import Pose, wrap_angle
 from .settings import MOST_ASIDE, RIM_SPEED, STALL_TIME
-from .survey import Survey
-from .surveyor import survey_with
+from .slam_rover import survey_with
+from .slam_session import Survey
 from .trace_file import Trace
 
 #: endif

@@ -6,13 +6,13 @@ from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
-from ghost_rover import MOUNTS, RADIUS, GhostRover, on
+from ideal_rover import MOUNTS, RADIUS, GhostRover, on
 from pydslrep_parts.errors import MovementError
-from pydslrep_parts.floor import Floor, Reading
 from pydslrep_parts.model import Eye
+from pydslrep_parts.occupancy_grid import Floor, Reading
 from pydslrep_parts.pose import Pose
+from pydslrep_parts.scan import Sweep
 from pydslrep_parts.settings import RIM_SPEED
-from pydslrep_parts.sweep import Sweep
 from rooms import Rooms
 
 CONE = math.radians(20.0)

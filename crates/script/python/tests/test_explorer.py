@@ -3,9 +3,9 @@
 import math
 
 import pytest
-from ghost_rover import RADIUS, GhostRover
+from ideal_rover import RADIUS, GhostRover
 from pydslrep_parts.explorer import Explorer, NoEndError
-from pydslrep_parts.floor import Floor
+from pydslrep_parts.occupancy_grid import Floor
 from rooms import Pillar, Rooms, Wall, generate
 
 STEP = 0.5

@@ -1,9 +1,9 @@
 import math
 
 import pytest
-from pydslrep_parts.matching import Matrix
 from pydslrep_parts.pose import Pose
 from pydslrep_parts.pose_graph import Compass, Link, PoseGraph
+from pydslrep_parts.scan_matching import Matrix
 
 SIDE = Pose(
     1.0, 0.0, math.pi / 2.0

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 
-from pydslrep_parts.floor import Floor, Place, Reading
+from pydslrep_parts.occupancy_grid import Floor, Place, Reading
 from pydslrep_parts.pose import Pose, wrap_angle
 from rooms import (
     Pillar,

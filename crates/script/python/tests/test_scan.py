@@ -1,10 +1,10 @@
 import math
 
 import pytest
-from pydslrep_parts.grain import grain_of
-from pydslrep_parts.matching import KnownMark, KnownMarks, match, solve
+from pydslrep_parts.dominant_orientation import grain_of
 from pydslrep_parts.pose import Pose, wrap_angle
-from pydslrep_parts.sweep import Mark, Sweep
+from pydslrep_parts.scan import Mark, Sweep
+from pydslrep_parts.scan_matching import KnownMark, KnownMarks, match, solve
 from rooms import Pillar, Rooms
 from slipping_robot import SlippingRobot, sweep_from
 

@@ -1,7 +1,7 @@
 import math
 
 import pytest
-from pydslrep_parts.floor import Floor, Reading
+from pydslrep_parts.occupancy_grid import Floor, Reading
 from pydslrep_parts.pose import Pose
 
 WIDE = math.radians(170.0)

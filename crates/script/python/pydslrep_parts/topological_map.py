@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from .floor import Place
+from .occupancy_grid import Place
 
 #: endif
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from .floor import Place, Reading
+from .occupancy_grid import Place, Reading
 from .pose import Pose, wrap_angle
 
 #: endif

@@ -10,14 +10,14 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from ghost_rover import MOUNTS, RADIUS, GhostRover, on
+from ideal_rover import MOUNTS, RADIUS, GhostRover, on
 from pydslrep_parts.drive_two_wheel import TwoWheelDrive
 from pydslrep_parts.errors import MovementError, SimulatorError
-from pydslrep_parts.floor import Floor
 from pydslrep_parts.model import Eye
+from pydslrep_parts.occupancy_grid import Floor
 from pydslrep_parts.pose import Pose
 from pydslrep_parts.robot import Robot
-from pydslrep_parts.survey import Survey
+from pydslrep_parts.slam_session import Survey
 from pydslrep_parts.trace_file import Trace
 from rooms import Rooms
 

@@ -5,10 +5,10 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from pydslrep_parts.diary import Diary, Look
-from pydslrep_parts.floor import Floor, Reading
+from pydslrep_parts.occupancy_grid import Floor, Reading
 from pydslrep_parts.pose import Pose
-from pydslrep_parts.surveyor import Surveyor
+from pydslrep_parts.scan_log import Diary, Look
+from pydslrep_parts.slam_rover import Surveyor
 from rooms import Pillar, Rooms
 from slipping_robot import SlippingRobot
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from .pose import Pose, wrap_angle
-from .sweep import Mark
+from .scan import Mark
 
 #: endif
 

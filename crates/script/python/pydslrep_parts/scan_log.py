@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from .floor import Floor, Place, Reading
+from .occupancy_grid import Floor, Place, Reading
 from .pose import Pose, wrap_angle
 
 #: endif

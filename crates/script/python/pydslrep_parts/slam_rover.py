@@ -5,14 +5,14 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from .diary import Diary, Look
 from .explorer import Explorer, NoEndError
-from .floor import Floor, Place, Reading
-from .memory import Memory
+from .occupancy_grid import Floor, Place, Reading
 from .pose import Pose, wrap_angle
+from .scan import Sweep
+from .scan_log import Diary, Look
 from .settings import RIM_SPEED
-from .survey import Survey
-from .sweep import Sweep
+from .slam_backend import Memory
+from .slam_session import Survey
 
 if TYPE_CHECKING:
     from .robot import Robot

@@ -5,11 +5,11 @@ import itertools
 import math
 from collections.abc import Iterable, Sequence
 
-from .grain import Grain, grain_of
-from .matching import KnownMark, KnownMarks, Match, match
+from .dominant_orientation import Grain, grain_of
 from .pose import Pose, wrap_angle
 from .pose_graph import Compass, Link, PoseGraph
-from .sweep import Mark, Sweep
+from .scan import Mark, Sweep
+from .scan_matching import KnownMark, KnownMarks, Match, match
 
 #: endif
 

@@ -5,8 +5,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from .matching import DRIFT
-from .sweep import Mark
+from .scan import Mark
+from .scan_matching import DRIFT
 
 #: endif
 

@@ -8,7 +8,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from .topology import TopologicalMap
+from .topological_map import TopologicalMap
 
 #: endif
 

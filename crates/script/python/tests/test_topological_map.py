@@ -1,7 +1,7 @@
 import itertools
 
 import pytest
-from pydslrep_parts.topology import Exit, TopologicalMap
+from pydslrep_parts.topological_map import Exit, TopologicalMap
 
 
 def ring() -> TopologicalMap:
