@@ -51,7 +51,7 @@ struct RobotModel {
     // Written as a list: the formatter does not join its lines even if there is only one.
     sensors: Vec<String>,
     /// The sensors for exploring.
-    eyes: Vec<String>,
+    slam_sensors: Vec<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -189,7 +189,7 @@ fn robot(index: usize, robot: &Robot, movements: &[Movement]) -> Result<RobotMod
             .map(|wheel| WheelModel { name: wheel.name.clone(), radius: float(wheel.radius) })
             .collect(),
         sensors: sensors_looked_at(index, robot, movements),
-        eyes: eyes(index, robot, movements),
+        slam_sensors: slam_sensors(index, robot, movements),
     })
 }
 
@@ -202,17 +202,17 @@ fn sensors_looked_at(index: usize, robot: &Robot, movements: &[Movement]) -> Vec
             }
         }
     }
-    let eyes = eyes(index, robot, movements);
+    let slam_sensors = slam_sensors(index, robot, movements);
     let sensors = robot
         .sensors
         .iter()
         .zip(looked_at)
-        .filter(|(sensor, looked_at)| *looked_at || eyes.contains(&sensor.name));
+        .filter(|(sensor, looked_at)| *looked_at || slam_sensors.contains(&sensor.name));
     sensors.map(|(sensor, _)| sensor.name.clone()).collect()
 }
 
 /// The sensors for exploring; empty if the robot does not explore.
-fn eyes(index: usize, robot: &Robot, movements: &[Movement]) -> Vec<String> {
+fn slam_sensors(index: usize, robot: &Robot, movements: &[Movement]) -> Vec<String> {
     if !movements.iter().any(|movement| movement.robot == index && explores(movement)) {
         return Vec::new();
     }

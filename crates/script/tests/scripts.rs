@@ -75,7 +75,7 @@ fn targets_differ_in_the_contact_with_the_simulator_only() {
             Some(first.to_owned() + rest.split_once("    sys.exit(2)\n")?.1)
         };
         let before = without_client(before).unwrap_or_else(|| before.to_owned());
-        (before, after.replace("# Where V-REP runs.", "# Where CoppeliaSim runs."))
+        (before, after.replace("# The host of V-REP.", "# The host of CoppeliaSim."))
     };
     assert_eq!(around(&vrep), around(&coppeliasim));
 }
@@ -185,7 +185,7 @@ fn names_used_by_python_or_the_script_stay_names() {
 
 
         def drive(fleet: Fleet) -> None:
-            """Environment None: its movements in their order."""
+            """Runs the movements of environment None in order."""
             fleet.run(movement_class)
             fleet.run(movement_print)
             fleet.run(movement_main)
@@ -230,7 +230,7 @@ fn long_names_do_not_break_lines() {
 
 
         def drive(fleet: Fleet) -> None:
-            """Environment <long>: its movements in their order."""
+            """Runs the movements of environment <long> in order."""
             fleet.run(movement_1)
 
 
@@ -274,7 +274,7 @@ fn another_host() {
 fn empty_environments_and_movements_are_programs() {
     let nothing = environment("nothing", vec![], vec![], vec![]);
     assert!(script(&nothing).contains("ROBOTS: tuple[RobotModel, ...] = ()\n"));
-    assert!(script(&nothing).contains("in their order.\"\"\"\n\n\nif __name__"));
+    assert!(script(&nothing).contains("in order.\"\"\"\n\n\nif __name__"));
     let idle = environment(
         "idle",
         vec![robot("r", Drive::TwoWheel, 1)],
@@ -285,7 +285,7 @@ fn empty_environments_and_movements_are_programs() {
 }
 
 #[test]
-fn only_exploring_robots_have_eyes_and_bumpers_are_none() {
+fn only_exploring_robots_have_slam_sensors_without_bumpers() {
     let mut environment = slam();
     environment.robots[0].sensors.push(Sensor { name: "bumper".to_owned(), kind: SensorKind::Bumper });
     let idle = with_sensors(robot("idle", Drive::TwoWheel, 19998), &["fSensor"]);
@@ -293,11 +293,11 @@ fn only_exploring_robots_have_eyes_and_bumpers_are_none() {
     let text = script(&environment);
     assert!(!text.contains("bumper"));
     assert_eq!(
-        (text.matches("\n        eyes=[\n").count(), text.matches("\n        sensors=[\n").count()),
+        (text.matches("\n        slam_sensors=[\n").count(), text.matches("\n        sensors=[\n").count()),
         (1, 1)
     );
     let without = script(&sensors());
-    for word in ["slam", "Explorer", "heapq", "eyes", "importlib"] {
+    for word in ["slam", "Explorer", "heapq", "slam_sensors", "importlib"] {
         assert!(text.contains(word) && !without.contains(word), "{word}");
     }
 }

@@ -1,6 +1,6 @@
-"""The parts that generated scripts are put together from.
+"""The parts of generated scripts.
 
-Every module is a plain Python file with its own tests, and at the same time a template: lines that begin with `#:` are
-statements of the template engine. The block `#: if standalone` holds what a module needs on its own and a script has at
-its top; other blocks hold what only some programs need.
+Each module is both a tested Python file and a template: lines that begin with `#:` are statements of the template
+engine. The block `#: if standalone` holds the imports of a module, which a script has at its top; other blocks hold code
+that only some programs need.
 """

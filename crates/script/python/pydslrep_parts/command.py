@@ -12,17 +12,17 @@ from .coppeliasim import PORT_HELP, REALTIME_HELP, SIMULATOR
 from .errors import MovementError, SetupError, SimulatorError
 from .fleet import Fleet
 from .model import RobotModel
-from .slam_session import Survey, add_survey_options
+from .slam_session import SlamSession, add_slam_options
 from .trace_file import Trace
 
 #: endif
 
 
 def parse_port(text: str) -> tuple[str | None, int]:
-    """PORT or ROBOT=PORT."""
+    """Parses PORT or ROBOT=PORT."""
     robot, equals, port = text.rpartition("=")
     if not port.isdecimal() or not 1 <= int(port) <= 65535:
-        raise argparse.ArgumentTypeError(f"{port!r} is no port from 1 to 65535")
+        raise argparse.ArgumentTypeError(f"{port!r} is not a port from 1 to 65535")
     return robot if equals else None, int(port)
 
 
@@ -34,12 +34,12 @@ def parse_arguments(
     environment: str = "environment",
     #: endif
 ) -> argparse.Namespace:
-    """Reads the command line; `ports` of the result has the port of every robot."""
+    """Parses the command line; `ports` of the result has every robot's port."""
     parser = argparse.ArgumentParser(
         description=description, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument(
-        "--host", default=host, help=f"where {SIMULATOR} runs (%(default)s)"
+        "--host", default=host, help=f"host of {SIMULATOR} (default: %(default)s)"
     )
     parser.add_argument(
         "--port",
@@ -53,19 +53,17 @@ def parse_arguments(
         "--trace",
         type=Path,
         metavar="FILE",
-        help="write every step to a file, as JSON lines",
+        help="write every step to FILE, as JSON lines",
     )
     parser.add_argument("--realtime", action="store_true", help=REALTIME_HELP)
     #: if slam
-    add_survey_options(parser, environment)
+    add_slam_options(parser, environment)
     #: endif
     options = parser.parse_args()
     options.ports = {model.name: model.port for model in models}
     for robot, port in sorted(options.port, key=lambda choice: choice[0] is not None):
         if robot is not None and robot not in options.ports:
-            parser.error(
-                f"there is no robot {robot}; there are: {', '.join(options.ports)}"
-            )
+            parser.error(f"no robot {robot}; the robots are {', '.join(options.ports)}")
         options.ports.update(dict.fromkeys([robot] if robot else options.ports, port))
     return options
 
@@ -79,7 +77,7 @@ def main(
     environment: str = "environment",
     #: endif
 ) -> int:
-    """Runs an environment; the result is the exit code."""
+    """Runs an environment and returns the exit code."""
     options = parse_arguments(
         description,
         host,
@@ -96,7 +94,7 @@ def main(
         with trace_file or nullcontext():
             fleet = Fleet(Trace(trace_file))
             #: if slam
-            fleet.survey = Survey(environment, options)
+            fleet.slam_session = SlamSession(environment, options)
             #: endif
             try:
                 for model in models:

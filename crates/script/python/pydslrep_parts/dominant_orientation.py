@@ -1,70 +1,75 @@
 #: if standalone
-"""Which way walls run: rooms are built at right angles, mostly."""
+"""The dominant orientation of walls: most rooms have right angles."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from .scan import Mark
-from .scan_matching import DRIFT
+from .scan import SurfacePoint
+from .scan_matching import DRIFT_SIGMA
 
 #: endif
 
 
 RIGHT_ANGLE = math.pi / 2.0
-SPREAD = math.radians(3.5)  # of the normals of marks on the same wall
-ASIDE = math.radians(
-    8.0
-)  # so far from the direction of the others, a wall is a slanting one
+NORMAL_SPREAD = math.radians(3.5)  # of the normals of points on the same wall
+MAX_DEVIATION = math.radians(8.0)  # of an inlier; walls beyond it are oblique
 
 
 @dataclass(frozen=True)
-class Grain:
-    """The direction of walls that are parallel or at right angles."""
+class DominantOrientation:
+    """The direction of walls that are parallel or at right angles to each other."""
 
-    angle: float  # radians, up to full right angles
-    drift: float  # radians that the sweep turned further than the wheels did
-    share: float  # of the marks that have this direction
+    angle: float  # radians, modulo a right angle
+    drift: float  # radians that the robot turned further than the wheels report
+    inlier_ratio: float  # of the points that have this direction
 
 
-def grain_of(marks: Sequence[Mark], guess: float, within: float) -> Grain | None:
-    """The direction of most walls, that near the one it was thought to be; None without walls."""
-    if len(marks) < 20:
+def find_dominant_orientation(
+    points: Sequence[SurfacePoint], guess: float, within: float
+) -> DominantOrientation | None:
+    """The direction of most walls near a guess; None if there are too few points."""
+    if len(points) < 20:
         return None
-    angle, drift = mode_of(marks, guess, within), 0.0
+    angle, drift = most_common_orientation(points, guess, within), 0.0
     for _ in range(8):
-        # Least squares for both, with a weight that makes light of what is far off.
-        aa, ad, dd, ra, rd = 0.0, 0.0, SPREAD**2 / DRIFT**2, 0.0, 0.0
-        for mark in marks:
-            off = math.remainder(mark.normal + drift * mark.when - angle, RIGHT_ANGLE)
-            weight = 0.2 / (1.0 + (off / SPREAD / 1.5) ** 2) ** 2
+        # Weighted least squares for both; outliers get little weight.
+        aa, ad, dd, ra, rd = 0.0, 0.0, NORMAL_SPREAD**2 / DRIFT_SIGMA**2, 0.0, 0.0
+        for point in points:
+            error = math.remainder(
+                point.normal + drift * point.phase - angle, RIGHT_ANGLE
+            )
+            weight = 0.2 / (1.0 + (error / NORMAL_SPREAD / 1.5) ** 2) ** 2
             aa += weight
-            ad -= weight * mark.when
-            dd += weight * mark.when**2
-            ra += weight * off
-            rd -= weight * mark.when * off
-        rd -= SPREAD**2 / DRIFT**2 * drift
+            ad -= weight * point.phase
+            dd += weight * point.phase**2
+            ra += weight * error
+            rd -= weight * point.phase * error
+        rd -= NORMAL_SPREAD**2 / DRIFT_SIGMA**2 * drift
         determinant = aa * dd - ad * ad
         if determinant <= 0.0:
             return None
         angle += (ra * dd - rd * ad) / determinant
         drift += (aa * rd - ad * ra) / determinant
-    fitting = sum(
-        abs(math.remainder(m.normal + drift * m.when - angle, RIGHT_ANGLE)) < ASIDE
-        for m in marks
+    inliers = sum(
+        abs(math.remainder(p.normal + drift * p.phase - angle, RIGHT_ANGLE))
+        < MAX_DEVIATION
+        for p in points
     )
-    return Grain(angle, drift, fitting / len(marks))
+    return DominantOrientation(angle, drift, inliers / len(points))
 
 
-def mode_of(marks: Sequence[Mark], guess: float, within: float) -> float:
-    """The direction that most marks have."""
-    count = int(within / SPREAD)
-    tried = [guess + index * SPREAD for index in range(-count, count + 1)]
-    tried.sort(key=lambda angle: abs(angle - guess))
+def most_common_orientation(
+    points: Sequence[SurfacePoint], guess: float, within: float
+) -> float:
+    """The direction that most points have."""
+    count = int(within / NORMAL_SPREAD)
+    candidates = [guess + index * NORMAL_SPREAD for index in range(-count, count + 1)]
+    candidates.sort(key=lambda angle: abs(angle - guess))
     return max(
-        tried,
+        candidates,
         key=lambda angle: sum(
-            abs(math.remainder(mark.normal - angle, RIGHT_ANGLE)) < SPREAD
-            for mark in marks
+            abs(math.remainder(point.normal - angle, RIGHT_ANGLE)) < NORMAL_SPREAD
+            for point in points
         ),
     )

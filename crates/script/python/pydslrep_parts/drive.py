@@ -1,4 +1,4 @@
-"""Any of the drives, as the modules use them; a script names those that it has."""
+"""The union of all drives; a script has only those that it uses."""
 
 from .drive_four_mecanum import FourMecanumDrive
 from .drive_four_wheel import FourWheelDrive

@@ -13,10 +13,10 @@ from .pose import Pose
 class FourMecanumDrive:
     """Four mecanum wheels: left-front, left-rear, right-front, right-rear.
 
-    Their rollers form an X as seen from above, so the robot can also move sideways.
+    Seen from above their rollers form an X, so the robot can also move sideways.
     """
 
-    # What is off is brought back at this rate (1/s), no faster than CORRECTION_SPEED (m/s).
+    # Position errors are corrected at this rate (1/s), up to CORRECTION_SPEED (m/s).
     CORRECTION_RATE = 2.0
     CORRECTION_SPEED = 0.05
 
@@ -30,11 +30,9 @@ class FourMecanumDrive:
             left_front[0] + right_front[0] - left_rear[0] - right_rear[0]
         ) / 2.0
         if track <= 0.0:
-            raise SetupError(
-                "the left wheels do not stand to the left of the right ones"
-            )
+            raise SetupError("the left wheels are not to the left of the right wheels")
         if wheelbase <= 0.0:
-            raise SetupError("the front wheels do not stand ahead of the rear ones")
+            raise SetupError("the front wheels are not ahead of the rear wheels")
         self.track = track
         self.wheelbase = wheelbase
         self.radii = tuple(radii)
@@ -43,7 +41,7 @@ class FourMecanumDrive:
     def wheel_rates(
         self, forward: float, sideways: float, turn_rate: float
     ) -> list[float]:
-        """Inverse kinematics: from m/s (ahead, to the left) and rad/s to rad/s of the wheels."""
+        """Inverse kinematics: wheel rates in rad/s for m/s (ahead, left) and rad/s."""
         turn = self.turning_radius * turn_rate
         rims = (
             forward - sideways - turn,
@@ -54,12 +52,12 @@ class FourMecanumDrive:
         return [rim / radius for rim, radius in zip(rims, self.radii, strict=True)]
 
     def follow_line(self, speed: float, offset: Pose, _to_go: float) -> list[float]:
-        """Wheel rates that drive along a line; `offset` is the pose seen from it."""
+        """Wheel rates that drive along a line; `offset` is the pose relative to it."""
         turn_rate = -self.CORRECTION_RATE * offset.theta
         return self._along(offset.theta, speed, self._correction(offset.y), turn_rate)
 
     def turn_in_place(self, rim_speed: float, offset: Pose) -> list[float]:
-        """Wheel rates that turn the robot on the spot that `offset` is seen from."""
+        """Wheel rates that turn on a spot; `offset` is the pose relative to it."""
         turn_rate = rim_speed / self.turning_radius
         ahead, sideways = self._correction(offset.x), self._correction(offset.y)
         return self._along(offset.theta, ahead, sideways, turn_rate)
@@ -67,7 +65,7 @@ class FourMecanumDrive:
     def _along(
         self, theta: float, ahead: float, sideways: float, turn_rate: float
     ) -> list[float]:
-        """Wheel rates for velocities in a frame that the robot is turned by `theta` in."""
+        """Wheel rates for velocities in a frame; `theta` is the robot's heading in it."""
         cos, sin = math.cos(theta), math.sin(theta)
         return self.wheel_rates(
             cos * ahead + sin * sideways, cos * sideways - sin * ahead, turn_rate

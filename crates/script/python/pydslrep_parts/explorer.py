@@ -1,287 +1,298 @@
 #: if standalone
-"""Exploring: where to go next, until there is nowhere left."""
+"""Exploration: chooses where to go next until no frontier is left."""
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from .occupancy_grid import Floor, Place
+from .occupancy_grid import OccupancyGrid, Position
 from .pose import Pose, wrap_angle
-from .topological_map import Exit, Node, TopologicalMap
+from .topological_map import Frontier, Node, TopologicalMap
 
 #: endif
 
 
 class Rover(Protocol):
-    """What exploring needs of a robot, which shows its floor what it sees on the way."""
+    """The robot as the explorer uses it; updates the occupancy grid as it moves."""
 
     def pose(self) -> Pose:
-        """Where it is."""
+        """The estimated pose."""
 
     def turn_by(self, angle: float) -> None:
-        """Turns in place, to the left where positive."""
+        """Turns in place, to the left if positive."""
 
     def localise(self) -> int:
-        """Makes sure of where it is, if it has to; the number of this place."""
+        """Corrects the estimated pose and returns the number of a new keyframe."""
 
-    def place(self, number: int) -> Place:
-        """Where a place is, as far as is known by now."""
+    def position(self, number: int) -> Position:
+        """The current estimate of a keyframe's position."""
 
-    def drive_to(self, goal: Place, is_enough: Callable[[], bool]) -> bool:
-        """Turns to a place and drives there; whether it arrived, or something came near.
+    def drive_to(self, goal: Position, should_stop: Callable[[], bool]) -> bool:
+        """Turns to a goal and drives there; returns False if an obstacle blocks it.
 
-        Where `is_enough` says so it stops before, which is as good as arriving.
+        Stops early once `should_stop` returns True, which counts as arriving.
         """
 
-    def retreat_to(self, goal: Place) -> None:
-        """Drives back the way it came."""
+    def back_up_to(self, goal: Position) -> None:
+        """Reverses to a position behind the robot."""
 
 
-class NoEndError(Exception):
-    """There seems to be no end to what can be explored; says what was found so far."""
+class UnboundedAreaError(Exception):
+    """The area seems to be unbounded."""
 
 
 @dataclass(frozen=True)
-class Way:
-    """Where to go next: by an exit of a node to a new place, or to a known one."""
+class Target:
+    """Where to go next: through a node's frontier, to a new or a known node."""
 
     node: Node
-    exit: Exit
-    goal: Place
-    known: Node | None = None
+    frontier: Frontier
+    goal: Position
+    known_node: Node | None = None
 
 
 class Explorer:
-    """Explores by topology.
+    """Explores an area and builds its topological map.
 
-    Nodes are places, edges are drives that were made. The directions in which a node has
-    room for a step are its exits; one is unexplored while no node is near its end.
+    A node's frontiers are the directions in which the robot has room for one step. A
+    frontier is unexplored until a node is near its end.
     """
 
-    DIRECTIONS = 24  # that are tried at a node
-    MOST_NODES = 1000  # that a closed area can be thought to have
+    BEARINGS = 24  # that are tested at a node
+    MAX_NODES = 1000  # of a closed area
 
     def __init__(
         self,
         rover: Rover,
-        floor: Floor,
+        grid: OccupancyGrid,
         step: float,
-        blind: float,
+        blind_angle: float,
         extent: float,
         *,
-        keeps_to_walls: bool = False,
+        prefers_walls: bool = False,
     ) -> None:
-        """`step` is the length of an edge, `blind` the angle that no sensor looks at.
+        """`step` is the length of an edge, `blind_angle` the widest gap between sensors.
 
-        A closed area ends less than `extent` away from where exploring starts, in metres.
+        `extent` limits the distance from the start, in metres.
         """
         self.map = TopologicalMap()
-        self._rover, self._floor = rover, floor
-        self._step, self._blind, self._extent = step, blind, extent
-        # A robot that needs walls to know where it is goes into the open last, metres.
-        self._shyness = 4.0 * step if keeps_to_walls else 0.0
-        self._spacing = 0.8 * step  # nearer to a node, a place is the same
-        self._sure = (
-            1.5 * step
-        )  # to be driven without making sure of where the robot is
-        self._loop = 4.0 * step  # a known way of this length is worth a shorter one
-        self._numbers: list[int] = []  # of the nodes' places, as the rover counts them
-        self._dead: set[tuple[int, int]] = set()  # node and direction: something came
+        self._rover, self._grid = rover, grid
+        self._step, self._blind_angle, self._extent = step, blind_angle, extent
+        # In metres: a robot that localises by walls explores open space last.
+        self._open_space_cost = 4.0 * step if prefers_walls else 0.0
+        self._spacing = 0.8 * step  # a position nearer to a node belongs to that node
+        self._max_unlocalised = 1.5 * step  # to drive without localising
+        self._min_loop = 4.0 * step  # a shortcut must save a path of this length
+        self._keyframes: list[int] = []  # the rover's keyframe of each node
+        self._blocked: set[tuple[int, int]] = set()  # node and bearing index
 
     def explore(self) -> None:
-        """Explores until no exit is left; raises NoEndError."""
-        self._here = self._settle()
-        while way := self._nearest_way():
-            if self._travel(way.node):
-                self._leave(way)
+        """Explores until no frontier is left; raises UnboundedAreaError."""
+        self._here = self._add_node()
+        while target := self._nearest_target():
+            if self._travel_to(target.node):
+                self._explore_frontier(target)
 
-    def _nearest_way(self) -> Way | None:
-        """The unexplored exit with the shortest way to it; straight ahead, if it can be."""
+    def _nearest_target(self) -> Target | None:
+        """The unexplored frontier with the shortest path, preferably straight ahead."""
         distances = self.map.distances(self._here)
         heading = self._rover.pose().theta
         best, least = None, math.inf
-        for number, away in distances.items():
-            if away >= least:
+        for number, distance in distances.items():
+            if distance >= least:
                 continue
             node = self.map.nodes[number]
-            for exit_ in node.exits:
-                if exit_.leads_to is not None:
+            for frontier in node.frontiers:
+                if frontier.target is not None:
                     continue
-                turn = abs(wrap_angle(exit_.bearing - heading)) if not away else 0.0
-                cost = away + 0.1 * self._step * turn
-                if cost < least and self._shyness:
-                    goal = self._end(node, exit_.bearing)
-                    cost += self._shyness * self._floor.is_bare(goal)
-                if cost < least and (way := self._way(node, exit_)):
-                    best, least = way, cost
+                is_here = not distance
+                turn = abs(wrap_angle(frontier.bearing - heading)) if is_here else 0.0
+                cost = distance + 0.1 * self._step * turn
+                if cost < least and self._open_space_cost:
+                    goal = self._endpoint(node, frontier.bearing)
+                    cost += self._open_space_cost * self._grid.is_featureless(goal)
+                if cost < least and (target := self._target(node, frontier)):
+                    best, least = target, cost
         return best
 
-    def _way(self, node: Node, exit_: Exit) -> Way | None:
-        """What there is to explore by an exit; it leads to a known node where nothing."""
-        goal = self._end(node, exit_.bearing)
-        for known in self.map.near(goal, self._spacing):
-            if known is node or not self._floor.is_open(goal, known.place):
+    def _target(self, node: Node, frontier: Frontier) -> Target | None:
+        """What to explore through a frontier; None if it leads to a known node."""
+        goal = self._endpoint(node, frontier.bearing)
+        for known_node in self.map.nodes_near(goal, self._spacing):
+            if known_node is node or not self._grid.is_path_clear(
+                goal, known_node.position
+            ):
                 continue
-            if self._is_shortcut(node, known):
-                return Way(node, exit_, known.place, known)
-            exit_.leads_to = known.number
+            if self._closes_loop(node, known_node):
+                return Target(node, frontier, known_node.position, known_node)
+            frontier.target = known_node.number
             return None
-        return Way(node, exit_, goal)
+        return Target(node, frontier, goal)
 
-    def _is_shortcut(self, node: Node, known: Node) -> bool:
+    def _closes_loop(self, node: Node, known_node: Node) -> bool:
         """Whether driving to a known node closes a loop."""
-        distance = self.map.distances(node).get(known.number, math.inf)
-        return distance > self._loop and self._floor.is_open(node.place, known.place)
+        distance = self.map.distances(node).get(known_node.number, math.inf)
+        return distance > self._min_loop and self._grid.is_path_clear(
+            node.position, known_node.position
+        )
 
-    def _travel(self, node: Node) -> bool:
-        """Drives by known edges; whether it arrived."""
-        unsure = 0.0
-        for following in self.map.path(self._here, node):
-            unsure += self._here.ways[following.number]
-            if not self._rover.drive_to(following.place, lambda: False):
-                self._rover.retreat_to(self._here.place)
-                self.map.block(self._here, following)
+    def _travel_to(self, node: Node) -> bool:
+        """Drives along known edges; returns False if an obstacle blocks one."""
+        unlocalised = 0.0
+        for next_node in self.map.path(self._here, node):
+            unlocalised += self._here.neighbours[next_node.number]
+            if not self._rover.drive_to(next_node.position, lambda: False):
+                self._rover.back_up_to(self._here.position)
+                self.map.block(self._here, next_node)
                 return False
-            self._here = following
-            if unsure > self._sure or following is node:
+            self._here = next_node
+            if unlocalised > self._max_unlocalised or next_node is node:
                 self._localise()
-                unsure = 0.0
+                unlocalised = 0.0
         return True
 
-    def _leave(self, way: Way) -> None:
-        """Drives by an exit."""
-        node = way.node
-        is_enough = self._exits_change(way) if way.known is None else lambda: False
-        if not self._rover.drive_to(way.goal, is_enough):
-            # Whatever is there now, this is no exit any more.
-            self._rover.retreat_to(node.place)
-            node.exits.remove(way.exit)
-            self._dead.add((node.number, self._direction(way.exit.bearing)))
+    def _explore_frontier(self, target: Target) -> None:
+        """Drives through a frontier."""
+        node = target.node
+        should_stop = (
+            self._openings_change(target)
+            if target.known_node is None
+            else lambda: False
+        )
+        if not self._rover.drive_to(target.goal, should_stop):
+            # An obstacle has appeared: this is no longer a frontier.
+            self._rover.back_up_to(node.position)
+            node.frontiers.remove(target.frontier)
+            self._blocked.add(
+                (node.number, self._bearing_index(target.frontier.bearing))
+            )
             return
-        if way.known:
+        if target.known_node:
             self._localise()
-        self._here = way.known or self._settle()
+        self._here = target.known_node or self._add_node()
         self.map.connect(node, self._here)
-        way.exit.leads_to = self._here.number
+        target.frontier.target = self._here.number
 
-    def _exits_change(self, way: Way) -> Callable[[], bool]:
-        """Tells where a side opens: a place with other exits than the one before."""
+    def _openings_change(self, target: Target) -> Callable[[], bool]:
+        """Whether a passage opens to a side that was closed at the last node."""
         sides = (math.pi / 2.0, -math.pi / 2.0)
 
         def are_open(pose: Pose) -> list[bool]:
             ends = (pose.turned(side).ahead(self._step) for side in sides)
             start = pose.x, pose.y
-            return [self._floor.is_open(start, (end.x, end.y)) for end in ends]
+            return [self._grid.is_path_clear(start, (end.x, end.y)) for end in ends]
 
-        before = are_open(Pose(way.node.x, way.node.y, way.exit.bearing))
+        before = are_open(Pose(target.node.x, target.node.y, target.frontier.bearing))
 
-        def is_enough() -> bool:
+        def should_stop() -> bool:
             here = self._rover.pose()
-            if math.dist((here.x, here.y), way.node.place) < 0.5 * self._step:
+            if math.dist((here.x, here.y), target.node.position) < 0.5 * self._step:
                 return False
             return any(
                 now and not was for now, was in zip(are_open(here), before, strict=True)
             )
 
-        return is_enough
+        return should_stop
 
-    def _settle(self) -> Node:
-        """Makes a node here, and finds its exits and what is new about those near it."""
+    def _add_node(self) -> Node:
+        """Adds a node here and updates the frontiers of all nodes nearby."""
         number = self._localise()
-        here = Pose(*self._rover.place(number), 0.0)
+        here = Pose(*self._rover.position(number), 0.0)
         node = self.map.add(here.x, here.y)
-        self._numbers.append(number)
-        self._floor.stand(here.x, here.y)
-        self._check_end(node)
+        self._keyframes.append(number)
+        self._grid.mark_footprint(here.x, here.y)
+        self._check_bounds(node)
         self._look_around(node)
-        for near in self.map.near(node.place, 4.0 * self._step):
-            self._find_exits(near)
+        for nearby in self.map.nodes_near(node.position, 4.0 * self._step):
+            self._find_frontiers(nearby)
         return node
 
-    def _check_end(self, node: Node) -> None:
-        """Raises NoEndError where the area seems to be open."""
-        away = math.dist(node.place, self.map.nodes[0].place)
-        if away > self._extent:
-            raise NoEndError(
-                f"got {away:.1f} m away from its start without an end: is the area closed? "
-                f"If it is that large, say --extent with more than {self._extent:g} m"
+    def _check_bounds(self, node: Node) -> None:
+        """Raises UnboundedAreaError if the area seems to be open."""
+        distance = math.dist(node.position, self.map.nodes[0].position)
+        if distance > self._extent:
+            raise UnboundedAreaError(
+                f"the area is still open {distance:.1f} m from the start: is it closed? "
+                f"If it is larger, set --extent to more than {self._extent:g} m"
             )
-        if len(self.map.nodes) >= self.MOST_NODES:
-            raise NoEndError(
-                f"found {len(self.map.nodes)} places and no end: is the area closed?"
+        if len(self.map.nodes) >= self.MAX_NODES:
+            raise UnboundedAreaError(
+                f"the area is still open after {len(self.map.nodes)} nodes: is it closed?"
             )
 
     def _localise(self) -> int:
-        """Makes sure of where the robot is, and of where the nodes are by that."""
+        """Localises the robot and corrects the nodes' positions."""
         number = self._rover.localise()
-        for node, own in zip(self.map.nodes, self._numbers, strict=True):
-            if (place := self._rover.place(own)) != node.place:
-                self.map.move(node, place)
+        for node, keyframe in zip(self.map.nodes, self._keyframes, strict=True):
+            if (position := self._rover.position(keyframe)) != node.position:
+                self.map.move(node, position)
         return number
 
     def _look_around(self, node: Node) -> None:
-        """Turns until all about a node was seen, to the side where less is missing."""
+        """Turns until all bearings are explored, towards the side with fewer missing."""
         turned, side = 0.0, 1.0
-        while turned < self._blind and (missing := self._undecided(node)):
+        while turned < self._blind_angle and (
+            missing := self._unexplored_bearings(node)
+        ):
             if turned == 0.0:
                 heading = self._rover.pose().theta
                 left = sum(wrap_angle(bearing - heading) > 0.0 for bearing in missing)
                 side = 1.0 if 2 * left >= len(missing) else -1.0
-            angle = min(self._blind - turned, math.pi / 6.0)
+            angle = min(self._blind_angle - turned, math.pi / 6.0)
             self._rover.turn_by(side * angle)
             turned += angle
-        self._floor.stand(node.x, node.y)
+        self._grid.mark_footprint(node.x, node.y)
 
-    def _undecided(self, node: Node) -> list[float]:
-        """The directions in which nobody has looked yet."""
+    def _unexplored_bearings(self, node: Node) -> list[float]:
+        """The bearings that sensors have not covered yet."""
         return [
             bearing
             for bearing in self._bearings()
-            if self._floor.is_undecided(node.place, self._end(node, bearing))
+            if self._grid.is_unexplored(node.position, self._endpoint(node, bearing))
         ]
 
-    def _find_exits(self, node: Node) -> None:
-        """Sees which directions are open by now; what is known of exits stays."""
-        known = {self._direction(way.bearing): way for way in node.exits}
+    def _find_frontiers(self, node: Node) -> None:
+        """Adds frontiers for bearings that are open now; keeps the known ones."""
+        known = {self._bearing_index(frontier.bearing) for frontier in node.frontiers}
         for bearing in self._open_bearings(node):
-            direction = self._direction(bearing)
-            if direction not in known and (node.number, direction) not in self._dead:
-                node.exits.append(Exit(bearing))
+            index = self._bearing_index(bearing)
+            if index not in known and (node.number, index) not in self._blocked:
+                node.frontiers.append(Frontier(bearing))
 
     def _open_bearings(self, node: Node) -> list[float]:
-        """The middle of each open range of directions; wide ones have several."""
+        """The middle of each open range of bearings; wide ranges give several."""
         bearings = self._bearings()
-        is_open = [
-            self._floor.is_open(node.place, self._end(node, bearing))
+        is_clear = [
+            self._grid.is_path_clear(node.position, self._endpoint(node, bearing))
             for bearing in bearings
         ]
-        if all(is_open):
-            return bearings[:: self.DIRECTIONS // 8]
+        if all(is_clear):
+            return bearings[:: self.BEARINGS // 8]
         found: list[float] = []
-        first = is_open.index(False)
+        first = is_clear.index(False)
         run: list[int] = []
-        for index in range(first, first + self.DIRECTIONS + 1):
-            if is_open[index % self.DIRECTIONS]:
+        for index in range(first, first + self.BEARINGS + 1):
+            if is_clear[index % self.BEARINGS]:
                 run.append(index)
             elif run:
-                count = 1 + (len(run) - 1) * 8 // self.DIRECTIONS
+                count = 1 + (len(run) - 1) * 8 // self.BEARINGS
                 for part in range(count):
-                    share = 0.5 if count == 1 else part / (count - 1)
-                    at = run[round(share * (len(run) - 1))]
-                    found.append(bearings[at % self.DIRECTIONS])
+                    fraction = 0.5 if count == 1 else part / (count - 1)
+                    chosen = run[round(fraction * (len(run) - 1))]
+                    found.append(bearings[chosen % self.BEARINGS])
                 run = []
         return found
 
     def _bearings(self) -> list[float]:
         return [
-            wrap_angle(index * math.tau / self.DIRECTIONS)
-            for index in range(self.DIRECTIONS)
+            wrap_angle(index * math.tau / self.BEARINGS)
+            for index in range(self.BEARINGS)
         ]
 
-    def _direction(self, bearing: float) -> int:
-        return round(bearing / math.tau * self.DIRECTIONS) % self.DIRECTIONS
+    def _bearing_index(self, bearing: float) -> int:
+        return round(bearing / math.tau * self.BEARINGS) % self.BEARINGS
 
-    def _end(self, node: Node, bearing: float) -> Place:
+    def _endpoint(self, node: Node, bearing: float) -> Position:
         end = Pose(node.x, node.y, bearing).ahead(self._step)
         return end.x, end.y

@@ -1,5 +1,5 @@
 #: if standalone
-"""The robots of an environment and the movements they make."""
+"""The robots of an environment, and how they run its movements."""
 
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor, wait
@@ -11,20 +11,20 @@ from .errors import MovementCancelledError, SimulatorError
 from .model import RobotModel
 from .movement import Movement
 from .robot import Robot
-from .slam_session import Survey
+from .slam_session import SlamSession
 from .trace_file import Trace
 
 #: endif
 
 
 class Fleet:
-    """The robots of the environment, and which of them hold the time."""
+    """The robots of the environment, and which of them step the simulation."""
 
     def __init__(self, trace: Trace) -> None:
         self._trace = trace
         self._robots: dict[str, Robot] = {}
         #: if slam
-        self.survey: Survey | None = None
+        self.slam_session: SlamSession | None = None
         #: endif
         #: if parallel
         self._cancelled = Event()
@@ -39,46 +39,48 @@ class Fleet:
         robot.cancelled = self._cancelled
         #: endif
         #: if slam
-        robot.survey = self.survey
+        robot.slam_session = self.slam_session
         #: endif
         self._robots[model.name] = robot
 
     def start(self) -> None:
-        """Starts the simulation, but lets no time pass before the first movement."""
+        """Starts the simulation; its time stands still until the first movement."""
         robots = list(self._robots.values())
-        self._hold_time(robots[:1])
+        self._enable_stepping(robots[:1])
         for robot in robots:
             robot.body.start()
-            # Whoever drove them before may have left them driving.
+            # A previous client may have left the wheels turning.
             robot.body.set_wheel_rates([0.0] * len(robot.body.model.wheels))
 
     def run(self, movement: Movement) -> None:
-        """Runs a movement to its end; raises MovementError."""
-        self._hold_time([self._robots[movement.robot]])
+        """Runs a movement; raises MovementError."""
+        self._enable_stepping([self._robots[movement.robot]])
         self._drive(movement)
         self._trace.write()
 
     #: if parallel
     def run_together(self, *movements: Movement) -> None:
-        """Runs movements at the same time, a thread each; raises MovementError."""
-        self._hold_time([self._robots[movement.robot] for movement in movements])
+        """Runs movements in parallel, one thread each; raises MovementError."""
+        self._enable_stepping([self._robots[movement.robot] for movement in movements])
         self._driving = len(movements)
         with ThreadPoolExecutor(len(movements)) as pool:
-            runs = [pool.submit(self._drive_among, movement) for movement in movements]
+            runs = [
+                pool.submit(self._drive_in_parallel, movement) for movement in movements
+            ]
             try:
                 while wait(runs, timeout=0.5).not_done:
-                    pass  # waking up every now and then lets Ctrl-C through on any system
+                    pass  # waking up regularly lets Ctrl-C through on any system
             except KeyboardInterrupt:
                 self._cancelled.set()
                 raise
         self._trace.write()
         errors = [error for run in runs if (error := run.exception())]
-        # What stopped the others comes first.
+        # The error that cancelled the others comes first.
         errors.sort(key=lambda error: isinstance(error, MovementCancelledError))
         if errors:
             raise errors[0]
 
-    def _drive_among(self, movement: Movement) -> None:
+    def _drive_in_parallel(self, movement: Movement) -> None:
         body = self._robots[movement.robot].body
         try:
             self._drive(movement)
@@ -86,13 +88,13 @@ class Fleet:
             self._cancelled.set()
             body.stop()
             with suppress(SimulatorError):
-                body.release_time()  # for the others to go on, and see that they must stop
+                body.disable_stepping()  # so the others proceed and see the cancellation
             raise
         with self._lock:
             self._driving -= 1
             if self._driving > 0:
-                # The others need not wait for this robot; the last one keeps the time.
-                body.release_time()
+                # The others need not wait for this robot; the last one keeps stepping.
+                body.disable_stepping()
 
     #: endif
     def _drive(self, movement: Movement) -> None:
@@ -103,17 +105,17 @@ class Fleet:
         except SimulatorError as error:
             raise robot.failure(error) from error
 
-    def _hold_time(self, robots: Iterable[Robot]) -> None:
-        """Time passes only as these robots advance; it stands still in between."""
-        holding = list(robots)
-        for robot in holding:
-            robot.body.hold_time()
+    def _enable_stepping(self, robots: Iterable[Robot]) -> None:
+        """From now on, time passes only when all of these robots advance."""
+        stepping = list(robots)
+        for robot in stepping:
+            robot.body.enable_stepping()
         for robot in self._robots.values():
-            if robot not in holding:
-                robot.body.release_time()
+            if robot not in stepping:
+                robot.body.disable_stepping()
 
     def shut_down(self) -> None:
-        """Stops all wheels, and the simulation where the script started it."""
+        """Stops all wheels, and the simulation if the script started it."""
         for robot in self._robots.values():
             robot.body.stop()
         for robot in self._robots.values():

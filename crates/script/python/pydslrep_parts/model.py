@@ -1,5 +1,5 @@
 #: if standalone
-"""What is known of a robot: from the program, and measured in the scene."""
+"""Models of robots: from the program, and measured in the scene."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -19,7 +19,7 @@ def dot(a: Sequence[float], b: Sequence[float]) -> float:
 
 @dataclass(frozen=True)
 class RobotModel:
-    """What the program says of a robot; the scene tells the rest."""
+    """A robot as the program declares it; the rest is measured in the scene."""
 
     name: str
     port: int
@@ -29,25 +29,25 @@ class RobotModel:
     sensors: Sequence[str] = ()
     #: endif
     #: if slam
-    eyes: Sequence[str] = ()  # the sensors that it explores with
+    slam_sensors: Sequence[str] = ()  # that it explores with
     #: endif
 
 
 #: if slam
 @dataclass(frozen=True)
-class Eye:
-    """What is known of a proximity sensor: its mount, and what the simulator tells."""
+class SensorCone:
+    """The mount and detection volume of a proximity sensor."""
 
-    mount: Pose  # on the robot, looking along its heading
-    range: float | None = None  # m
-    cone: float | None = None  # radians
+    mount: Pose  # on the robot, pointing along its heading
+    range: float | None = None  # m; None if unknown
+    angle: float | None = None  # radians from edge to edge; None if unknown
 
 
 #: endif
 class Mounting:
-    """Where a robot's wheels are on its body, and which way round their joints turn.
+    """The positions of a robot's wheels on its body, and the signs of their joints' axes.
 
-    Objects are given by their matrices: rows of rotation and translation, 12 numbers.
+    Objects are given as matrices: rows of rotation and translation, 12 numbers.
     """
 
     def __init__(
@@ -56,15 +56,15 @@ class Mounting:
         body: Sequence[float],
         joints: Sequence[Sequence[float]],
     ) -> None:
-        """Measures: nothing about a robot is assumed; raises SetupError."""
+        """Measures a robot without assuming its dimensions; raises SetupError."""
         x_axis, y_axis = (body[0], body[4], body[8]), (body[1], body[5], body[9])
-        mounts, self.senses = [], []
+        mounts, self.axis_signs = [], []
         for joint in joints:
             arm = [joint[i] - body[i] for i in (3, 7, 11)]
             mounts.append((dot(x_axis, arm), dot(y_axis, arm)))
-            # A joint turns about its z axis: towards the body's left, it rolls forward.
+            # If a joint's z axis points left, a positive rate rolls the wheel forward.
             axis = (joint[2], joint[6], joint[10])
-            self.senses.append(math.copysign(1.0, dot(y_axis, axis)))
+            self.axis_signs.append(math.copysign(1.0, dot(y_axis, axis)))
         self._center = tuple(
             sum(side) / len(mounts) for side in zip(*mounts, strict=True)
         )
@@ -75,13 +75,13 @@ class Mounting:
 
     #: if slam
     def mount(self, body: Sequence[float], sensor: Sequence[float]) -> Pose:
-        """Where a sensor is, and where its z axis points, as seen from the wheels' middle."""
-        looking = math.atan2(sensor[6], sensor[2])
-        return Pose(sensor[3], sensor[7], looking).seen_from(self.pose(body))
+        """A sensor's pose relative to the wheels' centre; it points along its z axis."""
+        bearing = math.atan2(sensor[6], sensor[2])
+        return Pose(sensor[3], sensor[7], bearing).relative_to(self.pose(body))
 
     #: endif
     def pose(self, body: Sequence[float]) -> Pose:
-        """Where the middle of the wheels is, and the robot's heading."""
+        """The pose of the wheels' centre."""
         x, y = self._center
         return Pose(
             body[0] * x + body[1] * y + body[3],

@@ -1,5 +1,5 @@
 #: if standalone
-"""What ties actions to a movement of a robot."""
+"""Movements: the actions of one robot."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from .robot import Robot
 
 @dataclass(frozen=True)
 class Movement:
-    """Actions of one robot."""
+    """The actions of one robot."""
 
     name: str
     robot: str
@@ -19,5 +19,5 @@ class Movement:
 
 
 def movement(name: str, of: str) -> Callable[[Callable[[Robot], None]], Movement]:
-    """Makes a function a movement of a robot."""
+    """Turns a function into a movement of a robot."""
     return lambda actions: Movement(name, of, actions)

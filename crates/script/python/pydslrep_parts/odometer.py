@@ -1,5 +1,5 @@
 #: if standalone
-"""Where a robot is by how its wheels turn."""
+"""Wheel odometry."""
 
 import math
 
@@ -10,17 +10,17 @@ from .pose import Pose, wrap_angle
 
 
 class Odometer:
-    """Adds up what the wheels of a two-wheel robot roll."""
+    """The pose of a two-wheel robot, integrated from the rotation of its wheels."""
 
     def __init__(self, body: Body) -> None:
-        """Starts where the simulator says that the robot is, and never asks it again."""
+        """Starts at the robot's actual pose, which is read only once."""
         self._body = body
         self._pose = body.pose()
         self._angles = body.wheel_angles()
-        self.rolled = 0.0  # m that the wheels have rolled, on average
+        self.wheel_travel = 0.0  # m, the mean of both wheels, forward or backward
 
     def pose(self) -> Pose:
-        """Where the robot should be."""
+        """The estimated pose."""
         before, self._angles = self._angles, self._body.wheel_angles()
         left, right = (
             wrap_angle(now - was) * radius
@@ -28,16 +28,15 @@ class Odometer:
                 self._angles, before, self._body.model.wheels.values(), strict=True
             )
         )
-        self.rolled += (abs(left) + abs(right)) / 2.0
-        # Both wheels go round the same centre: this is exact for any arc.
+        self.wheel_travel += (abs(left) + abs(right)) / 2.0
+        # Both wheels move around the same centre: this is exact for any arc.
         turned = (right - left) / (2.0 * self._body.drive.turning_radius)
         chord = (left + right) / 2.0
         if turned:
             chord *= 2.0 * math.sin(turned / 2.0) / turned
-        there = self._pose.turned(turned / 2.0).ahead(chord)
-        self._pose = there.turned(turned / 2.0)
+        self._pose = self._pose.turned(turned / 2.0).ahead(chord).turned(turned / 2.0)
         return self._pose
 
     def correct(self, pose: Pose) -> None:
-        """The robot is somewhere else."""
+        """Replaces the estimated pose."""
         self._pose = pose

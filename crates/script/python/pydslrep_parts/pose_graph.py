@@ -1,5 +1,5 @@
 #: if standalone
-"""Places whose poses follow from what is known of them, all together."""
+"""A pose graph: poses estimated together from the constraints between them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,63 +11,63 @@ from .scan_matching import Matrix, solve
 
 
 @dataclass(frozen=True)
-class Link:
-    """Where a place is as seen from another one, and how sure that is."""
+class Constraint:
+    """A measurement of one pose relative to another."""
 
     start: int
     end: int
-    relative: Pose  # of the end, seen from the start
-    information: Matrix  # on x, y and heading in the world: the inverse of a covariance
-    is_certain: bool = False  # that it is about these places: wheels never mistake them
+    relative: Pose  # the end in the frame of the start
+    information: Matrix  # on x, y and heading in the world: the inverse covariance
+    is_odometry: bool = False  # so it connects the right poses; a scan match may not
 
 
 @dataclass(frozen=True)
-class Compass:
-    """The heading of a place, and how sure that is."""
+class HeadingEstimate:
+    """An absolute measurement of a heading."""
 
-    place: int
+    node: int
     heading: float
     information: float
 
 
 class PoseGraph:
-    """Poses of places, and links between them.
+    """Poses, and constraints between them.
 
-    The poses are those that agree best with all links, in the sense of least squares: an
-    error that shows when a loop closes is spread over all the way round.
+    The poses minimise the squared error of all constraints: a loop closure spreads the
+    accumulated error over the whole loop.
     """
 
-    ROUNDS = 3  # of making the problem linear about the poses by then
-    STRAIN = 16.0  # squared deviations that what is certain may be off at most
+    MAX_ITERATIONS = 3  # of Gauss-Newton
+    MAX_CHI2 = 16.0  # of any odometry constraint after a loop closure
 
     def __init__(self) -> None:
         self.poses: list[Pose] = []
-        self._links: list[Link] = []
-        self._compasses: list[Compass] = []
+        self._constraints: list[Constraint] = []
+        self._headings: list[HeadingEstimate] = []
 
     def add(self, pose: Pose) -> int:
-        """A new place; the first one stays where it is. The result is its number."""
+        """Adds a pose and returns its number; the first pose is fixed."""
         self.poses.append(pose)
         return len(self.poses) - 1
 
-    def link(self, link: Link) -> None:
-        """Something is known of two places."""
-        self._links.append(link)
+    def add_constraint(self, constraint: Constraint) -> None:
+        """Adds a relative measurement."""
+        self._constraints.append(constraint)
 
-    def orient(self, compass: Compass) -> None:
-        """Something is known of a heading."""
-        self._compasses.append(compass)
+    def add_heading(self, heading: HeadingEstimate) -> None:
+        """Adds an absolute heading."""
+        self._headings.append(heading)
 
-    def components(self, places: Sequence[int]) -> list[list[int]]:
-        """The places in groups that hang together by links between them."""
-        left, found = set(places), []
-        neighbours: dict[int, list[int]] = {place: [] for place in left}
-        for link in self._links:
-            if link.start in left and link.end in left:
-                neighbours[link.start].append(link.end)
-                neighbours[link.end].append(link.start)
-        for place in places:
-            group, queue = [], [place]
+    def connected_components(self, nodes: Sequence[int]) -> list[list[int]]:
+        """Groups nodes that are connected by constraints among them."""
+        left, found = set(nodes), []
+        neighbours: dict[int, list[int]] = {node: [] for node in left}
+        for constraint in self._constraints:
+            if constraint.start in left and constraint.end in left:
+                neighbours[constraint.start].append(constraint.end)
+                neighbours[constraint.end].append(constraint.start)
+        for node in nodes:
+            group, queue = [], [node]
             while queue:
                 number = queue.pop()
                 if number in left:
@@ -78,10 +78,10 @@ class PoseGraph:
                 found.append(sorted(group))
         return found
 
-    def relax(self) -> None:
-        """Finds the poses that agree best (Gauss-Newton)."""
-        for _ in range(self.ROUNDS):
-            system = self._linear()
+    def optimise(self) -> None:
+        """Minimises the squared error of all constraints (Gauss-Newton)."""
+        for _ in range(self.MAX_ITERATIONS):
+            system = self._linearise()
             change = system.solution()
             for number, (dx, dy, turned) in enumerate(change):
                 pose = self.poses[number]
@@ -90,85 +90,95 @@ class PoseGraph:
             if max(max(map(abs, step)) for step in change) < 1e-4:
                 break
 
-    def closes(self, links: Sequence[Link]) -> bool:
-        """Adds links that close a loop, if all that is certain can be as they say."""
-        poses, count = list(self.poses), len(self._links)
-        self._links += links
-        self.relax()
-        strain = max(
+    def try_loop_closure(self, constraints: Sequence[Constraint]) -> bool:
+        """Adds constraints that close a loop, unless they contradict the odometry."""
+        poses, count = list(self.poses), len(self._constraints)
+        self._constraints += constraints
+        self.optimise()
+        chi2 = max(
             (
-                bilinear(link.information, self._error(link), self._error(link))
-                for link in self._links
-                if link.is_certain
+                bilinear_form(
+                    constraint.information,
+                    self._error(constraint),
+                    self._error(constraint),
+                )
+                for constraint in self._constraints
+                if constraint.is_odometry
             ),
             default=0.0,
         )
-        if strain <= self.STRAIN:
+        if chi2 <= self.MAX_CHI2:
             return True
         self.poses[:] = poses
-        del self._links[count:]
+        del self._constraints[count:]
         return False
 
-    def _error(self, link: Link) -> list[float]:
-        """How far the end is from where the link has it."""
+    def _error(self, constraint: Constraint) -> list[float]:
+        """The difference between the end's pose and the measurement."""
         end, there = (
-            self.poses[link.end],
-            link.relative.placed_on(self.poses[link.start]),
+            self.poses[constraint.end],
+            constraint.relative.transformed_by(self.poses[constraint.start]),
         )
         return [end.x - there.x, end.y - there.y, wrap_angle(end.theta - there.theta)]
 
-    def _linear(self) -> "LinearSystem":
+    def _linearise(self) -> "LinearSystem":
         system = LinearSystem(len(self.poses))
-        for link in self._links:
-            start = self.poses[link.start]
-            there = link.relative.placed_on(start)
-            # When the start turns, the end goes round it.
+        for constraint in self._constraints:
+            start = self.poses[constraint.start]
+            there = constraint.relative.transformed_by(start)
+            # When the start rotates, the end moves around it.
             lever = (-(there.y - start.y), there.x - start.x)
-            slope = [[-1.0, 0.0, -lever[0]], [0.0, -1.0, -lever[1]], [0.0, 0.0, -1.0]]
-            system.add(link, slope, self._error(link))
-        for compass in self._compasses:
-            off = wrap_angle(self.poses[compass.place].theta - compass.heading)
-            system.turn(compass.place, compass.information, off)
+            jacobian = [
+                [-1.0, 0.0, -lever[0]],
+                [0.0, -1.0, -lever[1]],
+                [0.0, 0.0, -1.0],
+            ]
+            system.add(constraint, jacobian, self._error(constraint))
+        for heading in self._headings:
+            error = wrap_angle(self.poses[heading.node].theta - heading.heading)
+            system.add_heading(heading.node, heading.information, error)
         return system
 
 
-def bilinear(matrix: Matrix, a: Sequence[float], b: Sequence[float]) -> float:
-    """A'Mb."""
+def bilinear_form(matrix: Matrix, a: Sequence[float], b: Sequence[float]) -> float:
+    """Computes a'Mb."""
     return sum(a[i] * matrix[i][j] * b[j] for i in range(len(a)) for j in range(len(b)))
 
 
-Vector = list[list[float]]  # three numbers for each place
+Vector = list[list[float]]  # three numbers per pose
 
 
 class LinearSystem:
-    """Equations for small changes of poses, in blocks of three by three."""
+    """The normal equations for small changes of the poses, in 3x3 blocks."""
 
     def __init__(self, count: int) -> None:
         self._count = count
         self._blocks: dict[tuple[int, int], Matrix] = {}
-        self._right: Vector = [[0.0] * 3 for _ in range(count)]
-        # The first place stays.
+        self._rhs: Vector = [[0.0] * 3 for _ in range(count)]
+        # The first pose is fixed.
         self._add_block(0, 0, [[1e9 * (i == j) for j in range(3)] for i in range(3)])
         for number in range(count):
             tiny = [[1e-6 * (i == j) for j in range(3)] for i in range(3)]
             self._add_block(number, number, tiny)
 
-    def add(self, link: Link, slope: Matrix, error: Sequence[float]) -> None:
-        """A link, whose error depends on the start by `slope` and on the end directly."""
-        start, end, weighted = link.start, link.end, link.information
-        across = product(transposed(slope), weighted)
-        self._add_block(start, start, product(across, slope))
+    def add(
+        self, constraint: Constraint, jacobian: Matrix, error: Sequence[float]
+    ) -> None:
+        """Adds a constraint; `jacobian` is by the start, that by the end is the identity."""
+        start, end, weighted = constraint.start, constraint.end, constraint.information
+        across = product(transposed(jacobian), weighted)
+        self._add_block(start, start, product(across, jacobian))
         self._add_block(start, end, across)
         self._add_block(end, start, transposed(across))
         self._add_block(end, end, weighted)
         for i in range(3):
-            self._right[start][i] -= sum(across[i][j] * error[j] for j in range(3))
-            self._right[end][i] -= sum(weighted[i][j] * error[j] for j in range(3))
+            self._rhs[start][i] -= sum(across[i][j] * error[j] for j in range(3))
+            self._rhs[end][i] -= sum(weighted[i][j] * error[j] for j in range(3))
 
-    def turn(self, place: int, information: float, error: float) -> None:
-        """A heading that is known."""
-        self._blocks[place, place][2][2] += information
-        self._right[place][2] -= information * error
+    def add_heading(self, node: int, information: float, error: float) -> None:
+        """Adds an absolute heading."""
+        self._blocks[node, node][2][2] += information
+        self._rhs[node][2] -= information * error
 
     def _add_block(self, row: int, column: int, block: Matrix) -> None:
         known = self._blocks.setdefault((row, column), [[0.0] * 3 for _ in range(3)])
@@ -177,33 +187,35 @@ class LinearSystem:
                 known[i][j] += block[i][j]
 
     def solution(self) -> Vector:
-        """By conjugate gradients, with each place's own block to begin with."""
+        """Solves by conjugate gradients with a block-Jacobi preconditioner."""
         found: Vector = [[0.0] * 3 for _ in range(self._count)]
-        rest = [list(part) for part in self._right]
-        eased = self._eased(rest)
-        direction = [list(part) for part in eased]
-        now = dot_product(rest, eased)
+        residual = [list(part) for part in self._rhs]
+        preconditioned = self._precondition(residual)
+        direction = [list(part) for part in preconditioned]
+        now = dot_product(residual, preconditioned)
         goal = 1e-8 * now
         for _ in range(6 * self._count):
             if now <= goal or now < 1e-12:
                 break
-            image = self._times(direction)
+            image = self._multiply(direction)
             step = now / dot_product(direction, image)
             for n in range(self._count):
                 for i in range(3):
                     found[n][i] += step * direction[n][i]
-                    rest[n][i] -= step * image[n][i]
-            eased = self._eased(rest)
-            before, now = now, dot_product(rest, eased)
+                    residual[n][i] -= step * image[n][i]
+            preconditioned = self._precondition(residual)
+            before, now = now, dot_product(residual, preconditioned)
             for n in range(self._count):
                 for i in range(3):
-                    direction[n][i] = eased[n][i] + now / before * direction[n][i]
+                    direction[n][i] = (
+                        preconditioned[n][i] + now / before * direction[n][i]
+                    )
         return found
 
-    def _eased(self, vector: Vector) -> Vector:
+    def _precondition(self, vector: Vector) -> Vector:
         return [solve(self._blocks[n, n], part) for n, part in enumerate(vector)]
 
-    def _times(self, vector: Vector) -> Vector:
+    def _multiply(self, vector: Vector) -> Vector:
         found: Vector = [[0.0] * 3 for _ in range(self._count)]
         for (row, column), block in self._blocks.items():
             x, y, theta = vector[column]

@@ -1,5 +1,5 @@
 #: if standalone
-"""How robots carry out their actions."""
+"""The actions of robots."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -11,18 +11,18 @@ from .coppeliasim import Body
 from .errors import MovementCancelledError, MovementError
 from .odometer import Odometer
 from .pose import Pose, wrap_angle
-from .settings import MOST_ASIDE, RIM_SPEED, STALL_TIME
-from .slam_rover import survey_with
-from .slam_session import Survey
+from .settings import MAX_LATERAL_ERROR, RIM_SPEED, STALL_TIME
+from .slam_rover import explore_with
+from .slam_session import SlamSession
 from .trace_file import Trace
 
 #: endif
 
 
 class Robot:
-    """A robot that moves and turns: a command per step, from the pose it has by then.
+    """A robot that moves and turns under closed-loop control of its pose.
 
-    Every action starts where the last one should have ended, so errors do not add up.
+    Every action starts from the planned end of the last one, so errors do not accumulate.
     """
 
     def __init__(self, body: Body, trace: Trace) -> None:
@@ -36,60 +36,62 @@ class Robot:
         self.cancelled = Event()
         #: endif
         #: if slam
-        self.survey: Survey | None = None
-        self._watch: Callable[[Pose], object] | None = None
+        self.slam_session: SlamSession | None = None
+        self._on_pose: Callable[[Pose], object] | None = None
         self._odometer: Odometer | None = None
         #: endif
 
     def move(self, distance: float, speed: float = RIM_SPEED) -> None:
-        """Drives straight on, in metres (backwards where negative) and m/s."""
-        here = self._begin(f"move {distance:g} m")
-        goal = self._start(here).ahead(distance)
+        """Drives straight, in metres (backwards if negative) and m/s."""
+        here = self._begin_action(f"move {distance:g} m")
+        goal = self._start_pose(here).ahead(distance)
         approach = Approach(speed, self.body.time_step)
         while True:
-            offset = here.seen_from(goal)
-            to_go = -offset.x
-            if approach.arrived(to_go):
+            offset = here.relative_to(goal)
+            remaining = -offset.x
+            if approach.arrived(remaining):
                 break
-            self._check_progress(approach, to_go)
-            rim_speed = approach.next_speed(to_go)
-            here = self._step(self.body.drive.follow_line(rim_speed, offset, to_go))
+            self._check_progress(approach, remaining)
+            rim_speed = approach.next_speed(remaining)
+            here = self._step(self.body.drive.follow_line(rim_speed, offset, remaining))
         self._planned = goal
         here = self._come_to_rest(here)
-        self._check_arrival(here.seen_from(goal).y)
-        # It may have come to rest slightly turned.
+        self._check_arrival(here.relative_to(goal).y)
+        # Correct a residual rotation.
         here = self._rotate(here, 0.0)
         self._report(here)
 
     def turn(self, degrees: float) -> None:
-        """Turns in place, to the left where positive."""
+        """Turns in place, to the left if positive."""
         side = "left" if degrees >= 0.0 else "right"
-        here = self._begin(f"turn {side} {abs(degrees):g} deg")
+        here = self._begin_action(f"turn {side} {abs(degrees):g} deg")
         here = self._rotate(here, math.radians(degrees))
         self._report(here)
 
     #: if until
     def turn_until_free(self, side: Literal["left", "right"], *sensors: str) -> None:
-        """Turns in place until none of the sensors detects anything."""
+        """Turns in place until none of the sensors detects an object."""
         names = ", ".join(sensors)
         nothing = "detects nothing" if len(sensors) == 1 else "detect nothing"
-        here = self._begin(f"turn {side} until {names} {nothing}")
+        here = self._begin_action(f"turn {side} until {names} {nothing}")
         here = self._step(
-            self._standstill()
-        )  # before the first step, sensors are blind
-        start = self._start(here)
+            self._zero_rates()
+        )  # sensors have no readings before the first step
+        start = self._start_pose(here)
         radius = self.body.drive.turning_radius
         full_turn = math.tau * radius * (1.0 if side == "left" else -1.0)
         approach = Approach(RIM_SPEED, self.body.time_step)
         turned = 0.0
-        while (busy := any(map(self.body.detects, sensors))) or approach.speed != 0.0:
-            to_go = full_turn - turned * radius
-            if approach.arrived(to_go):
+        while (detects := any(map(self.body.detects, sensors))) or approach.speed:
+            remaining = full_turn - turned * radius
+            if approach.arrived(remaining):
                 still = "detects" if len(sensors) == 1 else "detect"
                 raise self.failure(f"after a full turn {names} still {still} something")
-            self._check_progress(approach, to_go)
-            rim_speed = approach.next_speed(to_go) if busy else approach.slowed_down()
-            offset, before = here.seen_from(start), here
+            self._check_progress(approach, remaining)
+            rim_speed = (
+                approach.next_speed(remaining) if detects else approach.decelerate()
+            )
+            offset, before = here.relative_to(start), here
             here = self._step(self.body.drive.turn_in_place(rim_speed, offset))
             turned += wrap_angle(here.theta - before.theta)
         here = self._come_to_rest(here)
@@ -99,73 +101,73 @@ class Robot:
     #: endif
     #: if slam
     def slam(self) -> None:
-        """Explores a closed area and makes a map of it."""
-        self._begin("slam")
-        # Before the first step, sensors are blind.
-        self._planned = self._step(self._standstill())
-        if self.survey is not None:
-            if self.survey.by_odometry:
+        """Explores a closed area and maps it."""
+        self._begin_action("slam")
+        # Sensors have no readings before the first step.
+        self._planned = self._step(self._zero_rates())
+        if self.slam_session is not None:
+            if self.slam_session.uses_odometry:
                 self._odometer = Odometer(self.body)
-            survey_with(self, self.survey)
+            explore_with(self, self.slam_session)
         self._report(self.pose())
 
     def pose(self) -> Pose:
-        """Where the robot is, or should be by how its wheels turned."""
+        """The robot's pose, estimated by odometry if the session uses it."""
         return self._locate()
 
     def correct(self, pose: Pose) -> None:
-        """The robot is somewhere else than its wheels have it."""
+        """Corrects the odometry."""
         if self._odometer is not None:
             self._odometer.correct(pose)
             self._planned = pose
 
-    def rolled(self) -> float:
-        """How far the wheels have rolled, in metres; by odometry only."""
-        return self._odometer.rolled if self._odometer is not None else 0.0
+    def wheel_travel(self) -> float:
+        """The distance that the wheels have travelled, in metres; 0 without odometry."""
+        return self._odometer.wheel_travel if self._odometer is not None else 0.0
 
     def rotate(
-        self, angle: float, heed: Callable[[Pose], object], speed: float = RIM_SPEED
+        self, angle: float, on_pose: Callable[[Pose], object], speed: float = RIM_SPEED
     ) -> None:
-        """Turns in place, to the left where positive, and shows every pose on the way."""
-        self._watch = heed
+        """Turns in place, to the left if positive; calls `on_pose` after every step."""
+        self._on_pose = on_pose
         try:
             self._rotate(self.pose(), angle, speed)
         finally:
-            self._watch = None
+            self._on_pose = None
 
-    def drive_to(self, goal: Pose, is_enough: Callable[[Pose], bool]) -> None:
-        """Drives to a goal ahead or behind, and no further than is enough."""
+    def drive_to(self, goal: Pose, should_stop: Callable[[Pose], bool]) -> None:
+        """Drives to a goal ahead or behind, or until `should_stop` returns True."""
         here = self.pose()
         approach = Approach(RIM_SPEED, self.body.time_step)
         is_stopping = False
         while True:
-            offset = here.seen_from(goal)
-            to_go = -offset.x
-            if approach.arrived(to_go) or (is_stopping and approach.speed == 0.0):
+            offset = here.relative_to(goal)
+            remaining = -offset.x
+            if approach.arrived(remaining) or (is_stopping and approach.speed == 0.0):
                 break
-            self._check_progress(approach, to_go)
-            is_stopping = is_stopping or is_enough(here)
+            self._check_progress(approach, remaining)
+            is_stopping = is_stopping or should_stop(here)
             rim_speed = (
-                approach.slowed_down() if is_stopping else approach.next_speed(to_go)
+                approach.decelerate() if is_stopping else approach.next_speed(remaining)
             )
-            here = self._step(self.body.drive.follow_line(rim_speed, offset, to_go))
+            here = self._step(self.body.drive.follow_line(rim_speed, offset, remaining))
         here = self._come_to_rest(here)
-        self._planned = goal.ahead(here.seen_from(goal).x) if is_stopping else goal
+        self._planned = goal.ahead(here.relative_to(goal).x) if is_stopping else goal
         self._rotate(here, 0.0)
 
     #: endif
     def begin(self, movement: str) -> None:
-        """Says which movement the next actions belong to."""
+        """Sets the movement that the next actions belong to."""
         self._movement, self._action, self._actions = movement, "start", 0
 
     def failure(self, reason: object) -> MovementError:
-        """An error that says what the robot was doing."""
+        """An error with the robot, movement and action that it occurred in."""
         name = self.body.model.name
         return MovementError(
             f"robot {name}, movement {self._movement}, action {self._action}: {reason}"
         )
 
-    def _begin(self, action: str) -> Pose:
+    def _begin_action(self, action: str) -> Pose:
         self._actions += 1
         self._action = f"{self._actions}: {action}"
         return self._locate()
@@ -177,32 +179,34 @@ class Robot:
         #: endif
         return self.body.pose()
 
-    def _start(self, here: Pose) -> Pose:
-        """Where the action starts: where the last one should have ended."""
+    def _start_pose(self, here: Pose) -> Pose:
+        """The planned start of an action: the planned end of the last one."""
         return self._planned or here
 
     def _rotate(self, here: Pose, angle: float, speed: float = RIM_SPEED) -> Pose:
-        """Turns by an angle in radians, of any number of full turns."""
-        start = self._start(here)
+        """Turns by an angle in radians, which may exceed a full turn."""
+        start = self._start_pose(here)
         goal = start.turned(angle)
         drive = self.body.drive
         approach = Approach(speed, self.body.time_step)
         turned = wrap_angle(here.theta - start.theta)
-        while not approach.arrived(to_go := (angle - turned) * drive.turning_radius):
-            self._check_progress(approach, to_go)
-            rim_speed = approach.next_speed(to_go)
-            offset, before = here.seen_from(goal), here
+        while not approach.arrived(
+            remaining := (angle - turned) * drive.turning_radius
+        ):
+            self._check_progress(approach, remaining)
+            rim_speed = approach.next_speed(remaining)
+            offset, before = here.relative_to(goal), here
             here = self._step(drive.turn_in_place(rim_speed, offset))
             turned += wrap_angle(here.theta - before.theta)
             #: if slam
-            if self._watch is not None:
-                self._watch(here)
+            if self._on_pose is not None:
+                self._on_pose(here)
             #: endif
         self._planned = goal
         return self._come_to_rest(here)
 
     def _step(self, rates: Sequence[float]) -> Pose:
-        """Sets the wheels, lets a step of time pass, and looks where the robot is by then."""
+        """Sets the wheels' rates, advances one step of time, and returns the new pose."""
         #: if parallel
         if self.cancelled.is_set():
             raise MovementCancelledError
@@ -216,35 +220,35 @@ class Robot:
         return here
 
     def _come_to_rest(self, here: Pose) -> Pose:
-        """Stops the wheels and waits a moment for the robot to stand."""
+        """Stops the wheels and waits for the robot to stop."""
         if any(self._rates):
             for _ in range(20):
-                before, here = here, self._step(self._standstill())
-                drift = here.seen_from(before)
+                before, here = here, self._step(self._zero_rates())
+                drift = here.relative_to(before)
                 if max(abs(drift.x), abs(drift.y), abs(drift.theta)) < 1e-5:
                     break
         return here
 
-    def _standstill(self) -> list[float]:
+    def _zero_rates(self) -> list[float]:
         return [0.0] * len(self.body.model.wheels)
 
-    def _check_progress(self, approach: Approach, to_go: float) -> None:
-        if approach.stalled(to_go):
+    def _check_progress(self, approach: Approach, remaining: float) -> None:
+        if approach.stalled(remaining):
             raise self.failure(
-                f"came no nearer to its goal for {STALL_TIME:g} s, {abs(to_go):.3f} m before it; "
-                + self.body.why_it_stands()
+                f"no progress for {STALL_TIME:g} s, {abs(remaining):.3f} m from the goal; "
+                + self.body.stall_reason()
             )
 
-    def _check_arrival(self, aside: float) -> None:
-        if abs(aside) > MOST_ASIDE:
-            side = "left" if aside > 0.0 else "right"
+    def _check_arrival(self, lateral_error: float) -> None:
+        if abs(lateral_error) > MAX_LATERAL_ERROR:
+            side = "left" if lateral_error > 0.0 else "right"
             raise self.failure(
-                f"ended {abs(aside):.3f} m to the {side} of its goal: "
-                "it may have slid along something in its way"
+                f"ended {abs(lateral_error):.3f} m to the {side} of the goal; "
+                "an obstacle may have deflected it"
             )
 
     def _report(self, here: Pose) -> None:
-        # Adding zero makes a rounded -0 a 0. As many digits as the hints of an editor have.
+        # Adding zero turns -0 into 0. The precision is that of the inlay hints in editors.
         x, y = round(here.x, 2) + 0.0, round(here.y, 2) + 0.0
         degrees = round(math.degrees(here.theta), 1) + 0.0
         print(

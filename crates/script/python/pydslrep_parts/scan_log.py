@@ -1,101 +1,112 @@
 #: if standalone
-"""All that a robot saw, to draw the floor anew where places turn out to be elsewhere."""
+"""A log of all observations, to rebuild the occupancy grid when keyframes move."""
 
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from .occupancy_grid import Floor, Place, Reading
+from .occupancy_grid import OccupancyGrid, Position, Reading
 from .pose import Pose, wrap_angle
 
 #: endif
 
 
 @dataclass(frozen=True)
-class Look:
-    """What was seen at once; eyes and obstacle are as they are from the robot."""
+class Observation:
+    """The readings taken at one moment, in the robot's frame."""
 
     readings: Sequence[Reading]
-    obstacle: Place | None = None  # that came near
+    obstacle: Position | None = None  # that stopped the robot
 
 
 @dataclass(frozen=True)
-class Entry:
-    """A look between two places, and where the robot was, as seen from each."""
+class LogEntry:
+    """An observation between two keyframes, with the robot's pose relative to each."""
 
-    look: Look
+    observation: Observation
     from_start: Pose
     from_end: Pose
-    share: float  # of the way from the one to the other
+    fraction: float  # of the leg that was complete
 
 
-class Diary:
-    """Looks on the way from place to place.
+class ScanLog:
+    """The observations between keyframes, by leg.
 
-    Where the robot was between two places follows from both: what the wheels made wrong on
-    the way is spread along it.
+    Poses between two keyframes are interpolated from both, which spreads the odometry's
+    error over the leg.
     """
 
     def __init__(self) -> None:
-        self._legs: list[list[Entry]] = []
-        self._begun: list[
-            tuple[Pose, Look]
-        ] = []  # since the last place, as seen from it
-        self._place = Pose(0.0, 0.0, 0.0)  # the last one
+        self._legs: list[list[LogEntry]] = []
+        # Since the last keyframe, relative to it.
+        self._open_leg: list[tuple[Pose, Observation]] = []
+        self._keyframe = Pose(0.0, 0.0, 0.0)  # the last one
 
-    def note(self, here: Pose, look: Look) -> None:
-        """A look from where the robot believes to be."""
-        self._begun.append((here.seen_from(self._place), look))
+    def add(self, here: Pose, observation: Observation) -> None:
+        """Adds an observation at the estimated pose."""
+        self._open_leg.append((here.relative_to(self._keyframe), observation))
 
-    def arrive(self, middle: Pose, place: Pose) -> None:
-        """A place: the wheels have it at `middle`, which was on the way, but it is at `place`."""
-        end = middle.seen_from(self._place)
-        seen = [(pose, pose.seen_from(end), look) for pose, look in self._begun]
+    def add_keyframe(self, estimate: Pose, keyframe: Pose) -> None:
+        """Ends a leg at a keyframe; `estimate` is its pose by odometry alone."""
+        end = estimate.relative_to(self._keyframe)
+        seen = [
+            (pose, pose.relative_to(end), observation)
+            for pose, observation in self._open_leg
+        ]
         after = min(
-            range(len(seen)), key=lambda n: (far_from_origin(seen[n][1]), -n), default=0
+            range(len(seen)), key=lambda n: (pose_magnitude(seen[n][1]), -n), default=0
         )
         count = max(1, after)
         leg = [
-            Entry(look, from_start, from_end, number / count)
-            for number, (from_start, from_end, look) in enumerate(seen[:after])
+            LogEntry(observation, from_start, from_end, number / count)
+            for number, (from_start, from_end, observation) in enumerate(seen[:after])
         ]
         if not self._legs:
-            # Before the first place there is none to see it from.
-            leg = [Entry(e.look, e.from_end, e.from_end, 1.0) for e in leg]
+            # The first leg has no keyframe at its start.
+            leg = [LogEntry(e.observation, e.from_end, e.from_end, 1.0) for e in leg]
         self._legs.append(leg)
-        self._begun = [(from_end, look) for _, from_end, look in seen[after:]]
-        self._place = place
+        self._open_leg = [
+            (from_end, observation) for _, from_end, observation in seen[after:]
+        ]
+        self._keyframe = keyframe
 
-    def draw(self, floor: Floor, places: Sequence[Pose], since: int = 0) -> None:
-        """Shows a floor what was seen on the ways to these places, but for the first ones."""
-        for here, look in self._looks(places, since):
-            for reading in look.readings:
-                floor.see(reading.seen_by(here))
-            if look.obstacle is not None:
-                at = Pose(*look.obstacle, 0.0).placed_on(here)
-                floor.block(at.x, at.y)
-        for place in places[since:]:
-            floor.stand(place.x, place.y)
+    def replay(
+        self, grid: OccupancyGrid, keyframes: Sequence[Pose], since: int = 0
+    ) -> None:
+        """Adds the observations of all legs after the first `since` to a grid."""
+        for here, observation in self._observations(keyframes, since):
+            for reading in observation.readings:
+                grid.add_reading(reading.transformed_by(here))
+            if observation.obstacle is not None:
+                at = Pose(*observation.obstacle, 0.0).transformed_by(here)
+                grid.mark_obstacle(at.x, at.y)
+        for keyframe in keyframes[since:]:
+            grid.mark_footprint(keyframe.x, keyframe.y)
 
-    def _looks(self, places: Sequence[Pose], since: int) -> Iterator[tuple[Pose, Look]]:
+    def _observations(
+        self, keyframes: Sequence[Pose], since: int
+    ) -> Iterator[tuple[Pose, Observation]]:
         for number in range(since, len(self._legs)):
-            start, end = places[max(0, number - 1)], places[number]
+            start, end = keyframes[max(0, number - 1)], keyframes[number]
             for entry in self._legs[number]:
-                a, b = entry.from_start.placed_on(start), entry.from_end.placed_on(end)
-                yield between(a, b, entry.share), entry.look
-        for pose, look in self._begun:
-            yield pose.placed_on(places[-1]), look
+                a, b = (
+                    entry.from_start.transformed_by(start),
+                    entry.from_end.transformed_by(end),
+                )
+                yield interpolate(a, b, entry.fraction), entry.observation
+        for pose, observation in self._open_leg:
+            yield pose.transformed_by(keyframes[-1]), observation
 
 
-def far_from_origin(pose: Pose) -> float:
-    """In metres, or radians."""
+def pose_magnitude(pose: Pose) -> float:
+    """The size of a relative pose: metres plus radians."""
     return math.hypot(pose.x, pose.y) + abs(pose.theta)
 
 
-def between(a: Pose, b: Pose, share: float) -> Pose:
-    """The pose that is that share of the way from one to another, which are near."""
+def interpolate(a: Pose, b: Pose, fraction: float) -> Pose:
+    """Interpolates linearly between two poses."""
     return Pose(
-        a.x + share * (b.x - a.x),
-        a.y + share * (b.y - a.y),
-        wrap_angle(a.theta + share * wrap_angle(b.theta - a.theta)),
+        a.x + fraction * (b.x - a.x),
+        a.y + fraction * (b.y - a.y),
+        wrap_angle(a.theta + fraction * wrap_angle(b.theta - a.theta)),
     )

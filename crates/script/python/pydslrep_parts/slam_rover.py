@@ -1,18 +1,18 @@
 #: if standalone
-"""How a robot explores: what it sees on its way, and what it heeds."""
+"""A robot that scans its surroundings while it explores."""
 
 import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from .explorer import Explorer, NoEndError
-from .occupancy_grid import Floor, Place, Reading
+from .explorer import Explorer, UnboundedAreaError
+from .occupancy_grid import OccupancyGrid, Position, Reading
 from .pose import Pose, wrap_angle
-from .scan import Sweep
-from .scan_log import Diary, Look
+from .scan import Scan
+from .scan_log import Observation, ScanLog
 from .settings import RIM_SPEED
-from .slam_backend import Memory
-from .slam_session import Survey
+from .slam_backend import SlamBackend
+from .slam_session import SlamSession
 
 if TYPE_CHECKING:
     from .robot import Robot
@@ -20,191 +20,198 @@ if TYPE_CHECKING:
 #: endif
 
 
-STEP_LENGTH = 0.5  # m between the places of a map
-LOOK_DISTANCE = 0.03  # m to drive from one look to the next ...
-LOOK_ANGLE = math.radians(5.0)  # ... or to turn
-NEAR = 0.02  # m about a robot that nothing may enter
-DRAWN_APART = 0.04  # m that places may be beside where they were drawn ...
-DRAWN_TURNED = math.radians(2.0)  # ... and turned
-UNSURE = 0.05  # m that a robot may be beside where its wheels have it
+STEP_LENGTH = 0.5  # m between nodes of the map
+OBSERVE_DISTANCE = 0.03  # m to drive between observations, or ...
+OBSERVE_ANGLE = math.radians(5.0)  # ... to turn
+SAFETY_MARGIN = 0.02  # m around the robot to keep free
+REBUILD_DISTANCE = (
+    0.04  # m by which a keyframe moves before the grid is rebuilt, or ...
+)
+REBUILD_ANGLE = math.radians(2.0)  # ... turns
+ODOMETRY_MARGIN = 0.05  # m of error in the odometry
 
 
-class Surveyor:
-    """The rover of an explorer: a robot that looks about while it moves."""
+class SlamRover:
+    """The rover of an explorer."""
 
-    def __init__(self, robot: "Robot", survey: Survey) -> None:
+    def __init__(self, robot: "Robot", session: SlamSession) -> None:
         self._robot, body = robot, robot.body
         name = body.model.name
-        eyes = {sensor: body.eye(sensor) for sensor in body.model.eyes}
-        self._eyes = {sensor: eye.mount for sensor, eye in eyes.items()}
-        self._ranges = {s: survey.range(name, s, eye.range) for s, eye in eyes.items()}
-        self._cones = {s: survey.cone(name, s, eye.cone) for s, eye in eyes.items()}
-        # The corners of a square body are that much further out than its wheels.
-        span = body.drive.turning_radius * math.sqrt(2.0)
-        mounts = (math.hypot(eye.x, eye.y) for eye in self._eyes.values())
-        self._extent = survey.extent
-        self.radius = survey.radius(name, max(span, *mounts))
-        self._is_unsure = survey.by_odometry
-        # Wheels slip less where they turn slowly.
-        self._turning_speed = RIM_SPEED * (0.5 if self._is_unsure else 1.0)
-        self.floor = Floor(self.radius + (UNSURE if self._is_unsure else 0.0))
-        self._sweep: Sweep | None = None
-        self._rolled = 0.0
-        self._memory = Memory()
-        self._diary = Diary()
-        self._drawn: list[Pose] = []  # places that the floor was drawn by
-        self._places: list[Place] = []
-        self._looked: Pose | None = None
-        self._near: Place | None = None
+        cones = {sensor: body.sensor_cone(sensor) for sensor in body.model.slam_sensors}
+        self._mounts = {sensor: cone.mount for sensor, cone in cones.items()}
+        self._ranges = {s: session.range(name, s, c.range) for s, c in cones.items()}
+        self._angles = {s: session.cone(name, s, c.angle) for s, c in cones.items()}
+        # The corners of a square body are further out than its wheels by this factor.
+        corner = body.drive.turning_radius * math.sqrt(2.0)
+        offsets = (math.hypot(mount.x, mount.y) for mount in self._mounts.values())
+        self._extent = session.extent
+        self.radius = session.radius(name, max(corner, *offsets))
+        self._uses_odometry = session.uses_odometry
+        # Wheels slip less when they turn slowly.
+        self._turning_speed = RIM_SPEED * (0.5 if self._uses_odometry else 1.0)
+        self.grid = OccupancyGrid(
+            self.radius + (ODOMETRY_MARGIN if self._uses_odometry else 0.0)
+        )
+        self._scan: Scan | None = None
+        self._wheel_travel = 0.0
+        self._backend = SlamBackend()
+        self._log = ScanLog()
+        self._grid_keyframes: list[Pose] = []  # the poses that the grid is built from
+        self._positions: list[Position] = []
+        self._last_pose: Pose | None = None
+        self._obstacle: Position | None = None
 
-    def explore(self) -> Explorer:
+    def explorer(self) -> Explorer:
         """An explorer for this robot; raises MovementError."""
         reach = min(
-            self._ranges[sensor] + math.hypot(eye.x, eye.y)
-            for sensor, eye in self._eyes.items()
+            self._ranges[sensor] + math.hypot(mount.x, mount.y)
+            for sensor, mount in self._mounts.items()
         )
-        step = min(STEP_LENGTH, reach - self.radius - Floor.LEEWAY - 0.1)
+        step = min(STEP_LENGTH, reach - self.radius - OccupancyGrid.CLEARANCE - 0.1)
         if step < 0.1:
             least = min(self._ranges.values())
             raise self._robot.failure(
-                f"its sensors see no more than {least:g} m, which is too little to explore by"
+                f"its sensors' range of {least:g} m is too short to explore with"
             )
         return Explorer(
             self,
-            self.floor,
+            self.grid,
             step,
             self._blind_angle(),
             self._extent,
-            keeps_to_walls=self._is_unsure,
+            prefers_walls=self._uses_odometry,
         )
 
     def pose(self) -> Pose:
-        """Where the robot is."""
+        """The robot's estimated pose."""
         return self._robot.pose()
 
     def turn_by(self, angle: float) -> None:
         """Turns in place."""
-        self._robot.rotate(angle, self._look, self._turning_speed)
+        self._robot.rotate(angle, self._observe, self._turning_speed)
 
     def localise(self) -> int:
-        """By odometry, looks all about and finds out by that where the robot is."""
-        if not self._is_unsure:
+        """Adds a keyframe; with odometry, corrects the pose by a scan."""
+        if not self._uses_odometry:
             here = self.pose()
-            self._places.append((here.x, here.y))
-            return len(self._places) - 1
-        self._sweep, self._looked = Sweep(), None
-        # All else is seen from the first place.
-        speed = self._turning_speed if self._places else 0.5 * self._turning_speed
-        self._robot.rotate(self._blind_angle(), self._look, speed)
-        sweep, self._sweep = self._sweep, None
-        rolled = self._robot.rolled()
-        there = self._memory.recognise(sweep, self.pose(), rolled - self._rolled)
-        self._rolled = rolled
-        self._robot.correct(there)
-        self._draw(sweep.middle())
-        return len(self._places) - 1
+            self._positions.append((here.x, here.y))
+            return len(self._positions) - 1
+        self._scan, self._last_pose = Scan(), None
+        # The first keyframe is the reference for all others, so scan it slowly.
+        speed = self._turning_speed if self._positions else 0.5 * self._turning_speed
+        self._robot.rotate(self._blind_angle(), self._observe, speed)
+        scan, self._scan = self._scan, None
+        wheel_travel = self._robot.wheel_travel()
+        corrected = self._backend.add_keyframe(
+            scan, self.pose(), wheel_travel - self._wheel_travel
+        )
+        self._wheel_travel = wheel_travel
+        self._robot.correct(corrected)
+        self._update_grid(scan.middle_pose())
+        return len(self._positions) - 1
 
-    def place(self, number: int) -> Place:
-        """Where a place is, as far as is known by now."""
-        return self._places[number]
+    def position(self, number: int) -> Position:
+        """The current estimate of a keyframe's position."""
+        return self._positions[number]
 
-    def _draw(self, middle: Pose) -> None:
-        """Draws what was seen on the way here, or all of it where places have moved."""
-        places = self._memory.places
-        self._diary.arrive(middle, places[-1])
-        self._places = [(place.x, place.y) for place in places]
-        if any(map(are_apart, self._drawn, places)):
-            self.floor.clear()
-            self._drawn = []
-        self._diary.draw(self.floor, places, since=len(self._drawn))
-        self._drawn += places[len(self._drawn) :]
+    def _update_grid(self, middle_pose: Pose) -> None:
+        """Adds the last leg to the grid, or rebuilds the grid if keyframes have moved."""
+        keyframes = self._backend.keyframes
+        self._log.add_keyframe(middle_pose, keyframes[-1])
+        self._positions = [(pose.x, pose.y) for pose in keyframes]
+        if any(map(has_shifted, self._grid_keyframes, keyframes)):
+            self.grid.reset()
+            self._grid_keyframes = []
+        self._log.replay(self.grid, keyframes, since=len(self._grid_keyframes))
+        self._grid_keyframes += keyframes[len(self._grid_keyframes) :]
 
-    def drive_to(self, goal: Place, is_enough: Callable[[], bool]) -> bool:
-        """Turns to a place and drives there until something comes near."""
+    def drive_to(self, goal: Position, should_stop: Callable[[], bool]) -> bool:
+        """Turns to a goal and drives there, or until an obstacle is near."""
         here = self.pose()
         bearing = math.atan2(goal[1] - here.y, goal[0] - here.x)
         self.turn_by(wrap_angle(bearing - here.theta))
-        self._near = None
+        self._obstacle = None
 
-        def heeds(here: Pose) -> bool:
-            return self._look(here) and (self._near is not None or is_enough())
+        def must_stop(here: Pose) -> bool:
+            return self._observe(here) and (self._obstacle is not None or should_stop())
 
-        self._robot.drive_to(Pose(*goal, bearing), heeds)
-        if self._near is None:
+        self._robot.drive_to(Pose(*goal, bearing), must_stop)
+        if self._obstacle is None:
             return True
-        self.floor.block(*self._near)
-        if self._is_unsure:
+        self.grid.mark_obstacle(*self._obstacle)
+        if self._uses_odometry:
             here = self.pose()
-            near = Pose(*self._near, 0.0).seen_from(here)
-            self._diary.note(here, Look((), (near.x, near.y)))
+            obstacle = Pose(*self._obstacle, 0.0).relative_to(here)
+            self._log.add(here, Observation((), (obstacle.x, obstacle.y)))
         return False
 
-    def retreat_to(self, goal: Place) -> None:
-        """Drives back the way it came."""
+    def back_up_to(self, goal: Position) -> None:
+        """Reverses to a position behind the robot."""
         heading = self.pose().theta
-        self._robot.drive_to(Pose(*goal, heading), self._look_back)
+        self._robot.drive_to(Pose(*goal, heading), self._observe_only)
 
-    def _look_back(self, here: Pose) -> bool:
-        self._look(here)
+    def _observe_only(self, here: Pose) -> bool:
+        self._observe(here)
         return False
 
-    def _look(self, here: Pose) -> bool:
-        """Reads all sensors where that shows something new; whether it did."""
-        is_new = self._looked is None or is_moved(here, self._looked)
+    def _observe(self, here: Pose) -> bool:
+        """Reads all sensors if the robot has moved; returns whether it has."""
+        is_new = self._last_pose is None or has_moved(here, self._last_pose)
         if is_new:
-            self._looked = here
-        elif self._sweep is None:
+            self._last_pose = here
+        elif self._scan is None:
             return False
         seen = []
-        for sensor, mount in self._eyes.items():
+        for sensor, mount in self._mounts.items():
             distance = self._robot.body.distance(sensor)
-            sees = distance is not None
+            is_hit = distance is not None
             if distance is None:
                 distance = self._ranges[sensor]
             elif is_new:
-                self._heed(mount.placed_on(here).ahead(distance), here)
-            reading = Reading(mount, self._cones[sensor], distance, sees)
+                self._check_obstacle(mount.transformed_by(here).ahead(distance), here)
+            reading = Reading(mount, self._angles[sensor], distance, is_hit)
             seen.append(reading)
-            if self._sweep is not None:
-                self._sweep.add(here, sensor, reading)
+            if self._scan is not None:
+                self._scan.add(here, sensor, reading)
             else:
-                self.floor.see(reading.seen_by(here))
-        if self._is_unsure and is_new:
-            self._diary.note(here, Look(seen))
+                self.grid.add_reading(reading.transformed_by(here))
+        if self._uses_odometry and is_new:
+            self._log.add(here, Observation(seen))
         return is_new
 
-    def _heed(self, point: Pose, here: Pose) -> None:
-        """Notices what is so near ahead that the robot could not turn there."""
-        seen = point.seen_from(here)
-        reach = self.radius + NEAR
+    def _check_obstacle(self, point: Pose, here: Pose) -> None:
+        """Records a point ahead that is too near for the robot to turn there."""
+        seen = point.relative_to(here)
+        reach = self.radius + SAFETY_MARGIN
         if 0.0 < seen.x < reach and abs(seen.y) < 0.8 * self.radius:
-            self._near = point.x, point.y
+            self._obstacle = point.x, point.y
 
     def _blind_angle(self) -> float:
-        """The widest angle between two sensors that are next to each other."""
-        bearings = sorted(wrap_angle(eye.theta) for eye in self._eyes.values())
+        """The widest angle between two neighbouring sensors."""
+        bearings = sorted(wrap_angle(mount.theta) for mount in self._mounts.values())
         following = [*bearings[1:], bearings[0] + math.tau]
         return max(b - a for a, b in zip(bearings, following, strict=True))
 
 
-def is_moved(here: Pose, before: Pose) -> bool:
-    """Whether there may be something new to see."""
-    off = here.seen_from(before)
-    return math.hypot(off.x, off.y) >= LOOK_DISTANCE or abs(off.theta) >= LOOK_ANGLE
+def has_moved(here: Pose, before: Pose) -> bool:
+    """Whether the robot has moved far enough for another observation."""
+    step = here.relative_to(before)
+    distance = math.hypot(step.x, step.y)
+    return distance >= OBSERVE_DISTANCE or abs(step.theta) >= OBSERVE_ANGLE
 
 
-def are_apart(a: Pose, b: Pose) -> bool:
-    """Whether what was seen from a place has to be drawn anew."""
+def has_shifted(a: Pose, b: Pose) -> bool:
+    """Whether a keyframe has moved far enough to rebuild the grid."""
     turned = abs(wrap_angle(a.theta - b.theta))
-    return math.hypot(a.x - b.x, a.y - b.y) > DRAWN_APART or turned > DRAWN_TURNED
+    return math.hypot(a.x - b.x, a.y - b.y) > REBUILD_DISTANCE or turned > REBUILD_ANGLE
 
 
-def survey_with(robot: "Robot", survey: Survey) -> None:
-    """Explores with a robot and adds the map to the survey; raises MovementError."""
-    explorer = Surveyor(robot, survey).explore()
+def explore_with(robot: "Robot", session: SlamSession) -> None:
+    """Explores with a robot and adds its map to the session; raises MovementError."""
+    explorer = SlamRover(robot, session).explorer()
     try:
         explorer.explore()
-    except NoEndError as error:
+    except UnboundedAreaError as error:
         raise robot.failure(error) from error
     finally:
-        survey.add(robot.body.model.name, explorer.map)
+        session.add_map(robot.body.model.name, explorer.map)

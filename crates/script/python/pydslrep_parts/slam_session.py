@@ -1,5 +1,5 @@
 #: if standalone
-"""What slam is told, and what it leaves: the map of an environment."""
+"""The options of slam, and the file that it writes its maps to."""
 
 import argparse
 import importlib
@@ -13,47 +13,47 @@ from .topological_map import TopologicalMap
 #: endif
 
 
-Choice = tuple[str | None, float]  # of a sensor or robot, or for all of them
+NamedValue = tuple[str | None, float]  # for one sensor or robot, or for all (None)
 
 
-EXTENT = 20.0  # m from the start: further off, an area has no end
+EXTENT = 20.0  # m from the start; a larger area counts as unbounded
 
 
-def parse_length(text: str) -> float:
-    """A number above zero."""
+def parse_positive(text: str) -> float:
+    """Parses a positive number."""
     try:
         value = float(text)
     except ValueError:
         value = math.nan
     if not 0.0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text!r} is no number above zero")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a positive number")
     return value
 
 
-def parse_choice(text: str) -> Choice:
-    """NUMBER or NAME=NUMBER, above zero."""
+def parse_named_value(text: str) -> NamedValue:
+    """Parses NUMBER or NAME=NUMBER."""
     name, equals, number = text.rpartition("=")
-    return name if equals else None, parse_length(number)
+    return name if equals else None, parse_positive(number)
 
 
-def add_survey_options(parser: argparse.ArgumentParser, environment: str) -> None:
-    """The options of scripts with slam."""
+def add_slam_options(parser: argparse.ArgumentParser, environment: str) -> None:
+    """Adds the options of scripts with slam."""
     group = parser.add_argument_group("slam")
     numbers = (
         (
             "--range",
             "[SENSOR=]METRES",
-            "how far sensors see (what the simulator says, else 1)",
+            "range of the sensors (default: as the simulator reports, else 1)",
         ),
         (
             "--cone",
             "[SENSOR=]DEGREES",
-            "how wide sensors see (what the simulator says, else 20)",
+            "opening angle of the sensors (default: as the simulator reports, else 20)",
         ),
         (
             "--radius",
             "[ROBOT=]METRES",
-            "of the robot about the middle of its wheels (what holds these and its sensors)",
+            "radius of the robot around its wheels' centre (default: up to its sensors)",
         ),
     )
     for option, metavar, text in numbers:
@@ -61,36 +61,36 @@ def add_survey_options(parser: argparse.ArgumentParser, environment: str) -> Non
             option,
             action="append",
             default=[],
-            type=parse_choice,
+            type=parse_named_value,
             metavar=metavar,
             help=text,
         )
     group.add_argument(
         "--extent",
-        type=parse_length,
+        type=parse_positive,
         default=EXTENT,
         metavar="METRES",
-        help="how far an area may go on from where the robot starts (%(default)g)",
+        help="largest distance of the area from the start (default: %(default)g)",
     )
     group.add_argument(
         "--odometry",
         action="store_true",
-        help="tell where the robot is by how its wheels turn, not by the simulator",
+        help="use wheel odometry instead of the simulator's poses",
     )
     group.add_argument(
         "--map",
         type=Path,
         default=Path(f"{environment}_map.json"),
         metavar="FILE",
-        help="write the map here (%(default)s), and its picture beside it as PNG",
+        help="write the map to FILE (default: %(default)s), and a PNG next to it",
     )
 
 
-class Survey:
-    """What slam is told on the command line, and the maps that it made so far."""
+class SlamSession:
+    """The options of slam, and the maps of all robots so far."""
 
     def __init__(self, environment: str, options: argparse.Namespace) -> None:
-        self.by_odometry: bool = options.odometry
+        self.uses_odometry: bool = options.odometry
         self.extent: float = options.extent
         self._environment = environment
         self._ranges: dict[str | None, float] = dict(options.range)
@@ -100,28 +100,28 @@ class Survey:
         self._nodes: list[dict[str, Any]] = []
         self._edges: list[dict[str, Any]] = []
 
-    def range(self, robot: str, sensor: str, told: float | None) -> float:
-        """How far a sensor sees in metres; `told` is by the simulator."""
-        chosen = choice(self._ranges, f"{robot}.{sensor}", sensor)
-        return chosen or told or 1.0
+    def range(self, robot: str, sensor: str, reported: float | None) -> float:
+        """The range of a sensor in metres; `reported` is the simulator's value."""
+        given = lookup(self._ranges, f"{robot}.{sensor}", sensor)
+        return given or reported or 1.0
 
-    def cone(self, robot: str, sensor: str, told: float | None) -> float:
-        """The opening angle of a sensor in radians; `told` is by the simulator."""
-        chosen = choice(self._cones, f"{robot}.{sensor}", sensor)
-        return math.radians(chosen) if chosen else told or math.radians(20.0)
+    def cone(self, robot: str, sensor: str, reported: float | None) -> float:
+        """The opening angle of a sensor in radians; `reported` is the simulator's."""
+        given = lookup(self._cones, f"{robot}.{sensor}", sensor)
+        return math.radians(given) if given else reported or math.radians(20.0)
 
-    def radius(self, robot: str, spanned: float) -> float:
-        """That of a circle that holds a robot, in metres."""
-        return choice(self._radii, robot) or spanned
+    def radius(self, robot: str, measured: float) -> float:
+        """The radius of the circle that encloses a robot, in metres."""
+        return lookup(self._radii, robot) or measured
 
-    def add(self, robot: str, found: TopologicalMap) -> None:
-        """Adds a robot's map to what is written."""
+    def add_map(self, robot: str, found: TopologicalMap) -> None:
+        """Adds a robot's map and writes the file."""
         first = len(self._nodes)
         data = found.as_json()
         for node in data["nodes"]:
-            for exit_ in node["exits"]:
-                if exit_["to"] is not None:
-                    exit_["to"] += first
+            for frontier in node["exits"]:
+                if frontier["to"] is not None:
+                    frontier["to"] += first
             self._nodes.append({**node, "id": node["id"] + first, "robot": robot})
         for edge in data["edges"]:
             ends = {"from": edge["from"] + first, "to": edge["to"] + first}
@@ -136,10 +136,10 @@ class Survey:
         }
         text = json.dumps(data, indent=1) + "\n"
         self._file.write_text(text, encoding="utf-8")
-        self._draw(self._file.with_suffix(".png"))
+        self._plot(self._file.with_suffix(".png"))
 
-    def _draw(self, file: Path) -> None:
-        """Draws the map where matplotlib is installed."""
+    def _plot(self, file: Path) -> None:
+        """Draws the map if matplotlib is installed."""
         try:
             figure_module = importlib.import_module("matplotlib.figure")
         except ImportError:
@@ -157,6 +157,6 @@ class Survey:
         figure.savefig(file)
 
 
-def choice(choices: dict[str | None, float], *names: str) -> float | None:
-    """What was chosen for the first of some names, or for all."""
-    return next((choices[name] for name in (*names, None) if name in choices), None)
+def lookup(values: dict[str | None, float], *names: str) -> float | None:
+    """The value for the first of some names, or else for all (None)."""
+    return next((values[name] for name in (*names, None) if name in values), None)

@@ -1,5 +1,5 @@
 #: if standalone
-"""Maps of places and the ways between them."""
+"""A topological map: nodes connected by edges."""
 
 import heapq
 import math
@@ -7,78 +7,87 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from .occupancy_grid import Place
+from .occupancy_grid import Position
 
 #: endif
 
 
 @dataclass
-class Exit:
-    """A direction in which a place can be left."""
+class Frontier:
+    """A direction in which the robot can leave a node."""
 
     bearing: float  # radians, counter-clockwise from the world's x axis
-    leads_to: int | None = None  # the node there, or the one nearest to what is there
+    target: int | None = None  # the node it leads to; None while unexplored
 
 
 @dataclass
 class Node:
-    """A place where a robot has been."""
+    """A position that the robot has visited."""
 
     number: int
     x: float
     y: float
-    exits: list[Exit] = field(default_factory=list)
-    ways: dict[int, float] = field(default_factory=dict)  # length by neighbour
+    frontiers: list[Frontier] = field(default_factory=list)
+    neighbours: dict[int, float] = field(default_factory=dict)  # edge length by node
 
     @property
-    def place(self) -> Place:
-        """Where it is."""
+    def position(self) -> Position:
+        """The node's position."""
         return self.x, self.y
 
 
 class TopologicalMap:
-    """Nodes are places, edges are drives that were made."""
+    """Nodes are visited positions; edges are paths that were driven."""
 
     def __init__(self) -> None:
         self.nodes: list[Node] = []
         self._blocked: set[tuple[int, int]] = set()
 
     def add(self, x: float, y: float) -> Node:
-        """A new node."""
+        """Adds a node."""
         node = Node(len(self.nodes), x, y)
         self.nodes.append(node)
         return node
 
-    def move(self, node: Node, place: Place) -> None:
-        """A node is elsewhere than was thought."""
-        node.x, node.y = place
-        for number in node.ways:
+    def move(self, node: Node, position: Position) -> None:
+        """Corrects the position of a node."""
+        node.x, node.y = position
+        for number in node.neighbours:
             other = self.nodes[number]
-            node.ways[number] = other.ways[node.number] = math.dist(place, other.place)
+            node.neighbours[number] = other.neighbours[node.number] = math.dist(
+                position, other.position
+            )
 
     def connect(self, a: Node, b: Node) -> None:
-        """An edge that was driven."""
-        a.ways[b.number] = b.ways[a.number] = math.dist(a.place, b.place)
+        """Adds an edge that was driven."""
+        a.neighbours[b.number] = b.neighbours[a.number] = math.dist(
+            a.position, b.position
+        )
 
     def block(self, a: Node, b: Node) -> None:
-        """An edge that cannot be driven any more, though it was."""
+        """Excludes an edge from paths because an obstacle now blocks it."""
         self._blocked |= {(a.number, b.number), (b.number, a.number)}
 
-    def near(self, place: Place, within: float) -> list[Node]:
-        """The nodes about a place, the nearest first."""
+    def nodes_near(self, position: Position, within: float) -> list[Node]:
+        """The nodes within a distance, nearest first."""
         found = (
-            (math.dist(node.place, place), node.number)
+            (math.dist(node.position, position), node.number)
             for node in self.nodes
-            if abs(node.x - place[0]) <= within and abs(node.y - place[1]) <= within
+            if abs(node.x - position[0]) <= within
+            and abs(node.y - position[1]) <= within
         )
-        return [self.nodes[number] for away, number in sorted(found) if away <= within]
+        return [
+            self.nodes[number]
+            for distance, number in sorted(found)
+            if distance <= within
+        ]
 
     def distances(self, start: Node) -> dict[int, float]:
-        """How far it is along edges to every node that can be reached."""
-        return {number: away for number, (away, _) in self._search(start).items()}
+        """The path length to every reachable node."""
+        return {n: distance for n, (distance, _) in self._search(start).items()}
 
     def path(self, start: Node, end: Node) -> list[Node]:
-        """The nodes on the shortest way, without the first; raises KeyError."""
+        """The nodes on the shortest path, without the first; raises KeyError."""
         found = self._search(start)
         path = [end]
         while path[-1] is not start:
@@ -86,14 +95,14 @@ class TopologicalMap:
         return path[-2::-1]
 
     def edges(self) -> Iterator[tuple[int, int, float]]:
-        """Each edge once: two nodes' numbers, and its length."""
+        """Each edge once: the numbers of its nodes, and its length."""
         for node in self.nodes:
-            for other, length in sorted(node.ways.items()):
+            for other, length in sorted(node.neighbours.items()):
                 if node.number < other:
                     yield node.number, other, length
 
     def as_json(self) -> dict[str, list[dict[str, Any]]]:
-        """The map as it is written to a file: metres and degrees."""
+        """The map in its file format: metres and degrees."""
         return {
             "nodes": [
                 {
@@ -102,10 +111,10 @@ class TopologicalMap:
                     "y": round(node.y, 4) + 0.0,
                     "exits": [
                         {
-                            "bearing": round(math.degrees(way.bearing), 1) + 0.0,
-                            "to": way.leads_to,
+                            "bearing": round(math.degrees(frontier.bearing), 1) + 0.0,
+                            "to": frontier.target,
                         }
-                        for way in node.exits
+                        for frontier in node.frontiers
                     ],
                 }
                 for node in self.nodes
@@ -117,14 +126,14 @@ class TopologicalMap:
         }
 
     def _search(self, start: Node) -> dict[int, tuple[float, int]]:
-        """Distance and the node before, by number (Dijkstra's algorithm)."""
+        """The distance and predecessor of each node, by number (Dijkstra)."""
         found: dict[int, tuple[float, int]] = {}
         queue = [(0.0, start.number, start.number)]
         while queue:
-            away, number, before = heapq.heappop(queue)
+            distance, number, before = heapq.heappop(queue)
             if number not in found:
-                found[number] = away, before
-                for other, length in self.nodes[number].ways.items():
+                found[number] = distance, before
+                for other, length in self.nodes[number].neighbours.items():
                     if (number, other) not in self._blocked:
-                        heapq.heappush(queue, (away + length, other, number))
+                        heapq.heappush(queue, (distance + length, other, number))
         return found

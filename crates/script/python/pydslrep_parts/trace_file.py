@@ -1,5 +1,5 @@
 #: if standalone
-"""What a run leaves for others to read."""
+"""The trace of a run."""
 
 import json
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from .pose import Pose
 
 
 class Trace:
-    """Collects a row per robot and step, and writes them as JSON lines in order of time."""
+    """Collects one row per robot and step, and writes them as JSON lines by time."""
 
     def __init__(self, file: TextIO | None) -> None:
         self._file = file
@@ -26,7 +26,7 @@ class Trace:
         movement: str,
         action: str,
     ) -> None:
-        """Keeps a row: seconds, metres, radians, and rad/s of the wheels."""
+        """Adds a row: seconds, metres, radians, and the wheels' rad/s."""
         if self._file is None:
             return
         row = {
@@ -42,9 +42,9 @@ class Trace:
         self._rows.append((time, robot, json.dumps(row)))
 
     def write(self) -> None:
-        """Writes what has been collected since the last time."""
+        """Writes the rows added since the last call."""
         if self._file is not None:
-            # Robots that drive at the same time add their rows in any order.
+            # Robots that drive in parallel add their rows in any order.
             self._rows.sort(key=lambda row: (round(row[0], 6), row[1]))
             self._file.writelines(f"{row}\n" for _, _, row in self._rows)
             self._file.flush()

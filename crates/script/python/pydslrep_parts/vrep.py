@@ -1,5 +1,5 @@
 #: if standalone
-"""All contact with the simulator V-REP, or CoppeliaSim by its legacy remote API."""
+"""The interface to V-REP, or to CoppeliaSim's legacy remote API."""
 
 import importlib
 import math
@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from .errors import SetupError, SimulatorError
-from .model import Eye, Mounting, RobotModel
+from .model import Mounting, RobotModel, SensorCone
 from .pose import Pose
 from .settings import CONNECT_TIMEOUT, REPLY_TIMEOUT, STOP_TIMEOUT
 
@@ -19,27 +19,26 @@ from .settings import CONNECT_TIMEOUT, REPLY_TIMEOUT, STOP_TIMEOUT
 
 
 SIMULATOR = "V-REP"
-PORT_HELP = "port of the remote API, one for each robot; may be repeated"
-REALTIME_HELP = "let time pass by itself instead of triggering every step"
+PORT_HELP = "port of the remote API, one per robot; repeatable"
+REALTIME_HELP = "run in real time instead of triggering every step"
 
-# Numbers of the remote API that its client has no names for, or other names from version
-# to version.
+# Constants of the remote API that its client does not name, or not in all versions.
 WORLD = -1
 TYPE_JOINT = 1
 TYPE_SENSOR = 5
 PARAM_TIME_STEP = 1
 PARAM_REAL_TIME = 25
 PARAM_MOTOR_ENABLED = 2000
-PARAM_CONTROL_MODE = 2039  # since 4.3, and then with this value for velocities:
+PARAM_CONTROL_MODE = 2039  # since 4.3, with this value for velocity control:
 CONTROL_VELOCITY = 4
 SERVER_STATE = 17
 NOT_STOPPED, PAUSED = 1, 2  # bits of the state
 NO_VALUE, TIMEOUT, REMOTE_ERROR = 1, 2, 8  # bits of return codes
-CYCLE = 1  # ms between messages; 5 is usual, but every step waits for some of them
+CYCLE = 1  # ms between messages; the usual 5 would slow down every step
 
 
 def load_client() -> Any:
-    """V-REP's client for Python, which no package registry has; raises SetupError."""
+    """Imports V-REP's client for Python, which PyPI does not have; raises SetupError."""
     library = {"win32": "remoteApi.dll", "darwin": "remoteApi.dylib"}.get(
         sys.platform, "remoteApi.so"
     )
@@ -49,25 +48,25 @@ def load_client() -> Any:
         except ModuleNotFoundError as error:
             if error.name == name:
                 continue
-            raise SetupError(f"{name}.py needs {error.name}.py beside it") from error
-        except Exception as error:  # whatever it stumbles over without its library
+            raise SetupError(f"{name}.py needs {error.name}.py next to it") from error
+        except Exception as error:  # without its library it fails in various ways
             raise SetupError(
-                f"{name}.py cannot be loaded: {error}. Its library {library} must be beside it"
+                f"{name}.py cannot be loaded: {error}. Is its library {library} next to it?"
             ) from error
         if hasattr(client, "simxStart"):
             return client
     raise SetupError(
-        "V-REP's client for Python is missing: there is neither a sim.py nor a vrep.py of it "
-        f"on Python's path. Copy sim.py, simConst.py and {library} to "
-        f"{Path(__file__).resolve().parent}. CoppeliaSim has them in its folder "
+        "V-REP's client for Python is missing: neither its sim.py nor its vrep.py is on "
+        f"Python's path. Copy sim.py, simConst.py and {library} to "
+        f"{Path(__file__).resolve().parent}. CoppeliaSim has them in "
         "programming/legacyRemoteApi/remoteApiBindings (before 4.3: "
-        "programming/remoteApiBindings), in python/python and, by system, in lib/lib. In "
-        "V-REP 3 the first two are called vrep.py and vrepConst.py."
+        "programming/remoteApiBindings), under python/python and lib/lib. In V-REP 3 the "
+        "first two are called vrep.py and vrepConst.py."
     )
 
 
 def matrix_of(position: Sequence[float], angles: Sequence[float]) -> list[float]:
-    """Rows of rotation (about x, then the new y, then the new z) and translation."""
+    """The matrix of a position and Euler angles (about x, then new y, then new z)."""
     (ca, cb, cc), (sa, sb, sc) = map(math.cos, angles), map(math.sin, angles)
     x, y, z = position
     return [
@@ -78,11 +77,11 @@ def matrix_of(position: Sequence[float], angles: Sequence[float]) -> list[float]
 
 
 class Body:
-    """A robot's body in V-REP: all contact with it goes through this class.
+    """The interface to a robot's body in V-REP.
 
-    For a physical robot write a class with the same public methods and attributes: `pose`
-    from its odometry or a camera, `set_wheel_rates` to its motors, and `advance` to wait for
-    `time_step`; those that start, hold and release time have nothing to do there.
+    For a physical robot, write a class with the same public methods and attributes: `pose`
+    reads its odometry or a camera, `set_wheel_rates` sets its motors, and `advance` waits
+    for `time_step`; `start` and the methods for stepping can do nothing.
     """
 
     def __init__(self, model: RobotModel, host: str, port: int, realtime: bool) -> None:
@@ -91,7 +90,7 @@ class Body:
         self.time = 0.0  # s of simulation time, after the last step
         self._address = f"{host}:{port}"
         self._realtime = realtime
-        self._started = self._holds_time = self._is_lost = False
+        self._started = self._is_stepping = self._connection_lost = False
         self._joints: list[int] = []
         self._client = load_client()
         self._id = self._connect(host, port)
@@ -103,38 +102,38 @@ class Body:
                 raise
             raise SetupError(
                 f"robot {model.name}: {error}. The remote API serves one client per port: is "
-                "another one connected to this one? --port chooses another port."
+                "another client connected? Use --port to choose another port."
             ) from error
 
     def _connect(self, host: str, port: int) -> int:
         try:
-            address = socket.gethostbyname(host)  # the client knows no names
+            address = socket.gethostbyname(host)  # the client does not resolve names
         except OSError as error:
-            raise SetupError(f"host {host} is not known: {error}") from error
+            raise SetupError(f"unknown host {host}: {error}") from error
         limit = round(1000.0 * CONNECT_TIMEOUT)
         number: int = self._client.simxStart(address, port, True, True, limit, CYCLE)
         if number < 0:
             raise SetupError(
-                f"robot {self.model.name}: nobody answers at {self._address}. Is V-REP running "
-                "there, with a server of the remote API on that port? --host and --port choose "
-                "another place."
+                f"robot {self.model.name}: no reply from {self._address}. Is V-REP running "
+                "there, with its remote API on that port? Use --host and --port to connect "
+                "elsewhere."
             )
         return number
 
     def pose(self) -> Pose:
-        """Where the middle of the wheels is, and the robot's heading."""
-        return self._mounting.pose(self._look())
+        """The pose of the wheels' centre."""
+        return self._mounting.pose(self._read_body())
 
     def set_wheel_rates(self, rates: Sequence[float]) -> None:
-        """Sets how fast the wheels turn, in rad/s, forward where positive."""
+        """Sets the rates of the wheels in rad/s, forward if positive."""
         client = self._client
         try:
-            # What is asked for in a pause goes out together when it ends.
+            # Commands given during a pause are sent together.
             client.simxPauseCommunication(self._id, True)
             for index, rate in enumerate(rates):
-                # Changes that nobody could see are not worth a message, but rest is rest.
+                # Skip negligible changes, except to zero.
                 if abs(rate - self._rates[index]) > (1e-4 if rate else 0.0):
-                    velocity = rate * self._mounting.senses[index]
+                    velocity = rate * self._mounting.axis_signs[index]
                     self._set_velocity(index, velocity, client.simx_opmode_oneshot)
                     self._rates[index] = rate
         finally:
@@ -142,21 +141,21 @@ class Body:
 
     #: if until
     def detects(self, sensor: str) -> bool:
-        """Whether a proximity sensor sees something."""
+        """Whether a proximity sensor detects an object."""
         read = self._client.simxReadProximitySensor
         mode = self._client.simx_opmode_buffer
-        return bool(self._ask(read, self._sensors[sensor], mode))
+        return bool(self._call(read, self._sensors[sensor], mode))
 
     #: endif
     #: if slam
     def wheel_angles(self) -> list[float]:
-        """How far the wheels have turned, in radians, forward where positive."""
+        """The angles of the wheels in radians, forward if positive."""
         read, mode = self._client.simxGetJointPosition, self._client.simx_opmode_buffer
-        angles = [self._ask(read, joint, mode) for joint in self._joints]
-        return [s * a for s, a in zip(self._mounting.senses, angles, strict=True)]
+        angles = [self._call(read, joint, mode) for joint in self._joints]
+        return [s * a for s, a in zip(self._mounting.axis_signs, angles, strict=True)]
 
     def distance(self, sensor: str) -> float | None:
-        """How far off what a proximity sensor sees is, in metres; None where it sees nothing."""
+        """The distance that a proximity sensor measures, in metres; None if nothing."""
         client, handle = self._client, self._sensors[sensor]
         code, state, point, _, _ = client.simxReadProximitySensor(
             self._id, handle, client.simx_opmode_buffer
@@ -164,23 +163,23 @@ class Body:
         self._check(code, "simxReadProximitySensor")
         return math.hypot(*point) if state else None
 
-    def eye(self, sensor: str) -> Eye:
-        """Where a proximity sensor is mounted; the remote API cannot tell how far it sees."""
+    def sensor_cone(self, sensor: str) -> SensorCone:
+        """The mount of a proximity sensor; the remote API does not report its volume."""
         wait = self._client.simx_opmode_blocking
         seen = self._matrix(self._sensors[sensor], wait)
-        return Eye(self._mounting.mount(self._look(), seen))
+        return SensorCone(self._mounting.mount(self._read_body(), seen))
 
     #: endif
     def advance(self) -> None:
-        """Lets one step of simulation time pass."""
+        """Advances the simulation by one step."""
         before = self._milliseconds
-        if self._holds_time:
-            # Refused where the simulation does not run, as the state will show.
-            self._ask(self._client.simxSynchronousTrigger, may=REMOTE_ERROR)
+        if self._is_stepping:
+            # Refused if the simulation is not running, which the state below shows.
+            self._call(self._client.simxSynchronousTrigger, allow=REMOTE_ERROR)
         deadline = time.monotonic() + REPLY_TIMEOUT
-        # A trigger is answered before its step was taken, and others may have to trigger, too.
+        # The reply to a trigger precedes the step, and other clients may have to trigger.
         while self._is_running():
-            self._look()
+            self._read_body()
             if self._milliseconds > before:
                 break
             if time.monotonic() > deadline:
@@ -190,38 +189,38 @@ class Body:
         self.time = self._milliseconds / 1000.0
 
     def start(self) -> None:
-        """Starts the simulation, unless it runs already."""
+        """Starts the simulation if it is stopped."""
         if self._is_stopped():
             client, wait = self._client, self._client.simx_opmode_blocking
             if self._realtime:
-                self._ask(client.simxSetBooleanParameter, PARAM_REAL_TIME, True, wait)
+                self._call(client.simxSetBooleanParameter, PARAM_REAL_TIME, True, wait)
             self._started = True
-            self._ask(client.simxStartSimulation, wait)
+            self._call(client.simxStartSimulation, wait)
             self._wait_until_stopped(False)
-        self._look()
+        self._read_body()
 
-    def hold_time(self) -> None:
-        """From now on time only passes when `advance` is called."""
-        if not self._holds_time and not self._realtime:
+    def enable_stepping(self) -> None:
+        """From now on, time passes only when `advance` is called."""
+        if not self._is_stepping and not self._realtime:
             code = self._client.simxSynchronous(self._id, True)
             if code == REMOTE_ERROR:
                 raise SetupError(
                     f"robot {self.model.name}: {self._address} does not let clients trigger "
-                    "the steps of time. Set portIndex..._syncSimTrigger to true there in "
+                    "simulation steps. Set portIndex..._syncSimTrigger to true in its "
                     "remoteApiConnections.txt, or use --realtime."
                 )
             self._check(code)
-            self._holds_time = True
-            self._look()
+            self._is_stepping = True
+            self._read_body()
 
-    def release_time(self) -> None:
-        """From now on this robot does not hold up time."""
-        if self._holds_time:
-            self._ask(self._client.simxSynchronous, False)
-            self._holds_time = False
+    def disable_stepping(self) -> None:
+        """From now on, time no longer waits for this robot."""
+        if self._is_stepping:
+            self._call(self._client.simxSynchronous, False)
+            self._is_stepping = False
 
-    def why_it_stands(self) -> str:
-        """What may keep the robot in place although its wheels should turn."""
+    def stall_reason(self) -> str:
+        """Why the robot may not move although its wheels should turn."""
         if not self._is_running():
             return "the simulation was stopped or paused"
         for name, joint in zip(self.model.wheels, self._joints, strict=True):
@@ -232,35 +231,35 @@ class Body:
                 )
             if mode is None and self._joint_parameter(joint, PARAM_MOTOR_ENABLED) == 0:
                 return f"the motor of joint {name} is off: enable it"
-        return "something may be in its way"
+        return "an obstacle may be in the way"
 
     def stop(self) -> None:
-        """Stops the wheels, whatever happened before."""
-        if self._is_lost:
+        """Stops the wheels, even after an error."""
+        if self._connection_lost:
             return
         try:
             for index in range(len(self._joints)):
                 self._set_velocity(index, 0.0, self._client.simx_opmode_blocking)
         except SimulatorError:
-            self._is_lost = True  # what led here says why
+            self._connection_lost = True  # the first error is reported
 
     def close(self) -> None:
-        """Stops the simulation where this robot started it, and hangs up."""
+        """Stops the simulation if this robot started it, and disconnects."""
         try:
-            if self._started and not self._is_lost:
+            if self._started and not self._connection_lost:
                 wait = self._client.simx_opmode_blocking
-                self._ask(self._client.simxStopSimulation, wait)
+                self._call(self._client.simxStopSimulation, wait)
                 self._wait_until_stopped(True)
-            if not self._is_lost:
-                self.release_time()
+            if not self._connection_lost:
+                self.disable_stepping()
         except SimulatorError:
-            self._is_lost = True
+            self._connection_lost = True
         self._client.simxFinish(self._id)
 
     def _state(self) -> int:
-        """How the simulation is, after everything that was sent before was done."""
-        self._ask(self._client.simxGetPingTime)
-        # What it returns first is no code like others'.
+        """The state of the simulation, after all earlier commands."""
+        self._call(self._client.simxGetPingTime)
+        # Unlike others, its first result is no return code.
         _, state = self._client.simxGetInMessageInfo(self._id, SERVER_STATE)
         return int(state)
 
@@ -271,16 +270,16 @@ class Body:
         return self._state() & (NOT_STOPPED | PAUSED) == NOT_STOPPED
 
     def _wait_until_stopped(self, stopped: bool) -> None:
-        """Starting and stopping take effect a moment after the simulator has answered."""
+        """Waits, because starting and stopping take effect after the reply."""
         deadline = time.monotonic() + STOP_TIMEOUT
         while self._is_stopped() != stopped and time.monotonic() < deadline:
             time.sleep(0.02)
 
     def _find_objects(self) -> None:
-        """Finds the robot's parts and measures them: nothing about them is assumed."""
+        """Finds and measures the robot's parts."""
         client, wait = self._client, self._client.simx_opmode_blocking
-        joints = self._ask(client.simxGetObjects, TYPE_JOINT, wait)
-        sensors = self._ask(client.simxGetObjects, TYPE_SENSOR, wait)
+        joints = self._call(client.simxGetObjects, TYPE_JOINT, wait)
+        sensors = self._call(client.simxGetObjects, TYPE_SENSOR, wait)
         name = self.model.name
         self._missing: list[str] = []
         self._body = self._find(
@@ -296,29 +295,31 @@ class Body:
                 f"robot {name}: the scene at {self._address} has no "
                 + ", no ".join(self._missing)
             )
-        step = self._ask(client.simxGetFloatingParameter, PARAM_TIME_STEP, wait)
+        step = self._call(client.simxGetFloatingParameter, PARAM_TIME_STEP, wait)
         self.time_step = round(step, 6)  # the client has single precision
         self._start_streams()
         mounts = [self._matrix(joint, wait) for joint in self._joints]
-        self._mounting = Mounting(self.model, self._look(), mounts)
+        self._mounting = Mounting(self.model, self._read_body(), mounts)
         self.drive = self._mounting.drive
-        self._rates = [math.inf] * len(mounts)  # unknown, so the first is always set
+        self._rates = [math.inf] * len(
+            mounts
+        )  # unknown, so the first rates are always set
 
     def _start_streams(self) -> None:
-        """From now on every message brings what changes all the time."""
+        """Subscribes to the values that change in every step."""
         client, stream = self._client, self._client.simx_opmode_streaming
-        self._matrix(self._body, stream, may=NO_VALUE)
+        self._matrix(self._body, stream, allow=NO_VALUE)
         #: if until or slam
         for sensor in self._sensors.values():
-            # Before the first step, sensors are blind.
-            may = NO_VALUE | REMOTE_ERROR
-            self._ask(client.simxReadProximitySensor, sensor, stream, may=may)
+            # Sensors have no readings before the first step.
+            allow = NO_VALUE | REMOTE_ERROR
+            self._call(client.simxReadProximitySensor, sensor, stream, allow=allow)
         #: endif
         #: if slam
         for joint in self._joints:
-            self._ask(client.simxGetJointPosition, joint, stream, may=NO_VALUE)
+            self._call(client.simxGetJointPosition, joint, stream, allow=NO_VALUE)
         #: endif
-        self._ask(client.simxGetPingTime)
+        self._call(client.simxGetPingTime)
 
     def _find_parts(
         self, what: str, kind: Sequence[int], names: Iterable[str]
@@ -333,7 +334,7 @@ class Body:
         ]
 
     def _find(self, what: str, fits: Callable[[int], bool], *names: str) -> int:
-        """The first object of a kind: others may share its name, as a wheel and a sensor may."""
+        """The first object of the right type; a wheel and a sensor may share a name."""
         tried = []
         for name in names:
             others: set[int] = set()
@@ -343,9 +344,7 @@ class Body:
                     return handle
                 others.add(handle)
                 handle = self._object(f"{name}[{len(others)}]")
-            tried.append(
-                f"{name} (what is there is of another kind)" if others else name
-            )
+            tried.append(f"{name} (an object of another type)" if others else name)
         self._missing.append(f"{what} {' or '.join(tried)}")
         return -1
 
@@ -356,7 +355,7 @@ class Body:
         return None if code else int(handle)
 
     def _joint_parameter(self, joint: int, parameter: int) -> int | None:
-        """A parameter of a joint; None in versions that do not have it."""
+        """A parameter of a joint; None in versions without it."""
         read, wait = (
             self._client.simxGetObjectIntParameter,
             self._client.simx_opmode_blocking,
@@ -367,45 +366,49 @@ class Body:
 
     def _set_velocity(self, index: int, velocity: float, mode: int) -> None:
         set_velocity = self._client.simxSetJointTargetVelocity
-        self._ask(set_velocity, self._joints[index], velocity, mode, may=NO_VALUE)
+        self._call(set_velocity, self._joints[index], velocity, mode, allow=NO_VALUE)
 
-    def _look(self) -> list[float]:
-        """Where the body is by the simulator's last message, and when that was."""
+    def _read_body(self) -> list[float]:
+        """The body's matrix in the simulator's last message; also stores its time."""
         buffer = self._client.simx_opmode_buffer
         while True:
             matrix = self._matrix(self._body, buffer)
             self._milliseconds = self._client.simxGetLastCmdTime(self._id)
-            # Between its position and its angles another message may have come.
+            # Another message may arrive between reading the position and the angles.
             if matrix == self._matrix(self._body, buffer):
                 return matrix
 
-    def _matrix(self, handle: int, mode: int, may: int = 0) -> list[float]:
-        """Where an object is: rows of rotation and translation."""
+    def _matrix(self, handle: int, mode: int, allow: int = 0) -> list[float]:
+        """An object's matrix: rows of rotation and translation."""
         client = self._client
-        position = self._ask(client.simxGetObjectPosition, handle, WORLD, mode, may=may)
-        angles = self._ask(
-            client.simxGetObjectOrientation, handle, WORLD, mode, may=may
+        position = self._call(
+            client.simxGetObjectPosition, handle, WORLD, mode, allow=allow
+        )
+        angles = self._call(
+            client.simxGetObjectOrientation, handle, WORLD, mode, allow=allow
         )
         return matrix_of(position, angles)
 
-    def _ask(self, function: Callable[..., Any], *arguments: Any, may: int = 0) -> Any:
-        """The first value that a function of the client gives; raises SimulatorError.
+    def _call(
+        self, function: Callable[..., Any], *arguments: Any, allow: int = 0
+    ) -> Any:
+        """Calls a function of the client, returns its first value; raises SimulatorError.
 
-        `may` has the bits of return codes that are fine.
+        `allow` has the bits of return codes that are no errors.
         """
-        answer = function(self._id, *arguments)
-        code, *values = answer if isinstance(answer, tuple) else (answer,)
-        self._check(code & ~may, function.__name__)
+        result = function(self._id, *arguments)
+        code, *values = result if isinstance(result, tuple) else (result,)
+        self._check(code & ~allow, function.__name__)
         return values[0] if values else None
 
     def _check(self, code: int, function: str = "a command") -> None:
         if code == 0:
             return
         if self._client.simxGetConnectionId(self._id) == -1:
-            self._is_lost = True
-            raise SimulatorError(f"lost {self._address}")
+            self._connection_lost = True
+            raise SimulatorError(f"lost connection to {self._address}")
         if code & TIMEOUT:
-            raise SimulatorError(f"no answer from {self._address}")
+            raise SimulatorError(f"no reply from {self._address}")
         if code & REMOTE_ERROR:
             raise SimulatorError(f"{self._address} refused {function}")
         raise SimulatorError(f"{self._address}: {function} returned code {code}")

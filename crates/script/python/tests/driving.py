@@ -1,4 +1,4 @@
-"""What the tests of driving share: robots of all kinds, and how far off they end."""
+"""Shared by the tests of driving: robots with all drives, and their errors."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -32,14 +32,14 @@ DRIVES: dict[str, type[Drive]] = {
 
 
 def joints(drive: str, **options: Any) -> list[FakeJoint]:
-    """The joints that a drive needs."""
+    """The joints of a drive."""
     if drive == "two-wheel":
         return two_wheel_joints(**options)
     return four_wheel_joints(mecanum=drive == "mecanum", **options)
 
 
 def model(robot: FakeRobot, drive: str) -> RobotModel:
-    """What the program would say of the robot."""
+    """The robot as a program would declare it."""
     wheels = {joint.name: joint.radius for joint in robot.joints}
     return RobotModel(robot.name, 19999, DRIVES[drive], wheels, tuple(robot.sensors))
 
@@ -48,7 +48,7 @@ def model(robot: FakeRobot, drive: str) -> RobotModel:
 def connected(
     world: FakeWorld, monkeypatch: pytest.MonkeyPatch, *drives: str
 ) -> Iterator[Fleet]:
-    """A fleet of all the robots of a world, with a drive each."""
+    """A fleet with all robots of a world, one drive each."""
     monkeypatch.setattr(coppeliasim, "RemoteAPIClient", world.factory())
     fleet = Fleet(Trace(None))
     try:
@@ -73,7 +73,7 @@ def drive_alone(
 
 
 def wheel_middle(robot: FakeRobot) -> tuple[float, float]:
-    """Where the middle of the wheels is."""
+    """The position of the wheels' centre."""
     cx = sum(joint.x for joint in robot.joints) / len(robot.joints)
     cy = sum(joint.y for joint in robot.joints) / len(robot.joints)
     cos, sin = math.cos(robot.theta), math.sin(robot.theta)
@@ -81,7 +81,7 @@ def wheel_middle(robot: FakeRobot) -> tuple[float, float]:
 
 
 def errors(robot: FakeRobot, x: float, y: float, theta: float) -> tuple[float, float]:
-    """Metres and degrees by which a robot misses a pose."""
+    """The error of a robot's pose in metres and degrees."""
     here_x, here_y = wheel_middle(robot)
     angle = math.remainder(robot.theta - theta, math.tau)
     return math.hypot(here_x - x, here_y - y), abs(math.degrees(angle))

@@ -1,7 +1,7 @@
-"""A small kinematic simulation behind the interface of CoppeliaSim's client.
+"""A small kinematic simulator with the interface of CoppeliaSim's client.
 
-It shares no code with the parts under test: wheels follow their targets with a limited acceleration, and
-bodies follow their wheels by the least-squares motion of all of them.
+It shares no code with the parts under test. Wheels follow their targets with limited acceleration; bodies move by the
+least-squares fit to all wheels.
 """
 
 import math
@@ -17,16 +17,14 @@ SUBSTEPS = 8
 
 @dataclass
 class FakeJoint:
-    """A wheel's joint: where it is mounted, what it should do and what it does."""
+    """A wheel's joint: its mount, its target and its current rate."""
 
     name: str
     x: float
     y: float
     radius: float = 0.045
-    roller: float = (
-        0.0  # 0 for standard wheels, +1 or -1 for the two ways round of mecanum rollers
-    )
-    sense: float = 1.0  # -1: the joint's axis points to the body's right
+    roller: float = 0.0  # 0 for standard wheels, +1 or -1 for the two orientations of mecanum rollers
+    axis_sign: float = 1.0  # -1: the joint's axis points to the body's right
     mode: int = 4  # velocity
     target: float = 0.0
     rate: float = 0.0
@@ -42,27 +40,29 @@ class FakeRobot:
     y: float = 0.0
     theta: float = 0.0
     motor_acceleration: float = 40.0  # rad/s²
-    slip: float = 0.0  # standard deviation of each wheel's grip
+    slip: float = 0.0  # standard deviation of each wheel's traction
     wall: float = math.inf  # the body's x cannot exceed this
     kerb: float = -math.inf  # it slides along this where y would fall below it
     sensors: dict[str, Callable[["FakeRobot"], bool]] = field(default_factory=dict)
-    rolled: list[list[float]] = field(default_factory=list)
+    rate_history: list[list[float]] = field(default_factory=list)
 
     def advance(self, dt: float, noise: random.Random) -> None:
-        """Moves by dt."""
-        grips = [
+        """Moves for dt seconds."""
+        traction = [
             1.0 + noise.gauss(0.0, self.slip) if self.slip else 1.0 for _ in self.joints
         ]
         for _ in range(SUBSTEPS):
-            self._substep(dt / SUBSTEPS, grips)
-        self.rolled.append([joint.sense * joint.rate for joint in self.joints])
+            self._substep(dt / SUBSTEPS, traction)
+        self.rate_history.append(
+            [joint.axis_sign * joint.rate for joint in self.joints]
+        )
 
-    def _substep(self, dt: float, grips: Sequence[float]) -> None:
+    def _substep(self, dt: float, traction: Sequence[float]) -> None:
         for joint in self.joints:
             change = joint.target - joint.rate if joint.mode == 4 else -joint.rate
             limit = self.motor_acceleration * dt
             joint.rate += max(-limit, min(limit, change))
-        vx, vy, omega = self.twist(grips)
+        vx, vy, omega = self.twist(traction)
         middle = self.theta + omega * dt / 2.0
         if self.x + (vx * math.cos(middle) - vy * math.sin(middle)) * dt > self.wall:
             return
@@ -71,13 +71,13 @@ class FakeRobot:
         self.y = max(y, self.kerb)
         self.theta += omega * dt
 
-    def twist(self, grips: Sequence[float]) -> tuple[float, float, float]:
-        """Body motion of the origin from the wheels; rims are symmetric about their centre."""
+    def twist(self, traction: Sequence[float]) -> tuple[float, float, float]:
+        """The twist of the body's origin; the wheels are symmetric about their centre."""
         cx = sum(joint.x for joint in self.joints) / len(self.joints)
         cy = sum(joint.y for joint in self.joints) / len(self.joints)
         rims = [
-            joint.sense * joint.rate * joint.radius * grip
-            for joint, grip in zip(self.joints, grips, strict=True)
+            joint.axis_sign * joint.rate * joint.radius * factor
+            for joint, factor in zip(self.joints, traction, strict=True)
         ]
         arms = [
             (joint.y - cy) - joint.roller * (joint.x - cx) for joint in self.joints
@@ -95,7 +95,7 @@ class FakeRobot:
 
 
 def two_wheel_joints(track: float = 0.3, **options: Any) -> list[FakeJoint]:
-    """Joints named as in the article."""
+    """Joints with the names of the article."""
     return [
         FakeJoint("wheelL", 0.0, track / 2.0, **options),
         FakeJoint("wheelR", 0.0, -track / 2.0, **options),
@@ -109,7 +109,7 @@ def four_wheel_joints(
     mecanum: bool = False,
     **options: Any,
 ) -> list[FakeJoint]:
-    """Joints named as in the article, in its order."""
+    """Joints with the names and the order of the article."""
     x, y = wheelbase / 2.0, track / 2.0
     places = {
         "wheelL0": (x, y),
@@ -130,7 +130,7 @@ def four_wheel_joints(
 
 
 class FakeWorld:
-    """The simulator: robots, time, and the clients that hold it."""
+    """The simulator: robots, time, and the clients in stepping mode."""
 
     def __init__(self, *robots: FakeRobot, dt: float = 0.05, seed: int = 1) -> None:
         self.robots = {robot.name: robot for robot in robots}
@@ -158,11 +158,11 @@ class FakeWorld:
         self.objects.append(thing)
 
     def object(self, handle: int) -> Any:
-        """What a handle stands for."""
+        """The object of a handle."""
         return self.objects[handle - 10]
 
     def step(self) -> None:
-        """Everybody moves."""
+        """Moves all robots."""
         self.before_step()
         for robot in self.robots.values():
             robot.advance(self.dt, self.noise)
@@ -173,7 +173,7 @@ class FakeWorld:
         return FakeClient(self, uuid)
 
     def factory(self) -> Callable[[str, int], "FakeClient"]:
-        """What takes the place of the class `RemoteAPIClient`."""
+        """A replacement for the class `RemoteAPIClient`."""
         return lambda host, port: self.client(f"{host}:{port}/{len(self.clients())}")
 
     def clients(self) -> list["FakeClient"]:
@@ -182,7 +182,7 @@ class FakeWorld:
 
 
 class FakeSocket:
-    """Takes the settings of a real one."""
+    """Accepts the settings of a real socket."""
 
     linger = sndtimeo = rcvtimeo = -1
 
@@ -202,7 +202,7 @@ class FakeContext:
 
 
 class FakeClient:
-    """The client's class, as far as scripts use it."""
+    """The parts of the client's class that scripts use."""
 
     made: dict[int, list["FakeClient"]] = {}  # noqa: RUF012
 
@@ -219,7 +219,7 @@ class FakeClient:
 
 
 class FakeSim:
-    """The functions and constants that scripts use, as the specification of the remote API describes them."""
+    """The functions and constants that scripts use, as specified by the remote API."""
 
     simulation_stopped = 0
     simulation_advancing = 16
@@ -263,7 +263,7 @@ class FakeSim:
             return [c, -s, 0.0, robot.x, s, c, 0.0, robot.y, 0.0, 0.0, 1.0, 0.1]
         # the joint's z axis points to the left, or right; its x axis ahead
         x, y = robot.x + c * joint.x - s * joint.y, robot.y + s * joint.x + c * joint.y
-        k = joint.sense
+        k = joint.axis_sign
         return [c, 0.0, -s * k, x, s, 0.0, c * k, y, 0.0, -k, 0.0, 0.045]
 
     def setJointTargetVelocity(self, handle: int, velocity: float) -> int:
@@ -273,13 +273,13 @@ class FakeSim:
         return 1
 
     def readProximitySensor(self, handle: int) -> tuple[Any, ...]:
-        """State and more; blind before the first step."""
+        """State and more; no reading before the first step."""
         robot, sensor = self._world.object(handle)
         state = -1 if self._world.steps == 0 else int(robot.sensors[sensor](robot))
         return (state, 0.0, [0.0, 0.0, 0.0], -1, [0.0, 0.0, 0.0])
 
     def handleProximitySensor(self, handle: int) -> tuple[Any, ...]:
-        """Only for sensors of another kind."""
+        """Only for sensors with explicit handling."""
         raise Exception(
             "316: in sim.handleProximitySensor: object not tagged for explicit handling."
         )
@@ -320,20 +320,18 @@ class FakeSim:
             return level
 
     def step(self) -> None:
-        """Returns after the next step, which waits for all that hold the time."""
+        """Returns after the next step, which waits for all clients in stepping mode."""
         world = self._world
         if not world.running:
             return
         with world.condition:
-            assert world.holders.get(self._uuid, 0) > 0, (
-                "steps without holding the time"
-            )
+            assert world.holders.get(self._uuid, 0) > 0, "step without stepping mode"
             world.waiting.add(self._uuid)
             before = world.steps
             self._step_if_all_wait()
             assert world.condition.wait_for(
                 lambda: world.steps > before, timeout=20.0
-            ), "nobody steps"
+            ), "no client steps"
 
     def _step_if_all_wait(self) -> None:
         world = self._world

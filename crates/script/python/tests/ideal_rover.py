@@ -1,9 +1,9 @@
-"""A robot without wheels or time in closed rooms: it is where it should be at once, and sees what is on the way."""
+"""A rover without wheels or time in closed rooms: it moves exactly as told, and scans on the way."""
 
 import math
 from collections.abc import Callable
 
-from pydslrep_parts.occupancy_grid import Floor, Place, Reading
+from pydslrep_parts.occupancy_grid import OccupancyGrid, Position, Reading
 from pydslrep_parts.pose import Pose, wrap_angle
 from rooms import (
     Pillar,
@@ -14,7 +14,7 @@ from rooms import (
 HALF = 0.15  # m, of the square body
 RADIUS = math.hypot(HALF, HALF)
 
-# By name: x, y and bearing on the body, as the simulator places five sensors.
+# The simulator's mounts for five sensors: x, y and bearing on the body.
 MOUNTS = [
     Pose(0.0, HALF, math.pi / 2.0),
     Pose(HALF, HALF, math.pi / 4.0),
@@ -34,8 +34,8 @@ def on(pose: Pose, mount: Pose) -> Pose:
     )
 
 
-class GhostRover:
-    """Keeps the way it has gone, and whether it touched something."""
+class IdealRover:
+    """Records its path and its collisions."""
 
     STEP = 0.03  # m
     TURN = math.radians(5.0)
@@ -43,17 +43,17 @@ class GhostRover:
     def __init__(
         self,
         rooms: Rooms,
-        floor: Floor,
+        grid: OccupancyGrid,
         reach: float = 1.0,
         cone: float = math.radians(20.0),
     ) -> None:
-        self.rooms, self.floor, self.reach, self.cone = rooms, floor, reach, cone
+        self.rooms, self.grid, self.reach, self.cone = rooms, grid, reach, cone
         self.here = Pose(*rooms.start, 0.0)
         self.touched: list[Pose] = []
-        self.places: list[Place] = []
+        self.positions: list[Position] = []
         self.driven = self.turned = 0.0
         self.segments = rooms.segments()
-        self.surprises: list[Pillar] = []  # that no sensor sees from afar
+        self.surprises: list[Pillar] = []  # that no sensor detects from a distance
         self.look()
 
     def pose(self) -> Pose:
@@ -67,14 +67,14 @@ class GhostRover:
         self.turned += abs(angle)
 
     def localise(self) -> int:
-        """It is sure."""
-        self.places.append((self.here.x, self.here.y))
-        return len(self.places) - 1
+        """Its pose is exact."""
+        self.positions.append((self.here.x, self.here.y))
+        return len(self.positions) - 1
 
-    def place(self, number: int) -> Place:
-        return self.places[number]
+    def position(self, number: int) -> Position:
+        return self.positions[number]
 
-    def drive_to(self, goal: Place, is_enough: Callable[[], bool]) -> bool:
+    def drive_to(self, goal: Position, should_stop: Callable[[], bool]) -> bool:
         dx, dy = goal[0] - self.here.x, goal[1] - self.here.y
         self.turn_by(wrap_angle(math.atan2(dy, dx) - self.here.theta))
         length = math.hypot(dx, dy)
@@ -82,60 +82,63 @@ class GhostRover:
         for index in range(count):
             near = [s.at for s in self.surprises if self.is_near_ahead(s)]
             if near:
-                self.floor.block(*near[0])
+                self.grid.mark_obstacle(*near[0])
                 return False
             self.here = self.here.ahead(length / count)
             self.driven += length / count
             self.look()
-            if index % 5 == 0 and is_enough():
+            if index % 5 == 0 and should_stop():
                 break
         return True
 
     def is_near_ahead(self, surprise: Pillar) -> bool:
-        seen = Pose(*surprise.at, 0.0).seen_from(self.here)
+        seen = Pose(*surprise.at, 0.0).relative_to(self.here)
         reach = RADIUS + surprise.radius
         return 0.0 < seen.x < reach + 0.05 and abs(seen.y) < reach
 
-    def retreat_to(self, goal: Place) -> None:
+    def back_up_to(self, goal: Position) -> None:
         self.here = Pose(*goal, self.here.theta)
 
     def look(self) -> None:
         if not self.rooms.holds(self.here.x, self.here.y, self.here.theta, HALF):
             self.touched.append(self.here)
         for mount in MOUNTS:
-            eye = on(self.here, mount)
-            away = self.distance(eye)
-            self.floor.see(
-                Reading(eye, self.cone, min(away, self.reach), away < self.reach)
+            sensor = on(self.here, mount)
+            away = self.distance(sensor)
+            self.grid.add_reading(
+                Reading(sensor, self.cone, min(away, self.reach), away < self.reach)
             )
 
-    def distance(self, eye: Pose) -> float:
-        """To the nearest point in the cone."""
+    def distance(self, sensor: Pose) -> float:
+        """The distance to the nearest point in the cone."""
         best = math.inf
-        place, half = (eye.x, eye.y), self.cone / 2.0
+        position, half = (sensor.x, sensor.y), self.cone / 2.0
 
-        def consider(point: Place) -> None:
+        def consider(point: Position) -> None:
             nonlocal best
-            away = math.dist(place, point)
+            away = math.dist(position, point)
             if away < best:
-                bearing = math.atan2(point[1] - eye.y, point[0] - eye.x)
-                if abs(wrap_angle(bearing - eye.theta)) <= half + 1e-9:
+                bearing = math.atan2(point[1] - sensor.y, point[0] - sensor.x)
+                if abs(wrap_angle(bearing - sensor.theta)) <= half + 1e-9:
                     best = away
 
         rays = [
-            (math.cos(eye.theta + side * half), math.sin(eye.theta + side * half))
+            (
+                math.cos(sensor.theta + side * half),
+                math.sin(sensor.theta + side * half),
+            )
             for side in (-1.0, 1.0)
         ]
         for start, end in self.segments:
             if (
-                max(start[0], end[0]) < eye.x - self.reach
-                or min(start[0], end[0]) > eye.x + self.reach
-                or max(start[1], end[1]) < eye.y - self.reach
-                or min(start[1], end[1]) > eye.y + self.reach
+                max(start[0], end[0]) < sensor.x - self.reach
+                or min(start[0], end[0]) > sensor.x + self.reach
+                or max(start[1], end[1]) < sensor.y - self.reach
+                or min(start[1], end[1]) > sensor.y + self.reach
             ):
                 continue
-            nearest = nearest_on_segment(place, start, end)
-            if math.dist(place, nearest) > self.reach:
+            nearest = nearest_on_segment(position, start, end)
+            if math.dist(position, nearest) > self.reach:
                 continue
             consider(nearest)
             for ray in rays:
@@ -143,7 +146,7 @@ class GhostRover:
                 cross = ray[0] * dy - ray[1] * dx
                 if abs(cross) < 1e-12:
                     continue
-                wx, wy = start[0] - eye.x, start[1] - eye.y
+                wx, wy = start[0] - sensor.x, start[1] - sensor.y
                 along, part = (
                     (wx * dy - wy * dx) / cross,
                     (wx * ray[1] - wy * ray[0]) / cross,
@@ -151,17 +154,17 @@ class GhostRover:
                 if along > 0.0 and 0.0 <= part <= 1.0:
                     best = min(best, along)
         for pillar in self.rooms.pillars:
-            away = math.dist(place, pillar.at)
+            away = math.dist(position, pillar.at)
             if away - pillar.radius > self.reach:
                 continue
             consider(
                 (
-                    pillar.at[0] + (eye.x - pillar.at[0]) * pillar.radius / away,
-                    pillar.at[1] + (eye.y - pillar.at[1]) * pillar.radius / away,
+                    pillar.at[0] + (sensor.x - pillar.at[0]) * pillar.radius / away,
+                    pillar.at[1] + (sensor.y - pillar.at[1]) * pillar.radius / away,
                 )
             )
             for ray in rays:
-                wx, wy = pillar.at[0] - eye.x, pillar.at[1] - eye.y
+                wx, wy = pillar.at[0] - sensor.x, pillar.at[1] - sensor.y
                 along = wx * ray[0] + wy * ray[1]
                 square = pillar.radius**2 - (wx * wx + wy * wy - along * along)
                 if square >= 0.0 and along > 0.0:

@@ -1,23 +1,23 @@
-"""Closed worlds of rooms, corridors, pillars and loops, made from a seed, and what stands in them."""
+"""Closed worlds of rooms, corridors, pillars and loops, generated from a seed."""
 
 import math
 import random
 from dataclasses import dataclass, field
 from functools import cached_property
 
-Place = tuple[float, float]
+Position = tuple[float, float]
 THICKNESS = 0.1  # m, of walls
 
 
 @dataclass
 class Wall:
-    """As a scene file has it: a line with a thickness."""
+    """A line with a thickness, as in scene files."""
 
-    start: Place
-    end: Place
+    start: Position
+    end: Position
 
     @cached_property
-    def corners(self) -> list[Place]:
+    def corners(self) -> list[Position]:
         (x1, y1), (x2, y2) = self.start, self.end
         length = math.dist(self.start, self.end)
         ux, uy = (x2 - x1) / length, (y2 - y1) / length
@@ -29,11 +29,11 @@ class Wall:
             (x1 - h * uy, y1 + h * ux),
         ]
 
-    def is_about(self, place: Place, margin: float) -> bool:
+    def is_about(self, position: Position, margin: float) -> bool:
         margin += THICKNESS
         return all(
             min(a, b) - margin <= value <= max(a, b) + margin
-            for a, b, value in zip(self.start, self.end, place, strict=True)
+            for a, b, value in zip(self.start, self.end, position, strict=True)
         )
 
 
@@ -41,7 +41,7 @@ class Wall:
 class Pillar:
     """A cylinder."""
 
-    at: Place
+    at: Position
     radius: float
 
 
@@ -51,12 +51,12 @@ class Rooms:
 
     width: float
     height: float
-    start: Place = (0.6, 0.6)
+    start: Position = (0.6, 0.6)
     walls: list[Wall] = field(default_factory=list)
     pillars: list[Pillar] = field(default_factory=list)
 
     def scene(self, robot: str, noise: str = "") -> str:
-        """The same as a scene file."""
+        """The world as a scene file."""
         lines = [
             noise,
             "[world]",
@@ -81,9 +81,9 @@ class Rooms:
         lines += [f"[robots.{robot}]", f"start = [{x:.3f}, {y:.3f}, 0]"]
         return "\n".join(lines) + "\n"
 
-    def free(self, place: Place, clearance: float = 0.0) -> bool:
+    def free(self, position: Position, clearance: float = 0.0) -> bool:
         """Whether a disc of that radius touches nothing."""
-        x, y = place
+        x, y = position
         inside = (
             clearance <= x <= self.width - clearance
             and clearance <= y <= self.height - clearance
@@ -91,14 +91,14 @@ class Rooms:
         return (
             inside
             and all(
-                math.dist(place, pillar.at) >= pillar.radius + clearance
+                math.dist(position, pillar.at) >= pillar.radius + clearance
                 for pillar in self.pillars
             )
             and all(
-                distance_to_polygon(place, wall.corners) >= clearance
-                and not is_inside(place, wall.corners)
+                distance_to_polygon(position, wall.corners) >= clearance
+                and not is_inside(position, wall.corners)
                 for wall in self.walls
-                if wall.is_about(place, clearance)
+                if wall.is_about(position, clearance)
             )
         )
 
@@ -106,8 +106,8 @@ class Rooms:
         """Whether a square body of that half width touches nothing."""
         cos, sin = math.cos(theta), math.sin(theta)
 
-        def on_body(place: Place) -> Place:
-            dx, dy = place[0] - x, place[1] - y
+        def on_body(position: Position) -> Position:
+            dx, dy = position[0] - x, position[1] - y
             return cos * dx + sin * dy, cos * dy - sin * dx
 
         corners = [
@@ -131,16 +131,17 @@ class Rooms:
             )
         )
 
-    def is_at_wall(self, place: Place) -> bool:
+    def is_at_wall(self, position: Position) -> bool:
         """Whether a wall could end here, and not in a door."""
-        x, y = place
+        x, y = position
         return min(x, y, self.width - x, self.height - y) < 0.01 or any(
-            distance_to_segment(place, wall.start, wall.end) < 0.01
-            and min(math.dist(place, wall.start), math.dist(place, wall.end)) > 0.1
+            distance_to_segment(position, wall.start, wall.end) < 0.01
+            and min(math.dist(position, wall.start), math.dist(position, wall.end))
+            > 0.1
             for wall in self.walls
         )
 
-    def segments(self) -> list[tuple[Place, Place]]:
+    def segments(self) -> list[tuple[Position, Position]]:
         """The outlines of everything straight."""
         corners = [
             (0.0, 0.0),
@@ -155,8 +156,8 @@ class Rooms:
             for a, b in zip(outline, outline[1:] + outline[:1], strict=True)
         ]
 
-    def is_straight(self, a: Place, b: Place) -> bool:
-        """Whether nothing stands on the line between two places."""
+    def is_straight(self, a: Position, b: Position) -> bool:
+        """Whether the line between two positions is free."""
         return not any(
             crosses(a, b, start, end) for start, end in self.segments()
         ) and all(
@@ -164,10 +165,10 @@ class Rooms:
             for pillar in self.pillars
         )
 
-    def floor(self, grain: float) -> list[Place]:
-        """Points of all the floor that hangs together with the start."""
+    def floor(self, grain: float) -> list[Position]:
+        """A grid of points on the floor that is connected to the start."""
 
-        def at(cell: tuple[int, int]) -> Place:
+        def at(cell: tuple[int, int]) -> Position:
             return (cell[0] + 0.5) * grain, (cell[1] + 0.5) * grain
 
         first = (int(self.start[0] / grain), int(self.start[1] / grain))
@@ -181,33 +182,35 @@ class Rooms:
                     queue.append(cell)
         return [at(cell) for cell in sorted(found)]
 
-    def coverage(self, nodes: list[Place], reach: float, grain: float = 0.1) -> float:
-        """The share of the floor that is within reach of a node, and in its line of sight."""
+    def coverage(
+        self, nodes: list[Position], reach: float, grain: float = 0.1
+    ) -> float:
+        """The fraction of the floor within reach and in line of sight of a node."""
         floor, segments = self.floor(grain), self.segments()
 
-        def sees(node: Place, place: Place) -> bool:
+        def sees(node: Position, position: Position) -> bool:
             return not any(
-                crosses(node, place, start, end) for start, end in segments
+                crosses(node, position, start, end) for start, end in segments
             ) and all(
-                distance_to_segment(pillar.at, node, place) > pillar.radius
+                distance_to_segment(pillar.at, node, position) > pillar.radius
                 for pillar in self.pillars
             )
 
         seen = sum(
             any(
-                math.dist(place, node) <= reach and sees(node, place)
-                for node in sorted(nodes, key=lambda node: math.dist(place, node))
+                math.dist(position, node) <= reach and sees(node, position)
+                for node in sorted(nodes, key=lambda node: math.dist(position, node))
             )
-            for place in floor
+            for position in floor
         )
         return seen / len(floor)
 
 
-def distance_to_segment(p: Place, a: Place, b: Place) -> float:
+def distance_to_segment(p: Position, a: Position, b: Position) -> float:
     return math.dist(p, nearest_on_segment(p, a, b))
 
 
-def nearest_on_segment(p: Place, a: Place, b: Place) -> Place:
+def nearest_on_segment(p: Position, a: Position, b: Position) -> Position:
     dx, dy = b[0] - a[0], b[1] - a[1]
     square = dx * dx + dy * dy
     t = ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / square if square else 0.0
@@ -215,30 +218,30 @@ def nearest_on_segment(p: Place, a: Place, b: Place) -> Place:
     return a[0] + t * dx, a[1] + t * dy
 
 
-def distance_to_polygon(p: Place, corners: list[Place]) -> float:
+def distance_to_polygon(p: Position, corners: list[Position]) -> float:
     return min(
         distance_to_segment(p, a, b)
         for a, b in zip(corners, corners[1:] + corners[:1], strict=True)
     )
 
 
-def is_inside(p: Place, corners: list[Place]) -> bool:
-    """For convex outlines that go round counter-clockwise."""
+def is_inside(p: Position, corners: list[Position]) -> bool:
+    """For convex, counter-clockwise outlines."""
     return all(
         (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) > 0.0
         for a, b in zip(corners, corners[1:] + corners[:1], strict=True)
     )
 
 
-def crosses(a: Place, b: Place, c: Place, d: Place) -> bool:
-    def side(p: Place, q: Place, r: Place) -> float:
+def crosses(a: Position, b: Position, c: Position, d: Position) -> bool:
+    def side(p: Position, q: Position, r: Position) -> float:
         return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
 
     return side(a, b, c) * side(a, b, d) < 0.0 and side(c, d, a) * side(c, d, b) < 0.0
 
 
 def generate(seed: int) -> Rooms:
-    """30 to 80 m²: rooms by dividing, each wall with a door and some with two, a dead end, and pillars."""
+    """A world of 30 to 80 m² divided into rooms, with doors, dead ends and pillars."""
     dice = random.Random(seed)
     area = dice.uniform(30.0, 80.0)
     ratio = dice.uniform(0.7, 1.4)
@@ -291,7 +294,7 @@ def divide(
     is_upright = width > height
     length = width if is_upright else height
     for _ in range(20):
-        # Now and then a corridor is cut off.
+        # Sometimes cut off a corridor.
         is_corridor = depth < 2 and dice.random() < 0.4
         at = dice.uniform(1.1, 1.3) if is_corridor else length * dice.uniform(0.4, 0.6)
         ends = (

@@ -4,7 +4,12 @@ import math
 
 import pytest
 from pydslrep_parts.approach import Approach
-from pydslrep_parts.settings import ARRIVED, CLOSE, RIM_ACCELERATION, STALL_TIME
+from pydslrep_parts.settings import (
+    ARRIVAL_TOLERANCE,
+    CLOSE_TOLERANCE,
+    RIM_ACCELERATION,
+    STALL_TIME,
+)
 
 
 @pytest.mark.parametrize("dt", [0.005, 0.05, 0.2])
@@ -17,45 +22,47 @@ def test_ramps_up_cruises_and_ends_at_the_goal(
     if way / top_speed > 1e4:
         way = top_speed * 100.0
     approach = Approach(top_speed, dt)
-    to_go, speed, fastest, steps = way * side, 0.0, 0.0, 0
-    while not approach.arrived(to_go):
-        assert not approach.stalled(to_go)
-        before, speed = speed, approach.next_speed(to_go)
+    remaining, speed, fastest, steps = way * side, 0.0, 0.0, 0
+    while not approach.arrived(remaining):
+        assert not approach.stalled(remaining)
+        before, speed = speed, approach.next_speed(remaining)
         assert abs(speed - before) <= RIM_ACCELERATION * dt * 1.01, "a wheel jumps"
         assert abs(speed) <= top_speed
         fastest = max(fastest, abs(speed))
-        to_go -= speed * dt
+        remaining -= speed * dt
         steps += 1
-    # A robot that creeps is taken to be as near as it will get.
-    assert abs(to_go) <= (ARRIVED if top_speed > 0.01 else CLOSE)
+    # A very slow robot counts as arrived once it stays near the goal.
+    assert abs(remaining) <= (
+        ARRIVAL_TOLERANCE if top_speed > 0.01 else CLOSE_TOLERANCE
+    )
     if way > 2.0 * top_speed**2 / RIM_ACCELERATION + 2.0 * top_speed * dt:
         assert fastest == top_speed
-        # a trapezoid's time, and a moment for the soft ending
+        # the duration of a trapezoidal profile, plus the slow final approach
         assert (
             steps * dt
             <= way / top_speed + top_speed / RIM_ACCELERATION + 1.0 + 20.0 * dt
         )
 
 
-def test_a_delay_of_the_wheels_does_not_make_it_swing() -> None:
+def test_a_delay_of_the_wheels_causes_no_oscillation() -> None:
     approach, dt = Approach(0.09, 0.05), 0.05
-    to_go, speed = 1.0, 0.0
-    while not approach.arrived(to_go):
-        wanted = approach.next_speed(to_go)
-        to_go -= dt * (speed + wanted) / 2.0
+    remaining, speed = 1.0, 0.0
+    while not approach.arrived(remaining):
+        wanted = approach.next_speed(remaining)
+        remaining -= dt * (speed + wanted) / 2.0
         speed = wanted
-        assert to_go > -0.001
+        assert remaining > -0.001
 
 
-def test_comes_to_rest_in_steps() -> None:
+def test_brakes_in_steps() -> None:
     approach = Approach(0.09, 0.05)
     approach.speed = -0.06
-    assert [approach.slowed_down() for _ in range(4)] == pytest.approx(
+    assert [approach.decelerate() for _ in range(4)] == pytest.approx(
         [-0.035, -0.01, 0.0, 0.0]
     )
 
 
-def test_near_enough_counts_after_a_while() -> None:
+def test_near_the_goal_counts_as_arrived_after_a_while() -> None:
     approach = Approach(0.09, 0.05)
     steps = next(step for step in range(1000) if approach.arrived(0.0005))
     assert steps == pytest.approx(20, abs=1)

@@ -1,4 +1,4 @@
-"""Tests of the drives' kinematics against the simulation's, which is written the other way round."""
+"""The drives' inverse kinematics against the forward kinematics of the fake simulator."""
 
 import math
 import random
@@ -11,7 +11,7 @@ from pydslrep_parts.drive_four_wheel import FourWheelDrive
 from pydslrep_parts.drive_two_wheel import TwoWheelDrive
 from pydslrep_parts.errors import SetupError
 from pydslrep_parts.pose import Pose
-from pydslrep_parts.steering import speed_back, steer
+from pydslrep_parts.steering import return_speed, steer
 
 CHANCE = random.Random(3)
 TWISTS = [tuple(CHANCE.uniform(-1.0, 1.0) for _ in range(3)) for _ in range(20)]
@@ -79,7 +79,7 @@ def test_rear_wheels_in_front_are_an_error() -> None:
 
 @pytest.mark.parametrize("speed", [0.09, -0.09, 2.0])
 @pytest.mark.parametrize("side", [1.0, -1.0])
-def test_steering_leads_back_to_the_line(speed: float, side: float) -> None:
+def test_steering_returns_to_the_line(speed: float, side: float) -> None:
     x, y, theta, dt = 0.0, 0.1 * side, 0.0, 0.05
     way = 20.0 * max(0.15, 0.5 * abs(speed))
     widest = abs(y)
@@ -99,9 +99,9 @@ def test_at_the_end_of_a_line_only_the_heading_counts() -> None:
     assert steer(0.09, Pose(0.0, 0.05, 0.1), 0.0) < -0.1
 
 
-def test_a_turning_robot_goes_back_as_far_as_its_heading_allows() -> None:
-    assert speed_back(Pose(0.005, 0.0, 0.0)) == pytest.approx(-0.01)
-    assert speed_back(Pose(0.005, 0.0, math.pi)) == pytest.approx(0.01)
-    assert speed_back(Pose(0.0, 0.005, 0.0)) == pytest.approx(0.0)
-    assert speed_back(Pose(0.0, 0.005, math.pi / 2.0)) == pytest.approx(-0.01)
-    assert speed_back(Pose(1.0, 0.0, 0.0)) == -0.02
+def test_a_turning_robot_returns_along_its_heading() -> None:
+    assert return_speed(Pose(0.005, 0.0, 0.0)) == pytest.approx(-0.01)
+    assert return_speed(Pose(0.005, 0.0, math.pi)) == pytest.approx(0.01)
+    assert return_speed(Pose(0.0, 0.005, 0.0)) == pytest.approx(0.0)
+    assert return_speed(Pose(0.0, 0.005, math.pi / 2.0)) == pytest.approx(-0.01)
+    assert return_speed(Pose(1.0, 0.0, 0.0)) == -0.02

@@ -1,4 +1,4 @@
-"""Tests of what goes wrong: blocked robots, missing objects, simulators that fall silent."""
+"""Failures: blocked robots, missing objects, simulators that do not reply."""
 
 import math
 import re
@@ -31,23 +31,23 @@ def test_a_blocked_robot_fails_its_action(monkeypatch: pytest.MonkeyPatch) -> No
     with pytest.raises(MovementError) as error:
         drive_alone(world, monkeypatch, "two-wheel", move_a_metre)
     assert str(error.value) == (
-        "robot r, movement m, action 2: move 1 m: came no nearer to its goal for 5 s, 0.600 m before it; "
-        "something may be in its way"
+        "robot r, movement m, action 2: move 1 m: no progress for 5 s, 0.600 m from the goal; "
+        "an obstacle may be in the way"
     )
     assert all(joint.target == 0.0 for joint in fake.joints)
     assert not world.running
     assert 5.0 < world.steps * world.dt < 12.0
 
 
-def test_a_robot_that_slid_aside_fails_its_action(
+def test_a_deflected_robot_fails_its_action(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     fake = FakeRobot("r", joints("two-wheel"), theta=math.radians(-20.0), kerb=-0.1)
     with pytest.raises(MovementError) as error:
         drive_alone(FakeWorld(fake), monkeypatch, "two-wheel", move_a_metre)
     assert re.fullmatch(
-        r"robot r, movement m, action 2: move 1 m: ended 0\.2\d\d m to the left of its goal: "
-        "it may have slid along something in its way",
+        r"robot r, movement m, action 2: move 1 m: ended 0\.2\d\d m to the left of the goal; "
+        "an obstacle may have deflected it",
         str(error.value),
     )
     assert all(joint.target == 0.0 for joint in fake.joints)
@@ -64,7 +64,7 @@ def test_a_joint_in_another_mode_is_named(monkeypatch: pytest.MonkeyPatch) -> No
         drive_alone(FakeWorld(fake), monkeypatch, "two-wheel", move_a_metre)
 
 
-def test_a_stopped_simulation_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_stopped_simulation_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     world = FakeWorld(FakeRobot("r", joints("two-wheel")))
 
     def stop() -> None:
@@ -87,7 +87,7 @@ def test_all_missing_objects_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     )
 
 
-def test_objects_of_another_kind_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_objects_of_another_type_are_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     fake = FakeRobot("r", joints("two-wheel"), sensors={"eye": lambda _: False})
     world = FakeWorld(fake)
     world.paths["/r"] = world.paths["/r/eye"]
@@ -97,10 +97,10 @@ def test_objects_of_another_kind_are_told(monkeypatch: pytest.MonkeyPatch) -> No
     with pytest.raises(SetupError) as error:
         drive_alone(world, monkeypatch, "two-wheel", move_a_metre)
     assert str(error.value) == (
-        "robot r: the scene at 127.0.0.1:19999 has no robot /r (what is there is of another kind), "
+        "robot r: the scene at 127.0.0.1:19999 has no robot /r (an object of another type), "
         "no joint /r/wheelL or /wheelL_r, "
-        "no joint /r/wheelR (what is there is of another kind) or /wheelR_r, "
-        "no proximity sensor /r/eye or /eye_r (what is there is of another kind)"
+        "no joint /r/wheelR (an object of another type) or /wheelR_r, "
+        "no proximity sensor /r/eye or /eye_r (an object of another type)"
     )
 
 
@@ -130,12 +130,10 @@ def test_parts_are_found_by_their_flat_names(monkeypatch: pytest.MonkeyPatch) ->
     assert fake.x == pytest.approx(1.0, abs=0.001)
 
 
-def test_swapped_wheels_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_swapped_wheels_are_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     wheels = joints("two-wheel")
     fake = FakeRobot("r", wheels[::-1])
-    with pytest.raises(
-        SetupError, match="robot r: the left wheel does not stand to the left"
-    ):
+    with pytest.raises(SetupError, match="robot r: the left wheel is not to the left"):
         drive_alone(FakeWorld(fake), monkeypatch, "two-wheel", move_a_metre)
 
 
@@ -172,7 +170,7 @@ def test_ctrl_c_stops_the_wheels(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 class Replies(threading.Thread):
-    """A server that gives every request the same reply, until told to stop."""
+    """A server that gives every request the same reply."""
 
     def __init__(self, reply: object) -> None:
         super().__init__()
@@ -183,7 +181,7 @@ class Replies(threading.Thread):
         self.done = threading.Event()
 
     def run(self) -> None:
-        """Answers."""
+        """Replies until `done` is set."""
         while not self.done.is_set():
             if self.socket.poll(20):
                 self.socket.recv()
@@ -194,7 +192,7 @@ class Replies(threading.Thread):
 
 @pytest.fixture(name="short_wait")
 def fixture_short_wait(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Makes the script less patient."""
+    """Shortens the script's timeout."""
     monkeypatch.setattr(coppeliasim, "CONNECT_TIMEOUT", 0.2)
 
 
@@ -215,28 +213,28 @@ def connect(port: int) -> None:
 
 
 @pytest.mark.usefixtures("short_wait")
-def test_nobody_there() -> None:
-    with pytest.raises(SetupError, match=r"no answer from 127\.0\.0\.1:9 for 0\.2 s"):
+def test_no_server() -> None:
+    with pytest.raises(SetupError, match=r"no reply from 127\.0\.0\.1:9 for 0\.2 s"):
         connect(9)
 
 
 @pytest.mark.usefixtures("short_wait")
-def test_nobody_on_the_port_of_vrep(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_server_on_the_port_of_vrep(monkeypatch: pytest.MonkeyPatch) -> None:
     with socket.create_server(("127.0.0.1", 0)) as silent:
         port = silent.getsockname()[1]
         monkeypatch.setattr(coppeliasim, "LEGACY_PORT", port)
         with pytest.raises(SetupError) as error:
             connect(port)
     assert str(error.value) == (
-        f"robot r: nothing answers on port {port}; CoppeliaSim's ZeroMQ remote API listens on 23000: "
-        "change the port in the program, or start with --port 23000"
+        f"robot r: no reply from port {port}. CoppeliaSim's ZeroMQ remote API listens on 23000: "
+        "change the port in the program, or use --port 23000."
     )
 
 
 @pytest.mark.usefixtures("short_wait")
 @pytest.mark.parametrize("server", [{"func": "_*wait*_", "args": []}], indirect=True)
 def test_endless_wait_rounds_have_a_limit(server: Replies) -> None:
-    with pytest.raises(SetupError, match="no answer from"):
+    with pytest.raises(SetupError, match="no reply from"):
         connect(server.port)
 
 
@@ -245,6 +243,8 @@ def test_endless_wait_rounds_have_a_limit(server: Replies) -> None:
     [b"HTTP/1.1 400 Bad Request\r\n", {"err": "no such module"}, [1, 2]],
     indirect=True,
 )
-def test_nonsense_is_told(server: Replies) -> None:
-    with pytest.raises(SetupError, match=f"robot r: 127.0.0.1:{server.port} answered"):
+def test_nonsense_is_reported(server: Replies) -> None:
+    with pytest.raises(
+        SetupError, match=f"robot r: error from 127.0.0.1:{server.port}: "
+    ):
         connect(server.port)

@@ -1,4 +1,4 @@
-"""Tests of several robots: lockstep, failures of one, the order of movements."""
+"""Several robots: lockstep, failure of one, the order of movements."""
 
 import io
 import json
@@ -48,7 +48,7 @@ def test_movement_declares_a_function() -> None:
     assert (actions.name, actions.robot) == ("m", "r")
 
 
-def test_robots_move_at_the_same_time_and_arrive(
+def test_robots_move_in_parallel_and_arrive(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     world = four_robots()
@@ -57,7 +57,7 @@ def test_robots_move_at_the_same_time_and_arrive(
         fleet.run_together(*ways(distances))
         assert world.steps * world.dt == pytest.approx(1.0 / 0.09 + 0.5, abs=0.5)
         assert [level for level in world.holders.values() if level] == [1], (
-            "one keeps the time"
+            "only one robot still steps"
         )
     for index, (name, distance) in enumerate(distances.items()):
         assert errors(world.robots[name], distance, -float(index), 0.0)[0] < 0.001
@@ -91,7 +91,7 @@ def run_traced(world: FakeWorld, monkeypatch: pytest.MonkeyPatch) -> str:
     return file.getvalue()
 
 
-def test_every_run_leaves_the_same_trace(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_run_writes_the_same_trace(monkeypatch: pytest.MonkeyPatch) -> None:
     first, *others = (run_traced(four_robots(), monkeypatch) for _ in range(4))
     assert all(other == first for other in others)
     rows = [json.loads(line) for line in first.splitlines()]
@@ -119,15 +119,15 @@ def test_one_failure_stops_all(monkeypatch: pytest.MonkeyPatch) -> None:
     world.running = True
     failing = world.robots["c"]
     failing.wall = 0.2
-    standing = []
-    release_time = Body.release_time
+    stopped = []
+    disable_stepping = Body.disable_stepping
 
     def watch(body: Body) -> None:
-        if body.model.name == failing.name and body._holds_time:
-            standing.append(all(joint.target == 0.0 for joint in failing.joints))
-        release_time(body)
+        if body.model.name == failing.name and body._is_stepping:
+            stopped.append(all(joint.target == 0.0 for joint in failing.joints))
+        disable_stepping(body)
 
-    monkeypatch.setattr(Body, "release_time", watch)
+    monkeypatch.setattr(Body, "disable_stepping", watch)
     with (
         pytest.raises(
             MovementError, match="robot c, movement c_moves, action 1: move 5 m"
@@ -135,7 +135,7 @@ def test_one_failure_stops_all(monkeypatch: pytest.MonkeyPatch) -> None:
         connected(world, monkeypatch, *DRIVES) as fleet,
     ):
         fleet.run_together(*ways({"a": 5.0, "b": 5.0, "c": 5.0, "d": 0.1}))
-    assert standing[0], "the others went on before its wheels stopped"
+    assert stopped[0], "the others continued before its wheels stopped"
     assert world.robots["a"].x < 1.0
     assert all(
         joint.target == 0.0 for robot in world.robots.values() for joint in robot.joints
@@ -143,7 +143,7 @@ def test_one_failure_stops_all(monkeypatch: pytest.MonkeyPatch) -> None:
     assert not any(world.holders.values())
 
 
-def test_an_empty_movement_holds_nobody_up(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_empty_movement_delays_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
     world = four_robots()
     with connected(world, monkeypatch, *DRIVES) as fleet:
         fleet.run_together(Movement("nothing", "a", lambda _: None), *ways({"b": 0.2}))

@@ -1,4 +1,4 @@
-"""Tests of moves and turns: where robots end, whatever the angle, the distance and the start."""
+"""Moves and turns: robots end where planned, for any angle, distance and start."""
 
 import itertools
 import math
@@ -15,18 +15,18 @@ from pydslrep_parts.settings import RIM_ACCELERATION
 POSITION = 0.001  # m; the requirement is 0.005
 HEADING = 0.1  # degrees; the requirement is 0.5
 
-# What scenes do to robots.
+# Variants of robots that occur in scenes.
 BODIES: dict[str, Callable[[FakeRobot], None]] = {}
 
 
 def body(change: Callable[[FakeRobot], None]) -> None:
-    """Adds a kind of robot."""
+    """Adds a variant of the robot."""
     BODIES[change.__name__] = change
 
 
 @body
 def strong(robot: FakeRobot) -> None:
-    """Is the usual one."""
+    """Leaves the robot as it is."""
 
 
 @body
@@ -37,7 +37,7 @@ def weak(robot: FakeRobot) -> None:
 @body
 def mirrored(robot: FakeRobot) -> None:
     for joint in robot.joints[::2]:
-        joint.sense = -1.0
+        joint.axis_sign = -1.0
 
 
 @body
@@ -48,7 +48,7 @@ def off_centre(robot: FakeRobot) -> None:
 
 
 def make_robot(drive: str, body: str, chance: random.Random) -> FakeRobot:
-    """A robot that stands anywhere."""
+    """A robot at a random pose."""
     x, y, theta = (chance.uniform(-5.0, 5.0) for _ in range(3))
     robot = FakeRobot("r", joints(drive), x, y, theta)
     BODIES[body](robot)
@@ -99,7 +99,7 @@ def test_no_wheel_jumps(drive: str, monkeypatch: pytest.MonkeyPatch) -> None:
     drive_alone(FakeWorld(fake), monkeypatch, drive, actions)
     rims = [
         [rate * 0.045 for rate in row]
-        for row in [[0.0] * len(fake.joints), *fake.rolled]
+        for row in [[0.0] * len(fake.joints), *fake.rate_history]
     ]
     jumps = [
         abs(b - a)
@@ -131,7 +131,9 @@ def test_slipping_wheels_still_arrive(
 
 @pytest.mark.parametrize("drive", DRIVES)
 @pytest.mark.parametrize("dt", [0.01, 0.1])
-def test_other_steps(drive: str, dt: float, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_time_steps(
+    drive: str, dt: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
     fake = FakeRobot("r", joints(drive))
 
     def actions(robot: Robot) -> None:

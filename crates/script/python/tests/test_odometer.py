@@ -17,7 +17,7 @@ def body(angles: list[float]) -> Any:
     )
 
 
-def test_wheels_that_turn_alike_drive_straight() -> None:
+def test_equal_rotation_drives_straight() -> None:
     angles = [3.0, -3.0]
     odometer = Odometer(body(angles))
     angles[:] = [5.0, -1.0]
@@ -26,7 +26,7 @@ def test_wheels_that_turn_alike_drive_straight() -> None:
     assert odometer.pose() == there
 
 
-def test_a_joint_may_begin_anew_after_a_turn() -> None:
+def test_joint_angles_may_wrap_around() -> None:
     angles = [3.1, 3.1]
     odometer = Odometer(body(angles))
     angles[:] = [3.1 - math.tau + 0.2] * 2
@@ -44,11 +44,11 @@ def test_an_arc_is_exact() -> None:
     assert there.y == pytest.approx(2.0 + 0.3 * math.sin(0.2))
 
 
-def test_what_the_wheels_roll_counts_either_way() -> None:
+def test_wheel_travel_counts_both_directions() -> None:
     angles = [0.0, 0.0]
     odometer = Odometer(body(angles))
     angles[:] = [-1.0, 2.0]
     odometer.pose()
     angles[:] = [0.0, 2.0]
     odometer.pose()
-    assert odometer.rolled == pytest.approx(0.05 * (1.5 + 0.5))
+    assert odometer.wheel_travel == pytest.approx(0.05 * (1.5 + 0.5))

@@ -33,13 +33,13 @@ def test_ahead_is_along_the_heading() -> None:
 
 
 def test_left_of_a_pose_is_positive_y() -> None:
-    seen = Pose(-1.0, 0.0, math.pi).seen_from(Pose(0.0, 0.0, math.pi / 2.0))
+    seen = Pose(-1.0, 0.0, math.pi).relative_to(Pose(0.0, 0.0, math.pi / 2.0))
     assert (seen.x, seen.y, seen.theta) == pytest.approx((0.0, 1.0, math.pi / 2.0))
 
 
 @pytest.mark.parametrize(("origin", "pose"), random_poses(50))
 def test_seen_from_inverts_going_there(origin: Pose, pose: Pose) -> None:
-    seen = pose.seen_from(origin)
+    seen = pose.relative_to(origin)
     again = origin.ahead(seen.x).turned(math.pi / 2.0).ahead(seen.y)
     assert (again.x, again.y) == pytest.approx((pose.x, pose.y))
     assert wrap_angle(origin.theta + seen.theta - pose.theta) == pytest.approx(

@@ -1,30 +1,33 @@
 import math
 
 import pytest
-from pydslrep_parts.dominant_orientation import grain_of
+from pydslrep_parts.dominant_orientation import find_dominant_orientation
 from pydslrep_parts.pose import Pose, wrap_angle
-from pydslrep_parts.scan import Mark, Sweep
-from pydslrep_parts.scan_matching import KnownMark, KnownMarks, match, solve
+from pydslrep_parts.scan import Scan, SurfacePoint
+from pydslrep_parts.scan_matching import MapPoint, MapPoints, match_scan, solve
 from rooms import Pillar, Rooms
-from slipping_robot import SlippingRobot, sweep_from
+from slipping_robot import SlippingRobot, scan_from
 
 ROOM = Rooms(1.4, 1.7)
 HERE = Pose(0.6, 0.8, 0.4)
 
 
-def known(marks: list[Mark], place: Pose) -> KnownMarks:
-    ends = (Pose(mark.x, mark.y, mark.normal).placed_on(place) for mark in marks)
-    return KnownMarks(
-        KnownMark(end.x, end.y, math.cos(end.theta), math.sin(end.theta), 7)
+def map_points(surface_points: list[SurfacePoint], pose: Pose) -> MapPoints:
+    ends = (
+        Pose(point.x, point.y, point.normal).transformed_by(pose)
+        for point in surface_points
+    )
+    return MapPoints(
+        MapPoint(end.x, end.y, math.cos(end.theta), math.sin(end.theta), 7)
         for end in ends
     )
 
 
-def off_walls(sweep: Sweep, room: Rooms) -> list[tuple[float, float]]:
-    """How far off the nearest wall marks are in metres, and their normals in degrees."""
+def wall_errors(scan: Scan, room: Rooms) -> list[tuple[float, float]]:
+    """The errors of surface points against the nearest wall, in metres and degrees."""
     found = []
-    for mark in sweep.marks():
-        at = Pose(mark.x, mark.y, mark.normal).placed_on(sweep.middle())
+    for point in scan.surface_points():
+        at = Pose(point.x, point.y, point.normal).transformed_by(scan.middle_pose())
         sides = [
             (at.x, 0.0),
             (at.y, 90.0),
@@ -38,25 +41,25 @@ def off_walls(sweep: Sweep, room: Rooms) -> list[tuple[float, float]]:
 
 
 @pytest.mark.parametrize("angle", [math.pi, -math.pi])
-def test_marks_lie_on_the_walls(angle: float) -> None:
-    found = off_walls(sweep_from(SlippingRobot(ROOM), HERE, angle), ROOM)
+def test_surface_points_are_on_the_walls(angle: float) -> None:
+    found = wall_errors(scan_from(SlippingRobot(ROOM), HERE, angle), ROOM)
     assert len(found) > 200
     aways, turns = (sorted(values) for values in zip(*found, strict=True))
-    # Corners are rounded by cones, flat walls are not.
+    # Cones round off corners, not flat walls.
     assert aways[len(aways) * 3 // 4] < 0.005
     assert turns[len(turns) // 2] < 1.5
 
 
-def test_noise_moves_marks_little() -> None:
+def test_noise_moves_surface_points_little() -> None:
     robot = SlippingRobot(ROOM, noise=0.01)
-    aways = sorted(away for away, _ in off_walls(sweep_from(robot, HERE), ROOM))
+    aways = sorted(away for away, _ in wall_errors(scan_from(robot, HERE), ROOM))
     assert len(aways) > 100
     assert aways[len(aways) // 2] < 0.008
 
 
-def test_nothing_near_leaves_no_marks() -> None:
+def test_nothing_in_range_gives_no_surface_points() -> None:
     wide = Rooms(9.0, 9.0, pillars=[Pillar((1.0, 1.0), 0.1)])
-    assert sweep_from(SlippingRobot(wide), Pose(4.0, 4.0, 0.0)).marks() == []
+    assert scan_from(SlippingRobot(wide), Pose(4.0, 4.0, 0.0)).surface_points() == []
 
 
 def test_equations_are_solved() -> None:
@@ -67,14 +70,17 @@ def test_equations_are_solved() -> None:
 @pytest.mark.parametrize(
     "off", [Pose(0.0, 0.0, 0.0), Pose(0.06, -0.05, 0.0), Pose(-0.04, 0.05, -0.08)]
 )
-def test_marks_tell_where_they_are_seen_from(off: Pose) -> None:
+def test_matching_finds_the_pose_of_a_scan(off: Pose) -> None:
     robot = SlippingRobot(ROOM, noise=0.01)
-    first = sweep_from(robot, HERE)
-    second = sweep_from(robot, Pose(0.8, 1.0, -1.0))
-    there = second.middle()
+    first = scan_from(robot, HERE)
+    second = scan_from(robot, Pose(0.8, 1.0, -1.0))
+    there = second.middle_pose()
     guess = Pose(there.x + off.x, there.y + off.y, there.theta + off.theta)
-    found = match(
-        second.marks(), guess, (0.1, 0.1), known(first.marks(), first.middle())
+    found = match_scan(
+        second.surface_points(),
+        guess,
+        (0.1, 0.1),
+        map_points(first.surface_points(), first.middle_pose()),
     )
     assert found is not None
     assert list(found.information) == [7]
@@ -82,15 +88,18 @@ def test_marks_tell_where_they_are_seen_from(off: Pose) -> None:
     assert abs(wrap_angle(found.pose.theta - there.theta)) < math.radians(1.0)
 
 
-def test_along_a_bare_wall_the_guess_stays() -> None:
+def test_along_a_bare_wall_the_guess_is_kept() -> None:
     corridor = Rooms(9.0, 1.2)
     robot = SlippingRobot(corridor)
-    first = sweep_from(robot, Pose(4.0, 0.6, 0.0))
-    second = sweep_from(robot, Pose(4.4, 0.6, 0.0))
-    there = second.middle()
+    first = scan_from(robot, Pose(4.0, 0.6, 0.0))
+    second = scan_from(robot, Pose(4.4, 0.6, 0.0))
+    there = second.middle_pose()
     guess = Pose(there.x + 0.05, there.y + 0.05, there.theta)
-    found = match(
-        second.marks(), guess, (0.1, 0.1), known(first.marks(), first.middle())
+    found = match_scan(
+        second.surface_points(),
+        guess,
+        (0.1, 0.1),
+        map_points(first.surface_points(), first.middle_pose()),
     )
     assert found is not None
     assert found.pose.y == pytest.approx(there.y, abs=0.01)
@@ -99,29 +108,40 @@ def test_along_a_bare_wall_the_guess_stays() -> None:
     assert information[1][1] > 20.0 * information[0][0]
 
 
-def test_what_was_never_seen_matches_nothing() -> None:
-    marks = sweep_from(SlippingRobot(ROOM), HERE).marks()
-    assert match(marks, Pose(5.0, 5.0, 0.0), (0.1, 0.1), known(marks, HERE)) is None
+def test_an_unknown_area_has_no_match() -> None:
+    surface_points = scan_from(SlippingRobot(ROOM), HERE).surface_points()
+    assert (
+        match_scan(
+            surface_points,
+            Pose(5.0, 5.0, 0.0),
+            (0.1, 0.1),
+            map_points(surface_points, HERE),
+        )
+        is None
+    )
 
 
-def test_walls_tell_the_heading_and_how_far_wheels_slipped() -> None:
-    sweep = sweep_from(SlippingRobot(ROOM), HERE)
-    walls = -sweep.middle().theta
-    found = grain_of(sweep.marks(), walls + 0.1, 0.3)
+def test_walls_give_the_heading_and_the_drift() -> None:
+    scan = scan_from(SlippingRobot(ROOM), HERE)
+    walls = -scan.middle_pose().theta
+    found = find_dominant_orientation(scan.surface_points(), walls + 0.1, 0.3)
     assert found is not None
     assert math.remainder(found.angle - walls, math.pi / 2.0) == pytest.approx(
         0.0, abs=0.01
     )
-    assert found.share > 0.8
-    # A sweep that turned further than its wheels: what is seen late is further left.
+    assert found.inlier_ratio > 0.8
+    # The robot turned further than its wheels report: late points are further left.
     late = [
-        Mark(mark.x, mark.y, mark.normal - 0.06 * mark.when, mark.when)
-        for mark in sweep.marks()
+        SurfacePoint(point.x, point.y, point.normal - 0.06 * point.phase, point.phase)
+        for point in scan.surface_points()
     ]
-    slipped = grain_of(late, walls, 0.3)
+    slipped = find_dominant_orientation(late, walls, 0.3)
     assert slipped is not None
     assert 0.02 < slipped.drift - found.drift < 0.08
 
 
-def test_few_marks_tell_no_heading() -> None:
-    assert grain_of([Mark(1.0, 0.0, math.pi)] * 10, 0.0, 0.3) is None
+def test_few_points_give_no_heading() -> None:
+    assert (
+        find_dominant_orientation([SurfacePoint(1.0, 0.0, math.pi)] * 10, 0.0, 0.3)
+        is None
+    )

@@ -1,4 +1,4 @@
-"""Runs generated scripts as they are, from their command line to their exit code, in the simulation."""
+"""Runs generated scripts unchanged in the fake simulator, from command line to exit code."""
 
 import importlib.util
 import json
@@ -117,7 +117,7 @@ def test_a_blocked_robot_is_exit_code_1(
     assert run("area_1", FakeWorld(fake)) == 1
     error = capsys.readouterr().err
     assert error.startswith(
-        "error: robot robot_1, movement mov_1, action 1: move 4 m: came no nearer"
+        "error: robot robot_1, movement mov_1, action 1: move 4 m: no progress"
     )
 
 
@@ -146,7 +146,7 @@ def test_interruption_is_exit_code_130(run: Callable[..., int]) -> None:
 
 
 def bare(name: str, version: str = "") -> tuple[int, str]:
-    """What a script does on a Python without packages, and says; of another version, if that is said."""
+    """The exit code and output of a script on a Python without packages, optionally an older one."""
     old = f"sys.version_info = {version}; " if version else ""
     path = str(SNAPSHOTS / f"{name}.py")
     done = subprocess.run(
@@ -164,18 +164,18 @@ def bare(name: str, version: str = "") -> tuple[int, str]:
     return done.returncode, done.stdout + done.stderr
 
 
-def test_a_missing_library_is_told_in_a_sentence() -> None:
+def test_a_missing_library_is_reported() -> None:
     assert bare("area_1") == (
         2,
-        "error: the Python module zmq is not installed; install it with "
+        "error: Python module zmq is missing; install it with "
         "`python3 -m pip install coppeliasim-zmqremoteapi-client cbor2`\n",
     )
 
 
 @pytest.mark.parametrize("name", ["area_1", "area_1_vrep"])
-def test_an_old_python_is_told_before_anything_else(name: str) -> None:
-    told = (2, "error: this script needs Python 3.11 or later\n")
-    assert bare(name, version="(3, 9, 2)") == told
+def test_an_old_python_is_reported_first(name: str) -> None:
+    expected = (2, "error: this script needs Python 3.11 or later\n")
+    assert bare(name, version="(3, 9, 2)") == expected
 
 
 def test_an_unwritable_trace_is_exit_code_2(
@@ -186,28 +186,28 @@ def test_an_unwritable_trace_is_exit_code_2(
 
 
 @pytest.mark.parametrize(
-    ("port", "complaint"),
+    ("port", "message"),
     [
-        ("0", "'0' is no port"),
-        ("65536", "'65536' is no port"),
-        ("x", "'x' is no port"),
-        ("-1", "'-1' is no port"),
-        ("1.5", "'1.5' is no port"),
-        ("\u00b2", "is no port"),
-        ("robot_1=", "'' is no port"),
-        ("robot_9=5", "there is no robot robot_9; there are: robot_1"),
+        ("0", "'0' is not a port"),
+        ("65536", "'65536' is not a port"),
+        ("x", "'x' is not a port"),
+        ("-1", "'-1' is not a port"),
+        ("1.5", "'1.5' is not a port"),
+        ("\u00b2", "is not a port"),
+        ("robot_1=", "'' is not a port"),
+        ("robot_9=5", "no robot robot_9; the robots are robot_1"),
     ],
 )
-def test_impossible_ports_are_wrong_use(
+def test_impossible_ports_are_usage_errors(
     run: Callable[..., int],
     port: str,
-    complaint: str,
+    message: str,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     with pytest.raises(SystemExit) as stop:
         run("area_1", FakeWorld(), f"--port={port}")
     assert stop.value.code == 2
-    assert complaint in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_ports_of_all_and_of_one(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,4 +1,4 @@
-"""What goes wrong while a robot explores, and the map that it leaves then."""
+"""Failures during exploration, and the map written then."""
 
 import json
 import math
@@ -10,31 +10,33 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from ideal_rover import MOUNTS, RADIUS, GhostRover, on
+from ideal_rover import MOUNTS, RADIUS, IdealRover, on
 from pydslrep_parts.drive_two_wheel import TwoWheelDrive
 from pydslrep_parts.errors import MovementError, SimulatorError
-from pydslrep_parts.model import Eye
-from pydslrep_parts.occupancy_grid import Floor
+from pydslrep_parts.model import SensorCone
+from pydslrep_parts.occupancy_grid import OccupancyGrid
 from pydslrep_parts.pose import Pose
 from pydslrep_parts.robot import Robot
-from pydslrep_parts.slam_session import Survey
+from pydslrep_parts.slam_session import SlamSession
 from pydslrep_parts.trace_file import Trace
 from rooms import Rooms
 
 
 class Body:
-    """A robot's body in closed rooms, that does at once what its wheels say."""
+    """A robot's body in closed rooms; its wheels neither slip nor lag."""
 
     time_step = 0.05
 
     def __init__(self, rooms: Rooms) -> None:
-        self.ghost = GhostRover(rooms, Floor(RADIUS))
-        eyes = [str(number) for number in range(len(MOUNTS))]
-        self.model = SimpleNamespace(name="r", eyes=eyes, wheels={"l": 0.05, "r": 0.05})
+        self.ideal = IdealRover(rooms, OccupancyGrid(RADIUS))
+        slam_sensors = [str(number) for number in range(len(MOUNTS))]
+        self.model = SimpleNamespace(
+            name="r", slam_sensors=slam_sensors, wheels={"l": 0.05, "r": 0.05}
+        )
         self.drive = TwoWheelDrive([(0.0, 0.15), (0.0, -0.15)], [0.05, 0.05])
         self.here = Pose(*rooms.start, 0.0)
         self.time = 0.0
-        self.glass = math.inf  # no sensor sees it, and no robot gets further along x
+        self.glass = math.inf  # a wall at this x that no sensor detects
         self.silent_from = math.inf  # s
         self.range = 1.0
         self._rates: Sequence[float] = (0.0, 0.0)
@@ -54,18 +56,18 @@ class Body:
 
     def distance(self, sensor: str) -> float | None:
         if self.time > self.silent_from:
-            raise SimulatorError("no answer from 127.0.0.1:19999 for 10 s")
-        away = self.ghost.distance(on(self.here, MOUNTS[int(sensor)]))
+            raise SimulatorError("no reply from 127.0.0.1:19999 for 10 s")
+        away = self.ideal.distance(on(self.here, MOUNTS[int(sensor)]))
         return away if away <= self.range else None
 
-    def eye(self, sensor: str) -> Eye:
-        return Eye(MOUNTS[int(sensor)], self.range, math.radians(20.0))
+    def sensor_cone(self, sensor: str) -> SensorCone:
+        return SensorCone(MOUNTS[int(sensor)], self.range, math.radians(20.0))
 
-    def why_it_stands(self) -> str:
-        return "something may be in its way"
+    def stall_reason(self) -> str:
+        return "an obstacle may be in the way"
 
 
-def survey(folder: Path, extent: float = 20.0) -> Survey:
+def session(folder: Path, extent: float = 20.0) -> SlamSession:
     options = Namespace(
         odometry=False,
         extent=extent,
@@ -74,13 +76,13 @@ def survey(folder: Path, extent: float = 20.0) -> Survey:
         radius=[],
         map=folder / "map.json",
     )
-    return Survey("area", options)
+    return SlamSession("area", options)
 
 
-def explore(body: Body, found: Survey) -> None:
+def explore(body: Body, found: SlamSession) -> None:
     driven: Any = body
     robot = Robot(driven, Trace(None))
-    robot.survey = found
+    robot.slam_session = found
     robot.begin("m")
     robot.slam()
 
@@ -91,56 +93,54 @@ def nodes_of(folder: Path) -> list[dict[str, Any]]:
     return nodes
 
 
-def test_a_blocked_robot_ends_the_exploration_and_leaves_its_map(
+def test_a_blocked_robot_ends_the_exploration_and_writes_its_map(
     tmp_path: Path,
 ) -> None:
     body = Body(Rooms(4.0, 1.0, start=(0.5, 0.5)))
     body.glass = 1.7
     with pytest.raises(MovementError) as error:
-        explore(body, survey(tmp_path))
+        explore(body, session(tmp_path))
     text = str(error.value)
-    assert text.startswith(
-        "robot r, movement m, action 1: slam: came no nearer to its goal for 5 s, "
-    )
-    assert text.endswith("m before it; something may be in its way")
+    assert text.startswith("robot r, movement m, action 1: slam: no progress for 5 s, ")
+    assert text.endswith("m from the goal; an obstacle may be in the way")
     nodes = nodes_of(tmp_path)
     assert len(nodes) >= 2
     assert all(node["x"] <= body.glass for node in nodes)
 
 
-def test_a_sensor_that_falls_silent_ends_it_as_well(tmp_path: Path) -> None:
+def test_a_sensor_without_reply_ends_it_too(tmp_path: Path) -> None:
     body = Body(Rooms(4.0, 1.0, start=(0.5, 0.5)))
     body.silent_from = 30.0
-    with pytest.raises(SimulatorError, match="no answer from"):
-        explore(body, survey(tmp_path))
+    with pytest.raises(SimulatorError, match="no reply from"):
+        explore(body, session(tmp_path))
     assert nodes_of(tmp_path)
     assert body.time < 31.0
 
 
-def test_sensors_that_see_too_little_are_told_before_the_robot_drives(
+def test_a_short_range_is_reported_before_the_robot_drives(
     tmp_path: Path,
 ) -> None:
     body = Body(Rooms(4.0, 1.0, start=(0.5, 0.5)))
     body.range = 0.2
     with pytest.raises(
         MovementError,
-        match=r"its sensors see no more than 0\.2 m, which is too little to explore by",
+        match=r"its sensors' range of 0\.2 m is too short to explore with",
     ):
-        explore(body, survey(tmp_path))
+        explore(body, session(tmp_path))
     assert body.time < 0.1
 
 
-def test_an_area_without_end_is_told_soon(tmp_path: Path) -> None:
+def test_an_unbounded_area_is_reported_soon(tmp_path: Path) -> None:
     body = Body(Rooms(90.0, 90.0, start=(45.0, 45.0)))
     with pytest.raises(MovementError) as error:
-        explore(body, survey(tmp_path, extent=2.0))
-    assert "action 1: slam: got 2." in str(error.value)
-    assert "If it is that large, say --extent with more than 2 m" in str(error.value)
+        explore(body, session(tmp_path, extent=2.0))
+    assert "action 1: slam: the area is still open 2." in str(error.value)
+    assert "If it is larger, set --extent to more than 2 m" in str(error.value)
     assert 4 <= len(nodes_of(tmp_path)) < 60
 
 
 class Axes:
-    """What a picture of a map is drawn with; keeps what was drawn."""
+    """A stand-in for matplotlib's axes; records what is drawn."""
 
     def __init__(self) -> None:
         self.lines: list[tuple[list[float], list[float]]] = []
@@ -153,7 +153,7 @@ class Axes:
 
 
 class Figure:
-    """A stand-in for matplotlib's."""
+    """A stand-in for matplotlib's figure."""
 
     made: list["Figure"]
 
@@ -169,14 +169,14 @@ class Figure:
         self.file = file
 
 
-def test_a_picture_of_the_map_is_drawn_where_matplotlib_is(
+def test_matplotlib_draws_a_picture_of_the_map(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     Figure.made = []
     module: Any = SimpleNamespace(Figure=Figure)
     monkeypatch.setitem(sys.modules, "matplotlib", module)
     monkeypatch.setitem(sys.modules, "matplotlib.figure", module)
-    explore(Body(Rooms(1.9, 1.0, start=(0.5, 0.5))), survey(tmp_path))
+    explore(Body(Rooms(1.9, 1.0, start=(0.5, 0.5))), session(tmp_path))
     [figure] = Figure.made
     assert figure.title == "area"
     assert figure.file == tmp_path / "map.png"
@@ -193,5 +193,5 @@ def test_without_matplotlib_there_is_no_picture(
 ) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
-    explore(Body(Rooms(1.9, 1.0, start=(0.5, 0.5))), survey(tmp_path))
+    explore(Body(Rooms(1.9, 1.0, start=(0.5, 0.5))), session(tmp_path))
     assert [file.name for file in tmp_path.iterdir()] == ["map.json"]

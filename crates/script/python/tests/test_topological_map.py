@@ -1,11 +1,11 @@
 import itertools
 
 import pytest
-from pydslrep_parts.topological_map import Exit, TopologicalMap
+from pydslrep_parts.topological_map import Frontier, TopologicalMap
 
 
 def ring() -> TopologicalMap:
-    """Four corners of a square of 1 m, the way from the last to the first being open."""
+    """Four corners of a 1 m square, without an edge from the last to the first."""
     found = TopologicalMap()
     corners = [found.add(x, y) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
     for a, b in itertools.pairwise(corners):
@@ -13,7 +13,7 @@ def ring() -> TopologicalMap:
     return found
 
 
-def test_the_shortest_way_goes_by_edges() -> None:
+def test_the_shortest_path_follows_edges() -> None:
     found = ring()
     first, *_, last = found.nodes
     assert found.distances(first) == {0: 0.0, 1: 1.0, 2: 2.0, 3: 3.0}
@@ -23,7 +23,7 @@ def test_the_shortest_way_goes_by_edges() -> None:
     assert [node.number for node in found.path(first, last)] == [3]
 
 
-def test_a_blocked_edge_stays_in_the_map_but_is_no_way() -> None:
+def test_a_blocked_edge_stays_in_the_map_but_not_in_paths() -> None:
     found = ring()
     found.block(found.nodes[1], found.nodes[2])
     assert found.distances(found.nodes[0]) == {0: 0.0, 1: 1.0}
@@ -34,13 +34,13 @@ def test_a_blocked_edge_stays_in_the_map_but_is_no_way() -> None:
 
 def test_the_nearest_nodes_come_first() -> None:
     found = ring()
-    assert [node.number for node in found.near((0.9, 0.3), 1.0)] == [1, 2, 0]
-    assert found.near((5.0, 5.0), 1.0) == []
+    assert [node.number for node in found.nodes_near((0.9, 0.3), 1.0)] == [1, 2, 0]
+    assert found.nodes_near((5.0, 5.0), 1.0) == []
 
 
 def test_as_json() -> None:
     found = ring()
-    found.nodes[0].exits.append(Exit(-1.5707963, 1))
+    found.nodes[0].frontiers.append(Frontier(-1.5707963, 1))
     data = found.as_json()
     assert data["nodes"][0] == {
         "id": 0,

@@ -1,4 +1,4 @@
-"""Tests of turning until sensors are free."""
+"""Turning until sensors are free."""
 
 import math
 from collections.abc import Callable
@@ -11,7 +11,7 @@ from pydslrep_parts.robot import Robot
 
 
 def sees(low: float, high: float) -> Callable[[FakeRobot], bool]:
-    """A sensor that detects something while the heading, in degrees, is between these."""
+    """A sensor that detects something while the heading is between two angles in degrees."""
     return lambda robot: (
         low < math.degrees(math.remainder(robot.theta, math.tau)) < high
     )
@@ -56,7 +56,7 @@ def test_free_sensors_mean_no_rotation(monkeypatch: pytest.MonkeyPatch) -> None:
     assert fake.theta == 0.0
 
 
-def test_a_gap_that_is_driven_past_is_not_the_end(
+def test_a_gap_passed_in_one_step_does_not_end_the_turn(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     wide = sees(-180.0, 20.0), sees(20.5, 60.0)
