@@ -1,4 +1,4 @@
-"""One story of ports: what people copy listens where CoppeliaSim does."""
+"""Examples that people copy use CoppeliaSim's port."""
 
 import re
 import tomllib
@@ -8,7 +8,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 
-# What somebody starts from. Several robots count on from the first one.
+# Programs that people start from. Several robots have consecutive ports.
 TO_COPY = [
     *sorted((ROOT / "examples").rglob("*.pyr")),
     ROOT / "README.md",
@@ -21,7 +21,7 @@ TO_COPY = [
 
 
 def default_ports() -> dict[str, int]:
-    """The port of each target, where the code has it."""
+    """The default port of each target in the code."""
     text = (ROOT / "crates/analysis/src/target.rs").read_text(encoding="utf-8")
     body = text.split("fn default_port", 1)[1].split("fn ", 1)[0]
     return {
@@ -48,7 +48,7 @@ def test_robots_to_copy_are_found_by_coppeliasim(path: Path) -> None:
 
 
 def configured(path: Path) -> list[str]:
-    """The target that a settings file beside a program chooses."""
+    """The target in the settings file next to a program."""
     settings = path.parent / "pydslrep.toml"
     if not settings.is_file():
         return []
@@ -57,5 +57,7 @@ def configured(path: Path) -> list[str]:
 
 def test_the_script_names_the_same_ports() -> None:
     part = ROOT / "crates/script/python/pydslrep_parts/coppeliasim.py"
-    named = re.findall(r"^(?:USUAL|LEGACY)_PORT = (\d+)", part.read_text("utf-8"), re.M)
+    named = re.findall(
+        r"^(?:DEFAULT|LEGACY)_PORT = (\d+)", part.read_text("utf-8"), re.M
+    )
     assert list(map(int, named)) == list(default_ports().values())

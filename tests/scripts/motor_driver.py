@@ -1,8 +1,8 @@
-"""A pretended driver of a two-wheel robot's motors, for docs/physical-robot.md.
+"""A simulated motor driver of a two-wheel robot, for docs/physical-robot.md.
 
-It has a clock of its own in place of the machine's, and motors that get to their speed as real ones do. When the script
-ends it writes down where the robot really is. `MOTOR_DRIVER` holds what else is to happen: `stuck` or `missing`, `room`
-for a room around the robot, `broken` for a room and a sensor that stops answering.
+It replaces the system's clock, and its motors have inertia. When the script ends, it writes the robot's actual pose to
+`truth.json`. `MOTOR_DRIVER` selects a fault or a room: `stuck`, `missing`, `room` for a room around the robot, `broken`
+for a room and a sensor that stops replying.
 """
 
 import atexit
@@ -13,7 +13,7 @@ import pathlib
 import time
 
 TRACK, RADIUS, SUBSTEP = 0.30, 0.045, 0.001
-DELAY = 0.03  # s that motors take for most of a change
+DELAY = 0.03  # s, time constant of the motors
 TROUBLE = os.environ.get("MOTOR_DRIVER")
 
 motors: list["Motor"] = []
@@ -41,8 +41,8 @@ class Motor:
         self.closed = True
 
 
-ROOM = (-0.5, -0.5, 1.7, 0.5)  # least x and y, most x and y
-EYES = {  # where sensors are, and their bearings in degrees
+ROOM = (-0.5, -0.5, 1.7, 0.5)  # minimum x and y, maximum x and y
+MOUNTS = {  # positions of sensors, and their bearings in degrees
     "front": (0.15, 0.0, 0),
     "front_left": (0.15, 0.15, 45),
     "front_right": (0.15, -0.15, -45),
@@ -52,17 +52,17 @@ EYES = {  # where sensors are, and their bearings in degrees
 
 
 def distance(sensor: str) -> float:
-    """There is a wall ahead, as far as the robot has not turned by a third of a right angle."""
+    """A wall is ahead until the robot has turned by a third of a right angle."""
     if TROUBLE == "broken" and now > 5.0:
-        raise OSError(f"no answer from sensor {sensor}")
+        raise OSError(f"no reply from sensor {sensor}")
     if TROUBLE in ("room", "broken"):
-        x, y, bearing = EYES[sensor]
+        x, y, bearing = MOUNTS[sensor]
         return min(to_wall(x, y, bearing + side) for side in range(-10, 11, 2))
     return 0.2 if abs(truth["theta"]) < math.pi / 6 else 3.0
 
 
 def to_wall(x: float, y: float, bearing: float) -> float:
-    """How far it is to the room's walls, from a place on the robot."""
+    """The distance to the room's walls from a position on the robot."""
     cos, sin = math.cos(truth["theta"]), math.sin(truth["theta"])
     x, y = truth["x"] + cos * x - sin * y, truth["y"] + sin * x + cos * y
     angle = truth["theta"] + math.radians(bearing)
@@ -74,7 +74,7 @@ def to_wall(x: float, y: float, bearing: float) -> float:
 
 
 def sleep(seconds: float) -> None:
-    """Takes the place of waiting: the world goes on."""
+    """Replaces `time.sleep`: advances the world."""
     global now
     for _ in range(round(seconds / SUBSTEP)):
         now += SUBSTEP

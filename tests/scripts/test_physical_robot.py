@@ -1,4 +1,4 @@
-"""The class that docs/physical-robot.md shows drives a robot, put into a generated script as the page says."""
+"""The class in docs/physical-robot.md drives a robot when put into a generated script as the page says."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ environment yard has { rover } robots with { trip } moves
 
 
 def code_of_the_page() -> list[str]:
-    """What its steps have to put into a script."""
+    """The code blocks that its steps put into a script."""
     page = (ROOT / "docs" / "physical-robot.md").read_text(encoding="utf-8")
     return [
         textwrap.dedent(code)
@@ -39,20 +39,20 @@ def code_of_the_page() -> list[str]:
 
 
 def ported(script: str, *, explores: bool = False) -> str:
-    """The script with the page's code in place of what the page names."""
-    imports, body, eyes, methods = code_of_the_page()
+    """The script with the page's replacements."""
+    imports, body, mounts, methods = code_of_the_page()
     if explores:
-        body = f"{eyes}\n\n{body}\n{textwrap.indent(methods, '    ')}"
+        body = f"{mounts}\n\n{body}\n{textwrap.indent(methods, '    ')}"
     lines = script.splitlines(keepends=True)
     places: dict[str, tuple[int, int]] = {}
     for node in ast.parse(script).body:
-        # What is tried is the import of the client.
+        # The only `try` at the top level imports the client.
         is_client = isinstance(node, ast.Try)
         name = "client" if is_client else str(getattr(node, "name", ""))
         places[name] = (node.lineno - 1, node.end_lineno or 0)
     replaced = {
         "Body": body,
-        "LimitedSocket": "",
+        "TimeoutSocket": "",
         "client": imports,
     }
     for name, code in sorted(replaced.items(), key=lambda item: -places[item[0]][0]):
@@ -101,7 +101,7 @@ def fixture_explorer(command: str, tmp_path: pathlib.Path) -> pathlib.Path:
 def drive(
     script: pathlib.Path, code: int, trouble: str = "", *options: str
 ) -> tuple[Any, str]:
-    """Where the robot really ended, and what the script complained about."""
+    """The robot's actual end pose, and the script's error output."""
     done = subprocess.run(
         [sys.executable, str(script), *options],
         cwd=script.parent,
@@ -116,9 +116,9 @@ def drive(
     return truth, done.stderr
 
 
-def test_the_robot_comes_to_its_goal(script: pathlib.Path) -> None:
+def test_the_robot_reaches_its_goal(script: pathlib.Path) -> None:
     truth, _ = drive(script, 0)
-    # It turns until it is free, and 20 cm on it turns by a right angle.
+    # It turns until the sensor is free, moves 20 cm, and turns by a right angle.
     free = truth["theta"] - math.pi / 2
     assert math.radians(30) < free < math.radians(40)
     goal = (0.4 + 0.2 * math.cos(free), 0.2 * math.sin(free))
@@ -126,12 +126,12 @@ def test_the_robot_comes_to_its_goal(script: pathlib.Path) -> None:
     assert truth["closed"]
 
 
-def test_a_blocked_wheel_is_told(script: pathlib.Path) -> None:
+def test_a_blocked_wheel_is_reported(script: pathlib.Path) -> None:
     _, err = drive(script, 1, "stuck")
-    assert "a wheel may be blocked, or the motors without power" in err
+    assert "a wheel may be blocked, or the motors have no power" in err
 
 
-def test_missing_motors_are_told(script: pathlib.Path) -> None:
+def test_missing_motors_are_reported(script: pathlib.Path) -> None:
     _, err = drive(script, 2, "missing")
     assert err == "error: robot rover: no motor wheelL on the bus\n"
 
@@ -141,7 +141,7 @@ def test_a_robot_explores_its_room(explorer: pathlib.Path, options: list[str]) -
     truth, _ = drive(explorer, 0, "room", *options)
     found = json.loads((explorer.parent / "yard_map.json").read_text(encoding="utf-8"))
     nodes = [(node["x"], node["y"]) for node in found["nodes"]]
-    # A room of 2.2 m by 1 m, in whose one end it starts.
+    # It starts at one end of a room of 2.2 m by 1 m.
     assert max(x for x, _ in nodes) > 0.7
     assert all(-0.25 < x < 1.45 and abs(y) < 0.25 for x, y in nodes)
     assert len(found["edges"]) >= len(nodes) - 1
@@ -150,16 +150,16 @@ def test_a_robot_explores_its_room(explorer: pathlib.Path, options: list[str]) -
 
 def test_a_sensor_that_breaks_ends_the_exploration(explorer: pathlib.Path) -> None:
     _, err = drive(explorer, 1, "broken")
-    assert "robot rover, movement trip, action 1: slam: no answer from sensor" in err
+    assert "robot rover, movement trip, action 1: slam: no reply from sensor" in err
 
 
 @pytest.mark.parametrize("kind", ["script", "explorer"])
-def test_the_ported_script_pleases_its_tools(
+def test_the_ported_script_passes_ruff_and_mypy(
     kind: str, request: pytest.FixtureRequest
 ) -> None:
     script: pathlib.Path = request.getfixturevalue(kind)
     for arguments in (
-        # Imports that are left over are for its reader to take out.
+        # Unused imports are left to the reader.
         ["ruff", "check", "--ignore=F401", "--isolated", "--no-cache", script.name],
         ["mypy", "--strict", "--config-file=", "--follow-imports=silent", script.name],
     ):

@@ -1,6 +1,6 @@
-"""A robot that explores closed worlds, which nobody tuned it to, comes to an end, touches nothing and misses little.
+"""Exploration of generated worlds ends, without collisions and with at least 95 % coverage.
 
-`PYDSLREP_SLAM_WORLDS` says how many generated worlds of 30 to 80 m² are tried; `-s` shows what was found of each.
+`PYDSLREP_SLAM_WORLDS` sets the number of worlds of 30 to 80 m²; `-s` prints the coverage of each.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ import tomllib
 from typing import Any
 
 import pytest
-from rooms import Place, Rooms, Wall, generate
+from rooms import Position, Rooms, Wall, generate
 
 ROOT = pathlib.Path(__file__).parents[2]
 COUNT = int(os.environ.get("PYDSLREP_SLAM_WORLDS", "2"))
 
-# Small worlds first: these are in the test command.
+# Small worlds first: the test command uses these.
 SEEDS = [14, 1, *(seed for seed in range(2, 200) if seed != 14)][:COUNT]
 
 STEP, RANGE, HALF = 0.5, 1.0, 0.15
@@ -28,7 +28,7 @@ STEP, RANGE, HALF = 0.5, 1.0, 0.15
 def explore(
     command: str, folder: pathlib.Path, program: str, rooms: Rooms, *options: str
 ) -> dict[str, Any]:
-    """Runs a program and checks what must hold; the map that it left."""
+    """Runs a program, checks its path for collisions, and returns its map."""
     (folder / "program.pyr").write_text(program, encoding="utf-8")
     done = subprocess.run(
         [command, "run", "program.pyr", "--no-progress", "--trace", "trace", *options],
@@ -41,11 +41,11 @@ def explore(
     assert done.returncode == 0, done.stderr
     [file] = folder.glob("*_map.json")
     found: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
-    touches_nothing(folder / "trace", rooms)
+    assert_no_collisions(folder / "trace", rooms)
     return found
 
 
-def touches_nothing(trace: pathlib.Path, rooms: Rooms) -> None:
+def assert_no_collisions(trace: pathlib.Path, rooms: Rooms) -> None:
     with trace.open(encoding="utf-8") as rows:
         for number, line in enumerate(rows):
             if number % 4 == 0:
@@ -54,12 +54,12 @@ def touches_nothing(trace: pathlib.Path, rooms: Rooms) -> None:
                 assert rooms.holds(*pose, HALF - 0.001), (row["t"], pose)
 
 
-def places(found: dict[str, Any]) -> dict[int, Place]:
+def places(found: dict[str, Any]) -> dict[int, Position]:
     return {node["id"]: (node["x"], node["y"]) for node in found["nodes"]}
 
 
-def judge(found: dict[str, Any], rooms: Rooms) -> float:
-    """Checks a map; the share of the floor that it covers."""
+def check_map(found: dict[str, Any], rooms: Rooms) -> float:
+    """Checks a map and returns the fraction of the floor that it covers."""
     nodes = places(found)
     for edge in found["edges"]:
         start, end = nodes[edge["from"]], nodes[edge["to"]]
@@ -82,7 +82,7 @@ def test_generated_worlds(command: str, tmp_path: pathlib.Path, seed: int) -> No
     scene = tmp_path / "area_1.scene.toml"
     scene.write_text(rooms.scene("robot_1"), encoding="utf-8")
     found = explore(command, tmp_path, table_7(), rooms)
-    covered = judge(found, rooms)
+    covered = check_map(found, rooms)
     print(
         f"world {seed}: {rooms.width * rooms.height:.1f} m², {len(found['nodes'])} nodes, "
         f"{100 * covered:.2f} % covered"
@@ -91,7 +91,7 @@ def test_generated_worlds(command: str, tmp_path: pathlib.Path, seed: int) -> No
 
 
 def example_rooms() -> tuple[str, Rooms]:
-    """The scene of examples/rooms.pyr, with table 7's robot, and what stands in it as walls."""
+    """The scene of examples/rooms.pyr with table 7's robot, and its walls."""
     text = (ROOT / "examples/rooms.scene.toml").read_text(encoding="utf-8")
     scene = tomllib.loads(text)
     width, height = scene["world"]["size"]
@@ -107,6 +107,6 @@ def test_table_7_in_the_article_s_area(command: str, tmp_path: pathlib.Path) -> 
     scene, rooms = example_rooms()
     (tmp_path / "area_1.scene.toml").write_text(scene, encoding="utf-8")
     found = explore(command, tmp_path, table_7(), rooms)
-    assert judge(found, rooms) >= 0.95
-    # Its five rooms and corridors hang together in more than one way.
+    assert check_map(found, rooms) >= 0.95
+    # Its five rooms and corridors form loops.
     assert len(found["edges"]) > len(found["nodes"])

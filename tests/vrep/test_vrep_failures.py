@@ -35,16 +35,16 @@ def fixture_stage(command: str, tmp_path: pathlib.Path, ports: list[int]) -> Sta
 
 def test_nobody_there(stage: Stage, ports: list[int]) -> None:
     _, err = finish(start(stage.build("vrep")), 2)
-    assert f"robot rover: nobody answers at 127.0.0.1:{ports[0]}" in err
+    assert f"robot rover: no reply from 127.0.0.1:{ports[0]}" in err
     _, err = finish(start(stage.build("vrep"), "--host", "no.such.host.invalid"), 2)
-    assert "host no.such.host.invalid is not known" in err
+    assert "unknown host no.such.host.invalid" in err
 
 
 def test_a_port_that_another_client_has(stage: Stage, ports: list[int]) -> None:
     script = stage.build("vrep")
     with stage.simulator(), onlooker(ports[0]):
         _, err = finish(start(script), 2)
-    assert f"robot rover: no answer from 127.0.0.1:{ports[0]}. The remote API" in err
+    assert f"robot rover: no reply from 127.0.0.1:{ports[0]}. The remote API" in err
 
 
 def test_all_names_that_were_tried(
@@ -104,7 +104,7 @@ def test_somebody_who_never_answers(stage: Stage, ports: list[int]) -> None:
         line, _ = server.accept()
         _, err = finish(process, 2)
         line.close()
-    assert f"no answer from 127.0.0.1:{ports[0]}" in err
+    assert f"no reply from 127.0.0.1:{ports[0]}" in err
 
 
 def test_the_client_explains_itself(stage: Stage) -> None:
