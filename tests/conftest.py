@@ -1,4 +1,4 @@
-"""Where the command under test is."""
+"""The path of the command under test."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import pytest
 ROOT = pathlib.Path(__file__).parents[1]
 DEBUG = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "debug"
 
-# Started in the background of a shell, tests would pass on to what they start that it is not to be interrupted.
+# In the background of a shell, tests would otherwise pass an ignored SIGINT on to the processes they start.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture
 def command() -> str:
-    """The program `pydslrep`."""
+    """The path of `pydslrep`."""
     return os.environ.get("PYDSLREP", str(DEBUG / "pydslrep"))

@@ -1,10 +1,9 @@
-"""Language servers measured side by side, over pipes, as an editor would drive them.
+"""Benchmarks language servers side by side, over pipes, as an editor would drive them.
 
     python tests/bench [--sizes 100,1000,10000] [--samples 60] "SERVER --stdio" ["OTHER SERVER --stdio"]
 
-All servers run at once and take turns figure by figure, so that whatever else the machine does falls on all of them
-alike. Times are medians in milliseconds; with two servers the last column says how many times the first one's time is the
-second one's.
+All servers run in parallel and take turns for each figure, so that other load on the machine affects all of them equally.
+Times are medians in milliseconds; with two servers, the last column is the first one's time divided by the second one's.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ FEWEST = 3
 
 
 def main() -> None:
-    """Reads the command line, measures and prints."""
+    """Measures and prints all figures."""
     options = arguments()
     commands = [shlex.split(command) for command in options.servers]
     print(row("cold start, 100 lines", "", [cold(command) for command in commands]))
@@ -32,7 +31,7 @@ def main() -> None:
 
 
 def arguments() -> argparse.Namespace:
-    """What was asked for."""
+    """Parses the command line."""
     about, _, more = (__doc__ or "").partition("\n")
     parser = argparse.ArgumentParser(
         prog="python tests/bench", description=about, epilog=more
@@ -75,13 +74,13 @@ def measure(commands: list[list[str]], size: int, samples: int) -> None:
 
 
 def median(bench: Bench, name: str, samples: int) -> float | None:
-    """Seconds; `None` where a server cannot do it."""
+    """The median in seconds; None if a server lacks the capability."""
     step, capability = FIGURES[name]
     if capability and not bench.client.has(capability):
         return None
     taken: list[float] = []
     began = time.perf_counter()
-    # Whatever is typed has to be taken back, so the number of steps is even.
+    # Every edit is undone by the next step, so the number of steps is even.
     while len(taken) < max(samples, FEWEST + 1) or len(taken) % 2:
         taken.append(step(bench))
         if (
@@ -94,7 +93,7 @@ def median(bench: Bench, name: str, samples: int) -> float | None:
 
 
 def row(name: str, size: object, times: list[float | None]) -> str:
-    """One line of the table."""
+    """One row of the table."""
     cells = [
         "     n/a" if seconds is None else f"{seconds * 1000:8.2f}" for seconds in times
     ]

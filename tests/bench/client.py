@@ -1,4 +1,4 @@
-"""A client that measures: it stamps what arrives before it looks at it, and does its own work outside of the times."""
+"""A client for measurements: it timestamps messages before it parses them, and does its own work outside of the times."""
 
 from __future__ import annotations
 
@@ -66,27 +66,27 @@ class Client:
         self.stop()
 
     def stop(self) -> None:
-        """Ends the process."""
+        """Terminates the server."""
         self.process.kill()
         self.process.wait()
 
     def tell(self, method: str, params: object) -> float:
-        """Sends a notification; the time before its first byte left."""
+        """Sends a notification; returns the time before its first byte."""
         return self._write({"method": method, "params": params})
 
     def ask(self, method: str, params: object) -> tuple[Any, float]:
-        """An answer and the time at which all of it had arrived."""
+        """Sends a request; returns the response and the time when it was complete."""
         ident, _ = self.send(method, params)
         return self.answer(ident)
 
     def send(self, method: str, params: object) -> tuple[int, float]:
-        """Sends a request without waiting; the time before its first byte left."""
+        """Sends a request without waiting; returns the time before its first byte."""
         self.ident += 1
         message = {"id": self.ident, "method": method, "params": params}
         return self.ident, self._write(message)
 
     def answer(self, ident: int) -> tuple[Any, float]:
-        """The answer to a request, and when all of it had arrived."""
+        """The response to a request, and the time when it was complete."""
         while True:
             message, arrived = self._next()
             if message.get("id") == ident and "method" not in message:
@@ -95,7 +95,7 @@ class Client:
                 return message["result"], arrived
 
     def open(self, text: str) -> float:
-        """Opens the document; the time before its first byte left."""
+        """Opens the document; returns the time before its first byte."""
         self.version += 1
         return self.tell(
             "textDocument/didOpen",
@@ -110,11 +110,11 @@ class Client:
         )
 
     def close(self) -> None:
-        """Closes it."""
+        """Closes the document."""
         self.tell("textDocument/didClose", {"textDocument": {"uri": URI}})
 
     def change(self, line: int, start: int, end: int, text: str) -> float:
-        """Replaces a part of a line; the time before its first byte left."""
+        """Replaces a part of a line; returns the time before its first byte."""
         self.version += 1
         self.published.clear()
         place = {
@@ -130,13 +130,13 @@ class Client:
         )
 
     def has(self, capability: str) -> bool:
-        """Whether the server announces it."""
+        """Whether the server announces a capability."""
         return self.capabilities.get(capability) not in (None, False)
 
     def settled(self, lines: list[int]) -> tuple[list[int], float]:
-        """The lines with errors in the latest version, and when this was known.
+        """The lines with errors in the latest version, and the time when they arrived.
 
-        Servers that push without saying for which version are listened to until it is `lines`.
+        If a server pushes diagnostics without a version, waits until they are on `lines`.
         """
         if self.has("diagnosticProvider"):
             report, arrived = self.ask(
@@ -153,14 +153,14 @@ class Client:
             self._next()
 
     def peak_memory(self) -> float:
-        """MiB."""
+        """The peak memory in MiB."""
         status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text()
         return int(status.split("VmHWM:")[1].split()[0]) / 1024
 
     def _next(self) -> tuple[dict[str, Any], float]:
         arrived, body = self.arrived.get(timeout=LONGEST_WAIT)
         if body is None:
-            raise RuntimeError("the server has ended")
+            raise RuntimeError("the server exited")
         message: dict[str, Any] = json.loads(body)
         if "id" in message and "method" in message:
             self._write({"id": message["id"], "result": None})
@@ -197,7 +197,7 @@ class Client:
 
 
 def lines_of_errors(diagnostics: list[dict[str, Any]]) -> list[int]:
-    """Where there are errors; a diagnostic without severity is one."""
+    """The lines with errors; a diagnostic without severity counts as an error."""
     return [
         item["range"]["start"]["line"]
         for item in diagnostics

@@ -1,4 +1,4 @@
-"""What is measured: each figure is one step that is done again and again, and whose answer is looked at every time."""
+"""The figures: each is a step that is repeated, and whose response is verified every time."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ BURST = 200
 
 
 class WrongAnswerError(Exception):
-    """An answer that is not the right one: a figure taken with it would be worth nothing."""
+    """A wrong response, which would make the figure meaningless."""
 
 
 def expect(condition: object, what: str) -> None:
-    """Stops where an answer is wrong."""
+    """Raises WrongAnswerError if a response is wrong."""
     if not condition:
         raise WrongAnswerError(what)
 
 
 class Bench:
-    """One server with one program open. A step returns seconds; figures are made of many."""
+    """One server with one program open. Each step returns seconds; a figure is the median of many."""
 
     def __init__(self, client: Client, program: Program) -> None:
         self.client = client
@@ -37,13 +37,13 @@ class Bench:
         self.settled(client.open(program.text), [])
 
     def settled(self, started: float, lines: list[int]) -> float:
-        """The seconds until the diagnostics are known; they must be on these lines."""
+        """The seconds until the diagnostics arrive, which must be on these lines."""
         found, arrived = self.client.settled(lines)
         expect(found == lines, f"errors on lines {found[:5]}, not {lines}")
         return arrived - started
 
     def toggle(self, site: Site) -> tuple[float, list[int]]:
-        """Types a letter too many, or takes it away again; where there are errors then."""
+        """Types an extra letter or deletes it again; the resulting errors are on `lines`."""
         line, column = site
         end, text = (column + 1, "") if self.wrong else (column, "x")
         self.wrong = not self.wrong
@@ -51,24 +51,24 @@ class Bench:
         return started, [line] if self.wrong else []
 
     def open(self) -> float:
-        """The document is opened again, until its diagnostics."""
+        """Reopens the document, until its diagnostics."""
         self.client.close()
         return self.settled(self.client.open(self.program.text), [])
 
     def keystroke(self, site: Site) -> float:
-        """A letter typed, until the diagnostics."""
+        """A keystroke, until the diagnostics."""
         return self.settled(*self.toggle(site))
 
     def syntax(self) -> float:
-        """A keystroke that makes or mends a syntax error."""
+        """A keystroke that makes or fixes a syntax error."""
         return self.keystroke(self.program.unit)
 
     def reference(self) -> float:
-        """A keystroke that breaks or mends a reference."""
+        """A keystroke that breaks or fixes a reference."""
         return self.keystroke(self.program.reference)
 
     def completion(self) -> float:
-        """A keystroke and the completion right behind it, until the list."""
+        """A keystroke and the completion right after it, until the list."""
         line, column = self.program.robot
         robot = self.program.lines[line][:column].split()[-1]
         self.wrong = not self.wrong
@@ -87,7 +87,7 @@ class Bench:
         return arrived - started
 
     def burst(self) -> float:
-        """200 changes in a row, from the first to the diagnostics behind the last."""
+        """200 changes in a row, from the first to the diagnostics after the last."""
         line, column = self.program.unit
         self.client.change(line, column, column, "x")
         self.settled(time.perf_counter(), [line])
@@ -105,7 +105,7 @@ class Bench:
         return self.settled(started, [])
 
     def request(self, method: str, few: int, **params: object) -> float:
-        """One request about the whole document; the answer has at least so many parts."""
+        """One request about the whole document, whose response must have at least so many parts."""
         ident, started = self.client.send(
             f"textDocument/{method}", {**DOCUMENT, **params}
         )
@@ -119,27 +119,27 @@ class Bench:
         return self.request("documentSymbol", len(self.program.lines) // 10)
 
     def tokens(self) -> float:
-        """The colours of all words."""
+        """All semantic tokens."""
         return self.request("semanticTokens/full", len(self.program.lines))
 
     def folding(self) -> float:
-        """What can be folded."""
+        """All folding ranges."""
         return self.request("foldingRange", len(self.program.lines) // 20)
 
     def formatting(self) -> float:
-        """The layout of the whole document, half of it in need of it."""
+        """Formatting of the whole document, half of which changes."""
         return self.request(
             "formatting", 0, options={"tabSize": 2, "insertSpaces": True}
         )
 
     def hover(self) -> float:
-        """The quickest answer there is: what a message takes to and fro."""
+        """The fastest response: the cost of a round trip."""
         line, column = self.program.robot
         position = {"line": line, "character": column - 1}
         ident, started = self.client.send(
             "textDocument/hover", {**DOCUMENT, "position": position}
         )
-        # Some servers have nothing to say here, which takes as long.
+        # Some servers respond with null here, which takes as long.
         _, arrived = self.client.answer(ident)
         return arrived - started
 

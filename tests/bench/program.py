@@ -1,4 +1,4 @@
-"""Programs without mistakes, as long as wanted, and places in them to type at."""
+"""Correct programs of any length, and positions in them for edits."""
 
 from __future__ import annotations
 
@@ -31,22 +31,22 @@ environment area_{n} has {{ robot_{n} }} robots with {{ out_{n} back_{n} }} move
 
 
 class Site(NamedTuple):
-    """A place between two characters, counted from zero."""
+    """A position between two characters, from zero."""
 
     line: int
     column: int
 
 
 class Program(NamedTuple):
-    """A program and where its figures are taken, near its middle."""
+    """A program and the positions of its edits, near its middle."""
 
     lines: list[str]
     unit: Site
-    """Before the last letter of a `meters`: a letter more is a syntax error."""
+    """Before the last letter of a `meters`: an extra letter is a syntax error."""
     reference: Site
-    """Behind the name of a sensor after `until`: a letter more is a name that nobody declares."""
+    """After the name of a sensor after `until`: an extra letter is an undeclared name."""
     robot: Site
-    """Behind the name of a movement's robot."""
+    """After the name of a movement's robot."""
 
     @property
     def text(self) -> str:
@@ -55,7 +55,7 @@ class Program(NamedTuple):
 
 
 def program(size: int) -> Program:
-    """A program of at least so many lines, made of whole blocks."""
+    """A program of at least so many lines, in complete blocks."""
     blocks = -(-size // BLOCK.count("\n"))
     lines = [
         line
@@ -66,19 +66,19 @@ def program(size: int) -> Program:
     return Program(
         lines,
         unit=before_last(lines, f"movement out_{block} ", "meters"),
-        reference=behind(lines, f"movement out_{block} ", f"far_{block}"),
-        robot=behind(lines, f"movement out_{block} ", f"robot_{block}"),
+        reference=after(lines, f"movement out_{block} ", f"far_{block}"),
+        robot=after(lines, f"movement out_{block} ", f"robot_{block}"),
     )
 
 
-def behind(lines: list[str], start: str, word: str) -> Site:
-    """Behind the first `word` from the line on that begins with `start`."""
+def after(lines: list[str], start: str, word: str) -> Site:
+    """After the first `word` at or below the line that begins with `start`."""
     first = next(number for number, line in enumerate(lines) if line.startswith(start))
     line = next(number for number in range(first, len(lines)) if word in lines[number])
     return Site(line, lines[line].index(word) + len(word))
 
 
 def before_last(lines: list[str], start: str, word: str) -> Site:
-    """Before the last letter of it."""
-    site = behind(lines, start, word)
+    """Before the last letter of that word."""
+    site = after(lines, start, word)
     return site._replace(column=site.column - 1)

@@ -1,4 +1,4 @@
-"""Whether there is a package index to install from, before pip tries for minutes."""
+"""The check of the package index, which saves minutes of retries by pip."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ ABSENT = 3
 
 @pytest.fixture(name="home")
 def fixture_home(tmp_path: pathlib.Path) -> pathlib.Path:
-    """Somebody without any settings of pip's."""
+    """A home folder without pip's settings."""
     return tmp_path
 
 
 def ask(home: pathlib.Path, **settings: str) -> tuple[int, str]:
-    """What comes of it with such an environment."""
+    """The exit code and output with such an environment."""
     kept = {
         name: os.environ[name] for name in ("PATH", "SYSTEMROOT") if name in os.environ
     }
@@ -45,15 +45,15 @@ def ask(home: pathlib.Path, **settings: str) -> tuple[int, str]:
 
 
 class Quiet(http.server.BaseHTTPRequestHandler):
-    """An index that knows nothing, and says so."""
+    """An index without packages."""
 
     def log_message(self, format: str, *args: object) -> None:  # noqa: A002
-        """Nobody reads it."""
+        """Logs nothing."""
 
 
 @pytest.fixture(name="answering")
 def fixture_answering() -> Iterator[str]:
-    """The address of an index that answers."""
+    """The address of an index that replies."""
     with http.server.HTTPServer(("127.0.0.1", 0), Quiet) as server:
         thread = threading.Thread(target=server.serve_forever)
         thread.start()
@@ -64,14 +64,14 @@ def fixture_answering() -> Iterator[str]:
 
 @pytest.fixture(name="silent")
 def fixture_silent() -> Iterator[int]:
-    """The port of an index that takes connections and never says a word."""
+    """The port of an index that accepts connections but never replies."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         yield server.getsockname()[1]
 
 
 @pytest.fixture(name="closed")
 def fixture_closed() -> int:
-    """A port that nobody listens on."""
+    """A port without a server."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         port: int = server.getsockname()[1]
     return port
@@ -86,7 +86,7 @@ def test_one_that_never_answers_is_not(
     home: pathlib.Path, silent: int, scheme: str
 ) -> None:
     told = ask(home, PIP_INDEX_URL=f"{scheme}://127.0.0.1:{silent}/simple")
-    assert told == (ABSENT, "127.0.0.1 cannot be reached: no answer for 2 s\n")
+    assert told == (ABSENT, "127.0.0.1 cannot be reached: no reply for 2 s\n")
 
 
 def test_one_that_nobody_serves_is_not(home: pathlib.Path, closed: int) -> None:

@@ -1,4 +1,4 @@
-"""What `check` tells programs, held against what these expect."""
+"""The machine-readable formats of `check`, against their specifications."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def checked(command: str, folder: pathlib.Path, form: str) -> str:
 
 @functools.cache
 def sarif_schema() -> dict[str, Any]:
-    """The standard's own schema, as it stands in a package that the command's tests depend on."""
+    """The standard's schema, from a package that the command's tests depend on."""
     metadata = json.loads(
         subprocess.run(
             ["cargo", "metadata", "--format-version", "1", "--locked"],
@@ -74,14 +74,14 @@ def test_sarif_is_what_the_standard_says(command: str, tmp_path: pathlib.Path) -
         assert rules[result["ruleIndex"]]["id"] == result["ruleId"]
     assert all(rule["help"]["markdown"].startswith("# ") for rule in rules)
 
-    # The schema must be able to refuse something, or the test above says nothing.
+    # The schema must reject something, or the test above proves nothing.
     run["results"][0]["level"] = "hint"
     del run["tool"]["driver"]["name"]
     assert len(list(validator.iter_errors(log))) >= 2
 
 
 def sliced(text: str, region: dict[str, int]) -> str:
-    """What a region is about, by the standard's words: from a character to right before another one, from 1."""
+    """The text of a region: from a character to before another one, both from 1, as the standard defines."""
     lines = text.split("\n")
     assert region["startLine"] == region["endLine"]
     line = lines[region["startLine"] - 1]

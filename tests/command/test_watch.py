@@ -1,4 +1,4 @@
-"""`check --watch`, as a person with an editor meets it."""
+"""`check --watch`, as used next to an editor."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ environment yard has { a } robots with { m } moves
 """
 BAD = GOOD.replace("{ l r }", "{ l x }")
 
-# Only reached where something is broken.
+# Reached only if something is broken.
 LIMIT = 30
 
 
@@ -49,7 +49,7 @@ class Watcher:
             self._lines.put(line.rstrip("\n"))
 
     def look(self) -> tuple[str, str]:
-        """The problems and the summary of the next look."""
+        """The problems and the summary of the next check."""
         problems: list[str] = []
         while True:
             line = self._lines.get(timeout=LIMIT)
@@ -61,7 +61,7 @@ class Watcher:
             problems.append(line)
 
     def until(self, summary: str) -> str:
-        """The problems of the next look with such a summary: a file that is being written may be seen half."""
+        """The problems of the next check with such a summary: it may see a partly written file first."""
         while True:
             problems, found = self.look()
             if found.startswith(summary):
@@ -79,7 +79,7 @@ class Watcher:
 
 
 class Start:
-    """Starts watchers, which end with the test."""
+    """Starts watchers, and terminates them after the test."""
 
     def __init__(self, command: str, folder: pathlib.Path) -> None:
         self._command = command
@@ -100,7 +100,7 @@ def start(command: str, tmp_path: pathlib.Path) -> Iterator[Start]:
 
 
 def save_by_rename(path: pathlib.Path, text: str) -> None:
-    """As many editors save."""
+    """Saves a file as many editors do."""
     beside = path.with_name(f".{path.name}.swp")
     beside.write_text(text)
     beside.rename(path)
@@ -130,7 +130,7 @@ def test_folders_that_come_later_are_watched(
     (tmp_path / "x.pyr").write_text(GOOD)
     watcher = start()
     watcher.until("No problems in 1 file.")
-    # From here on it only looks where it was told to: nothing else is to be watched than before.
+    # The set of watched folders must not change from here on.
     (tmp_path / "x.pyr").write_text(BAD)
     watcher.until("1 error")
     below = tmp_path / "rooms" / "deep"

@@ -1,4 +1,4 @@
-"""Tables on terminals of several widths: no line is longer, and no number is broken."""
+"""Tables on terminals of several widths: no line is wider, and no number is broken."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NUMBER = re.compile(r"-?\d+\.\d+")
 
 
 def printed(command: str, columns: int, *arguments: str) -> list[str]:
-    """The lines of a command on a terminal that wide."""
+    """The output of a command on a terminal of that width."""
     ours, theirs = pty.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 50, columns, 0, 0))
     process = subprocess.Popen(
@@ -34,7 +34,7 @@ def printed(command: str, columns: int, *arguments: str) -> list[str]:
     while True:
         try:
             part = os.read(ours, 4096)
-        except OSError:  # the other end is closed
+        except OSError:  # the terminal is closed
             break
         if not part:
             break

@@ -1,7 +1,7 @@
-"""Whatever things are called in a program, its script pleases Python's tools and drives the robots.
+"""Any name in a program gives a script that passes Python's tools and drives the robots.
 
-The names tried are all that could disturb a script: Python's keywords and builtins, what the script itself calls its
-own things, and the words of the language.
+The tests use all names that could conflict with a script: Python's keywords and builtins, the script's own identifiers,
+and the keywords of the language.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from collections.abc import Sequence
 
 ROOT = pathlib.Path(__file__).parents[2]
 
-# Robots of every type, sensors, an address, movements in sequence and in parallel. `W3` and the like are to be renamed;
-# `^` lets words of the language be names.
+# Robots of every type, sensors, an address, movements in sequence and in parallel. Tests rename `W3` and the like; `^`
+# lets keywords be names.
 PROGRAM = """
 wheel ^W0 with radius 4.5   wheel ^W1 with radius 4.5
 wheel ^W2 with radius 5     wheel ^W3 with radius 5     wheel ^W4 with radius 5     wheel ^W5 with radius 5
@@ -45,8 +45,8 @@ environment ^E0 with ip ^I0 has { ^R0 ^R1 ^R2 } robots with { ^M0 ^M1 ^M2 ^M3 } 
 """
 PLACES = sorted(set(re.findall(r"\^([A-Z]\d)", PROGRAM)))
 
-# One name for as much as can have it: each kind of things has names of its own. The robot of that name is not the first
-# one in the scene, and another robot's wheel has its name, too.
+# One name for everything that may share it: each kind of entity has its own namespace. The robot with that name is not
+# the first one in the scene, and another robot has a wheel with that name too.
 ONE_NAME = """
 wheel ^X with radius 4.5
 wheel right_one with radius 4.5
@@ -79,7 +79,7 @@ def built(command: str, folder: pathlib.Path, program: str) -> pathlib.Path:
 
 
 def identifiers(script: str) -> set[str]:
-    """What a script calls its own things and those of others."""
+    """All identifiers in a script."""
     found: set[str] = set()
     for node in ast.walk(ast.parse(script)):
         for field in ("id", "name", "attr", "arg", "asname", "module"):
@@ -89,19 +89,19 @@ def identifiers(script: str) -> set[str]:
     return found
 
 
-def language_words() -> set[str]:
+def keywords() -> set[str]:
     grammar = (ROOT / "grammar" / "pydslrep.ebnf").read_text(encoding="utf-8")
     return set(re.findall(r'"([A-Za-z]+)"', grammar))
 
 
 def all_names(script: str) -> list[str]:
-    """Names that could disturb a script, in an order in which each takes another place than its neighbours."""
+    """Names that could conflict with a script, in an order that gives neighbours different roles."""
     own = {name for name in identifiers(script) if name not in PLACES}
     names = (
         set(keyword.kwlist) | set(keyword.softkwlist) | set(dir(builtins)) | own
-    ) | language_words()
+    ) | keywords()
     names |= {"__main__", "__init__", "__name__", "__file__", "self", "_", "__"}
-    # Movements become `movement_NAME`; what is already called so must not be hit.
+    # Movements become `movement_NAME`, which must not conflict with existing identifiers.
     names |= {name.removeprefix("movement_") for name in own}
     return sorted(
         name for name in names if re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name)
@@ -119,11 +119,11 @@ def drive(command: str, program: pathlib.Path) -> None:
     assert "driven" in done.stdout
 
 
-def please_tools(scripts: Sequence[pathlib.Path], folder: pathlib.Path) -> None:
-    """As a user has the tools, without this repository's settings."""
+def pass_tools(scripts: Sequence[pathlib.Path], folder: pathlib.Path) -> None:
+    """Runs ruff and mypy as a user would, without this repository's settings."""
     folder.mkdir()
     for index, script in enumerate(scripts):
-        # One look at all of them: scripts may be called like each other, or like modules.
+        # Rename scripts to check all at once: they may share names, or have those of modules.
         (folder / f"script_{index}.py").write_bytes(script.read_bytes())
     for arguments in (
         ["ruff", "check", "--isolated", "--no-cache", "."],
@@ -146,13 +146,13 @@ def test_any_name_is_only_a_name(command: str, tmp_path: pathlib.Path) -> None:
     assert {"class", "None", "print", "robot", "math", "main", "self"} <= set(names)
     scripts = []
     for index, start in enumerate(range(0, len(names), len(PLACES))):
-        # The last few are filled up with the first ones.
+        # Fill up the last program with the first names.
         some = itertools.chain(names[start:], names)
         chosen = dict(zip(PLACES, some, strict=False))
         folder = tmp_path / f"names_{index}"
         scripts.append(built(command, folder, renamed(PROGRAM, chosen)))
         drive(command, folder / "program.pyr")
-    please_tools(scripts, tmp_path / "scripts")
+    pass_tools(scripts, tmp_path / "scripts")
 
 
 def test_one_name_for_everything(command: str, tmp_path: pathlib.Path) -> None:
@@ -161,4 +161,4 @@ def test_one_name_for_everything(command: str, tmp_path: pathlib.Path) -> None:
         folder = tmp_path / name
         scripts.append(built(command, folder, renamed(ONE_NAME, {"X": name})))
         drive(command, folder / "program.pyr")
-    please_tools(scripts, tmp_path / "scripts")
+    pass_tools(scripts, tmp_path / "scripts")

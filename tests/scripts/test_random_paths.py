@@ -1,7 +1,7 @@
-"""Whatever a program says, its robots end every action where it is planned, with and without noise.
+"""In random programs, robots end every action where planned, with and without noise.
 
-Robots of all types, one to six of them, in any order and in parallel, turning by any angle and moving at any speed, are
-driven in the embedded simulator. `PYDSLREP_RANDOM_PATHS` says how many programs are tried.
+One to six robots of all types drive in the embedded simulator, in any order and in parallel, turn by any angle and move
+at any speed. `PYDSLREP_RANDOM_PATHS` sets the number of programs.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ WHEELS = {"tw": ("wheel", 2), "fw": ("wheel", 4), "fwh": ("wheelH", 4)}
 
 @dataclass(frozen=True)
 class Tolerance:
-    """How far off the plan the end of an action may be."""
+    """The largest error at the end of an action."""
 
     metres: float
     degrees: float
@@ -117,7 +117,7 @@ def compare(
 def drive(command: str, folder: pathlib.Path, seed: int, *, is_noisy: bool) -> None:
     dice = random.Random(seed)
     text, scene = program(dice)
-    # A robot cannot make two movements at once.
+    # A robot cannot run two movements in parallel.
     while "parallel-conflict" in check(command, folder, text):
         text, scene = program(dice)
     noise = "[noise]\n" if is_noisy else ""

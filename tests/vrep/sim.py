@@ -1,8 +1,8 @@
-"""A client of V-REP's legacy remote API in plain Python, with the functions of V-REP's own that scripts and tests use.
+"""A client of V-REP's legacy remote API in pure Python, with the functions that scripts and tests use.
 
-V-REP's client comes with V-REP only. This one stands in for it in tests, so it behaves like it where a script could tell:
-a thread exchanges messages with the simulator all the time, commands wait in an outbox until the next message, replies
-are filed in an inbox by what was asked, and every function takes an operation mode and returns a code first.
+V-REP's own client is part of V-REP only. For tests, this one behaves the same: a thread continuously exchanges messages
+with the simulator, commands wait in an outbox until the next message, replies are stored in an inbox by command, and
+every function takes an operation mode and returns a code first.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _HEADER = struct.Struct("<HBiiiHB")  # check sum, version, ids and times, scene,
 _COMMAND = struct.Struct("<iiHiiHiBB")
 _PACKET = struct.Struct("<HHH")
 
-# What is filed by: the kind of a command and its key.
+# The key of an inbox entry: the type of a command and its arguments.
 _Name = tuple[int, bytes]
 
 
@@ -61,7 +61,7 @@ class _Connection:
     next_message: int = 0
     state: int = 0
     last_time: int = 0
-    busy: bool = False  # a message is under way
+    busy: bool = False  # a message is being exchanged
     paused: bool = False
     closing: bool = False
     lost: bool = False
@@ -185,7 +185,7 @@ def simxFinish(number: int) -> None:
         )
         connection.closing = True
         connection.changed.notify_all()
-    with contextlib.suppress(OSError):  # where the other side was faster
+    with contextlib.suppress(OSError):  # the other side may have closed it already
         connection.line.shutdown(socket.SHUT_RDWR)
     connection.line.close()
 
@@ -210,7 +210,7 @@ def simxGetLastCmdTime(number: int) -> int:
 
 
 def simxGetInMessageInfo(number: int, what: int) -> tuple[int, int]:
-    """The first value is no code like others': it is 1 where all is well."""
+    """Unlike others, its first value is no return code: it is 1 on success."""
     assert what == simx_headeroffset_server_state
     return 1, _connections[number].state
 
@@ -218,7 +218,7 @@ def simxGetInMessageInfo(number: int, what: int) -> tuple[int, int]:
 def _ask(
     number: int, kind: int, key: bytes, mode: int, payload: bytes = b""
 ) -> tuple[int, bytes]:
-    """The code and what the reply holds; nothing where there is none."""
+    """The return code and the payload of the reply; empty without a reply."""
     connection = _connections.get(number)
     if connection is None or connection.lost:
         return simx_return_initialize_error_flag, b""
@@ -246,11 +246,11 @@ def _ask(
 
 def _wait(connection: _Connection, name: _Name) -> tuple[int, bytes]:
     def has_come() -> bool:
-        # Taken out of the outbox, and answered since.
+        # Sent from the outbox, and a reply has arrived since.
         reply = connection.inbox.get(name)
         return connection.lost or (reply is not None and reply.message >= earliest)
 
-    # What is under way now cannot be the answer.
+    # The message being exchanged now cannot hold the reply.
     earliest = connection.next_message + connection.busy
     connection.inbox.pop(name, None)
     came = connection.changed.wait_for(has_come, BLOCKING_LIMIT)
@@ -262,7 +262,7 @@ def _wait(connection: _Connection, name: _Name) -> tuple[int, bytes]:
 
 
 def _numbers_of(payload: bytes, layout: str) -> list[float]:
-    """What a payload holds; zeros where it is too short."""
+    """The numbers in a payload; zeros if it is too short."""
     return list(
         struct.unpack_from(layout, payload.ljust(struct.calcsize(layout), b"\0"))
     )

@@ -1,4 +1,4 @@
-"""A running simulator and scripts for it, each a process of its own."""
+"""A running simulator and scripts for it, each in its own process."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ HERE = pathlib.Path(__file__).parent
 ROOT = HERE.parents[1]
 CLIENT = HERE / "sim.py"
 
-# Nothing here takes this long; what hangs fails instead.
+# Seconds after which a step that hangs fails.
 LIMIT = 60.0
 
 TARGETS = ("coppeliasim", "vrep")
 
-# Robot `other` is in the world only: its port is for who looks on.
+# Robot `other` is only in environment `world`: its port is for the observer.
 PROGRAM = """
 wheel wheelL with radius 4.5
 wheel wheelR with radius 4.5
@@ -43,7 +43,7 @@ Pose = tuple[float, float, float]
 
 
 def free_ports(count: int) -> list[int]:
-    """Ports that nobody listened on a moment ago."""
+    """Ports that were free a moment ago."""
     with_sockets = [socket.create_server(("127.0.0.1", 0)) for _ in range(count)]
     ports = [server.getsockname()[1] for server in with_sockets]
     for server in with_sockets:
@@ -52,7 +52,7 @@ def free_ports(count: int) -> list[int]:
 
 
 class Stage:
-    """A folder with a program, and what is built from it."""
+    """A folder with a program and its scripts."""
 
     def __init__(self, command: str, folder: pathlib.Path, program: str) -> None:
         self.command, self.folder = command, folder
@@ -61,7 +61,7 @@ class Stage:
         self.program.write_text(program, encoding="utf-8")
 
     def build(self, target: str, environment: str = "yard") -> pathlib.Path:
-        """The script for a target, with V-REP's client beside it where it needs one."""
+        """Generates the script for a target, with V-REP's client next to it if needed."""
         folder = self.folder / target
         which = ["--environment", environment, "--target", target, "-o", str(folder)]
         build = [self.command, "build", str(self.program), *which]
@@ -72,7 +72,7 @@ class Stage:
 
     @contextmanager
     def simulator(self, *options: str) -> Iterator[subprocess.Popen[str]]:
-        """The simulator of the program, ready."""
+        """Starts the simulator of the program and waits until it is ready."""
         process = subprocess.Popen(
             [self.command, "sim", self.program, "--environment", "world", *options],
             stdout=subprocess.PIPE,
@@ -89,7 +89,7 @@ class Stage:
 
 @contextmanager
 def onlooker(port: int) -> Iterator[int]:
-    """A client that drives nothing, and whose simulation scripts leave running."""
+    """A client that only observes, and keeps the simulation running between scripts."""
     number = sim.simxStart("127.0.0.1", port, True, True, 5000, 5)
     assert number >= 0
     try:
@@ -100,20 +100,20 @@ def onlooker(port: int) -> Iterator[int]:
 
 
 def start(script: pathlib.Path, *options: str) -> subprocess.Popen[str]:
-    """A script that runs."""
+    """Starts a script."""
     return subprocess.Popen(
         [sys.executable, script, *options],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        # So that what is beside the tests is not on its path.
+        # Keep the modules of the tests off its path.
         cwd=script.parent,
         env={key: value for key, value in os.environ.items() if key != "PYTHONPATH"},
     )
 
 
 def finish(process: subprocess.Popen[str], code: int = 0) -> tuple[str, str]:
-    """What it said to its end, which must come with that exit code."""
+    """Waits for the end of a script, checks its exit code, and returns its output."""
     try:
         out, err = process.communicate(timeout=LIMIT)
     finally:
@@ -123,7 +123,7 @@ def finish(process: subprocess.Popen[str], code: int = 0) -> tuple[str, str]:
 
 
 def wait_for_motion(eye: int, script: subprocess.Popen[str]) -> int:
-    """Waits until the rover drives; its left wheel."""
+    """Waits until the rover drives, and returns its left wheel."""
     left = handle(eye, "/rover/wheelL")
     while wheel_rate(eye, left) < 0.5:
         assert script.poll() is None, script.communicate()
@@ -131,7 +131,7 @@ def wait_for_motion(eye: int, script: subprocess.Popen[str]) -> int:
 
 
 def wait_for_rest(eye: int, wheel: int) -> None:
-    """Waits until a wheel stands, which it must within a second of simulation time."""
+    """Waits until a wheel stops, which must take at most a second of simulation time."""
     wheel_rate(eye, wheel)
     begin = sim.simxGetLastCmdTime(eye)
     deadline = time.monotonic() + LIMIT
@@ -148,19 +148,19 @@ def handle(eye: int, name: str) -> int:
 
 
 def wheel_rate(eye: int, wheel: int) -> float:
-    """How fast a wheel turns, rad/s."""
+    """The rate of a wheel, rad/s."""
     code, rate = sim.simxGetObjectFloatParameter(eye, wheel, 2012, BLOCKING)
     assert code == 0
     return rate
 
 
 def interrupt(process: subprocess.Popen[str]) -> None:
-    """As Ctrl-C does."""
+    """Interrupts a process, as Ctrl-C does."""
     process.send_signal(signal.SIGINT)
 
 
 def ends(trace: pathlib.Path) -> dict[str, Pose]:
-    """Where robots ended: metres and degrees."""
+    """The robots' last poses: metres and degrees."""
     found: dict[str, Pose] = {}
     for line in trace.read_text(encoding="utf-8").splitlines():
         row = json.loads(line)
@@ -171,7 +171,7 @@ def ends(trace: pathlib.Path) -> dict[str, Pose]:
 def assert_near(
     end: Pose, goal: Pose, metres: float = 0.005, degrees: float = 0.5
 ) -> None:
-    """A pose must be as near to where it should be as actions end."""
+    """Asserts that a pose is within the tolerance of actions."""
     off = math.dist(end[:2], goal[:2])
     turned = abs(math.remainder(end[2] - goal[2], 360.0))
     assert (off <= metres, turned <= degrees) == (True, True), f"{end}, not {goal}"

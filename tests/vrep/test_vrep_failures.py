@@ -1,4 +1,4 @@
-"""What goes wrong between a script for V-REP and its simulator is told, and nothing hangs."""
+"""Failures between a script for V-REP and its simulator are reported, and nothing hangs."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def fixture_stage(command: str, tmp_path: pathlib.Path, ports: list[int]) -> Sta
     return Stage(command, tmp_path / "stage", program)
 
 
-def test_nobody_there(stage: Stage, ports: list[int]) -> None:
+def test_no_simulator(stage: Stage, ports: list[int]) -> None:
     _, err = finish(start(stage.build("vrep")), 2)
     assert f"robot rover: no reply from 127.0.0.1:{ports[0]}" in err
     _, err = finish(start(stage.build("vrep"), "--host", "no.such.host.invalid"), 2)
@@ -47,7 +47,7 @@ def test_a_port_that_another_client_has(stage: Stage, ports: list[int]) -> None:
     assert f"robot rover: no reply from 127.0.0.1:{ports[0]}. The remote API" in err
 
 
-def test_all_names_that_were_tried(
+def test_missing_objects_are_listed_with_all_names(
     command: str, stage: Stage, tmp_path: pathlib.Path, ports: list[int]
 ) -> None:
     text = stage.program.read_text(encoding="utf-8")
@@ -71,7 +71,7 @@ def test_ctrl_c_stops_everything(stage: Stage, ports: list[int]) -> None:
         assert err == "interrupted\n"
         wait_for_rest(eye, left)
         _, state = sim.simxGetInMessageInfo(eye, sim.simx_headeroffset_server_state)
-        assert state & 1, "what others started goes on"
+        assert state & 1, "a simulation started by another client continues"
 
 
 def test_a_simulator_that_dies(stage: Stage, ports: list[int]) -> None:
@@ -83,11 +83,11 @@ def test_a_simulator_that_dies(stage: Stage, ports: list[int]) -> None:
         _, err = finish(process, 1)
     assert err == (
         "error: robot rover, movement trip, action 1: move 2 m: "
-        f"lost 127.0.0.1:{ports[0]}\n"
+        f"lost connection to 127.0.0.1:{ports[0]}\n"
     )
 
 
-def test_a_simulation_that_somebody_stops(stage: Stage, ports: list[int]) -> None:
+def test_a_simulation_stopped_by_another_client(stage: Stage, ports: list[int]) -> None:
     script = stage.build("vrep")
     with stage.simulator(), onlooker(ports[1]) as eye:
         process = start(script)
@@ -97,7 +97,7 @@ def test_a_simulation_that_somebody_stops(stage: Stage, ports: list[int]) -> Non
     assert err.endswith("the simulation was stopped or paused\n"), err
 
 
-def test_somebody_who_never_answers(stage: Stage, ports: list[int]) -> None:
+def test_a_server_that_never_replies(stage: Stage, ports: list[int]) -> None:
     script = stage.build("vrep")
     with socket.create_server(("127.0.0.1", ports[0])) as server:
         process = start(script)
@@ -112,15 +112,15 @@ def test_the_client_explains_itself(stage: Stage) -> None:
     client = script.with_name(CLIENT.name)
     client.unlink()
     _, err = finish(start(script), 2)
-    assert "there is neither a sim.py nor a vrep.py of it on Python's path" in err
+    assert "neither its sim.py nor its vrep.py is on Python's path" in err
     assert f"to {script.parent}." in err
-    # Another module of that name is no client.
+    # Another module of that name is not the client.
     client.write_text("answer = 42\n", encoding="utf-8")
     _, err = finish(start(script), 2)
     assert "client for Python is missing" in err
     client.write_text("import simConst\n", encoding="utf-8")
     _, err = finish(start(script), 2)
-    assert err == "error: sim.py needs simConst.py beside it\n"
+    assert err == "error: sim.py needs simConst.py next to it\n"
     client.write_text("raise OSError('remoteApi.so: no such file')", encoding="utf-8")
     _, err = finish(start(script), 2)
     assert "error: sim.py cannot be loaded: remoteApi.so: no such file." in err

@@ -1,6 +1,6 @@
-"""Scripts that end at any moment, however they end, leave a simulator that is as before.
+"""Scripts that are killed, interrupted or disconnected at any time leave the simulator unaffected.
 
-`PYDSLREP_KILLS=100` tries more moments than the few of every test run.
+`PYDSLREP_KILLS=100` tests more than the few times of a normal test run.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ from stage import (
 
 KILLS = int(os.environ.get("PYDSLREP_KILLS", "6"))
 
-# How much of a script's traffic is seen before it ends: from its first message to the middle of its way.
+# The number of messages before a script ends: from its first message to the middle of its path.
 MOST_PARTS = 600
 
 
 class Relay:
-    """Stands between a script and its simulator, counts what passes, and hangs up on both when told to."""
+    """A proxy between a script and its simulator that counts messages and can disconnect both."""
 
     def __init__(self, port: int) -> None:
         self._target = port
@@ -68,12 +68,12 @@ class Relay:
                 line.shutdown(socket.SHUT_RDWR)
 
     def wait_for(self, parts: int) -> None:
-        """Waits until so much has passed."""
+        """Waits until so many messages have passed."""
         for _ in range(parts):
             assert self._passed.acquire(timeout=LIMIT)
 
     def hang_up(self) -> None:
-        """Ends all connections and takes no more."""
+        """Closes all connections and accepts no more."""
         with suppress(OSError):
             self._server.shutdown(socket.SHUT_RDWR)
         self._server.close()
@@ -93,7 +93,7 @@ def relay(port: int) -> Iterator[Relay]:
 
 
 def resources(process: int) -> tuple[int, int]:
-    """Threads and open files of a process."""
+    """The number of threads and open files of a process."""
     home = pathlib.Path("/proc", str(process))
     return len(list((home / "task").iterdir())), len(list((home / "fd").iterdir()))
 

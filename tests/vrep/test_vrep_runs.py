@@ -1,4 +1,4 @@
-"""Programs drive by V-REP's legacy remote API as they do by that of CoppeliaSim."""
+"""Programs drive the same through V-REP's legacy remote API as through CoppeliaSim's."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def run(
         (PAPER / "table2_two_wheels.pyr", (0.0, -4.0, 180.0)),
         (PAPER / "table3_four_wheels.pyr", (0.0, -4.0, 180.0)),
         (PAPER / "table4_holonomic.pyr", (0.0, -4.0, 180.0)),
-        # Nothing stands on this floor, so that its sensors are free.
+        # There are no obstacles, so its sensors are free.
         (PAPER / "table6_sensors.pyr", (12.0, 0.0, 0.0)),
         (ROOT / "tests/programs/table5_with_wheels.pyr", (3.182, 1.525, 90.0)),
     ],
@@ -85,7 +85,7 @@ def test_the_articles_programs(
 def test_both_targets_drive_alike(
     command: str, tmp_path: pathlib.Path, name: str
 ) -> None:
-    """Several robots at once, and turning until sensors are free."""
+    """Several robots in parallel, and turning until sensors are free."""
     found = []
     for target in ("vrep", "coppeliasim"):
         run(command, EXAMPLES / f"{name}.pyr", tmp_path / target, target)
@@ -97,7 +97,7 @@ def test_both_targets_drive_alike(
 
 
 def test_walls_make_table_6_turn(command: str, tmp_path: pathlib.Path) -> None:
-    """The robot meets the wall ahead, turns until it is free, and goes on along it."""
+    """The robot reaches the wall, turns until its sensors are free, and follows the wall."""
     program = tmp_path / "table6_sensors.pyr"
     shutil.copy(PAPER / program.name, program)
     (tmp_path / "area_1.scene.toml").write_text(TURNING, encoding="utf-8")
@@ -111,7 +111,7 @@ def test_walls_make_table_6_turn(command: str, tmp_path: pathlib.Path) -> None:
 
 
 def test_table_7_explores(command: str, tmp_path: pathlib.Path) -> None:
-    """A small closed room, with the same map by both targets."""
+    """A small closed room gives the same map with both targets."""
     program = tmp_path / "table7_slam.pyr"
     shutil.copy(PAPER / program.name, program)
     (tmp_path / "area_1.scene.toml").write_text(ROOM, encoding="utf-8")
@@ -128,7 +128,7 @@ def test_table_7_explores(command: str, tmp_path: pathlib.Path) -> None:
 
 
 def test_a_run_can_be_repeated(command: str, tmp_path: pathlib.Path) -> None:
-    """Triggered steps come out the same, also where robots drive at the same time."""
+    """Triggered steps are deterministic, even with several robots."""
     traces = []
     for trace in (tmp_path / "first", tmp_path / "second"):
         run(command, EXAMPLES / "convoy.pyr", trace)
@@ -147,15 +147,15 @@ def test_robots_may_share_a_port_in_the_program(
     assert_near(ends(tmp_path / "trace")["rover"], (0.05, 0.0, 0.0))
 
 
-def test_time_may_pass_by_itself(command: str, tmp_path: pathlib.Path) -> None:
-    """Without triggers, what a robot is told comes late by some milliseconds of communication."""
+def test_realtime(command: str, tmp_path: pathlib.Path) -> None:
+    """Without triggers, commands are delayed by some milliseconds of communication."""
     ports = free_ports(2)
     actions = "move 10 centimeters turn left 30 move 20 centimeters at 20"
     stage = Stage(command, tmp_path / "stage", PROGRAM.format(*ports, actions=actions))
     script = stage.build("vrep")
     with stage.simulator():
         finish(start(script, "--realtime", "--trace", str(tmp_path / "trace")))
-    # The loop is closed until an action has come to its goal: what is late costs time, not way.
+    # Closed-loop control runs until the goal is reached: a delay costs time, not accuracy.
     assert_near(ends(tmp_path / "trace")["rover"], (0.2732, 0.1, 30.0))
 
 
@@ -193,7 +193,7 @@ def test_the_client_is_found_beside_the_program(
 ) -> None:
     program = PROGRAM.format(23000, 23001, actions="move 5 centimeters")
     stage = Stage(command, tmp_path / "stage", program)
-    # As V-REP 3 calls it.
+    # Its name in V-REP 3.
     shutil.copy(HERE / "sim.py", stage.folder / "vrep.py")
     done = subprocess.run(
         [command, "run", stage.program, "--environment", "yard", "--target", "vrep"],

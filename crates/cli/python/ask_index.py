@@ -1,7 +1,7 @@
-"""Asks the package index that pip would use whether it is there, and tells in a line why not.
+"""Checks whether the package index that pip would use is reachable, and prints why not.
 
-`pydslrep run` does this before it installs anything: pip itself would try again and again.
-What cannot be told here, such as a certificate that nobody trusts, is left to pip.
+`pydslrep run` does this before it installs anything, because pip would retry for minutes.
+Other failures, such as an untrusted certificate, are left to pip.
 """
 
 import asyncio
@@ -14,13 +14,13 @@ import urllib.request
 from pathlib import Path
 from urllib.parse import SplitResult, urlsplit
 
-LIMIT = 2.0  # s, from looking up the name to the first answer
-ABSENT = 3  # the exit code for "not there"
+LIMIT = 2.0  # s, from the name lookup to the first reply
+ABSENT = 3  # the exit code for "unreachable"
 DEFAULT_PORTS = {"http": 80, "https": 443}
 
 
 def configuration_files() -> list[Path]:
-    """Where pip reads settings from; later ones count more."""
+    """The files that pip reads settings from; later ones take precedence."""
     chosen = os.environ.get("PIP_CONFIG_FILE")
     if chosen == os.devnull:
         return []
@@ -38,7 +38,7 @@ def configuration_files() -> list[Path]:
 
 
 def setting(name: str) -> str:
-    """One of pip's settings: the environment counts more than files."""
+    """One of pip's settings; the environment takes precedence over files."""
     value = os.environ.get("PIP_" + name.upper().replace("-", "_"))
     if value is not None:
         return value
@@ -51,7 +51,7 @@ def setting(name: str) -> str:
 
 
 def needs_no_index() -> bool:
-    """Whether the client may come from somewhere else."""
+    """Whether pip may install the client without the index."""
     links = setting("find-links").split()
     return bool(setting("no-index")) or any(
         "://" in link or any(Path(link).glob("coppeliasim*")) for link in links
@@ -59,7 +59,7 @@ def needs_no_index() -> bool:
 
 
 def proxy_for(index: SplitResult) -> SplitResult | None:
-    """What stands between this machine and the index."""
+    """The proxy for the index, if any."""
     proxy = setting("proxy")
     if not proxy and not urllib.request.proxy_bypass(index.hostname or ""):
         proxies = urllib.request.getproxies()
@@ -70,10 +70,10 @@ def proxy_for(index: SplitResult) -> SplitResult | None:
 
 
 async def hear(place: SplitResult, is_proxy: bool) -> None:
-    """Waits until somebody answers at a place; a proxy answers by taking the connection."""
+    """Waits for a reply from an address; for a proxy, a connection is enough."""
     context = None
     if place.scheme == "https":
-        # Whom to trust is for pip to say: this only listens.
+        # Certificates are verified by pip, not here.
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
         context.check_hostname = False
         context.verify_mode = ssl.CERT_NONE
@@ -88,19 +88,19 @@ async def hear(place: SplitResult, is_proxy: bool) -> None:
 
 
 def why(error: OSError) -> str:
-    """What went wrong, in a few words."""
+    """A short description of an error."""
     if isinstance(error, socket.gaierror):
         return error.strerror or "no such name"
     return os.strerror(error.errno) if error.errno else "no connection"
 
 
 def main() -> int:
-    """Asks; what is printed is only of use where the index is not there."""
+    """Checks the index; prints a reason only if it is unreachable."""
     if needs_no_index():
         return 0
     index = urlsplit(setting("index-url") or "https://pypi.org/simple")
     proxy = proxy_for(index)
-    # Its end would wait for a name that is still looked up: this never closes it.
+    # Closing the loop would wait for a pending name lookup, so it stays open.
     loop = asyncio.new_event_loop()
     answer = asyncio.wait_for(hear(proxy or index, proxy is not None), LIMIT)
     try:
@@ -108,7 +108,7 @@ def main() -> int:
     except ssl.SSLError:
         return 0
     except TimeoutError:
-        reason = f"no answer for {LIMIT:g} s"
+        reason = f"no reply for {LIMIT:g} s"
     except OSError as error:
         reason = why(error)
     else:
@@ -119,5 +119,5 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    # Nor does the process wait for that.
+    # The process must not wait for the lookup either.
     os._exit(main())

@@ -1,6 +1,6 @@
-"""Checks generated scripts of every kind as a user's own tools would.
+"""Checks generated scripts with ruff and mypy, with their default settings.
 
-Run it from anywhere with a Python that has tests/requirements.txt installed, and with cargo on the path:
+Run it with a Python that has tests/requirements.txt installed, and with cargo on the path:
 
     python3 crates/script/python/check_scripts.py
 """
@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[3]
 
 
 def run(*command: str | Path) -> None:
-    """Runs a command in the repository; ends the checks where it fails."""
+    """Runs a command in the repository; exits if it fails."""
     words = [str(word) for word in command]
     print("+", " ".join(words), flush=True)
     code = subprocess.run(words, cwd=ROOT, check=False).returncode
@@ -23,22 +23,22 @@ def run(*command: str | Path) -> None:
 
 
 def tool(name: str, *arguments: str | Path) -> None:
-    """Runs a tool that is installed beside this Python."""
+    """Runs a tool of this Python environment."""
     run(sys.executable, "-m", name, *arguments)
 
 
 def check_scripts(folder: Path) -> None:
-    """Generated scripts must please the tools as a user has them, without this repository's settings."""
+    """Checks the scripts in a folder without this repository's settings."""
     tool("ruff", "check", "--isolated", "--no-cache", folder)
     tool("ruff", "format", "--isolated", "--no-cache", "--check", folder)
     for path in sorted(folder.glob("*.py")):
-        # Scripts whose names have another length only are alike to mypy.
+        # For mypy, scripts that differ only in the length of names are equivalent.
         if "_names_" not in path.stem or path.stem.endswith("_names_150"):
             tool("mypy", "--strict", "--python-version", "3.11", "--config-file=", path)
 
 
 def main() -> None:
-    """Generates scripts of every kind and checks them."""
+    """Generates scripts for many kinds of environments and checks them."""
     with tempfile.TemporaryDirectory() as folder:
         variants = [
             "run",
