@@ -1,6 +1,7 @@
 // The preview's page: shows what the extension sends and reacts to the user.
 import type { FromPage, PageState, ToPage } from "../../src/preview/messages";
 import { keyOf, type NumberedAction } from "../../src/preview/protocol";
+import { Camera } from "./camera";
 import { Controls } from "./controls";
 import { describeAction, describePath } from "./descriptions";
 import { element, focusOf } from "./elements";
@@ -11,7 +12,7 @@ import { hitTest, type Hit } from "./hit";
 import { commandOf, type Command } from "./keys";
 import { Legend, type LegendContent } from "./legend";
 import { boundsOf, drivenOf, modelOf, type Collision, type Driven, type Model } from "./model";
-import { Playback } from "./playback";
+import { Player } from "./player";
 import { watchPointer } from "./pointer";
 import { Stage, type Scene } from "./stage";
 import { readTheme, watchTheme, type Theme } from "./theme";
@@ -39,16 +40,13 @@ export class Preview {
   private isRunShown = true;
   private readonly hidden: Set<string>;
   private readonly highlights = new Highlights();
-  /** Whether the view follows the path; it does until the user moves it. */
-  private isFitted = true;
   private theme: Theme;
-  private readonly playback = new Playback();
-  private readonly reducedMotion = window.matchMedia("(prefers-reduced-motion: reduce)");
-  private lastFrame: number | undefined;
-  private isDrawQueued = false;
+  private readonly player = new Player(() => this.showTime());
+  private readonly playback = this.player.playback;
   private readonly root: HTMLElement;
   private readonly surface: HTMLElement;
   private readonly stage: Stage;
+  private readonly camera: Camera;
   private readonly toolbar: Toolbar;
   private readonly controls: Controls;
   private readonly legend: Legend;
@@ -66,7 +64,7 @@ export class Preview {
     this.theme = readTheme(body);
     this.toolbar = new Toolbar({
       select: (environment) => host.post({ type: "select", environment }),
-      zoom: (factor) => this.zoom(factor),
+      zoom: (factor) => this.camera.zoom(factor),
       fit: () => this.fit(),
       export: () => host.post({ type: "export" }),
       help: () => this.help.toggle(),
@@ -91,6 +89,11 @@ export class Preview {
       this.tooltip.box,
     );
     this.stage = new Stage(fixed, moving);
+    this.camera = new Camera(this.stage.view, {
+      bounds: () => this.model && boundsOf(this.model, this.shownRun),
+      moved: () => this.tooltip.hide(),
+      draw: () => this.draw(),
+    });
     this.root = element(
       "main",
       { class: "preview", "data-state": "empty", "data-drawn": "0", "data-steps": "0" },
@@ -141,7 +144,6 @@ export class Preview {
     this.highlights.clear();
     this.tooltip.hide();
     if (isOther) {
-      this.isFitted = true;
       if (this.drivenKey !== keyOf({ uri, environment: path.environment })) this.driven = undefined;
       this.playback.isPlaying = false;
       this.playback.setDuration(this.model.duration);
@@ -194,10 +196,8 @@ export class Preview {
     this.controls.setPath(this.playback, model?.collisions ?? [], model?.isComplete !== false || driven !== undefined);
     this.legend.show(this.legendContent);
     this.surface.setAttribute("aria-label", model ? describePath(model) : "No path yet");
-    if (this.isFitted && model) {
-      const bounds = boundsOf(model, driven);
-      if (isOther || !this.stage.view.isGoodFit(bounds)) this.stage.view.fit(bounds);
-    }
+    if (isOther) this.camera.fit();
+    else this.camera.follow(false);
     this.draw();
   }
 
@@ -205,8 +205,8 @@ export class Preview {
 
   private listen(): void {
     watchPointer(this.surface, {
-      pan: (dx, dy) => this.pan(dx, dy),
-      zoom: (factor, px, py) => this.zoom(factor, px, py),
+      pan: (dx, dy) => this.camera.pan(dx, dy),
+      zoom: (factor, px, py) => this.camera.zoom(factor, px, py),
       hover: (px, py) => this.hover(px, py),
       leave: () => this.leave(),
       click: (px, py) => this.reveal(this.hitAt(px, py)),
@@ -247,10 +247,10 @@ export class Preview {
         this.reveal(this.highlights.selected);
         break;
       case "zoom":
-        this.zoom(command.factor);
+        this.camera.zoom(command.factor);
         break;
       case "pan":
-        this.pan(command.x, command.y);
+        this.camera.pan(command.x, command.y);
         break;
       case "fit":
         this.fit();
@@ -275,18 +275,8 @@ export class Preview {
   }
 
   private toggle(): void {
-    this.playback.toggle();
-    this.showTime();
-    this.lastFrame = undefined;
-    if (this.playback.isPlaying) requestAnimationFrame((now) => this.frame(now));
-    else this.save({ time: this.playback.time });
-  }
-
-  private frame(now: number): void {
-    const seconds = this.lastFrame === undefined ? 0 : (now - this.lastFrame) / 1000;
-    this.lastFrame = now;
-    if (this.playback.advance(seconds, this.reducedMotion.matches)) this.showTime();
-    if (this.playback.isPlaying) requestAnimationFrame((next) => this.frame(next));
+    this.player.toggle();
+    if (!this.playback.isPlaying) this.save({ time: this.playback.time });
   }
 
   private setSpeed(speed: number): void {
@@ -342,36 +332,15 @@ export class Preview {
     this.drawMoving();
   }
 
-  private zoom(factor: number, px?: number, py?: number): void {
-    this.stage.view.zoom(factor, px, py);
-    this.viewMoved();
-  }
-
-  private pan(dx: number, dy: number): void {
-    this.stage.view.pan(dx, dy);
-    this.viewMoved();
-  }
-
-  private viewMoved(): void {
-    this.isFitted = false;
-    this.tooltip.hide();
-    // Several events may arrive within one frame.
-    if (this.isDrawQueued) return;
-    this.isDrawQueued = true;
-    requestAnimationFrame(() => {
-      this.isDrawQueued = false;
-      this.draw();
-    });
-  }
-
   private fit(): void {
-    this.isFitted = true;
-    this.fitAndDraw();
+    this.camera.fit();
+    this.draw();
   }
 
   private resize(): void {
     this.stage.resize();
-    this.fitAndDraw();
+    this.camera.follow(true);
+    this.draw();
   }
 
   // Drawing
@@ -396,11 +365,6 @@ export class Preview {
     const highlights = this.highlights.all;
     this.root.dataset.highlighted = highlights.map(({ leg: { action } }) => `${action.movement} ${action.index}`).join(", ");
     return { model: this.model, driven: this.shownRun, hidden: this.hidden, highlights, time: this.playback.time };
-  }
-
-  private fitAndDraw(): void {
-    if (this.isFitted && this.model) this.stage.view.fit(boundsOf(this.model, this.shownRun));
-    this.draw();
   }
 
   private draw(): void {
