@@ -25,7 +25,7 @@ TREE_SITTER = GRAMMAR / "tree-sitter"
 TABLE: dict[str, dict[str, str]] = json.loads((GRAMMAR / "colours.json").read_text())
 TABLE.pop("$comment")
 
-# One for each character: a key of the table, or nothing.
+# One per character: a key of the table, or None.
 Colours = list[str | None]
 
 # What makes a text no program.
@@ -45,7 +45,7 @@ SEMANTIC_TOKENS: dict[str, Any] = {
 
 
 def random_programs(count: int, lines: int) -> list[str]:
-    """Grammatical programs, the same ones every time."""
+    """Grammatical programs from a fixed seed."""
     program = os.environ.get("RANDOM_PROGRAMS", str(DEBUG / "random-programs"))
     output = subprocess.run(
         [program, str(count), str(lines)], check=True, stdout=subprocess.PIPE
@@ -54,12 +54,12 @@ def random_programs(count: int, lines: int) -> list[str]:
 
 
 def line_starts(text: str) -> list[int]:
-    """Where the lines begin."""
+    """The offsets of the lines."""
     return [0, *(match.end() for match in re.finditer(r"\r\n|\r|\n", text))]
 
 
 class LanguageServer:
-    """Asks the server about one text after the other."""
+    """The server's semantic tokens."""
 
     def __init__(self) -> None:
         self.server = RawServer(SERVER, "--stdio")
@@ -87,7 +87,7 @@ class LanguageServer:
         return self.server.answer(self.asked)["result"]
 
     def read(self, text: str) -> tuple[bool, Colours]:
-        """Whether it is a program, and its colours."""
+        """Whether the text is a valid program, and its colours."""
         uri = f"file:///nowhere/{self.asked}.pyr"
         item = {"uri": uri, "languageId": "pydslrep", "version": 1, "text": text}
         document = {"textDocument": {"uri": uri}}
@@ -109,13 +109,13 @@ class LanguageServer:
 
 
 class TextMate:
-    """The TextMate grammar, by VS Code's own tokenizer."""
+    """The TextMate grammar in VS Code's tokenizer."""
 
     def __init__(self, grammar: Path = TEXTMATE / "pydslrep.tmLanguage.json") -> None:
         self.grammar = grammar
 
     def read(self, texts: list[str]) -> list[tuple[bool, Colours]]:
-        """Whether nothing in a text is called invalid, and its colours."""
+        """Whether no scope in the text is `invalid`, and its colours."""
         output = subprocess.run(
             ["node", str(TEXTMATE / "tokenize.mjs"), str(self.grammar)],
             input=json.dumps(texts).encode(),
@@ -139,7 +139,7 @@ class TextMate:
 
 
 def kind_of(scopes: list[str]) -> str | None:
-    """What the innermost scope stands for that is in the table."""
+    """The table's key for the innermost scope that it contains."""
     for scope in reversed(scopes):
         for kind, row in TABLE.items():
             if f"{scope}.".startswith(f"{row['scope']}."):
@@ -148,7 +148,7 @@ def kind_of(scopes: list[str]) -> str | None:
 
 
 def units(text: str, start: int) -> list[int]:
-    """For each UTF-16 unit of a line, the character it belongs to."""
+    """The character of each UTF-16 code unit of a line."""
     places: list[int] = []
     for index, character in enumerate(text[start:]):
         if character in "\r\n":
@@ -158,7 +158,7 @@ def units(text: str, start: int) -> list[int]:
 
 
 def compiled_parser(folder: Path) -> tree_sitter.Language:
-    """The checked-in parser, compiled into a folder."""
+    """Compiles the checked-in parser into a folder."""
     library = folder / "pydslrep.so"
     source = TREE_SITTER / "src"
     subprocess.run(
@@ -193,7 +193,7 @@ class TreeSitter:
         self.query = tree_sitter.Query(language, query)
 
     def read(self, text: str) -> tuple[bool, Colours]:
-        """Whether the tree has no error, and the colours."""
+        """Whether the tree has no errors, and its colours."""
         source = text.encode()
         root = self.parser.parse(source).root_node
         kinds = {row["capture"]: kind for kind, row in TABLE.items()}
@@ -211,7 +211,7 @@ class TreeSitter:
         return not root.has_error, colours
 
     def entities(self, text: str) -> list[int]:
-        """Where the entities begin."""
+        """The offsets of the entities."""
         place, root = characters(text), self.parser.parse(text.encode()).root_node
         entities = (
             node for node in root.named_children if node.type.endswith("_definition")
@@ -220,7 +220,7 @@ class TreeSitter:
 
 
 def characters(text: str) -> list[int]:
-    """For each byte, the character it belongs to."""
+    """The character of each byte."""
     places: list[int] = []
     for index, character in enumerate(text):
         places.extend([index] * len(character.encode()))
@@ -228,17 +228,17 @@ def characters(text: str) -> list[int]:
 
 
 def blank(text: str) -> Colours:
-    """No colours yet."""
+    """A text without colours."""
     return [None] * len(text)
 
 
 def paint(colours: Colours, start: int, length: int, kind: str) -> None:
-    """Gives characters a colour."""
+    """Sets the colour of a range of characters."""
     colours[start : start + length] = [kind] * length
 
 
 def differences(text: str, ours: Colours, theirs: Colours) -> Iterator[str]:
-    """Where two disagree, for people."""
+    """The differences between two colourings, as readable text."""
     line_ends = {index for index, character in enumerate(text) if character in "\r\n"}
     index = 0
     while index < len(text):
@@ -253,6 +253,6 @@ def differences(text: str, ours: Colours, theirs: Colours) -> Iterator[str]:
 
 
 def examples() -> Iterable[Path]:
-    """The programs of the article and those that come with the project."""
+    """The programs of the article and the examples."""
     for folder in ("tests/paper", "tests/programs", "examples"):
         yield from sorted((ROOT / folder).rglob("*.pyr"))

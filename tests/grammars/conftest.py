@@ -1,4 +1,4 @@
-"""What reads programs, each made once."""
+"""Fixtures for the server and the grammars, each created once."""
 
 from __future__ import annotations
 

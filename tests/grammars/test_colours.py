@@ -1,4 +1,4 @@
-"""Both grammars take every program that the language's own parser takes, and colour it as the server does."""
+"""Both grammars accept every program that the parser accepts, with the colours of the server."""
 
 from __future__ import annotations
 

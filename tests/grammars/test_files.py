@@ -1,4 +1,4 @@
-"""Each fact of the grammars is said once: what is made from another file is what that file says now."""
+"""Generated files of the grammars match their sources."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ import tree_sitter as sitter
 from colours import GRAMMAR, ROOT, TABLE, TEXTMATE, TREE_SITTER, TextMate, TreeSitter
 
 CORPUS = re.compile(r"^=+\n([^\n]+)\n=+\n(.*?)\n-{10,}\n(.*?)(?=^=+$|\Z)", re.M | re.S)
-# Who made the parser, and from what.
+# The generator of the parser, and a hash of its sources.
 CHECKSUMS = TREE_SITTER / "src" / "checksums.txt"
-# Editors that have names of their own for the colours, and where theirs are.
+# Editors with their own names for the colours, and the files with these names.
 OTHERS = {
     "helix": ROOT / "editors" / "helix" / "queries" / "pydslrep",
     "zed": ROOT / "editors" / "zed" / "languages" / "pydslrep",
@@ -26,7 +26,7 @@ CONTEXTUAL = {"distance", "bumper", "import"}
 
 
 def words() -> set[str]:
-    """The words of the published grammar, which a test in `syntax` holds against the lexer."""
+    """The keywords of the published grammar, which a test in `syntax` compares with the lexer."""
     rules, _, _ = (GRAMMAR / "pydslrep.ebnf").read_text().partition("(* Tokens.")
     return set(re.findall(r'"([A-Za-z]+)"', rules))
 
@@ -36,20 +36,20 @@ def query(name: str) -> str:
     return re.sub(r";.*", "", (TREE_SITTER / "queries" / name).read_text())
 
 
-def test_the_tree_sitter_grammar_has_the_words_of_the_language() -> None:
+def test_the_tree_sitter_grammar_has_all_keywords() -> None:
     grammar = (TREE_SITTER / "src" / "grammar.json").read_text()
     literals = set(re.findall(r'"type": "STRING",\s*"value": "(\w+)"', grammar))
     assert literals == words()
 
 
-def test_the_query_for_colours_has_them_too() -> None:
+def test_the_query_for_colours_has_all_keywords() -> None:
     plain, _, misplaced = query("highlights.scm").partition("#any-of?")
     named = set(re.findall(r"\((\w+)\) @keyword", plain)) - {"name"}
     assert set(re.findall(r'"(\w+)"', plain)) | named == words()
     assert set(re.findall(r'"(\w+)"', misplaced)) == words() - CONTEXTUAL
 
 
-def test_textmate_knows_every_word_and_no_other(textmate: TextMate) -> None:
+def test_textmate_has_exactly_the_keywords(textmate: TextMate) -> None:
     texts = [*sorted(words()), "colour", "radios", "4wheelx"]
     answers = textmate.read([f"at {text}" for text in texts])
     keywords = {
@@ -57,16 +57,16 @@ def test_textmate_knows_every_word_and_no_other(textmate: TextMate) -> None:
         for text, (_, colours) in zip(texts, answers, strict=True)
         if colours[3:] == ["keyword"] * len(text)
     }
-    # The other two are words behind the `:` of a sensor alone.
+    # The other two are keywords only after the `:` of a sensor.
     assert keywords == words() - {"distance", "bumper"}
 
 
-def test_textmate_is_what_its_source_says() -> None:
+def test_textmate_is_up_to_date() -> None:
     command = ["node", str(TEXTMATE / "build.mjs"), "--check"]
     assert subprocess.run(command, check=False).returncode == 0
 
 
-def test_textmate_says_of_examples_what_they_note() -> None:
+def test_textmate_scopes_of_annotated_examples() -> None:
     program = TEXTMATE / "node_modules" / ".bin" / "vscode-tmgrammar-test"
     result = subprocess.run(
         [program, "tests/*.pyr"], cwd=TEXTMATE, check=False, stdout=subprocess.PIPE
@@ -74,8 +74,8 @@ def test_textmate_says_of_examples_what_they_note() -> None:
     assert result.returncode == 0, result.stdout.decode()
 
 
-def test_the_parser_is_made_from_the_grammar() -> None:
-    """Whoever changes either without `generate.sh` is told, also where there is no tree-sitter command."""
+def test_the_parser_is_generated_from_the_grammar() -> None:
+    """Fails if either was changed without `generate.sh`, even without the tree-sitter command."""
     _, *lines = CHECKSUMS.read_text().splitlines()
     noted = {name: digest for digest, name in (line.split() for line in lines)}
     now = {
@@ -89,7 +89,7 @@ def test_the_parser_is_made_from_the_grammar() -> None:
 @pytest.mark.skipif(
     not shutil.which("tree-sitter"), reason="needs the tree-sitter command"
 )
-def test_tree_sitter_makes_the_same_parser_again(tmp_path: Path) -> None:
+def test_tree_sitter_generates_the_same_parser(tmp_path: Path) -> None:
     made = (TREE_SITTER / "src" / "parser.c").read_text()
     maker, *_ = CHECKSUMS.read_text().splitlines()
     version = subprocess.run(
@@ -108,7 +108,7 @@ def test_tree_sitter_makes_the_same_parser_again(tmp_path: Path) -> None:
     sorted((TREE_SITTER / "test" / "corpus").iterdir()),
     ids=lambda path: path.stem,
 )
-def test_trees_are_those_of_the_corpus(corpus: Path, tree_sitter: TreeSitter) -> None:
+def test_trees_match_the_corpus(corpus: Path, tree_sitter: TreeSitter) -> None:
     cases = CORPUS.findall(corpus.read_text())
     assert len(cases) == corpus.read_text().count("====\n") / 2
     for name, text, tree in cases:
@@ -117,7 +117,7 @@ def test_trees_are_those_of_the_corpus(corpus: Path, tree_sitter: TreeSitter) ->
 
 
 @pytest.mark.parametrize("folder", [TREE_SITTER / "queries", *OTHERS.values()], ids=str)
-def test_queries_fit_the_grammar(folder: Path, tree_sitter: TreeSitter) -> None:
+def test_queries_match_the_grammar(folder: Path, tree_sitter: TreeSitter) -> None:
     for file in folder.glob("*.scm"):
         assert sitter.Query(tree_sitter.language, file.read_text()).pattern_count > 0
 
@@ -135,13 +135,13 @@ def test_other_editors_have_their_names_of_the_colours(editor: str) -> None:
     assert file.read_text() == expected, "UPDATE_EXPECT=1 writes it"
 
 
-def test_emacs_has_the_words_too() -> None:
+def test_emacs_has_all_keywords() -> None:
     mode = (ROOT / "editors" / "emacs" / "pydslrep-mode.el").read_text()
     _, _, listed = mode.partition("(defconst pydslrep-keywords")
     assert set(re.findall(r'"(\w+)"', listed.partition(")")[0])) == words() - CONTEXTUAL
 
 
-def test_kakoune_has_the_words_too() -> None:
+def test_kakoune_has_all_keywords() -> None:
     highlighter = (ROOT / "editors" / "kakoune" / "pydslrep.kak").read_text()
     listed = re.search(r"\((wheel\|[\w|]+)\)", highlighter)
     assert listed

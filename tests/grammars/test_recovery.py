@@ -1,4 +1,4 @@
-"""What is wrong with an entity stays its own affair: no grammar lets it reach the entities before and behind it."""
+"""A mistake in one entity does not affect its neighbours in either grammar."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ TOKEN = re.compile(
     r'//[^\r\n]*|/\*.*?\*/|"[^"\r\n]*"|\^?[A-Za-z_]\w*|-?[0-9][0-9.]*|[{}:,]', re.S
 )
 BEGINS_ENTITY = re.compile(r"(wheelH?|sensor|ip|robot|parallel|movement|environment)\b")
-# What somebody may type too much; nothing that begins an entity or a comment.
+# Tokens to insert; none begins an entity or a comment.
 STRAY = re.split(
     " ",
     "with radius has { } , : 4.5 -1 name distance 1.2.3.4 port wheels sensors of move turn left until at meters robots "

@@ -1,4 +1,4 @@
-"""The arrows between the crates are those of docs/architecture.md."""
+"""The dependencies between crates are those in docs/architecture.md."""
 
 import re
 import tomllib
@@ -52,7 +52,7 @@ MAY_KNOW: dict[str, set[str]] = {
     },
 }
 
-# For tests of the others, and a second opinion only as long as it knows none of them.
+# The reference checker for tests, independent of all other crates.
 BESIDE: dict[str, Path] = {"naive": ROOT / "tests" / "naive"}
 
 # Who may know what of the world outside.

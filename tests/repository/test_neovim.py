@@ -1,4 +1,4 @@
-"""What the plugin for Neovim repeats: `UPDATE_EXPECT=1` copies the queries anew."""
+"""The Neovim plugin's copies of other files: `UPDATE_EXPECT=1` updates the queries."""
 
 import json
 import os
@@ -12,7 +12,7 @@ PLUGIN = ROOT / "editors" / "neovim"
 QUERIES = ROOT / "grammar" / "tree-sitter" / "queries"
 COPIES = PLUGIN / "queries" / "pydslrep"
 
-# Neovim has no use for what tells search engines of a program's names.
+# Neovim does not use the queries for tags.
 NOT_FOR_NEOVIM = {"tags.scm"}
 
 
@@ -20,7 +20,7 @@ def names(folder: Path) -> set[str]:
     return {query.name for query in folder.glob("*.scm")}
 
 
-def test_all_queries_are_there() -> None:
+def test_all_queries_exist() -> None:
     assert names(COPIES) == names(QUERIES) - NOT_FOR_NEOVIM
 
 
@@ -33,8 +33,8 @@ def test_queries_are_those_of_the_grammar(name: str) -> None:
     assert copy == original, "run it with UPDATE_EXPECT=1"
 
 
-def test_the_syntax_file_has_every_word_of_the_language() -> None:
-    # A test in `syntax` holds the published grammar against the lexer.
+def test_the_syntax_file_has_all_keywords() -> None:
+    # A test in `syntax` compares the published grammar with the lexer.
     grammar = (ROOT / "grammar" / "pydslrep.ebnf").read_text(encoding="utf-8")
     rules, _, _ = grammar.partition("(* Tokens.")
     words = set(re.findall(r'"([A-Za-z]+)"', rules))

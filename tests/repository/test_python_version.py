@@ -1,4 +1,4 @@
-"""One oldest Python everywhere: that of the scripts."""
+"""The oldest supported Python is the same everywhere: that of the scripts."""
 
 import re
 import subprocess
@@ -9,7 +9,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 
-# Where people read it, and where something depends on it.
+# Documents that state the version, and files that depend on it.
 MUST_SAY = [
     "README.md",
     "editors/vscode/README.md",
@@ -29,7 +29,7 @@ OLD_NAME = re.compile(r"(?:^|`|\$ |^ +)python (?!3)[\w./-]+\.py\b", re.MULTILINE
 
 
 def oldest() -> str:
-    """The version that scripts and the command ask for."""
+    """The version that scripts and the command require."""
     text = (ROOT / "crates/script/src/lib.rs").read_text(encoding="utf-8")
     found = re.search(r"OLDEST_PYTHON: \(u32, u32\) = \((\d+), (\d+)\);", text)
     assert found
@@ -37,7 +37,7 @@ def oldest() -> str:
 
 
 def texts() -> list[tuple[str, str]]:
-    """All that is written by hand or shown to people."""
+    """All hand-written files and documents."""
     endings = ["*.md", "*.rs", "*.py", "*.j2", "*.lua", "*.ts", "*.json", "*.sh"]
     listed = subprocess.run(
         ["git", "ls-files", "--", *endings],
@@ -57,17 +57,17 @@ def own_name() -> str:
 
 
 def said(text: str) -> set[str]:
-    """The versions that a text asks for."""
+    """The versions that a text states as required."""
     return {version for found in SAID.findall(text) for version in found if version}
 
 
-def test_every_text_asks_for_the_same_version() -> None:
+def test_every_text_requires_the_same_version() -> None:
     wrong = {name: said(text) - {oldest()} for name, text in texts()}
     assert {name: versions for name, versions in wrong.items() if versions} == {}
 
 
 @pytest.mark.parametrize("name", MUST_SAY)
-def test_people_are_told(name: str) -> None:
+def test_documents_state_the_version(name: str) -> None:
     assert said((ROOT / name).read_text(encoding="utf-8")) == {oldest()}
 
 
@@ -85,6 +85,6 @@ def test_the_tools_check_for_it() -> None:
         assert re.findall(r'"--python-version", "(.*?)"', text) == [oldest()], name
 
 
-def test_python_is_called_by_the_name_that_every_machine_has() -> None:
+def test_commands_call_python3() -> None:
     found = {name: OLD_NAME.findall(text) for name, text in texts()}
     assert {name: calls for name, calls in found.items() if calls} == {}
