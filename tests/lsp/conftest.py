@@ -1,4 +1,4 @@
-"""Where the programs under test are, and a client that talks to the server like an editor."""
+"""The paths of the programs under test, and a client that acts like an editor."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ ROOT = pathlib.Path(__file__).parents[2]
 
 @pytest.fixture
 def server() -> str:
-    """The language server's program."""
+    """The path of the language server."""
     return SERVER
 
 
 @pytest.fixture
 def table_2() -> str:
-    """The article's first program on CoppeliaSim's port: nothing is wrong with it."""
+    """The article's first program on CoppeliaSim's port, without any problem."""
     path = ROOT / "tests" / "paper" / "table2_two_wheels.pyr"
     return path.read_text(encoding="utf-8").replace("19999", "23000")
 
@@ -32,7 +32,7 @@ def table_2() -> str:
 async def client(
     lsp_client: LanguageClient, request: pytest.FixtureRequest
 ) -> AsyncIterator[LanguageClient]:
-    """A client in a session; a test may parametrise it by the name of an editor of `editor.py`."""
+    """A client in a session; tests may parametrise it by the name of an editor in `editor.py`."""
     wanted = capabilities(getattr(request, "param", "complete"))
     await lsp_client.initialize_session(types.InitializeParams(capabilities=wanted))
     yield lsp_client

@@ -1,4 +1,4 @@
-"""A client at the level of JSON: it asks, answers what every client has to, and checks every message it gets."""
+"""A client at the level of JSON: it sends requests, replies to mandatory requests, and checks every message."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from raw import RawServer, answer, notification, request
 
 ENCODINGS = ("utf-8", "utf-16", "utf-32")
 
-# All that the server knows to use. What a test wants otherwise, it says in `Conversation.start`.
+# All capabilities that the server can use. Tests override them in `Conversation.start`.
 EVERYTHING: dict[str, Any] = {
     "general": {"positionEncodings": ["utf-16"]},
     "textDocument": {
@@ -76,7 +76,7 @@ EVERYTHING: dict[str, Any] = {
 
 
 class Refused(Exception):  # noqa: N818
-    """An error that the server answered with."""
+    """An error response."""
 
     def __init__(self, error: dict[str, Any]) -> None:
         super().__init__(error["message"])
@@ -84,7 +84,7 @@ class Refused(Exception):  # noqa: N818
 
 
 class Conversation:
-    """A session in which every message of the server is checked against the meta model."""
+    """A session that checks every message of the server against the meta model."""
 
     def __init__(self, server: RawServer, encoding: str = "utf-16") -> None:
         self.server = server
@@ -115,19 +115,19 @@ class Conversation:
         self.server.send(notification("initialized", {}))
 
     def request(self, method: str, params: object) -> tuple[int, bytes]:
-        """A request to be sent with others, and its number."""
+        """A request to send with others, and its id."""
         ident = len(self.methods) + 1
         self.methods[ident] = method
         return ident, request(ident, method, params)
 
     def ask(self, method: str, params: object) -> Any:
-        """Asks at once and waits for the answer; an error is raised as `Refused`."""
+        """Sends a request and waits for the result; an error is raised as `Refused`."""
         ident, message = self.request(method, params)
         self.server.send(message)
         return self.answer(ident)
 
     def ask_behind(self, before: bytes, method: str, params: object) -> Any:
-        """Asks in one write with what comes before."""
+        """Sends a request in one write with the messages before it."""
         ident, message = self.request(method, params)
         self.server.send(before, message)
         return self.answer(ident)
@@ -142,7 +142,7 @@ class Conversation:
         return message["result"]
 
     def hear(self) -> dict[str, Any] | None:
-        """Takes the next message in; `None` at the end."""
+        """Handles the next message; `None` at the end."""
         message = self.server.read()
         if message is None:
             return None
@@ -171,7 +171,7 @@ class Conversation:
         raise AssertionError(f"the server left without {method}")
 
     def leave(self) -> int:
-        """Ends the session; the exit code."""
+        """Ends the session and returns the exit code."""
         self.ask("shutdown", None)
         self.server.send(notification("exit", None))
         while self.hear() is not None:

@@ -1,4 +1,4 @@
-"""What an editor does with a server's answers: documents with versions, and edits applied to buffers and files.
+"""An editor's side of the protocol: documents with versions, and edits applied to buffers and files.
 
 Applying edits follows the protocol's words, not this server's habits: positions are clamped to the text, resource
 operations happen in order, and a file that is open is edited in its buffer.
@@ -23,8 +23,8 @@ LINE_ENDING = re.compile(r"\r\n|\n|\r")
 
 
 def capabilities(editor: str) -> types.ClientCapabilities:
-    """Capabilities of a client: `complete` (all we know, diagnostics pushed), `pulling` (it asks for diagnostics),
-    `eager` (it cannot resolve edits later), or `lines` (it folds whole lines only)."""
+    """Capabilities of a client: `complete` (all known ones, pushed diagnostics), `pulling` (pulled diagnostics),
+    `eager` (without resolving edits later), or `lines` (folding of whole lines only)."""
     resolve = types.ClientCodeActionResolveOptions(properties=["edit"])
     document = types.TextDocumentClientCapabilities(
         publish_diagnostics=types.PublishDiagnosticsClientCapabilities(
@@ -110,7 +110,7 @@ def position(text: str, index: int) -> types.Position:
 
 
 def apply_edits(text: str, edits: Sequence[types.TextEdit]) -> str:
-    """The text after edits that all refer to the text before."""
+    """Applies edits that all refer to the original text."""
     spans = sorted(
         (
             (
@@ -128,7 +128,7 @@ def apply_edits(text: str, edits: Sequence[types.TextEdit]) -> str:
 
 
 def built(command: str, folder: pathlib.Path, text: str) -> str:
-    """The script of a program as the command line builds it."""
+    """The script of a program as the command builds it."""
     program = folder / "built.pyr"
     program.write_text(text, encoding="utf-8")
     done = subprocess.run(
@@ -141,12 +141,12 @@ def built(command: str, folder: pathlib.Path, text: str) -> str:
 
 
 def to_path(uri: str) -> pathlib.Path:
-    """The path of a file's address."""
+    """The path of a file's URI."""
     return pathlib.Path(unquote(urlsplit(uri).path))
 
 
 class Editor:
-    """Open buffers over files, each buffer of the server's language kept in step with the server."""
+    """Open buffers over files; those of the server's languages are synchronised with the server."""
 
     def __init__(self, client: LanguageClient, folder: pathlib.Path) -> None:
         self.client = client
@@ -155,11 +155,11 @@ class Editor:
         self.versions: dict[str, int] = {}
 
     def uri(self, name: str) -> str:
-        """The address of a file in the folder."""
+        """The URI of a file in the folder."""
         return (self.folder / name).as_uri()
 
     def open(self, name: str, text: str) -> str:
-        """Opens a buffer, and tells the server if it is a program."""
+        """Opens a buffer, and notifies the server if it is a program."""
         uri = self.uri(name)
         self.buffers[uri] = text
         if name.endswith(".pyr"):
@@ -194,7 +194,7 @@ class Editor:
             )
 
     async def diagnostics(self, uri: str) -> list[types.Diagnostic]:
-        """The next diagnostics pushed for a document; they must be about its present text."""
+        """The next diagnostics published for a document, which must be for its current text."""
         pushed = await self.client.wait_for_notification(
             types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS
         )
@@ -203,7 +203,7 @@ class Editor:
         return list(pushed.diagnostics)
 
     def apply(self, edit: types.WorkspaceEdit) -> None:
-        """Applies an edit, to buffers where there are, to files elsewhere."""
+        """Applies an edit to open buffers, or else to files."""
         for uri, edits in (edit.changes or {}).items():
             self._change(uri, edits)
         for change in edit.document_changes or []:
@@ -222,7 +222,7 @@ class Editor:
                 )
 
     def text(self, uri: str) -> str:
-        """What the user sees: the buffer, else the file."""
+        """The text that the user sees: the buffer, or else the file."""
         return (
             self.buffers[uri]
             if uri in self.buffers
@@ -234,7 +234,7 @@ class Editor:
         if path.exists() and not options.overwrite:
             assert options.ignore_if_exists, f"{path} exists"
             return
-        # As Neovim and Helix do: the file is emptied, a buffer that shows it is not.
+        # As Neovim and Helix do: this empties the file, but not its buffer.
         path.write_text("", encoding="utf-8")
 
     def _change(self, uri: str, edits: Sequence[types.TextEdit]) -> None:

@@ -16,7 +16,7 @@ from typing import Any
 import attrs
 from lsprotocol import types
 
-# Properties that must be there and may be null; lsprotocol gives them the same type as those that may be missing.
+# Required properties that may be null; lsprotocol gives them the same type as optional ones.
 REQUIRED_NULLABLE = {
     "OptionalVersionedTextDocumentIdentifier.version",
     "WorkspaceFullDocumentDiagnosticReport.version",
@@ -30,7 +30,7 @@ PROGRESS = (
 
 
 def faults_of_message(message: dict[str, Any], asked: str | None = None) -> list[str]:
-    """What is wrong with a message of the server's; an answer is one to a request of the method `asked`."""
+    """The violations in a message of the server; a response is to a request of the method `asked`."""
     if asked is not None:
         kind = types.ResponseErrorMessage if "error" in message else answer_type(asked)
         if ("error" in message) == ("result" in message):
@@ -55,12 +55,12 @@ def faults_of_message(message: dict[str, Any], asked: str | None = None) -> list
 
 
 def answer_type(method: str) -> Any:
-    """The type of the answers to requests of a method; commands and messages of our own answer anything."""
+    """The result type of a method; commands and our own methods may return anything."""
     return types.METHOD_TO_TYPES[method][1] if method in types.METHOD_TO_TYPES else Any
 
 
 def faults(value: object, kind: Any, path: str) -> list[str]:
-    """What is wrong with a value where the model has a type."""
+    """The violations in a value of a type of the model."""
     if kind is Any or kind is object:
         return []
     if kind is None or kind is type(None):
@@ -98,7 +98,7 @@ def faults(value: object, kind: Any, path: str) -> list[str]:
 
 
 def faults_of_scalar(value: object, kind: Any, path: str) -> list[str]:
-    """What is wrong with a value that has no parts."""
+    """The violations in a scalar value."""
     if issubclass(kind, enum.Enum):
         known = [member.value for member in kind]
         return [] if value in known else [f"{path}: {value!r} is no {kind.__name__}"]
@@ -110,7 +110,7 @@ def faults_of_scalar(value: object, kind: Any, path: str) -> list[str]:
 
 
 def faults_of_structure(value: object, kind: Any, path: str) -> list[str]:
-    """What is wrong with an object of the protocol."""
+    """The violations in a structure of the protocol."""
     if not isinstance(value, dict):
         return [f"{path}: {value!r} is not a {kind.__name__}"]
     if kind is types.LSPObject:

@@ -1,4 +1,4 @@
-"""Every request there is about a program, with parameters for one program, and answers made comparable.
+"""All requests about programs, with parameters for one program, and comparable results.
 
 The program's columns differ in bytes, UTF-16 and characters wherever something is asked.
 """
@@ -43,7 +43,7 @@ def with_endings(text: str, kind: str) -> str:
 
 
 class Buffer:
-    """A document as a client sees it that counts columns in one encoding."""
+    """A document of a client with one encoding for columns."""
 
     def __init__(self, uri: str, text: str, encoding: str) -> None:
         self.uri = uri
@@ -55,18 +55,18 @@ class Buffer:
         self.starts = [0, *ends]
 
     def document(self) -> dict[str, str]:
-        """What names it."""
+        """The document's identifier."""
         return {"uri": self.uri}
 
     def position(self, index: int) -> dict[str, int]:
-        """The position of an index into the text."""
+        """The position of an index in the text."""
         line = max(n for n, start in enumerate(self.starts) if start <= index)
         before = self.text[self.starts[line] : index]
         units = len(before.encode(self.codec)) // self.unit
         return {"line": line, "character": units}
 
     def index(self, position: dict[str, int]) -> int:
-        """The index of a position, which must be one of the text's, between characters."""
+        """The index of a position, which must be valid and between characters."""
         line, column = position["line"], position["character"]
         start = self.starts[line]
         ending = LINE_ENDING.search(self.text, start)
@@ -76,7 +76,7 @@ class Buffer:
         return start + len(units[: column * self.unit].decode(self.codec))
 
     def at(self, before: str, behind: str = "") -> dict[str, Any]:
-        """Parameters for the place between two texts that follow each other once."""
+        """Parameters for the position between two texts that follow each other once."""
         assert self.text.count(before + behind) == 1, before + behind
         index = self.text.index(before + behind) + len(before)
         return {"textDocument": self.document(), "position": self.position(index)}
@@ -102,7 +102,7 @@ def of(buffer: Buffer, **more: Any) -> dict[str, Any]:
 
 
 def call_item(buffer: Buffer, kind: int, start: str, name: str) -> dict[str, Any]:
-    """An item of the call hierarchy, as a client has it from an earlier answer."""
+    """An item of the call hierarchy, as from an earlier result."""
     index = buffer.text.index(f"{start} {name}") + len(start) + 1
     focus = {
         "start": buffer.position(index),
@@ -113,7 +113,7 @@ def call_item(buffer: Buffer, kind: int, start: str, name: str) -> dict[str, Any
 
 
 def lens(buffer: Buffer) -> dict[str, Any]:
-    """A lens that was not resolved yet."""
+    """An unresolved lens."""
     data = {"uri": buffer.uri, "kind": "wheel", "name": "a"}
     index = buffer.text.index("wheel a ") + len("wheel ")
     start, end = buffer.position(index), buffer.position(index + 1)
@@ -121,24 +121,24 @@ def lens(buffer: Buffer) -> dict[str, Any]:
 
 
 def actions(buffer: Buffer, only: str, where: str = "wheeel") -> dict[str, Any]:
-    """Code actions of one kind at a text, where a wheel's name is mistyped if nothing else is said."""
+    """Code actions of one kind at a text, by default at a misspelt wheel."""
     context = {"diagnostics": [], "only": [only]}
     return of(buffer, range=buffer.span(where), context=context)
 
 
 def moving(buffer: Buffer) -> dict[str, Any]:
-    """What is imported goes into a folder."""
+    """Moves the imported file into a folder."""
     folder = buffer.uri.removesuffix("main.pyr")
     renamed = {"oldUri": f"{folder}parts.pyr", "newUri": f"{folder}lib/parts.pyr"}
     return {"files": [renamed]}
 
 
 def script(buffer: Buffer) -> dict[str, Any]:
-    """What a script is generated of."""
+    """The parameters for generating a script."""
     return {"uri": buffer.uri, "environment": "yard"}
 
 
-# By method; a word behind `#` tells several requests of one method apart.
+# By method; a word after `#` distinguishes several requests of one method.
 REQUESTS: dict[str, Callable[[Buffer], dict[str, Any]]] = {
     "textDocument/hover": lambda b: b.at("{ a"),
     "textDocument/completion": lambda b: b.at("{ far ", "wh"),
@@ -211,7 +211,7 @@ REQUESTS: dict[str, Callable[[Buffer], dict[str, Any]]] = {
 
 
 def comparable(result: Any, buffer: Buffer, method: str) -> Any:
-    """An answer with every place as its line and text, so that it is the same in every encoding and line ending."""
+    """A result with every position as its line and text, which is equal in every encoding and line ending."""
     if method == "textDocument/foldingRange":
         result = [fold(item) for item in result]
     if method.startswith("textDocument/semanticTokens"):
@@ -222,7 +222,7 @@ def comparable(result: Any, buffer: Buffer, method: str) -> Any:
 
 
 def fold(item: dict[str, Any]) -> dict[str, Any]:
-    """A folding range as any other range."""
+    """A folding range as an ordinary range."""
     ends = {
         end: {"line": item[f"{end}Line"], "character": item[f"{end}Character"]}
         for end in ("start", "end")
@@ -242,7 +242,7 @@ def edited(buffer: Buffer, edits: list[dict[str, Any]]) -> str:
 
 
 def places(value: Any, buffer: Buffer) -> Any:
-    """A part of an answer, with its places as lines and texts."""
+    """A part of a result, with its positions as lines and texts."""
     if isinstance(value, list):
         return [places(item, buffer) for item in value]
     if isinstance(value, str):
@@ -269,13 +269,13 @@ def places(value: Any, buffer: Buffer) -> Any:
 
 
 def column(position: dict[str, int], buffer: Buffer) -> str:
-    """A position as its line up to there."""
+    """A position as the text of its line before it."""
     line = buffer.starts[position["line"]]
     return f"{position['line']}: {buffer.text[line : buffer.index(position)]}"
 
 
 def tokens(data: list[int], buffer: Buffer) -> list[tuple[str, str, int, int]]:
-    """Semantic tokens as lines, texts, kinds and modifiers."""
+    """Semantic tokens as lines, texts, types and modifiers."""
     found, line, character = [], 0, 0
     for n in range(0, len(data), 5):
         step, right, length, kind, modifiers = data[n : n + 5]

@@ -1,4 +1,4 @@
-"""The server at the level of bytes: for what a well-behaved client library cannot do."""
+"""The server at the level of bytes, for messages that a client library cannot send."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SERVER = os.environ.get("PYDSLREP_LSP", str(DEBUG / "pydslrep-lsp"))
 
 
 class RawServer:
-    """A running server and its pipes. Every wait ends with the server: no clock is involved."""
+    """A running server and its pipes. Every wait ends when the server exits: no timeouts are involved."""
 
     def __init__(self, *command: str) -> None:
         self.process = subprocess.Popen(
@@ -51,7 +51,7 @@ class RawServer:
         self.answer(0)
 
     def answer(self, ident: int | str | None) -> dict[str, Any]:
-        """The answer to a request; what comes before it is dropped."""
+        """The response to a request; earlier messages are dropped."""
         while (message := self.read()) is not None:
             if "method" not in message and message.get("id") == ident:
                 return message
@@ -65,7 +65,7 @@ class RawServer:
         raise AssertionError(f"the server left without {method}")
 
     def published_before(self, ident: int) -> list[int]:
-        """The versions of the diagnostics pushed before the answer to a request."""
+        """The versions of the diagnostics published before the response to a request."""
         versions = []
         while (message := self.read()) is not None and message.get("id") != ident:
             if message["method"] == "textDocument/publishDiagnostics":
@@ -86,7 +86,7 @@ class RawServer:
         return None
 
     def leave(self) -> int:
-        """The exit code, once the server has ended by itself."""
+        """Waits until the server exits; returns the exit code."""
         return self.process.wait()
 
 
@@ -112,5 +112,5 @@ def notification(method: str, params: object) -> bytes:
 
 
 def answer(ident: int | str, result: object) -> bytes:
-    """The answer to a request of the server's."""
+    """A response to a request of the server."""
     return frame(json.dumps({"jsonrpc": "2.0", "id": ident, "result": result}).encode())

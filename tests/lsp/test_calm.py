@@ -1,6 +1,6 @@
-"""What an editor shows beside the text keeps still while somebody types: hints, lenses and parameter hints.
+"""Hints, lenses and signature help stay calm while the user types.
 
-Each key is a change of its own, after which everything is asked again, as editors do.
+Each keystroke is a change, after which the client requests everything again, as editors do.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ environment yard has {{ rover }} robots with {{ lap back }} moves
 
 
 class Editor:
-    """A client with one program open, which it shows with all that the server says of it."""
+    """A client with one open program, its hints and its lenses."""
 
     def __init__(self, raw: RawServer, folder: pathlib.Path) -> None:
         self.talk = Conversation(raw)
@@ -47,7 +47,7 @@ class Editor:
         self.buffer = Buffer(self.uri, "", "utf-16")
 
     def open(self, text: str, settings: dict[str, Any] | None = None) -> None:
-        """Begins, and shows hints and lenses of a program."""
+        """Starts a session and requests the hints and lenses of a program."""
         self.talk.settings = settings or {}
         self.talk.start(pulling=True)
         self.buffer = Buffer(self.uri, text, "utf-16")
@@ -63,7 +63,7 @@ class Editor:
         return {"textDocument": {"uri": self.uri}, **others}
 
     def change(self, *changes: tuple[int, int, str]) -> None:
-        """One message with changes, each of the text that the one before left."""
+        """Sends one message with changes, each based on the text after the previous one."""
         told = []
         for start, end, new in changes:
             place = {
@@ -82,12 +82,12 @@ class Editor:
         self.notify("textDocument/didChange", params)
 
     def after(self, text: str) -> int:
-        """Where a text that occurs once ends."""
+        """The end of a text that occurs once."""
         assert self.buffer.text.count(text) == 1, text
         return self.buffer.text.index(text) + len(text)
 
     def type(self, place: str, keys: str) -> Iterator[int]:
-        """Types after a text, key by key; after each the line of the cursor."""
+        """Types after a text, key by key; yields the line of the cursor after each."""
         at = self.after(place)
         for key in keys:
             self.change((at, at, key))
@@ -101,7 +101,7 @@ class Editor:
         return [(hint["position"]["line"], hint["label"]) for hint in found]
 
     def hinted(self) -> dict[str, str]:
-        """The hints of each line that has some, by its text."""
+        """The hints by the text of their line."""
         lines = self.buffer.text.split("\n")
         shown: dict[str, str] = {}
         for line, label in self.hints():
@@ -120,7 +120,7 @@ class Editor:
         return shown
 
     def cursor(self, place: str) -> None:
-        """Says where the cursor is, as editors do that mark the name there."""
+        """Moves the cursor, as editors do that highlight the name there."""
         at = self.buffer.position(self.after(place))
         self.talk.ask("textDocument/documentHighlight", self.named(position=at))
 
@@ -147,7 +147,7 @@ OTHER = {"  move -1 meters": "at 9.0 · 11.3 s → -1.00, 0.00, 0°"}
 #### Hints ####
 
 
-def test_the_text_being_typed_is_never_moved(editor: Editor) -> None:
+def test_hints_never_move_the_edited_text(editor: Editor) -> None:
     editor.open(PROGRAM)
     assert editor.hinted() == FIRST | SECOND | THIRD | FOURTH | OTHER
     for line in editor.type("move 2 meters", " at 12"):
@@ -155,7 +155,7 @@ def test_the_text_being_typed_is_never_moved(editor: Editor) -> None:
         assert editor.hinted() == FIRST | SECOND | FOURTH | OTHER
 
 
-def test_a_line_typed_in_between_takes_nothing_away(editor: Editor) -> None:
+def test_a_new_line_removes_no_hints(editor: Editor) -> None:
     editor.open(PROGRAM)
     kept = FIRST | SECOND | OTHER
     seen = []
@@ -174,12 +174,12 @@ def test_a_line_typed_in_between_takes_nothing_away(editor: Editor) -> None:
     assert seen == [THIRD | FOURTH, moved], "as before, until there is something new"
 
 
-def test_what_is_broken_takes_nothing_else_away(editor: Editor) -> None:
+def test_an_error_removes_no_other_hints(editor: Editor) -> None:
     editor.open(PROGRAM)
     at = editor.after("  turn right")
     editor.change((at - 1, at, ""))
     assert editor.hinted() == FIRST | THIRD | FOURTH | OTHER
-    # The line stays broken while another one is typed.
+    # The line stays invalid while another one is typed.
     for _ in editor.type("move -1 meters", " at 2"):
         assert editor.hinted() == FIRST | THIRD | FOURTH
     at = editor.after("wheel b with radius 4.5")
@@ -189,12 +189,12 @@ def test_what_is_broken_takes_nothing_else_away(editor: Editor) -> None:
     }, "not a robot with a broken wheel either"
 
 
-def test_a_line_with_an_error_has_none(editor: Editor) -> None:
+def test_a_line_with_an_error_has_no_hints(editor: Editor) -> None:
     editor.open(PROGRAM.replace("turn left", "turn left until { nobody }"))
     assert editor.hinted() == FIRST | SECOND | THIRD | OTHER
 
 
-def test_hints_come_back_when_the_cursor_goes_on(editor: Editor) -> None:
+def test_hints_return_when_the_cursor_moves(editor: Editor) -> None:
     editor.open(PROGRAM)
     list(editor.type("move 2 meters", " "))
     shown = FIRST | SECOND | FOURTH | OTHER
@@ -206,7 +206,7 @@ def test_hints_come_back_when_the_cursor_goes_on(editor: Editor) -> None:
     assert editor.hinted() == shown | {
         "  move 2 meters ": "at 9.0 · 22.4 s → 4.00, -2.00, -90°"
     }
-    # An editor that looks for a light bulb says so, too; what is asked on saving is not about the cursor.
+    # The request for a light bulb also shows the cursor; requests on saving do not.
     list(editor.type("move 2 meters ", "\b".replace("\b", " ")))
     place = editor.buffer.position(editor.after("move 4.0"))
     context: dict[str, Any] = {"diagnostics": [], "triggerKind": 1}
@@ -219,7 +219,7 @@ def test_hints_come_back_when_the_cursor_goes_on(editor: Editor) -> None:
     assert len(editor.hinted()) == len(shown) + 1
 
 
-def test_hints_come_back_when_another_document_is_edited(
+def test_hints_return_when_another_document_is_edited(
     editor: Editor, tmp_path: pathlib.Path
 ) -> None:
     editor.open(PROGRAM)
@@ -237,20 +237,20 @@ def test_hints_come_back_when_another_document_is_edited(
     assert len(editor.hinted()) == 5
 
 
-def test_every_cursor_types(editor: Editor) -> None:
+def test_several_cursors_edit_several_lines(editor: Editor) -> None:
     editor.open(PROGRAM)
     second = editor.after("move 2 meters")
     first = editor.after("move 4.0 meters")
     editor.change((second, second, " "), (first, first, " "))
     assert editor.hinted() == SECOND | FOURTH | OTHER
-    # Layout is not typed: the cursor is where it was.
+    # Formatting is not typing: the cursor does not move.
     second = editor.after("move 2 meters ")
     editor.change((second - 1, second, ""), (first, first + 1, "\n"))
     assert len(editor.hinted()) == 4
 
 
-def test_whole_texts_are_typed_too(editor: Editor) -> None:
-    """Some clients send the whole text with each key."""
+def test_full_text_changes_count_as_typing(editor: Editor) -> None:
+    """Some clients send the whole text with each keystroke."""
     editor.open(PROGRAM)
     text = PROGRAM.replace("move 2 meters", "move 2 meters ")
     editor.buffer = Buffer(editor.uri, text, "utf-16")
@@ -312,7 +312,7 @@ def test_a_name_being_typed_has_no_lens(editor: Editor) -> None:
         assert not any(lens.startswith("movement third") for lens in editor.lenses())
 
 
-def test_a_new_environment_can_be_run_once_it_is_saved(editor: Editor) -> None:
+def test_a_new_environment_has_lenses_once_saved(editor: Editor) -> None:
     editor.open(PROGRAM[: PROGRAM.index("environment")] + "\n")
     line = "environment yard has { rover } robots with { lap } moves"
     for _ in editor.type("move -1 meters\n}\n", line):
@@ -322,7 +322,7 @@ def test_a_new_environment_can_be_run_once_it_is_saved(editor: Editor) -> None:
     assert "environment yard: Run" in editor.lenses()
 
 
-#### Parameter hints ####
+#### Signature help ####
 
 
 def moved(shown: Any) -> dict[str, Any]:

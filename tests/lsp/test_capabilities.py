@@ -1,6 +1,6 @@
-"""Every capability that the server announces does what it promises, and those of the contract are announced.
+"""Every announced capability works, and all capabilities of the contract are announced.
 
-The client library asks as an editor would; what is announced is read from the answer to `initialize`.
+The client library acts as an editor would; the capabilities are read from the result of `initialize`.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ T = TypeVar("T")
 
 
 class Session:
-    """A client, what was announced to it, and an open program."""
+    """A client, the capabilities announced to it, and an open program."""
 
     def __init__(
         self,
@@ -63,7 +63,7 @@ class Session:
     def at(
         self, before: str, behind: str = ""
     ) -> tuple[types.TextDocumentIdentifier, types.Position]:
-        """The place between two texts that follow each other once."""
+        """The position between two texts that follow each other once."""
         place = self.buffer.at(before, behind)["position"]
         return self.document, types.Position(**place)
 
@@ -72,7 +72,7 @@ class Session:
         return CONVERTER.structure(self.buffer.span(start, end), types.Range)
 
     def text(self, span: types.Range) -> str:
-        """What stands in a range of the program."""
+        """The text of a range of the program."""
         ends = CONVERTER.unstructure(span)
         start, end = self.buffer.index(ends["start"]), self.buffer.index(ends["end"])
         return self.buffer.text[start:end]
@@ -83,7 +83,7 @@ EXERCISES: dict[str, Exercise] = {}
 
 
 def exercises(*names: str) -> Callable[[Exercise], Exercise]:
-    """Marks what shows that capabilities work."""
+    """Marks a function that tests capabilities."""
 
     def mark(exercise: Exercise) -> Exercise:
         for name in names:
@@ -95,7 +95,7 @@ def exercises(*names: str) -> Callable[[Exercise], Exercise]:
 
 
 def only(found: Any, kind: type[T]) -> T:
-    """The only element of an answer."""
+    """The only element of a result."""
     assert found is not None
     [element] = found
     assert isinstance(element, kind)
@@ -129,11 +129,11 @@ async def text_is_kept_in_step(s: Session) -> None:
     assert await s.client.text_document_hover_async(hover) is None
 
 
-#### What is wrong ####
+#### Diagnostics ####
 
 
 @exercises("diagnosticProvider.identifier")
-async def diagnostics_are_told_with_their_source(s: Session) -> None:
+async def diagnostics_have_their_source(s: Session) -> None:
     report = await s.client.text_document_diagnostic_async(
         types.DocumentDiagnosticParams(s.document, identifier="pydslrep")
     )
@@ -167,7 +167,7 @@ async def diagnostics_reach_across_files(s: Session) -> None:
 
 
 @exercises("codeActionProvider.codeActionKinds[quickfix]")
-async def fixes_mend(s: Session) -> None:
+async def fixes_repair_programs(s: Session) -> None:
     context = types.CodeActionContext([], only=[types.CodeActionKind.QuickFix])
     params = types.CodeActionParams(s.document, s.span("wheeel"), context)
     found = await s.client.text_document_code_action_async(params)
@@ -198,7 +198,7 @@ environment yard has { rover } robots with { tour } moves
     "codeActionProvider.codeActionKinds[refactor.rewrite]",
     "codeActionProvider.codeActionKinds[source.fixAll]",
 )
-async def programs_are_rewritten(s: Session) -> None:
+async def refactorings_rewrite_programs(s: Session) -> None:
     for kind, before, after in (
         ("refactor.extract", "turn left", "with { tour tour_2 } moves"),
         ("refactor.inline", "move 1", "move 1 meters turn"),
@@ -340,7 +340,7 @@ async def completions_in_settings(s: Session) -> None:
     "signatureHelpProvider.retriggerCharacters[{]",
     "signatureHelpProvider.retriggerCharacters[}]",
 )
-async def shapes_of_statements(s: Session) -> None:
+async def signatures_of_statements(s: Session) -> None:
     shown: types.SignatureHelp | None = None
     kinds = types.SignatureHelpTriggerKind
     for typed, trigger, expected in (
@@ -375,7 +375,7 @@ async def shapes_of_statements(s: Session) -> None:
     "documentOnTypeFormattingProvider.firstTriggerCharacter[}]",
     "documentOnTypeFormattingProvider.moreTriggerCharacter[\n]",
 )
-async def layout_while_typing(s: Session) -> None:
+async def formatting_while_typing(s: Session) -> None:
     async def typed(before: str, key: str) -> str:
         params = types.DocumentOnTypeFormattingParams(*s.at(before), key, OPTIONS)
         edits = await s.client.text_document_on_type_formatting_async(params)
@@ -389,7 +389,7 @@ async def layout_while_typing(s: Session) -> None:
 
 
 @exercises("linkedEditingRangeProvider")
-async def names_are_typed_over_together(s: Session) -> None:
+async def linked_editing(s: Session) -> None:
     params = types.LinkedEditingRangeParams(*s.at("{ lap"))
     linked = await s.client.text_document_linked_editing_range_async(params)
     assert linked
@@ -410,10 +410,10 @@ async def hovers(s: Session) -> None:
 
 
 @exercises("inlayHintProvider")
-async def hints_behind_actions(s: Session) -> None:
+async def hints_after_actions(s: Session) -> None:
     span = s.span("move 4.0", "turn left")
     params = types.InlayHintParams(s.document, span)
-    # The cursor is not on the line that was changed last.
+    # The cursor is not on the last changed line.
     elsewhere = types.DocumentHighlightParams(*s.at("{ a"))
     await s.client.text_document_document_highlight_async(elsewhere)
     hints = await s.client.text_document_inlay_hint_async(params)
@@ -510,11 +510,11 @@ async def colours(s: Session) -> None:
     assert len(data) > len(full.data)
 
 
-#### Finding one's way ####
+#### Navigation ####
 
 
 @exercises("definitionProvider", "declarationProvider")
-async def from_a_use_to_its_declaration(s: Session) -> None:
+async def definitions(s: Session) -> None:
     for found in (
         await s.client.text_document_definition_async(
             types.DefinitionParams(*s.at("{ far"))
@@ -532,7 +532,7 @@ async def from_a_use_to_its_declaration(s: Session) -> None:
 
 
 @exercises("typeDefinitionProvider")
-async def from_a_movement_to_its_robot(s: Session) -> None:
+async def type_definitions(s: Session) -> None:
     found = await s.client.text_document_type_definition_async(
         types.TypeDefinitionParams(*s.at("{ lap"))
     )
@@ -541,7 +541,7 @@ async def from_a_movement_to_its_robot(s: Session) -> None:
 
 
 @exercises("referencesProvider")
-async def all_uses(s: Session) -> None:
+async def references_in_all_files(s: Session) -> None:
     context = types.ReferenceContext(include_declaration=False)
     found = await s.client.text_document_references_async(
         types.ReferenceParams(context, *s.at("movement la"))
@@ -550,7 +550,7 @@ async def all_uses(s: Session) -> None:
 
 
 @exercises("documentHighlightProvider")
-async def uses_stand_out(s: Session) -> None:
+async def highlighted_references(s: Session) -> None:
     found = await s.client.text_document_document_highlight_async(
         types.DocumentHighlightParams(*s.at("{ lap"))
     )
@@ -577,7 +577,7 @@ async def renames(s: Session) -> None:
 
 
 @exercises("callHierarchyProvider")
-async def who_runs_whom(s: Session) -> None:
+async def call_hierarchy(s: Session) -> None:
     prepared = await s.client.text_document_prepare_call_hierarchy_async(
         types.CallHierarchyPrepareParams(*s.at("{ lap"))
     )
@@ -611,7 +611,7 @@ async def symbols_of_all_files(s: Session) -> None:
     assert to_path(symbol.location.uri).name == "parts.pyr"
 
 
-#### Layout ####
+#### Editing ####
 
 
 @exercises("documentFormattingProvider", "documentRangeFormattingProvider")
@@ -654,7 +654,7 @@ async def folders_come_and_go(s: Session) -> None:
     s.client.workspace_did_change_workspace_folders(
         types.DidChangeWorkspaceFoldersParams(event)
     )
-    # Answered once there is something new: the program in the folder.
+    # The response arrives once there is something new: the program in the folder.
     await s.client.workspace_diagnostic_async(types.WorkspaceDiagnosticParams(known))
 
     async def found() -> list[str]:
@@ -708,7 +708,7 @@ async def files_are_created_and_deleted(s: Session) -> None:
 
 
 async def codes(s: Session) -> list[int | str | None]:
-    """What is wrong with the program."""
+    """The problems of the program."""
     report = await s.client.text_document_diagnostic_async(
         types.DocumentDiagnosticParams(s.document)
     )
@@ -717,7 +717,7 @@ async def codes(s: Session) -> list[int | str | None]:
 
 
 async def codes_without_imports(s: Session) -> list[int | str | None]:
-    """What is wrong with the program, apart from its imports."""
+    """The problems of the program, except for its imports."""
     return [code for code in await codes(s) if code != "unresolved-import"]
 
 
@@ -757,14 +757,14 @@ async def paths_are_drawn(s: Session) -> None:
 
 @exercises("executeCommandProvider.commands[pydslrep.run]")
 async def runs_of_what_has_errors_are_refused(s: Session) -> None:
-    """What runs is in `test_runs.py`: it needs a program in the place of `pydslrep`."""
+    """Runs are in `test_runs.py`: they need a replacement for `pydslrep`."""
     s.show(PROGRAM.replace("{ a b }", "{ a c }"))
     with pytest.raises(JsonRpcException, match="`yard` has errors"):
         await execute(s, "pydslrep.run", {"environment": "yard"})
 
 
 def names_of(value: Any, path: str = "") -> set[str]:
-    """Capabilities by name: what is on, each element of a list of choices, and the name of any other value."""
+    """Capabilities by name: enabled ones, each element of a list, and the name of any other value."""
     if value is None or value is False:
         return set()
     if path.startswith(("semanticTokensProvider.legend.", "workspace.fileOperations.")):
@@ -781,13 +781,13 @@ def names_of(value: Any, path: str = "") -> set[str]:
 
 @pytest_lsp.fixture(config=ClientServerConfig(server_command=[SERVER, "--stdio"]))  # type: ignore[untyped-decorator]
 async def newcomer(lsp_client: LanguageClient) -> AsyncIterator[None]:
-    """A client that has not said a word yet."""
+    """A client that has sent nothing yet."""
     yield
     await lsp_client.shutdown_session()
 
 
 @pytest.mark.asyncio
-async def test_what_is_announced_is_what_the_contract_has_and_does_it(
+async def test_capabilities_match_the_contract_and_work(
     newcomer: LanguageClient, tmp_path: pathlib.Path
 ) -> None:
     hello = types.InitializeParams(capabilities=capabilities("pulling"))

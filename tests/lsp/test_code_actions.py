@@ -1,4 +1,4 @@
-"""Code actions beyond the fix of one problem: one of each kind, chosen and applied as an editor does it."""
+"""Code actions other than quick fixes: one of each kind, selected and applied as in an editor."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ environment yard has { rover } robots with { tour } moves
 async def offered(
     client: LanguageClient, editor: Editor, uri: str, selected: str, kind: str
 ) -> list[types.CodeAction]:
-    """What is offered for the first occurrence of a text."""
+    """The code actions for the first occurrence of a text."""
     text = editor.text(uri)
     start = text.index(selected)
     span = types.Range(position(text, start), position(text, start + len(selected)))
@@ -102,7 +102,7 @@ async def test_one_of_each_kind(
     assert come in after
 
 
-async def test_what_cannot_be_done_says_why(
+async def test_unavailable_actions_give_a_reason(
     client: LanguageClient, tmp_path: pathlib.Path
 ) -> None:
     editor = Editor(client, tmp_path)

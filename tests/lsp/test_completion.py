@@ -1,4 +1,4 @@
-"""What is offered while a program is typed, and what is said of it when it is looked at."""
+"""Completion items while a program is typed, and their documentation when they are selected."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pytest_lsp import LanguageClient
 
 pytestmark = pytest.mark.asyncio
 
-# Columns in it differ in UTF-8, UTF-16 and UTF-32.
+# Its columns differ in UTF-8, UTF-16 and UTF-32.
 WHEELS = "/* 🤖é */ wheel wheelL with radius 4.5\n"
 ROBOT = "/* 🤖é */ robot rover with port 23000 has { wh"
 
@@ -27,13 +27,13 @@ async def offered(
         types.CompletionParams(place, position(text, len(text)), context)
     )
     assert isinstance(found, types.CompletionList)
-    # Editors ask again after each character.
+    # Editors send a new request after each character.
     assert found.is_incomplete
     return list(found.items)
 
 
 @pytest.mark.parametrize("client", ["complete", "eager"], indirect=True)
-async def test_a_name_is_explained(
+async def test_a_name_has_documentation(
     client: LanguageClient, tmp_path: pathlib.Path, request: pytest.FixtureRequest
 ) -> None:
     uri = Editor(client, tmp_path).open("a.pyr", WHEELS + ROBOT)
@@ -47,7 +47,7 @@ async def test_a_name_is_explained(
     assert "28.3 cm per revolution" in wheel.documentation.value
 
 
-async def test_a_name_that_is_gone_is_not_explained(
+async def test_a_removed_name_has_no_documentation(
     client: LanguageClient, tmp_path: pathlib.Path
 ) -> None:
     editor = Editor(client, tmp_path)
@@ -71,10 +71,10 @@ async def test_a_name_brings_its_import(
     assert done == 'import "wheels.pyr"\n\n' + ROBOT.removesuffix("wh") + "wheelL"
 
 
-async def test_a_complete_word_is_left_alone(
+async def test_a_complete_word_closes_the_list(
     client: LanguageClient, tmp_path: pathlib.Path
 ) -> None:
-    """What an editor asks for while `meters` is typed: the last answers are empty, so that Enter ends the line."""
+    """The requests of an editor while `meters` is typed: the last results are empty, so Enter ends the line."""
     editor = Editor(client, tmp_path)
     begun = "movement m of rover {\n  move 2 "
     uri = editor.open("a.pyr", begun + "\n")
@@ -86,7 +86,7 @@ async def test_a_complete_word_is_left_alone(
         begun += letter
         found = await offered(client, uri, begun, again)
         labels = [item.label for item in found]
-        # It is gone early, so that it is not open any more when Enter comes.
+        # The list closes early, so that it is not open when Enter is pressed.
         is_short = begun.endswith(("m", "me"))
         assert labels == (["meters"] if is_short else [])
 
@@ -102,7 +102,7 @@ async def test_a_complete_word_is_left_alone(
         ("movement m of rover { turn ", []),
     ],
 )
-async def test_a_blank_opens_the_list_only_where_a_name_must_follow(
+async def test_a_space_opens_the_list_only_where_a_name_must_follow(
     client: LanguageClient, tmp_path: pathlib.Path, typed: str, labels: list[str]
 ) -> None:
     text = "robot rover with port 23000 has { } wheels\n" + typed

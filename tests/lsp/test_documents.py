@@ -1,4 +1,4 @@
-"""Documents as editors really send them: odd texts, odd orders, odd addresses."""
+"""Documents as editors really send them: unusual texts, orders and URIs."""
 
 from __future__ import annotations
 
@@ -50,12 +50,12 @@ def names(found: list[dict[str, Any]]) -> list[tuple[str, int]]:
         ("\ufeff" + WHEELS[0], [("a", 0)]),
         (WHEELS[0] + "\r" + WHEELS[1] + "\r", [("a", 0), ("b", 1)]),
         (WHEELS[0] + "\r\r\n\n" + WHEELS[1], [("a", 0), ("b", 3)]),
-        # No line breaks for the protocol, whatever other tools take them for.
+        # Not line breaks in the protocol, although other tools treat them as such.
         ("// \u2028 \u2029 \x0b \x0c \x85\n" + WHEELS[0], [("a", 1)]),
         ("/* \0 \x1b 🤖 */ " + WHEELS[0], [("a", 0)]),
     ],
 )
-def test_lines_are_those_of_the_protocol(
+def test_lines_end_where_the_protocol_says(
     server: str, text: str, expected: list[tuple[str, int]]
 ) -> None:
     uri = "file:///a.pyr"
@@ -71,7 +71,7 @@ def test_lines_are_those_of_the_protocol(
         assert ("b", 0) in names(found)
 
 
-def test_documents_come_and_go_in_any_order(server: str) -> None:
+def test_documents_open_and_close_in_any_order(server: str) -> None:
     uri = "file:///a.pyr"
     with RawServer(server, "--stdio") as raw:
         talk = Conversation(raw)
@@ -93,7 +93,7 @@ def test_documents_come_and_go_in_any_order(server: str) -> None:
 
 
 def test_the_id_of_diagnostics_is_not_that_of_a_version(server: str) -> None:
-    """Editors open a file again with version 0 and other text."""
+    """Editors reopen a file with version 0 and different text."""
     uri = "file:///a.pyr"
     with RawServer(server, "--stdio") as raw:
         talk = Conversation(raw)
@@ -109,7 +109,7 @@ def test_the_id_of_diagnostics_is_not_that_of_a_version(server: str) -> None:
         assert [item["code"] for item in report["items"]] != ["syntax-error"]
 
 
-def test_what_was_never_saved_has_diagnostics(server: str) -> None:
+def test_unsaved_documents_have_diagnostics(server: str) -> None:
     uri = "untitled:Untitled-1"
     with RawServer(server, "--stdio") as raw:
         talk = Conversation(raw)
@@ -131,7 +131,7 @@ def test_what_was_never_saved_has_diagnostics(server: str) -> None:
         ("file:///a.pyr", "file://localhost/a.pyr"),
     ],
 )
-def test_one_document_has_many_addresses(server: str, first: str, second: str) -> None:
+def test_one_document_has_many_uris(server: str, first: str, second: str) -> None:
     with RawServer(server, "--stdio") as raw:
         talk = Conversation(raw)
         talk.start(pulling=True)
@@ -139,9 +139,7 @@ def test_one_document_has_many_addresses(server: str, first: str, second: str) -
         assert names(found) == [("a", 0)]
 
 
-def test_a_file_that_is_renamed_takes_its_diagnostics_along(
-    server: str, tmp_path: pathlib.Path
-) -> None:
+def test_diagnostics_follow_a_renamed_file(server: str, tmp_path: pathlib.Path) -> None:
     old, new = tmp_path / "old.pyr", tmp_path / "new.pyr"
     old.write_text("wheel a with radius", encoding="utf-8")
     with RawServer(server, "--stdio") as raw:
@@ -159,8 +157,8 @@ def test_a_file_that_is_renamed_takes_its_diagnostics_along(
         assert after == {old.as_uri(): False, new.as_uri(): True}
 
 
-def test_a_long_list_of_completions_is_cut_off(server: str) -> None:
-    """Editors freeze over long lists; what is typed next narrows it down."""
+def test_a_long_completion_list_is_incomplete(server: str) -> None:
+    """Long lists freeze editors; further typing narrows them down."""
     uri = "file:///a.pyr"
     wheels = "".join(f"wheel w{n:04}_left with radius 4.5\n" for n in range(3000))
     buffer = Buffer(uri, wheels + "robot r has { ", "utf-16")
@@ -186,7 +184,7 @@ KEYSTROKES = int(os.environ.get("PYDSLREP_KEYSTROKES", "2000"))
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="memory is read in /proc")
-def test_memory_stays_flat_while_someone_types(server: str) -> None:
+def test_memory_stays_flat_while_typing(server: str) -> None:
     uri = "file:///a.pyr"
     text = "".join(f"wheel w{n} with radius 4.5\n" for n in range(300))
     typed = "robot new type tw with port 1 has { w1 w2 } wheels\n"
@@ -205,7 +203,7 @@ def test_memory_stays_flat_while_someone_types(server: str) -> None:
         raw.send(opened(uri, text))
 
         def write_a_robot(version: int) -> None:
-            """Letter by letter, with what an editor asks after each word, and all of it deleted in the end."""
+            """Types letter by letter, with an editor's requests after each word, and deletes everything in the end."""
             burst = []
             for column, letter in enumerate(typed):
                 at = {"line": 0, "character": column}
@@ -222,7 +220,7 @@ def test_memory_stays_flat_while_someone_types(server: str) -> None:
             talk.heard.clear()
 
         def pages() -> int:
-            """What is in memory now."""
+            """The memory in use."""
             statm = pathlib.Path(f"/proc/{raw.process.pid}/statm").read_text()
             return int(statm.split()[1])
 

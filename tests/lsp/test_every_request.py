@@ -1,4 +1,4 @@
-"""What must hold for every request alike: positions in all encodings, and answers about the latest text."""
+"""Properties of every request: positions in all encodings, and results for the latest text."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from questions import (
 )
 from raw import RawServer, notification
 
-# The protocol's code for an answer about a text that is no more.
+# The protocol's error code for a result about outdated text.
 CONTENT_MODIFIED = -32801
 
-# No column of theirs stands behind the comments.
+# Their columns are not after the comments.
 WITHOUT_COLUMNS = {
     "completionItem/resolve",
     "textDocument/signatureHelp",
@@ -37,7 +37,7 @@ WITHOUT_COLUMNS = {
     "pydslrep/plannedAt",
 }
 
-# Edits that every answer shows: all places move, counts and lengths grow, and there is one more environment.
+# Edits that affect every result: all positions move, counts and lengths grow, and there is a new environment.
 EDITS = [
     ('import "', '// 🤖\nimport "'),
     ("wheel b with radius 4.5", "wheel b with radius 4.25"),
@@ -63,7 +63,7 @@ def opened(buffer: Buffer) -> bytes:
 
 
 def changed(buffer: Buffer, version: int, edits: list[tuple[str, str]]) -> bytes:
-    """A change of a buffer's text, one edit after the other."""
+    """A change of a buffer's text by consecutive edits."""
     changes, text = [], buffer.text
     for old, new in edits:
         now = Buffer(buffer.uri, text, buffer.encoding)
@@ -83,7 +83,7 @@ def method_of(name: str) -> str:
 def conversation(
     server: str, folder: pathlib.Path, encoding: str = "utf-16"
 ) -> Iterator[Conversation]:
-    """A session of a client that asks for everything, diagnostics too."""
+    """A session of a client that requests everything, including diagnostics."""
     (folder / "parts.pyr").write_text(PARTS, encoding="utf-8")
     with RawServer(server, "--stdio") as raw:
         talk = Conversation(raw, encoding)
@@ -93,7 +93,7 @@ def conversation(
 
 
 def attempt(talk: Conversation, ident: int) -> Any:
-    """An answer, be it an error."""
+    """A response, which may be an error."""
     try:
         return talk.answer(ident)
     except Refused as refused:
@@ -101,7 +101,7 @@ def attempt(talk: Conversation, ident: int) -> Any:
 
 
 def ask_all(talk: Conversation, asked_of: Buffer) -> dict[str, Any]:
-    """The answers to all requests, sent in one write; without what counts versions and answers."""
+    """The results of all requests, sent in one write; without version numbers and result ids."""
     asked = {
         name: talk.request(method_of(name), make(asked_of))
         for name, make in REQUESTS.items()
@@ -124,7 +124,7 @@ def uri(tmp_path: pathlib.Path) -> str:
     return (tmp_path / "main.pyr").as_uri()
 
 
-def test_places_are_the_same_in_every_encoding_and_line_ending(
+def test_positions_are_equivalent_in_every_encoding_and_line_ending(
     server: str, tmp_path: pathlib.Path, uri: str
 ) -> None:
     answers: dict[tuple[str, str], dict[str, Any]] = {}
@@ -163,7 +163,7 @@ SCENE = 'robots = { "🤖 日本 e\u0301" = {}, rovr = { track = 1 } }\n'
         ("yard.scene.toml", SCENE, "tra", ", ro", "rovr", "rover"),
     ],
 )
-def test_places_in_files_of_keys_are_the_same_in_every_encoding(
+def test_positions_in_toml_files_are_equivalent_in_every_encoding(
     server: str,
     tmp_path: pathlib.Path,
     name: str,
@@ -199,7 +199,7 @@ def test_places_in_files_of_keys_are_the_same_in_every_encoding(
     assert f"Change to `{mended}`" in str(places[0]["textDocument/codeAction"])
 
 
-def test_an_answer_is_about_the_change_sent_right_before_it(
+def test_a_response_reflects_the_change_right_before_it(
     server: str, tmp_path: pathlib.Path, uri: str
 ) -> None:
     before = Buffer(uri, PROGRAM, "utf-16")
@@ -225,7 +225,7 @@ def test_an_answer_is_about_the_change_sent_right_before_it(
             )
 
 
-def test_changes_of_tokens_are_about_the_change_sent_right_before_them(
+def test_token_deltas_reflect_the_change_right_before_them(
     server: str, tmp_path: pathlib.Path, uri: str
 ) -> None:
     before = Buffer(uri, PROGRAM, "utf-16")
@@ -254,7 +254,7 @@ def test_changes_of_tokens_are_about_the_change_sent_right_before_them(
         )
 
 
-def test_a_command_is_about_the_change_sent_right_before_it(
+def test_a_command_reflects_the_change_right_before_it(
     server: str, tmp_path: pathlib.Path, uri: str
 ) -> None:
     before = Buffer(uri, PROGRAM, "utf-16")
@@ -271,7 +271,7 @@ def test_a_command_is_about_the_change_sent_right_before_it(
         assert written != old["edit"]["documentChanges"][-1]["edits"][0]["newText"]
 
 
-def test_work_on_a_long_text_is_for_the_text_it_was_asked_about_or_given_up(
+def test_work_on_a_long_text_is_current_or_cancelled(
     server: str, tmp_path: pathlib.Path, uri: str
 ) -> None:
     names = [
@@ -312,12 +312,12 @@ ABSURD = [
     {"line": 0, "character": 2**31 - 1},
     {"line": 2**31 - 1, "character": 0},
     {"line": 2**31 - 1, "character": 2**31 - 1},
-    {"line": 1, "character": 4},  # in the midst of 🤖
+    {"line": 1, "character": 4},  # inside 🤖
 ]
 
 
 def with_places(params: Any, start: dict[str, int], end: dict[str, int]) -> Any:
-    """Parameters with every place replaced."""
+    """Parameters with every position replaced."""
     if isinstance(params, list):
         return [with_places(item, start, end) for item in params]
     if not isinstance(params, dict):
@@ -330,7 +330,7 @@ def with_places(params: Any, start: dict[str, int], end: dict[str, int]) -> Any:
 
 
 @pytest.mark.parametrize("encoding", ENCODINGS)
-def test_no_place_is_too_absurd(
+def test_absurd_positions_are_handled(
     server: str, tmp_path: pathlib.Path, uri: str, encoding: str
 ) -> None:
     buffer = Buffer(uri, PROGRAM, encoding)
@@ -351,7 +351,7 @@ def test_no_place_is_too_absurd(
         assert ask_all(talk, buffer) == before
 
 
-def test_documents_that_nobody_opened_have_no_answers(
+def test_unopened_documents_have_no_results(
     server: str, tmp_path: pathlib.Path
 ) -> None:
     with conversation(server, tmp_path) as talk:

@@ -1,4 +1,4 @@
-"""From the first message to the exit code, and what may be sent in between: at the level of bytes."""
+"""The life cycle of a session at the level of bytes, from the first message to the exit code."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def outline(ident: int | str) -> bytes:
 
 
 def everything_left(raw: RawServer) -> list[dict[str, Any]]:
-    """All messages until the server leaves."""
+    """All messages until the server exits."""
     messages = []
     while (message := raw.read()) is not None:
         messages.append(message)
@@ -40,10 +40,10 @@ def code(message: dict[str, Any]) -> int | None:
     return error.get("code")
 
 
-#### The beginning ####
+#### Initialization ####
 
 
-def test_before_initialize_only_requests_are_answered(server: str) -> None:
+def test_before_initialize_requests_are_answered(server: str) -> None:
     with RawServer(server, "--stdio") as raw:
         raw.send(
             opened("wheel"),
@@ -82,7 +82,7 @@ def test_a_session_begins_once_and_only_with_usable_parameters(server: str) -> N
         assert codes == [-32602, -32602, -32002, None, -32600, None]
 
 
-def test_nothing_is_asked_of_a_client_that_offers_nothing(
+def test_a_client_without_capabilities_gets_no_requests(
     server: str, tmp_path: pathlib.Path
 ) -> None:
     (tmp_path / "a.pyr").write_text("wheel a", encoding="utf-8")
@@ -92,7 +92,7 @@ def test_nothing_is_asked_of_a_client_that_offers_nothing(
             request(0, "initialize", {"capabilities": {}, "workspaceFolders": folders}),
             notification("initialized", {}),
         )
-        # What is found in the folder is told, which it is only after everything that could be asked.
+        # Diagnostics of the folder arrive, which the server sends after all of its possible requests.
         raw.answer(0)
         first = raw.read()
         assert first
@@ -101,10 +101,10 @@ def test_nothing_is_asked_of_a_client_that_offers_nothing(
         assert [message["id"] for message in everything_left(raw)] == ["bye"]
 
 
-#### The end ####
+#### Shutdown ####
 
 
-def test_after_shutdown_nothing_is_said_that_was_not_asked(
+def test_after_shutdown_there_are_only_responses(
     server: str, tmp_path: pathlib.Path
 ) -> None:
     folders = {
@@ -137,10 +137,10 @@ def test_after_shutdown_nothing_is_said_that_was_not_asked(
         assert raw.leave() == 0
 
 
-def test_work_that_is_found_out_later_is_not_told_after_shutdown(
+def test_late_results_are_not_sent_after_shutdown(
     server: str, tmp_path: pathlib.Path
 ) -> None:
-    """Programs are still looked for in a folder when the session ends."""
+    """The server is still searching a folder for programs when the session ends."""
     for number in range(300):
         (tmp_path / f"{number}.pyr").write_text("wheel a", encoding="utf-8")
     folders = [{"uri": tmp_path.as_uri(), "name": "it"}]
@@ -151,7 +151,7 @@ def test_work_that_is_found_out_later_is_not_told_after_shutdown(
             SHUTDOWN,
         )
         raw.answer("bye")
-        # Nothing else comes, though the search goes on: it is over before a second one begins to wait.
+        # Nothing else arrives although the search continues: it ends before a second one begins to wait.
         raw.send(outline(1))
         refused = raw.read()
         assert refused
@@ -164,7 +164,7 @@ def test_work_that_is_found_out_later_is_not_told_after_shutdown(
 LONG = "".join(f"wheel w{n} with radius 4.5 // {n:0200}\n" for n in range(2000))
 
 
-def test_the_end_does_not_wait_for_work(server: str) -> None:
+def test_exit_does_not_wait_for_work(server: str) -> None:
     with RawServer(server, "--stdio") as raw:
         raw.initialize()
         raw.send(opened(LONG), *(outline(n) for n in range(50)), EXIT)
@@ -194,7 +194,7 @@ def test_requests_sent_before_shutdown_are_answered_or_dropped_but_never_twice(
         outline(1)[:-1],
     ],
 )
-def test_the_input_may_end_in_the_midst_of_a_message(server: str, last: bytes) -> None:
+def test_the_input_may_end_within_a_message(server: str, last: bytes) -> None:
     with RawServer(server, "--stdio") as raw:
         raw.initialize()
         raw.send(opened("wheel a with radius 4"), last)
@@ -216,7 +216,7 @@ def test_a_client_that_no_longer_reads_is_served_until_its_input_ends(
 #### Messages ####
 
 
-def test_messages_may_arrive_in_any_pieces(server: str) -> None:
+def test_messages_may_arrive_in_parts(server: str) -> None:
     whole = opened("wheel a with radius 4") + outline(1)
     with RawServer(server, "--stdio") as raw:
         raw.initialize()
@@ -272,7 +272,7 @@ def test_a_header_without_usable_length_is_answered_once(
 
 
 @pytest.mark.parametrize("ident", ["1", "", "é🤖", 0, -1, 2**53, 2**62, "x" * 10_000])
-def test_answers_bear_the_id_of_their_request(server: str, ident: int | str) -> None:
+def test_responses_have_the_id_of_their_request(server: str, ident: int | str) -> None:
     with RawServer(server, "--stdio") as raw:
         raw.initialize()
         raw.send(outline(ident), request(ident, "no/such", {}))
@@ -300,7 +300,7 @@ def test_answers_bear_the_id_of_their_request(server: str, ident: int | str) -> 
         ("\ufeff{}".encode(), -32700),
     ],
 )
-def test_what_is_no_message_is_answered_without_an_id(
+def test_invalid_messages_are_answered_without_an_id(
     server: str, body: bytes, expected: int
 ) -> None:
     with RawServer(server, "--stdio") as raw:
@@ -313,7 +313,7 @@ def test_what_is_no_message_is_answered_without_an_id(
         ]
 
 
-def test_a_wrong_notification_has_no_answer(server: str) -> None:
+def test_an_invalid_notification_has_no_response(server: str) -> None:
     with RawServer(server, "--stdio") as raw:
         raw.initialize()
         raw.send(
@@ -367,7 +367,7 @@ def test_a_wrong_notification_has_no_answer(server: str) -> None:
         {"textDocument": {"uri": URI}, "position": {"line": 2**40, "character": 0}},
     ],
 )
-def test_wrong_parameters_are_refused(server: str, params: object) -> None:
+def test_invalid_parameters_are_refused(server: str, params: object) -> None:
     with RawServer(server, "--stdio") as raw:
         raw.initialize()
         raw.send(
@@ -388,7 +388,7 @@ def test_wrong_parameters_are_refused(server: str, params: object) -> None:
 
 
 def test_requests_with_progress_tokens_are_answered_like_others(server: str) -> None:
-    """The server promises no progress of requests, so it must not use their tokens."""
+    """The server does not announce progress for requests, so it must not use their tokens."""
     tokens = {"workDoneToken": "w", "partialResultToken": 3}
     with RawServer(server, "--stdio") as raw:
         raw.initialize()
@@ -423,7 +423,7 @@ def test_progress_has_a_token_of_its_own_each_time(
         assert list(kinds.values()) == [["begin", "end"]] * 3
 
 
-def test_progress_that_the_client_refuses_is_not_told(
+def test_progress_that_the_client_refuses_is_not_sent(
     server: str, tmp_path: pathlib.Path
 ) -> None:
     folders = [{"uri": tmp_path.as_uri(), "name": "it"}]
@@ -443,7 +443,7 @@ def test_progress_that_the_client_refuses_is_not_told(
         assert [message.get("id") for message in everything_left(raw)] == ["bye"]
 
 
-def test_work_that_is_taken_back_is_answered_once_and_holds_up_nothing(
+def test_cancelled_work_is_answered_once_and_blocks_nothing(
     server: str,
 ) -> None:
     idents = range(1, 31)
@@ -474,10 +474,8 @@ def test_work_that_is_taken_back_is_answered_once_and_holds_up_nothing(
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="threads are watched in /proc")
-def test_a_server_with_nothing_to_do_does_nothing(
-    server: str, tmp_path: pathlib.Path
-) -> None:
-    """No thread of it wakes up while another session runs from its beginning to its end."""
+def test_an_idle_server_uses_no_time(server: str, tmp_path: pathlib.Path) -> None:
+    """No thread of the server wakes up while another session runs from start to end."""
 
     def wakes(raw: RawServer) -> dict[str, str]:
         tasks = pathlib.Path(f"/proc/{raw.process.pid}/task")
@@ -491,7 +489,7 @@ def test_a_server_with_nothing_to_do_does_nothing(
         }
 
     def settled(raw: RawServer) -> dict[str, str]:
-        """The counts, once no thread runs and none has moved between two looks."""
+        """The counts, once no thread is running and two consecutive readings are equal."""
         tasks = pathlib.Path(f"/proc/{raw.process.pid}/task")
         while True:
             before = wakes(raw)
@@ -520,7 +518,7 @@ def test_a_server_with_nothing_to_do_does_nothing(
 
 
 def test_nothing_but_frames_is_on_the_output(server: str) -> None:
-    """Whatever goes wrong is told on standard error."""
+    """Errors go to standard error."""
     wrong = [
         frame(b"{"),
         b"garbage\r\n\r\n",

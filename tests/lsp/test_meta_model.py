@@ -1,4 +1,4 @@
-"""A session that uses everything, each message of it held against the protocol's meta model."""
+"""A session that uses everything, with each message checked against the protocol's meta model."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def opened(uri: str, text: str, version: int = 1) -> bytes:
 
 
 def use_everything(talk: Conversation, folder: pathlib.Path) -> None:
-    """All requests and notifications there are, in a folder with two programs and settings."""
+    """Sends all requests and notifications in a folder with two programs and settings."""
     buffer = Buffer((folder / "main.pyr").as_uri(), PROGRAM, "utf-16")
     talk.hear_until("$/progress")
     while talk.heard[-1].get("params", {}).get("value", {}).get("kind") != "end":
@@ -89,7 +89,7 @@ def use_everything(talk: Conversation, folder: pathlib.Path) -> None:
 
 
 @pytest.mark.parametrize("pulling", [False, True])
-def test_every_message_of_a_whole_session_is_as_the_protocol_has_it(
+def test_every_message_of_a_session_matches_the_meta_model(
     server: str, tmp_path: pathlib.Path, *, pulling: bool
 ) -> None:
     (tmp_path / "parts.pyr").write_text(PARTS, encoding="utf-8")
@@ -161,7 +161,7 @@ PUBLISH = "textDocument/publishDiagnostics"
         ),
     ],
 )
-def test_what_is_not_as_the_protocol_has_it_is_found(
+def test_violations_of_the_meta_model_are_found(
     message: dict[str, Any], asked: str | None, fault: str | None
 ) -> None:
     found = faults_of_message(message, asked)

@@ -1,4 +1,4 @@
-"""Finding one's way: from names to their declarations and uses, across files."""
+"""Navigation from names to their declarations and references, across files."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pytest_lsp import LanguageClient
 
 pytestmark = pytest.mark.asyncio
 
-# Columns behind the comments differ in bytes, UTF-16 and characters.
+# Columns after the comments differ in bytes, UTF-16 code units and characters.
 PARTS = "/* 🤖é */ wheel a with radius 4\n/* 🤖é */ wheel b with radius 4\n"
 MAIN = (
     'import "parts.pyr"\n'
@@ -31,7 +31,7 @@ class Program:
         self.main = self.editor.open("main.pyr", MAIN)
 
     def at(self, uri: str, before: str, behind: str = "") -> types.Position:
-        """The place between two texts that follow each other once."""
+        """The position between two texts that follow each other once."""
         text = self.editor.text(uri)
         assert text.count(before + behind) == 1
         return position(text, text.index(before + behind) + len(before))
@@ -39,11 +39,11 @@ class Program:
     def where(
         self, uri: str, before: str, behind: str = ""
     ) -> tuple[types.TextDocumentIdentifier, types.Position]:
-        """The same, as most requests begin."""
+        """The position as parameters of most requests."""
         return types.TextDocumentIdentifier(uri), self.at(uri, before, behind)
 
     def shown(self, uri: str, span: types.Range) -> str:
-        """The name and line of a document at which a range points."""
+        """The document and line of a location."""
         line = self.editor.text(uri).splitlines()[span.start.line]
         units = line.encode("utf-16-le")
         start, end = 2 * span.start.character, 2 * span.end.character
@@ -109,7 +109,7 @@ async def test_a_rename_across_files(client: LanguageClient, program: Program) -
     assert prepared.placeholder == "a"
     assert program.shown(program.main, prepared.range) == "main.pyr:1 a"
 
-    # The editor checks that each edit is for the version that it has.
+    # The editor checks that each edit is for its version.
     edit = await client.text_document_rename_async(
         types.RenameParams(*program.where(program.main, "{ a"), new_name="left_1")
     )

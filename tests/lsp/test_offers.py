@@ -1,4 +1,4 @@
-"""Whatever fix the command shows an editor offers, and the other way round: for every program of `tests/recovery`."""
+"""The command and editors offer the same fixes for every program in `tests/recovery`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ESCAPES = {r"\r": "\r", r"\n": "\n", r"\t": "\t", r"\u{feff}": "\ufeff"}
 
 
 def programs(page: pathlib.Path) -> list[str]:
-    """The programs of a page, each with what comes after all of them."""
+    """The programs of a page, each with the common text after them."""
     found = list(FENCE.finditer(page.read_text(encoding="utf-8")))
     after = "".join(match["text"] for match in found if match["kind"] == " behind")
     programs = [match for match in found if match["kind"] != " behind"]
@@ -33,14 +33,14 @@ def programs(page: pathlib.Path) -> list[str]:
 
 
 def unescaped(text: str) -> str:
-    """A text with the signs that a page writes as escapes."""
+    """A text with the escapes of a page replaced."""
     for written, meant in ESCAPES.items():
         text = text.replace(written, meant)
     return text
 
 
 def shown(command: str, path: pathlib.Path) -> list[str]:
-    """The titles of the fixes that the command shows for people."""
+    """The titles of the fixes in the command's human-readable output."""
     done = subprocess.run(
         [command, "check", "--format", "sarif", path],
         capture_output=True,
@@ -53,7 +53,7 @@ def shown(command: str, path: pathlib.Path) -> list[str]:
 
 
 async def offered(client: LanguageClient, uri: str, text: str) -> list[str]:
-    """The titles of the quick fixes that an editor offers anywhere in a program."""
+    """The titles of all quick fixes that an editor offers in a program."""
     lines = text.splitlines()
     end = types.Position(len(lines), 0)
     everywhere = types.Range(types.Position(0, 0), end)
@@ -67,7 +67,7 @@ async def offered(client: LanguageClient, uri: str, text: str) -> list[str]:
     titles = [
         action.title
         for action in actions
-        # Those for many problems at once are the editor's own.
+        # Only editors offer actions for several problems at once.
         if isinstance(action, types.CodeAction) and action.edit
     ]
     return sorted(title[0].lower() + title[1:] for title in titles)

@@ -1,4 +1,4 @@
-"""Order, malformed input and endings, at the level of bytes."""
+"""Message order, malformed input and exits, at the level of bytes."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_diagnostics_of_a_burst_end_with_those_of_its_last_version(server: str) 
             outline(1),
         )
         versions = raw.published_before(1)
-        # Once the first answer is there and nothing else has been sent, diagnostics come before the second.
+        # After the first response, diagnostics arrive before the second one if nothing else has been sent.
         raw.send(outline(2))
         versions += raw.published_before(2)
         assert versions == sorted(versions)
@@ -92,7 +92,7 @@ def test_the_end_of_the_input_ends_the_server(server: str, before: list[bytes]) 
         assert raw.leave() == 1
 
 
-def test_malformed_input_is_answered_and_read_past(server: str) -> None:
+def test_malformed_input_is_answered_and_skipped(server: str) -> None:
     with RawServer(server, "--stdio") as raw:
         raw.initialize()
         raw.send(
@@ -162,7 +162,7 @@ def test_wrong_arguments_are_refused(server: str, arguments: list[str]) -> None:
     assert "--help" in done.stderr
 
 
-def test_a_port_where_nobody_listens_is_an_outside_failure(server: str) -> None:
+def test_a_port_without_client_is_an_environment_error(server: str) -> None:
     with socket.create_server(("127.0.0.1", 0)) as listener:
         free = listener.getsockname()[1]
     done = subprocess.run(
@@ -231,8 +231,8 @@ def test_the_server_writes_the_script_where_the_client_cannot_create_files(
 @pytest.mark.skipif(
     sys.platform != "linux", reason="processes are watched on Linux only"
 )
-def test_a_client_that_dies_takes_the_server_with_it(server: str) -> None:
-    """Even if someone else holds the server's input open, as this test does."""
+def test_the_server_exits_when_its_client_dies(server: str) -> None:
+    """Even if another process keeps the server's input open, as this test does."""
     client = "import subprocess, sys; subprocess.Popen([sys.argv[1], '--stdio']).wait()"
     with RawServer(sys.executable, "-c", client, server) as raw:
         raw.send(
@@ -244,7 +244,7 @@ def test_a_client_that_dies_takes_the_server_with_it(server: str) -> None:
         assert not raw.input.closed
 
 
-def test_a_client_that_traces_is_told_what_changes_cost(server: str) -> None:
+def test_a_tracing_client_gets_the_cost_of_changes(server: str) -> None:
     def told_before(raw: RawServer, ident: int) -> list[dict[str, Any]]:
         raw.send(outline(ident))
         heard = []

@@ -1,4 +1,4 @@
-"""What an editor shows around a program: folds, growing selections, hints, lenses, signatures."""
+"""Folding ranges, selection ranges, hints, lenses and signature help."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pytest_lsp import LanguageClient
 
 pytestmark = pytest.mark.asyncio
 
-# Columns in it differ in UTF-8, UTF-16 and UTF-32.
+# Its columns differ in UTF-8, UTF-16 and UTF-32.
 PROGRAM = """\
 /* 🤖é */ wheel wheelL with radius 4.5
 wheel wheelR with radius 4.5
@@ -46,7 +46,7 @@ async def test_movements_fold(
         expected = types.FoldingRange(start_line=3, end_line=5)
     else:
         brace = PROGRAM.splitlines()[3].index("{")
-        # One more, for 🤖 takes two units of UTF-16.
+        # One more, because 🤖 takes two UTF-16 code units.
         expected = types.FoldingRange(
             start_line=3, start_character=brace + 2, end_line=6, end_character=0
         )
@@ -146,7 +146,7 @@ async def test_declarations_have_lenses(
     assert list(script.arguments or []) == [{"uri": uri, "environment": "area"}]
 
 
-async def test_a_brace_closes_a_movement_in_layout(
+async def test_a_closing_brace_formats_its_movement(
     client: LanguageClient, tmp_path: pathlib.Path
 ) -> None:
     editor = Editor(client, tmp_path)

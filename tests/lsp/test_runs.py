@@ -1,4 +1,4 @@
-"""Environments driven and previewed from an editor, as it shows them: saved or not."""
+"""Runs and previews of environments from an editor, saved or not."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ import "parts.pyr"
 environment area has { rover } robots with { patrol } moves
 """
 
-# Stands in for a run that lasts until it is interrupted.
+# A fake run that lasts until it is interrupted.
 ENDLESS = """\
 #!/bin/sh
 trap 'echo interrupted >&2; exit 130' INT
@@ -38,7 +38,7 @@ while :; do sleep 0.01; done
 """
 
 
-# The same, with nothing more to say: it has closed its outputs and tells so through a pipe.
+# The same, but it has closed its outputs, and reports that through a pipe.
 SILENT = """\
 #!/bin/sh
 trap 'exit 130' INT
@@ -48,7 +48,7 @@ while :; do sleep 0.01; done
 """
 
 
-# Tells through a pipe that it has begun, what it was called with, and that it was interrupted.
+# Reports through a pipe that it has started, its arguments, and that it was interrupted.
 TELLING = """\
 #!/bin/sh
 told="$(dirname "$0")/told"
@@ -58,7 +58,7 @@ while :; do sleep 0.01; done
 """
 
 
-# Tells through a pipe that it has begun, and that whoever started it is gone.
+# Reports through a pipe that it has started, and that its parent process is gone.
 LISTENING = """\
 #!/bin/sh
 told="$(dirname "$0")/told"
@@ -69,7 +69,7 @@ echo no more input > "$told"
 
 
 class Session:
-    """A server with a program open whose text is nowhere on the disk."""
+    """A server with an open program whose text is not on disk."""
 
     def __init__(
         self, raw: RawServer, folder: pathlib.Path, *, progress: bool = True
@@ -109,7 +109,7 @@ class Session:
         )
 
     def accept_progress(self) -> Any:
-        """Lets the server show its progress; the token."""
+        """Accepts the server's progress; returns the token."""
         while True:
             asked = self.raw.read_until("window/workDoneProgress/create")
             self.raw.send(answer(asked["id"], None))
@@ -158,10 +158,8 @@ def test_a_preview_draws_what_the_editor_shows(session: Session, command: str) -
         "movement other of rover { move",
     ],
 )
-def test_what_is_wrong_elsewhere_is_in_nobodys_way(
-    session: Session, wrong: str
-) -> None:
-    """Of an environment in which everything is right there are a path, a picture and a script."""
+def test_errors_elsewhere_do_not_prevent_a_path(session: Session, wrong: str) -> None:
+    """An environment without errors has a path, a picture and a script."""
     session.open(session.uri, f"{PROGRAM}{wrong}\n")
     session.raw.send(request(1, "pydslrep/plannedPath", session.area))
     assert session.raw.answer(1)["result"]["environment"] == "area"
@@ -195,7 +193,7 @@ def test_a_run_can_be_cancelled(endless: Session, tmp_path: pathlib.Path) -> Non
     assert not pathlib.Path(arguments[5]).exists(), "nothing was drawn"
 
 
-def test_a_run_that_says_nothing_more_can_be_cancelled(
+def test_a_silent_run_can_be_cancelled(
     endless: Session, tmp_path: pathlib.Path
 ) -> None:
     (tmp_path / "bin" / "pydslrep").write_text(SILENT, encoding="utf-8")
@@ -238,7 +236,7 @@ def test_a_run_ends_with_its_session(
     assert not picture.parent.exists(), "pictures are kept as long as the session"
 
 
-def test_a_run_learns_that_its_server_was_killed(
+def test_a_run_ends_when_its_server_is_killed(
     server: str, tmp_path: pathlib.Path
 ) -> None:
     told = telling(server, tmp_path)
@@ -252,7 +250,7 @@ def test_a_run_learns_that_its_server_was_killed(
 
 
 def telling(server: str, folder: pathlib.Path) -> pathlib.Path:
-    """Puts a program that tells what happens beside the server, and returns the pipe it tells it through."""
+    """Puts a program that reports events next to the server, and returns the pipe for its reports."""
     beside = folder / "bin"
     beside.mkdir()
     shutil.copy2(server, beside / "pydslrep-lsp")
@@ -263,7 +261,7 @@ def telling(server: str, folder: pathlib.Path) -> pathlib.Path:
     return beside / "told"
 
 
-# Stands in for a run that drives, and fails at last if it is told to.
+# A fake run that drives, and fails in the end if requested.
 DRIVING = """\
 #!/bin/sh
 beside="$(dirname "$0")"
@@ -284,7 +282,7 @@ MAP = (
 )
 
 
-def test_what_was_driven_is_told_and_that_it_changed(
+def test_driven_paths_and_their_changes_are_sent(
     endless: Session, tmp_path: pathlib.Path
 ) -> None:
     beside = tmp_path / "bin"
@@ -317,7 +315,7 @@ def test_what_was_driven_is_told_and_that_it_changed(
     assert raw.answer(5)["result"]["robots"][0]["poses"][0]["x"] == 7
 
 
-def test_what_has_errors_does_not_run(session: Session) -> None:
+def test_an_environment_with_errors_does_not_run(session: Session) -> None:
     session.replace(2, "turn left", "turn leftt")
     session.execute(1, "pydslrep.run", session.area)
     assert "`area` has errors" in session.raw.answer(1)["error"]["message"]
@@ -327,8 +325,8 @@ def test_what_has_errors_does_not_run(session: Session) -> None:
     assert session.raw.answer(3)["error"]["code"] == -32602
 
 
-def test_a_failure_says_what_helps(session: Session) -> None:
-    """In the data of the error: where the first problem is, or that there is no file yet."""
+def test_a_failure_suggests_a_remedy(session: Session) -> None:
+    """The error's data has the location of the first problem, or says that there is no file yet."""
     session.replace(2, "turn left", "turn leftt")
     line = PROGRAM.split("\n").index("  turn left")
     for ident, command in enumerate(
@@ -402,7 +400,7 @@ def test_the_kinematics_of_a_robot_are_shown(session: Session) -> None:
     assert session.raw.answer(2)["error"]["message"] == "there is no robot `x`"
 
 
-def test_a_planned_path_is_told_and_that_it_changed(session: Session) -> None:
+def test_planned_paths_and_their_changes_are_sent(session: Session) -> None:
     session.raw.send(request(1, "pydslrep/plannedPath", session.area))
     path = session.raw.answer(1)["result"]
     [robot] = path["robots"]
@@ -424,7 +422,7 @@ def test_a_planned_path_is_told_and_that_it_changed(session: Session) -> None:
 
 
 def test_paths_and_text_lead_to_each_other(session: Session) -> None:
-    """By positions in the client's units: the movement stands behind a robot's face."""
+    """Positions use the client's encoding: the movement is after an emoji."""
     raw = session.raw
     line = PROGRAM.split("\n").index("  turn left")
     position = {"line": line, "character": 4}
@@ -458,7 +456,7 @@ def test_paths_and_text_lead_to_each_other(session: Session) -> None:
     assert raw.answer(4)["result"] is None
 
 
-def test_a_planned_path_tells_bodies_and_drives(session: Session) -> None:
+def test_a_planned_path_has_bodies_and_legs(session: Session) -> None:
     session.raw.send(request(1, "pydslrep/plannedPath", session.area))
     path = session.raw.answer(1)["result"]
     [rover] = path["robots"]

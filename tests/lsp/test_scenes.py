@@ -1,4 +1,4 @@
-"""Scene files in an editor: what they say of the program beside them, and what is said of them."""
+"""Scene files in an editor: their effect on the program, and their own diagnostics."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ ASIDE = CRATE.replace("[1, 0]", "[1, 1]")
 
 
 class Yard(Workspace):
-    """A program and the scene beside it."""
+    """A program and its scene."""
 
     def open(self, name: str, text: str) -> Buffer:
         buffer = Buffer(self.uri(name), text, "utf-16")
@@ -142,7 +142,7 @@ def test_a_planned_path_starts_where_the_scene_says(yard: Yard) -> None:
     assert "`yard.scene.toml`" in error["message"]
 
 
-def test_a_planned_path_tells_what_stands_in_its_way(yard: Yard) -> None:
+def test_a_planned_path_has_obstacles_and_collisions(yard: Yard) -> None:
     yard.start(CLIENT)
     yard.indexed()
     program = yard.open("main.pyr", PROGRAM)
@@ -177,7 +177,7 @@ size = [2, 1]
     assert 0 < collision["t"] < path["duration"]
 
 
-def test_scenes_are_completed_explained_and_mended(yard: Yard) -> None:
+def test_scenes_have_completion_hover_and_fixes(yard: Yard) -> None:
     yard.start(CLIENT)
     yard.indexed()
     yard.open("main.pyr", PROGRAM)

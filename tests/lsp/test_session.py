@@ -1,4 +1,4 @@
-"""The way from a program with a typo to its script, as a client library drives it."""
+"""From a program with a typo to its script, with a client library."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ async def test_from_a_typo_to_the_script(
     "there",
     ["nothing", "file", "buffer over a file", "changed buffer", "unsaved buffer"],
 )
-async def test_a_script_replaces_whatever_was_there(
+async def test_a_script_replaces_any_older_script(
     client: LanguageClient,
     tmp_path: pathlib.Path,
     table_2: str,
@@ -128,7 +128,7 @@ async def test_a_client_that_pulls_diagnostics_is_not_pushed_to(
     assert client.diagnostics == {}
 
 
-async def test_diagnostics_are_told_once_and_cleared_on_close(
+async def test_diagnostics_are_published_once_and_cleared_on_close(
     client: LanguageClient, tmp_path: pathlib.Path, table_2: str
 ) -> None:
     editor = Editor(client, tmp_path)
@@ -155,7 +155,7 @@ async def test_diagnostics_are_told_once_and_cleared_on_close(
     assert (cleared.uri, list(cleared.diagnostics)) == (uri, [])
 
 
-async def test_a_quick_fix_mends_the_typo(
+async def test_a_quick_fix_corrects_the_typo(
     client: LanguageClient, tmp_path: pathlib.Path, table_2: str
 ) -> None:
     editor = Editor(client, tmp_path)
@@ -179,7 +179,7 @@ async def test_a_quick_fix_mends_the_typo(
     assert await editor.diagnostics(uri) == []
 
 
-async def test_what_an_editor_shows_of_a_program(
+async def test_features_of_a_program(
     client: LanguageClient, tmp_path: pathlib.Path, table_2: str
 ) -> None:
     editor = Editor(client, tmp_path)
@@ -229,7 +229,7 @@ async def test_what_an_editor_shows_of_a_program(
     assert len(tokens.data) > 5 * 20
 
 
-async def test_a_document_is_brought_into_the_canonical_layout(
+async def test_a_document_is_formatted(
     client: LanguageClient, tmp_path: pathlib.Path, table_2: str
 ) -> None:
     editor = Editor(client, tmp_path)
@@ -242,7 +242,7 @@ async def test_a_document_is_brought_into_the_canonical_layout(
     whole = types.DocumentFormattingParams(document, options)
     edits = await client.text_document_formatting_async(whole)
     assert edits
-    for edit in reversed(edits):  # they come in order and apart from each other
+    for edit in reversed(edits):  # they are in order and do not overlap
         editor.edit(uri, edit)
     assert editor.text(uri) == table_2
     assert not await client.text_document_formatting_async(whole)

@@ -1,4 +1,4 @@
-"""What a client can set: each key does what it says, from the start and when it changes."""
+"""The client's settings: each works from the start and after a change."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ environment yard has { rover other } robots with { lap back } moves
 
 
 class Editor:
-    """An editor with settings of its own, and a program open in it."""
+    """An editor with settings and an open program."""
 
     def __init__(self, raw: RawServer, folder: pathlib.Path) -> None:
         self.talk = Conversation(raw)
@@ -38,7 +38,7 @@ class Editor:
         self.version = 1
 
     def start(self, settings: dict[str, Any], *, at_start: bool) -> None:
-        """Begins a session with settings: known from the start, or changed after it."""
+        """Starts a session with settings, either from the start or changed later."""
         self.talk.settings = settings if at_start else {}
         self.talk.start(folder=self.folder, pulling=True)
         item = {"languageId": "pydslrep", "version": 1, "text": self.program}
@@ -51,7 +51,7 @@ class Editor:
             self.set(settings)
 
     def set(self, settings: dict[str, Any]) -> None:
-        """Other settings, of which the server is told."""
+        """Changes the settings and notifies the server."""
         self.talk.settings = settings
         self.talk.server.send(
             notification("workspace/didChangeConfiguration", {"settings": None})
@@ -69,7 +69,7 @@ class Editor:
         ]
 
     def script(self) -> str:
-        """Where the script of the environment goes."""
+        """The path of the environment's script."""
         context = {"diagnostics": [], "only": ["source.generateScript"]}
         asked = {**self.named, "range": self.buffer.everything(), "context": context}
         [action] = self.talk.ask("textDocument/codeAction", asked)
@@ -198,7 +198,9 @@ def test_scripts_on_save(editor: Editor, *, at_start: bool) -> None:
 
 
 @both
-def test_what_is_unknown_or_wrong_is_told(editor: Editor, *, at_start: bool) -> None:
+def test_unknown_and_invalid_settings_are_reported(
+    editor: Editor, *, at_start: bool
+) -> None:
     wrong = {
         "severety": {},
         "target": "gazebo",
@@ -215,10 +217,8 @@ def test_what_is_unknown_or_wrong_is_told(editor: Editor, *, at_start: bool) -> 
     assert editor.severities() == {"unused-declaration": 4}, "the rest holds"
 
 
-def test_settings_that_are_sent_without_being_asked(
-    server: str, tmp_path: pathlib.Path
-) -> None:
-    """Clients that cannot be asked send all they have, at the start and on every change."""
+def test_settings_pushed_by_the_client(server: str, tmp_path: pathlib.Path) -> None:
+    """Clients without `workspace/configuration` send all settings at the start and on every change."""
     program = (tmp_path / "main.pyr").as_uri()
     with RawServer(server, "--stdio") as raw:
         raw.initialize({})

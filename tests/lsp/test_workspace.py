@@ -1,4 +1,4 @@
-"""A folder of programs, of which few or none are open."""
+"""A folder of programs, with few or no open documents."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ PULLING = {**CLIENT, "textDocument": {"diagnostic": {}}}
 
 
 class Workspace:
-    """A server that has a folder open, and a client that answers what every client has to."""
+    """A server with an open folder, and a client that replies to the mandatory requests."""
 
     def __init__(self, server: RawServer, folder: pathlib.Path) -> None:
         self.server = server
@@ -49,7 +49,7 @@ class Workspace:
         self.server.answer(0)
 
     def next(self) -> dict[str, Any]:
-        """The next message that is not a request to the client; those are answered."""
+        """The next message that is not a request; replies to requests."""
         while (message := self.server.read()) is not None:
             if "id" not in message or "method" not in message:
                 return message
@@ -63,7 +63,7 @@ class Workspace:
         raise AssertionError("the server left")
 
     def published(self, name: str) -> list[str]:
-        """The codes that are published next for a file."""
+        """The codes published next for a file."""
         while True:
             message = self.next()
             if message.get("method") != "textDocument/publishDiagnostics":
@@ -72,7 +72,7 @@ class Workspace:
                 return [item["code"] for item in message["params"]["diagnostics"]]
 
     def indexed(self) -> None:
-        """Until the server has looked for programs."""
+        """Waits until the server has searched for programs."""
         while True:
             message = self.next()
             if message.get("method") == "$/progress":
@@ -84,7 +84,7 @@ class Workspace:
         return (self.folder / name).as_uri()
 
     def write(self, name: str, text: str, change: int = 2) -> None:
-        """Writes a file and says so; 1 is created, 2 changed."""
+        """Writes a file and notifies the server; 1 is created, 2 changed."""
         (self.folder / name).write_text(text, encoding="utf-8")
         self.tell(name, change)
 
@@ -101,7 +101,7 @@ class Workspace:
         return self.ident
 
     def report(self, ident: int) -> dict[str, tuple[str | None, list[str]]]:
-        """For each file its result's id and codes."""
+        """The result id and codes of each file."""
         while (message := self.next()).get("id") != ident:
             pass
         return {
@@ -179,7 +179,7 @@ def test_settings_hold_and_change(workspace: Workspace) -> None:
     assert workspace.published("robot.pyr") == ["unresolved-reference"]
 
 
-def test_wrong_settings_are_told(workspace: Workspace) -> None:
+def test_invalid_settings_are_reported(workspace: Workspace) -> None:
     workspace.settings = {"severety": {}}
     workspace.start(CLIENT)
     while (message := workspace.next()).get("method") != "window/showMessage":
@@ -187,7 +187,7 @@ def test_wrong_settings_are_told(workspace: Workspace) -> None:
     assert "did you mean `severity`" in message["params"]["message"]
 
 
-def test_settings_files_are_completed_explained_and_mended(
+def test_settings_files_have_completion_hover_and_fixes(
     workspace: Workspace,
 ) -> None:
     workspace.start(CLIENT)
@@ -266,7 +266,7 @@ def renamed(workspace: Workspace, old: str, new: str) -> dict[str, Any]:
 
 
 def will_rename(workspace: Workspace, old: str, new: str) -> dict[str, str]:
-    """The texts of files after the edits that a rename asks for."""
+    """The texts of files after the edits of a rename."""
     workspace.ident += 1
     params = renamed(workspace, old, new)
     workspace.server.send(request(workspace.ident, "workspace/willRenameFiles", params))
