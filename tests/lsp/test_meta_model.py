@@ -7,9 +7,16 @@ from typing import Any
 
 import pytest
 from conversation import Conversation, Refused
+from editor import capabilities
+from lsprotocol import types
+from lsprotocol.converters import get_converter
 from meta_model import faults_of_message
+from pygls.capabilities import ServerCapabilitiesBuilder
 from questions import PARTS, PROGRAM, REQUESTS, Buffer, script
-from raw import RawServer, notification
+from raw import RawServer, notification, request
+
+# The protocol's code for methods that there are not.
+UNKNOWN_METHOD = -32601
 
 NOWHERE = {"start": {"line": 0, "character": 0}, "end": {"line": 0, "character": 1}}
 FAULTLESS = PROGRAM.replace("wheeel", "a")
@@ -114,6 +121,68 @@ def test_every_message_of_a_session_matches_the_meta_model(
     assert said == expected | (
         set() if pulling else {"textDocument/publishDiagnostics"}
     )
+
+
+FRAMING = {"initialize", "initialized", "shutdown", "exit"}
+# Any will do: the table says which methods there are, not what their options hold.
+LEGEND = types.SemanticTokensLegend([], [])
+ON_TYPE = types.DocumentOnTypeFormattingOptions("}")
+
+
+def handled_methods(raw: RawServer) -> set[str]:
+    """The methods that the server knows: it says of all others that it does not."""
+    methods = [
+        method
+        for method in types.METHOD_TO_TYPES
+        if types.message_direction(method) != "serverToClient" and method not in FRAMING
+    ]
+    raw.send(*(request(method, method, {}) for method in methods))
+    codes = {method: raw.answer(method)["error"]["code"] for method in methods}
+    return {method for method, code in codes.items() if code != UNKNOWN_METHOD}
+
+
+def providers(capabilities: types.ServerCapabilities) -> dict[str, Any]:
+    """What is announced, without options that no method belongs to."""
+    announced = get_converter().unstructure(capabilities)
+    resolving = {
+        name: bool(announced[name].get("resolveProvider"))
+        for name in ("completionProvider", "codeLensProvider")
+    }
+    tokens = announced["semanticTokensProvider"]
+    return {
+        "all": {name for name, value in announced.items() if value},
+        "resolving": resolving,
+        "tokens": {name for name in ("full", "range") if tokens.get(name)},
+        "prepares": announced["renameProvider"]["prepareProvider"],
+        "workspace": announced["diagnosticProvider"]["workspaceDiagnostics"],
+        "files": announced["workspace"]["fileOperations"].keys(),
+    }
+
+
+def test_what_is_announced_is_handled_and_what_is_handled_is_announced(
+    server: str,
+) -> None:
+    """The client library for tests can also be a server, and knows the capability of every method."""
+    client = capabilities("pulling")
+    with RawServer(server, "--stdio") as raw:
+        params = {"capabilities": get_converter().unstructure(client)}
+        raw.send(request(0, "initialize", params))
+        answer = raw.answer(0)["result"]["capabilities"]
+        announced = get_converter().structure(answer, types.ServerCapabilities)
+        raw.send(notification("initialized", {}))
+        handled = handled_methods(raw)
+    assert announced.execute_command_provider
+    expected = ServerCapabilitiesBuilder(
+        client,
+        handled,
+        {
+            types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL: LEGEND,
+            types.TEXT_DOCUMENT_ON_TYPE_FORMATTING: ON_TYPE,
+        },
+        announced.execute_command_provider.commands,
+        types.TextDocumentSyncKind.Incremental,
+    ).build()
+    assert providers(announced) == providers(expected)
 
 
 def told(method: str, params: object) -> dict[str, Any]:

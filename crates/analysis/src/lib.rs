@@ -29,5 +29,5 @@ pub use fix_validator::{FixValidator, Offers};
 pub use fixing::Fixing;
 pub use plan::{Driver, plan, plan_movement, scene};
 pub use resolve::{Blocked, Fingerprint};
-pub use snapshot::Snapshot;
+pub use snapshot::{CancellationToken, Snapshot};
 pub use target::Target;

@@ -8,6 +8,22 @@ use ropey::Rope;
 
 use crate::{Database, EntityId, EntityRef, FileId};
 
+/// Tells work that nobody wants its result any more. Clones share the signal.
+#[derive(Debug, Clone, Default)]
+pub struct CancellationToken(Arc<AtomicBool>);
+
+impl CancellationToken {
+    /// Stops the work at its next opportunity.
+    pub fn cancel(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether the work should stop.
+    pub fn is_cancelled(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
 /// A file, or a part of it, as it was. It shares text and trees with the database, so it costs little to take and to
 /// keep.
 #[derive(Debug, Clone)]
@@ -16,7 +32,7 @@ pub struct Snapshot {
     text: Rope,
     start: u32,
     slots: Vec<Kept>,
-    stops: Vec<Arc<AtomicBool>>,
+    cancellation: Vec<CancellationToken>,
 }
 
 #[derive(Debug, Clone)]
@@ -50,7 +66,7 @@ impl Database {
             Some(Kept { entity: slot.entity, len: slot.len, parse })
         };
         let slots = slots.filter_map(keep).collect();
-        Some(Snapshot { file, text, start, slots, stops: Vec::new() })
+        Some(Snapshot { file, text, start, slots, cancellation: Vec::new() })
     }
 }
 
@@ -65,25 +81,25 @@ impl Snapshot {
         span.slice(&self.text)
     }
 
-    /// Its entities in the order of the text; they end early once work on it is to [stop](Self::stop_on).
+    /// Its entities in the order of the text; they end early once it is [cancelled](Self::cancelled_by).
     pub fn entities(&self) -> impl Iterator<Item = EntityRef<'_>> {
         let mut at = self.start;
-        self.slots.iter().take_while(|_| !self.is_stopped()).map(move |kept| {
+        self.slots.iter().take_while(|_| !self.is_cancelled()).map(move |kept| {
             let span = Span::new(at, at + kept.len);
             at = span.end;
             EntityRef { id: kept.entity, file: self.file, span, parse: &kept.parse }
         })
     }
 
-    /// Lets work on it end early once the flag is set.
-    pub fn stop_on(mut self, flag: Arc<AtomicBool>) -> Self {
-        self.stops.push(flag);
+    /// Ends work on it early once the token is cancelled, or any token it was given before.
+    pub fn cancelled_by(mut self, token: CancellationToken) -> Self {
+        self.cancellation.push(token);
         self
     }
 
-    /// Whether work on it is to stop.
-    pub fn is_stopped(&self) -> bool {
-        self.stops.iter().any(|flag| flag.load(Ordering::Relaxed))
+    /// Whether work on it should stop.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancellation.iter().any(CancellationToken::is_cancelled)
     }
 
     /// How many entities at the start and at the end read as they did before, in the same places of the order.
@@ -141,14 +157,14 @@ mod tests {
     }
 
     #[test]
-    fn work_stops_when_it_is_no_longer_wanted() {
+    fn cancelled_work_stops() {
         let mut database = Database::new();
         let file = database.open("a.pyr", TEXT);
-        let flag = Arc::new(AtomicBool::new(false));
-        let snapshot = database.snapshot(file, None).unwrap().stop_on(Arc::clone(&flag));
+        let token = CancellationToken::default();
+        let snapshot = database.snapshot(file, None).unwrap().cancelled_by(token.clone());
         let mut entities = snapshot.entities();
         assert!(entities.next().is_some());
-        flag.store(true, Ordering::Relaxed);
+        token.cancel();
         assert!(entities.next().is_none());
     }
 }

@@ -70,7 +70,7 @@ pub use settings::{KeyFix, settings_completions, settings_fixes, settings_hover}
 pub use signature::{Signature, SignatureHelp, SignatureTrigger, signature_help};
 pub use symbols::{Symbol, SymbolKind, document_symbols};
 pub use type_definition::goto_type_definition;
-pub use workspace_symbols::{WorkspaceSymbol, workspace_symbols};
+pub use workspace_symbols::{SymbolSearch, WorkspaceSymbol, workspace_symbols};
 
 use pydslrep_analysis::FileId;
 

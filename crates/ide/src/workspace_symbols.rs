@@ -2,7 +2,7 @@
 
 use nucleo_matcher::pattern::{AtomKind, CaseMatching, Normalization, Pattern};
 use nucleo_matcher::{Config, Matcher, Utf32Str};
-use pydslrep_analysis::{Database, EntityRef, FileId};
+use pydslrep_analysis::{Database, EntityId, EntityRef, FileId};
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Span};
 
@@ -27,19 +27,54 @@ pub struct WorkspaceSymbol {
 /// The declarations whose names contain the letters of the query in order, ignoring case; all for an empty query. At most
 /// a thousand.
 pub fn workspace_symbols(database: &Database, query: &str) -> Vec<WorkspaceSymbol> {
-    let pattern = Pattern::new(query, CaseMatching::Ignore, Normalization::Never, AtomKind::Fuzzy);
-    let mut matcher = Matcher::new(Config::DEFAULT);
-    let mut letters = Vec::new();
-    let mut matches: Vec<(u32, EntityRef<'_>)> = Vec::new();
-    for entity in database.files().flat_map(|file| database.entities(file)) {
-        let Some(name) = entity.parse.entity.as_ref().and_then(Entity::name) else { continue };
-        if let Some(score) = pattern.score(Utf32Str::new(&name.text, &mut letters), &mut matcher) {
-            matches.push((score, entity));
+    let mut search = SymbolSearch::new(query);
+    for file in database.files() {
+        search.add(database, file);
+    }
+    search.finish(database)
+}
+
+/// [`workspace_symbols`] file by file, so that the database may change in between.
+#[derive(Debug)]
+pub struct SymbolSearch {
+    pattern: Pattern,
+    matcher: Matcher,
+    letters: Vec<char>,
+    found: Vec<(u32, EntityId)>,
+}
+
+impl SymbolSearch {
+    /// A search that has not read any file.
+    pub fn new(query: &str) -> Self {
+        let pattern = Pattern::new(query, CaseMatching::Ignore, Normalization::Never, AtomKind::Fuzzy);
+        Self { pattern, matcher: Matcher::new(Config::DEFAULT), letters: Vec::new(), found: Vec::new() }
+    }
+
+    /// Searches a file.
+    pub fn add(&mut self, database: &Database, file: FileId) {
+        for entity in database.entities(file) {
+            if let Some(score) = self.score(entity.parse.entity.as_ref()) {
+                self.found.push((score, entity.id));
+            }
         }
     }
-    // Stable: equal scores stay by file and in text order.
-    matches.sort_by_key(|(score, _)| std::cmp::Reverse(*score));
-    matches.iter().take(MAX_RESULTS).filter_map(|(_, entity)| symbol(database, entity)).collect()
+
+    /// What was found and is still there, the best match first.
+    pub fn finish(mut self, database: &Database) -> Vec<WorkspaceSymbol> {
+        let mut found = std::mem::take(&mut self.found);
+        // Stable: equal scores stay by file and in text order.
+        found.sort_by_key(|(score, _)| std::cmp::Reverse(*score));
+        let still_there = found.into_iter().filter_map(|(score, id)| {
+            let entity = database.entity(id)?;
+            (self.score(entity.parse.entity.as_ref()) == Some(score)).then_some(entity)
+        });
+        still_there.take(MAX_RESULTS).filter_map(|entity| symbol(database, &entity)).collect()
+    }
+
+    fn score(&mut self, tree: Option<&Entity>) -> Option<u32> {
+        let name = tree?.name()?;
+        self.pattern.score(Utf32Str::new(&name.text, &mut self.letters), &mut self.matcher)
+    }
 }
 
 fn symbol(database: &Database, entity: &EntityRef<'_>) -> Option<WorkspaceSymbol> {

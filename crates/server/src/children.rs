@@ -40,7 +40,7 @@ impl Children {
         &mut self,
         command: &mut Command,
         folder: TempDir,
-    ) -> io::Result<(Running, UnboundedReceiver<News>)> {
+    ) -> io::Result<(Running, UnboundedReceiver<ChildEvent>)> {
         let started = Running::start(command, folder)?;
         self.count += 1;
         // A request that was taken back does not say that its child has ended.
@@ -93,7 +93,7 @@ pub(crate) struct Running {
 
 /// What a child process has to say.
 #[derive(Debug)]
-pub(crate) enum News {
+pub(crate) enum ChildEvent {
     /// A line on its way.
     Line(String),
     /// It ended: its exit code, if it has one, and all it printed on standard output.
@@ -102,29 +102,29 @@ pub(crate) enum News {
 
 /// Interrupts a child when it is let go of, which does nothing to one that has ended: whoever waited may be cancelled.
 #[derive(Debug)]
-pub(crate) struct Leash(pub(crate) Running);
+pub(crate) struct KillOnDrop(pub(crate) Running);
 
-impl Drop for Leash {
+impl Drop for KillOnDrop {
     fn drop(&mut self) {
         self.0.interrupt();
     }
 }
 
 impl Running {
-    fn start(command: &mut Command, folder: TempDir) -> io::Result<(Self, UnboundedReceiver<News>)> {
+    fn start(command: &mut Command, folder: TempDir) -> io::Result<(Self, UnboundedReceiver<ChildEvent>)> {
         // Nothing is ever said to it; that its input ends tells it that the server is no more, however that came.
         let piped = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = piped.spawn()?;
         let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
         let running = Self { child: Arc::new(Mutex::new(child)), folder: folder.path().into() };
-        let (sender, news) = unbounded();
+        let (sender, events) = unbounded();
         let followed = running.clone();
         let follow = move || {
             follow(&followed, stdout, stderr, &sender);
             drop(folder);
         };
         thread::Builder::new().name("run".to_owned()).spawn(follow)?;
-        Ok((running, news))
+        Ok((running, events))
     }
 
     fn is(&self, other: &Self) -> bool {
@@ -150,7 +150,7 @@ fn follow(
     child: &Running,
     stdout: Option<ChildStdout>,
     stderr: Option<impl Read>,
-    sender: &UnboundedSender<News>,
+    sender: &UnboundedSender<ChildEvent>,
 ) {
     let printed = thread::spawn(move || {
         let mut printed = Vec::new();
@@ -161,13 +161,13 @@ fn follow(
     let mut lines = stderr.map(BufReader::new);
     let mut line = Vec::new();
     while lines.as_mut().is_some_and(|lines| lines.read_until(b'\n', &mut line).is_ok_and(|read| read > 0)) {
-        let _ = sender.unbounded_send(News::Line(String::from_utf8_lossy(&line).trim_end().to_owned()));
+        let _ = sender.unbounded_send(ChildEvent::Line(String::from_utf8_lossy(&line).trim_end().to_owned()));
         line.clear();
     }
     let printed = printed.join().unwrap_or_default();
     await_end(child);
     let status = child.child.lock().unwrap_or_else(PoisonError::into_inner).wait();
-    let _ = sender.unbounded_send(News::Ended(status.ok().and_then(|status| status.code()), printed));
+    let _ = sender.unbounded_send(ChildEvent::Ended(status.ok().and_then(|status| status.code()), printed));
 }
 
 /// Waits without the lock, which whoever wants to interrupt the child needs; its number stays its own until the one who

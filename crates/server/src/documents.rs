@@ -1,9 +1,8 @@
 //! The documents: what the client shows, exactly as it sent it, and the files of the workspace besides.
 
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
-use pydslrep_analysis::{FileId, Snapshot};
+use pydslrep_analysis::{CancellationToken, FileId, Snapshot};
 use pydslrep_config::{FILE_NAME, Settings};
 use pydslrep_ide::{KnownMovements, ShownLenses};
 use pydslrep_scene::ENDING;
@@ -33,8 +32,8 @@ pub(crate) struct Document {
     pub(crate) imports: Vec<String>,
     /// What is set for it.
     pub(crate) settings: Arc<Settings>,
-    /// Set once the text is no longer this one.
-    pub(crate) outdated: Arc<AtomicBool>,
+    /// Cancelled when the text changes.
+    pub(crate) outdated: CancellationToken,
     /// What was last known of its movements.
     pub(crate) movements: KnownMovements,
     /// The lenses the client was last told of.
@@ -69,7 +68,7 @@ impl Document {
             published: None,
             imports: Vec::new(),
             settings: Arc::default(),
-            outdated: Arc::default(),
+            outdated: CancellationToken::default(),
             movements: KnownMovements::default(),
             lenses: ShownLenses::default(),
             tokens: None,
@@ -78,7 +77,7 @@ impl Document {
 
     /// Stops work on the text as it was.
     pub(crate) fn set_outdated(&mut self) {
-        std::mem::take(&mut self.outdated).store(true, Ordering::Relaxed);
+        std::mem::take(&mut self.outdated).cancel();
     }
 
     /// Whether it is a program.

@@ -4,21 +4,20 @@
 //! `pydslrep-ide` and `pydslrep-script`, and turns their plain answers into messages. Must never have features of its
 //! own, nor know the simulator.
 //!
-//! * `Server` (`server.rs`) lists everything a client can ask for; each entry calls one plain function in
-//!   `handlers`, a function of the state and the request's parameters.
-//! * [`Session`] runs them. Its one guarantee: every handler runs, in arrival order, up to its first `.await`, before
-//!   the next message is looked at. The state is a plain mutex that is never held across an `.await`.
+//! * `handlers` has the table of all methods, and each handler: a plain function of the state and the parameters.
+//! * `dispatch` reads the table, as a layer around the framework's service.
+//! * [`Session`] calls that service. Its one guarantee: every handler runs, in arrival order, up to its first `.await`,
+//!   before the next message is handled. The state is a plain mutex that is never held across an `.await`.
 //! * `message_loop` feeds a session from a stream; `process` finds the stream.
 //! * `positions` is the only place where lines and columns meet byte offsets.
 //!
 //! With the feature `process` off there is no runtime, no stdio and no socket: a browser feeds a session itself.
 
-mod capabilities;
 #[cfg(feature = "process")]
 mod children;
 mod chosen;
 mod client;
-mod direct;
+mod dispatch;
 mod documents;
 #[cfg(feature = "process")]
 mod driven;
@@ -32,10 +31,11 @@ mod message_loop;
 #[cfg(target_os = "linux")]
 #[cfg(feature = "process")]
 mod parent;
+mod pending;
 mod positions;
 #[cfg(feature = "process")]
 mod process;
-mod running;
+mod reader;
 mod server;
 mod session;
 mod state;

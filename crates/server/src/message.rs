@@ -6,9 +6,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use tower_lsp::jsonrpc::{Error, ErrorCode, Id, Request, Response};
+use tower_lsp::ls_types::notification::Notification;
+use tower_lsp::ls_types::request::{self, Request as _};
 
-/// Begins the ids of requests whose answers nobody waits for.
-pub(crate) const IN_PASSING: &str = "pydslrep: in passing ";
+/// Begins the ids of requests whose answers are ignored.
+pub(crate) const IGNORED: &str = "pydslrep: ignored ";
+
+/// A message to the client, encoded.
+pub(crate) type Body = Vec<u8>;
 
 /// What a client may send.
 #[derive(Debug, PartialEq)]
@@ -28,7 +33,7 @@ pub(crate) enum Incoming {
 pub(crate) fn parse(body: &[u8]) -> Result<Incoming, Response> {
     let value = serde_json::from_slice(body)
         .or_else(|error| {
-            without_lone_surrogates(body).map_or(Err(error), |mended| serde_json::from_slice(&mended))
+            without_lone_surrogates(body).map_or(Err(error), |replaced| serde_json::from_slice(&replaced))
         })
         .map_err(|error| refuse(Id::Null, ErrorCode::ParseError, format!("not JSON: {error}")))?;
     let Value::Object(mut fields) = value else {
@@ -67,25 +72,25 @@ fn without_lone_surrogates(body: &[u8]) -> Option<Vec<u8>> {
         let digits = body.get(at..)?.strip_prefix(b"\\u")?.get(..4)?;
         u16::from_str_radix(str::from_utf8(digits).ok()?, 16).ok()
     };
-    let mut mended = body.to_vec();
+    let mut replaced = body.to_vec();
     let mut at = 0;
     while at < body.len() {
         at += match (body[at], escape(at)) {
             (b'\\', Some(0xD800..=0xDBFF)) if matches!(escape(at + 6), Some(0xDC00..=0xDFFF)) => 12,
             (b'\\', Some(0xD800..=0xDFFF)) => {
-                mended[at..at + 6].copy_from_slice(b"\\ufffd");
+                replaced[at..at + 6].copy_from_slice(b"\\ufffd");
                 6
             }
             (b'\\', _) => 2,
             _ => 1,
         };
     }
-    (mended != body).then_some(mended)
+    (replaced != body).then_some(replaced)
 }
 
 fn request(method: String, id: Option<Id>, fields: &mut Map<String, Value>) -> Request {
     // Some clients send `{}` where the protocol has no parameters at all.
-    let params = fields.remove("params").filter(|_| method != "shutdown");
+    let params = fields.remove("params").filter(|_| method != request::Shutdown::METHOD);
     let mut request = Request::build(method);
     if let Some(params) = params {
         request = request.params(params);
@@ -110,14 +115,14 @@ fn invalid(id: Id, reason: &'static str) -> Response {
     refuse(id, ErrorCode::InvalidRequest, reason.to_owned())
 }
 
-/// An error response with words of our own.
+/// An error response with a message of our own.
 pub(crate) fn refuse(id: Id, code: ErrorCode, message: String) -> Response {
     Response::from_error(id, Error { code, message: message.into(), data: None })
 }
 
-/// What can be put into a message; most of it by way of serde.
+/// What can be written as JSON; most of it with serde.
 pub(crate) trait WriteJson {
-    /// Writes itself behind what is there.
+    /// Appends its JSON text.
     fn write_json(&self, json: &mut Vec<u8>) -> serde_json::Result<()>;
 }
 
@@ -127,10 +132,15 @@ impl<T: Serialize + ?Sized> WriteJson for T {
     }
 }
 
-/// The answer to a request, without the detour over a JSON value.
-pub(crate) fn encode_answer(id: &Id, result: &impl WriteJson) -> Vec<u8> {
+/// Any message. Writing our own plain structs into memory cannot fail.
+pub(crate) fn encode(message: &impl Serialize) -> Body {
+    serde_json::to_vec(message).unwrap_or_default()
+}
+
+/// The answer to a request.
+pub(crate) fn encode_answer(id: &Id, result: &impl WriteJson) -> Body {
     let mut body = br#"{"jsonrpc":"2.0","id":"#.to_vec();
-    // What is ours can always be written into memory.
+    // As in `encode`.
     let _ = id.write_json(&mut body);
     body.extend(br#","result":"#);
     let _ = result.write_json(&mut body);
@@ -138,75 +148,68 @@ pub(crate) fn encode_answer(id: &Id, result: &impl WriteJson) -> Vec<u8> {
     body
 }
 
+/// The answer to a request that failed.
+pub(crate) fn encode_error(id: Id, error: Error) -> Body {
+    encode(&Response::from_error(id, error))
+}
+
 /// Where messages to the client go; it never blocks, and messages arrive in the order in which they were sent.
 #[derive(Debug, Clone)]
 pub struct Outbox {
-    sender: Sender<Option<Vec<u8>>>,
-    /// Set by [`Self::only_answer`], and held while something unasked is sent, so that nothing slips through behind it.
+    sender: Sender<Option<Body>>,
+    /// Set by [`Self::only_answer`], and locked while anything else is sent, so that nothing is sent after it.
     only_answers: Arc<Mutex<bool>>,
 }
 
 impl Outbox {
     /// An outbox whose messages, encoded but not framed, come out of `sender`'s receiver; `None` is the last.
-    pub fn new(sender: Sender<Option<Vec<u8>>>) -> Self {
+    pub fn new(sender: Sender<Option<Body>>) -> Self {
         Self { sender, only_answers: Arc::default() }
     }
 
-    /// Sends a response.
-    pub(crate) fn send(&self, response: &impl Serialize) {
-        // Serialising our own plain structs cannot fail, and without a receiver there is nobody left to tell.
-        if let Ok(body) = serde_json::to_vec(response) {
-            let _ = self.sender.send(Some(body));
-        }
+    /// Sends an answer.
+    pub(crate) fn send_answer(&self, body: Body) {
+        // Without a receiver the client is gone.
+        let _ = self.sender.send(Some(body));
     }
 
-    /// Sends a request or notification of ours, unless the client has said that it wants no more of them.
-    pub(crate) fn send_unasked(&self, message: &impl Serialize) {
-        let only_answers = self.only_answers.lock().unwrap_or_else(PoisonError::into_inner);
-        if !*only_answers {
-            self.send(message);
-        }
-    }
-
-    /// From now on sends answers only: the client has shut the session down, and listens to nothing else.
-    pub(crate) fn only_answer(&self) {
-        *self.only_answers.lock().unwrap_or_else(PoisonError::into_inner) = true;
-    }
-
-    /// Sends a notification without the detour over a JSON value.
-    pub(crate) fn notify(&self, method: &'static str, params: &impl Serialize) {
+    /// Sends a notification.
+    pub(crate) fn send_notification<N: Notification>(&self, params: &N::Params) {
         #[derive(Serialize)]
-        struct Notification<'a, P> {
+        struct Message<'a, P> {
             jsonrpc: &'static str,
             method: &'static str,
             params: &'a P,
         }
-        self.send_unasked(&Notification { jsonrpc: "2.0", method, params });
+        self.send_server_message(&Message { jsonrpc: "2.0", method: N::METHOD, params });
     }
 
-    /// Sends a request whose answer nobody waits for; `number` tells it from the others.
-    pub(crate) fn ask_in_passing(&self, method: &'static str, number: u64) {
+    /// Sends a request whose answer is ignored; `number` makes its id unique.
+    pub(crate) fn send_server_request<R: request::Request<Params = ()>>(&self, number: u64) {
         #[derive(Serialize)]
-        struct InPassing {
+        struct Message {
             jsonrpc: &'static str,
             id: String,
             method: &'static str,
         }
-        self.send_unasked(&InPassing { jsonrpc: "2.0", id: format!("{IN_PASSING}{number}"), method });
+        let id = format!("{IGNORED}{number}");
+        self.send_server_message(&Message { jsonrpc: "2.0", id, method: R::METHOD });
     }
 
-    /// Answers a request.
-    pub(crate) fn answer(&self, id: &Id, result: &impl WriteJson) {
-        self.send_encoded(encode_answer(id, result));
+    /// Sends a request or notification of ours, unless the client has shut the session down.
+    pub(crate) fn send_server_message(&self, message: &impl Serialize) {
+        let only_answers = self.only_answers.lock().unwrap_or_else(PoisonError::into_inner);
+        if !*only_answers {
+            self.send_answer(encode(message));
+        }
     }
 
-    /// Sends what is encoded already.
-    pub(crate) fn send_encoded(&self, body: Vec<u8>) {
-        // As in `send`.
-        let _ = self.sender.send(Some(body));
+    /// From now on sends answers only: the client has shut the session down, and ignores everything else.
+    pub(crate) fn only_answer(&self) {
+        *self.only_answers.lock().unwrap_or_else(PoisonError::into_inner) = true;
     }
 
-    /// Tells the receiver that nothing follows.
+    /// Says that no message follows.
     #[cfg(feature = "process")]
     pub(crate) fn close(&self) {
         let _ = self.sender.send(None);

@@ -67,7 +67,7 @@ fn serve_with(
 fn read_all(session: &mut Session, mut frames: FrameReader<impl Read>) -> Ending {
     loop {
         if !frames.has_more() {
-            session.settle();
+            session.flush_diagnostics();
         }
         match frames.next() {
             Ok(Some(Frame::Body(body))) => {

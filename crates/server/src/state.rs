@@ -4,7 +4,6 @@ mod scenes;
 mod settings;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
 
 use futures::channel::oneshot;
 use pydslrep_analysis::{Database, EditCounts, FileId, Snapshot};
@@ -12,6 +11,7 @@ use pydslrep_ide::FilePosition;
 use pydslrep_syntax::Span;
 use ropey::Rope;
 use rustc_hash::FxHashSet;
+use tower_lsp::ls_types::request::{CodeLensRefresh, InlayHintRefreshRequest};
 use tower_lsp::ls_types::{
     DidChangeTextDocumentParams, Location, Position, Range, TextDocumentItem, TextDocumentPositionParams,
     TraceValue, Uri,
@@ -93,14 +93,15 @@ pub(crate) struct Stale {
 
 impl State {
     /// Takes in a document; one that is open already gets the new text.
-    pub(crate) fn open(&mut self, opened: TextDocumentItem) {
+    pub(crate) fn open(&mut self, opened: &TextDocumentItem) {
         let key = key(&opened.uri);
         if let Some(mut before) = self.documents.remove(&key) {
             before.set_outdated();
         }
         self.typing.take_if(|typing| typing.key == key);
         self.openings += 1;
-        let mut document = Document::new(opened.uri, Rope::from_str(&opened.text), Some(opened.version));
+        let mut document =
+            Document::new(opened.uri.clone(), Rope::from_str(&opened.text), Some(opened.version));
         document.opening = self.openings;
         self.stale.documents.insert(key.clone());
         let document = self.documents.entry(key.clone()).insert_entry(document).into_mut();
@@ -181,11 +182,13 @@ impl State {
     /// Has the client ask again for what is no longer so.
     pub(crate) fn tell_outdated(&mut self, outbox: &Outbox) {
         let Outdated { hints, lenses } = std::mem::take(&mut self.outdated);
-        let hints = (hints && self.client.refreshes_inlay_hints).then_some("workspace/inlayHint/refresh");
-        let lenses = (lenses && self.client.refreshes_code_lenses).then_some("workspace/codeLens/refresh");
-        for method in hints.into_iter().chain(lenses) {
+        if hints && self.client.refreshes_inlay_hints {
             self.refreshes += 1;
-            outbox.ask_in_passing(method, self.refreshes);
+            outbox.send_server_request::<InlayHintRefreshRequest>(self.refreshes);
+        }
+        if lenses && self.client.refreshes_code_lenses {
+            self.refreshes += 1;
+            outbox.send_server_request::<CodeLensRefresh>(self.refreshes);
         }
     }
 
@@ -279,7 +282,7 @@ impl State {
         let (document, file) = self.analysed(uri)?;
         Some(Work {
             snapshot: self.database.snapshot(file, None)?,
-            outdated: Arc::clone(&document.outdated),
+            outdated: document.outdated.clone(),
             run: run(document, self.client.encoding),
         })
     }

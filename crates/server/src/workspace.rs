@@ -238,7 +238,7 @@ mod tests {
 
         fn open(&mut self, name: &str, text: &str) {
             let item = TextDocumentItem::new(self.uri(name), "pydslrep".to_owned(), 1, text.to_owned());
-            self.state.open(item);
+            self.state.open(&item);
         }
 
         fn change(&mut self, name: &str, text: &str) {
@@ -356,7 +356,7 @@ mod tests {
     fn a_buffer_without_a_file_imports_nothing_and_is_not_told_so() {
         let mut workspace = Workspace::new(&[]);
         let uri: Uri = "untitled:Untitled-1".parse().unwrap();
-        workspace.state.open(TextDocumentItem::new(uri.clone(), "pydslrep".to_owned(), 1, USER.to_owned()));
+        workspace.state.open(&TextDocumentItem::new(uri.clone(), "pydslrep".to_owned(), 1, USER.to_owned()));
         let file = workspace.state.analysed(&uri).unwrap().1;
         assert_eq!(workspace.state.database.diagnostics(file), []);
     }

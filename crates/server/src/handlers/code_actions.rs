@@ -9,13 +9,15 @@ use pydslrep_ide as ide;
 use rustc_hash::FxHashMap;
 use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::{
-    CodeAction, CodeActionDisabled, CodeActionKind, CodeActionOrCommand, CodeActionParams,
-    CodeActionResponse, Command, Diagnostic, DocumentChanges, OneOf, OptionalVersionedTextDocumentIdentifier,
-    TextDocumentEdit, TextEdit, Uri, WorkspaceEdit,
+    CodeAction, CodeActionDisabled, CodeActionKind, CodeActionOptions, CodeActionOrCommand, CodeActionParams,
+    CodeActionResponse, CodeActionTriggerKind, Command, Diagnostic, DocumentChanges, OneOf,
+    OptionalVersionedTextDocumentIdentifier, ServerCapabilities, TextDocumentEdit, TextEdit, Uri,
+    WorkspaceEdit,
 };
 
 use self::rewriting::FixAllOf;
 use crate::chosen::ChosenEnvironment;
+use crate::client::ClientFeatures;
 use crate::documents::{Document, Sort, key};
 use crate::handlers::diagnostics;
 use crate::handlers::scripts;
@@ -27,8 +29,33 @@ pub(crate) const GENERATE_SCRIPT_KIND: CodeActionKind = CodeActionKind::new("sou
 /// The command behind it, where the client cannot create files.
 pub(crate) const GENERATE_SCRIPT: &str = "pydslrep.generateScript";
 
+pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures) {
+    let kinds = vec![
+        CodeActionKind::QUICKFIX,
+        CodeActionKind::REFACTOR_EXTRACT,
+        CodeActionKind::REFACTOR_INLINE,
+        CodeActionKind::REFACTOR_REWRITE,
+        CodeActionKind::SOURCE_FIX_ALL,
+        GENERATE_SCRIPT_KIND,
+    ];
+    let options = CodeActionOptions {
+        code_action_kinds: Some(kinds),
+        resolve_provider: Some(client.resolve_edits),
+        ..CodeActionOptions::default()
+    };
+    server.code_action_provider = Some(options.into());
+}
+
 /// `textDocument/codeAction`.
-pub(crate) fn code_actions(state: &State, params: &CodeActionParams) -> Option<CodeActionResponse> {
+pub(crate) fn code_actions(state: &mut State, params: &CodeActionParams) -> Option<CodeActionResponse> {
+    // What the editor asks for by itself is about the line of the cursor.
+    if params.context.trigger_kind == Some(CodeActionTriggerKind::AUTOMATIC) {
+        state.cursor_is_at(&params.text_document.uri, params.range);
+    }
+    actions(state, params)
+}
+
+fn actions(state: &State, params: &CodeActionParams) -> Option<CodeActionResponse> {
     let wanted = |kind: &CodeActionKind| {
         params.context.only.as_ref().is_none_or(|only| only.iter().any(|wish| covers(wish, kind)))
     };
@@ -204,7 +231,8 @@ fn disabled(state: &State, name: &str, reason: String) -> Option<CodeActionOrCom
 }
 
 /// `codeAction/resolve`: finds the edit of an action that was chosen.
-pub(crate) fn resolve(state: &State, action: CodeAction) -> Result<CodeAction> {
+pub(crate) fn resolve(state: &State, action: &CodeAction) -> Result<CodeAction> {
+    let action = action.clone();
     let Some(data) = &action.data else { return Ok(action) };
     if let Ok(which) = serde_json::from_value::<FixAllOf>(data.clone()) {
         let edit = Some(workspace_edit(state, &rewriting::edits(state, &which)));

@@ -88,7 +88,8 @@ fn of_environment(uri: &Uri, name: &str, range: Range, wanted: pydslrep_config::
 }
 
 /// `codeLens/resolve`: counts the references.
-pub(crate) fn resolve(state: &State, lens: CodeLens) -> Result<CodeLens> {
+pub(crate) fn resolve(state: &State, lens: &CodeLens) -> Result<CodeLens> {
+    let lens = lens.clone();
     let Some(data) = &lens.data else { return Ok(lens) };
     let of: LensOf = serde_json::from_value(data.clone())
         .map_err(|error| Error::invalid_params(format!("not a lens of this server: {error}")))?;

@@ -6,11 +6,12 @@ use pydslrep_syntax::EntityKind;
 use serde::{Deserialize, Serialize};
 use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::{
-    CompletionContext, CompletionItem, CompletionItemKind, CompletionList, CompletionParams,
-    CompletionResponse, CompletionTextEdit, CompletionTriggerKind, Documentation, InsertTextFormat,
-    MarkupContent, TextEdit,
+    CompletionContext, CompletionItem, CompletionItemKind, CompletionList, CompletionOptions,
+    CompletionParams, CompletionResponse, CompletionTextEdit, CompletionTriggerKind, Documentation,
+    InsertTextFormat, MarkupContent, ServerCapabilities, TextEdit,
 };
 
+use crate::client::ClientFeatures;
 use crate::documents::{Document, Sort, key};
 use crate::state::State;
 
@@ -26,6 +27,15 @@ struct CompletionOf {
     /// As [`EntityKind::noun`] has it.
     kind: String,
     name: String,
+}
+
+pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
+    server.completion_provider = Some(CompletionOptions {
+        // `[` is for settings files. Letters need not be listed: editors send requests after them anyway.
+        trigger_characters: Some([" ", "[", "\"", "/", "^"].map(str::to_owned).to_vec()),
+        resolve_provider: Some(true),
+        ..CompletionOptions::default()
+    });
 }
 
 /// What the grammar allows at a position, and which names make sense there; in a settings file or a scene, which keys.
@@ -68,7 +78,8 @@ fn list(state: &State, document: &Document, found: Vec<ide::Completion>) -> Comp
 }
 
 /// `completionItem/resolve`: says more of the one that is looked at.
-pub(crate) fn resolve(state: &State, item: CompletionItem) -> Result<CompletionItem> {
+pub(crate) fn resolve(state: &State, item: &CompletionItem) -> Result<CompletionItem> {
+    let item = item.clone();
     let Some(data) = &item.data else { return Ok(item) };
     let of: CompletionOf = serde_json::from_value(data.clone())
         .map_err(|error| Error::invalid_params(format!("not a completion of this server: {error}")))?;

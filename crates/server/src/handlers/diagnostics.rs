@@ -10,18 +10,22 @@ use pydslrep_analysis::diagnostics::Tag;
 use pydslrep_config::{Config, Problem};
 use pydslrep_syntax::Span;
 use rustc_hash::FxHashMap;
+use tower_lsp::jsonrpc::{Error, Result};
+use tower_lsp::ls_types::notification::PublishDiagnostics;
 use tower_lsp::ls_types::{
-    CodeDescription, Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag,
-    DocumentDiagnosticParams, DocumentDiagnosticReport, DocumentDiagnosticReportResult,
-    FullDocumentDiagnosticReport, NumberOrString, PublishDiagnosticsParams,
-    RelatedFullDocumentDiagnosticReport, RelatedUnchangedDocumentDiagnosticReport,
-    UnchangedDocumentDiagnosticReport, Uri, WorkspaceDiagnosticParams, WorkspaceDiagnosticReport,
-    WorkspaceDocumentDiagnosticReport, WorkspaceFullDocumentDiagnosticReport,
+    CodeDescription, Diagnostic, DiagnosticOptions, DiagnosticRelatedInformation,
+    DiagnosticServerCapabilities, DiagnosticSeverity, DiagnosticTag, DocumentDiagnosticParams,
+    DocumentDiagnosticReport, DocumentDiagnosticReportResult, FullDocumentDiagnosticReport, NumberOrString,
+    PublishDiagnosticsParams, RelatedFullDocumentDiagnosticReport, RelatedUnchangedDocumentDiagnosticReport,
+    ServerCapabilities, UnchangedDocumentDiagnosticReport, Uri, WorkspaceDiagnosticParams,
+    WorkspaceDiagnosticReport, WorkspaceDiagnosticReportResult, WorkspaceDocumentDiagnosticReport,
+    WorkspaceFullDocumentDiagnosticReport,
 };
 
 use crate::client::ClientFeatures;
 use crate::documents::{Document, Sort, key};
 use crate::message::Outbox;
+use crate::reader::Reader;
 use crate::state::State;
 
 /// What diagnostics are marked with, so that a person knows who says so.
@@ -79,12 +83,26 @@ fn publish_changed(state: &mut State, key: &str, outbox: &Outbox) {
 
 fn publish_one(uri: Uri, diagnostics: Vec<Diagnostic>, version: Option<i32>, outbox: &Outbox) {
     let params = PublishDiagnosticsParams::new(uri, diagnostics, version);
-    outbox.notify("textDocument/publishDiagnostics", &params);
+    outbox.send_notification::<PublishDiagnostics>(&params);
+}
+
+pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures) {
+    server.diagnostic_provider = client.pull_diagnostics.then(|| {
+        DiagnosticServerCapabilities::Options(DiagnosticOptions {
+            identifier: Some("pydslrep".to_owned()),
+            inter_file_dependencies: true,
+            workspace_diagnostics: true,
+            ..DiagnosticOptions::default()
+        })
+    });
 }
 
 /// `textDocument/diagnostic`. The result's id depends on the diagnostics and on when the document was opened, not on its
 /// version, which may start over.
-pub(crate) fn pull(state: &State, params: &DocumentDiagnosticParams) -> DocumentDiagnosticReportResult {
+pub(crate) fn pull(
+    state: &State,
+    params: &DocumentDiagnosticParams,
+) -> Result<DocumentDiagnosticReportResult> {
     let document = state.document(&params.text_document.uri);
     let items = document.map(|document| of_document(state, document)).unwrap_or_default();
     let result_id = result_id(&items, document.map_or(0, |document| document.opening));
@@ -102,29 +120,51 @@ pub(crate) fn pull(state: &State, params: &DocumentDiagnosticParams) -> Document
             },
         })
     };
-    report.into()
+    Ok(report.into())
 }
 
-/// `workspace/diagnostic`: what changed since the client last asked; `None` if nothing did.
-pub(crate) fn pull_workspace(
-    state: &State,
-    params: &WorkspaceDiagnosticParams,
-) -> Option<WorkspaceDiagnosticReport> {
+/// `workspace/diagnostic`: what changed since the client last asked; waits until something did.
+pub(crate) async fn pull_workspace(
+    mut reader: Reader,
+    params: WorkspaceDiagnosticParams,
+) -> Result<WorkspaceDiagnosticReportResult> {
     let known: FxHashMap<String, &str> =
         params.previous_result_ids.iter().map(|known| (key(&known.uri), known.value.as_str())).collect();
-    let mut items: Vec<WorkspaceDocumentDiagnosticReport> = Vec::new();
-    let mut documents: Vec<(&String, &Document)> = state.documents.iter().collect();
-    documents.sort_unstable_by_key(|(key, _)| *key);
-    for (key, document) in documents {
-        let found = of_document(state, document);
-        let id = result_id(&found, document.opening);
-        if known.get(key) != Some(&id.as_str()) {
-            items.push(full_report(document.uri.clone(), document.version, Some(id), found));
+    loop {
+        let change = reader.diagnostics_change();
+        let mut items = Vec::new();
+        let mut keys: Vec<String> = reader.state().documents.keys().cloned().collect();
+        keys.sort_unstable();
+        for key in keys {
+            let length = {
+                let state = reader.state();
+                let Some(document) = state.documents.get(&key) else { continue };
+                items.extend(changed_report(&state, document, known.get(&key).copied()));
+                document.text.len_bytes()
+            };
+            reader.has_read(length).await;
         }
+        {
+            let state = reader.state();
+            let gone = params.previous_result_ids.iter().filter(|known| state.document(&known.uri).is_none());
+            items.extend(gone.map(|known| full_report(known.uri.clone(), None, None, Vec::new())));
+        }
+        // A client that gets empty answers asks again at once.
+        if !items.is_empty() || known.is_empty() {
+            return Ok(WorkspaceDiagnosticReport { items }.into());
+        }
+        change.await.map_err(|_| Error::internal_error())?;
     }
-    let gone = params.previous_result_ids.iter().filter(|known| state.document(&known.uri).is_none());
-    items.extend(gone.map(|known| full_report(known.uri.clone(), None, None, Vec::new())));
-    (!items.is_empty() || known.is_empty()).then_some(WorkspaceDiagnosticReport { items })
+}
+
+fn changed_report(
+    state: &State,
+    document: &Document,
+    known: Option<&str>,
+) -> Option<WorkspaceDocumentDiagnosticReport> {
+    let found = of_document(state, document);
+    let id = result_id(&found, document.opening);
+    (known != Some(id.as_str())).then(|| full_report(document.uri.clone(), document.version, Some(id), found))
 }
 
 fn full_report(

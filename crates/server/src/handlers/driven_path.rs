@@ -3,6 +3,10 @@
 
 use rustc_hash::FxHashMap;
 use serde_json::Value;
+use tower_lsp::jsonrpc::Result;
+#[cfg(feature = "process")]
+use tower_lsp::ls_types::notification::Notification;
+use tower_lsp::ls_types::request::Request;
 
 use crate::chosen::ChosenEnvironment;
 use crate::documents::key;
@@ -10,26 +14,44 @@ use crate::documents::key;
 use crate::driven;
 #[cfg(feature = "process")]
 use crate::message::Outbox;
+use crate::state::State;
 
-/// Name of the request.
-pub(crate) const DRIVEN_PATH: &str = "pydslrep/drivenPath";
+/// The request.
+pub(crate) enum DrivenPath {}
 
-/// Name of the notification.
+impl Request for DrivenPath {
+    type Params = ChosenEnvironment;
+    type Result = Value;
+    const METHOD: &'static str = "pydslrep/drivenPath";
+}
+
+/// The notification.
 #[cfg(feature = "process")]
-const DRIVEN_PATH_CHANGED: &str = "pydslrep/drivenPathChanged";
+enum DrivenPathChanged {}
+
+#[cfg(feature = "process")]
+impl Notification for DrivenPathChanged {
+    type Params = ChosenEnvironment;
+    const METHOD: &'static str = "pydslrep/drivenPathChanged";
+}
+
+/// The path of the latest run of an environment; null where there was none. From now on the client is notified of
+/// another.
+pub(crate) fn driven_path(state: &mut State, which: &ChosenEnvironment) -> Result<Value> {
+    Ok(state.driven.watch(which))
+}
 
 /// What was driven in this session.
 #[derive(Debug, Default)]
 pub(crate) struct DrivenPaths {
     /// By the program's key and the environment's name.
     paths: FxHashMap<(String, String), Value>,
-    /// What the client has, and wants to hear of.
+    /// What the client has, and is notified of when it changes.
     watched: Vec<ChosenEnvironment>,
 }
 
 impl DrivenPaths {
-    /// The path of the latest run; null where there was none. From now on the client is told when there is another.
-    pub(crate) fn answer(&mut self, which: &ChosenEnvironment) -> Value {
+    fn watch(&mut self, which: &ChosenEnvironment) -> Value {
         if !self.watched.contains(which) {
             self.watched.push(which.clone());
         }
@@ -54,7 +76,7 @@ impl DrivenPaths {
         self.watched.retain(|watched| {
             let is_other = place(watched) != place(which);
             if !is_other {
-                outbox.notify(DRIVEN_PATH_CHANGED, watched);
+                outbox.send_notification::<DrivenPathChanged>(watched);
             }
             is_other
         });

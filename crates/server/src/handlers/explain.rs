@@ -4,18 +4,27 @@
 use pydslrep_config::find_rule;
 use serde::{Deserialize, Serialize};
 use tower_lsp::jsonrpc::{Error, Result};
+use tower_lsp::ls_types::request::Request;
 
-/// Name of the request.
-pub(crate) const EXPLAIN: &str = "pydslrep/explain";
+use crate::state::State;
+
+/// The request.
+pub(crate) enum Explain {}
+
+impl Request for Explain {
+    type Params = DiagnosticCode;
+    type Result = Explanation;
+    const METHOD: &'static str = "pydslrep/explain";
+}
 
 /// Which diagnostic is meant.
-#[derive(Debug, Deserialize)]
-pub(crate) struct Explain {
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct DiagnosticCode {
     code: String,
 }
 
 /// Its page.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Explanation {
     /// As in `docs/diagnostics`.
     markdown: String,
@@ -26,7 +35,7 @@ pub(crate) struct Explanation {
 /// # Errors
 ///
 /// If there is no such diagnostic.
-pub(crate) fn explain(of: &Explain) -> Result<Explanation> {
+pub(crate) fn explain(_: &State, of: &DiagnosticCode) -> Result<Explanation> {
     let rule = find_rule(&of.code).map_err(|unknown| Error::invalid_params(unknown.message))?;
     Ok(Explanation { markdown: rule.manual() })
 }

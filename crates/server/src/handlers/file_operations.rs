@@ -1,7 +1,7 @@
-//! What a client does to files and folders in its own tree: `workspace/willRenameFiles`, asked before, and
-//! `workspace/didRenameFiles`, `didCreateFiles` and `didDeleteFiles`, told afterwards.
+//! What a client does to files and folders in its own tree: `workspace/willRenameFiles` asks before,
+//! `workspace/didRenameFiles`, `didCreateFiles` and `didDeleteFiles` notify afterwards.
 //!
-//! A client that also watches files tells the same twice, which does no harm.
+//! A client that also watches files reports the same twice, which does no harm.
 
 use std::path::Path;
 use std::str::FromStr;
@@ -11,17 +11,20 @@ use pydslrep_files::EXTENSION;
 use pydslrep_ide as ide;
 use pydslrep_scene::ENDING;
 use tower_lsp::ls_types::{
-    FileOperationFilter, FileOperationPattern, FileOperationPatternKind, FileOperationRegistrationOptions,
-    RenameFilesParams, Uri, WorkspaceEdit, WorkspaceFileOperationsServerCapabilities,
+    CreateFilesParams, DeleteFilesParams, FileOperationFilter, FileOperationPattern,
+    FileOperationPatternKind, FileOperationRegistrationOptions, RenameFilesParams, ServerCapabilities, Uri,
+    WorkspaceEdit, WorkspaceFileOperationsServerCapabilities,
 };
 
+use crate::client::ClientFeatures;
 use crate::documents::key;
 use crate::handlers::code_actions;
+use crate::server::Server;
 use crate::state::State;
 use crate::workspace::folders;
 
 /// The operations that matter to programs: on themselves, on folders, which may hold some, on settings and on scenes.
-pub(crate) fn capabilities() -> WorkspaceFileOperationsServerCapabilities {
+pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
     let filter = |glob: String, kind: FileOperationPatternKind| FileOperationFilter {
         scheme: Some("file".to_owned()),
         pattern: FileOperationPattern { glob, matches: Some(kind), options: None },
@@ -33,13 +36,14 @@ pub(crate) fn capabilities() -> WorkspaceFileOperationsServerCapabilities {
     let all = FileOperationRegistrationOptions {
         filters: vec![programs.clone(), settings, scenes, folders.clone()],
     };
-    WorkspaceFileOperationsServerCapabilities {
+    let workspace = server.workspace.get_or_insert_default();
+    workspace.file_operations = Some(WorkspaceFileOperationsServerCapabilities {
         will_rename: Some(FileOperationRegistrationOptions { filters: vec![programs, folders] }),
         did_rename: Some(all.clone()),
         did_create: Some(all.clone()),
         did_delete: Some(all),
         ..WorkspaceFileOperationsServerCapabilities::default()
-    }
+    });
 }
 
 /// The edits that keep all imports right; `None` where none is needed.
@@ -54,8 +58,32 @@ pub(crate) fn will_rename(state: &State, params: &RenameFilesParams) -> Option<W
     (!edits.is_empty()).then(|| code_actions::workspace_edit(state, &edits))
 }
 
+/// `workspace/didRenameFiles`.
+pub(crate) async fn did_rename(server: Server, params: RenameFilesParams) {
+    let added = {
+        let mut state = server.state();
+        remove(&mut state, params.files.iter().map(|file| file.old_uri.as_str()));
+        add(&mut state, params.files.iter().map(|file| file.new_uri.as_str()))
+    };
+    server.index(added).await;
+    server.refresh().await;
+}
+
+/// `workspace/didCreateFiles`.
+pub(crate) async fn did_create(server: Server, params: CreateFilesParams) {
+    let added = add(&mut server.state(), params.files.iter().map(|file| file.uri.as_str()));
+    server.index(added).await;
+    server.refresh().await;
+}
+
+/// `workspace/didDeleteFiles`.
+pub(crate) async fn did_delete(server: Server, params: DeleteFilesParams) {
+    remove(&mut server.state(), params.files.iter().map(|file| file.uri.as_str()));
+    server.refresh().await;
+}
+
 /// Files and folders, by their addresses, are no longer where they were.
-pub(crate) fn gone<'a>(state: &mut State, addresses: impl Iterator<Item = &'a str>) {
+fn remove<'a>(state: &mut State, addresses: impl Iterator<Item = &'a str>) {
     for uri in addresses.filter_map(|address| Uri::from_str(address).ok()) {
         let [folder] = &folders([&uri])[..] else { continue };
         let inside = state.documents.iter().filter(|(key, _)| key.starts_with(folder));
@@ -68,7 +96,7 @@ pub(crate) fn gone<'a>(state: &mut State, addresses: impl Iterator<Item = &'a st
 }
 
 /// Files and folders are new; returns the folders of the workspace among them, in which there may be programs.
-pub(crate) fn come<'a>(state: &mut State, addresses: impl Iterator<Item = &'a str>) -> Vec<String> {
+fn add<'a>(state: &mut State, addresses: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut new = Vec::new();
     for uri in addresses.filter_map(|address| Uri::from_str(address).ok()) {
         if !Path::new(&key(&uri)).is_dir() {

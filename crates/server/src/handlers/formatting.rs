@@ -5,10 +5,12 @@ use pydslrep_analysis::Snapshot;
 use pydslrep_ide as ide;
 use pydslrep_syntax as syntax;
 use tower_lsp::ls_types::{
-    DocumentFormattingParams, DocumentOnTypeFormattingParams, DocumentRangeFormattingParams, TextEdit,
+    DocumentFormattingParams, DocumentOnTypeFormattingOptions, DocumentOnTypeFormattingParams,
+    DocumentRangeFormattingParams, ServerCapabilities, TextEdit,
 };
 
-use crate::positions::{Encoding, LineTable};
+use crate::client::ClientFeatures;
+use crate::positions::{Encoding, LineTable, to_span};
 use crate::state::State;
 use crate::work::Work;
 
@@ -20,11 +22,21 @@ pub(crate) fn document(state: &mut State, params: &DocumentFormattingParams) -> 
 }
 
 /// The same for a range.
-pub(crate) fn range(state: &State, params: &DocumentRangeFormattingParams) -> Option<Vec<TextEdit>> {
-    let (document, file) = state.analysed(&params.text_document.uri)?;
-    let span = state.span(document, params.range);
-    let snapshot = state.database.snapshot(file, None)?;
-    Some(convert(&snapshot, state.client.encoding, ide::format_range(&snapshot, span)))
+pub(crate) fn range(
+    state: &mut State,
+    params: &DocumentRangeFormattingParams,
+) -> Option<Work<Vec<TextEdit>>> {
+    state.work(&params.text_document.uri, |document, encoding| {
+        let span = to_span(&document.text, params.range, encoding);
+        Box::new(move |snapshot| convert(&snapshot, encoding, ide::format_range(&snapshot, span)))
+    })
+}
+
+pub(crate) fn announce_on_type(server: &mut ServerCapabilities, _: &ClientFeatures) {
+    server.document_on_type_formatting_provider = Some(DocumentOnTypeFormattingOptions {
+        first_trigger_character: "}".to_owned(),
+        more_trigger_character: Some(vec!["\n".to_owned()]),
+    });
 }
 
 /// The edits after a character was typed.

@@ -3,13 +3,15 @@
 use pydslrep_ide as ide;
 use pydslrep_syntax::EntityKind;
 use serde::Deserialize;
-use tower_lsp::jsonrpc::{Error, Result};
+use tower_lsp::jsonrpc::Result;
 use tower_lsp::ls_types::{
-    ExecuteCommandParams, Hover, HoverContents, HoverParams, MarkedString, MarkupContent, Uri,
+    ExecuteCommandParams, Hover, HoverContents, HoverParams, LSPAny, MarkedString, MarkupContent, Uri,
 };
 
 use crate::documents::Sort;
+use crate::handlers::commands;
 use crate::handlers::scripts::failure;
+use crate::server::Server;
 use crate::state::State;
 
 /// Shows the kinematics of a robot; takes what [`RobotOf`] holds and answers with Markdown.
@@ -24,19 +26,18 @@ struct RobotOf {
     robot: String,
 }
 
-/// The command [`SHOW_KINEMATICS`]: what a hover over the robot says.
-pub(crate) fn kinematics(state: &State, params: &ExecuteCommandParams) -> Result<String> {
-    let which = params.arguments.first().filter(|_| params.arguments.len() == 1);
-    let which: Option<RobotOf> = which.and_then(|argument| serde_json::from_value(argument.clone()).ok());
-    let expected = "one argument is expected: {\"uri\": of the program, \"robot\": its name}";
-    let RobotOf { uri, robot } = which.ok_or_else(|| Error::invalid_params(expected))?;
+/// The command [`SHOW_KINEMATICS`]: what a hover over the robot shows.
+pub(crate) async fn show_kinematics(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
+    let RobotOf { uri, robot } = commands::argument(&params)?;
+    let state = server.state();
     let (_, file) = state
         .analysed(&uri)
         .ok_or_else(|| failure(format!("`{}` is not open in the editor", uri.as_str())))?;
     let declared = state.database.declarations(file, EntityKind::Robot, &robot.as_str().into());
     let at = declared.first().map(|span| ide::FilePosition { file, offset: span.start });
     let found = at.and_then(|position| ide::hover(&state.database, position));
-    found.map(|hover| hover.markdown).ok_or_else(|| failure(format!("there is no robot `{robot}`")))
+    let found = found.ok_or_else(|| failure(format!("there is no robot `{robot}`")))?;
+    Ok(Some(found.markdown.into()))
 }
 
 /// What is known about the thing at a position.

@@ -5,21 +5,34 @@
 use pydslrep_ide as ide;
 use serde::{Deserialize, Serialize};
 use tower_lsp::jsonrpc::Result;
+use tower_lsp::ls_types::request::Request;
 use tower_lsp::ls_types::{Location, TextDocumentPositionParams};
 
 use crate::chosen::ChosenEnvironment;
 use crate::handlers::scripts::environment;
 use crate::state::State;
 
-/// Name of the request.
-pub(crate) const PLANNED_AT: &str = "pydslrep/plannedAt";
+/// The request for what a position has to do with planned paths.
+pub(crate) enum PlannedAt {}
 
-/// Name of the request.
-pub(crate) const ACTION_LOCATION: &str = "pydslrep/actionLocation";
+impl Request for PlannedAt {
+    type Params = TextDocumentPositionParams;
+    type Result = Option<AtPosition>;
+    const METHOD: &'static str = "pydslrep/plannedAt";
+}
 
-/// What of planned paths stands at a position.
-#[derive(Debug, Serialize)]
-pub(crate) struct PlannedAt {
+/// The request for where an action is written.
+pub(crate) enum ActionLocation {}
+
+impl Request for ActionLocation {
+    type Params = ActionOf;
+    type Result = Option<Location>;
+    const METHOD: &'static str = "pydslrep/actionLocation";
+}
+
+/// What a position has to do with planned paths.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct AtPosition {
     environments: Vec<String>,
     using: Vec<String>,
     action: Option<NumberedAction>,
@@ -33,7 +46,7 @@ pub(crate) struct NumberedAction {
 }
 
 /// Which action is meant.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct ActionOf {
     #[serde(flatten)]
     which: ChosenEnvironment,
@@ -41,18 +54,19 @@ pub(crate) struct ActionOf {
     action: NumberedAction,
 }
 
-/// What of planned paths stands at a position; `None` where the document is not open or is no program.
-pub(crate) fn planned_at(state: &State, at: &TextDocumentPositionParams) -> Option<PlannedAt> {
+/// What a position has to do with planned paths; `None` where the document is not open or not a program.
+pub(crate) fn planned_at(state: &mut State, at: &TextDocumentPositionParams) -> Option<AtPosition> {
+    state.cursor_is(at);
     let place = state.place(at)?;
     let found = ide::planned_at(&state.database, place.position());
-    Some(PlannedAt {
+    Some(AtPosition {
         environments: found.environments.into_iter().map(String::from).collect(),
         using: found.using.into_iter().map(String::from).collect(),
         action: found.action.map(|(movement, index)| NumberedAction { movement: movement.into(), index }),
     })
 }
 
-/// Where an action of an environment stands; `None` where it is no longer there.
+/// Where an action of an environment is written; `None` if it is gone.
 ///
 /// # Errors
 ///

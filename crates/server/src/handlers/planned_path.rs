@@ -7,17 +7,30 @@ use pydslrep_scene::{self as scenery, Mount, Shape};
 use serde::Serialize;
 use serde_json::Value;
 use tower_lsp::jsonrpc::Result;
+use tower_lsp::ls_types::notification::Notification;
+use tower_lsp::ls_types::request::Request;
 
 use crate::chosen::{ChosenEnvironment, Watched};
 use crate::handlers::scripts::{environment, failure};
 use crate::message::Outbox;
 use crate::state::State;
 
-/// Name of the request.
-pub(crate) const PLANNED_PATH: &str = "pydslrep/plannedPath";
+/// The request.
+pub(crate) enum PlannedPath {}
 
-/// Name of the notification.
-const PLANNED_PATH_CHANGED: &str = "pydslrep/plannedPathChanged";
+impl Request for PlannedPath {
+    type Params = ChosenEnvironment;
+    type Result = Value;
+    const METHOD: &'static str = "pydslrep/plannedPath";
+}
+
+/// The notification.
+enum PlannedPathChanged {}
+
+impl Notification for PlannedPathChanged {
+    type Params = ChosenEnvironment;
+    const METHOD: &'static str = "pydslrep/plannedPathChanged";
+}
 
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
@@ -134,7 +147,7 @@ pub(crate) fn announce(state: &mut State, outbox: &Outbox) {
             watched.fingerprint = fingerprint;
             state.watched.push(watched);
         } else {
-            outbox.notify(PLANNED_PATH_CHANGED, &watched.which);
+            outbox.send_notification::<PlannedPathChanged>(&watched.which);
         }
     }
 }

@@ -15,7 +15,11 @@ pub(crate) fn references(state: &State, params: &ReferenceParams) -> Option<Vec<
 }
 
 /// The places of the name at a position in its document.
-pub(crate) fn highlights(state: &State, params: &DocumentHighlightParams) -> Option<Vec<DocumentHighlight>> {
+pub(crate) fn highlights(
+    state: &mut State,
+    params: &DocumentHighlightParams,
+) -> Option<Vec<DocumentHighlight>> {
+    state.cursor_is(&params.text_document_position_params);
     let place = state.place(&params.text_document_position_params)?;
     let found = ide::highlights(&state.database, place.position()).into_iter();
     let highlight = |found: ide::Highlight| {

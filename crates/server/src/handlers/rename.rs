@@ -3,15 +3,25 @@
 use pydslrep_ide as ide;
 use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::{
-    LinkedEditingRangeParams, LinkedEditingRanges, PrepareRenameResponse, RenameParams,
-    TextDocumentPositionParams, WorkspaceEdit,
+    LinkedEditingRangeParams, LinkedEditingRanges, OneOf, PrepareRenameResponse, RenameOptions, RenameParams,
+    ServerCapabilities, TextDocumentPositionParams, WorkDoneProgressOptions, WorkspaceEdit,
 };
 
+use crate::client::ClientFeatures;
 use crate::handlers::{code_actions, scripts};
 use crate::state::State;
 
 /// What a name looks like, for editors that stop linking where something else is typed.
 const NAME_PATTERN: &str = r"\^?[A-Za-z_][A-Za-z0-9_]*";
+
+pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures) {
+    let options = RenameOptions {
+        prepare_provider: Some(true),
+        work_done_progress_options: WorkDoneProgressOptions::default(),
+    };
+    server.rename_provider =
+        Some(if client.prepare_rename { OneOf::Right(options) } else { OneOf::Left(true) });
+}
 
 /// The name that a rename would change.
 ///

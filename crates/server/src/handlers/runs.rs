@@ -4,6 +4,10 @@
 //! What is open is written into a folder of its own together with what it imports, as it is in the editor at that
 //! moment. The person's files stay as they are.
 
+mod command;
+
+pub(crate) use self::command::run;
+
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -17,7 +21,7 @@ use pydslrep_script::{VREP_CLIENT_PARTS, VREP_CLIENTS};
 use tempfile::TempDir;
 use tower_lsp::jsonrpc::{Error, ErrorCode, Result};
 
-use crate::children::{Children, News, Running};
+use crate::children::{ChildEvent, Children, Running};
 use crate::chosen::ChosenEnvironment;
 use crate::handlers::scripts::{blocked, environment, failure};
 use crate::state::State;
@@ -135,7 +139,7 @@ impl Job {
     pub(crate) fn start(
         self,
         children: &mut Children,
-    ) -> Result<(Running, UnboundedReceiver<News>, PathBuf)> {
+    ) -> Result<(Running, UnboundedReceiver<ChildEvent>, PathBuf)> {
         let picture = children
             .picture(&format!("{}-{}", self.environment, self.what))
             .map_err(|error| failure(format!("there is no place for a picture: {error}")))?;
@@ -148,13 +152,13 @@ impl Job {
             command.arg("--trace").arg(trace(&picture)).arg("--map").arg(map(&picture));
             command.arg("--until-input-ends");
         }
-        let (running, news) = children.start(&mut command, self.folder).map_err(|error| {
+        let (running, events) = children.start(&mut command, self.folder).map_err(|error| {
             let name = program.display();
             failure(format!(
                 "cannot start {name}: {error}; put `pydslrep` beside `pydslrep-lsp` or on the PATH"
             ))
         })?;
-        Ok((running, news, picture))
+        Ok((running, events, picture))
     }
 }
 
@@ -191,8 +195,8 @@ pub(crate) fn ended_badly(code: Option<i32>, said: &[String]) -> Error {
     }
     // Where it wrote to is nothing that the person asked for, and what it began with is no reason.
     let others = ["picture: ", "replay: ", "trace: ", "map: ", "preparing Python "];
-    let is_news = |line: &&String| !others.iter().any(|other| line.starts_with(other));
-    let words: Vec<&str> = said.iter().filter(is_news).map(String::as_str).collect();
+    let is_reason = |line: &&String| !others.iter().any(|other| line.starts_with(other));
+    let words: Vec<&str> = said.iter().filter(is_reason).map(String::as_str).collect();
     if words.is_empty() {
         return failure("pydslrep exited without output".to_owned());
     }

@@ -8,14 +8,17 @@ use pydslrep_analysis::{Blocked, EntityId};
 use pydslrep_syntax::EntityKind;
 use serde::Serialize;
 use tower_lsp::jsonrpc::{self, Error, ErrorCode};
+use tower_lsp::ls_types::notification::ShowMessage;
 use tower_lsp::ls_types::{
-    CreateFile, CreateFileOptions, DocumentChangeOperation, DocumentChanges, ExecuteCommandParams, Location,
-    MessageType, OneOf, OptionalVersionedTextDocumentIdentifier, Position, Range, ResourceOp,
+    CreateFile, CreateFileOptions, DocumentChangeOperation, DocumentChanges, ExecuteCommandParams, LSPAny,
+    Location, MessageType, OneOf, OptionalVersionedTextDocumentIdentifier, Position, Range, ResourceOp,
     ShowDocumentParams, ShowMessageParams, TextDocumentEdit, TextEdit, Uri, WorkspaceEdit,
 };
 
 use crate::chosen::ChosenEnvironment;
+use crate::handlers::commands;
 use crate::message::Outbox;
+use crate::server::Server;
 use crate::state::State;
 
 /// A line behind the last of any script: the protocol clamps it to the document's end.
@@ -137,28 +140,23 @@ pub(crate) fn edit(script: &Script) -> WorkspaceEdit {
     WorkspaceEdit { document_changes, ..WorkspaceEdit::default() }
 }
 
-/// The environment that a command is about.
-///
-/// # Errors
-///
-/// If its arguments are others than they should be.
-pub(crate) fn which(params: &ExecuteCommandParams) -> jsonrpc::Result<ChosenEnvironment> {
-    let which = match params.arguments.as_slice() {
-        [argument] => serde_json::from_value(argument.clone()).ok(),
-        _ => None,
-    };
-    let expected = "one argument is expected: {\"uri\": of the program, \"environment\": its name}";
-    which.ok_or_else(|| Error::invalid_params(expected))
-}
-
-/// The command `pydslrep.generateScript`, for clients that cannot create files: writes the script itself and tells
-/// where.
-pub(crate) fn execute(state: &State, params: &ExecuteCommandParams, outbox: &Outbox) -> jsonrpc::Result<Uri> {
-    let script = generate(state, &which(params)?)?;
+/// The command `pydslrep.generateScript`, for clients that cannot create files: writes the script, and shows it where
+/// the client can.
+pub(crate) async fn generate_script(
+    server: Server,
+    params: ExecuteCommandParams,
+) -> jsonrpc::Result<Option<LSPAny>> {
+    let which = commands::argument(&params)?;
+    let script = generate(&server.state(), &which)?;
     let path = path(&script.uri).ok_or_else(unsaved)?;
     write(&path, &script.text).map_err(failure)?;
-    tell(outbox, MessageType::INFO, format!("Script written: {}", script.file_name()));
-    Ok(script.uri)
+    tell(&server.outbox, MessageType::INFO, format!("Script written: {}", script.file_name()));
+    let shows_documents = server.state().client.show_document;
+    if shows_documents {
+        // The script is there, whether or not the client then shows it.
+        let _ = server.client.show_document(show(script.uri)).await;
+    }
+    Ok(None)
 }
 
 /// Writes the scripts of all environments without errors, if that is set. Each script is told of once, and so is each
@@ -201,11 +199,11 @@ fn write(path: &Path, text: &str) -> Result<(), String> {
 }
 
 fn tell(outbox: &Outbox, typ: MessageType, message: String) {
-    outbox.notify("window/showMessage", &ShowMessageParams { typ, message });
+    outbox.send_notification::<ShowMessage>(&ShowMessageParams { typ, message });
 }
 
 /// The request to show a script beside its program.
-pub(crate) fn show(uri: Uri) -> ShowDocumentParams {
+fn show(uri: Uri) -> ShowDocumentParams {
     ShowDocumentParams { uri, external: Some(false), take_focus: Some(false), selection: None }
 }
 

@@ -7,14 +7,26 @@ use pydslrep_ide as ide;
 use pydslrep_syntax::{EntityKind, Span};
 use tower_lsp::ls_types::{
     Position, SemanticToken, SemanticTokenModifier, SemanticTokenType, SemanticTokens, SemanticTokensDelta,
-    SemanticTokensDeltaParams, SemanticTokensEdit, SemanticTokensFullDeltaResult, SemanticTokensLegend,
-    SemanticTokensParams, SemanticTokensRangeParams, Uri,
+    SemanticTokensDeltaParams, SemanticTokensEdit, SemanticTokensFullDeltaResult, SemanticTokensFullOptions,
+    SemanticTokensLegend, SemanticTokensOptions, SemanticTokensParams, SemanticTokensRangeParams,
+    SemanticTokensRangeResult, ServerCapabilities, Uri,
 };
 
+use crate::client::ClientFeatures;
 use crate::documents::{SentTokens, TokenCounts, key};
 use crate::positions::{Encoding, LineTable};
 use crate::state::State;
 use crate::work::Work;
+
+pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
+    let options = SemanticTokensOptions {
+        legend: legend(),
+        range: Some(true),
+        full: Some(SemanticTokensFullOptions::Delta { delta: Some(true) }),
+        ..SemanticTokensOptions::default()
+    };
+    server.semantic_tokens_provider = Some(options.into());
+}
 
 /// The tokens of a whole document.
 pub(crate) fn full(state: &mut State, params: &SemanticTokensParams) -> Option<Work<SemanticTokens>> {
@@ -127,17 +139,17 @@ fn numbers(tokens: usize) -> u32 {
 }
 
 /// The tokens that touch a range: what the editor shows first.
-pub(crate) fn range(state: &State, params: &SemanticTokensRangeParams) -> Option<SemanticTokens> {
+pub(crate) fn range(state: &State, params: &SemanticTokensRangeParams) -> Option<SemanticTokensRangeResult> {
     let (document, file) = state.analysed(&params.text_document.uri)?;
     let span = state.span(document, params.range);
     let snapshot = state.database.snapshot(file, Some(span))?;
     let tokens = ide::semantic_tokens(&snapshot, Some(span));
     let (Some(first), Some(last)) = (tokens.first(), tokens.last()) else {
-        return Some(SemanticTokens { result_id: None, data: Vec::new() });
+        return Some(SemanticTokens { result_id: None, data: Vec::new() }.into());
     };
     let covered = first.span.to(last.span);
     let table = LineTable::of_part(&document.text, covered, state.client.encoding);
-    Some(SemanticTokens { result_id: None, data: encode(&table, Position::new(0, 0), &tokens) })
+    Some(SemanticTokens { result_id: None, data: encode(&table, Position::new(0, 0), &tokens) }.into())
 }
 
 /// Each token by its distance from the one before; none reaches over the end of a line.
@@ -161,7 +173,7 @@ fn encode(table: &LineTable, mut before: Position, tokens: &[ide::SemanticToken]
 
 /// The protocol's names for our kinds of token, its own ones so that every theme colours them; [`token_type`] and
 /// [`modifier_bit`] count in their order.
-pub(crate) fn legend() -> SemanticTokensLegend {
+fn legend() -> SemanticTokensLegend {
     SemanticTokensLegend {
         token_types: vec![
             SemanticTokenType::KEYWORD,
@@ -253,7 +265,7 @@ mod tests {
     fn state(text: &str) -> State {
         let mut state = State::default();
         state.client.token_deltas = true;
-        state.open(TextDocumentItem::new(uri(), "pydslrep".to_owned(), 1, text.to_owned()));
+        state.open(&TextDocumentItem::new(uri(), "pydslrep".to_owned(), 1, text.to_owned()));
         state
     }
 

@@ -2,11 +2,19 @@
 
 use pydslrep_ide as ide;
 use tower_lsp::ls_types::{
-    ParameterInformation, ParameterLabel, SignatureHelp, SignatureHelpContext, SignatureHelpParams,
-    SignatureHelpTriggerKind, SignatureInformation,
+    ParameterInformation, ParameterLabel, ServerCapabilities, SignatureHelp, SignatureHelpContext,
+    SignatureHelpOptions, SignatureHelpParams, SignatureHelpTriggerKind, SignatureInformation,
 };
 
+use crate::client::ClientFeatures;
 use crate::state::State;
+
+pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
+    server.signature_help_provider = Some(SignatureHelpOptions {
+        retrigger_characters: Some([" ", ",", "{", "}"].map(str::to_owned).to_vec()),
+        ..SignatureHelpOptions::default()
+    });
+}
 
 /// The shape of the statement at a position.
 pub(crate) fn signature_help(state: &State, params: &SignatureHelpParams) -> Option<SignatureHelp> {

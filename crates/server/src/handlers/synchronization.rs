@@ -1,47 +1,68 @@
 //! Documents opened, changed and closed. The client's order is the truth, whatever the version numbers say: an editor
 //! may close a document and open it again with a version that is lower.
 
+use tower_lsp::ls_types::notification::LogTrace;
 use tower_lsp::ls_types::{
-    DidChangeTextDocumentParams, DidCloseTextDocumentParams, DidOpenTextDocumentParams, LogTraceParams,
-    SetTraceParams,
+    DidChangeTextDocumentParams, DidCloseTextDocumentParams, DidOpenTextDocumentParams,
+    DidSaveTextDocumentParams, LogTraceParams, ServerCapabilities, SetTraceParams,
+    TextDocumentSyncCapability, TextDocumentSyncKind, TextDocumentSyncOptions, TextDocumentSyncSaveOptions,
 };
 
+use crate::client::ClientFeatures;
+use crate::handlers::scripts;
 use crate::log::log;
 use crate::message::Outbox;
 use crate::state::State;
 
+pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures) {
+    server.position_encoding = Some(client.encoding.kind());
+    server.text_document_sync = Some(TextDocumentSyncCapability::Options(TextDocumentSyncOptions {
+        open_close: Some(true),
+        change: Some(TextDocumentSyncKind::INCREMENTAL),
+        save: Some(TextDocumentSyncSaveOptions::Supported(true)),
+        ..TextDocumentSyncOptions::default()
+    }));
+}
+
 /// `textDocument/didOpen`.
-pub(crate) fn open(state: &mut State, params: DidOpenTextDocumentParams) {
-    state.open(params.text_document);
+pub(crate) fn open(state: &mut State, params: &DidOpenTextDocumentParams, _: &Outbox) {
+    state.open(&params.text_document);
 }
 
 /// `textDocument/didChange`.
-pub(crate) fn change(state: &mut State, params: &DidChangeTextDocumentParams) {
+pub(crate) fn change(state: &mut State, params: &DidChangeTextDocumentParams, outbox: &Outbox) {
     if !state.change(params) {
         let uri = params.text_document.uri.as_str();
-        log(format_args!("a change to a document that is not open: {uri}"));
+        log(format_args!("a document was changed that is not open: {uri}"));
     }
+    log_costs(state, params, outbox);
+}
+
+/// `textDocument/didSave`.
+pub(crate) fn save(state: &mut State, params: &DidSaveTextDocumentParams, outbox: &Outbox) {
+    state.saved(&params.text_document.uri);
+    scripts::save(state, &params.text_document.uri, outbox);
 }
 
 /// `$/setTrace`.
-pub(crate) fn set_trace(state: &mut State, params: &SetTraceParams) {
+pub(crate) fn set_trace(state: &mut State, params: &SetTraceParams, _: &Outbox) {
     state.trace = params.value;
 }
 
 /// `$/logTrace`: what the changes of a message cost, for a client that wants to know.
-pub(crate) fn tell_costs(state: &mut State, params: &DidChangeTextDocumentParams, outbox: &Outbox) {
+fn log_costs(state: &mut State, params: &DidChangeTextDocumentParams, outbox: &Outbox) {
     for counts in state.costs.drain(..) {
         let message = format!("changed {}", params.text_document.uri.as_str());
         let verbose = format!(
             "relexed: {} tokens, reparsed: {} entities, revalidated: {} entities",
             counts.relexed, counts.reparsed, counts.revalidated
         );
-        outbox.notify("$/logTrace", &LogTraceParams { message, verbose: Some(verbose) });
+        outbox.send_notification::<LogTrace>(&LogTraceParams { message, verbose: Some(verbose) });
     }
 }
 
 /// `textDocument/didClose`.
-pub(crate) fn close(state: &mut State, params: &DidCloseTextDocumentParams) {
+pub(crate) fn close(state: &mut State, params: &DidCloseTextDocumentParams, _: &Outbox) {
     let uri = &params.text_document.uri;
     if !state.close(uri) {
         log(format_args!("a document was closed that is not open: {}", uri.as_str()));
@@ -67,7 +88,7 @@ mod tests {
 
     fn open_text(state: &mut State, version: i32, text: &str) {
         let text_document = TextDocumentItem::new(uri(), "pydslrep".to_owned(), version, text.to_owned());
-        state.open(text_document);
+        state.open(&text_document);
     }
 
     /// One change after the other: `None` replaces the whole text, else line and column of start and end.

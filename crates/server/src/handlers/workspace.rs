@@ -4,13 +4,20 @@ use pydslrep_config::{FILE_NAME, SECTION};
 use pydslrep_files::EXTENSION;
 use pydslrep_scene::ENDING;
 use serde_json::Value;
+use tower_lsp::ls_types::notification::{
+    DidChangeConfiguration, DidChangeWatchedFiles, Notification, ShowMessage,
+};
 use tower_lsp::ls_types::{
-    ConfigurationItem, DidChangeWatchedFilesParams, DidChangeWatchedFilesRegistrationOptions,
-    DidChangeWorkspaceFoldersParams, FileSystemWatcher, GlobPattern, MessageType, Registration,
-    ShowMessageParams,
+    ConfigurationItem, DidChangeConfigurationParams, DidChangeWatchedFilesParams,
+    DidChangeWatchedFilesRegistrationOptions, DidChangeWorkspaceFoldersParams, FileSystemWatcher,
+    GlobPattern, InitializedParams, MessageType, OneOf, Registration, ServerCapabilities, ShowMessageParams,
+    WorkspaceFolder, WorkspaceFoldersServerCapabilities,
 };
 
+use crate::client::ClientFeatures;
+use crate::log::log;
 use crate::message::Outbox;
+use crate::server::Server;
 use crate::state::State;
 use crate::workspace::folders;
 
@@ -19,17 +26,17 @@ pub(crate) fn wanted_settings() -> Vec<ConfigurationItem> {
     vec![ConfigurationItem { scope_uri: None, section: Some(SECTION.to_owned()) }]
 }
 
-/// Takes in what the client has set; what is wrong with it is told.
+/// Takes over the client's settings, and reports what is wrong with them.
 pub(crate) fn set(state: &mut State, settings: &Value, outbox: &Outbox) {
     for problem in state.set_client_settings(settings) {
         let help = problem.help.map(|help| format!(" ({help})")).unwrap_or_default();
         let message = format!("settings of PyDSLRep: {}{help}", problem.message);
-        outbox.notify("window/showMessage", &ShowMessageParams { typ: MessageType::WARNING, message });
+        outbox.send_notification::<ShowMessage>(&ShowMessageParams { typ: MessageType::WARNING, message });
     }
 }
 
-/// The request to be told when files change, and settings.
-pub(crate) fn registrations(state: &State) -> Vec<Registration> {
+/// Asks to be notified when files change, and settings.
+fn registrations(state: &State) -> Vec<Registration> {
     let mut wanted = Vec::new();
     if state.client.watched_files {
         let watch = |glob: String| FileSystemWatcher { glob_pattern: GlobPattern::String(glob), kind: None };
@@ -38,34 +45,72 @@ pub(crate) fn registrations(state: &State) -> Vec<Registration> {
         let options = DidChangeWatchedFilesRegistrationOptions { watchers };
         wanted.push(Registration {
             id: "files".to_owned(),
-            method: "workspace/didChangeWatchedFiles".to_owned(),
+            method: DidChangeWatchedFiles::METHOD.to_owned(),
             register_options: serde_json::to_value(options).ok(),
         });
     }
     if state.client.registers_settings {
         wanted.push(Registration {
             id: "settings".to_owned(),
-            method: "workspace/didChangeConfiguration".to_owned(),
+            method: DidChangeConfiguration::METHOD.to_owned(),
             register_options: serde_json::to_value(serde_json::json!({ "section": SECTION })).ok(),
         });
     }
     wanted
 }
 
-/// `workspace/didChangeWatchedFiles`.
-pub(crate) fn files_changed(state: &mut State, params: &DidChangeWatchedFilesParams) {
-    for change in &params.changes {
-        state.file_changed(&change.uri);
-    }
+pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
+    let workspace = server.workspace.get_or_insert_default();
+    workspace.workspace_folders = Some(WorkspaceFoldersServerCapabilities {
+        supported: Some(true),
+        change_notifications: Some(OneOf::Left(true)),
+    });
 }
 
-/// `workspace/didChangeWorkspaceFolders`; returns the folders that are new.
-pub(crate) fn folders_changed(state: &mut State, params: &DidChangeWorkspaceFoldersParams) -> Vec<String> {
-    let of = |list: &[tower_lsp::ls_types::WorkspaceFolder]| folders(list.iter().map(|folder| &folder.uri));
+/// `initialized`: the first moment at which the client can be asked for anything.
+pub(crate) async fn start(server: Server, _: InitializedParams) {
+    let (registrations, folders) = {
+        let state = server.state();
+        (registrations(&state), state.folders.clone())
+    };
+    if !registrations.is_empty()
+        && let Err(error) = server.client.register_capability(registrations).await
+    {
+        log(format_args!("the client does not report changes of files or settings: {error}"));
+    }
+    server.ask_for_settings().await;
+    server.index(folders).await;
+}
+
+/// `workspace/didChangeWatchedFiles`.
+pub(crate) async fn files_changed(server: Server, params: DidChangeWatchedFilesParams) {
+    for change in params.changes {
+        server.state().file_changed(&change.uri);
+    }
+    server.refresh().await;
+}
+
+/// `workspace/didChangeWorkspaceFolders`.
+pub(crate) async fn folders_changed(server: Server, params: DidChangeWorkspaceFoldersParams) {
+    let of = |list: &[WorkspaceFolder]| folders(list.iter().map(|folder| &folder.uri));
     let (removed, added) = (of(&params.event.removed), of(&params.event.added));
-    let mut now = std::mem::take(&mut state.folders);
-    now.retain(|folder| !removed.contains(folder));
-    now.extend(added.iter().cloned());
-    state.set_folders(now);
-    added
+    {
+        let mut state = server.state();
+        let mut now = std::mem::take(&mut state.folders);
+        now.retain(|folder| !removed.contains(folder));
+        now.extend(added.iter().cloned());
+        state.set_folders(now);
+    }
+    server.index(added).await;
+}
+
+/// `workspace/didChangeConfiguration`.
+pub(crate) async fn settings_changed(server: Server, params: DidChangeConfigurationParams) {
+    // Clients that can be asked send nothing here, or not everything.
+    if server.state().client.settings {
+        server.ask_for_settings().await;
+    } else {
+        set(&mut server.state(), &params.settings, &server.outbox);
+    }
+    server.refresh().await;
 }

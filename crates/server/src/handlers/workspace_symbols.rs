@@ -1,15 +1,30 @@
 //! `workspace/symbol`.
 
+use pydslrep_analysis::FileId;
 use pydslrep_ide as ide;
+use ropey::Rope;
+use tower_lsp::jsonrpc::Result;
 use tower_lsp::ls_types::{SymbolInformation, WorkspaceSymbolParams, WorkspaceSymbolResponse};
 
 use crate::handlers::document_symbols::kind;
+use crate::reader::Reader;
 use crate::state::State;
 
-/// The declarations of all files whose names match what was typed, in the form that every client knows.
-pub(crate) fn workspace_symbols(state: &State, params: &WorkspaceSymbolParams) -> WorkspaceSymbolResponse {
-    let found = ide::workspace_symbols(&state.database, &params.query).into_iter();
-    WorkspaceSymbolResponse::Flat(found.filter_map(|symbol| convert(state, symbol)).collect())
+/// The declarations of all files whose names match the query, in the form that every client knows.
+pub(crate) async fn workspace_symbols(
+    mut reader: Reader,
+    params: WorkspaceSymbolParams,
+) -> Result<Option<WorkspaceSymbolResponse>> {
+    let mut search = ide::SymbolSearch::new(&params.query);
+    let files: Vec<FileId> = reader.state().database.files().collect();
+    for file in files {
+        search.add(&reader.state().database, file);
+        let length = reader.state().database.text(file).map_or(0, Rope::len_bytes);
+        reader.has_read(length).await;
+    }
+    let state = reader.state();
+    let found = search.finish(&state.database).into_iter();
+    Ok(Some(WorkspaceSymbolResponse::Flat(found.filter_map(|symbol| convert(&state, symbol)).collect())))
 }
 
 #[expect(deprecated, reason = "the field must be filled even where it is not used")]

@@ -3,69 +3,93 @@
 use std::io::{Cursor, PipeReader, PipeWriter, pipe};
 use std::str::FromStr;
 use std::sync::{Arc, Mutex};
-use std::task::Poll;
 
 use pydslrep_analysis::Database;
 use serde_json::{Value, json};
-use tower_lsp::LspService;
 use tower_lsp::jsonrpc;
+use tower_lsp::ls_types::notification::Notification;
+use tower_lsp::ls_types::request::Request;
 use tower_lsp::ls_types::{TextDocumentIdentifier, Uri};
 
 use super::*;
+use crate::dispatch::{Announce, Table};
+use crate::handlers;
+use crate::reader::yield_now;
 use crate::server::Server;
+use crate::state::State;
 
 const DOCUMENT: &str = "file:///tmp/a.pyr";
 
-/// Questions and misbehaviour that only tests have a use for.
-#[expect(clippy::unused_async, reason = "the router wants futures")]
-impl Server {
-    /// The text as the analysis has it.
-    async fn test_text(&self, document: TextDocumentIdentifier) -> jsonrpc::Result<String> {
-        let state = self.state();
-        let analysed = state.analysed(&document.uri).and_then(|(_, file)| state.database.text(file));
-        Ok(analysed.map(ToString::to_string).unwrap_or_default())
-    }
+/// The text as the analysis has it.
+enum TestText {}
 
-    async fn test_panic(&self) -> jsonrpc::Result<()> {
-        let mut state = self.state();
-        state.database = Database::new();
-        panic!("on purpose");
-    }
+impl Request for TestText {
+    type Params = TextDocumentIdentifier;
+    type Result = String;
+    const METHOD: &'static str = "test/text";
+}
 
-    async fn test_panic_later(&self) -> jsonrpc::Result<()> {
-        let mut waited = false;
-        std::future::poll_fn(|context| {
-            context.waker().wake_by_ref();
-            if std::mem::replace(&mut waited, true) { Poll::Ready(()) } else { Poll::Pending }
-        })
-        .await;
-        panic!("on purpose");
-    }
+fn text(state: &State, document: &TextDocumentIdentifier) -> jsonrpc::Result<String> {
+    let analysed = state.analysed(&document.uri).and_then(|(_, file)| state.database.text(file));
+    Ok(analysed.map(ToString::to_string).unwrap_or_default())
+}
 
-    async fn test_panic_notified(&self) {
-        panic!("on purpose");
-    }
+enum TestPanic {}
 
-    async fn test_forever(&self) -> jsonrpc::Result<()> {
-        std::future::pending().await
-    }
+impl Request for TestPanic {
+    type Params = ();
+    type Result = Option<()>;
+    const METHOD: &'static str = "test/panic";
+}
+
+enum TestPanicLater {}
+
+impl Request for TestPanicLater {
+    type Params = ();
+    type Result = ();
+    const METHOD: &'static str = "test/panicLater";
+}
+
+enum TestPanicNotified {}
+
+impl Notification for TestPanicNotified {
+    type Params = ();
+    const METHOD: &'static str = "test/panicNotified";
+}
+
+enum TestForever {}
+
+impl Request for TestForever {
+    type Params = ();
+    type Result = ();
+    const METHOD: &'static str = "test/forever";
+}
+
+fn panic_now(state: &mut State, (): &()) -> Option<()> {
+    state.database = Database::new();
+    panic!("on purpose");
+}
+
+async fn panic_later(_: Server, (): ()) -> jsonrpc::Result<()> {
+    yield_now().await;
+    panic!("on purpose");
+}
+
+/// All methods, and some that only tests need.
+fn table() -> Table {
+    const NOTHING: Announce = |_, _| {};
+    let mut table = handlers::table();
+    table.read::<TestText, _>(text, NOTHING);
+    table.read_and_note::<TestPanic, _>(panic_now, NOTHING);
+    table.run::<TestPanicLater, _>(panic_later, NOTHING);
+    table.change::<TestPanicNotified>(|_, (), _| panic!("on purpose"), NOTHING);
+    table.run::<TestForever, _>(|_, ()| std::future::pending(), NOTHING);
+    table
 }
 
 fn serve_in_test(input: impl Read, output: impl Write + Send + 'static) -> Ending {
     let start = |outbox: Outbox, runtime: runtime::Handle| {
-        let (service, socket) = LspService::build(|client| Server::new(client, outbox.clone()))
-            .custom_method("test/text", Server::test_text)
-            .custom_method("test/panic", Server::test_panic)
-            .custom_method("test/panicLater", Server::test_panic_later)
-            .custom_method("test/panicNotified", Server::test_panic_notified)
-            .custom_method("test/forever", Server::test_forever)
-            .finish();
-        Session::of_service(
-            service,
-            socket,
-            outbox,
-            Box::new(move |unfinished| drop(runtime.spawn(unfinished))),
-        )
+        Session::with_table(table(), outbox, Box::new(move |unfinished| drop(runtime.spawn(unfinished))))
     };
     serve_with(input, output, start).unwrap()
 }

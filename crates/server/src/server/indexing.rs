@@ -36,7 +36,7 @@ pub(super) fn index(server: &Server, folders: &[String]) -> String {
             }
         }
     }
-    server.settle();
+    server.flush_diagnostics();
     let so_far =
         if left_out { "; the workspace is large, and the rest is read when it is opened" } else { "" };
     format!("{programs} programs{so_far}")

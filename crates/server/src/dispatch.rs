@@ -1,0 +1,581 @@
+//! The one road from a message to its handler: a table with a row per method, read by a `tower` layer around the
+//! framework's service. The rows are in [`handlers`](crate::handlers).
+//!
+//! The layer writes answers as JSON text. The framework's router would build a tree of JSON values of each first, which
+//! takes longer than the handler does where an answer is large or follows every keystroke; and it cancels only what
+//! waits, not what computes.
+
+use std::fmt;
+use std::future::Future;
+use std::sync::Arc;
+use std::task::{Context, Poll};
+
+use futures::FutureExt;
+use futures::future::{BoxFuture, Either, Ready, ready};
+use pydslrep_analysis::CancellationToken;
+use rustc_hash::FxHashMap;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use tower_layer::Layer;
+use tower_lsp::ExitedError;
+use tower_lsp::jsonrpc::{Error, ErrorCode, Id, Request, Response, Result};
+use tower_lsp::ls_types::notification::Notification;
+use tower_lsp::ls_types::{ServerCapabilities, request};
+use tower_service::Service;
+
+use crate::client::ClientFeatures;
+use crate::log::log;
+use crate::message::{Body, Outbox, WriteJson, encode, encode_answer, encode_error};
+use crate::reader::{Reader, yield_now};
+use crate::server::{Server, Stage};
+use crate::state::State;
+use crate::work::Work;
+
+/// Texts shorter than this many bytes are read before they could be handed to another thread.
+pub(crate) const SHORT: usize = 64 << 10;
+
+/// The protocol's code for requests that come too early.
+const NOT_INITIALIZED: ErrorCode = ErrorCode::ServerError(-32002);
+
+/// The protocol's code for answers about a text that has changed meanwhile.
+const CONTENT_MODIFIED: ErrorCode = ErrorCode::ServerError(-32801);
+
+/// Writes down what the server can do because of a row.
+pub(crate) type Announce = fn(&mut ServerCapabilities, &ClientFeatures);
+
+/// What a message leads to: an answer, or nothing. It runs up to its first `.await` before the next message is handled.
+pub(crate) type Reply = Either<Ready<Outcome>, BoxFuture<'static, Outcome>>;
+
+/// The message to send back, if there is one; the error is the framework's, for calls after `exit`.
+pub(crate) type Outcome = std::result::Result<Option<Body>, ExitedError>;
+
+/// All methods that the server knows.
+#[derive(Default)]
+pub(crate) struct Table {
+    rows: FxHashMap<&'static str, Row>,
+    announcements: Vec<Announce>,
+}
+
+impl fmt::Debug for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_set().entries(self.rows.keys()).finish()
+    }
+}
+
+struct Row {
+    /// Whether it is a request, which has an id and is answered.
+    is_request: bool,
+    /// When it may come.
+    stages: &'static [Stage],
+    handler: Handler,
+}
+
+enum Handler {
+    /// The framework's own, which begins or ends the session.
+    Framework,
+    Request(Box<dyn Fn(&Server, Id, Option<Value>) -> Reply + Send + Sync>),
+    Notification(Box<dyn Fn(&Server, Option<Value>) -> Reply + Send + Sync>),
+}
+
+/// How rows are written. A handler's type says whether it changes the state or only reads it, the name of the method
+/// where it runs.
+impl Table {
+    /// A request that reads a place or little more: on the loop.
+    pub(crate) fn read<R, A>(&mut self, handler: fn(&State, &R::Params) -> A, announce: Announce)
+    where
+        R: request::Request,
+        A: Answer<R::Result> + 'static,
+    {
+        self.request::<R>(announce, move |server, id, params| {
+            let answer = handler(&server.state(), &params);
+            answer_now(&id, answer.into_result())
+        });
+    }
+
+    /// As [`Self::read`], where the state notes what the client asks about or has now.
+    pub(crate) fn read_and_note<R, A>(&mut self, handler: fn(&mut State, &R::Params) -> A, announce: Announce)
+    where
+        R: request::Request,
+        A: Answer<R::Result> + 'static,
+    {
+        self.request::<R>(announce, move |server, id, params| {
+            let answer = handler(&mut server.state(), &params);
+            answer_now(&id, answer.into_result())
+        });
+    }
+
+    /// A request that reads a whole file: on a snapshot, beside the loop where the file is long. `prepare` returns
+    /// `None` where there is no such file.
+    pub(crate) fn read_file<R, A>(
+        &mut self,
+        prepare: fn(&mut State, &R::Params) -> Option<Work<A>>,
+        announce: Announce,
+    ) where
+        R: request::Request,
+        A: WriteJson + 'static,
+    {
+        self.request::<R>(announce, move |server, id, params| {
+            let work = prepare(&mut server.state(), &params);
+            let Some(work) = work else { return answer_now(&id, Ok(Value::Null)) };
+            if work.snapshot.text().len_bytes() < SHORT {
+                return answer_now(&id, Ok((work.run)(work.snapshot)));
+            }
+            answer_later(server, &id, |token| {
+                let id = id.clone();
+                async move {
+                    yield_now().await;
+                    let Work { snapshot, outdated, run } = work;
+                    let snapshot = snapshot.cancelled_by(outdated.clone()).cancelled_by(token);
+                    let body = encode_answer(&id, &run(snapshot));
+                    if outdated.is_cancelled() {
+                        return Err(error(CONTENT_MODIFIED, "the text has changed"));
+                    }
+                    Ok(body)
+                }
+            })
+        });
+    }
+
+    /// A request that reads all files: one after the other, so that other messages are handled in between.
+    pub(crate) fn read_workspace<R, F>(&mut self, handler: fn(Reader, R::Params) -> F, announce: Announce)
+    where
+        R: request::Request,
+        F: Future<Output = Result<R::Result>> + Send + 'static,
+    {
+        self.run_request::<R, F>(announce, move |server, params| handler(Reader::new(server), params));
+    }
+
+    /// A request that does something, and may talk with the client about it.
+    pub(crate) fn run<R, F>(&mut self, handler: fn(Server, R::Params) -> F, announce: Announce)
+    where
+        R: request::Request,
+        F: Future<Output = Result<R::Result>> + Send + 'static,
+    {
+        self.run_request::<R, F>(announce, handler);
+    }
+
+    /// A notification that changes the state.
+    pub(crate) fn change<N: Notification>(
+        &mut self,
+        handler: fn(&mut State, &N::Params, &Outbox),
+        announce: Announce,
+    ) {
+        self.notification::<N>(announce, move |server, params| {
+            handler(&mut server.state(), &params, &server.outbox);
+            no_answer()
+        });
+    }
+
+    /// A notification that changes the state and leads to something else, such as a request to the client.
+    pub(crate) fn follow<N, F>(&mut self, handler: fn(Server, N::Params) -> F, announce: Announce)
+    where
+        N: Notification,
+        F: Future<Output = ()> + Send + 'static,
+    {
+        self.notification::<N>(announce, move |server, params| {
+            Either::Right(handler(server.clone(), params).map(|()| Ok(None)).boxed())
+        });
+    }
+
+    /// A notification that stops something; it needs no state, and may come after `shutdown` too.
+    pub(crate) fn interrupt<N: Notification>(&mut self, handler: fn(&Server, N::Params)) {
+        self.notification::<N>(
+            |_, _| {},
+            move |server, params| {
+                handler(server, params);
+                no_answer()
+            },
+        );
+        if let Some(row) = self.rows.get_mut(N::METHOD) {
+            row.stages = &[Stage::Serving, Stage::ShutDown];
+        }
+    }
+
+    /// A request that the framework answers.
+    pub(crate) fn framework_request<R: request::Request>(&mut self, stages: &'static [Stage]) {
+        self.insert(R::METHOD, Row { is_request: true, stages, handler: Handler::Framework });
+    }
+
+    /// A notification for the framework.
+    pub(crate) fn framework_notification<N: Notification>(&mut self, stages: &'static [Stage]) {
+        self.insert(N::METHOD, Row { is_request: false, stages, handler: Handler::Framework });
+    }
+
+    fn run_request<R, F>(
+        &mut self,
+        announce: Announce,
+        handler: impl Fn(Server, R::Params) -> F + Send + Sync + 'static,
+    ) where
+        R: request::Request,
+        F: Future<Output = Result<R::Result>> + Send + 'static,
+    {
+        self.request::<R>(announce, move |server, id, params| {
+            let answer = handler(server.clone(), params);
+            answer_later(server, &id, |_| {
+                let id = id.clone();
+                async move { Ok(encode_answer(&id, &answer.await?)) }
+            })
+        });
+    }
+
+    fn request<R: request::Request>(
+        &mut self,
+        announce: Announce,
+        handler: impl Fn(&Server, Id, R::Params) -> Reply + Send + Sync + 'static,
+    ) {
+        self.announcements.push(announce);
+        let handler = move |server: &Server, id: Id, params| match read_params(params) {
+            Ok(params) => handler(server, id, params),
+            Err(error) => answer_now(&id, Err::<Value, _>(error)),
+        };
+        let handler = Handler::Request(Box::new(handler));
+        self.insert(R::METHOD, Row { is_request: true, stages: &[Stage::Serving], handler });
+    }
+
+    fn notification<N: Notification>(
+        &mut self,
+        announce: Announce,
+        handler: impl Fn(&Server, N::Params) -> Reply + Send + Sync + 'static,
+    ) {
+        self.announcements.push(announce);
+        let handler = move |server: &Server, params| match read_params(params) {
+            Ok(params) => handler(server, params),
+            Err(error) => {
+                log(format_args!("`{}` is ignored: {}", N::METHOD, error.message));
+                no_answer()
+            }
+        };
+        let handler = Handler::Notification(Box::new(handler));
+        self.insert(N::METHOD, Row { is_request: false, stages: &[Stage::Serving], handler });
+    }
+
+    fn insert(&mut self, method: &'static str, row: Row) {
+        let before = self.rows.insert(method, row);
+        debug_assert!(before.is_none(), "`{method}` has two rows");
+    }
+
+    /// What the server can do, for this client.
+    pub(crate) fn capabilities(&self, client: &ClientFeatures) -> ServerCapabilities {
+        let mut capabilities = ServerCapabilities::default();
+        for announce in &self.announcements {
+            announce(&mut capabilities, client);
+        }
+        capabilities
+    }
+
+    /// The row of a message, or why it cannot be taken.
+    fn row(&self, request: &Request, stage: Stage) -> Result<&Row> {
+        let row = self.rows.get(request.method());
+        let stages = row.map_or(&[Stage::Serving][..], |row| row.stages);
+        if !stages.contains(&stage) {
+            return Err(match stage {
+                Stage::ShutDown => {
+                    error(ErrorCode::InvalidRequest, "after `shutdown` only `exit` may follow")
+                }
+                Stage::Starting | Stage::Serving => {
+                    error(NOT_INITIALIZED, "a session begins with `initialize`")
+                }
+            });
+        }
+        match (row, request.id()) {
+            (None, _) => Err(Error::method_not_found()),
+            (Some(row), None) if row.is_request => {
+                Err(error(ErrorCode::InvalidRequest, "it is a request and needs an id"))
+            }
+            (Some(Row { handler: Handler::Notification(_), .. }), Some(_)) => {
+                Err(error(ErrorCode::InvalidRequest, "it is a notification and has no id"))
+            }
+            (Some(row), _) => Ok(row),
+        }
+    }
+}
+
+fn error(code: ErrorCode, message: &'static str) -> Error {
+    Error { code, message: message.into(), data: None }
+}
+
+fn read_params<P: DeserializeOwned>(params: Option<Value>) -> Result<P> {
+    serde_json::from_value(params.unwrap_or_default())
+        .map_err(|error| Error::invalid_params(error.to_string()))
+}
+
+/// What a handler returns.
+pub(crate) trait Answer<T> {
+    /// The answer, or the error to answer with.
+    fn into_result(self) -> Result<T>;
+}
+
+impl<T> Answer<T> for Result<T> {
+    fn into_result(self) -> Result<T> {
+        self
+    }
+}
+
+impl<T> Answer<Option<T>> for Option<T> {
+    fn into_result(self) -> Result<Option<T>> {
+        Ok(self)
+    }
+}
+
+fn no_answer() -> Reply {
+    Either::Left(ready(Ok(None)))
+}
+
+fn answer_now(id: &Id, answer: Result<impl WriteJson>) -> Reply {
+    let body = match answer {
+        Ok(answer) => encode_answer(id, &answer),
+        Err(error) => encode_error(id.clone(), error),
+    };
+    Either::Left(ready(Ok(Some(body))))
+}
+
+/// What `start` ends with, unless the client cancels the request before.
+fn answer_later<F>(server: &Server, id: &Id, start: impl FnOnce(CancellationToken) -> F) -> Reply
+where
+    F: Future<Output = Result<Body>> + Send + 'static,
+{
+    let request = match server.pending.register(id) {
+        Ok(request) => request,
+        Err(error) => return answer_now(id, Err::<Value, _>(error)),
+    };
+    let id = id.clone();
+    let answer = start(request.token.clone());
+    let reply =
+        async move { Ok(Some(request.run(answer).await.unwrap_or_else(|error| encode_error(id, error)))) };
+    Either::Right(reply.boxed())
+}
+
+/// Puts the table around the framework's service.
+#[derive(Debug)]
+pub(crate) struct TableLayer(pub(crate) Server);
+
+impl<S> Layer<S> for TableLayer {
+    type Service = TableService<S>;
+
+    fn layer(&self, inner: S) -> Self::Service {
+        TableService { server: self.0.clone(), inner }
+    }
+}
+
+/// Messages in, encoded answers out. What begins and ends the session is the framework's; it does not see the rest.
+#[derive(Debug)]
+pub(crate) struct TableService<S> {
+    server: Server,
+    inner: S,
+}
+
+impl<S> Service<Request> for TableService<S>
+where
+    S: Service<Request, Response = Option<Response>, Error = ExitedError>,
+    S::Future: Send + 'static,
+{
+    type Response = Option<Body>;
+    type Error = ExitedError;
+    type Future = Reply;
+
+    fn poll_ready(&mut self, context: &mut Context<'_>) -> Poll<std::result::Result<(), ExitedError>> {
+        self.inner.poll_ready(context)
+    }
+
+    fn call(&mut self, request: Request) -> Self::Future {
+        let table = Arc::clone(&self.server.table);
+        let row = match table.row(&request, self.server.stage()) {
+            Ok(row) => row,
+            Err(error) => return refuse(&request, error),
+        };
+        match &row.handler {
+            Handler::Framework => {
+                let answer = self.inner.call(request);
+                Either::Right(async move { Ok(answer.await?.map(|answer| encode(&answer))) }.boxed())
+            }
+            Handler::Request(handler) => match request.into_parts() {
+                (_, Some(id), params) => handler(&self.server, id, params),
+                (_, None, _) => no_answer(),
+            },
+            Handler::Notification(handler) => handler(&self.server, request.into_parts().2),
+        }
+    }
+}
+
+fn refuse(request: &Request, error: Error) -> Reply {
+    if let Some(id) = request.id() {
+        return answer_now(id, Err::<Value, _>(error));
+    }
+    // Clients may send notifications of that kind to every server.
+    if !request.method().starts_with("$/") {
+        log(format_args!("`{}` is ignored: {}", request.method(), error.message));
+    }
+    no_answer()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc;
+    use std::task::Waker;
+
+    use serde_json::json;
+
+    use super::*;
+    use crate::session::Session;
+
+    /// A session whose long work waits for [`Self::work`].
+    struct Held {
+        session: Session,
+        work: mpsc::Receiver<BoxFuture<'static, ()>>,
+        sent: mpsc::Receiver<Option<Vec<u8>>>,
+        /// Work that waits for something.
+        left: Vec<BoxFuture<'static, ()>>,
+    }
+
+    impl Held {
+        fn new() -> Self {
+            let (outbox, sent) = mpsc::channel();
+            let (later, work) = mpsc::channel();
+            let session = Session::new(Outbox::new(outbox), move |future| {
+                let _ = later.send(future);
+            });
+            let mut held = Self { session, work, sent, left: Vec::new() };
+            let capabilities = json!({ "textDocument": { "diagnostic": {} } });
+            // What forwards the server's own requests never ends.
+            held.work.try_iter().for_each(drop);
+            held.send(
+                &json!({ "id": 0, "method": "initialize", "params": { "capabilities": capabilities } }),
+            );
+            held.send(&json!({ "method": "initialized", "params": {} }));
+            let text = "wheel a with radius 4\n".repeat(SHORT / 10);
+            let document = json!({ "uri": "file:///a.pyr", "languageId": "x", "version": 1, "text": text });
+            held.send(&json!({ "method": "textDocument/didOpen", "params": { "textDocument": document } }));
+            held.answers();
+            held
+        }
+
+        fn send(&mut self, message: &Value) {
+            let mut message = message.clone();
+            message["jsonrpc"] = "2.0".into();
+            self.session.handle(message.to_string().as_bytes());
+        }
+
+        fn request(&mut self, id: i32, method: &str, params: &Value) {
+            self.send(&json!({ "id": id, "method": method, "params": params }));
+        }
+
+        fn change(&mut self, text: &str) {
+            let document = json!({ "uri": "file:///a.pyr", "version": 2 });
+            let params = json!({ "textDocument": document, "contentChanges": [{ "text": text }] });
+            self.send(&json!({ "method": "textDocument/didChange", "params": params }));
+            self.session.flush_diagnostics();
+        }
+
+        fn cancel(&mut self, id: i32) {
+            self.send(&json!({ "method": "$/cancelRequest", "params": { "id": id } }));
+        }
+
+        /// Requests the outline.
+        fn ask(&mut self, id: i32) {
+            let params = json!({ "textDocument": { "uri": "file:///a.pyr" } });
+            self.send(&json!({ "id": id, "method": "textDocument/documentSymbol", "params": params }));
+        }
+
+        fn work(&mut self) {
+            self.left.extend(self.work.try_iter());
+            self.left.retain_mut(|work| {
+                let mut context = Context::from_waker(Waker::noop());
+                // Long enough for one that yields.
+                !(0..99).any(|_| work.poll_unpin(&mut context).is_ready())
+            });
+        }
+
+        fn messages(&self) -> Vec<Value> {
+            let messages = self.sent.try_iter().flatten().map(|body| serde_json::from_slice(&body).unwrap());
+            messages.filter(|message: &Value| message.get("id").is_some()).collect()
+        }
+
+        fn answers(&self) -> Vec<(Value, Option<i64>)> {
+            let answer = |message: &Value| (message["id"].clone(), message["error"]["code"].as_i64());
+            self.messages().iter().map(answer).collect()
+        }
+    }
+
+    #[test]
+    fn long_work_does_not_keep_others_waiting() {
+        let mut held = Held::new();
+        held.ask(1);
+        let params =
+            json!({ "textDocument": { "uri": "file:///a.pyr" }, "position": { "line": 0, "character": 1 } });
+        held.send(&json!({ "id": 2, "method": "textDocument/hover", "params": params }));
+        assert_eq!(held.answers(), [(json!(2), None)]);
+        held.work();
+        assert_eq!(held.answers(), [(json!(1), None)]);
+    }
+
+    #[test]
+    fn work_on_a_text_that_has_changed_is_refused() {
+        let mut held = Held::new();
+        held.ask(1);
+        held.change("wheel");
+        held.work();
+        assert_eq!(held.answers(), [(json!(1), Some(-32801))]);
+        held.ask(2);
+        assert_eq!(held.answers(), [(json!(2), None)], "short files are read at once");
+    }
+
+    #[test]
+    fn cancelled_work_is_not_done() {
+        let mut held = Held::new();
+        held.ask(1);
+        held.ask(2);
+        held.cancel(1);
+        held.work();
+        assert_eq!(held.answers(), [(json!(1), Some(-32800)), (json!(2), None)]);
+        held.cancel(2);
+        held.work();
+        assert_eq!(held.answers(), [], "it was answered already");
+    }
+
+    #[test]
+    fn a_read_of_the_workspace_lets_others_in_and_can_be_cancelled() {
+        let mut held = Held::new();
+        let query = json!({ "query": "a" });
+        held.request(1, "workspace/symbol", &query);
+        held.request(2, "workspace/symbol", &query);
+        assert_eq!(held.answers(), []);
+        held.cancel(2);
+        held.work();
+        assert_eq!(held.answers(), [(json!(1), None), (json!(2), Some(-32800))]);
+        held.change("wheel abc");
+        held.request(1, "workspace/symbol", &query);
+        assert_eq!(held.answers(), [(json!(1), None)], "short files are read at once");
+    }
+
+    #[test]
+    fn workspace_diagnostics_wait_for_a_change() {
+        let mut held = Held::new();
+        held.change("wheel a with radius 4");
+        held.request(1, "workspace/diagnostic", &json!({ "previousResultIds": [] }));
+        let [report] = &held.messages()[..] else { panic!("no report") };
+        let known = json!([{ "uri": "file:///a.pyr", "value": report["result"]["items"][0]["resultId"] }]);
+        for id in [2, 3] {
+            held.request(id, "workspace/diagnostic", &json!({ "previousResultIds": known }));
+        }
+        held.work();
+        assert_eq!(held.answers(), []);
+        held.cancel(3);
+        held.change("wheel a");
+        held.work();
+        let mut answers = held.answers();
+        answers.sort_by_key(|(id, _)| id.as_i64());
+        assert_eq!(answers, [(json!(2), None), (json!(3), Some(-32800))]);
+    }
+
+    #[test]
+    fn an_id_is_used_once_at_a_time() {
+        let mut held = Held::new();
+        held.ask(1);
+        held.ask(1);
+        assert_eq!(held.answers(), [(json!(1), Some(-32602))]);
+        held.work();
+        held.ask(1);
+        held.work();
+        assert_eq!(held.answers(), [(json!(1), None), (json!(1), None)]);
+    }
+}

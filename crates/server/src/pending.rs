@@ -1,0 +1,87 @@
+//! Requests that are not answered yet, and how a client cancels them.
+
+use std::future::Future;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use futures::future::{AbortHandle, AbortRegistration, Abortable};
+use pydslrep_analysis::CancellationToken;
+use rustc_hash::FxHashMap;
+use tower_lsp::jsonrpc::{Error, Id, Result};
+
+/// The requests of a session that are not answered yet, by their ids; clones share them.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct PendingRequests(Arc<Mutex<FxHashMap<Id, Cancellation>>>);
+
+/// The two ways to stop a request.
+#[derive(Debug)]
+struct Cancellation {
+    /// Stops work on a snapshot, which checks it now and then.
+    token: CancellationToken,
+    /// Stops a request that waits for something.
+    abort: AbortHandle,
+}
+
+impl PendingRequests {
+    /// Registers a request.
+    ///
+    /// # Errors
+    ///
+    /// If another one with the same id is not answered yet.
+    pub(crate) fn register(&self, id: &Id) -> Result<PendingRequest> {
+        let mut requests = self.lock();
+        if requests.contains_key(id) {
+            return Err(Error::invalid_params("a request with this id is not answered yet"));
+        }
+        let token = CancellationToken::default();
+        let (abort, registration) = AbortHandle::new_pair();
+        requests.insert(id.clone(), Cancellation { token: token.clone(), abort });
+        let entry = Entry { requests: self.clone(), id: id.clone() };
+        Ok(PendingRequest { token, registration, entry })
+    }
+
+    /// Cancels a request, unless it is answered already.
+    pub(crate) fn cancel(&self, id: &Id) {
+        if let Some(Cancellation { token, abort }) = self.lock().get(id) {
+            token.cancel();
+            abort.abort();
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, FxHashMap<Id, Cancellation>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// A request that is not answered yet.
+pub(crate) struct PendingRequest {
+    /// For work that checks it.
+    pub(crate) token: CancellationToken,
+    registration: AbortRegistration,
+    entry: Entry,
+}
+
+impl PendingRequest {
+    /// The answer, or an error if the request is cancelled before.
+    pub(crate) async fn run<T>(self, answer: impl Future<Output = Result<T>>) -> Result<T> {
+        let Self { token, registration, entry } = self;
+        let answer = Abortable::new(answer, registration).await;
+        drop(entry);
+        match answer {
+            Ok(answer) if !token.is_cancelled() => answer,
+            // Work that checked the token has stopped halfway.
+            Ok(_) | Err(_) => Err(Error::request_cancelled()),
+        }
+    }
+}
+
+/// Forgets a request when it is answered, or ends in a panic.
+struct Entry {
+    requests: PendingRequests,
+    id: Id,
+}
+
+impl Drop for Entry {
+    fn drop(&mut self) {
+        self.requests.lock().remove(&self.id);
+    }
+}
