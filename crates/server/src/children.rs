@@ -1,4 +1,4 @@
-//! Child processes of a session: what they say, how they are asked to end, and what goes with them.
+//! Child processes of a session: their output, how they are stopped, and what is deleted with them.
 //!
 //! None outlives its session, however that ends; neither do the pictures they draw.
 
@@ -17,14 +17,14 @@ use tower_lsp::ls_types::ProgressToken;
 #[derive(Debug, Default)]
 pub(crate) struct Children {
     running: Vec<(Option<ProgressToken>, Running)>,
-    /// How many there were.
+    /// How many were started.
     count: u64,
-    /// Where they draw; goes with the session.
+    /// Where they draw; deleted with the session.
     pictures: Option<TempDir>,
 }
 
 impl Children {
-    /// A place for a picture.
+    /// A new path for a picture.
     pub(crate) fn picture(&mut self, name: &str) -> io::Result<PathBuf> {
         let folder = match self.pictures.take() {
             Some(folder) => folder,
@@ -35,7 +35,7 @@ impl Children {
         Ok(path)
     }
 
-    /// Starts a child that uses a folder, which goes with it; what it says comes out of the receiver.
+    /// Starts a child. The folder is deleted when it ends; its output comes out of the receiver.
     pub(crate) fn start(
         &mut self,
         command: &mut Command,
@@ -43,64 +43,65 @@ impl Children {
     ) -> io::Result<(Running, UnboundedReceiver<ChildEvent>)> {
         let started = Running::start(command, folder)?;
         self.count += 1;
-        // A request that was taken back does not say that its child has ended.
+        // A cancelled request does not remove its child.
         self.running.retain(|(_, other)| !other.has_ended());
         self.running.push((None, started.0.clone()));
         Ok(started)
     }
 
-    /// How many were started so far.
+    /// How many were started.
     pub(crate) fn count(&self) -> u64 {
         self.count
     }
 
-    /// Under which name the client may take a child back.
+    /// The name under which the client can stop a child.
     pub(crate) fn name(&mut self, running: &Running, token: &ProgressToken) {
         for (name, _) in self.running.iter_mut().filter(|(_, other)| other.is(running)) {
             *name = Some(token.clone());
         }
     }
 
-    /// Lets go of a child that has ended.
+    /// Forgets a child that has ended.
     pub(crate) fn remove(&mut self, running: &Running) {
         self.running.retain(|(_, other)| !other.is(running));
     }
 
-    /// Asks a child to end.
+    /// Interrupts a child.
     pub(crate) fn interrupt(&self, token: &ProgressToken) {
         for (_, running) in self.running.iter().filter(|(name, _)| name.as_ref() == Some(token)) {
             running.interrupt();
         }
     }
 
-    /// The session is over: asks all children to end, and tidies up what would be left behind.
+    /// The session has ended: interrupts all children and deletes their files.
     pub(crate) fn leave(&mut self) {
         for (_, running) in self.running.drain(..) {
             running.interrupt();
-            // Whoever follows the child may not get to it.
+            // The thread that follows the child may not get to it.
             let _ = fs::remove_dir_all(&running.folder);
         }
         self.pictures = None;
     }
 }
 
-/// A child process that may be asked to end.
+/// A child process that can be interrupted.
 #[derive(Debug, Clone)]
 pub(crate) struct Running {
     child: Arc<Mutex<Child>>,
     folder: Arc<Path>,
 }
 
-/// What a child process has to say.
+/// What a child process does.
 #[derive(Debug)]
 pub(crate) enum ChildEvent {
-    /// A line on its way.
+    /// It printed a line on standard error.
     Line(String),
-    /// It ended: its exit code, if it has one, and all it printed on standard output.
+    /// It ended, with this exit code if there is one; the text is its whole standard output.
     Ended(Option<i32>, String),
 }
 
-/// Interrupts a child when it is let go of, which does nothing to one that has ended: whoever waited may be cancelled.
+/// Interrupts a child when it is dropped, because the request that waits for it was cancelled. A child that has ended is
+/// not affected.
 #[derive(Debug)]
 pub(crate) struct KillOnDrop(pub(crate) Running);
 
@@ -112,7 +113,7 @@ impl Drop for KillOnDrop {
 
 impl Running {
     fn start(command: &mut Command, folder: TempDir) -> io::Result<(Self, UnboundedReceiver<ChildEvent>)> {
-        // Nothing is ever said to it; that its input ends tells it that the server is no more, however that came.
+        // Its input stays empty; the end of it means that the server has ended, for whatever reason.
         let piped = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = piped.spawn()?;
         let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
@@ -136,7 +137,7 @@ impl Running {
         !matches!(child.try_wait(), Ok(None))
     }
 
-    /// Asks it to end, as Ctrl-C does.
+    /// Interrupts it, as Ctrl-C does.
     pub(crate) fn interrupt(&self) {
         let mut child = self.child.lock().unwrap_or_else(PoisonError::into_inner);
         if matches!(child.try_wait(), Ok(None)) {
@@ -145,7 +146,7 @@ impl Running {
     }
 }
 
-/// Passes on what a child says, and its end.
+/// Passes on a child's output, and its end.
 fn follow(
     child: &Running,
     stdout: Option<ChildStdout>,
@@ -154,7 +155,7 @@ fn follow(
 ) {
     let printed = thread::spawn(move || {
         let mut printed = Vec::new();
-        // What was printed up to a failure is still worth showing.
+        // Output before a failure is still worth showing.
         let _ = stdout.map(|mut stdout| stdout.read_to_end(&mut printed));
         String::from_utf8_lossy(&printed).into_owned()
     });
@@ -170,8 +171,8 @@ fn follow(
     let _ = sender.unbounded_send(ChildEvent::Ended(status.ok().and_then(|status| status.code()), printed));
 }
 
-/// Waits without the lock, which whoever wants to interrupt the child needs; its number stays its own until the one who
-/// has the lock takes note of its end.
+/// Waits without the lock, which is needed to interrupt the child. The process id is not reused before [`Child::wait`],
+/// which needs the lock.
 #[cfg(unix)]
 fn await_end(child: &Running) {
     use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};
@@ -181,14 +182,14 @@ fn await_end(child: &Running) {
     while wait().is_err_and(|error| error == rustix::io::Errno::INTR) {}
 }
 
-/// Its pipes are closed: it is about to end, and nobody waits long for the lock.
+/// Its pipes are closed: it is about to end, so the lock is not held for long.
 #[cfg(not(unix))]
 fn await_end(_: &Running) {}
 
 #[cfg(unix)]
 fn interrupt(child: &mut Child) {
     let pid = rustix::process::Pid::from_child(child);
-    // It may have ended by itself meanwhile.
+    // It may have ended in the meantime.
     let _ = rustix::process::kill_process(pid, rustix::process::Signal::INT);
 }
 

@@ -7,45 +7,45 @@ use tower_lsp::ls_types::{
 
 use crate::positions::Encoding;
 
-/// The client's command that lists references; it gets an address, a position and locations. A client that has it says
-/// so in `capabilities.experimental.commands.commands`.
+/// The client's command that lists references; its arguments are a URI, a position and locations. A client that has it
+/// lists it in `capabilities.experimental.commands.commands`.
 pub(crate) const SHOW_REFERENCES: &str = "pydslrep.showReferences";
 
-/// The client's abilities that change our answers, each off unless the client says otherwise.
+/// The client's capabilities that change our answers, each off unless the client announces it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent yes or no of the protocol")]
 pub(crate) struct ClientFeatures {
-    /// The unit of its columns.
+    /// The unit in which it counts columns.
     pub(crate) encoding: Encoding,
-    /// It asks for diagnostics; then they are not pushed.
+    /// It pulls diagnostics; then they are not pushed.
     pub(crate) pull_diagnostics: bool,
-    /// It shows second places of a diagnostic; else they are told in its message.
+    /// It shows related locations of a diagnostic; otherwise they are part of the message.
     pub(crate) related_information: bool,
-    /// What else it can show about a diagnostic's text: that it is unnecessary, or deprecated.
+    /// How it can render a diagnostic's text: as unnecessary, or deprecated.
     pub(crate) diagnostic_tags: Vec<DiagnosticTag>,
     /// It links a diagnostic's code to its page.
     pub(crate) code_description: bool,
-    /// How a hover is to be written, if it says.
+    /// The format of hovers, if it names one.
     pub(crate) hover_format: Option<MarkupKind>,
-    /// How the documentation of a completion is to be written, if it says.
+    /// The format of a completion's documentation, if it names one.
     pub(crate) completion_format: Option<MarkupKind>,
-    /// Completions may have places to fill in.
+    /// Completions may be snippets.
     pub(crate) snippets: bool,
-    /// It asks for the documentation of a completion when it shows it.
+    /// It requests the documentation of a completion when it shows it.
     pub(crate) resolve_completions: bool,
-    /// Definitions may say which text leads to them.
+    /// Definitions may include the range that leads to them.
     pub(crate) definition_links: bool,
-    /// The same of declarations.
+    /// The same for declarations.
     pub(crate) declaration_links: bool,
-    /// The same of type definitions.
+    /// The same for type definitions.
     pub(crate) type_definition_links: bool,
-    /// Links may say beforehand where they lead.
+    /// Document links may have tooltips.
     pub(crate) link_tooltips: bool,
-    /// It asks what a rename would change before it asks for the new name.
+    /// It prepares a rename before it prompts for the new name.
     pub(crate) prepare_rename: bool,
     /// Document symbols may be a tree.
     pub(crate) symbol_tree: bool,
-    /// Parts of a signature may be told by where they stand in it.
+    /// Parameters of a signature may be offsets into its label.
     pub(crate) label_offsets: bool,
     /// It has the command that lists references.
     pub(crate) show_references: bool,
@@ -53,38 +53,38 @@ pub(crate) struct ClientFeatures {
     pub(crate) line_folding_only: bool,
     /// Code actions may be more than commands.
     pub(crate) action_literals: bool,
-    /// Actions that cannot be used may be shown, with the reason.
+    /// It shows disabled code actions, with the reason.
     pub(crate) disabled_actions: bool,
-    /// An action's edit may be made when the action is chosen.
+    /// An action's edit may be resolved when the action is chosen.
     pub(crate) resolve_edits: bool,
-    /// Edits may say for which version of a document they are.
+    /// Edits may name the version of their document.
     pub(crate) versioned_edits: bool,
     /// Edits may create files.
     pub(crate) create_files: bool,
-    /// It takes changes of semantic tokens.
+    /// It takes deltas of semantic tokens.
     pub(crate) token_deltas: bool,
-    /// It can be asked to tell when files change.
+    /// It can notify of changed files.
     pub(crate) watched_files: bool,
-    /// It can be asked for settings.
+    /// Its settings can be requested.
     pub(crate) settings: bool,
-    /// It can be asked to tell when settings change.
+    /// It can notify of changed settings.
     pub(crate) registers_settings: bool,
-    /// It shows how far work is.
+    /// It shows progress.
     pub(crate) progress: bool,
-    /// It asks again for diagnostics when it is told to.
+    /// It can be asked to pull diagnostics again.
     pub(crate) refreshes_diagnostics: bool,
-    /// It can be told to ask for inlay hints again.
+    /// It can be asked to request inlay hints again.
     pub(crate) refreshes_inlay_hints: bool,
-    /// It can be told to ask for code lenses again.
+    /// It can be asked to request code lenses again.
     pub(crate) refreshes_code_lenses: bool,
     /// It can be asked to show a file.
     pub(crate) show_document: bool,
-    /// It shows the pages of diagnostics itself, under addresses of this scheme.
+    /// It shows the pages of diagnostics itself, under URIs with this scheme.
     pub(crate) pages: Option<String>,
 }
 
 impl ClientFeatures {
-    /// Reads them from what `initialize` brings.
+    /// Reads them from the parameters of `initialize`.
     pub(crate) fn new(client: &ClientCapabilities) -> Self {
         let mut features = Self::default();
         let offered = client.general.as_ref().and_then(|general| general.position_encodings.as_deref());
@@ -126,7 +126,7 @@ impl ClientFeatures {
         let Some(edit) = &workspace.workspace_edit else { return };
         let operations = edit.resource_operations.as_deref().unwrap_or_default();
         self.create_files = operations.contains(&ResourceOperationKind::Create);
-        // Neovim names operations, which only versioned edits can hold, and nothing else.
+        // Neovim lists only operations, which only versioned edits can contain.
         self.versioned_edits = edit.document_changes == Some(true) || !operations.is_empty();
     }
 
@@ -138,7 +138,7 @@ impl ClientFeatures {
             self.code_description = pushed.code_description_support == Some(true);
         }
         if let Some(pulled) = &document.diagnostic {
-            // Clients of the protocol before 3.18 say these things for pushed diagnostics only.
+            // Before 3.18 the protocol had these for pushed diagnostics only.
             self.related_information |= pulled.related_information == Some(true);
             if pulled.tag_support.is_some() {
                 self.diagnostic_tags = vec![DiagnosticTag::UNNECESSARY, DiagnosticTag::DEPRECATED];

@@ -1,4 +1,4 @@
-//! What robots did in a run, out of the files that the run left: its trace and its map.
+//! What robots did in a run, read from its trace and its map.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};
@@ -8,7 +8,7 @@ use pydslrep_kinematics::TimedPose;
 use pydslrep_trace::{Map, MapFile, TraceRecord, Track};
 use serde::Serialize;
 
-/// Between poses that are kept a robot moves less than this, metres and radians: far less than a picture shows.
+/// Poses closer than this, in metres and radians, are dropped: a picture shows far less.
 const FINENESS: f64 = 0.005;
 
 /// What a robot did, as the protocol has it.
@@ -27,14 +27,14 @@ struct Pose {
     theta: f64,
 }
 
-/// What the robots of a run did, in the order in which the trace names them first. A map that is not there is empty.
+/// What the robots of a run did, in the order of their first appearance in the trace. A missing map is empty.
 ///
 /// # Errors
 /// When there is no trace.
 pub(crate) fn read(trace: &Path, map: &Path) -> io::Result<Vec<DrivenRobot>> {
     let mut tracks: Vec<(String, Track)> = Vec::new();
     for line in BufReader::new(File::open(trace)?).lines() {
-        // A run that was cut off may have left half a line.
+        // A run that was interrupted may have written half a line.
         let Ok(record) = serde_json::from_str::<TraceRecord>(&line?) else { continue };
         let index = tracks.iter().position(|(robot, _)| *robot == record.robot).unwrap_or_else(|| {
             tracks.push((record.robot.clone(), Track::new(FINENESS)));

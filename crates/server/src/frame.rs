@@ -2,10 +2,10 @@
 
 use std::io::{self, BufRead, BufReader, Read};
 
-/// No message is longer; a larger `Content-Length` is taken for garbage before anything is allocated for it.
+/// The longest message; a larger `Content-Length` is rejected before anything is allocated for it.
 const LONGEST_BODY: u64 = 256 << 20;
 
-/// Of a header line no more is kept; what is cut off is its beginning, which may be the rest of a broken message.
+/// How much of a header line is kept. Its beginning is dropped, which may be the rest of a broken message.
 const LONGEST_LINE: usize = 4096;
 
 /// What was found on the stream.
@@ -13,7 +13,7 @@ const LONGEST_LINE: usize = 4096;
 pub(crate) enum Frame {
     /// The bytes of one message.
     Body(Vec<u8>),
-    /// A header without a usable length; reading goes on after it.
+    /// A header without a usable length; reading continues after it.
     BadHeader,
 }
 
@@ -27,7 +27,7 @@ enum Header {
 /// Cuts a byte stream into frames.
 pub(crate) struct FrameReader<R> {
     input: BufReader<R>,
-    /// After a bad header its body follows as if it were headers: the next real header may then stand glued to its end.
+    /// After a bad header its body is read as header lines, and the next real header may follow without a line break.
     lost: bool,
 }
 
@@ -36,12 +36,12 @@ impl<R: Read> FrameReader<R> {
         Self { input: BufReader::with_capacity(1 << 16, input), lost: false }
     }
 
-    /// Whether a part of a further message has already arrived.
+    /// Whether part of another message has already arrived.
     pub(crate) fn has_more(&self) -> bool {
         !self.input.buffer().is_empty()
     }
 
-    /// The next frame; `None` at the end of the stream, even in the midst of a frame.
+    /// The next frame; `None` at the end of the stream, even in the middle of a frame.
     pub(crate) fn next(&mut self) -> io::Result<Option<Frame>> {
         loop {
             let Some(header) = self.read_header()? else { return Ok(None) };
@@ -62,7 +62,7 @@ impl<R: Read> FrameReader<R> {
         }
     }
 
-    /// Reads up to and with the empty line; `None` is the end of the stream.
+    /// Reads up to and including the empty line; `None` is the end of the stream.
     fn read_header(&mut self) -> io::Result<Option<Header>> {
         let mut header = Header::Unusable;
         let mut empty = true;
@@ -105,7 +105,7 @@ impl<R: Read> FrameReader<R> {
     }
 }
 
-/// What a `Content-Length` line says; `None` for any other line.
+/// The value of a `Content-Length` line; `None` for any other line.
 fn content_length(line: &[u8], anywhere: bool) -> Option<Header> {
     const NAME: &[u8] = b"content-length:";
     let line = line.to_ascii_lowercase();

@@ -1,7 +1,7 @@
 //! The message loop of a process: frames from a stream to a [`Session`], its messages to another stream.
 //!
-//! Reading and handling share one thread, so an answer waits for nobody; writing has its own, so that a client that
-//! writes much before it reads cannot lock both sides.
+//! Reading and handling share one thread, so that an answer does not wait for a thread switch. Writing has its own, so
+//! that a client that writes a lot before it reads does not cause a deadlock.
 
 use std::io::{self, BufWriter, Read, Write};
 use std::process::ExitCode;
@@ -16,7 +16,7 @@ use crate::log::log;
 use crate::message::Outbox;
 use crate::session::{Ending, Session};
 
-/// How long the last messages may take to leave once the session is over.
+/// How long the last messages may take to be written once the session has ended.
 const LAST_WORDS: Duration = Duration::from_secs(1);
 
 impl From<Ending> for ExitCode {
@@ -39,7 +39,7 @@ pub(crate) fn serve(input: impl Read, output: impl Write + Send + 'static) -> io
     })
 }
 
-/// [`serve`] with a session of the caller's making.
+/// [`serve`] with the session that `start` makes.
 fn serve_with(
     input: impl Read,
     output: impl Write + Send + 'static,
@@ -50,7 +50,7 @@ fn serve_with(
     let outbox = Outbox::new(sender);
     let (finished, writer_finished) = mpsc::channel();
     thread::Builder::new().name("writer".to_owned()).spawn(move || {
-        // Without a reader at the other end there is nobody to tell; the input will end too.
+        // When the client stops reading, the input ends too.
         let _ = write_all(&messages, output);
         let _ = finished.send(());
     })?;
@@ -63,7 +63,7 @@ fn serve_with(
     Ok(ending)
 }
 
-/// Hands the session one message after the other, and time to settle whenever none is waiting.
+/// Passes messages to the session one by one, and has it publish diagnostics whenever none is waiting.
 fn read_all(session: &mut Session, mut frames: FrameReader<impl Read>) -> Ending {
     loop {
         if !frames.has_more() {
@@ -85,7 +85,7 @@ fn read_all(session: &mut Session, mut frames: FrameReader<impl Read>) -> Ending
     }
 }
 
-/// Writes messages until the last; what is ready together leaves together.
+/// Writes messages until the last; those that are ready together are flushed together.
 fn write_all(messages: &Receiver<Option<Vec<u8>>>, output: impl Write) -> io::Result<()> {
     let mut output = BufWriter::with_capacity(1 << 16, output);
     while let Ok(Some(first)) = messages.recv() {

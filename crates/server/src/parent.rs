@@ -1,5 +1,5 @@
-//! Leaving when the client has died. The end of the input says so already, unless another child of the client has
-//! inherited the pipe and keeps it open: so the client's process is watched as well, where that costs nothing.
+//! Exiting when the client has died. Usually the input ends then, but another child of the client may have inherited
+//! the pipe and keep it open. So the client's process is watched too, where that costs nothing.
 
 use std::fs;
 use std::thread;
@@ -9,10 +9,10 @@ use rustix::process::{Pid, PidfdFlags, pidfd_open};
 
 use crate::log::log;
 
-/// Ends this process, with the exit code of an abrupt end, as soon as the client's has ended; tidies up before.
+/// Exits as soon as the client's process has ended, with the exit code of an abrupt end, after `tidy_up`.
 ///
-/// Only a client that is an ancestor of this process is watched: across a container's border or a remote shell the
-/// same number belongs to someone else.
+/// Only an ancestor of this process is watched: with a container or a remote shell in between, the same process id
+/// belongs to another process.
 pub(crate) fn leave_with(client: u32, tidy_up: impl Fn() + Send + 'static) {
     if !is_ancestor(client) {
         return;
@@ -26,13 +26,13 @@ pub(crate) fn leave_with(client: u32, tidy_up: impl Fn() + Send + 'static) {
         tidy_up();
         std::process::exit(1);
     };
-    // Without the thread there is still the end of the input.
+    // Without the thread, the end of the input still ends the session.
     let _ = thread::Builder::new().name("client watch".to_owned()).spawn(watch);
 }
 
 fn is_ancestor(client: u32) -> bool {
     let mut process = std::os::unix::process::parent_id();
-    // A chain that long can only be one that changed under our eyes.
+    // A longer chain can only be one that changed while it was read.
     for _ in 0..64 {
         if process == client {
             return true;
@@ -45,7 +45,7 @@ fn is_ancestor(client: u32) -> bool {
     false
 }
 
-/// The name in `/proc/…/stat` may hold spaces and brackets; the state and the parent follow its last bracket.
+/// The name in `/proc/…/stat` may contain spaces and brackets; the state and the parent follow its last bracket.
 fn parent_of(process: u32) -> Option<u32> {
     let stat = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     let (_, fields) = stat.rsplit_once(')')?;

@@ -1,6 +1,6 @@
 //! Positions: the only place where the protocol's lines and columns meet byte offsets.
 //!
-//! A client counts columns in UTF-8, UTF-16 or UTF-32 code units, as negotiated; everything behind this module counts
+//! A client counts columns in UTF-8, UTF-16 or UTF-32 code units, as negotiated; everything else counts
 //! bytes. Whatever a client sends becomes a valid offset: lines and columns past the end are clamped (columns to
 //! before the line's ending), and a position inside a character snaps down to its start.
 
@@ -23,8 +23,8 @@ pub(crate) enum Encoding {
 }
 
 impl Encoding {
-    /// Chooses among what the client offers: UTF-8 if it is there, for it costs nothing; else UTF-16, which every
-    /// client must understand; UTF-32 only where a client offers nothing else.
+    /// Chooses one that the client offers: UTF-8 if possible, because it costs nothing; otherwise UTF-16, which every
+    /// client must support; UTF-32 only where a client offers nothing else.
     pub(crate) fn negotiate(offered: Option<&[PositionEncodingKind]>) -> Self {
         let offered = offered.unwrap_or_default();
         let offers = |kind| offered.contains(&kind);
@@ -88,7 +88,7 @@ pub(crate) fn to_position(text: &Rope, offset: u32, encoding: Encoding) -> Posit
     Position::new(to_u32(line), to_u32(column))
 }
 
-/// The bytes a range covers; a range whose ends are swapped is understood.
+/// The bytes a range covers; its ends may be swapped.
 pub(crate) fn to_span(text: &Rope, range: Range, encoding: Encoding) -> Span {
     let a = to_offset(text, range.start, encoding);
     let b = to_offset(text, range.end, encoding);
@@ -100,7 +100,7 @@ pub(crate) fn to_range(text: &Rope, span: Span, encoding: Encoding) -> Range {
     Range::new(to_position(text, span.start, encoding), to_position(text, span.end, encoding))
 }
 
-/// Converts many offsets of one text, or of a part of it: worth its one pass over the text from some hundred on.
+/// Converts many offsets of one text, or of a part of it: worth its pass over the text from about a hundred offsets.
 pub(crate) struct LineTable {
     text: String,
     /// Where the text starts in its document.
@@ -109,7 +109,7 @@ pub(crate) struct LineTable {
     /// Where its lines start in it.
     starts: Vec<u32>,
     encoding: Encoding,
-    /// The line of the last answer: offsets usually come in order.
+    /// The line of the last result: offsets are usually in order.
     last: Cell<usize>,
 }
 
@@ -145,7 +145,7 @@ impl LineTable {
         let offset = self.clamp(offset);
         let line = self.line_of(to_u32(offset));
         let before = &self.text[self.starts[line] as usize..offset];
-        // Only between the two characters of a CRLF does this take anything away.
+        // This applies only between the two characters of a CRLF.
         let before = before.strip_suffix('\r').unwrap_or(before);
         Position::new(self.line + to_u32(line), self.encoding.length(before))
     }

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use crate::message_loop::serve;
 
-/// What the system lets any process ask for.
+/// The most that Linux allows any process by default.
 #[cfg(target_os = "linux")]
 const PIPE_SIZE: usize = 1 << 20;
 
@@ -29,13 +29,13 @@ pub fn run_stdio() -> io::Result<ExitCode> {
 /// If nothing listens there, or a thread cannot be started.
 pub fn run_socket(port: u16) -> io::Result<ExitCode> {
     let stream = TcpStream::connect((Ipv4Addr::LOCALHOST, port))?;
-    // Messages are small and awaited: they must not be held back for company.
+    // Messages are small and waited for: they must not be delayed to fill packets.
     stream.set_nodelay(true)?;
     let input = stream.try_clone()?;
     serve(input, stream).map(ExitCode::from)
 }
 
-/// Standard input and output as plain files: the library's own would split each message at its line breaks.
+/// Standard input and output as plain files: those of the standard library would flush at each line break.
 #[cfg(unix)]
 fn stdio() -> io::Result<(File, File)> {
     use std::os::fd::AsFd;
@@ -43,14 +43,14 @@ fn stdio() -> io::Result<(File, File)> {
     let output = io::stdout().as_fd().try_clone_to_owned()?;
     #[cfg(target_os = "linux")]
     for pipe in [&input, &output] {
-        // A text or an outline of megabytes passes in a few pieces instead of hundreds, with a change from one process
-        // to the other for each. Where it is no pipe, or more than may be asked for, it stays as it is.
+        // Megabytes then pass in a few pieces instead of hundreds, each of which is a context switch. This fails for
+        // anything but a pipe, and where the limit is lower; then the size stays as it is.
         let _ = rustix::pipe::fcntl_setpipe_size(pipe, PIPE_SIZE);
     }
     Ok((input.into(), output.into()))
 }
 
-/// Standard input and output as plain files: the library's own would split each message at its line breaks.
+/// Standard input and output as plain files: those of the standard library would flush at each line break.
 #[cfg(windows)]
 fn stdio() -> io::Result<(File, File)> {
     use std::os::windows::io::AsHandle;

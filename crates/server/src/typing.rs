@@ -1,25 +1,25 @@
-//! Where somebody is typing. A server knows no cursor; but it is told of each change, and then of what the client asks
-//! about the place where the cursor went.
+//! Where the user is typing. The protocol has no cursor, but a change ends at the cursor, and some requests are about
+//! the position it moved to.
 //!
-//! A change is taken for typing where it ends: the line that ENTER begins, the last line of what was pasted. One message
-//! with several changes is typing with several cursors if all of them insert the same; else it is layout, or a rename,
-//! and nobody has moved.
+//! A change counts as typing at its end: on the line that Enter begins, on the last line of pasted text. A message with
+//! several changes is typing with several cursors if all of them insert the same text; otherwise it is formatting or a
+//! rename, and the cursor has not moved.
 
 use pydslrep_syntax::Span;
 use ropey::Rope;
 use tower_lsp::ls_types::{Range, TextDocumentContentChangeEvent};
 
-/// With more cursors than this nobody types.
+/// Nobody types with more cursors than this.
 const MOST_CURSORS: usize = 32;
 
 /// Where the last change was made.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Typing {
-    /// In which document, by its key.
+    /// The key of the document.
     pub(crate) key: String,
-    /// At which places, in bytes; more than one with several cursors.
+    /// The byte offsets of the cursors.
     places: Vec<u32>,
-    /// Whether the document was saved since.
+    /// Whether the document has been saved since.
     is_saved: bool,
 }
 
@@ -28,11 +28,11 @@ pub(crate) struct Typing {
 pub(crate) struct Replacement {
     /// What was replaced in the text before.
     span: Span,
-    /// How long what was put there is.
+    /// The length of the new text.
     length: u32,
 }
 
-/// What the changes of one message replaced; `spans` has a place for each, `None` where the whole text was sent.
+/// What the changes of one message replaced; `spans` has the range of each, `None` where the whole text was sent.
 pub(crate) fn replacements(
     changes: &[TextDocumentContentChangeEvent],
     spans: &[Option<Span>],
@@ -49,7 +49,7 @@ pub(crate) fn replacements(
     .collect()
 }
 
-/// The difference between two texts, as one change; clients that send whole texts may send one that is the same.
+/// The difference between two texts, as one change; clients that send whole texts may send the same text again.
 fn whole(before: &Rope, after: &Rope) -> Option<Replacement> {
     let head = before.bytes().zip(after.bytes()).take_while(|(a, b)| a == b).count();
     let rest = before.len_bytes().min(after.len_bytes()) - head;
@@ -62,7 +62,7 @@ fn whole(before: &Rope, after: &Rope) -> Option<Replacement> {
 }
 
 impl Typing {
-    /// After the changes of one message to a document; `are_alike` if all of them insert the same.
+    /// The state after the changes of one message to a document; `are_alike` if all of them insert the same text.
     pub(crate) fn after(
         before: Option<Self>,
         key: &str,
@@ -105,17 +105,17 @@ impl Typing {
         self.places.iter().map(line).collect()
     }
 
-    /// The places; none once the document is saved, for what is saved is meant.
+    /// The byte offsets; none once the document is saved, because saved text counts as finished.
     pub(crate) fn unsaved_places(&self) -> &[u32] {
         if self.is_saved { &[] } else { &self.places }
     }
 
-    /// Notes that a document was saved; whether that changes anything.
+    /// Notes that a document was saved; returns whether that changes anything.
     pub(crate) fn save(&mut self, key: &str) -> bool {
         self.key == key && !std::mem::replace(&mut self.is_saved, true)
     }
 
-    /// Whether a cursor in these lines of a document is elsewhere.
+    /// Whether a cursor on these lines of a document has left the lines being typed in.
     pub(crate) fn is_left(&self, key: &str, range: Range, text: &Rope) -> bool {
         let line_of = |place: &u32| text.byte_to_line((*place as usize).min(text.len_bytes()));
         let cursor = range.start.line as usize..=range.end.line as usize;

@@ -1,6 +1,6 @@
 //! `textDocument/prepareCallHierarchy`, `callHierarchy/incomingCalls` and `callHierarchy/outgoingCalls`.
 //!
-//! An item needs no data of its own: its document, kind, name and place are enough to find it again.
+//! An item needs no data of its own: its document, kind, name and range are enough to find it again.
 
 use pydslrep_ide as ide;
 use pydslrep_syntax::{EntityKind, Span};

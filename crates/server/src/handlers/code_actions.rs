@@ -1,4 +1,4 @@
-//! Code actions: quick fixes of diagnostics first, then refactorings, then what is done to a whole file, last of it
+//! Code actions: quick fixes of diagnostics, then refactorings, then actions on the whole file, of which the last is
 //! **Generate script** for every environment.
 
 mod rewriting;
@@ -26,7 +26,7 @@ use crate::state::State;
 /// The kind of the action that generates a script; editors may run it on save.
 pub(crate) const GENERATE_SCRIPT_KIND: CodeActionKind = CodeActionKind::new("source.generateScript");
 
-/// The command behind it, where the client cannot create files.
+/// Its command, where the client cannot create files.
 pub(crate) const GENERATE_SCRIPT: &str = "pydslrep.generateScript";
 
 pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures) {
@@ -81,13 +81,13 @@ fn actions(state: &State, params: &CodeActionParams) -> Option<CodeActionRespons
     Some(actions)
 }
 
-/// A title as editors write them: the parts below speak in the middle of a sentence, as a terminal does.
+/// A title with a capital, as in editors: the crates below write them for the middle of a sentence, as in a terminal.
 fn sentence(title: &str) -> String {
     let mut characters = title.chars();
     characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
 }
 
-/// Kinds are paths: `source` covers `source.generateScript`, and the empty kind covers everything.
+/// Kinds are paths: `source` includes `source.generateScript`, and the empty kind includes everything.
 fn covers(wish: &CodeActionKind, kind: &CodeActionKind) -> bool {
     let rest = kind.as_str().strip_prefix(wish.as_str());
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.') || wish.as_str().is_empty())
@@ -115,7 +115,7 @@ fn quick_fixes(
     fixes.collect()
 }
 
-/// The fixes of what is wrong with a settings file or a scene where the range is.
+/// The fixes of the problems of a settings file or a scene in the range.
 fn key_fixes(
     state: &State,
     document: &Document,
@@ -149,7 +149,7 @@ fn as_the_client_has_it(theirs: &[Diagnostic], ours: Diagnostic) -> Diagnostic {
     theirs.iter().find(same).cloned().unwrap_or(ours)
 }
 
-/// Edits of open documents in the form this client understands best.
+/// Edits of open documents, in the best form that this client supports.
 pub(crate) fn workspace_edit(state: &State, edits: &[analysis::Edit]) -> WorkspaceEdit {
     let mut by_file: FxHashMap<FileId, Vec<TextEdit>> = FxHashMap::default();
     for edit in edits {
@@ -222,7 +222,7 @@ fn script_code_action(title: String) -> CodeAction {
     CodeAction { title, kind: Some(GENERATE_SCRIPT_KIND), ..CodeAction::default() }
 }
 
-/// An action that says why there is no script; nothing where the client cannot show it as such.
+/// A disabled action with the reason why there is no script; nothing where the client does not show those.
 fn disabled(state: &State, name: &str, reason: String) -> Option<CodeActionOrCommand> {
     state.client.disabled_actions.then(|| {
         let action = script_code_action(format!("Generate script of {name}"));

@@ -1,5 +1,5 @@
-//! `textDocument/codeLens`: what can be done with an environment, and how often anything else is used, which is counted
-//! only for the lenses that are seen.
+//! `textDocument/codeLens`: commands for environments, and for all other declarations how often they are used, which is
+//! counted only for visible lenses.
 
 use pydslrep_config::LensKind;
 use pydslrep_ide as ide;
@@ -18,7 +18,7 @@ use crate::positions::LineTable;
 use crate::state::State;
 use crate::typing::Typing;
 
-/// What can be done with an environment, with the words on it. Each command takes what [`ChosenEnvironment`] holds.
+/// The commands for an environment, with their labels. The argument of each is a [`ChosenEnvironment`].
 const OF_ENVIRONMENTS: &[(LensKind, &str, &str)] = &[
     (LensKind::GenerateScript, "Generate script", GENERATE_SCRIPT),
     #[cfg(feature = "process")]
@@ -27,7 +27,7 @@ const OF_ENVIRONMENTS: &[(LensKind, &str, &str)] = &[
     (LensKind::Preview, "Preview", runs::PREVIEW_PATH),
 ];
 
-/// Which setting the references of a kind have; environments have none.
+/// The setting for the references of a kind; environments have none.
 fn lens_kind(kind: EntityKind) -> Option<LensKind> {
     match kind {
         EntityKind::Wheel => Some(LensKind::Wheels),
@@ -39,7 +39,7 @@ fn lens_kind(kind: EntityKind) -> Option<LensKind> {
     }
 }
 
-/// Which declaration a lens is about, until it is seen.
+/// The declaration of a lens: its data until it is visible.
 #[derive(Debug, Serialize, Deserialize)]
 struct LensOf {
     uri: Uri,
@@ -48,7 +48,7 @@ struct LensOf {
     name: String,
 }
 
-/// The lenses of a document, which remembers them.
+/// The lenses of a document, which keeps track of them.
 pub(crate) fn code_lenses(state: &mut State, params: &CodeLensParams) -> Option<Vec<CodeLens>> {
     let uri = &params.text_document.uri;
     let key = key(uri);
@@ -95,7 +95,7 @@ pub(crate) fn resolve(state: &State, lens: &CodeLens) -> Result<CodeLens> {
         .map_err(|error| Error::invalid_params(format!("not a lens of this server: {error}")))?;
     let kind = EntityKind::ALL.into_iter().find(|kind| kind.noun() == of.kind);
     let known = kind.and_then(|kind| Some((kind, state.analysed(&of.uri)?.1)));
-    // A document may be closed before its lenses are asked for.
+    // A document may be closed before its lenses are resolved.
     let places = known
         .map(|(kind, file)| state.database.references(file, kind, &of.name.as_str().into()))
         .unwrap_or_default();

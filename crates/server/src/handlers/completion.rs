@@ -15,11 +15,11 @@ use crate::client::ClientFeatures;
 use crate::documents::{Document, Sort, key};
 use crate::state::State;
 
-/// Clients that do not ask for documentation get it for the first of a list: finding a declaration takes a while in a
-/// long file, and nobody looks at all of them.
+/// How many items have documentation where the client does not resolve it: finding a declaration takes a while in a long
+/// file, and nobody reads them all.
 const MOST_DOCUMENTED: usize = 50;
 
-/// Which entity a completion stands for, until somebody looks at it.
+/// The entity of a completion: its data until it is resolved.
 #[derive(Debug, Serialize, Deserialize)]
 struct CompletionOf {
     /// The key of the document that declares it.
@@ -69,15 +69,15 @@ fn trigger(context: Option<&CompletionContext>) -> ide::CompletionTrigger {
     character.map_or(ide::CompletionTrigger::Invoked, ide::CompletionTrigger::Character)
 }
 
-/// Editors are to ask again after each character: a list that they filter themselves goes on showing what is
-/// written in full by now, and Enter takes it instead of ending the line.
+/// The list is incomplete, so that editors request it again after each character. A list that they filter themselves
+/// would still show a word that is complete, and Enter would accept it instead of starting a new line.
 fn list(state: &State, document: &Document, found: Vec<ide::Completion>) -> CompletionResponse {
     let items = found.into_iter().zip(0..);
     let items = items.map(|(completion, at)| convert(state, document, completion, at)).collect();
     CompletionResponse::List(CompletionList { is_incomplete: true, items })
 }
 
-/// `completionItem/resolve`: says more of the one that is looked at.
+/// `completionItem/resolve`: adds the documentation.
 pub(crate) fn resolve(state: &State, item: &CompletionItem) -> Result<CompletionItem> {
     let item = item.clone();
     let Some(data) = &item.data else { return Ok(item) };
@@ -85,7 +85,7 @@ pub(crate) fn resolve(state: &State, item: &CompletionItem) -> Result<Completion
         .map_err(|error| Error::invalid_params(format!("not a completion of this server: {error}")))?;
     let kind = EntityKind::ALL.into_iter().find(|kind| kind.noun() == of.kind);
     let home = state.database.file(&of.home);
-    // It may be gone by now.
+    // The entity may be gone.
     let known = kind.zip(home);
     let text = known.and_then(|(kind, home)| {
         ide::completion_documentation(&state.database, home, kind, &of.name.as_str().into())
@@ -93,7 +93,7 @@ pub(crate) fn resolve(state: &State, item: &CompletionItem) -> Result<Completion
     Ok(CompletionItem { documentation: text.and_then(|text| documentation(state, text)), ..item })
 }
 
-/// `at` is its place in the list, which clients would otherwise order by label.
+/// `at` is its index in the list, which clients would otherwise sort by label.
 fn convert(state: &State, document: &Document, completion: ide::Completion, at: usize) -> CompletionItem {
     let is_snippet = completion.is_snippet && state.client.snippets;
     let new_text = if is_snippet { completion.insert.clone() } else { completion.plain() };

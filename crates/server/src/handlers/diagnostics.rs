@@ -1,4 +1,4 @@
-//! Problems of the open documents: pushed to clients that wait for them, answered to those that ask.
+//! Diagnostics of all documents, pushed to the client or pulled by it.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -28,11 +28,11 @@ use crate::message::Outbox;
 use crate::reader::Reader;
 use crate::state::State;
 
-/// What diagnostics are marked with, so that a person knows who says so.
+/// The source that editors show with a diagnostic.
 const SOURCE: &str = "pydslrep";
 
-/// Tells the client what changed since it was last told; once per document, however many changes there were. Returns
-/// whether anything did.
+/// Pushes what has changed since the last time, once per document, however many changes there were. Returns whether
+/// anything has changed.
 pub(crate) fn publish(state: &mut State, outbox: &Outbox) -> bool {
     let touched = state.database.take_touched();
     let stale = std::mem::take(&mut state.stale);
@@ -40,7 +40,7 @@ pub(crate) fn publish(state: &mut State, outbox: &Outbox) -> bool {
         stale.all || !touched.is_empty() || !stale.documents.is_empty() || !stale.gone.is_empty();
     if state.client.pull_diagnostics {
         if is_changed {
-            // Whoever waits for a change looks for himself; one that no longer waits is none the worse.
+            // Wake all waiters; each re-checks. A cancelled one no longer listens.
             for waiting in state.waiting.drain(..) {
                 let _ = waiting.send(());
             }
@@ -53,7 +53,7 @@ pub(crate) fn publish(state: &mut State, outbox: &Outbox) -> bool {
     let keys: BTreeSet<String> = if stale.all {
         state.documents.keys().cloned().collect()
     } else {
-        // What is wrong with a scene depends on the robots that stand in it.
+        // The problems of a scene depend on the robots in it.
         let scenes: Vec<String> = touched.iter().flat_map(|file| state.scenes_of(*file)).collect();
         let touched = touched.into_iter().map(|file| state.database.path(file).to_owned());
         touched.chain(scenes).chain(stale.documents).collect()
@@ -67,12 +67,12 @@ pub(crate) fn publish(state: &mut State, outbox: &Outbox) -> bool {
 fn publish_changed(state: &mut State, key: &str, outbox: &Outbox) {
     let Some(document) = state.documents.get(key) else { return };
     let diagnostics = of_document(state, document);
-    let is_told = match &document.published {
+    let is_published = match &document.published {
         Some(published) => *published == diagnostics,
-        // Nobody waits to hear that there is nothing wrong with a file that is not open.
+        // A closed file without problems needs no notification.
         None => document.version.is_none() && diagnostics.is_empty(),
     };
-    if is_told {
+    if is_published {
         return;
     }
     publish_one(document.uri.clone(), diagnostics.clone(), document.version, outbox);
@@ -98,7 +98,7 @@ pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures)
 }
 
 /// `textDocument/diagnostic`. The result's id depends on the diagnostics and on when the document was opened, not on its
-/// version, which may start over.
+/// version, which may start again from the beginning.
 pub(crate) fn pull(
     state: &State,
     params: &DocumentDiagnosticParams,
@@ -149,7 +149,7 @@ pub(crate) async fn pull_workspace(
             let gone = params.previous_result_ids.iter().filter(|known| state.document(&known.uri).is_none());
             items.extend(gone.map(|known| full_report(known.uri.clone(), None, None, Vec::new())));
         }
-        // A client that gets empty answers asks again at once.
+        // After an empty answer clients send the request again at once.
         if !items.is_empty() || known.is_empty() {
             return Ok(WorkspaceDiagnosticReport { items }.into());
         }
@@ -235,7 +235,7 @@ pub(crate) fn convert(
     })
 }
 
-/// What is wrong with a `pydslrep.toml` or a scene.
+/// The diagnostics of a `pydslrep.toml` or a scene.
 fn of_keys(state: &State, document: &Document, problems: Vec<Problem>) -> Vec<Diagnostic> {
     problems.into_iter().map(|problem| convert_problem(state, document, problem)).collect()
 }
@@ -271,7 +271,7 @@ fn tag(tag: Tag) -> DiagnosticTag {
     }
 }
 
-/// The headline, then what to do and why; and the second places, where the client has no other place for them.
+/// The headline, then help and note; and the related locations, where the client cannot show them otherwise.
 fn message(state: &State, diagnostic: &analysis::Diagnostic) -> String {
     let mut message = diagnostic.message.clone();
     // Writing to a string cannot fail.
@@ -305,7 +305,7 @@ fn related_information(
     Some(diagnostic.related.iter().filter_map(convert).collect())
 }
 
-/// The page that explains a code: the client's own, else that in the project's repository.
+/// The page that explains a code: in the client, otherwise in the project's repository.
 fn page(client: &ClientFeatures, code: &str) -> Option<CodeDescription> {
     if let Some(scheme) = &client.pages {
         return Some(CodeDescription { href: Uri::from_str(&format!("{scheme}:/{code}.md")).ok()? });

@@ -5,7 +5,7 @@ use tower_lsp::ls_types::{DocumentLink, DocumentLinkParams};
 
 use crate::state::State;
 
-/// The imports of a document that lead somewhere.
+/// The imports of a document that are found.
 pub(crate) fn document_links(state: &State, params: &DocumentLinkParams) -> Option<Vec<DocumentLink>> {
     let (document, file) = state.analysed(&params.text_document.uri)?;
     let links = ide::document_links(&state.database, file).into_iter().filter_map(|link| {

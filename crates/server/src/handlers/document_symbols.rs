@@ -28,7 +28,7 @@ pub(crate) fn document_symbols(state: &mut State, params: &DocumentSymbolParams)
     })
 }
 
-/// An answer: a tree, or for clients that know nothing else a list.
+/// An answer: a tree, or a list for clients that support nothing else.
 pub(crate) enum Outline {
     /// Of this file, symbol by symbol when it is written: a long file's may be megabytes.
     Tree(LineTable, Snapshot),
@@ -75,7 +75,7 @@ fn write_tree(table: &LineTable, symbols: impl Iterator<Item = ide::Symbol>, jso
 }
 
 fn write_plain(value: &(impl Serialize + ?Sized), json: &mut Vec<u8>) {
-    // A number or a text can always be written into memory.
+    // Writing a number or a text into memory cannot fail.
     let _ = serde_json::to_writer(json, value);
 }
 
@@ -92,7 +92,7 @@ fn write_range(range: Range, json: &mut Vec<u8>) {
     json.extend(b"}}");
 }
 
-/// For clients that know lists only: each symbol says what it is in.
+/// For clients that support only lists: each symbol names its container.
 #[expect(deprecated, reason = "the form, and the field, that old clients know")]
 fn flatten(
     table: &LineTable,
@@ -114,7 +114,7 @@ fn flatten(
     }
 }
 
-/// The protocol's nearest kind, a different one for each of ours.
+/// The closest kind of the protocol, a different one for each of ours.
 pub(crate) fn kind(kind: ide::SymbolKind) -> SymbolKind {
     match kind {
         ide::SymbolKind::Entity(EntityKind::Wheel) => SymbolKind::VARIABLE,
@@ -135,7 +135,7 @@ mod tests {
     use super::*;
     use crate::positions::Encoding;
 
-    /// As the library for the protocol has it.
+    /// In the types of the protocol's library.
     #[expect(deprecated, reason = "the library has a field that is")]
     fn convert(table: &LineTable, symbols: &[ide::Symbol]) -> Vec<DocumentSymbol> {
         let convert_one = |symbol: &ide::Symbol| DocumentSymbol {

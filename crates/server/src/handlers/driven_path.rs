@@ -1,5 +1,5 @@
 //! `pydslrep/drivenPath`, a request of our own: where the robots were in the latest run of an environment, and
-//! `pydslrep/drivenPathChanged`, the notification that there was another one. Both are described in `docs/protocol.md`.
+//! `pydslrep/drivenPathChanged`, the notification of another run. Both are described in `docs/protocol.md`.
 
 use rustc_hash::FxHashMap;
 use serde_json::Value;
@@ -41,7 +41,7 @@ pub(crate) fn driven_path(state: &mut State, which: &ChosenEnvironment) -> Resul
     Ok(state.driven.watch(which))
 }
 
-/// What was driven in this session.
+/// The latest path of each environment that was run in this session.
 #[derive(Debug, Default)]
 pub(crate) struct DrivenPaths {
     /// By the program's key and the environment's name.
@@ -58,7 +58,7 @@ impl DrivenPaths {
         self.paths.get(&place(which)).cloned().unwrap_or_default()
     }
 
-    /// A run has ended, well or badly, that wrote these files; none of them where it did not get that far.
+    /// Adds the path of a run that has ended, successfully or not; it may not have written any of these files.
     #[cfg(feature = "process")]
     pub(crate) fn add(
         &mut self,

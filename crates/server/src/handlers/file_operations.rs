@@ -46,7 +46,7 @@ pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
     });
 }
 
-/// The edits that keep all imports right; `None` where none is needed.
+/// The edits that keep all imports valid; `None` where none is needed.
 pub(crate) fn will_rename(state: &State, params: &RenameFilesParams) -> Option<WorkspaceEdit> {
     let path = |uri: &str| Some(key(&Uri::from_str(uri).ok()?).trim_end_matches('/').to_owned());
     let renames: Vec<ide::FileRename> = params
@@ -82,7 +82,7 @@ pub(crate) async fn did_delete(server: Server, params: DeleteFilesParams) {
     server.refresh().await;
 }
 
-/// Files and folders, by their addresses, are no longer where they were.
+/// Handles files and folders, by their URIs, that are gone.
 fn remove<'a>(state: &mut State, addresses: impl Iterator<Item = &'a str>) {
     for uri in addresses.filter_map(|address| Uri::from_str(address).ok()) {
         let [folder] = &folders([&uri])[..] else { continue };
@@ -95,7 +95,7 @@ fn remove<'a>(state: &mut State, addresses: impl Iterator<Item = &'a str>) {
     }
 }
 
-/// Files and folders are new; returns the folders of the workspace among them, in which there may be programs.
+/// Handles new files and folders; returns the folders of the workspace among them, which may contain programs.
 fn add<'a>(state: &mut State, addresses: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut new = Vec::new();
     for uri in addresses.filter_map(|address| Uri::from_str(address).ok()) {
@@ -104,7 +104,7 @@ fn add<'a>(state: &mut State, addresses: impl Iterator<Item = &'a str>) -> Vec<S
             continue;
         }
         new.extend(folders([&uri]).into_iter().filter(|folder| state.is_in_workspace(folder)));
-        // It may have brought a file of settings along.
+        // It may contain a file of settings.
         state.reload_settings();
     }
     new

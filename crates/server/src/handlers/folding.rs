@@ -7,7 +7,7 @@ use crate::positions::LineTable;
 use crate::state::State;
 use crate::work::Work;
 
-/// Everything in a document that can fold.
+/// Everything in a document that can be folded.
 pub(crate) fn folding_ranges(
     state: &mut State,
     params: &FoldingRangeParams,

@@ -1,5 +1,5 @@
-//! `textDocument/formatting`, `textDocument/rangeFormatting` and `textDocument/onTypeFormatting`. The layout has no options: the client's tab size is not
-//! asked for.
+//! `textDocument/formatting`, `textDocument/rangeFormatting` and `textDocument/onTypeFormatting`. The layout has no
+//! options: the client's tab size is ignored.
 
 use pydslrep_analysis::Snapshot;
 use pydslrep_ide as ide;
@@ -14,7 +14,7 @@ use crate::positions::{Encoding, LineTable, to_span};
 use crate::state::State;
 use crate::work::Work;
 
-/// The edits that bring a document into the canonical layout.
+/// The edits that format a document.
 pub(crate) fn document(state: &mut State, params: &DocumentFormattingParams) -> Option<Work<Vec<TextEdit>>> {
     state.work(&params.text_document.uri, |_, encoding| {
         Box::new(move |snapshot| convert(&snapshot, encoding, ide::format(&snapshot)))

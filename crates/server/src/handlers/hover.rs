@@ -1,4 +1,4 @@
-//! `textDocument/hover`, and the same as a command for robots.
+//! `textDocument/hover`, also as a command for robots.
 
 use pydslrep_ide as ide;
 use pydslrep_syntax::EntityKind;
@@ -14,7 +14,7 @@ use crate::handlers::scripts::failure;
 use crate::server::Server;
 use crate::state::State;
 
-/// Shows the kinematics of a robot; takes what [`RobotOf`] holds and answers with Markdown.
+/// Returns the kinematics of a robot as Markdown; its argument is a [`RobotOf`].
 pub(crate) const SHOW_KINEMATICS: &str = "pydslrep.showKinematics";
 
 /// Which robot is meant.

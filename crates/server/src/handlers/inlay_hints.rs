@@ -10,7 +10,7 @@ use crate::documents::key;
 use crate::positions::{to_range, to_span};
 use crate::state::State;
 
-/// The hints in a range. The document remembers what it is asked for.
+/// The hints in a range. The document caches what they are computed from.
 pub(crate) fn inlay_hints(state: &mut State, params: &InlayHintParams) -> Option<Vec<InlayHint>> {
     let key = key(&params.text_document.uri);
     let encoding = state.client.encoding;

@@ -1,5 +1,5 @@
 //! `pydslrep/plannedAt` and `pydslrep/actionLocation`, requests of our own: from the text to its planned path and back.
-//! Both are described in `docs/protocol.md`. What they say is not part of a path, which would else change with every
+//! Both are described in `docs/protocol.md`. Locations are not part of a path, which would otherwise change with every
 //! line that is inserted above it.
 
 use pydslrep_ide as ide;

@@ -118,7 +118,7 @@ enum Met {
     Robot(String),
 }
 
-/// The planned path of an environment. From now on the client is told when it changes.
+/// The planned path of an environment. From now on the client is notified when it changes.
 pub(crate) fn planned_path(state: &mut State, which: &ChosenEnvironment) -> Result<Value> {
     let path = plan(state, which);
     state.watched.retain(|watched| watched.which != *which);
@@ -136,12 +136,12 @@ fn fingerprint(state: &State, which: &ChosenEnvironment) -> Option<Fingerprint> 
     state.database.fingerprint(environment(state, which).ok()?)
 }
 
-/// Tells the client which of the paths that it has are no longer right, each once; it asks again if it still wants them.
+/// Notifies the client which of its paths are outdated, each once; it requests them again if it still needs them.
 pub(crate) fn announce(state: &mut State, outbox: &Outbox) {
     let watched = std::mem::take(&mut state.watched);
     for mut watched in watched {
         let fingerprint = fingerprint(state, &watched.which);
-        // Most of what is typed is none of its business: then nothing is planned again.
+        // Most edits do not affect the path: then nothing is planned again.
         let is_the_same = fingerprint.is_some() && fingerprint == watched.fingerprint;
         if is_the_same || plan(state, &watched.which).ok() == watched.path {
             watched.fingerprint = fingerprint;
@@ -200,7 +200,7 @@ fn obstacle(obstacle: scenery::Obstacle) -> Obstacle {
     if let Shape::Cylinder { radius } = obstacle.shape {
         return Obstacle::Round { name: obstacle.name, centre: (obstacle.pose.x, obstacle.pose.y), radius };
     }
-    // What is not round has its own corners.
+    // Every other shape has its own corners.
     let corners = obstacle.outline(0);
     Obstacle::Angular { name: obstacle.name, corners }
 }

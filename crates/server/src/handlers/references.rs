@@ -7,14 +7,14 @@ use tower_lsp::ls_types::{
 
 use crate::state::State;
 
-/// All places of the name at a position.
+/// All occurrences of the name at a position.
 pub(crate) fn references(state: &State, params: &ReferenceParams) -> Option<Vec<Location>> {
     let place = state.place(&params.text_document_position)?;
     let found = ide::references(&state.database, place.position(), params.context.include_declaration)?;
     Some(found.into_iter().filter_map(|place| state.location(place.file, place.span)).collect())
 }
 
-/// The places of the name at a position in its document.
+/// The occurrences of the name at a position in its document.
 pub(crate) fn highlights(
     state: &mut State,
     params: &DocumentHighlightParams,

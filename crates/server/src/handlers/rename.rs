@@ -11,7 +11,7 @@ use crate::client::ClientFeatures;
 use crate::handlers::{code_actions, scripts};
 use crate::state::State;
 
-/// What a name looks like, for editors that stop linking where something else is typed.
+/// The pattern of names: editors stop linked editing when the text no longer matches.
 const NAME_PATTERN: &str = r"\^?[A-Za-z_][A-Za-z0-9_]*";
 
 pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures) {
@@ -27,7 +27,7 @@ pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures)
 ///
 /// # Errors
 ///
-/// If there is none, or it cannot be renamed; the message says why.
+/// If there is none, or it cannot be renamed; the message is the reason.
 pub(crate) fn prepare(
     state: &State,
     params: &TextDocumentPositionParams,
@@ -40,18 +40,18 @@ pub(crate) fn prepare(
     }))
 }
 
-/// The edits of a rename, in all documents it concerns.
+/// The edits of a rename, in all documents.
 ///
 /// # Errors
 ///
-/// If it is refused; the message says why.
+/// If it is refused; the message is the reason.
 pub(crate) fn rename(state: &State, params: &RenameParams) -> Result<Option<WorkspaceEdit>> {
     let Some(place) = state.place(&params.text_document_position) else { return Ok(None) };
     let edits = ide::rename(&state.database, place.position(), &params.new_name).map_err(refused)?;
     Ok(Some(code_actions::workspace_edit(state, &edits)))
 }
 
-/// The places that are edited together with the name at a position.
+/// The ranges that are edited together with the name at a position.
 pub(crate) fn linked_editing_ranges(
     state: &State,
     params: &LinkedEditingRangeParams,

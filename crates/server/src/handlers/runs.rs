@@ -1,8 +1,8 @@
-//! The commands `pydslrep.run` and `pydslrep.previewPath`: the program `pydslrep` as a child process, which drives or
-//! plans what the editor shows, saved or not, and draws a picture of it.
+//! The commands `pydslrep.run` and `pydslrep.previewPath`: `pydslrep` as a child process, which runs or plans what the
+//! editor shows, saved or not, and draws a picture of it.
 //!
-//! What is open is written into a folder of its own together with what it imports, as it is in the editor at that
-//! moment. The person's files stay as they are.
+//! The program and its imports are written to a temporary folder, as they are in the editor. The user's own files are
+//! not changed.
 
 mod command;
 
@@ -26,40 +26,40 @@ use crate::chosen::ChosenEnvironment;
 use crate::handlers::scripts::{blocked, environment, failure};
 use crate::state::State;
 
-/// Drives an environment.
+/// Runs an environment.
 pub(crate) const RUN: &str = "pydslrep.run";
 
-/// Draws an environment's planned path.
+/// Plots an environment's planned path.
 pub(crate) const PREVIEW_PATH: &str = "pydslrep.previewPath";
 
-/// What is to be started.
+/// What to start.
 #[derive(Debug)]
 pub(crate) struct Job {
-    /// The program and what it imports; goes with the job.
+    /// The program and its imports; deleted with the job.
     folder: TempDir,
     program: PathBuf,
     environment: String,
     subcommand: &'static str,
-    /// What is drawn, in a word.
+    /// What is drawn, as part of the picture's name.
     what: &'static str,
 }
 
-/// Writes down what is to be run.
+/// Writes the program and its imports.
 ///
 /// # Errors
 ///
-/// If the environment is not there or has errors, or the files cannot be written.
+/// If the environment does not exist or has errors, or the files cannot be written.
 pub(crate) fn prepare(state: &State, which: &ChosenEnvironment, command: &str) -> Result<Job> {
     let id = environment(state, which)?;
     state.database.environment(id).map_err(|errors| blocked(state, &errors))?;
     let (subcommand, what) = if command == RUN { ("run", "driven") } else { ("plan", "planned") };
-    let unwritten = |error: io::Error| failure(format!("cannot write what is to be run: {error}"));
+    let unwritten = |error: io::Error| failure(format!("cannot write the program to run: {error}"));
     let folder = tempfile::Builder::new().prefix("pydslrep-").tempdir().map_err(unwritten)?;
     let program = write_programs(state, which, folder.path())?;
     Ok(Job { folder, program, environment: which.environment.clone(), subcommand, what })
 }
 
-/// The open program and what it imports, in the places that they have to each other.
+/// The open program and its imports, with the same relative paths.
 fn write_programs(state: &State, which: &ChosenEnvironment, folder: &Path) -> Result<PathBuf> {
     let unopened = || failure(format!("`{}` is not open in the editor", which.uri.as_str()));
     let (document, file) = state.analysed(&which.uri).ok_or_else(unopened)?;
@@ -80,22 +80,22 @@ fn write_programs(state: &State, which: &ChosenEnvironment, folder: &Path) -> Re
     let common = common_folder(&files.iter().map(|(path, _)| *path).collect::<Vec<_>>());
     let place = |path: &str| {
         if !path.starts_with('/') {
-            // What was never saved has an address and no path, and imports nothing.
+            // A document that was never saved has a URI without a path, and imports nothing.
             return folder.join("program.pyr");
         }
-        // Not even the letter of a drive may lead out of the folder.
+        // A drive letter must not lead out of the folder.
         let relative = path.strip_prefix(common).unwrap_or(path).replace(':', "_");
         folder.join(relative.trim_start_matches('/'))
     };
     for (path, text) in &files {
         write(&place(path), text)?;
     }
-    // A program that is in no folder has no scene.
+    // A program without a folder has no scene.
     let mut scenes = database.scenes();
     if let Some((.., text)) = scenes.find(|(home, name, _)| *home == file && *name == which.environment) {
         write(&place(own).with_file_name(format!("{}{ENDING}", which.environment)), text)?;
     }
-    // Imports may go as far up as this file stands.
+    // Imports may go up to the folder of this file.
     let target = document.settings.target;
     write(&folder.join(FILE_NAME), &format!("target = \"{}\"\n", target.word()))?;
     let program = place(own);
@@ -105,7 +105,7 @@ fn write_programs(state: &State, which: &ChosenEnvironment, folder: &Path) -> Re
     Ok(program)
 }
 
-/// Copies V-REP's client from beside the program, if it is there, to beside what is run.
+/// Copies V-REP's client, if it is next to the program, next to its copy.
 fn copy_client(program: &Path, copy: &Path) -> Result<()> {
     for name in VREP_CLIENTS.iter().chain(&VREP_CLIENT_PARTS) {
         let (from, to) = (program.with_file_name(name), copy.with_file_name(name));
@@ -122,7 +122,7 @@ fn write(path: &Path, text: &str) -> Result<()> {
     written.map_err(|error| failure(format!("cannot write {}: {error}", path.display())))
 }
 
-/// What all paths begin with, up to a `/`.
+/// The folder that all paths are in, with a `/` at its end.
 fn common_folder<'a>(paths: &[&'a str]) -> &'a str {
     let Some(first) = paths.first() else { return "" };
     let shared = |path: &&str| first.bytes().zip(path.bytes()).take_while(|(a, b)| a == b).count();
@@ -131,18 +131,18 @@ fn common_folder<'a>(paths: &[&'a str]) -> &'a str {
 }
 
 impl Job {
-    /// Starts it; what it says comes out of the receiver. The path is that of the picture, once it is drawn.
+    /// Starts it; its output comes out of the receiver. The path is where the picture will be.
     ///
     /// # Errors
     ///
-    /// If there is no program `pydslrep`, or no place for a picture.
+    /// If there is no program `pydslrep`, or no folder for pictures.
     pub(crate) fn start(
         self,
         children: &mut Children,
     ) -> Result<(Running, UnboundedReceiver<ChildEvent>, PathBuf)> {
         let picture = children
             .picture(&format!("{}-{}", self.environment, self.what))
-            .map_err(|error| failure(format!("there is no place for a picture: {error}")))?;
+            .map_err(|error| failure(format!("cannot create a folder for pictures: {error}")))?;
         let program = executable();
         let mut command = Command::new(&program);
         command.arg(self.subcommand).arg(&self.program);
@@ -155,24 +155,24 @@ impl Job {
         let (running, events) = children.start(&mut command, self.folder).map_err(|error| {
             let name = program.display();
             failure(format!(
-                "cannot start {name}: {error}; put `pydslrep` beside `pydslrep-lsp` or on the PATH"
+                "cannot start {name}: {error}; put `pydslrep` next to `pydslrep-lsp` or on the PATH"
             ))
         })?;
         Ok((running, events, picture))
     }
 }
 
-/// Where a picture that moves is drawn: beside the other.
+/// The animated picture's path, next to the other.
 pub(crate) fn replay(picture: &Path) -> PathBuf {
     picture.with_extension("replay.svg")
 }
 
-/// Where a run writes every step: beside its picture.
+/// The trace's path, next to the picture.
 pub(crate) fn trace(picture: &Path) -> PathBuf {
     picture.with_extension("jsonl")
 }
 
-/// Where a run writes the map of robots that explore: beside its picture.
+/// The path of the map of robots that explore, next to the picture.
 pub(crate) fn map(picture: &Path) -> PathBuf {
     picture.with_extension("map.json")
 }
@@ -184,7 +184,7 @@ fn executable() -> PathBuf {
     beside.filter(|path| path.is_file()).unwrap_or_else(|| name.into())
 }
 
-/// The error for a run that did not come to its end.
+/// The error for a run that failed or was interrupted.
 pub(crate) fn ended_badly(code: Option<i32>, said: &[String]) -> Error {
     if code == Some(130) {
         return Error {
@@ -193,7 +193,7 @@ pub(crate) fn ended_badly(code: Option<i32>, said: &[String]) -> Error {
             data: None,
         };
     }
-    // Where it wrote to is nothing that the person asked for, and what it began with is no reason.
+    // The paths of its output and what it began with are not reasons.
     let others = ["picture: ", "replay: ", "trace: ", "map: ", "preparing Python "];
     let is_reason = |line: &&String| !others.iter().any(|other| line.starts_with(other));
     let words: Vec<&str> = said.iter().filter(is_reason).map(String::as_str).collect();

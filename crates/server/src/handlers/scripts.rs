@@ -1,4 +1,4 @@
-//! The script of an environment: where it goes, and how it gets there in every client.
+//! The script of an environment: its path, and how it is written with each client.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -21,10 +21,10 @@ use crate::message::Outbox;
 use crate::server::Server;
 use crate::state::State;
 
-/// A line behind the last of any script: the protocol clamps it to the document's end.
-const BEHIND_THE_END: u32 = 1 << 30;
+/// A line after the last of any script: the protocol clamps it to the document's end.
+const PAST_THE_END: u32 = 1 << 30;
 
-/// A script, ready to be put in its place.
+/// A script, ready to be written.
 pub(crate) struct Script {
     /// Where it goes.
     pub(crate) uri: Uri,
@@ -43,7 +43,7 @@ impl Script {
 ///
 /// # Errors
 ///
-/// If the document is not open, has no place for a script, or the environment is missing or has errors.
+/// If the document is not open or was never saved, or the environment does not exist or has errors.
 pub(crate) fn generate(state: &State, which: &ChosenEnvironment) -> jsonrpc::Result<Script> {
     let id = environment(state, which)?;
     let program = state.document(&which.uri).map_or(&which.uri, |document| &document.uri);
@@ -69,7 +69,7 @@ pub(crate) fn environment(state: &State, which: &ChosenEnvironment) -> jsonrpc::
 ///
 /// # Errors
 ///
-/// If it has errors, or its program has no place for a script.
+/// If it has errors, or its program was never saved.
 pub(crate) fn of_environment(state: &State, program: &Uri, id: EntityId) -> jsonrpc::Result<Script> {
     let environment = state.database.environment(id).map_err(|errors| blocked(state, &errors))?;
     let target = state.document(program).map(|document| document.settings.target).unwrap_or_default();
@@ -98,7 +98,7 @@ fn unsaved() -> Error {
     with_cause("save the file first; the script is written next to it".to_owned(), &Cause::Unsaved)
 }
 
-/// Why an environment with errors is neither run nor made a script of.
+/// Why an environment with errors is neither run nor translated.
 pub(crate) fn blocked(state: &State, blocked: &Blocked) -> Error {
     let first = blocked.errors.first();
     let location = first.and_then(|error| state.location(error.file, error.span));
@@ -109,11 +109,11 @@ fn with_cause(message: String, cause: &Cause) -> Error {
     Error { data: serde_json::to_value(cause).ok(), ..failure(message) }
 }
 
-/// Where the script of a program goes, if nothing else is set: into the same folder. `None` if the program is in none.
+/// The script's URI unless a folder is set: in the program's folder. `None` if the program has none.
 fn address(program: &Uri, file_name: &str) -> Option<Uri> {
     let whole = program.as_str();
     let address = whole.split(['?', '#']).next()?;
-    // An unnamed buffer's `file://` has no path: what follows its slashes would be taken for a host.
+    // An unnamed buffer's `file://` has no path: a name after its slashes would be a host.
     let has_path = program.path().as_str().contains('/');
     let (folder, _) = address.rsplit_once('/').filter(|_| has_path)?;
     Uri::from_str(&format!("{folder}/{file_name}")).ok()
@@ -121,12 +121,11 @@ fn address(program: &Uri, file_name: &str) -> Option<Uri> {
 
 /// The edit that creates or replaces a script.
 ///
-/// A file that is there keeps its identity: its whole text is replaced, in the editor's buffer if it is open there,
-/// so nothing is lost that cannot be undone. Only where none is known to be there, one is created. Its text is
-/// replaced too, not inserted: a buffer of that name may be open unsaved, and Neovim would keep the empty line that
-/// its empty buffers have.
+/// The whole text of an existing file is replaced, in the editor's buffer if it is open there, so that this can be
+/// undone. A file is created only where none is known to exist. Its text is replaced too, not inserted: a buffer of
+/// that name may be open and unsaved, and Neovim would keep the empty line of its empty buffers.
 pub(crate) fn edit(script: &Script) -> WorkspaceEdit {
-    let everything = Range::new(Position::new(0, 0), Position::new(BEHIND_THE_END, 0));
+    let everything = Range::new(Position::new(0, 0), Position::new(PAST_THE_END, 0));
     let replace = TextEdit::new(everything, script.text.clone());
     let text_document = OptionalVersionedTextDocumentIdentifier { uri: script.uri.clone(), version: None };
     let edit = TextDocumentEdit { text_document, edits: vec![OneOf::Left(replace)] };
@@ -153,14 +152,14 @@ pub(crate) async fn generate_script(
     tell(&server.outbox, MessageType::INFO, format!("Script written: {}", script.file_name()));
     let shows_documents = server.state().client.show_document;
     if shows_documents {
-        // The script is there, whether or not the client then shows it.
+        // The script exists, whether or not the client shows it.
         let _ = server.client.show_document(show(script.uri)).await;
     }
     Ok(None)
 }
 
-/// Writes the scripts of all environments without errors, if that is set. Each script is told of once, and so is each
-/// that cannot be written: a person who saves every minute knows by then.
+/// Writes the scripts of all environments without errors, if that is set. Each script is reported once, and so is each
+/// that cannot be written: on every save would be too often.
 pub(crate) fn save(state: &mut State, program: &Uri, outbox: &Outbox) {
     let Some((document, file)) = state.analysed(program) else { return };
     if !document.settings.generate_on_save {
@@ -181,10 +180,10 @@ pub(crate) fn save(state: &mut State, program: &Uri, outbox: &Outbox) {
     }
 }
 
-/// Writes a script to its place, but never over a file that is none; the error says why not.
+/// Writes a script, but never over a file that is not a generated script; the error is the reason.
 fn write(path: &Path, text: &str) -> Result<(), String> {
     let before = fs::read(path);
-    // Nothing could bring back what is overwritten here.
+    // This cannot be undone in the editor.
     if before.as_ref().is_ok_and(|content| !pydslrep_script::may_replace(content)) {
         let reason = "already exists and is not a generated script; move it, or rename the environment";
         return Err(format!("{} {reason}", path.display()));
@@ -202,14 +201,14 @@ fn tell(outbox: &Outbox, typ: MessageType, message: String) {
     outbox.send_notification::<ShowMessage>(&ShowMessageParams { typ, message });
 }
 
-/// The request to show a script beside its program.
+/// The request to show a script next to its program.
 fn show(uri: Uri) -> ShowDocumentParams {
     ShowDocumentParams { uri, external: Some(false), take_focus: Some(false), selection: None }
 }
 
-/// An answer that says why something cannot be done.
+/// The error for a request that is valid but cannot be done.
 pub(crate) fn failure(message: String) -> Error {
-    // The protocol's code for a request that is right in form but cannot be done.
+    // The protocol's code for requests that fail although they are valid.
     Error { code: ErrorCode::ServerError(-32803), message: message.into(), data: None }
 }
 

@@ -5,7 +5,7 @@ use tower_lsp::ls_types::{SelectionRange, SelectionRangeParams};
 
 use crate::state::State;
 
-/// What a selection grows to, from each position.
+/// The ranges to which a selection expands, from each position.
 pub(crate) fn selection_ranges(state: &State, params: &SelectionRangeParams) -> Option<Vec<SelectionRange>> {
     let (document, file) = state.analysed(&params.text_document.uri)?;
     let offsets: Vec<u32> =

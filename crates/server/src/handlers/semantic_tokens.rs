@@ -1,4 +1,4 @@
-//! `textDocument/semanticTokens`: the colours that only the meaning of a name can tell.
+//! `textDocument/semanticTokens`: highlighting by what names mean.
 
 use std::sync::Arc;
 
@@ -56,7 +56,7 @@ pub(crate) fn delta(
     })
 }
 
-/// Keeps what the client is about to get, if it will want to know what changed since.
+/// Keeps what the client is about to get, if it supports deltas.
 fn remember(state: &mut State, uri: &Uri) -> (Option<String>, TokenCounts) {
     let counts = TokenCounts::default();
     if !state.client.token_deltas {
@@ -90,7 +90,7 @@ fn all(
     SemanticTokens { result_id, data: encode(&table, Position::new(0, 0), &tokens) }
 }
 
-/// The entities that read otherwise, and the first one behind them, whose place counts from theirs.
+/// The entities that have changed, and the first one after them, whose position is relative to theirs.
 fn change(
     (before, before_counts): (&Snapshot, &[usize]),
     now: &Snapshot,
@@ -104,7 +104,7 @@ fn change(
     }
     tail = tail.saturating_sub(1);
     let (old_end, new_end) = (before.len() - tail, now.len() - tail);
-    // The first new token is told by its distance from the last that stays.
+    // The position of the first new token is relative to the last unchanged one.
     let context = (0..head).rev().find(|index| before_counts[*index] > 0).unwrap_or(head);
     let (mut tokens, mut lengths) = (Vec::new(), Vec::new());
     for entity in now.entities().take(new_end).skip(context) {
@@ -133,12 +133,12 @@ fn change(
     SemanticTokensDelta { result_id, edits: if is_nothing { Vec::new() } else { vec![edit] } }
 }
 
-/// How many numbers so many tokens are.
+/// How many numbers encode so many tokens.
 fn numbers(tokens: usize) -> u32 {
     u32::try_from(5 * tokens).unwrap_or(u32::MAX)
 }
 
-/// The tokens that touch a range: what the editor shows first.
+/// The tokens that touch a range: the visible part of the document.
 pub(crate) fn range(state: &State, params: &SemanticTokensRangeParams) -> Option<SemanticTokensRangeResult> {
     let (document, file) = state.analysed(&params.text_document.uri)?;
     let span = state.span(document, params.range);
@@ -152,7 +152,7 @@ pub(crate) fn range(state: &State, params: &SemanticTokensRangeParams) -> Option
     Some(SemanticTokens { result_id: None, data: encode(&table, Position::new(0, 0), &tokens) }.into())
 }
 
-/// Each token by its distance from the one before; none reaches over the end of a line.
+/// Each token relative to the one before; none extends over the end of a line.
 fn encode(table: &LineTable, mut before: Position, tokens: &[ide::SemanticToken]) -> Vec<SemanticToken> {
     let mut data = Vec::with_capacity(tokens.len());
     for token in tokens {
@@ -171,8 +171,8 @@ fn encode(table: &LineTable, mut before: Position, tokens: &[ide::SemanticToken]
     data
 }
 
-/// The protocol's names for our kinds of token, its own ones so that every theme colours them; [`token_type`] and
-/// [`modifier_bit`] count in their order.
+/// The token types, all of them the protocol's own so that every theme colours them; [`token_type`] and
+/// [`modifier_bit`] are indices into these lists.
 fn legend() -> SemanticTokensLegend {
     SemanticTokensLegend {
         token_types: vec![
@@ -229,7 +229,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tokens_are_told_by_their_distances() {
+    fn tokens_are_relative_to_the_one_before() {
         let token = |start, end, kind, modifiers: &[ide::Modifier]| ide::SemanticToken {
             span: Span { start, end },
             kind,

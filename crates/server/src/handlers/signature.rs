@@ -39,9 +39,9 @@ fn trigger(context: Option<&SignatureHelpContext>) -> Option<ide::SignatureTrigg
     }
 }
 
-/// Without documentation: it is one line, beside the one that is typed.
+/// Without documentation: it is a single line next to the one being typed.
 fn convert(state: &State, signature: &ide::Signature) -> SignatureInformation {
-    // Labels are ASCII: an offset is the same in every unit.
+    // Labels are ASCII: offsets are the same in every unit.
     let parameter = |span: &pydslrep_syntax::Span| ParameterInformation {
         label: if state.client.label_offsets {
             ParameterLabel::LabelOffsets([span.start, span.end])
@@ -58,7 +58,7 @@ fn convert(state: &State, signature: &ide::Signature) -> SignatureInformation {
     }
 }
 
-/// Where no part is current it is one behind the last: clients then mark none.
+/// Where no part is active it is one past the last: clients then highlight none.
 fn index(signature: &ide::Signature, current: Option<usize>) -> u32 {
     u32::try_from(current.unwrap_or(signature.parts.len())).unwrap_or(u32::MAX)
 }

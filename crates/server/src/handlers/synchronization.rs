@@ -1,5 +1,5 @@
-//! Documents opened, changed and closed. The client's order is the truth, whatever the version numbers say: an editor
-//! may close a document and open it again with a version that is lower.
+//! Documents opened, changed and closed. Only the order of messages counts, not the version numbers: an editor may
+//! close a document and open it again with a lower version.
 
 use tower_lsp::ls_types::notification::LogTrace;
 use tower_lsp::ls_types::{
@@ -49,7 +49,7 @@ pub(crate) fn set_trace(state: &mut State, params: &SetTraceParams, _: &Outbox) 
     state.trace = params.value;
 }
 
-/// `$/logTrace`: what the changes of a message cost, for a client that wants to know.
+/// `$/logTrace`: what the changes of a message cost, for clients that trace verbosely.
 fn log_costs(state: &mut State, params: &DidChangeTextDocumentParams, outbox: &Outbox) {
     for counts in state.costs.drain(..) {
         let message = format!("changed {}", params.text_document.uri.as_str());

@@ -1,4 +1,4 @@
-//! What happens around the documents: folders, files on the disk, settings.
+//! Changes around the documents: folders, files on the disk, settings.
 
 use pydslrep_config::{FILE_NAME, SECTION};
 use pydslrep_files::EXTENSION;
@@ -21,7 +21,7 @@ use crate::server::Server;
 use crate::state::State;
 use crate::workspace::folders;
 
-/// The section of the client's settings that is ours.
+/// Our section of the client's settings.
 pub(crate) fn wanted_settings() -> Vec<ConfigurationItem> {
     vec![ConfigurationItem { scope_uri: None, section: Some(SECTION.to_owned()) }]
 }

@@ -6,19 +6,19 @@ use super::Server;
 use crate::log::log;
 use crate::workspace::{MOST_ENTRIES, MOST_PROGRAMS};
 
-/// Takes in all programs of folders; says so in words. To be run beside the message loop: each file is a step of its
-/// own, between which messages are handled.
+/// Opens all programs in folders; returns a summary for the user. Runs on a thread of its own: messages are handled
+/// between two files.
 pub(super) fn index(server: &Server, folders: &[String]) -> String {
     let (mut programs, mut left_out) = (0, false);
     for folder in folders {
         let found = pydslrep_files::find(Path::new(folder), MOST_ENTRIES);
         left_out |= !found.complete;
         for failure in found.failures {
-            log(format_args!("cannot look into {failure}"));
+            log(format_args!("cannot read {failure}"));
         }
-        // A folder in another may be left out there.
+        // A nested folder may be excluded from the outer one.
         let is_open = server.state().folders.contains(folder);
-        // Programs first: where the workspace is large, scenes without one wait until they are opened.
+        // Programs first: in a large workspace, scenes without a program are read when they are opened.
         for path in found.programs.into_iter().chain(found.scenes) {
             if !is_open && !server.state().is_part_of_workspace(&path.to_string_lossy()) {
                 continue;
@@ -38,6 +38,6 @@ pub(super) fn index(server: &Server, folders: &[String]) -> String {
     }
     server.flush_diagnostics();
     let so_far =
-        if left_out { "; the workspace is large, and the rest is read when it is opened" } else { "" };
+        if left_out { "; the workspace is large: others are read when they are opened" } else { "" };
     format!("{programs} programs{so_far}")
 }

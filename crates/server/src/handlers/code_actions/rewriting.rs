@@ -11,7 +11,7 @@ use super::{sentence, workspace_edit};
 use crate::documents::Document;
 use crate::state::State;
 
-/// What to fix, carried by an action until it is chosen: finding the edits means trying them.
+/// What to fix: the data of an action until it is chosen, because finding the edits means trying them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub(crate) struct FixAllOf {
@@ -21,7 +21,8 @@ pub(crate) struct FixAllOf {
     pub(crate) fix_all: Option<String>,
 }
 
-/// Every refactoring that fits what is selected; those that cannot be done with the reason, if the client shows it.
+/// Every refactoring that applies to the selection; if the client shows them, also those that cannot be done, with the
+/// reason.
 pub(super) fn refactorings(
     state: &State,
     document: &Document,
@@ -55,7 +56,7 @@ fn kind(kind: ide::RefactoringKind) -> CodeActionKind {
     }
 }
 
-/// "fix all … problems" for the codes of the problems in the range that are there more than once.
+/// "Fix all … problems" for each code in the range that occurs more than once.
 pub(super) fn fix_all_of_a_code(
     state: &State,
     document: &Document,
@@ -106,7 +107,7 @@ fn offer(
     CodeAction { edit: Some(workspace_edit(state, &edits(state, &which))), ..action }.into()
 }
 
-/// The edits that fix what is meant, in the text as it is now.
+/// The edits of these fixes, in the current text.
 pub(super) fn edits(state: &State, which: &FixAllOf) -> Vec<Edit> {
     let Some((document, file)) = state.analysed(&which.uri) else { return Vec::new() };
     let is_meant = |problem: &Diagnostic| {

@@ -14,10 +14,10 @@ use crate::chosen::ChosenEnvironment;
 use crate::handlers::{commands, runs};
 use crate::server::Server;
 
-/// Of what a run that failed has said, so many lines are told.
+/// How many lines of a failed run's output are part of the error.
 const MOST_LINES: usize = 50;
 
-/// Drives or plans an environment in a child process; answers with the picture's address and what was printed.
+/// Runs or plans an environment in a child process; answers with the picture's URI and what was printed.
 pub(crate) async fn run(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
     let which: ChosenEnvironment = commands::argument(&params)?;
     let job = runs::prepare(&server.state(), &which, &params.command)?;
@@ -54,14 +54,14 @@ pub(crate) async fn run(server: Server, params: ExecuteCommandParams) -> Result<
     }
     server.children().remove(&running);
     if params.command == runs::RUN {
-        // Also what was driven up to a failure is worth showing.
+        // The path up to a failure is worth showing too.
         server.state().driven.add(&which, &runs::trace(&picture), &runs::map(&picture), &server.outbox);
     }
     if let Some(progress) = progress {
         progress.finish().await;
     }
     let (code, printed) = ended;
-    // A plan of one environment is drawn whatever is wrong with others; its exit code still tells of that.
+    // The plan of one environment is drawn even if others have errors; the exit code reports those.
     let is_drawn = || std::fs::metadata(&picture).is_ok_and(|file| file.len() > 0);
     let is_done = code == Some(0) || params.command == runs::PREVIEW_PATH && is_drawn();
     if !is_done {
@@ -80,13 +80,13 @@ pub(crate) async fn run(server: Server, params: ExecuteCommandParams) -> Result<
             take_focus: Some(false),
             selection: None,
         };
-        // The picture is there, whether or not the client then shows it.
+        // The picture exists, whether or not the client shows it.
         let _ = server.client.show_document(show).await;
     }
     Ok(Some(serde_json::json!({ "picture": picture, "replay": replay, "output": printed })))
 }
 
-/// Under which name a run shows its progress: the client's, else one of ours; `None` where it shows none.
+/// The token of a run's progress: the client's, otherwise one of ours; `None` where the client shows none.
 async fn run_token(server: &Server, asked: Option<ProgressToken>) -> Option<ProgressToken> {
     if asked.is_some() || !server.state().client.progress {
         return asked;
