@@ -37,7 +37,6 @@ pub(super) fn index(server: &Server, folders: &[String]) -> String {
         }
     }
     server.flush_diagnostics();
-    let so_far =
-        if left_out { "; the workspace is large: others are read when they are opened" } else { "" };
+    let so_far = if left_out { "; the workspace is large: others are read when they are opened" } else { "" };
     format!("{programs} programs{so_far}")
 }
