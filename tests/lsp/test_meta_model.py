@@ -124,9 +124,17 @@ def test_every_message_of_a_session_matches_the_meta_model(
 
 
 FRAMING = {"initialize", "initialized", "shutdown", "exit"}
-# Any will do: the table says which methods there are, not what their options hold.
-LEGEND = types.SemanticTokensLegend([], [])
-ON_TYPE = types.DocumentOnTypeFormattingOptions("}")
+FILE_OPERATIONS = ("will_rename", "did_rename", "did_create", "did_delete")
+FILES = types.FileOperationRegistrationOptions([])
+# Those that have no default; their content does not matter here.
+OPTIONS = {
+    types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL: types.SemanticTokensLegend([], []),
+    types.TEXT_DOCUMENT_ON_TYPE_FORMATTING: types.DocumentOnTypeFormattingOptions("}"),
+    types.WORKSPACE_WILL_RENAME_FILES: FILES,
+    types.WORKSPACE_DID_RENAME_FILES: FILES,
+    types.WORKSPACE_DID_CREATE_FILES: FILES,
+    types.WORKSPACE_DID_DELETE_FILES: FILES,
+}
 
 
 def handled_methods(raw: RawServer) -> set[str]:
@@ -144,14 +152,14 @@ def handled_methods(raw: RawServer) -> set[str]:
 def providers(capabilities: types.ServerCapabilities) -> dict[str, Any]:
     """What is announced, without options that no method belongs to."""
     announced = get_converter().unstructure(capabilities)
-    resolving = {
-        name: bool(announced[name].get("resolveProvider"))
-        for name in ("completionProvider", "codeLensProvider")
-    }
     tokens = announced["semanticTokensProvider"]
     return {
-        "all": {name for name, value in announced.items() if value},
-        "resolving": resolving,
+        "all": {name for name, value in announced.items() if value is not False},
+        "resolves": {
+            name
+            for name in ("completionProvider", "codeLensProvider")
+            if announced[name].get("resolveProvider")
+        },
         "tokens": {name for name in ("full", "range") if tokens.get(name)},
         "prepares": announced["renameProvider"]["prepareProvider"],
         "workspace": announced["diagnosticProvider"]["workspaceDiagnostics"],
@@ -164,6 +172,11 @@ def test_what_is_announced_is_handled_and_what_is_handled_is_announced(
 ) -> None:
     """The client library for tests can also be a server, and knows the capability of every method."""
     client = capabilities("pulling")
+    assert client.workspace
+    operations = dict.fromkeys(FILE_OPERATIONS, True)
+    client.workspace.file_operations = types.FileOperationClientCapabilities(
+        **operations
+    )
     with RawServer(server, "--stdio") as raw:
         params = {"capabilities": get_converter().unstructure(client)}
         raw.send(request(0, "initialize", params))
@@ -172,16 +185,16 @@ def test_what_is_announced_is_handled_and_what_is_handled_is_announced(
         raw.send(notification("initialized", {}))
         handled = handled_methods(raw)
     assert announced.execute_command_provider
-    expected = ServerCapabilitiesBuilder(
+    resolves = types.COMPLETION_ITEM_RESOLVE in handled
+    completion = types.CompletionOptions(resolve_provider=resolves)
+    builder = ServerCapabilitiesBuilder(
         client,
         handled,
-        {
-            types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL: LEGEND,
-            types.TEXT_DOCUMENT_ON_TYPE_FORMATTING: ON_TYPE,
-        },
-        announced.execute_command_provider.commands,
+        {**OPTIONS, types.TEXT_DOCUMENT_COMPLETION: completion},
+        list(announced.execute_command_provider.commands),
         types.TextDocumentSyncKind.Incremental,
-    ).build()
+    )
+    expected = builder.build()  # type: ignore[no-untyped-call]
     assert providers(announced) == providers(expected)
 
 
