@@ -1,4 +1,4 @@
-//! What came of a run: where each robot ended and how far that is off the plan.
+//! The result of a run: where each robot ended and how far that is off the plan.
 
 use std::time::Duration;
 
@@ -6,6 +6,7 @@ use comfy_table::Table;
 use pydslrep_kinematics::Pose;
 use pydslrep_picture::Route;
 use pydslrep_trace::Track;
+use serde::Serialize;
 
 use crate::commands::plan::{Planned, fixed, heading};
 use crate::driven::Driven;
@@ -21,45 +22,79 @@ pub(crate) struct Outcome<'a> {
     pub(crate) is_complete: bool,
 }
 
+/// What came of a run, in numbers: metres, radians, seconds.
+#[derive(Debug, Serialize)]
+pub(crate) struct Figures<'a> {
+    environment: &'a str,
+    /// Whether the robots did all they should.
+    complete: bool,
+    /// How long it should take; `None` where that cannot be planned.
+    planned: Option<f64>,
+    /// How long it took in the simulation.
+    simulated: f64,
+    /// How long it took.
+    wall: f64,
+    robots: Vec<RobotFigures<'a>>,
+}
+
+/// Where a robot should end and where it ended.
+#[derive(Debug, Serialize)]
+struct RobotFigures<'a> {
+    name: &'a str,
+    /// `None` where it cannot be planned.
+    planned: Option<End>,
+    /// `None` where it never moved.
+    driven: Option<End>,
+    /// How far the one is from the other; `None` where a run is not complete.
+    off: Option<Offset>,
+}
+
+#[derive(Debug, Clone, Copy, Serialize)]
+struct End {
+    x: f64,
+    y: f64,
+    theta: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct Offset {
+    distance: f64,
+    angle: f64,
+}
+
+impl From<Pose> for End {
+    fn from(Pose { x, y, theta }: Pose) -> Self {
+        Self { x, y, theta }
+    }
+}
+
 impl Outcome<'_> {
     /// Where each robot should be and is, and how long it took.
-    pub(crate) fn table(&self) -> String {
-        let table = if self.is_complete { self.comparison() } else { self.ends() };
-        format!("{}\n\n{}\n", table.trim_fmt(), output::wrapped(&self.times()))
-    }
-
-    fn comparison(&self) -> Table {
-        let mut table = output::table(["robot", "", "x m", "y m", "heading °", "off mm", "off °"]);
+    pub(crate) fn figures(&self) -> Figures<'_> {
         let paths = self.planned.plan.robots.iter().zip(self.driven.tracks());
-        for (robot, (plan, driven)) in self.planned.scene.robots.iter().zip(paths) {
+        let robots = self.planned.scene.robots.iter().zip(paths).map(|(robot, (plan, driven))| {
             let planned = plan.unknown_after.is_none().then(|| plan.end());
-            let [x, y, heading] = words(planned);
-            table.add_row([
-                robot.name.clone(),
-                "planned".into(),
-                x,
-                y,
-                heading,
-                String::new(),
-                String::new(),
-            ]);
-            let [x, y, heading] = words(driven.end());
-            let [off, turned] = offset(planned, driven.end());
-            table.add_row([String::new(), "driven".into(), x, y, heading, off, turned]);
+            let driven = driven.end();
+            // A run that was broken off can only be compared with a plan that was broken off too.
+            let off = planned.zip(driven).filter(|_| self.is_complete).map(|(planned, driven)| {
+                let off = planned.relative(&driven);
+                Offset { distance: off.x.hypot(off.y), angle: off.theta.abs() }
+            });
+            RobotFigures {
+                name: &robot.name,
+                planned: planned.map(End::from),
+                driven: driven.map(End::from),
+                off,
+            }
+        });
+        Figures {
+            environment: &self.planned.environment.name,
+            complete: self.is_complete,
+            planned: self.planned.plan.duration,
+            simulated: self.driven.time,
+            wall: self.wall.as_secs_f64(),
+            robots: robots.collect(),
         }
-        output::align_right(&mut table, &[2, 3, 4, 5, 6]);
-        table
-    }
-
-    /// A run that was broken off can only be compared with a plan that was broken off too.
-    fn ends(&self) -> Table {
-        let mut table = output::table(["robot", "", "x m", "y m", "heading °"]);
-        for (robot, driven) in self.planned.scene.robots.iter().zip(self.driven.tracks()) {
-            let [x, y, heading] = words(driven.end());
-            table.add_row([robot.name.clone(), "stopped".into(), x, y, heading]);
-        }
-        output::align_right(&mut table, &[2, 3, 4]);
-        table
     }
 
     /// What to draw.
@@ -72,35 +107,97 @@ impl Outcome<'_> {
         };
         routes.map(route).collect()
     }
+}
+
+impl Figures<'_> {
+    /// For people.
+    pub(crate) fn table(&self) -> String {
+        let table = if self.complete { self.comparison() } else { self.ends() };
+        format!("{}\n\n{}\n", table.trim_fmt(), output::wrapped(&self.times()))
+    }
+
+    fn comparison(&self) -> Table {
+        let mut table = output::table(["robot", "", "x m", "y m", "heading °", "off mm", "off °"]);
+        for robot in &self.robots {
+            let [x, y, heading] = words(robot.planned);
+            table.add_row([robot.name, "planned", &x, &y, &heading, "", ""]);
+            let [x, y, heading] = words(robot.driven);
+            let [off, turned] = robot.off.as_ref().map_or_else(Default::default, Offset::words);
+            table.add_row(["", "driven", &x, &y, &heading, &off, &turned]);
+        }
+        output::align_right(&mut table, &[2, 3, 4, 5, 6]);
+        table
+    }
+
+    fn ends(&self) -> Table {
+        let mut table = output::table(["robot", "", "x m", "y m", "heading °"]);
+        for robot in &self.robots {
+            let [x, y, heading] = words(robot.driven);
+            table.add_row([robot.name, "stopped", &x, &y, &heading]);
+        }
+        output::align_right(&mut table, &[2, 3, 4]);
+        table
+    }
 
     fn times(&self) -> String {
-        let (simulated, wall) = (self.driven.time, self.wall.as_secs_f64());
-        let factor = if wall > 0.0 { simulated / wall } else { 0.0 };
-        let planned = self
-            .planned
-            .plan
-            .duration
-            .map_or_else(String::new, |seconds| format!(" (planned: {} s)", fixed(seconds, 1)));
+        let factor = if self.wall > 0.0 { self.simulated / self.wall } else { 0.0 };
+        let planned =
+            self.planned.map_or_else(String::new, |seconds| format!(" (planned: {} s)", fixed(seconds, 1)));
         format!(
             "{}: {} s{planned} simulated in {} s, {} times real time",
-            self.planned.environment.name,
-            fixed(simulated, 1),
-            fixed(wall, 1),
+            self.environment,
+            fixed(self.simulated, 1),
+            fixed(self.wall, 1),
             fixed(factor, usize::from(factor < 10.0)),
         )
     }
 }
 
-fn words(pose: Option<Pose>) -> [String; 3] {
-    pose.map_or_else(
+impl Offset {
+    /// Millimetres and degrees.
+    fn words(&self) -> [String; 2] {
+        [fixed(self.distance * 1000.0, 1), fixed(self.angle.to_degrees(), 2)]
+    }
+}
+
+fn words(end: Option<End>) -> [String; 3] {
+    end.map_or_else(
         || ["?", "?", "?"].map(str::to_owned),
-        |pose| [fixed(pose.x, 3), fixed(pose.y, 3), heading(pose.theta)],
+        |end| [fixed(end.x, 3), fixed(end.y, 3), heading(end.theta)],
     )
 }
 
-/// How far apart two poses are: millimetres and degrees.
-fn offset(planned: Option<Pose>, driven: Option<Pose>) -> [String; 2] {
-    let (Some(planned), Some(driven)) = (planned, driven) else { return ["", ""].map(str::to_owned) };
-    let off = planned.relative(&driven);
-    [fixed(off.x.hypot(off.y) * 1000.0, 1), fixed(off.theta.to_degrees().abs(), 2)]
+#[cfg(test)]
+mod tests {
+    use expect_test::expect_file;
+
+    use super::*;
+
+    /// `tsc` holds the types of the extension against this value.
+    #[test]
+    fn editors_know_the_shape() {
+        let end = |x| End { x, y: 0.0, theta: 0.5 };
+        let figures = Figures {
+            environment: "yard",
+            complete: true,
+            planned: Some(10.04),
+            simulated: 10.06,
+            wall: 0.55,
+            robots: vec![
+                RobotFigures {
+                    name: "rover",
+                    planned: Some(end(1.0)),
+                    driven: Some(end(1.001)),
+                    off: Some(Offset { distance: 0.001, angle: 0.0 }),
+                },
+                RobotFigures { name: "idle", planned: None, driven: None, off: None },
+            ],
+        };
+        let json = serde_json::to_string_pretty(&figures).unwrap();
+        expect_file!["../../../editors/vscode/tests/figures.sample.ts"].assert_eq(&format!(
+            "// Written by a test of crates/cli/src/outcome.rs.\n\
+             import type {{ Figures }} from \"../src/figures\";\n\n\
+             export const figures: Figures = {json};\n"
+        ));
+    }
 }

@@ -55,9 +55,10 @@ pub use inlay_hints::{InlayHint, InlayHintOptions, InlayHintPlaces, KnownMovemen
 pub use keyword_pages::{KeywordPage, keyword_page};
 pub use linked_editing::linked_editing_ranges;
 pub use on_type::{format_after_brace, format_after_line_break};
-pub use planned_action::{PlannedAt, action_place, planned_at};
+pub use planned_action::{NumberedAction, PlannedAt, action_place, planned_at};
 pub use planned_path::{
-    Met, PlannedAction, PlannedCollision, PlannedLeg, PlannedPath, PlannedPose, PlannedRobot, planned_path,
+    BodySize, Met, Obstacle, PlannedAction, PlannedCollision, PlannedLeg, PlannedPath, PlannedPose,
+    PlannedRobot, SensorCone, planned_path,
 };
 pub use quick_fixes::{QuickFix, quick_fixes};
 pub use refactorings::{Refactoring, RefactoringKind, refactorings};

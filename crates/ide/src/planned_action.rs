@@ -4,33 +4,43 @@ use pydslrep_analysis::{Database, EntityId, EntityRef, FileId};
 use pydslrep_syntax::ast::{Action, Entity};
 use pydslrep_syntax::{EntityKind, Span};
 use rustc_hash::FxHashSet;
+use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
 use crate::FilePosition;
 use crate::cursor::entities_at;
 
 /// The parts of planned paths at a position.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct PlannedAt {
     /// The environments of the file in text order, each name once.
-    pub environments: Vec<SmolStr>,
+    pub environments: Vec<String>,
     /// The environments declared at the position, or using the declaration there, directly or indirectly.
-    pub using: Vec<SmolStr>,
-    /// The movement and the index of its action. On its line an action includes the space around it.
-    pub action: Option<(SmolStr, usize)>,
+    pub using: Vec<String>,
+    /// The action. On its line it includes the space around it.
+    pub action: Option<NumberedAction>,
+}
+
+/// An action by its index in its movement.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct NumberedAction {
+    /// The movement's name.
+    pub movement: String,
+    /// From 0.
+    pub index: usize,
 }
 
 /// The parts of planned paths at a position.
 pub fn planned_at(database: &Database, position: FilePosition) -> PlannedAt {
-    let mut environments: Vec<SmolStr> = Vec::new();
+    let mut environments: Vec<String> = Vec::new();
     for (_, name) in database.environments(position.file) {
-        if !environments.contains(&name.text) {
-            environments.push(name.text);
+        if !environments.iter().any(|known| *known == name.text) {
+            environments.push(name.text.to_string());
         }
     }
     let entities = entities_at(database, position);
     let used = entities.first().map(|entity| users(database, entity));
-    let is_used = |name: &&SmolStr| used.as_ref().is_some_and(|users| users.contains(*name));
+    let is_used = |name: &&String| used.as_ref().is_some_and(|users| users.contains(name.as_str()));
     let using = environments.iter().filter(is_used).cloned().collect();
     let action = entities.iter().find_map(|entity| action_in(database, entity, position.offset));
     PlannedAt { environments, using, action }
@@ -40,14 +50,13 @@ pub fn planned_at(database: &Database, position: FilePosition) -> PlannedAt {
 pub fn action_place(
     database: &Database,
     environment: EntityId,
-    movement: &SmolStr,
-    index: usize,
+    NumberedAction { movement, index }: &NumberedAction,
 ) -> Option<(FileId, Span)> {
     let home = database.file_of(environment)?;
-    let declared = database.resolve(home, EntityKind::Movement, movement).entity()?;
+    let declared = database.resolve(home, EntityKind::Movement, &movement.into()).entity()?;
     let entity = database.entity(declared)?;
     let Entity::Movement(tree) = entity.parse.entity.as_ref()? else { return None };
-    Some((entity.file, tree.actions.get(index)?.span.shifted(entity.span.start)))
+    Some((entity.file, tree.actions.get(*index)?.span.shifted(entity.span.start)))
 }
 
 /// The environments of a file that use one of its entities, directly or indirectly; an environment uses itself.
@@ -66,7 +75,7 @@ fn users(database: &Database, entity: &EntityRef<'_>) -> FxHashSet<SmolStr> {
     environments
 }
 
-fn action_in(database: &Database, entity: &EntityRef<'_>, offset: u32) -> Option<(SmolStr, usize)> {
+fn action_in(database: &Database, entity: &EntityRef<'_>, offset: u32) -> Option<NumberedAction> {
     let Entity::Movement(tree) = entity.parse.entity.as_ref()? else { return None };
     let place = |action: &Action| action.span.shifted(entity.span.start);
     let is_one_line = |span: Span| !database.slice(entity.file, span).contains(['\n', '\r']);
@@ -83,7 +92,7 @@ fn action_in(database: &Database, entity: &EntityRef<'_>, offset: u32) -> Option
     };
     let body = tree.body?.shifted(entity.span.start);
     let index = before.or_else(after).filter(|_| body.touches(offset))?;
-    Some((tree.name.as_ref()?.text.clone(), index))
+    Some(NumberedAction { movement: tree.name.as_ref()?.text.to_string(), index })
 }
 
 #[cfg(test)]
@@ -106,9 +115,9 @@ environment second has { rover } robots with { go } moves
     }
 
     fn action(marked: &str) -> Option<usize> {
-        at(marked).action.map(|(movement, index)| {
-            assert_eq!(movement, "go");
-            index
+        at(marked).action.map(|action| {
+            assert_eq!(action.movement, "go");
+            action.index
         })
     }
 
@@ -154,9 +163,11 @@ environment second has { rover } robots with { go } moves
         let text = "import \"parts.pyr\"\nenvironment third has { rover } robots with { go } moves";
         let file = database.open("a.pyr", text);
         let id = database.environments(file)[0].0;
-        let (home, span) = action_place(&database, id, &"go".into(), 2).unwrap();
+        let place = |movement: &str, index| {
+            action_place(&database, id, &NumberedAction { movement: movement.to_owned(), index })
+        };
+        let (home, span) = place("go", 2).unwrap();
         assert_eq!((home, database.slice(home, span).as_str()), (parts, "move 2 meters"));
-        assert_eq!(action_place(&database, id, &"go".into(), 3), None);
-        assert_eq!(action_place(&database, id, &"gone".into(), 0), None);
+        assert_eq!((place("go", 3), place("gone", 0)), (None, None));
     }
 }

@@ -1,17 +1,21 @@
 //! Planned paths: the timed poses of each robot of an environment, for a preview next to the program.
+//!
+//! These structs are what clients receive, field by field: `editors/vscode/src/preview/protocol.ts` has the same shape in
+//! TypeScript, and a test below holds it there.
 
 use pydslrep_analysis::environment::Environment;
 use pydslrep_analysis::{Blocked, Database, EntityId, plan};
 use pydslrep_kinematics::{ActionIndex, Leg, Plan, Pose, RobotPath};
-use pydslrep_scene::{self as scenery, Body, Collision, ENDING, Obstacle, Scene, Sensor, Thing};
+use pydslrep_scene::{self as scenery, Collision, ENDING, Mount, Robot, Scene, Shape, Thing};
 use pydslrep_schema::Problem;
+use serde::{Deserialize, Serialize};
 
-/// The planned path of an environment in its scene.
-#[derive(Debug, Clone, PartialEq)]
+/// The planned path of an environment in its scene. Lengths are metres, angles radians, times seconds from the start.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlannedPath {
     /// Its name.
     pub environment: String,
-    /// Seconds until the last movement ends; `None` if it cannot be planned.
+    /// When the last movement ends; `None` if it cannot be planned.
     pub duration: Option<f64>,
     /// In listed order.
     pub robots: Vec<PlannedRobot>,
@@ -22,82 +26,140 @@ pub struct PlannedPath {
 }
 
 /// The planned path of a robot.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
 pub struct PlannedRobot {
     /// Its name.
     pub name: String,
     /// Its outer size.
-    pub body: Body,
-    /// Its sensors with their mounts.
-    pub sensors: Vec<Sensor>,
-    /// Its poses, beginning with the start pose.
+    pub body: BodySize,
+    /// Where its sensors sit and what they see.
+    pub sensors: Vec<SensorCone>,
+    /// Its first pose is where it starts.
     pub poses: Vec<PlannedPose>,
-    /// The legs of its path. Poses alone do not separate them, since a movement may be listed twice.
+    /// Its drives, in order: the same movement may be listed twice, so poses alone do not tell them apart.
     pub legs: Vec<PlannedLeg>,
     /// The action after which its poses cannot be planned.
     pub unknown_after: Option<PlannedAction>,
 }
 
-/// The path of one action.
-#[derive(Debug, Clone, PartialEq)]
+/// The outer size of a robot.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct BodySize {
+    /// Along its heading.
+    pub length: f64,
+    /// Across it.
+    pub width: f64,
+}
+
+/// A sensor's pose on its robot, and what it sees from there.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SensorCone {
+    /// Its name.
+    pub name: String,
+    /// Forward of the robot's middle.
+    pub x: f64,
+    /// To the left of it.
+    pub y: f64,
+    /// Where it looks.
+    pub theta: f64,
+    /// How far it sees.
+    pub range: f64,
+    /// How wide.
+    pub cone: f64,
+}
+
+/// A pose on the way.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlannedPose {
+    /// When; `None` after an action of unknown duration.
+    pub t: Option<f64>,
+    /// Absolute.
+    pub x: f64,
+    /// Absolute.
+    pub y: f64,
+    /// Absolute.
+    pub theta: f64,
+    /// The action that leads to it; `None` for the start.
+    pub action: Option<PlannedAction>,
+}
+
+/// The drive of one action.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlannedLeg {
     /// The action.
     pub action: PlannedAction,
-    /// Seconds from the start; `None` after an action of unknown duration.
+    /// When it begins; `None` after an action of unknown duration.
     pub start: Option<f64>,
-    /// Seconds.
+    /// How long it takes.
     pub duration: f64,
     /// The index of its last pose among those of its robot; it starts at the last pose of the previous leg.
     pub last: usize,
 }
 
-/// A planned collision of a robot.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PlannedCollision {
-    /// Its name.
-    pub robot: String,
-    /// The current action.
-    pub action: Option<PlannedAction>,
-    /// Seconds from the start; `None` after an action of unknown duration.
-    pub time: Option<f64>,
-    /// The robot's pose.
-    pub pose: Pose,
-    /// The obstacle or robot it collides with.
-    pub with: Met,
-}
-
-/// The other party of a collision, by name.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Met {
-    /// An obstacle.
-    Obstacle(String),
-    /// Another robot.
-    Robot(String),
-}
-
-/// A pose on a planned path.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PlannedPose {
-    /// Seconds from the start; `None` after an action of unknown duration.
-    pub time: Option<f64>,
-    /// In the world; metres and radians.
-    pub pose: Pose,
-    /// The action that leads to it; `None` for the start pose.
-    pub action: Option<PlannedAction>,
-}
-
 /// An action of a planned path.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PlannedAction {
     /// The movement's name.
     pub movement: String,
     /// The zero-based index among the movement's actions.
     pub index: usize,
-    /// The action's text.
+    /// As the program writes it.
     pub text: String,
 }
 
-/// Poses per action, at equal time intervals: enough for curves and speed ramps.
+/// An obstacle seen from above.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Obstacle {
+    /// A cylinder.
+    Circle {
+        /// The obstacle's name.
+        name: String,
+        /// x and y.
+        centre: (f64, f64),
+        /// Of the circle.
+        radius: f64,
+    },
+    /// Anything else.
+    Polygon {
+        /// The obstacle's name.
+        name: String,
+        /// x and y of each.
+        corners: Vec<(f64, f64)>,
+    },
+}
+
+/// A robot that would run into something.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlannedCollision {
+    /// Its name.
+    pub robot: String,
+    /// What it is doing.
+    pub action: Option<PlannedAction>,
+    /// When; `None` after an action of unknown duration.
+    pub t: Option<f64>,
+    /// Where it is then.
+    pub x: f64,
+    /// Where it is then.
+    pub y: f64,
+    /// Its heading then.
+    pub theta: f64,
+    /// What it meets.
+    pub with: Met,
+}
+
+/// What a robot meets, by its name.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Met {
+    /// Something on the floor.
+    Obstacle(String),
+    /// Another robot.
+    Robot(String),
+}
+
+/// Poses of a planned action, at equal intervals of time: enough for a curve and for the ramps at its ends.
 const POSES_PER_ACTION: u32 = 8;
 
 /// The planned path of an environment.
@@ -110,17 +172,37 @@ pub fn planned_path(database: &Database, environment: EntityId) -> Result<Planne
     let scene = database.scene(id, &environment).map_err(|problems| wrong_scene(&environment, &problems))?;
     let plan = plan(&environment, &scene).map_err(|error| error.to_string())?;
     let collisions = collisions(&environment, &scene, &plan);
-    let robots = scene.robots.into_iter().zip(&plan.robots).map(|(robot, path)| PlannedRobot {
-        name: robot.name,
-        body: robot.body,
-        sensors: robot.sensors,
-        poses: poses(&environment, path),
-        legs: legs(&environment, path),
-        unknown_after: path.unknown_after.and_then(|index| action(&environment, index)),
-    });
-    let robots = robots.collect();
-    let (duration, obstacles) = (plan.duration, scene.obstacles);
-    Ok(PlannedPath { environment: environment.name, duration, robots, obstacles, collisions })
+    let robots = scene.robots.iter().zip(&plan.robots);
+    let robots = robots.map(|(robot, path)| planned_robot(&environment, robot, path)).collect();
+    let obstacles = scene.obstacles.iter().map(obstacle).collect();
+    Ok(PlannedPath { duration: plan.duration, robots, obstacles, collisions, environment: environment.name })
+}
+
+fn planned_robot(environment: &Environment, robot: &Robot, path: &RobotPath) -> PlannedRobot {
+    PlannedRobot {
+        name: robot.name.clone(),
+        body: BodySize { length: robot.body.length, width: robot.body.width },
+        sensors: robot.sensors.iter().map(sensor).collect(),
+        poses: poses(environment, path),
+        legs: legs(environment, path),
+        unknown_after: path.unknown_after.and_then(|index| action(environment, index)),
+    }
+}
+
+fn sensor(sensor: &scenery::Sensor) -> SensorCone {
+    let Mount { pose: Pose { x, y, theta }, range, cone } = sensor.mount;
+    SensorCone { name: sensor.name.clone(), x, y, theta, range, cone }
+}
+
+fn obstacle(obstacle: &scenery::Obstacle) -> Obstacle {
+    let name = obstacle.name.clone();
+    match obstacle.shape {
+        Shape::Cylinder { radius } => {
+            Obstacle::Circle { name, centre: (obstacle.pose.x, obstacle.pose.y), radius }
+        }
+        // What is not round has its own corners.
+        _ => Obstacle::Polygon { name, corners: obstacle.outline(0) },
+    }
 }
 
 fn collisions(environment: &Environment, scene: &Scene, plan: &Plan) -> Vec<PlannedCollision> {
@@ -128,15 +210,16 @@ fn collisions(environment: &Environment, scene: &Scene, plan: &Plan) -> Vec<Plan
         Thing::Obstacle(index) => scene.obstacles.get(index).map(|thing| Met::Obstacle(thing.name.clone())),
         Thing::Robot(index) => scene.robots.get(index).map(|robot| Met::Robot(robot.name.clone())),
     };
-    let named = |collision: Collision| {
-        let robot = scene.robots.get(collision.robot)?.name.clone();
-        let (action, with) = (action(environment, collision.action), met(collision.with)?);
-        Some(PlannedCollision { robot, action, time: collision.time, pose: collision.pose, with })
+    let named = |found: Collision| {
+        let robot = scene.robots.get(found.robot)?.name.clone();
+        let (action, with) = (action(environment, found.action), met(found.with)?);
+        let Pose { x, y, theta } = found.pose;
+        Some(PlannedCollision { robot, action, t: found.time, x, y, theta, with })
     };
-    let mut collisions: Vec<_> = scenery::collisions(scene, plan).into_iter().filter_map(named).collect();
-    let moment = |collision: &PlannedCollision| collision.time.unwrap_or(f64::INFINITY);
-    collisions.sort_by(|a, b| moment(a).total_cmp(&moment(b)));
-    collisions
+    let mut found: Vec<_> = scenery::collisions(scene, plan).into_iter().filter_map(named).collect();
+    let moment = |collision: &PlannedCollision| collision.t.unwrap_or(f64::INFINITY);
+    found.sort_by(|a, b| moment(a).total_cmp(&moment(b)));
+    found
 }
 
 /// The error message for a scene with errors.
@@ -146,7 +229,7 @@ fn wrong_scene(environment: &Environment, problems: &[Problem]) -> String {
 }
 
 fn poses(environment: &Environment, path: &RobotPath) -> Vec<PlannedPose> {
-    let start = PlannedPose { time: Some(0.0), pose: path.start, action: None };
+    let start = planned_pose(Some(0.0), path.start, None);
     std::iter::once(start).chain(path.legs.iter().flat_map(|leg| on_leg(environment, leg))).collect()
 }
 
@@ -154,13 +237,13 @@ fn on_leg(environment: &Environment, leg: &Leg) -> Vec<PlannedPose> {
     let action = action(environment, leg.index);
     let at = |number: u32| {
         let seconds = leg.duration * f64::from(number) / f64::from(POSES_PER_ACTION);
-        PlannedPose {
-            time: leg.start.map(|start| start + seconds),
-            pose: leg.pose_at(seconds),
-            action: action.clone(),
-        }
+        planned_pose(leg.start.map(|start| start + seconds), leg.pose_at(seconds), action.clone())
     };
     (1..=POSES_PER_ACTION).map(at).collect()
+}
+
+fn planned_pose(t: Option<f64>, Pose { x, y, theta }: Pose, action: Option<PlannedAction>) -> PlannedPose {
+    PlannedPose { t, x, y, theta, action }
 }
 
 fn legs(environment: &Environment, path: &RobotPath) -> Vec<PlannedLeg> {
@@ -180,6 +263,8 @@ fn action(environment: &Environment, at: ActionIndex) -> Option<PlannedAction> {
 
 #[cfg(test)]
 mod tests {
+    use expect_test::expect_file;
+
     use super::*;
     use crate::fixture::PARTS;
 
@@ -204,16 +289,16 @@ mod tests {
         assert_eq!((path.environment.as_str(), path.duration), ("e", None));
         let rover = &path.robots[0];
         assert_eq!(rover.poses.len(), 1 + 2 * 8);
-        assert_eq!(rover.poses[0], PlannedPose { time: Some(0.0), pose: Pose::default(), action: None });
+        assert_eq!(rover.poses[0], PlannedPose { t: Some(0.0), x: 0.0, y: 0.0, theta: 0.0, action: None });
         let last = rover.poses.last().unwrap();
-        assert!(last.pose.distance(&Pose::new(1.0, 0.0, 0.0)) < 1e-9);
+        assert!((last.x - 1.0).hypot(last.y) < 1e-9);
         assert_eq!(last.action.as_ref().unwrap().text, "turn left");
-        assert!(rover.poses.windows(2).all(|pair| pair[0].time < pair[1].time));
+        assert!(rover.poses.windows(2).all(|pair| pair[0].t < pair[1].t));
         assert_eq!(rover.unknown_after.as_ref().unwrap().index, 2);
         let legs: Vec<_> = rover.legs.iter().map(|leg| (leg.action.index, leg.last)).collect();
         assert_eq!(legs, [(0, 8), (1, 16)]);
         let turn = &rover.legs[1];
-        assert_eq!(rover.poses[turn.last].time, turn.start.map(|start| start + turn.duration));
+        assert_eq!(rover.poses[turn.last].t, turn.start.map(|start| start + turn.duration));
     }
 
     #[test]
@@ -225,14 +310,15 @@ mod tests {
         let id = database.environments(file)[0].0;
         database.set_scene(file, "e", Some("[[cylinder]]\nname = \"pole\"\nat = [0, 1]\nradius = 0.1"));
         let path = planned_path(&database, id).unwrap();
-        assert_eq!(path.obstacles[0].name, "pole");
+        let pole = Obstacle::Circle { name: "pole".to_owned(), centre: (0.0, 1.0), radius: 0.1 };
+        assert_eq!(path.obstacles, [pole]);
         let [collision] = &path.collisions[..] else { panic!("{:?}", path.collisions) };
         assert_eq!((collision.robot.as_str(), &collision.with), ("rover", &Met::Obstacle("pole".to_owned())));
         assert_eq!(collision.action.as_ref().unwrap().text, "move 3 meters");
-        let front = collision.pose.y + path.robots[0].body.length / 2.0;
+        let front = collision.y + path.robots[0].body.length / 2.0;
         assert!((front - 0.9).abs() < 0.002, "{collision:?}");
         let leg = &path.robots[0].legs[1];
-        assert!(collision.time > leg.start && collision.time < Some(path.duration.unwrap()), "{leg:?}");
+        assert!(collision.t > leg.start && collision.t < Some(path.duration.unwrap()), "{leg:?}");
     }
 
     #[test]
@@ -243,10 +329,30 @@ mod tests {
         let file = database.open("a.pyr", &format!("{PARTS}{rest}"));
         let id = database.environments(file)[0].0;
         database.set_scene(file, "e", Some("[robots.rover]\nstart = [1, 2, 90]"));
-        let end = planned_path(&database, id).unwrap().robots[0].poses.last().unwrap().pose;
-        assert!(end.distance(&Pose::new(1.0, 3.0, 0.0)) < 1e-9, "{end:?}");
+        let path = planned_path(&database, id).unwrap();
+        let end = path.robots[0].poses.last().unwrap();
+        assert!((end.x - 1.0).hypot(end.y - 3.0) < 1e-9, "{end:?}");
         database.set_scene(file, "e", Some("[robots.rovr]\nstart = [1, 2, 90]"));
         let why = planned_path(&database, id).unwrap_err();
         assert_eq!(why, "`e.scene.toml`: the environment has no robot `rovr`");
+    }
+
+    /// `tsc` holds the types of the preview against this value.
+    #[test]
+    fn clients_know_the_shape() {
+        let mut database = Database::new();
+        let rest = "movement m of rover { move 1 meters turn left until { front } }
+            environment e has { rover } robots with { m } moves";
+        let file = database.open("a.pyr", &format!("{PARTS}{rest}"));
+        let id = database.environments(file)[0].0;
+        let scene = "[[cylinder]]\nname = \"pole\"\nat = [0.5, 0]\nradius = 0.1\n
+            [[box]]\nname = \"crate\"\nat = [3, 3]\nsize = [1, 1]";
+        database.set_scene(file, "e", Some(scene));
+        let path = serde_json::to_string_pretty(&planned_path(&database, id).unwrap()).unwrap();
+        expect_file!["../../../editors/vscode/tests/preview/planned_path.sample.ts"].assert_eq(&format!(
+            "// Written by a test of crates/ide/src/planned_path.rs.\n\
+             import type {{ PlannedPath }} from \"../../src/preview/protocol\";\n\n\
+             export const path: PlannedPath = {path};\n"
+        ));
     }
 }

@@ -1,8 +1,8 @@
 //! Which environment of which program a client means, and which paths it has.
 
 use pydslrep_analysis::Fingerprint;
+use pydslrep_ide::PlannedPath;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 use tower_lsp::ls_types::Uri;
 
 /// An environment: the data of an action until it is chosen, and the argument of commands.
@@ -22,5 +22,5 @@ pub(crate) struct Watched {
     /// What the environment was made of, where it was without errors.
     pub(crate) fingerprint: Option<Fingerprint>,
     /// The path as it was sent; `None` where there was none.
-    pub(crate) path: Option<Value>,
+    pub(crate) path: Option<PlannedPath>,
 }

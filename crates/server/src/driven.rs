@@ -61,6 +61,8 @@ impl Pose {
 mod tests {
     use std::fs;
 
+    use expect_test::expect_file;
+
     use super::*;
 
     fn line(robot: &str, t: f64, x: f64) -> String {
@@ -97,5 +99,24 @@ mod tests {
         assert_eq!(b.map, Map { nodes: vec![(0.0, 1.0), (2.0, 3.0)], edges: vec![((0.0, 1.0), (2.0, 3.0))] });
         assert_eq!(robots[1].map.nodes, [(4.0, 5.0)]);
         assert_eq!(robots[1].poses.len(), 1);
+    }
+
+    /// `tsc` holds the types of the preview against this value.
+    #[test]
+    fn clients_know_the_shape() {
+        let folder = tempfile::tempdir().unwrap();
+        let (trace, map) = (folder.path().join("t.jsonl"), folder.path().join("m.json"));
+        fs::write(&trace, line("a", 0.0, 1.0)).unwrap();
+        fs::write(
+            &map,
+            r#"{"nodes": [{"robot": "a", "x": 0, "y": 1}, {"robot": "a", "x": 2, "y": 3}], "edges": [{"from": 0, "to": 1}]}"#,
+        )
+        .unwrap();
+        let robots = serde_json::to_string_pretty(&read(&trace, &map).unwrap()).unwrap();
+        expect_file!["../../../editors/vscode/tests/preview/driven_path.sample.ts"].assert_eq(&format!(
+            "// Written by a test of crates/server/src/driven.rs.\n\
+             import type {{ DrivenRobot }} from \"../../src/preview/protocol\";\n\n\
+             export const robots: DrivenRobot[] = {robots};\n"
+        ));
     }
 }

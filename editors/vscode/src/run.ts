@@ -2,6 +2,7 @@
 import * as vscode from "vscode";
 
 import { type Connection, executeWithProgress } from "./execute";
+import { type Figures, summary } from "./figures";
 import { reached } from "./milestones";
 import { showInformation, showWarning } from "./notifications";
 import { type EnvironmentId, keyOf } from "./preview/protocol";
@@ -10,6 +11,7 @@ import { type EnvironmentId, keyOf } from "./preview/protocol";
 interface RunResult {
   /** The printed table of poses and times. */
   output: string;
+  figures: Figures;
   /** URIs of the drawn files; they exist as long as the server runs. */
   picture?: string | null;
   replay?: string | null;
@@ -79,7 +81,7 @@ export class Runs implements vscode.Disposable {
     this.pictures.set(keyOf(environment), result);
     this.tables.appendLine(`${result.output.trimEnd()}\n`);
     const showPath = () => vscode.commands.executeCommand("pydslrep.showPreview", vscode.Uri.parse(environment.uri), environment.environment);
-    showInformation(summary(result.output), { label: "Show Path", press: showPath }, { label: "Show Table", press: () => this.tables.show(true) });
+    showInformation(summary(result.figures), { label: "Show Path", press: showPath }, { label: "Show Table", press: () => this.tables.show(true) });
     void showPath();
   }
 }
@@ -90,11 +92,5 @@ function askForTrust(): void {
 }
 
 function isRunResult(answer: unknown): answer is RunResult {
-  return typeof answer === "object" && answer !== null && "output" in answer && typeof answer.output === "string";
-}
-
-/** The line of the output that says how long the run took. */
-function summary(output: string): string {
-  const lines = output.split("\n").map((line) => line.trim());
-  return lines.find((line) => /^\S+: .* simulated in /.test(line)) ?? "The run has ended.";
+  return typeof answer === "object" && answer !== null && "figures" in answer && answer.figures !== null;
 }

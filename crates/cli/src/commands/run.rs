@@ -2,6 +2,7 @@
 
 use std::ffi::OsString;
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -67,6 +68,9 @@ pub(crate) struct Arguments {
     /// Write the map of robots that explore into a file, as JSON [default: `ENVIRONMENT_map.json`]
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
+    /// Write the result into a file, as JSON: times, and where each robot ends
+    #[arg(long, value_name = "FILE")]
+    figures: Option<PathBuf>,
     /// Explore by how the wheels turn, without asking the simulator where the robot is
     #[arg(long)]
     odometry: bool,
@@ -306,11 +310,16 @@ impl Run<'_> {
                 interrupt::EXIT_CODE
             }
         };
-        output::print(&outcome.table())?;
+        let figures = outcome.figures();
+        output::print(&figures.table())?;
+        if let Some(path) = &self.arguments.figures {
+            let json = serde_json::to_vec(&figures).map_err(io::Error::from);
+            json.and_then(|json| fs::write(path, json)).map_err(|error| Failure::unwritten(path, &error))?;
+        }
         self.planned.draw(&self.arguments.pictures, "planned and driven path", &outcome.routes())?;
         self.arguments.pictures.tell();
         let map = (!driven.maps.is_empty()).then(|| self.map_file());
-        let written = [("trace", &self.arguments.trace), ("map", &map)];
+        let written = [("trace", &self.arguments.trace), ("map", &map), ("figures", &self.arguments.figures)];
         for (what, path) in written {
             if let Some(path) = path {
                 output::say(&format!("{what}: {}\n", path.display()));

@@ -152,7 +152,8 @@ fn a_blocked_robot_fails_its_action() {
     place.write("wall.scene.toml", "[[wall]]\nfrom = [1, -1]\nto = [1, 1]\n");
     let done = run(&place, &["x.pyr", "--environment", "wall", "--no-progress"]);
     assert_eq!(done.code, Some(1), "{}", done.err);
-    let message = "action 1: move 2 m: no progress for 5 s, 1.201 m from the goal; an obstacle may be in the way";
+    let message =
+        "action 1: move 2 m: no progress for 5 s, 1.201 m from the goal; an obstacle may be in the way";
     assert!(done.err.contains(message), "{}", done.err);
     assert!(done.out.contains("stopped  0.799  0.000"), "{}", done.out);
 }

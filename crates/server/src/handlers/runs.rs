@@ -150,7 +150,7 @@ impl Job {
         command.arg("--replay").arg(replay(&picture));
         if self.subcommand == "run" {
             command.arg("--trace").arg(trace(&picture)).arg("--map").arg(map(&picture));
-            command.arg("--until-input-ends");
+            command.arg("--figures").arg(figures(&picture)).arg("--until-input-ends");
         }
         let (running, events) = children.start(&mut command, self.folder).map_err(|error| {
             let name = program.display();
@@ -177,6 +177,11 @@ pub(crate) fn map(picture: &Path) -> PathBuf {
     picture.with_extension("map.json")
 }
 
+/// The path of the result of a run, next to the picture.
+pub(crate) fn figures(picture: &Path) -> PathBuf {
+    picture.with_extension("figures.json")
+}
+
 /// The program `pydslrep`: beside this one, else wherever the system finds it.
 fn executable() -> PathBuf {
     let name = format!("pydslrep{}", std::env::consts::EXE_SUFFIX);
@@ -194,7 +199,7 @@ pub(crate) fn ended_badly(code: Option<i32>, said: &[String]) -> Error {
         };
     }
     // The paths of its output and what it began with are not reasons.
-    let others = ["picture: ", "replay: ", "trace: ", "map: ", "preparing Python "];
+    let others = ["picture: ", "replay: ", "trace: ", "map: ", "figures: ", "preparing Python "];
     let is_reason = |line: &&String| !others.iter().any(|other| line.starts_with(other));
     let words: Vec<&str> = said.iter().filter(is_reason).map(String::as_str).collect();
     if words.is_empty() {

@@ -1,16 +1,17 @@
-// Paths for tests.
+// Paths to test with.
 import type { PlannedLeg, PlannedPath, PlannedPose } from "../../src/preview/protocol";
 
 /** A robot that drives 2 m in 2 s, waits for a second, turns left in 1 s, and drives 1 m in 1 s. */
 export function plan(): PlannedPath {
-  const poses: PlannedPose[] = [
-    { t: 0, x: 0, y: 0, theta: 0 },
-    { t: 1, x: 1, y: 0, theta: 0 },
-    { t: 2, x: 2, y: 0, theta: 0 },
-    { t: 3.5, x: 2, y: 0, theta: Math.PI / 4 },
-    { t: 4, x: 2, y: 0, theta: Math.PI / 2 },
-    { t: 4.5, x: 2, y: 0.5, theta: Math.PI / 2 },
-    { t: 5, x: 2, y: 1, theta: Math.PI / 2 },
+  const at = (t: number, x: number, y: number, theta: number): PlannedPose => ({ t, x, y, theta, action: null });
+  const poses = [
+    at(0, 0, 0, 0),
+    at(1, 1, 0, 0),
+    at(2, 2, 0, 0),
+    at(3.5, 2, 0, Math.PI / 4),
+    at(4, 2, 0, Math.PI / 2),
+    at(4.5, 2, 0.5, Math.PI / 2),
+    at(5, 2, 1, Math.PI / 2),
   ];
   const leg = (index: number, text: string, start: number, duration: number, last: number): PlannedLeg => ({
     action: { movement: "go", index, text },
@@ -42,7 +43,7 @@ export function plan(): PlannedPath {
   };
 }
 
-/** A path with this many robots and legs per robot. */
+/** So many robots with so many legs each. */
 export function large(robots: number, legs: number): PlannedPath {
   const [only] = plan().robots;
   if (!only) throw new Error("there is one");
@@ -51,7 +52,7 @@ export function large(robots: number, legs: number): PlannedPath {
     robots: Array.from({ length: robots }, (_, index) => ({
       ...only,
       name: `robot ${index}`,
-      poses: Array.from({ length: 8 * legs + 1 }, (__, at) => ({ t: at / 8, x: at / 80, y: index, theta: 0 })),
+      poses: Array.from({ length: 8 * legs + 1 }, (__, at) => ({ t: at / 8, x: at / 80, y: index, theta: 0, action: null })),
       legs: Array.from({ length: legs }, (__, at) => ({
         action: { movement: "go", index: at, text: "move 10 centimeters" },
         start: at,

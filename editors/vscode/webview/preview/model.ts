@@ -1,5 +1,5 @@
 // Paths prepared for drawing, once per path: lines, legs for hit tests, and tracks to look up poses by time.
-import type { DrivenPath, NumberedAction, PlannedAction, PlannedPath, Sensor } from "../../src/preview/protocol";
+import type { DrivenPath, NumberedAction, PlannedAction, PlannedPath, SensorCone } from "../../src/preview/protocol";
 import { endOf, trackOf, turnBetween, type Pose, type TimedPose, type Track } from "./time";
 
 export interface Leg {
@@ -21,7 +21,7 @@ export interface Robot {
   /** The index of its colour. */
   colour: number;
   body: { length: number; width: number };
-  sensors: Sensor[];
+  sensors: SensorCone[];
   /** x and y of its poses, alternating. */
   line: Float64Array;
   start: Pose;

@@ -8,9 +8,7 @@ mod actions;
 mod entities;
 
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{
-    EntityKind, KEYWORDS, Span, SyntaxErrorKind, Token, TokenKind, lex, parse,
-};
+use pydslrep_syntax::{EntityKind, KEYWORDS, Span, SyntaxErrorKind, Token, TokenKind, lex, parse};
 use pydslrep_text::is_similar;
 
 use super::{RULE, mend, words};

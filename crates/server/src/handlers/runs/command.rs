@@ -17,7 +17,8 @@ use crate::server::Server;
 /// How many lines of a failed run's output are part of the error.
 const MOST_LINES: usize = 50;
 
-/// Runs or plans an environment in a child process; answers with the picture's URI and what was printed.
+/// Runs or plans an environment in a child process; answers with the picture's URI, the result in numbers
+/// and what was printed.
 pub(crate) async fn run(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
     let which: ChosenEnvironment = commands::argument(&params)?;
     let job = runs::prepare(&server.state(), &which, &params.command)?;
@@ -70,6 +71,9 @@ pub(crate) async fn run(server: Server, params: ExecuteCommandParams) -> Result<
         let _ = std::fs::remove_file(runs::replay(&picture));
         return Err(runs::ended_badly(code, said.make_contiguous()));
     }
+    let figures = std::fs::read(runs::figures(&picture)).unwrap_or_default();
+    // A plan has none.
+    let figures: LSPAny = serde_json::from_slice(&figures).unwrap_or_default();
     let replay = Uri::from_file_path(runs::replay(&picture));
     let picture = Uri::from_file_path(&picture);
     let shows_documents = server.state().client.show_document;
@@ -83,7 +87,9 @@ pub(crate) async fn run(server: Server, params: ExecuteCommandParams) -> Result<
         // The picture exists, whether or not the client shows it.
         let _ = server.client.show_document(show).await;
     }
-    Ok(Some(serde_json::json!({ "picture": picture, "replay": replay, "output": printed })))
+    let result =
+        serde_json::json!({ "picture": picture, "replay": replay, "output": printed, "figures": figures });
+    Ok(Some(result))
 }
 
 /// The token of a run's progress: the client's, otherwise one of ours; `None` where the client shows none.
