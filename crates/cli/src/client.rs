@@ -1,4 +1,4 @@
-//! V-REP's client for Python, which no package registry has: where it is, so that a script finds it.
+//! V-REP's Python client, which no package registry has: makes it available to a script.
 
 use std::fs;
 use std::path::Path;
@@ -11,22 +11,22 @@ use tokio::time::timeout;
 
 use crate::failure::Failure;
 
-/// Ends well where Python itself finds one; `-c` alone would also look into the current folder, where a script does not.
+/// Exits with 0 if Python finds a client itself. `-c` alone would also search the current folder; a script does not.
 const QUESTION: &str = "import sys; sys.path.pop(0); from importlib.util import find_spec; \
     sys.exit(not any(map(find_spec, ('sim', 'vrep'))))";
 
 const ASK_LIMIT: Duration = Duration::from_secs(30);
 
-/// Where V-REP and its successor have the files.
+/// Where V-REP and CoppeliaSim keep the files.
 const SOURCES: &str = "in CoppeliaSim's folder programming/legacyRemoteApi/remoteApiBindings (before 4.3: \
     programming/remoteApiBindings) they are in python/python and, by system, in lib/lib; in V-REP 3 the first two are \
     called vrep.py and vrepConst.py";
 
-/// Sees to it that a script in `folder` finds the client: the one in `home`, beside the program, is copied there, else
-/// Python must have one on its path.
+/// Makes the client available to a script in `folder`: copies it from `home`, the program's folder, or else checks that
+/// Python has one on its path.
 ///
 /// # Errors
-/// When there is none, with what to copy from where.
+/// If there is none; the help says what to copy from where.
 pub(crate) async fn prepare(python: &Path, home: &Path, folder: &Path) -> Result<(), Failure> {
     if VREP_CLIENTS.iter().any(|name| home.join(name).is_file()) {
         for name in VREP_CLIENTS.iter().chain(&VREP_CLIENT_PARTS) {

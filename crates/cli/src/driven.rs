@@ -1,4 +1,4 @@
-//! The paths that robots really drove, as thin as a picture needs them.
+//! The paths that robots drove, with as many poses as a picture needs.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};
@@ -7,41 +7,41 @@ use std::path::Path;
 use pydslrep_simulator::Sightings;
 use pydslrep_trace::{Map, TraceRecord, Track};
 
-/// Poses nearer than this to the last one kept are left out, metres and radians.
+/// Poses nearer than this to the last one kept are dropped: metres and radians.
 const FINENESS: f64 = 0.002;
 
-/// The path of each robot of an environment, in its order.
+/// The path of each robot, in the order of the environment.
 #[derive(Debug)]
 pub(crate) struct Driven {
     robots: Vec<String>,
     tracks: Vec<Track>,
     /// Simulation time of the last record, seconds.
     pub(crate) time: f64,
-    /// What the embedded simulator's sensors saw.
+    /// What sensors saw in the embedded simulator.
     pub(crate) seen: Sightings,
-    /// What each robot found on exploring; empty where none does.
+    /// The map of each robot; empty if none explores.
     pub(crate) maps: Vec<Map>,
 }
 
 impl Driven {
-    /// No path yet.
+    /// Empty paths for these robots.
     pub(crate) fn new<'a>(robots: impl Iterator<Item = &'a str>) -> Self {
         let robots: Vec<String> = robots.map(str::to_owned).collect();
         let tracks = vec![Track::new(FINENESS); robots.len()];
         Self { robots, tracks, time: 0.0, seen: Sightings::default(), maps: Vec::new() }
     }
 
-    /// Goes on with what the simulator recorded.
+    /// Adds what the simulator recorded.
     pub(crate) fn extend(&mut self, records: &[TraceRecord]) {
         for record in records {
             self.add(record);
         }
     }
 
-    /// Goes on with what a script wrote.
+    /// Adds the trace that a script wrote.
     ///
     /// # Errors
-    /// When the file cannot be read or is no trace.
+    /// If the file cannot be read or is not a trace.
     pub(crate) fn read(&mut self, file: &Path) -> io::Result<()> {
         for line in BufReader::new(File::open(file)?).lines() {
             self.add(&serde_json::from_str(&line?)?);
@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn robots_that_nobody_knows_are_passed_over() {
+    fn unknown_robots_are_ignored() {
         let mut driven = Driven::new(["a", "b"].into_iter());
         let record = |t, robot: &str| TraceRecord {
             t,

@@ -1,4 +1,4 @@
-//! A script that runs: started, listened to, and never outliving this command.
+//! Runs a script as a child process: reads its output, stops it, and never leaves it running.
 
 use std::io;
 use std::path::PathBuf;
@@ -16,43 +16,43 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupts;
 use crate::progress::Progress;
 
-/// How often the simulator is looked at.
-const LOOK_PERIOD: Duration = Duration::from_millis(50);
+/// How often the simulator is polled.
+const POLL_PERIOD: Duration = Duration::from_millis(50);
 
-/// A script stops its robots within this time when asked to end.
+/// A script that is asked to end stops its robots within this time.
 const STOP_LIMIT: Duration = Duration::from_secs(5);
 
-/// Scripts have limits of their own for everything they wait for. One that lets no time pass for this long is broken.
+/// Scripts limit every wait themselves. One in which simulation time stands still for this long is broken.
 const STANDSTILL_LIMIT: Duration = Duration::from_secs(60);
 
-/// More than this of what a script complains about is not kept, bytes.
-const MOST_COMPLAINTS: u64 = 1 << 20;
+/// At most this much of a script's standard error is kept, bytes.
+const MAX_STDERR: u64 = 1 << 20;
 
 /// How a script ended.
 pub(crate) enum Ending {
-    /// It did what it should.
+    /// It succeeded.
     Done,
-    /// A robot could not do what it should; with the script's words.
+    /// A movement failed, with the script's message.
     Failed(String),
-    /// Something outside failed; with the script's words.
+    /// Something outside of the program failed, with the script's message.
     Broken(String),
-    /// Somebody wanted it to end.
+    /// The user interrupted it.
     Interrupted,
 }
 
-/// What to start.
+/// A script to start.
 pub(crate) struct Script {
     pub(crate) python: PathBuf,
-    /// Whether Python may only use what is installed for it, not what is beside the script or in the environment.
+    /// Whether Python ignores modules beside the script and in the environment.
     pub(crate) isolated: bool,
     /// The script and its arguments.
     pub(crate) arguments: Vec<std::ffi::OsString>,
 }
 
-/// Runs a script to its end. `simulator` is the embedded one, if it drives that; what it records goes to `driven`.
+/// Runs a script to its end. What the embedded simulator records, if the script uses it, goes to `driven`.
 ///
 /// # Errors
-/// When it cannot be started or watched.
+/// If it cannot be started or its end is lost.
 pub(crate) async fn drive(
     script: &Script,
     simulator: Option<&Simulator>,
@@ -61,18 +61,18 @@ pub(crate) async fn drive(
     interrupts: &mut Interrupts,
 ) -> Result<Ending, Failure> {
     let mut running = Running::start(script)?;
-    let mut looks = interval(LOOK_PERIOD);
-    looks.set_missed_tick_behavior(MissedTickBehavior::Delay);
-    let mut watch = Watch::default();
+    let mut polls = interval(POLL_PERIOD);
+    polls.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    let mut stopwatch = Stopwatch::default();
     let ending = loop {
         tokio::select! {
-            line = next_line(&mut running.lines), if running.speaks => match line {
+            line = next_line(&mut running.lines), if running.has_output => match line {
                 Some(line) => read(&line, simulator, driven, progress),
-                None => running.speaks = false,
+                None => running.has_output = false,
             },
             status = running.child.wait() => {
                 let status = status.map_err(|error| Failure::new(format!("lost the script: {error}")))?;
-                // What it said last may not be read yet; a process that it left behind could keep the pipe open.
+                // Its last lines may not be read yet; a process that it left behind could keep the pipe open.
                 while let Ok(Some(line)) = timeout(STOP_LIMIT, next_line(&mut running.lines)).await {
                     read(&line, simulator, driven, progress);
                 }
@@ -82,13 +82,13 @@ pub(crate) async fn drive(
                 running.stop(interrupts).await;
                 break Ending::Interrupted;
             }
-            _ = looks.tick() => if let Some(simulator) = simulator {
+            _ = polls.tick() => if let Some(simulator) = simulator {
                 driven.extend(&simulator.take_trace());
                 progress.pass(simulator.time());
-                if watch.stands_still(simulator.time()) {
+                if stopwatch.stands_still(simulator.time()) {
                     running.stop(interrupts).await;
                     let seconds = STANDSTILL_LIMIT.as_secs();
-                    break Ending::Broken(format!("error: the script let no time pass for {seconds} s, so it was ended"));
+                    break Ending::Broken(format!("error: simulation time stood still for {seconds} s, so the script was stopped"));
                 }
             },
         }
@@ -100,7 +100,7 @@ pub(crate) async fn drive(
     Ok(ending)
 }
 
-/// Reads what the script says. Only where there is no simulator to ask, it also tells the time.
+/// Reads a line of the script. Without the embedded simulator, the line also tells the simulation time.
 fn read(line: &str, simulator: Option<&Simulator>, driven: &mut Driven, progress: &mut Progress) {
     if let (Some(seconds), None) = (progress.read(line), simulator) {
         progress.pass(seconds);
@@ -108,7 +108,7 @@ fn read(line: &str, simulator: Option<&Simulator>, driven: &mut Driven, progress
     }
 }
 
-/// The next line that a script says; `None` at the end. Whatever is no text is passed over.
+/// The next line of a script; `None` at the end. Lines that are not UTF-8 are skipped.
 async fn next_line(lines: &mut Lines<BufReader<ChildStdout>>) -> Option<String> {
     loop {
         match lines.next_line().await {
@@ -119,19 +119,19 @@ async fn next_line(lines: &mut Lines<BufReader<ChildStdout>>) -> Option<String> 
     }
 }
 
-/// Tells when time stands still.
-struct Watch {
+/// Notices when simulation time stands still.
+struct Stopwatch {
     time: f64,
     since: Instant,
 }
 
-impl Default for Watch {
+impl Default for Stopwatch {
     fn default() -> Self {
         Self { time: 0.0, since: Instant::now() }
     }
 }
 
-impl Watch {
+impl Stopwatch {
     fn stands_still(&mut self, time: f64) -> bool {
         if time.to_bits() != self.time.to_bits() {
             *self = Self { time, since: Instant::now() };
@@ -143,9 +143,9 @@ impl Watch {
 struct Running {
     child: Child,
     lines: Lines<BufReader<ChildStdout>>,
-    /// Whether more lines may come.
-    speaks: bool,
-    complaints: JoinHandle<String>,
+    /// Whether standard output is still open.
+    has_output: bool,
+    stderr: JoinHandle<String>,
 }
 
 impl Running {
@@ -154,52 +154,50 @@ impl Running {
             |reason: &str| Failure::new(format!("cannot start {}: {reason}", script.python.display()));
         let mut command = Command::new(&script.python);
         if script.isolated {
-            // Nothing can take the place of a module.
+            // No file beside the script can replace a module.
             command.arg("-I");
         }
         command.args(["-X", "utf8"]).args(&script.arguments);
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).kill_on_drop(true);
-        // Ctrl-C reaches the script once, from here.
+        // Ctrl-C reaches the script once: from this process.
         #[cfg(unix)]
         command.process_group(0);
         let mut child = command.spawn().map_err(|error| failure(&error.to_string()))?;
-        let (Some(out), Some(complaints)) = (child.stdout.take(), child.stderr.take()) else {
-            return Err(failure("it cannot be listened to"));
+        let (Some(stdout), Some(stderr)) = (child.stdout.take(), child.stderr.take()) else {
+            return Err(failure("its output cannot be read"));
         };
-        let complaints = tokio::spawn(async move {
+        let stderr = tokio::spawn(async move {
             let mut bytes = Vec::new();
-            let mut all = complaints.take(MOST_COMPLAINTS);
-            // What was read before an error still says something.
+            let mut all = stderr.take(MAX_STDERR);
+            // What was read before an error is still worth showing.
             let _ = all.read_to_end(&mut bytes).await;
             let _ = tokio::io::copy(&mut all.into_inner(), &mut tokio::io::sink()).await;
             String::from_utf8_lossy(&bytes).trim_end().to_owned()
         });
-        Ok(Self { child, lines: BufReader::new(out).lines(), speaks: true, complaints })
+        Ok(Self { child, lines: BufReader::new(stdout).lines(), has_output: true, stderr })
     }
 
     async fn ending(self, status: ExitStatus) -> Ending {
         // A process that the script left behind could keep the pipe open.
-        let complaints = timeout(STOP_LIMIT, self.complaints).await;
-        let complaints = complaints.ok().and_then(Result::ok).unwrap_or_default();
+        let stderr = timeout(STOP_LIMIT, self.stderr).await;
+        let stderr = stderr.ok().and_then(Result::ok).unwrap_or_default();
         match status.code() {
             Some(0) => Ending::Done,
-            Some(1) if !complaints.contains("Traceback (most recent call last)") => {
-                Ending::Failed(complaints)
-            }
+            Some(1) if !stderr.contains("Traceback (most recent call last)") => Ending::Failed(stderr),
             Some(130) => Ending::Interrupted,
-            _ if complaints.is_empty() => Ending::Broken(format!("error: the script ended by {status}")),
-            _ => Ending::Broken(complaints),
+            _ if stderr.is_empty() => Ending::Broken(format!("error: the script ended with {status}")),
+            _ => Ending::Broken(stderr),
         }
     }
 
-    /// Asks the script to stop its robots and end, and ends it where it does not or a second wish comes.
+    /// Asks the script to stop its robots and end; kills it if it does not, or on a second interrupt.
     async fn stop(&mut self, interrupts: &mut Interrupts) {
         self.interrupt();
         tokio::select! {
             _ = timeout(STOP_LIMIT, self.child.wait()) => {}
             () = interrupts.next() => {}
         }
-        // No error: it has ended already.
+        // An error means that it has ended already.
         let _ = self.child.kill().await;
     }
 
@@ -208,7 +206,7 @@ impl Running {
         use rustix::process::{Pid, Signal, kill_process};
         let pid = self.child.id().and_then(|id| i32::try_from(id).ok()).and_then(Pid::from_raw);
         if let Some(pid) = pid {
-            // No error: it has ended already.
+            // An error means that it has ended already.
             let _ = kill_process(pid, Signal::INT);
         }
     }

@@ -1,4 +1,4 @@
-//! What went wrong outside of the program.
+//! Failures outside of the program.
 
 use std::fmt::Display;
 
@@ -7,32 +7,32 @@ use pydslrep_config::UnknownWord;
 /// Wrong use or an outside failure: a file, a port, a missing Python.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// Something to tell.
-    Told {
+    /// To be reported as an error.
+    Message {
         /// What happened.
         message: String,
         /// What to do about it.
         help: Option<String>,
     },
-    /// Something to show as it is: what is wrong in a file that is no program, with its lines.
-    Shown(String),
-    /// Nobody reads the output any more, so there is nobody to tell.
-    Unheard,
+    /// Rendered already: problems in a file that is not a program, with its lines.
+    Rendered(String),
+    /// Standard output is closed, so nothing is reported.
+    NoReader,
 }
 
 impl Failure {
-    /// The exit code of all of them.
+    /// The exit code of every failure.
     pub(crate) const EXIT_CODE: u8 = 2;
 
-    /// A failure with what happened.
+    /// A failure with its message.
     pub(crate) fn new(message: impl Into<String>) -> Self {
-        Self::Told { message: message.into(), help: None }
+        Self::Message { message: message.into(), help: None }
     }
 
-    /// The same with what to do about it.
+    /// Adds what to do about it.
     pub(crate) fn help(self, help: impl Into<String>) -> Self {
         match self {
-            Self::Told { message, .. } => Self::Told { message, help: Some(help.into()) },
+            Self::Message { message, .. } => Self::Message { message, help: Some(help.into()) },
             other => other,
         }
     }

@@ -55,7 +55,7 @@ impl Fixed {
         for &file in files {
             let now = text(&sources.database, file);
             if sources.place(file).is_none() {
-                output::pass_on(&now)?;
+                output::print_raw(&now)?;
                 continue;
             }
             let Some(before) = self.before.get(&file) else { continue };

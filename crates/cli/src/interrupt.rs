@@ -1,27 +1,27 @@
-//! Wishes of the outside that this command should end: Ctrl-C, a closed terminal, a polite kill.
+//! Interrupts: Ctrl-C, a closed terminal, SIGTERM.
 
 use std::io;
 use std::thread;
 
 use tokio::sync::oneshot;
 
-/// Listens from its making on; before that, such a wish ends the process at once.
+/// Receives interrupts. Before it exists, an interrupt ends the process at once.
 pub(crate) struct Interrupts {
     #[cfg(unix)]
     signals: [tokio::signal::unix::Signal; 3],
-    /// Resolves at the end of standard input, where that is such a wish.
+    /// Resolves at the end of standard input, if that counts as an interrupt.
     end_of_input: Option<oneshot::Receiver<()>>,
 }
 
-/// The exit code after one.
+/// The exit code after an interrupt.
 pub(crate) const EXIT_CODE: u8 = 130;
 
 #[cfg(unix)]
 impl Interrupts {
-    /// Begins to listen.
+    /// Starts to listen.
     ///
     /// # Errors
-    /// When the system does not allow it.
+    /// If the system does not allow it.
     pub(crate) fn listen() -> io::Result<Self> {
         use tokio::signal::unix::{SignalKind, signal};
         let kinds = [SignalKind::interrupt(), SignalKind::terminate(), SignalKind::hangup()];
@@ -29,7 +29,7 @@ impl Interrupts {
         Ok(Self { signals: [interrupt?, terminate?, hangup?], end_of_input: None })
     }
 
-    /// Waits for the next one.
+    /// Waits for the next interrupt.
     pub(crate) async fn next(&mut self) {
         let [interrupt, terminate, hangup] = &mut self.signals;
         tokio::select! {
@@ -43,7 +43,7 @@ impl Interrupts {
 
 #[cfg(not(unix))]
 impl Interrupts {
-    /// Begins to listen.
+    /// Starts to listen.
     ///
     /// # Errors
     /// Never on this system.
@@ -52,7 +52,7 @@ impl Interrupts {
         Ok(Self { end_of_input: None })
     }
 
-    /// Waits for the next one.
+    /// Waits for the next interrupt.
     pub(crate) async fn next(&mut self) {
         let interrupt = async {
             if tokio::signal::ctrl_c().await.is_err() {
@@ -67,12 +67,12 @@ impl Interrupts {
 }
 
 impl Interrupts {
-    /// Takes the end of standard input for a wish to end, too: whoever holds its other end may be killed.
+    /// Treats the end of standard input as an interrupt, too: the process at its other end may be killed.
     pub(crate) fn with_end_of_input(mut self) -> Self {
         let (tell, ended) = oneshot::channel();
-        // No task: the runtime would wait for its read when it shuts down.
+        // A thread: the runtime would wait for a task's read when it shuts down.
         thread::spawn(move || {
-            // Input that cannot be read has ended, too.
+            // Input that cannot be read has ended as well.
             let _ = io::copy(&mut io::stdin().lock(), &mut io::sink());
             let _ = tell.send(());
         });
@@ -81,7 +81,7 @@ impl Interrupts {
     }
 }
 
-/// Waits for it once; afterwards it is nothing new.
+/// Waits for the end once; after that, forever.
 async fn ended(input: &mut Option<oneshot::Receiver<()>>) {
     match input {
         Some(end) => {

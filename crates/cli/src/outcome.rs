@@ -12,40 +12,40 @@ use crate::commands::plan::{Planned, fixed, heading};
 use crate::driven::Driven;
 use crate::output;
 
-/// A finished run.
+/// A run that has ended.
 pub(crate) struct Outcome<'a> {
     pub(crate) planned: &'a Planned,
     pub(crate) driven: &'a Driven,
-    /// From the start of the script to its end.
+    /// Wall time from the start of the script to its end.
     pub(crate) wall: Duration,
-    /// Whether the robots did all they should.
+    /// Whether every movement was completed.
     pub(crate) is_complete: bool,
 }
 
-/// What came of a run, in numbers: metres, radians, seconds.
+/// The result of a run in metres, radians and seconds.
 #[derive(Debug, Serialize)]
 pub(crate) struct Figures<'a> {
     environment: &'a str,
-    /// Whether the robots did all they should.
+    /// Whether every movement was completed.
     complete: bool,
-    /// How long it should take; `None` where that cannot be planned.
+    /// Planned duration; `None` if it cannot be planned.
     planned: Option<f64>,
-    /// How long it took in the simulation.
+    /// Duration in simulation time.
     simulated: f64,
-    /// How long it took.
+    /// Duration in wall time.
     wall: f64,
     robots: Vec<RobotFigures<'a>>,
 }
 
-/// Where a robot should end and where it ended.
+/// Where a robot was to end, and where it ended.
 #[derive(Debug, Serialize)]
 struct RobotFigures<'a> {
     name: &'a str,
-    /// `None` where it cannot be planned.
+    /// `None` if it cannot be planned.
     planned: Option<End>,
-    /// `None` where it never moved.
+    /// `None` if nothing was recorded.
     driven: Option<End>,
-    /// How far the one is from the other; `None` where a run is not complete.
+    /// The difference of the two; `None` if the run is not complete.
     off: Option<Offset>,
 }
 
@@ -69,13 +69,13 @@ impl From<Pose> for End {
 }
 
 impl Outcome<'_> {
-    /// Where each robot should be and is, and how long it took.
+    /// The result in numbers.
     pub(crate) fn figures(&self) -> Figures<'_> {
         let paths = self.planned.plan.robots.iter().zip(self.driven.tracks());
         let robots = self.planned.scene.robots.iter().zip(paths).map(|(robot, (plan, driven))| {
             let planned = plan.unknown_after.is_none().then(|| plan.end());
             let driven = driven.end();
-            // A run that was broken off can only be compared with a plan that was broken off too.
+            // The end of a plan says nothing about a run that stopped before.
             let off = planned.zip(driven).filter(|_| self.is_complete).map(|(planned, driven)| {
                 let off = planned.relative(&driven);
                 Offset { distance: off.x.hypot(off.y), angle: off.theta.abs() }
@@ -97,7 +97,7 @@ impl Outcome<'_> {
         }
     }
 
-    /// What to draw.
+    /// The routes to draw.
     pub(crate) fn routes(&self) -> Vec<Route> {
         let routes = self.planned.routes().into_iter().zip(self.driven.tracks()).enumerate();
         let route = |(index, (route, path)): (usize, (Route, &Track))| {
@@ -110,7 +110,7 @@ impl Outcome<'_> {
 }
 
 impl Figures<'_> {
-    /// For people.
+    /// A table and a sentence about times.
     pub(crate) fn table(&self) -> String {
         let table = if self.complete { self.comparison() } else { self.ends() };
         format!("{}\n\n{}\n", table.trim_fmt(), output::wrapped(&self.times()))

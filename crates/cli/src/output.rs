@@ -1,4 +1,4 @@
-//! Results go to standard output, everything else to standard error; colours only where they are wanted.
+//! Output: results on standard output, everything else on standard error, colours only where they are wanted.
 
 use std::io::{self, Write};
 
@@ -11,43 +11,43 @@ use crate::failure::Failure;
 /// Prints a result.
 ///
 /// # Errors
-/// When it cannot be written.
+/// If standard output cannot be written.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = anstream::stdout().lock();
     out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|error| unprinted(&error))
 }
 
-/// Prints a person's own text: nothing in it is taken for colours.
+/// Prints a user's text as it is: escape sequences in it stay.
 ///
 /// # Errors
-/// When it cannot be written.
-pub(crate) fn pass_on(text: &str) -> Result<(), Failure> {
+/// If standard output cannot be written.
+pub(crate) fn print_raw(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|error| unprinted(&error))
 }
 
 fn unprinted(error: &io::Error) -> Failure {
     match error.kind() {
-        io::ErrorKind::BrokenPipe => Failure::Unheard,
+        io::ErrorKind::BrokenPipe => Failure::NoReader,
         _ => Failure::new(format!("cannot write to standard output: {error}")),
     }
 }
 
-/// Says something beside the result. Where that is not possible, nobody wants to know.
+/// Writes to standard error; a failure to do so is ignored.
 pub(crate) fn say(text: &str) {
     let _ = anstream::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Says what failed.
+/// Reports a failure.
 pub(crate) fn fail(failure: &Failure) {
     match failure {
-        Failure::Told { message, help } => error(message, help.as_deref()),
-        Failure::Shown(text) => say(text),
-        Failure::Unheard => {}
+        Failure::Message { message, help } => error(message, help.as_deref()),
+        Failure::Rendered(text) => say(text),
+        Failure::NoReader => {}
     }
 }
 
-/// Says what is wrong, and what to do.
+/// Reports an error and what to do about it.
 pub(crate) fn error(message: &str, help: Option<&str>) {
     let mut group = Group::with_title(Level::ERROR.primary_title(message));
     if let Some(help) = help {
@@ -56,7 +56,7 @@ pub(crate) fn error(message: &str, help: Option<&str>) {
     say(&format!("{}\n", renderer().render(&[group])));
 }
 
-/// How problems and failures look.
+/// The style of diagnostics and failures.
 pub(crate) fn renderer() -> Renderer {
     Renderer::styled().decor_style(DecorStyle::Ascii)
 }
@@ -67,17 +67,17 @@ pub(crate) fn count(number: usize, noun: &str) -> String {
     format!("{number} {noun}{plural}")
 }
 
-/// How wide the terminal is; 80 where there is none.
+/// The width of the terminal; 80 if there is none.
 pub(crate) fn columns() -> usize {
     textwrap::termwidth()
 }
 
-/// Text in lines that fit the terminal; what does not fit into the first is indented.
+/// Text wrapped to the terminal; continuation lines are indented.
 pub(crate) fn wrapped(text: &str) -> String {
     textwrap::fill(text, textwrap::Options::new(columns()).subsequent_indent("  "))
 }
 
-/// An empty table with a line under its head. Words are wrapped where it would be wider than the terminal.
+/// An empty table with a ruled header. Text wraps if the table would be wider than the terminal.
 pub(crate) fn table<const COLUMNS: usize>(head: [&str; COLUMNS]) -> Table {
     let mut table = Table::new();
     table
@@ -91,7 +91,7 @@ pub(crate) fn table<const COLUMNS: usize>(head: [&str; COLUMNS]) -> Table {
     table
 }
 
-/// Aligns columns of numbers, and keeps the numbers whole; their titles may be wrapped.
+/// Right-aligns columns of numbers. Numbers never wrap; their titles may.
 pub(crate) fn align_right(table: &mut Table, columns: &[usize]) {
     for index in columns {
         let cells = table.row_iter().filter_map(|row| row.cell_iter().nth(*index));

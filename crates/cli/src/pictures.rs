@@ -1,4 +1,4 @@
-//! Pictures of paths as files.
+//! Writes pictures of paths.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,27 +8,27 @@ use pydslrep_picture::{Picture, png};
 use crate::failure::Failure;
 use crate::output;
 
-/// The files of pictures that were asked for.
+/// Where to write pictures, if at all.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct Pictures {
     /// Draw the paths into a file, as SVG or, where its name ends in .png, as PNG
-    #[arg(long, value_name = "FILE", value_parser = still)]
+    #[arg(long, value_name = "FILE", value_parser = picture_path)]
     picture: Option<PathBuf>,
-    /// Draw robots that drive along their paths, as an SVG that moves
-    #[arg(long, value_name = "FILE", value_parser = moving)]
+    /// Draw robots driving along their paths, as an animated SVG
+    #[arg(long, value_name = "FILE", value_parser = replay_path)]
     replay: Option<PathBuf>,
 }
 
 impl Pictures {
-    /// Whether there is something to draw.
+    /// Whether any picture is wanted.
     pub(crate) fn are_wanted(&self) -> bool {
         self.picture.is_some() || self.replay.is_some()
     }
 
-    /// Draws what was asked for.
+    /// Draws the pictures that are wanted.
     ///
     /// # Errors
-    /// When a file cannot be written.
+    /// If a file cannot be written.
     pub(crate) fn draw(&self, picture: &Picture<'_>) -> Result<(), Failure> {
         if let Some(path) = &self.picture {
             let svg = picture.svg();
@@ -42,8 +42,8 @@ impl Pictures {
         self.replay.as_ref().map_or(Ok(()), |path| write(path, picture.replay().as_bytes()))
     }
 
-    /// Says which files there are now.
-    pub(crate) fn tell(&self) {
+    /// Prints where the pictures are.
+    pub(crate) fn report(&self) {
         for (what, path) in [("picture", &self.picture), ("replay", &self.replay)] {
             if let Some(path) = path {
                 output::say(&format!("{what}: {}\n", path.display()));
@@ -60,23 +60,23 @@ fn has_ending(path: &Path, ending: &str) -> bool {
     path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending))
 }
 
-/// A file for a picture; said at once, not after a long run.
-fn still(name: &str) -> Result<PathBuf, String> {
+/// Checks the name of a picture at once, not after a long run.
+fn picture_path(name: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(name);
     match path.extension() {
         Some(_) if !has_ending(&path, "svg") && !has_ending(&path, "png") => {
-            Err("pictures are SVG or PNG: give a name that ends in .svg or .png".to_owned())
+            Err("pictures are SVG or PNG: use a name that ends in .svg or .png".to_owned())
         }
         _ => Ok(path),
     }
 }
 
-/// A file for a replay.
-fn moving(name: &str) -> Result<PathBuf, String> {
+/// Checks the name of a replay.
+fn replay_path(name: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(name);
     match path.extension() {
         Some(_) if !has_ending(&path, "svg") => {
-            Err("only an SVG can move: give a name that ends in .svg".to_owned())
+            Err("replays are animated SVG: use a name that ends in .svg".to_owned())
         }
         _ => Ok(path),
     }
@@ -87,12 +87,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_tell_what_is_drawn() {
+    fn the_name_decides_the_format() {
         for name in ["a.svg", "a.PNG", "a", ".picture"] {
-            assert!(still(name).is_ok(), "{name}");
+            assert!(picture_path(name).is_ok(), "{name}");
         }
-        assert!(still("a.pdf").unwrap_err().contains(".png"));
-        assert!(moving("a.png").unwrap_err().contains(".svg"));
-        assert!(moving("a.svg").is_ok());
+        assert!(picture_path("a.pdf").unwrap_err().contains(".png"));
+        assert!(replay_path("a.png").unwrap_err().contains(".svg"));
+        assert!(replay_path("a.svg").is_ok());
     }
 }

@@ -1,4 +1,4 @@
-//! What is seen of a run while it lasts: simulated and wall time, and what each robot does.
+//! Progress of a run: simulated and wall time, and the current action of each robot.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -7,10 +7,10 @@ use indicatif::{MultiProgress, ProgressBar, ProgressState, ProgressStyle};
 
 use crate::commands::plan::{Planned, fixed};
 
-/// More robots than these are not shown one by one.
-const MOST_ROBOTS: usize = 12;
+/// At most this many robots are shown one by one.
+const MAX_ROBOTS: usize = 12;
 
-/// A bar for the time, and for each robot one of its actions and what it does now. Draws on standard error, and only where that is a terminal.
+/// A bar for the time, and one per robot with its current action; drawn on standard error if that is a terminal.
 pub(crate) struct Progress {
     tasks: Vec<Tasks>,
     bars: MultiProgress,
@@ -18,7 +18,7 @@ pub(crate) struct Progress {
     lines: Vec<ProgressBar>,
 }
 
-/// What a robot has still to do, in order.
+/// The actions a robot has left, in order.
 struct Tasks {
     robot: String,
     left: VecDeque<Task>,
@@ -30,7 +30,7 @@ struct Task {
 }
 
 impl Progress {
-    /// Begins to show the run of a plan; `quiet` shows nothing.
+    /// Shows the run of a plan; with `quiet`, nothing.
     pub(crate) fn new(planned: &Planned, quiet: bool) -> Self {
         let bars = MultiProgress::new();
         if quiet {
@@ -43,19 +43,19 @@ impl Progress {
             let bar = ProgressBar::new(tasks.left.len() as u64);
             bars.add(bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())))
         };
-        let lines = tasks.iter().take(MOST_ROBOTS).map(line).collect();
+        let lines = tasks.iter().take(MAX_ROBOTS).map(line).collect();
         let progress = Self { tasks, bars, time, lines };
         progress.show_tasks();
         progress
     }
 
-    /// Shows the simulation's time, seconds.
+    /// Shows the simulation time, seconds.
     pub(crate) fn pass(&self, seconds: f64) {
         self.time.set_position(milliseconds(seconds));
         self.time.tick();
     }
 
-    /// Reads a line that the script printed: an action has ended. Returns its simulation time, seconds.
+    /// Reads a line of the script: an action has ended. Returns its simulation time, seconds.
     pub(crate) fn read(&mut self, line: &str) -> Option<f64> {
         let mut fields = line.split("  ").map(str::trim).filter(|field| !field.is_empty());
         let seconds = fields.next()?.strip_suffix(" s")?.parse().ok()?;
@@ -67,9 +67,9 @@ impl Progress {
         Some(seconds)
     }
 
-    /// Takes everything off the screen.
+    /// Removes the bars from the terminal.
     pub(crate) fn clear(&self) {
-        // That a terminal cannot be cleared is no reason to fail.
+        // A terminal that cannot be cleared is no reason to fail.
         let _ = self.bars.clear();
     }
 
@@ -81,7 +81,7 @@ impl Progress {
         }
     }
 
-    /// The group of movements that runs.
+    /// The group of movements that runs now.
     fn group(&self) -> Option<usize> {
         self.tasks.iter().filter_map(|tasks| tasks.left.front()).map(|task| task.group).min()
     }

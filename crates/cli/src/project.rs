@@ -55,7 +55,7 @@ impl Projects {
             opened.of_file.insert(*file, index);
         }
         if !problems.is_empty() {
-            return Err(Failure::Shown(problems));
+            return Err(Failure::Rendered(problems));
         }
         for file in files {
             sources.database.set_target(*file, opened.of(*file).settings.target);

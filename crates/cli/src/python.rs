@@ -1,5 +1,5 @@
-//! A Python that can run scripts: a private virtual environment with what they need, made on first use; for scripts that
-//! need nothing, the user's own.
+//! The Python that runs scripts: a private virtual environment with their requirements, created on first use; for scripts
+//! without requirements, the user's own.
 
 use std::env;
 use std::ffi::OsStr;
@@ -19,22 +19,22 @@ use tokio::time::timeout;
 use crate::failure::Failure;
 use crate::output;
 
-/// Looking at an interpreter, making an environment, installing: none may hang for ever.
+/// Asking an interpreter, creating an environment, installing: none may hang forever.
 const ASK_LIMIT: Duration = Duration::from_secs(30);
-const MAKE_LIMIT: Duration = Duration::from_secs(120);
+const CREATE_LIMIT: Duration = Duration::from_secs(120);
 const INSTALL_LIMIT: Duration = Duration::from_secs(600);
 
-/// Long enough for the index of packages to answer, short enough for somebody who waits.
+/// Long enough for a package index to answer, short enough to wait for.
 const INDEX_LIMIT: Duration = Duration::from_millis(2500);
 
-/// Asks the index of packages whether it is there; where it is not, ends with [`ABSENT`] and prints why.
+/// Asks whether the package index can be reached; if not, exits with [`ABSENT`] and prints why.
 const ASK_INDEX: &str = include_str!("../python/ask_index.py");
 const ABSENT: i32 = 3;
 
-/// Prints version and place, one per line; works from Python 2 on, so that old ones can be told from broken ones.
+/// Prints version and path, one per line; works on Python 2, too, so that an old one is not reported as broken.
 const QUESTION: &str = "import sys; print('%d.%d.%d' % sys.version_info[:3]); print(sys.executable)";
 
-/// How to get a Python, by system.
+/// The command that installs Python on this system.
 const INSTALL_PYTHON: &str = if cfg!(target_os = "macos") {
     "brew install python"
 } else if cfg!(windows) {
@@ -43,10 +43,12 @@ const INSTALL_PYTHON: &str = if cfg!(target_os = "macos") {
     "sudo apt install python3 python3-venv"
 };
 
-/// What to do where there is no Python that will do.
+/// What to do if there is no suitable Python.
 fn install_python() -> String {
     let (major, minor) = OLDEST_PYTHON;
-    format!("install Python {major}.{minor} or later, e.g. `{INSTALL_PYTHON}`, or name one by --python PATH")
+    format!(
+        "install Python {major}.{minor} or later, e.g. `{INSTALL_PYTHON}`, or choose one with --python PATH"
+    )
 }
 
 /// A Python interpreter on this machine.
@@ -55,11 +57,11 @@ struct Interpreter {
     version: String,
 }
 
-/// The interpreter of an environment with everything that scripts need. The first call makes the environment; calls at
-/// the same time do not disturb each other. `quiet` leaves out the progress.
+/// The interpreter of an environment with the requirements of scripts. The first call creates it; concurrent calls do not
+/// disturb each other. `quiet` hides progress.
 ///
 /// # Errors
-/// When there is no suitable Python, or the environment cannot be made.
+/// If there is no suitable Python or the environment cannot be created.
 pub(crate) async fn prepare(chosen: Option<&Path>, quiet: bool) -> Result<PathBuf, Failure> {
     let base = find(chosen).await?;
     let cache = cache()?;
@@ -68,21 +70,21 @@ pub(crate) async fn prepare(chosen: Option<&Path>, quiet: bool) -> Result<PathBu
         return Ok(python_in(&home));
     }
     let progress = if quiet { ProgressBar::hidden() } else { spinner() };
-    find_index(&base).await?;
-    let made = make(&base, &cache, &Steps { progress: &progress, quiet }).await;
+    check_index(&base).await?;
+    let created = create(&base, &cache, &Steps { progress: &progress, quiet }).await;
     progress.finish_and_clear();
-    keep(made?, &home)?;
+    install(created?, &home)?;
     Ok(python_in(&home))
 }
 
-/// Tells which step is under way: a terminal by a spinner, anything else by a line each, which an editor shows as progress.
+/// Shows the current step: as a spinner on a terminal, else as a line, which an editor shows as progress.
 struct Steps<'a> {
     progress: &'a ProgressBar,
     quiet: bool,
 }
 
 impl Steps<'_> {
-    fn tell(&self, step: &'static str) {
+    fn show(&self, step: &'static str) {
         self.progress.set_message(step);
         if !self.quiet && !io::stderr().is_terminal() {
             output::say(&format!("{step}\n"));
@@ -98,21 +100,21 @@ fn spinner() -> ProgressBar {
     bar
 }
 
-/// The interpreter itself, for scripts that need nothing from PyPI.
+/// The interpreter itself, for scripts without requirements.
 ///
 /// # Errors
-/// When there is no suitable one.
+/// If there is no suitable one.
 pub(crate) async fn interpreter(chosen: Option<&Path>) -> Result<PathBuf, Failure> {
     Ok(find(chosen).await?.path)
 }
 
 async fn find(chosen: Option<&Path>) -> Result<Interpreter, Failure> {
     let Some(chosen) = chosen else {
-        let mut found = Err(Failure::new("there is no Python on this machine's PATH").help(install_python()));
+        let mut found = Err(Failure::new("no Python on the PATH").help(install_python()));
         for name in ["python3", "python"] {
             found = match ask(Path::new(name)).await {
                 Ok(interpreter) => return Ok(interpreter),
-                // What is there but does not do says more than that nothing is there.
+                // A Python that cannot be used says more than a missing one.
                 Err(Some(failure)) => Err(failure),
                 Err(None) => found,
             };
@@ -120,13 +122,12 @@ async fn find(chosen: Option<&Path>) -> Result<Interpreter, Failure> {
         return found;
     };
     ask(chosen).await.map_err(|failure| {
-        let missing =
-            || Failure::new(format!("there is no Python at {}", chosen.display())).help(install_python());
+        let missing = || Failure::new(format!("no Python at {}", chosen.display())).help(install_python());
         failure.unwrap_or_else(missing)
     })
 }
 
-/// What an interpreter is; `Err(None)` where there is none.
+/// Asks an interpreter for its version and path; `Err(None)` if there is none.
 async fn ask(path: &Path) -> Result<Interpreter, Option<Failure>> {
     let mut command = Command::new(path);
     command.args(["-c", QUESTION]);
@@ -138,7 +139,7 @@ async fn ask(path: &Path) -> Result<Interpreter, Option<Failure>> {
     let text = String::from_utf8_lossy(&output.stdout);
     let mut lines = text.lines();
     let (Some(version), Some(place), true) = (lines.next(), lines.next(), output.status.success()) else {
-        return Err(Some(unusable(path, "it does not answer like a Python")));
+        return Err(Some(unusable(path, "it is not a Python interpreter")));
     };
     let mut numbers = version.split('.').map_while(|number| number.parse::<u32>().ok());
     let release = (numbers.next().unwrap_or(0), numbers.next().unwrap_or(0));
@@ -154,15 +155,15 @@ fn unusable(path: &Path, reason: &str) -> Failure {
     Failure::new(format!("cannot use the Python `{}`: {reason}", path.display())).help(install_python())
 }
 
-/// The folder for what can be made again.
+/// The cache folder.
 fn cache() -> Result<PathBuf, Failure> {
     let folder = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let cache = folder("XDG_CACHE_HOME")
         .or_else(|| folder("LOCALAPPDATA").filter(|_| cfg!(windows)))
         .or_else(|| Some(folder("HOME")?.join(".cache")));
     let cache = cache.ok_or_else(|| {
-        Failure::new("there is no place for the Python environment that runs scripts")
-            .help("set HOME or XDG_CACHE_HOME to a folder")
+        Failure::new("no cache folder for the Python environment that runs scripts")
+            .help("set HOME or XDG_CACHE_HOME")
     })?;
     let cache = cache.join("pydslrep");
     fs::create_dir_all(&cache).map_err(|error| uncached(&cache, &error))?;
@@ -170,11 +171,12 @@ fn cache() -> Result<PathBuf, Failure> {
 }
 
 fn uncached(path: &Path, error: &io::Error) -> Failure {
-    Failure::unwritten(path, error)
-        .help("the Python environment that runs scripts goes there; XDG_CACHE_HOME chooses another place")
+    Failure::unwritten(path, error).help(
+        "the Python environment that runs scripts goes there; set XDG_CACHE_HOME to choose another folder",
+    )
 }
 
-/// Another Python or other requirements make another environment.
+/// Depends on the Python and the requirements, so that a change of either creates another environment.
 fn name(base: &Interpreter) -> String {
     let mut hasher = DefaultHasher::new();
     (REQUIREMENTS, &base.version, &base.path).hash(&mut hasher);
@@ -185,13 +187,13 @@ fn python_in(home: &Path) -> PathBuf {
     if cfg!(windows) { home.join("Scripts").join("python.exe") } else { home.join("bin").join("python") }
 }
 
-/// Whether it is there and the Python it was made from still is.
+/// Whether it exists and the Python it was created from does, too.
 fn works(home: &Path) -> bool {
     python_in(home).exists()
 }
 
-/// Sees to it that there is somewhere to install from, before anything is made: pip itself tries for minutes.
-async fn find_index(base: &Interpreter) -> Result<(), Failure> {
+/// Checks that the package index can be reached before anything is created: pip itself retries for minutes.
+async fn check_index(base: &Interpreter) -> Result<(), Failure> {
     let mut command = Command::new(&base.path);
     command.args(["-I", "-c", ASK_INDEX]);
     match output(&mut command, INDEX_LIMIT).await {
@@ -201,7 +203,7 @@ async fn find_index(base: &Interpreter) -> Result<(), Failure> {
         Err(error) if error.kind() == io::ErrorKind::TimedOut => {
             Err(uninstalled("the package index does not answer"))
         }
-        // What else may be wrong is for pip to say.
+        // pip reports anything else.
         _ => Ok(()),
     }
 }
@@ -212,41 +214,41 @@ fn uninstalled(reason: &str) -> Failure {
     )
 }
 
-/// Makes a whole environment in a folder of its own.
-async fn make(base: &Interpreter, cache: &Path, steps: &Steps<'_>) -> Result<TempDir, Failure> {
-    steps.tell("preparing Python for the first run: making a virtual environment");
+/// Creates a complete environment in a temporary folder.
+async fn create(base: &Interpreter, cache: &Path, steps: &Steps<'_>) -> Result<TempDir, Failure> {
+    steps.show("preparing Python for the first run: creating a virtual environment");
     let folder = tempfile::Builder::new().prefix("venv-new-").tempdir_in(cache);
     let folder = folder.map_err(|error| uncached(cache, &error))?;
     let mut venv = Command::new(&base.path);
     venv.args(["-I", "-m", "venv"]).arg(folder.path());
-    succeed(&mut venv, MAKE_LIMIT).await.map_err(|reason| {
-        Failure::new(format!("cannot make a virtual environment: {reason}")).help(format!(
-            "{} needs its modules venv and ensurepip, e.g. `sudo apt install python3-venv`; or name another Python by \
+    succeed(&mut venv, CREATE_LIMIT).await.map_err(|reason| {
+        Failure::new(format!("cannot create a virtual environment: {reason}")).help(format!(
+            "{} needs its modules venv and ensurepip, e.g. `sudo apt install python3-venv`; or choose another Python with \
              --python PATH",
             base.path.display()
         ))
     })?;
-    steps.tell("preparing Python for the first run: installing the CoppeliaSim client library");
+    steps.show("preparing Python for the first run: installing the CoppeliaSim client library");
     let requirements = folder.path().join("requirements.txt");
     fs::write(&requirements, REQUIREMENTS).map_err(|error| uncached(&requirements, &error))?;
     let mut pip = Command::new(python_in(folder.path()));
     pip.args(["-I", "-m", "pip", "install", "--quiet", "--no-input", "--disable-pip-version-check"]);
-    // It was there a moment ago.
+    // The index answered a moment ago.
     pip.args(["--retries", "1"]).arg("--requirement").arg(&requirements);
     succeed(&mut pip, INSTALL_LIMIT).await.map_err(|reason| uninstalled(&reason))?;
     Ok(folder)
 }
 
-/// Gives the environment its place; where another run was faster, its environment is the one to use.
-fn keep(made: TempDir, home: &Path) -> Result<(), Failure> {
+/// Moves the environment to its final folder; if another run was faster, uses that one's.
+fn install(created: TempDir, home: &Path) -> Result<(), Failure> {
     if home.exists() && !works(home) {
-        // Its Python is gone, so nobody runs it.
+        // Its Python is gone, so nothing uses it.
         let _ = fs::remove_dir_all(home);
     }
-    match fs::rename(made.path(), home) {
+    match fs::rename(created.path(), home) {
         Ok(()) => {
-            // There is nothing left at its old place to remove.
-            let _ = made.keep();
+            // Nothing is left to remove at its old path.
+            let _ = created.keep();
             Ok(())
         }
         Err(_) if works(home) => Ok(()),
@@ -254,7 +256,7 @@ fn keep(made: TempDir, home: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Runs a command that has to succeed, or says why it did not.
+/// Runs a command; the error is its own message.
 async fn succeed(command: &mut Command, limit: Duration) -> Result<(), String> {
     let output = output(command, limit).await.map_err(|error| error.to_string())?;
     if output.status.success() {
@@ -263,13 +265,13 @@ async fn succeed(command: &mut Command, limit: Duration) -> Result<(), String> {
     let text = [output.stderr, output.stdout].concat();
     let text = String::from_utf8_lossy(&text);
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
-    // Tools say at the end what it was all about, and pip marks it.
+    // pip marks the reason; other tools print it last.
     let reason = lines.clone().find(|line| line.starts_with("ERROR:")).or_else(|| lines.next_back());
     let reason = reason.unwrap_or("it exited without output");
     Err(reason.trim_start_matches("ERROR: ").to_owned())
 }
 
-/// What a command printed; it is ended where nobody waits for it any more.
+/// Runs a command with a time limit; a command that exceeds it is killed.
 async fn output(command: &mut Command, limit: Duration) -> io::Result<Output> {
     for name in ["PYTHONHOME", "PYTHONPATH", "__PYVENV_LAUNCHER__"].map(OsStr::new) {
         command.env_remove(name);

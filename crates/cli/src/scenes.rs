@@ -32,7 +32,7 @@ pub(crate) fn scene(
     if problems.is_empty() {
         return Ok(scene);
     }
-    Err(Failure::Shown(
+    Err(Failure::Rendered(
         problems.iter().map(|problem| render::problem(&shown(&path), text, problem)).collect(),
     ))
 }

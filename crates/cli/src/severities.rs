@@ -1,13 +1,13 @@
-//! How bad problems are to whoever asks: `--severity CODE=LEVEL`.
+//! `--severity CODE=LEVEL`.
 
 use pydslrep_config::{Level, Severities, find_rule};
 
 use crate::failure::Failure;
 
-/// Reads `CODE=LEVEL`s; of several for one code, the last one counts.
+/// Parses `CODE=LEVEL` options; the last one for a code wins.
 ///
 /// # Errors
-/// When there is no such code or level.
+/// If there is no such code or level.
 pub(crate) fn read(choices: &[String]) -> Result<Severities, Failure> {
     let mut severities = Severities::default();
     for choice in choices {

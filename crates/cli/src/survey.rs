@@ -1,4 +1,4 @@
-//! What a script that explores is told, and the map that it leaves.
+//! Exploring: the script's arguments and the map that it writes.
 
 use std::ffi::OsString;
 use std::fs;
@@ -10,18 +10,18 @@ use pydslrep_trace::{Map, MapFile};
 
 use crate::failure::Failure;
 
-/// Whether some listed movement explores.
+/// Whether a movement of the environment explores.
 pub(crate) fn explores(environment: &Environment) -> bool {
     let actions = environment.movements.iter().flat_map(|movement| &movement.actions);
     actions.into_iter().any(|action| action.kind == ActionKind::Slam)
 }
 
-/// What the map of an environment is called where nobody says.
+/// The default name of an environment's map.
 pub(crate) fn default_file(environment: &Environment) -> PathBuf {
     format!("{}_map.json", environment.name).into()
 }
 
-/// The arguments that tell a script of robots what not every simulator can: how big they are, and what sensors see.
+/// Arguments for what not every simulator can tell a script: the size of robots and the field of view of sensors.
 pub(crate) fn arguments(scene: &Scene) -> Vec<OsString> {
     let mut all = Vec::new();
     for robot in &scene.robots {
@@ -36,10 +36,10 @@ pub(crate) fn arguments(scene: &Scene) -> Vec<OsString> {
     all
 }
 
-/// What a robot found.
+/// The map of one robot.
 ///
 /// # Errors
-/// When the file cannot be read or is no map.
+/// If the file cannot be read or is not a map.
 pub(crate) fn read(file: &Path, robot: &str) -> Result<Map, Failure> {
     let failure =
         |reason: &dyn std::fmt::Display| Failure::new(format!("cannot read {}: {reason}", file.display()));

@@ -1,9 +1,9 @@
-//! The simulator that scripts are for, as an option of commands.
+//! `--target`: the simulator that scripts are for.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use pydslrep_config::Target;
 
-/// Simulators as they are called in settings.
+/// Parses a simulator by its name in settings.
 pub(crate) fn target_parser() -> impl TypedValueParser<Value = Target> {
     let word = |target: Target| PossibleValue::new(target.word()).help(target.summary());
     PossibleValuesParser::new(Target::ALL.map(word))

@@ -91,7 +91,7 @@ fn write(programs: &[Formatted], failures: &mut Vec<Failure>) -> Result<(), Fail
     let (mut changed, mut unchanged) = (0, 0);
     for program in programs {
         match &program.source.place {
-            None => output::pass_on(&program.text)?,
+            None => output::print_raw(&program.text)?,
             Some(_) if !program.changes() => unchanged += 1,
             Some(place) => match replace(place, &program.source.text, &program.text) {
                 Ok(()) => changed += 1,

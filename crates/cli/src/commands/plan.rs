@@ -150,7 +150,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     output::print(&if arguments.json { json(&plans)? } else { plans.iter().map(table).collect() })?;
     if let Some(planned) = plans.first() {
         planned.draw(&arguments.pictures, "planned path", &planned.routes())?;
-        arguments.pictures.tell();
+        arguments.pictures.report();
     }
     Ok(ExitCode::from(u8::from(prepared.has_errors)))
 }

@@ -317,7 +317,7 @@ impl Run<'_> {
             json.and_then(|json| fs::write(path, json)).map_err(|error| Failure::unwritten(path, &error))?;
         }
         self.planned.draw(&self.arguments.pictures, "planned and driven path", &outcome.routes())?;
-        self.arguments.pictures.tell();
+        self.arguments.pictures.report();
         let map = (!driven.maps.is_empty()).then(|| self.map_file());
         let written = [("trace", &self.arguments.trace), ("map", &map), ("figures", &self.arguments.figures)];
         for (what, path) in written {

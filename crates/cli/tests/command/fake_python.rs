@@ -23,7 +23,7 @@ esac
 
 /// What a first run says while it prepares Python, where it is not in a terminal.
 const PREPARING: &str = "\
-preparing Python for the first run: making a virtual environment
+preparing Python for the first run: creating a virtual environment
 preparing Python for the first run: installing the CoppeliaSim client library
 ";
 

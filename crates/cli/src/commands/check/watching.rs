@@ -95,7 +95,7 @@ impl Look {
 
     fn show(&self) -> Result<(), Failure> {
         if io::stdout().is_terminal() {
-            output::pass_on(CLEAR)?;
+            output::print_raw(CLEAR)?;
         }
         output::print(&self.problems)?;
         self.failures.iter().for_each(output::fail);
