@@ -85,19 +85,19 @@ def test_an_index_that_answers_is_there(home: pathlib.Path, answering: str) -> N
 def test_one_that_never_answers_is_not(
     home: pathlib.Path, silent: int, scheme: str
 ) -> None:
-    told = ask(home, PIP_INDEX_URL=f"{scheme}://127.0.0.1:{silent}/simple")
-    assert told == (ABSENT, "127.0.0.1 cannot be reached: no reply for 2 s\n")
+    received = ask(home, PIP_INDEX_URL=f"{scheme}://127.0.0.1:{silent}/simple")
+    assert received == (ABSENT, "127.0.0.1 cannot be reached: no reply for 2 s\n")
 
 
 def test_one_that_nobody_serves_is_not(home: pathlib.Path, closed: int) -> None:
-    told = ask(home, PIP_INDEX_URL=f"https://user:secret@127.0.0.1:{closed}/simple")
-    assert told == (ABSENT, "127.0.0.1 cannot be reached: Connection refused\n")
+    received = ask(home, PIP_INDEX_URL=f"https://user:secret@127.0.0.1:{closed}/simple")
+    assert received == (ABSENT, "127.0.0.1 cannot be reached: Connection refused\n")
 
 
 def test_nor_is_one_without_a_place(home: pathlib.Path) -> None:
-    code, told = ask(home, PIP_INDEX_URL="https://index.invalid/simple")
+    code, received = ask(home, PIP_INDEX_URL="https://index.invalid/simple")
     assert code == ABSENT
-    assert told.startswith("index.invalid cannot be reached: ")
+    assert received.startswith("index.invalid cannot be reached: ")
 
 
 def test_files_of_pip_count(home: pathlib.Path, answering: str, closed: int) -> None:
@@ -110,13 +110,13 @@ def test_files_of_pip_count(home: pathlib.Path, answering: str, closed: int) -> 
 
 def test_a_proxy_is_asked_in_its_place(home: pathlib.Path, closed: int) -> None:
     proxy = f"http://127.0.0.1:{closed}"
-    told = ask(
+    received = ask(
         home, NO_PROXY="", HTTPS_PROXY=proxy, PIP_INDEX_URL="https://index.invalid"
     )
     reason = (
         "index.invalid cannot be reached by the proxy 127.0.0.1: Connection refused\n"
     )
-    assert told == (ABSENT, reason)
+    assert received == (ABSENT, reason)
 
 
 def test_packages_from_elsewhere_need_no_index(home: pathlib.Path, closed: int) -> None:

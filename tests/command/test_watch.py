@@ -101,9 +101,9 @@ def start(command: str, tmp_path: pathlib.Path) -> Iterator[Start]:
 
 def save_by_rename(path: pathlib.Path, text: str) -> None:
     """Saves a file as many editors do."""
-    beside = path.with_name(f".{path.name}.swp")
-    beside.write_text(text)
-    beside.rename(path)
+    temporary = path.with_name(f".{path.name}.swp")
+    temporary.write_text(text)
+    temporary.rename(path)
 
 
 def test_programs_are_checked_again(tmp_path: pathlib.Path, start: Start) -> None:

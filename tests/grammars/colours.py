@@ -129,11 +129,11 @@ class TextMate:
         colours, is_valid = blank(text), True
         for start, tokens in zip(line_starts(text), lines, strict=True):
             place = units(text, start)
-            for first, behind, scopes in tokens:
+            for first, after, scopes in tokens:
                 kind = kind_of(scopes)
                 is_valid &= not any(scope.startswith("invalid") for scope in scopes)
                 if kind:
-                    begin, end = place[first], place[behind]
+                    begin, end = place[first], place[after]
                     paint(colours, start + begin, end - begin, kind)
         return is_valid, colours
 

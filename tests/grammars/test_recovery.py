@@ -29,15 +29,15 @@ class Broken:
     before: str
     entity: str
     mistaken: str
-    behind: str
+    following: str
 
     @property
     def whole(self) -> str:
-        return self.before + self.entity + self.behind
+        return self.before + self.entity + self.following
 
     @property
     def text(self) -> str:
-        return self.before + self.mistaken + self.behind
+        return self.before + self.mistaken + self.following
 
 
 def broken(program: str, starts: list[int], choose: random.Random) -> Broken:
@@ -79,7 +79,7 @@ def check_neighbours(mistakes: list[Broken], read: Reader) -> None:
     whole = read([mistake.whole for mistake in mistakes])
     after = read([mistake.text for mistake in mistakes])
     for mistake, sound, seen in zip(mistakes, whole, after, strict=True):
-        head, tail = len(mistake.before), len(mistake.behind)
+        head, tail = len(mistake.before), len(mistake.following)
         assert seen[:head] == sound[:head], mistake
         assert seen[len(seen) - tail :] == sound[len(sound) - tail :], mistake
 

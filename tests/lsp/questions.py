@@ -72,13 +72,13 @@ class Buffer:
         ending = LINE_ENDING.search(self.text, start)
         content = self.text[start : ending.start() if ending else len(self.text)]
         units = content.encode(self.codec)
-        assert column * self.unit <= len(units), f"{position} is behind its line"
+        assert column * self.unit <= len(units), f"{position} is after its line"
         return start + len(units[: column * self.unit].decode(self.codec))
 
-    def at(self, before: str, behind: str = "") -> dict[str, Any]:
+    def at(self, before: str, following: str = "") -> dict[str, Any]:
         """Parameters for the position between two texts that follow each other once."""
-        assert self.text.count(before + behind) == 1, before + behind
-        index = self.text.index(before + behind) + len(before)
+        assert self.text.count(before + following) == 1, before + following
+        index = self.text.index(before + following) + len(before)
         return {"textDocument": self.document(), "position": self.position(index)}
 
     def span(self, start: str, end: str = "") -> dict[str, Any]:

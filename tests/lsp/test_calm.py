@@ -64,16 +64,16 @@ class Editor:
 
     def change(self, *changes: tuple[int, int, str]) -> None:
         """Sends one message with changes, each based on the text after the previous one."""
-        told = []
+        received = []
         for start, end, new in changes:
             place = {
                 "start": self.buffer.position(start),
                 "end": self.buffer.position(end),
             }
-            told.append({"range": place, "text": new})
+            received.append({"range": place, "text": new})
             text = self.buffer.text[:start] + new + self.buffer.text[end:]
             self.buffer = Buffer(self.uri, text, "utf-16")
-        self.tell(told)
+        self.tell(received)
 
     def tell(self, changes: list[dict[str, Any]]) -> None:
         self.version += 1
@@ -307,7 +307,7 @@ def test_a_name_being_typed_has_no_lens(editor: Editor) -> None:
         assert len(editor.lenses()) == 6, "all others stay"
     for _ in editor.type("{ lap back", " third"):
         pass
-    assert "movement third: 1 reference" in editor.lenses(), "somebody types elsewhere"
+    assert "movement third: 1 reference" in editor.lenses(), "the edit is elsewhere"
     for _ in editor.type("movement third", "_one"):
         assert not any(lens.startswith("movement third") for lens in editor.lenses())
 

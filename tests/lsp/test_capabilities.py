@@ -61,10 +61,10 @@ class Session:
         )
 
     def at(
-        self, before: str, behind: str = ""
+        self, before: str, following: str = ""
     ) -> tuple[types.TextDocumentIdentifier, types.Position]:
         """The position between two texts that follow each other once."""
-        place = self.buffer.at(before, behind)["position"]
+        place = self.buffer.at(before, following)["position"]
         return self.document, types.Position(**place)
 
     def span(self, start: str, end: str = "") -> types.Range:
@@ -124,7 +124,7 @@ async def text_is_kept_in_step(s: Session) -> None:
     shown = await s.client.text_document_hover_async(hover)
     assert shown
     assert shown.range
-    assert shown.range.start.character == start.character + 5, "behind `b with`"
+    assert shown.range.start.character == start.character + 5, "after `b with`"
     s.client.text_document_did_close(types.DidCloseTextDocumentParams(identifier))
     assert await s.client.text_document_hover_async(hover) is None
 
@@ -176,9 +176,9 @@ async def fixes_repair_programs(s: Session) -> None:
     assert fix.edit
     change = only(fix.edit.document_changes, types.TextDocumentEdit)
     edits = [edit for edit in change.edits if isinstance(edit, types.TextEdit)]
-    mended = apply_edits(PROGRAM, edits)
-    assert "wheel wheeel with radius" in mended
-    s.show(mended)
+    fixed = apply_edits(PROGRAM, edits)
+    assert "wheel wheeel with radius" in fixed
+    s.show(fixed)
     params.range = s.span("wheeel }")
     assert not await s.client.text_document_code_action_async(params)
 
@@ -227,8 +227,8 @@ async def scripts_are_written_on_save(s: Session) -> None:
     document = s.open("saved/main.pyr", ROUNDABOUT)
     identifier = types.TextDocumentIdentifier(document.uri)
     s.client.text_document_did_save(types.DidSaveTextDocumentParams(identifier))
-    told = await s.client.wait_for_notification(types.WINDOW_SHOW_MESSAGE)
-    assert told.message.startswith("Script written: ")
+    received = await s.client.wait_for_notification(types.WINDOW_SHOW_MESSAGE)
+    assert received.message.startswith("Script written: ")
     assert (folder / "yard.py").is_file()
     s.client.text_document_did_close(types.DidCloseTextDocumentParams(identifier))
 
@@ -304,8 +304,8 @@ async def completions_are_explained(s: Session) -> None:
     )
     assert isinstance(found, types.CompletionList)
     [rover] = [item for item in found.items if item.label == "rover"]
-    told = (await s.client.completion_item_resolve_async(rover)).documentation
-    text = told.value if isinstance(told, types.MarkupContent) else told
+    received = (await s.client.completion_item_resolve_async(rover)).documentation
+    text = received.value if isinstance(received, types.MarkupContent) else received
     assert text
     assert "port 23000" in text
 
@@ -627,7 +627,7 @@ async def layout(s: Session) -> None:
     )
     text = apply_edits(PROGRAM, part or [])
     assert "wheel untidy with" in text
-    assert "turn   right" in text, "nobody asked for this one"
+    assert "turn   right" in text, "this one was not requested"
 
 
 #### The workspace ####

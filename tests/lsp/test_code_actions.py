@@ -126,12 +126,12 @@ async def test_scripts_are_written_on_save_where_the_settings_say(
     uri = editor.open("tour.pyr", PROGRAM)
     saved = types.DidSaveTextDocumentParams(types.TextDocumentIdentifier(uri))
     client.text_document_did_save(saved)
-    told = await client.wait_for_notification(types.WINDOW_SHOW_MESSAGE)
-    assert told.message.startswith("Script written: ")
+    received = await client.wait_for_notification(types.WINDOW_SHOW_MESSAGE)
+    assert received.message.startswith("Script written: ")
     script = tmp_path / "scripts" / "yard.py"
     assert script.is_file()
     script.write_text("mine\n", encoding="utf-8")
     client.text_document_did_save(saved)
-    told = await client.wait_for_notification(types.WINDOW_SHOW_MESSAGE)
-    assert "not a generated script" in told.message
+    received = await client.wait_for_notification(types.WINDOW_SHOW_MESSAGE)
+    assert "not a generated script" in received.message
     assert script.read_text(encoding="utf-8") == "mine\n"

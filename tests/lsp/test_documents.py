@@ -115,9 +115,11 @@ def test_unsaved_documents_have_diagnostics(server: str) -> None:
         talk = Conversation(raw)
         talk.start()
         raw.send(opened(uri, "wheel a with radius"))
-        told = talk.hear_until("textDocument/publishDiagnostics")["params"]
-        assert told["uri"] == uri
-        assert [item["code"] for item in told["diagnostics"]][:1] == ["syntax-error"]
+        received = talk.hear_until("textDocument/publishDiagnostics")["params"]
+        assert received["uri"] == uri
+        assert [item["code"] for item in received["diagnostics"]][:1] == [
+            "syntax-error"
+        ]
         raw.send(closed(uri))
         cleared = talk.hear_until("textDocument/publishDiagnostics")["params"]
         assert (cleared["uri"], cleared["diagnostics"]) == (uri, [])
@@ -145,15 +147,15 @@ def test_diagnostics_follow_a_renamed_file(server: str, tmp_path: pathlib.Path) 
     with RawServer(server, "--stdio") as raw:
         talk = Conversation(raw)
         talk.start(folder=tmp_path)
-        told = talk.hear_until("textDocument/publishDiagnostics")["params"]
-        assert (told["uri"], bool(told["diagnostics"])) == (old.as_uri(), True)
+        received = talk.hear_until("textDocument/publishDiagnostics")["params"]
+        assert (received["uri"], bool(received["diagnostics"])) == (old.as_uri(), True)
         old.rename(new)
         changes = [{"uri": old.as_uri(), "type": 3}, {"uri": new.as_uri(), "type": 1}]
         raw.send(notification("workspace/didChangeWatchedFiles", {"changes": changes}))
         after: dict[str, bool] = {}
         while len(after) < 2:
-            told = talk.hear_until("textDocument/publishDiagnostics")["params"]
-            after[told["uri"]] = bool(told["diagnostics"])
+            received = talk.hear_until("textDocument/publishDiagnostics")["params"]
+            after[received["uri"]] = bool(received["diagnostics"])
         assert after == {old.as_uri(): False, new.as_uri(): True}
 
 

@@ -171,7 +171,7 @@ def test_positions_in_toml_files_are_equivalent_in_every_encoding(
     known: str,
     typed: str,
     slip: str,
-    mended: str,
+    fixed: str,
 ) -> None:
     asked: dict[str, Callable[[Buffer], dict[str, Any]]] = {
         "textDocument/hover": lambda b: b.at(known),
@@ -196,7 +196,7 @@ def test_positions_in_toml_files_are_equivalent_in_every_encoding(
             places.append({n: comparable(a, buffer, n) for n, a in answers.items()})
     assert places[0] == places[1] == places[2]
     assert all(places[0].values())
-    assert f"Change to `{mended}`" in str(places[0]["textDocument/codeAction"])
+    assert f"Change to `{fixed}`" in str(places[0]["textDocument/codeAction"])
 
 
 def test_a_response_reflects_the_change_right_before_it(

@@ -130,10 +130,10 @@ def test_after_shutdown_there_are_only_responses(
         ended = next(
             n for n, message in enumerate(messages) if message.get("id") == "bye"
         )
-        behind = [
+        following = [
             (message.get("id"), code(message)) for message in messages[ended + 1 :]
         ]
-        assert behind == [(ident, -32600) for ident in (1, 2, 3, 4)]
+        assert following == [(ident, -32600) for ident in (1, 2, 3, 4)]
         assert raw.leave() == 0
 
 
@@ -436,9 +436,9 @@ def test_progress_that_the_client_refuses_is_not_sent(
         error = {"code": -32603, "message": "no"}
         refusal = {"jsonrpc": "2.0", "id": asked["id"], "error": error}
         raw.send(frame(json.dumps(refusal).encode()))
-        told = raw.read()
-        assert told
-        assert told["method"] == "textDocument/publishDiagnostics"
+        received = raw.read()
+        assert received
+        assert received["method"] == "textDocument/publishDiagnostics"
         raw.send(SHUTDOWN, EXIT)
         assert [message.get("id") for message in everything_left(raw)] == ["bye"]
 

@@ -198,7 +198,7 @@ def test_what_is_announced_is_handled_and_what_is_handled_is_announced(
     assert providers(announced) == providers(expected)
 
 
-def told(method: str, params: object) -> dict[str, Any]:
+def server_notification(method: str, params: object) -> dict[str, Any]:
     return {"jsonrpc": "2.0", "method": method, "params": params}
 
 
@@ -226,18 +226,32 @@ PUBLISH = "textDocument/publishDiagnostics"
         ({"jsonrpc": "2.0", "id": 1, "error": {"code": 1}}, HOVER, "message"),
         (answered([SYMBOL]), "textDocument/documentSymbol", None),
         (answered([{**SYMBOL, "kind": 99}]), "textDocument/documentSymbol", "kind"),
-        (told(PUBLISH, {"uri": "file:///a", "diagnostics": []}), None, None),
-        (told(PUBLISH, {"uri": "file:///a"}), None, "diagnostics is missing"),
         (
-            told(PUBLISH, {"uri": "file:///a", "diagnostics": [], "version": True}),
+            server_notification(PUBLISH, {"uri": "file:///a", "diagnostics": []}),
+            None,
+            None,
+        ),
+        (
+            server_notification(PUBLISH, {"uri": "file:///a"}),
+            None,
+            "diagnostics is missing",
+        ),
+        (
+            server_notification(
+                PUBLISH, {"uri": "file:///a", "diagnostics": [], "version": True}
+            ),
             None,
             "version",
         ),
-        (told("textDocument/didOpen", {}), None, "not for servers"),
-        (told("textDocument/nothing", {}), None, "not in the protocol"),
-        (told("$/progress", {"token": 1, "value": {"kind": "x"}}), None, "value"),
+        (server_notification("textDocument/didOpen", {}), None, "not for servers"),
+        (server_notification("textDocument/nothing", {}), None, "not in the protocol"),
         (
-            {**told("workspace/diagnostic/refresh", None), "id": 1},
+            server_notification("$/progress", {"token": 1, "value": {"kind": "x"}}),
+            None,
+            "value",
+        ),
+        (
+            {**server_notification("workspace/diagnostic/refresh", None), "id": 1},
             None,
             "null instead of missing",
         ),

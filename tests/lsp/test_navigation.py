@@ -30,17 +30,17 @@ class Program:
         self.parts = self.editor.open("parts.pyr", PARTS)
         self.main = self.editor.open("main.pyr", MAIN)
 
-    def at(self, uri: str, before: str, behind: str = "") -> types.Position:
+    def at(self, uri: str, before: str, following: str = "") -> types.Position:
         """The position between two texts that follow each other once."""
         text = self.editor.text(uri)
-        assert text.count(before + behind) == 1
-        return position(text, text.index(before + behind) + len(before))
+        assert text.count(before + following) == 1
+        return position(text, text.index(before + following) + len(before))
 
     def where(
-        self, uri: str, before: str, behind: str = ""
+        self, uri: str, before: str, following: str = ""
     ) -> tuple[types.TextDocumentIdentifier, types.Position]:
         """The position as parameters of most requests."""
-        return types.TextDocumentIdentifier(uri), self.at(uri, before, behind)
+        return types.TextDocumentIdentifier(uri), self.at(uri, before, following)
 
     def shown(self, uri: str, span: types.Range) -> str:
         """The document and line of a location."""

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.asyncio
 
 RECOVERY = pathlib.Path(__file__).parents[1] / "recovery"
 FENCE = re.compile(
-    r"^```pyr(?P<kind> behind| escaped)?\n(?P<text>.*?)^```$", re.M | re.S
+    r"^```pyr(?P<kind> following| escaped)?\n(?P<text>.*?)^```$", re.M | re.S
 )
 ESCAPES = {r"\r": "\r", r"\n": "\n", r"\t": "\t", r"\u{feff}": "\ufeff"}
 
@@ -88,7 +88,7 @@ async def test_command_and_editor_offer_the_same(
         path = tmp_path / f"case_{number}.pyr"
         path.write_text(text, encoding="utf-8", newline="")
         uri = editor.open(path.name, text)
-        told = shown(command, path)
+        received = shown(command, path)
         assert await offered(client, uri, text) == sorted(
-            title[0].lower() + title[1:] for title in told
+            title[0].lower() + title[1:] for title in received
         ), text

@@ -211,8 +211,8 @@ def test_the_server_writes_the_script_where_the_client_cannot_create_files(
                 {k: chosen[k] for k in ("command", "arguments")},
             )
         )
-        told = raw.read_until("window/showMessage")
-        assert "area_1.py" in told["params"]["message"]
+        received = raw.read_until("window/showMessage")
+        assert "area_1.py" in received["params"]["message"]
         asked = raw.read_until("window/showDocument")
         assert asked["params"]["uri"] == (tmp_path / "area_1.py").as_uri()
         raw.send(answer(asked["id"], {"success": True}))
@@ -245,7 +245,7 @@ def test_the_server_exits_when_its_client_dies(server: str) -> None:
 
 
 def test_a_tracing_client_gets_the_cost_of_changes(server: str) -> None:
-    def told_before(raw: RawServer, ident: int) -> list[dict[str, Any]]:
+    def logged_before(raw: RawServer, ident: int) -> list[dict[str, Any]]:
         raw.send(outline(ident))
         heard = []
         while (message := raw.read()) is not None and message.get("id") != ident:
@@ -260,14 +260,14 @@ def test_a_tracing_client_gets_the_cost_of_changes(server: str) -> None:
         raw.initialize()
         raw.send(opened(wheel), inserted(2, wheel), traced("messages"))
         raw.send(inserted(3, wheel))
-        assert told_before(raw, 1) == []
+        assert logged_before(raw, 1) == []
         raw.send(traced("verbose"), inserted(4, "wheel b with radius 3\n"))
-        [told] = told_before(raw, 2)
-        assert told["message"] == f"changed {URI}"
-        assert told["verbose"] == (
+        [received] = logged_before(raw, 2)
+        assert received["message"] == f"changed {URI}"
+        assert received["verbose"] == (
             "relexed: 30 tokens, reparsed: 2 entities, revalidated: 4 entities"
         )
         raw.send(traced("off"), inserted(5, wheel))
-        assert told_before(raw, 3) == []
+        assert logged_before(raw, 3) == []
         raw.send(SHUTDOWN, EXIT)
         assert raw.leave() == 0

@@ -43,7 +43,7 @@ SILENT = """\
 #!/bin/sh
 trap 'exit 130' INT
 exec >&- 2>&-
-echo silent > "$(dirname "$0")/told"
+echo silent > "$(dirname "$0")/report"
 while :; do sleep 0.01; done
 """
 
@@ -51,9 +51,9 @@ while :; do sleep 0.01; done
 # Reports through a pipe that it has started, its arguments, and that it was interrupted.
 TELLING = """\
 #!/bin/sh
-told="$(dirname "$0")/told"
-trap 'echo interrupted > "$told"; exit 130' INT
-echo "$@" > "$told"
+report="$(dirname "$0")/report"
+trap 'echo interrupted > "$report"; exit 130' INT
+echo "$@" > "$report"
 while :; do sleep 0.01; done
 """
 
@@ -61,10 +61,10 @@ while :; do sleep 0.01; done
 # Reports through a pipe that it has started, and that its parent process is gone.
 LISTENING = """\
 #!/bin/sh
-told="$(dirname "$0")/told"
-if [ -p /dev/stdin ]; then echo begun; else echo nothing to listen to; fi > "$told"
+report="$(dirname "$0")/report"
+if [ -p /dev/stdin ]; then echo begun; else echo nothing to listen to; fi > "$report"
 cat > /dev/null
-echo no more input > "$told"
+echo no more input > "$report"
 """
 
 
@@ -126,10 +126,10 @@ def session(server: str, tmp_path: pathlib.Path) -> Iterator[Session]:
 
 @pytest.fixture
 def endless(server: str, tmp_path: pathlib.Path) -> Iterator[Session]:
-    beside = tmp_path / "bin"
-    beside.mkdir()
-    own = shutil.copy2(server, beside / "pydslrep-lsp")
-    program = beside / "pydslrep"
+    bin_folder = tmp_path / "bin"
+    bin_folder.mkdir()
+    own = shutil.copy2(server, bin_folder / "pydslrep-lsp")
+    program = bin_folder / "pydslrep"
     program.write_text(ENDLESS, encoding="utf-8")
     program.chmod(0o755)
     with RawServer(str(own), "--stdio") as raw:
@@ -197,11 +197,11 @@ def test_a_silent_run_can_be_cancelled(
     endless: Session, tmp_path: pathlib.Path
 ) -> None:
     (tmp_path / "bin" / "pydslrep").write_text(SILENT, encoding="utf-8")
-    told = tmp_path / "bin" / "told"
-    os.mkfifo(told)
+    received = tmp_path / "bin" / "report"
+    os.mkfifo(received)
     endless.execute(1, "pydslrep.run", endless.area)
     token = endless.accept_progress()
-    assert told.read_text() == "silent\n"
+    assert received.read_text() == "silent\n"
     endless.raw.send(
         notification("window/workDoneProgress/cancel", {"token": token}),
         request(2, "shutdown", None),
@@ -214,13 +214,13 @@ def test_a_silent_run_can_be_cancelled(
 def test_a_run_ends_with_its_session(
     server: str, tmp_path: pathlib.Path, ending: str, *, progress: bool
 ) -> None:
-    told = telling(server, tmp_path)
+    received = reporting_program(server, tmp_path)
     with RawServer(str(tmp_path / "bin" / "pydslrep-lsp"), "--stdio") as raw:
         session = Session(raw, tmp_path, progress=progress)
         session.execute(1, "pydslrep.run", session.area)
         if progress:
             session.accept_progress()
-        arguments = told.read_text().split()
+        arguments = received.read_text().split()
         program, picture = (pathlib.Path(arguments[at]) for at in (1, 5))
         assert program.exists()
         assert picture.parent.exists()
@@ -230,7 +230,7 @@ def test_a_run_ends_with_its_session(
             raw.send(notification("exit", None))
         else:
             raw.send(request(2, "shutdown", None), notification("exit", None))
-        assert told.read_text() == "interrupted\n"
+        assert received.read_text() == "interrupted\n"
         assert raw.leave() == (0 if ending == "shutdown" else 1)
     assert not program.parent.exists(), "what was run is tidied up"
     assert not picture.parent.exists(), "pictures are kept as long as the session"
@@ -239,26 +239,26 @@ def test_a_run_ends_with_its_session(
 def test_a_run_ends_when_its_server_is_killed(
     server: str, tmp_path: pathlib.Path
 ) -> None:
-    told = telling(server, tmp_path)
+    received = reporting_program(server, tmp_path)
     (tmp_path / "bin" / "pydslrep").write_text(LISTENING, encoding="utf-8")
     with RawServer(str(tmp_path / "bin" / "pydslrep-lsp"), "--stdio") as raw:
         session = Session(raw, tmp_path, progress=False)
         session.execute(1, "pydslrep.run", session.area)
-        assert told.read_text() == "begun\n"
+        assert received.read_text() == "begun\n"
         raw.process.kill()
-        assert told.read_text() == "no more input\n"
+        assert received.read_text() == "no more input\n"
 
 
-def telling(server: str, folder: pathlib.Path) -> pathlib.Path:
+def reporting_program(server: str, folder: pathlib.Path) -> pathlib.Path:
     """Puts a program that reports events next to the server, and returns the pipe for its reports."""
-    beside = folder / "bin"
-    beside.mkdir()
-    shutil.copy2(server, beside / "pydslrep-lsp")
-    program = beside / "pydslrep"
+    bin_folder = folder / "bin"
+    bin_folder.mkdir()
+    shutil.copy2(server, bin_folder / "pydslrep-lsp")
+    program = bin_folder / "pydslrep"
     program.write_text(TELLING, encoding="utf-8")
     program.chmod(0o755)
-    os.mkfifo(beside / "told")
-    return beside / "told"
+    os.mkfifo(bin_folder / "report")
+    return bin_folder / "report"
 
 
 # A fake run that drives, and fails in the end if requested.
@@ -285,10 +285,10 @@ MAP = (
 def test_driven_paths_and_their_changes_are_sent(
     endless: Session, tmp_path: pathlib.Path
 ) -> None:
-    beside = tmp_path / "bin"
-    (beside / "pydslrep").write_text(DRIVING, encoding="utf-8")
-    (beside / "trace").write_text("".join(STEP % (t, t / 8) for t in range(3)))
-    (beside / "map").write_text(MAP)
+    bin_folder = tmp_path / "bin"
+    (bin_folder / "pydslrep").write_text(DRIVING, encoding="utf-8")
+    (bin_folder / "trace").write_text("".join(STEP % (t, t / 8) for t in range(3)))
+    (bin_folder / "map").write_text(MAP)
     raw = endless.raw
     raw.send(request(1, "pydslrep/drivenPath", endless.area))
     assert raw.answer(1)["result"] is None, "nothing was driven yet"
@@ -304,8 +304,8 @@ def test_driven_paths_and_their_changes_are_sent(
     assert [pose["x"] for pose in rover["poses"]] == [0, 0.125, 0.25]
     assert rover["map"] == {"nodes": [[0, 1], [2, 3]], "edges": [[[0, 1], [2, 3]]]}
 
-    (beside / "fails").touch()
-    (beside / "trace").write_text(STEP % (0, 7))
+    (bin_folder / "fails").touch()
+    (bin_folder / "trace").write_text(STEP % (0, 7))
     endless.execute(4, "pydslrep.run", endless.area)
     endless.accept_progress()
     raw.read_until("pydslrep/drivenPathChanged")
@@ -382,10 +382,10 @@ def test_codes_link_to_pages_that_the_client_shows(
             "text": "wheel w with radius -1\n",
         }
         raw.send(notification("textDocument/didOpen", {"textDocument": item}))
-        told = raw.read_until("textDocument/publishDiagnostics")
+        received = raw.read_until("textDocument/publishDiagnostics")
         links = {
             diagnostic["code"]: diagnostic["codeDescription"]["href"]
-            for diagnostic in told["params"]["diagnostics"]
+            for diagnostic in received["params"]["diagnostics"]
         }
         assert links["invalid-radius"] == "pydslrep-page:/invalid-radius.md"
 

@@ -106,13 +106,13 @@ def test_an_unopened_scene_has_diagnostics(yard: Yard) -> None:
     (yard.folder / "yard.scene.toml").write_text("[robots.rovr]\nstart = [1, 0]\n")
     (yard.folder / "alone.scene.toml").write_text("[wrold]\n")
     yard.start(CLIENT)
-    told: dict[str, list[str]] = {}
-    while len(told) < 2:
+    received: dict[str, list[str]] = {}
+    while len(received) < 2:
         message = yard.next()
         if message.get("method") == "textDocument/publishDiagnostics":
             name = message["params"]["uri"].rsplit("/", 1)[-1]
-            told[name] = [item["code"] for item in message["params"]["diagnostics"]]
-    assert told == {
+            received[name] = [item["code"] for item in message["params"]["diagnostics"]]
+    assert received == {
         "yard.scene.toml": ["unknown-name"],
         "alone.scene.toml": ["unknown-key"],
     }
@@ -132,9 +132,9 @@ def test_a_planned_path_starts_where_the_scene_says(yard: Yard) -> None:
     start = path["robots"][0]["poses"][0]
     assert (start["x"], start["y"]) == (1, 2)
     yard.type(scene, "[robots.rover]\nstart = [3, 2, 90]\n")
-    while (told := yard.next()).get("method") != "pydslrep/plannedPathChanged":
+    while (received := yard.next()).get("method") != "pydslrep/plannedPathChanged":
         pass
-    assert told["params"] == which
+    assert received["params"] == which
     path = yard.question("pydslrep/plannedPath", which)["result"]
     assert path["robots"][0]["poses"][0]["x"] == 3
     yard.type(scene, "[robots.rovr]\n")

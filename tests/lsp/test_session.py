@@ -122,9 +122,9 @@ async def test_a_client_that_pulls_diagnostics_is_not_pushed_to(
     again = await client.text_document_diagnostic_async(params)
     assert isinstance(again, types.RelatedUnchangedDocumentDiagnosticReport)
     editor.replace(uri, "weelR", "wheelR")
-    mended = await client.text_document_diagnostic_async(params)
-    assert isinstance(mended, types.RelatedFullDocumentDiagnosticReport)
-    assert list(mended.items) == []
+    fixed = await client.text_document_diagnostic_async(params)
+    assert isinstance(fixed, types.RelatedFullDocumentDiagnosticReport)
+    assert list(fixed.items) == []
     assert client.diagnostics == {}
 
 

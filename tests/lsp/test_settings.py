@@ -77,7 +77,7 @@ class Editor:
         document = resolved["edit"]["documentChanges"][-1]["textDocument"]
         return str(document["uri"]).removeprefix(self.folder.as_uri())
 
-    def told(self) -> list[str]:
+    def received(self) -> list[str]:
         return [
             message["params"]["message"]
             for message in self.talk.heard
@@ -137,16 +137,16 @@ def test_the_output_folder(editor: Editor, *, at_start: bool) -> None:
     assert editor.script() == "/made/scripts/yard.py"
     (editor.folder / "pydslrep.toml").write_text("output = 'other'", encoding="utf-8")
     editor.set({})
-    told = [{"uri": (editor.folder / "pydslrep.toml").as_uri(), "type": 1}]
+    received = [{"uri": (editor.folder / "pydslrep.toml").as_uri(), "type": 1}]
     editor.talk.server.send(
-        notification("workspace/didChangeWatchedFiles", {"changes": told})
+        notification("workspace/didChangeWatchedFiles", {"changes": received})
     )
     editor.talk.hear_until("workspace/inlayHint/refresh")
     assert editor.script() == "/other/yard.py"
     editor.set({"output": "mine"})
     assert editor.script() == "/mine/yard.py", "the editor's own settings count more"
     editor.set({"output": "../outside"})
-    assert any("output" in message for message in editor.told())
+    assert any("output" in message for message in editor.received())
     assert editor.script() == "/other/yard.py"
 
 
@@ -210,10 +210,10 @@ def test_unknown_and_invalid_settings_are_reported(
     }
     editor.start(wrong, at_start=at_start)
     editor.severities()
-    told = "\n".join(editor.told())
+    received = "\n".join(editor.received())
     for word in ("severety", "gazebo", "poses", "wheel-cuont", "loud", "default"):
-        assert word in told, word
-    assert len(editor.told()) == len(set(editor.told())), "each is told once"
+        assert word in received, word
+    assert len(editor.received()) == len(set(editor.received())), "each is told once"
     assert editor.severities() == {"unused-declaration": 4}, "the rest holds"
 
 

@@ -293,8 +293,10 @@ def test_a_folder_is_renamed_by_the_editor(workspace: Workspace) -> None:
     after = will_rename(workspace, "parts", "lib")
     assert after == {"robot.pyr": robot.replace("parts/", "lib/")}
     parts.rename(workspace.folder / "lib")
-    told = notification("workspace/didRenameFiles", renamed(workspace, "parts", "lib"))
-    workspace.server.send(told)
+    received = notification(
+        "workspace/didRenameFiles", renamed(workspace, "parts", "lib")
+    )
+    workspace.server.send(received)
     assert workspace.published("robot.pyr") == ["unresolved-import"]
     workspace.write("robot.pyr", after["robot.pyr"])
     assert workspace.published("robot.pyr") == []
@@ -326,8 +328,8 @@ def test_a_file_is_renamed_outside_and_back(workspace: Workspace) -> None:
             {"uri": workspace.uri(new), "type": 1},
             {"uri": workspace.uri(gone), "type": 3},
         ]
-        told = notification("workspace/didChangeWatchedFiles", {"changes": changes})
-        workspace.server.send(told)
+        received = notification("workspace/didChangeWatchedFiles", {"changes": changes})
+        workspace.server.send(received)
 
     wheels.rename(round_)
     tell("wheels.pyr", "round.pyr")

@@ -53,7 +53,7 @@ MAY_KNOW: dict[str, set[str]] = {
 }
 
 # The reference checker for tests, independent of all other crates.
-BESIDE: dict[str, Path] = {"naive": ROOT / "tests" / "naive"}
+STANDALONE: dict[str, Path] = {"naive": ROOT / "tests" / "naive"}
 
 # Who may know what of the world outside.
 ONLY_IN: dict[str, set[str]] = {
@@ -111,9 +111,9 @@ def test_a_crate_knows_only_what_lies_below_it(crate: str) -> None:
     assert ours <= MAY_KNOW[crate]
 
 
-@pytest.mark.parametrize("crate", BESIDE)
+@pytest.mark.parametrize("crate", STANDALONE)
 def test_what_checks_the_crates_knows_none_of_them(crate: str) -> None:
-    text = (BESIDE[crate] / "Cargo.toml").read_text(encoding="utf-8")
+    text = (STANDALONE[crate] / "Cargo.toml").read_text(encoding="utf-8")
     own = tomllib.loads(text)
     assert own["package"]["name"] == f"pydslrep-{crate}"
     assert text.count("pydslrep-") == 1

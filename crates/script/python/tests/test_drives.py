@@ -93,9 +93,9 @@ def test_steering_returns_to_the_line(speed: float, side: float) -> None:
 
 
 def test_at_the_end_of_a_line_only_the_heading_counts() -> None:
-    beside = Pose(0.0, 0.05, 0.0)
-    assert steer(0.09, beside, 1.0) < -0.1
-    assert steer(0.09, beside, 0.0) == 0.0
+    off_line = Pose(0.0, 0.05, 0.0)
+    assert steer(0.09, off_line, 1.0) < -0.1
+    assert steer(0.09, off_line, 0.0) == 0.0
     assert steer(0.09, Pose(0.0, 0.05, 0.1), 0.0) < -0.1
 
 

@@ -31,8 +31,8 @@ def test_a_cone_frees_nothing_outside_it(bearing: float) -> None:
     ahead = axis.ahead(0.8)
     assert grid.has_clearance(ahead.x, ahead.y)
     for side in (-0.6, 0.6, math.pi):
-        beside = axis.turned(side).ahead(0.8)
-        assert not grid.has_clearance(beside.x, beside.y)
+        outside = axis.turned(side).ahead(0.8)
+        assert not grid.has_clearance(outside.x, outside.y)
 
 
 def test_a_detected_object_is_an_obstacle() -> None:

@@ -21,8 +21,8 @@ def rover(robot: SlippingRobot) -> SlamRover:
     slam_session: Any = SimpleNamespace(
         uses_odometry=True,
         extent=20.0,
-        range=lambda robot, sensor, told: told,
-        cone=lambda robot, sensor, told: told,
+        range=lambda robot, sensor, reported: reported,
+        cone=lambda robot, sensor, reported: reported,
         radius=lambda robot, spanned: spanned,
     )
     driving: Any = robot
