@@ -157,7 +157,7 @@ SCENE = 'robots = { "🤖 日本 e\u0301" = {}, rovr = { track = 1 } }\n'
 
 
 @pytest.mark.parametrize(
-    ("name", "text", "known", "typed", "slip", "mended"),
+    ("name", "text", "known", "typed", "slip", "fixed"),
     [
         ("pydslrep.toml", SETTINGS, "inlay-hi", ", ps", "pse", "pose"),
         ("yard.scene.toml", SCENE, "tra", ", ro", "rovr", "rover"),
