@@ -61,21 +61,13 @@ pub(crate) fn entities_at(database: &Database, position: FilePosition) -> Vec<En
 
 /// The token that touches the cursor, with its range in the file; of two, a word or number rather than punctuation.
 pub(crate) fn token_at(database: &Database, position: FilePosition) -> Option<Token> {
-    let in_file = |entity: &EntityRef<'_>| {
-        let start = entity.span.start;
-        let touching = |(_, span): &&Token| span.shifted(start).touches(position.offset);
-        let found: Vec<Token> = entity
-            .parse
-            .tokens
-            .iter()
-            .filter(touching)
-            .map(|(token, span)| (*token, span.shifted(start)))
-            .collect();
-        found
+    let in_file = |entity: &EntityRef<'_>| -> Vec<Token> {
+        let tokens = entity.parse.tokens.iter().map(|(kind, span)| (*kind, span.shifted(entity.span.start)));
+        tokens.filter(|(_, span)| span.touches(position.offset)).collect()
     };
-    let found: Vec<Token> = entities_at(database, position).iter().flat_map(in_file).collect();
-    let word = |(token, _): &&Token| token.is_name() || token.is_keyword() || token.is_number();
-    found.iter().find(word).or(found.first()).copied()
+    let touching: Vec<Token> = entities_at(database, position).iter().flat_map(in_file).collect();
+    let is_word = |(kind, _): &&Token| kind.is_name() || kind.is_keyword() || kind.is_number();
+    touching.iter().find(is_word).or(touching.first()).copied()
 }
 
 /// The range of an entity from its keyword to its last token, without trailing comments.

@@ -23,7 +23,7 @@ pub fn format_after_brace(database: &Database, position: FilePosition) -> Vec<Te
         return Vec::new();
     }
     if !entity.parse.errors.is_empty() {
-        return indent(database, FilePosition { offset: brace, ..position });
+        return format_after_line_break(database, FilePosition { offset: brace, ..position });
     }
     let part = match &entity.parse.entity {
         Some(Entity::Movement(movement)) => {
@@ -34,11 +34,6 @@ pub fn format_after_brace(database: &Database, position: FilePosition) -> Vec<Te
     };
     let part = Span::new(part.start, part.end.min(position.offset));
     format_part(database, &entity, part)
-}
-
-/// The edits after a line break was typed before a position: inside an open entity, the line is indented.
-pub fn format_after_line_break(database: &Database, position: FilePosition) -> Vec<TextEdit> {
-    indent(database, position)
 }
 
 /// The formatting edits within a part of an entity without errors.
@@ -58,8 +53,9 @@ fn format_part(database: &Database, entity: &EntityRef<'_>, part: Span) -> Vec<T
         .collect()
 }
 
-/// Replaces the leading white space of a line if it is not that of the canonical layout.
-fn indent(database: &Database, position: FilePosition) -> Vec<TextEdit> {
+/// The edits after a line break was typed before a position: replaces the white space before it if it is not that of
+/// the canonical layout.
+pub fn format_after_line_break(database: &Database, position: FilePosition) -> Vec<TextEdit> {
     let Some(line) = Line::at(database, position) else { return Vec::new() };
     let Some(depth) = line.depth(database, position) else { return Vec::new() };
     let wanted = " ".repeat(depth * INDENT);

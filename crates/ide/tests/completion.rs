@@ -12,7 +12,7 @@ use pydslrep_ide::{
 use pydslrep_syntax::{Found, KEYWORDS, Span, SyntaxErrorKind, Token, TokenKind, cut, lex, parse};
 
 /// The paper's programs and variants of them.
-fn article() -> Vec<String> {
+fn paper_programs() -> Vec<String> {
     let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests");
     let mut programs = Vec::new();
     for folder in ["paper", "programs"] {
@@ -122,7 +122,7 @@ fn check_while_typed(text: &str, seen: &mut HashSet<(Vec<TokenKind>, bool)>) {
 #[test]
 fn the_words_offered_are_those_that_fit() {
     let mut seen = HashSet::new();
-    for text in article() {
+    for text in paper_programs() {
         check_while_typed(&text, &mut seen);
     }
     for seed in 0..200 {
@@ -166,7 +166,7 @@ fn check_half_typed(before: &str, word: &str, typed: usize, after: &str) {
 
 #[test]
 fn a_half_typed_word_is_replaced_by_what_it_was_going_to_be() {
-    for text in article() {
+    for text in paper_programs() {
         let mut database = Database::new();
         let file = database.open("a.pyr", &text);
         for (token, span) in tokens(&text) {

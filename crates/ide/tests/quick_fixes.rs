@@ -12,11 +12,11 @@ use pydslrep_naive::{Recipe, declarations};
 use pydslrep_syntax::{Span, lex, parse};
 
 /// Diagnostics of invalid code; fixing one may reveal others.
-const OF_TEXT: [&str; 4] =
+const OF_INVALID_CODE: [&str; 4] =
     ["syntax-error", "invalid-character", "unterminated-comment", "unterminated-string"];
 
 /// Diagnostics related to another one: with the same cause, or caused by it.
-const GOES_ALONG: [(&str, &[&str]); 6] = [
+const RELATED: [(&str, &[&str]); 6] = [
     ("movement-robot-missing", &["movement-robot-missing", "empty-environment"]),
     ("unresolved-reference", &["unresolved-reference", "movement-robot-missing", "sensor-not-on-robot"]),
     ("sensor-not-on-robot", &["sensor-not-on-robot"]),
@@ -87,14 +87,14 @@ fn program(seed: u64) -> String {
 
 /// Applies a fix; `index` is that of its diagnostic among those `before`.
 fn try_out(text: &str, database: &Database, before: &[Diagnostic], index: usize, offer: &QuickFix) {
-    let mended = &before[index];
-    let entity = |span: Span| database.entity_at(mended.file, span.start).map(|entity| entity.id);
-    let is_of_text = OF_TEXT.contains(&mended.code());
+    let fixed = &before[index];
+    let entity = |span: Span| database.entity_at(fixed.file, span.start).map(|entity| entity.id);
+    let is_of_invalid_code = OF_INVALID_CODE.contains(&fixed.code());
     let edits = in_order(&offer.fix.edits);
     let after_text = applied(text, &edits);
     let (database, file) = opened(&after_text);
     let mut after = database.diagnostics(file);
-    let told = format!("{}: {} in\n{text}\nmakes\n{after_text}", mended.message, offer.fix.title);
+    let case = format!("{}: {} in\n{text}\nmakes\n{after_text}", fixed.message, offer.fix.title);
 
     let mut gone = Vec::new();
     for (_, other) in before.iter().enumerate().filter(|(other, _)| *other != index) {
@@ -111,22 +111,22 @@ fn try_out(text: &str, database: &Database, before: &[Diagnostic], index: usize,
             continue;
         }
         let goes_along =
-            GOES_ALONG.iter().any(|(code, along)| *code == mended.code() && along.contains(&other.code()));
+            RELATED.iter().any(|(code, along)| *code == fixed.code() && along.contains(&other.code()));
         // Partially valid code may change its meaning.
-        let is_read_again = is_of_text && entity(other.span) == entity(mended.span);
+        let is_read_again = is_of_invalid_code && entity(other.span) == entity(fixed.span);
         // One hint may replace another: an unused declaration may be used now.
         let may_go = span.is_none() || goes_along || is_read_again || other.severity == Severity::Hint;
-        assert!(may_go, "{} {:?} is gone, too: {told}", other.code(), other.message);
+        assert!(may_go, "{} {:?} is gone, too: {case}", other.code(), other.message);
     }
     for new in after {
-        assert!(new.message != mended.message, "it is still there: {told}");
+        assert!(new.message != fixed.message, "it is still there: {case}");
         // More of the code is valid.
-        let came_to_light =
-            is_of_text && (!OF_TEXT.contains(&new.code()) || new.span.start > mended.span.start);
+        let came_to_light = is_of_invalid_code
+            && (!OF_INVALID_CODE.contains(&new.code()) || new.span.start > fixed.span.start);
         let may_come = if offer.fix.safe { Severity::Warning } else { Severity::Hint };
         assert!(
             new.severity <= may_come || came_to_light,
-            "it brings {} {:?}: {told}",
+            "it brings {} {:?}: {case}",
             new.code(),
             new.message
         );

@@ -100,23 +100,23 @@ fn try_all(text: &str, tried: &mut BTreeMap<String, usize>) {
             *tried.entry(kind.join(" ")).or_default() += 1;
             let after = applied(text, &edits);
             let (database, file) = opened(&after);
-            let told = format!("{} at {selection:?} of\n{text}\nmakes\n{after}", offer.title);
+            let case = format!("{} at {selection:?} of\n{text}\nmakes\n{after}", offer.title);
             for (code, count) in problems(&database, file) {
                 let before = problems_before.get(code).copied().unwrap_or(0);
                 // Diagnostics of a movement apply to its parts, too.
                 let may_grow = offer.title.starts_with("extract") && before > 0;
-                assert!(count <= before || may_grow, "a new {code}: {told}");
+                assert!(count <= before || may_grow, "a new {code}: {case}");
             }
             let now = driven(&database, file);
-            assert_eq!(now.keys().collect::<Vec<_>>(), driven_before.keys().collect::<Vec<_>>(), "{told}");
+            assert_eq!(now.keys().collect::<Vec<_>>(), driven_before.keys().collect::<Vec<_>>(), "{case}");
             for (before, now) in driven_before.values().zip(now.values()) {
-                assert!(same_poses(before, now), "{before:?} {now:?} {told}");
+                assert!(same_poses(before, now), "{before:?} {now:?} {case}");
                 let same_time = match (before.duration, now.duration) {
                     (Some(before), Some(now)) => close(before, now),
                     (before, now) => before.is_some() == now.is_some(),
                 };
-                let other_time = ["use ", "make "].iter().any(|word| offer.title.starts_with(word));
-                assert!(same_time || other_time, "{before:?} {now:?} {told}");
+                let other_time = ["use ", "make `"].iter().any(|word| offer.title.starts_with(word));
+                assert!(same_time || other_time, "{before:?} {now:?} {case}");
             }
         }
     }
@@ -128,7 +128,7 @@ fn random_programs() -> impl Iterator<Item = String> {
     (0..count).map(move |seed| recipe(seed).seeded(seed))
 }
 
-fn articles_programs() -> Vec<String> {
+fn paper_programs() -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/paper");
     let paths = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let texts: Vec<String> = paths.map(|path| std::fs::read_to_string(path).unwrap()).collect();
@@ -139,19 +139,19 @@ fn articles_programs() -> Vec<String> {
 #[test]
 fn refactorings_keep_what_programs_do() {
     let mut tried = BTreeMap::new();
-    for text in articles_programs().into_iter().chain(random_programs()) {
+    for text in paper_programs().into_iter().chain(random_programs()) {
         try_all(&text, &mut tried);
     }
-    for kind in ["add `type", "convert to", "convert all", "extract into", "leave out", "write the", "use "] {
+    for kind in ["add `type", "convert to", "convert all", "extract into", "omit the", "make the", "use "] {
         assert!(tried.keys().any(|tried| tried.starts_with(kind)), "{kind} was never tried: {tried:?}");
     }
-    assert!(tried.keys().any(|tried| tried.starts_with("make")), "{tried:?}");
+    assert!(tried.keys().any(|tried| tried.starts_with("make `")), "{tried:?}");
 }
 
 /// Pairs of inverse refactorings, such as converting units back and forth, restore the text.
 #[test]
 fn there_and_back_again() {
-    for text in articles_programs() {
+    for text in paper_programs() {
         let (database, file) = opened(&text);
         for selection in selections(&database, file) {
             for (there, back) in [
@@ -175,15 +175,15 @@ fn chosen(text: &str, selection: Span, title: &str) -> Option<String> {
 
 #[test]
 fn nothing_is_left_that_can_be_fixed_safely() {
-    let mut mended = 0;
+    let mut fixed = 0;
     for text in random_programs() {
         let (database, file) = opened(&text);
         let edits = fix_all(&database, file, |_| true);
-        mended += edits.len();
+        fixed += edits.len();
         let after = applied(&text, &edits);
         let (database, file) = opened(&after);
         let left = database.diagnostics(file).into_iter().find(has_safe_fix);
         assert_eq!(left, None, "of\n{text}\nbecame\n{after}");
     }
-    assert!(mended > 0);
+    assert!(fixed > 0);
 }

@@ -8,14 +8,12 @@
 //! function names after `movement_`, where they are plain identifiers. None of these can become code.
 
 mod context;
-mod file_name;
 mod render;
 
 use std::fmt;
 
 use pydslrep_analysis::environment::Environment;
 
-pub use file_name::file_name;
 pub use pydslrep_analysis::Target;
 
 /// What a script for `CoppeliaSim` needs from PyPI, and one for V-REP does not: a requirements file for pip, every version fixed.
@@ -79,4 +77,10 @@ impl std::error::Error for ScriptError {}
 /// If a robot lists a wheel twice.
 pub fn generate(environment: &Environment, target: Target) -> Result<String, ScriptError> {
     render::script(&context::Script::new(environment, target)?)
+}
+
+/// The file name of the script of `environment`: `<environment>.py`, or `<environment>_env.py` if the former would shadow
+/// a module that scripts import or is not a valid file name.
+pub fn file_name(environment: &Environment) -> String {
+    format!("{}.py", environment.script)
 }
