@@ -1,4 +1,4 @@
-//! Folding: entities, comments, regions and the imports fold.
+//! Folding: collapses entities, comments, regions and imports.
 //!
 //! A region reaches from `// #region` (or `// region`) to its `// endregion`, with or without `#`; regions nest.
 

@@ -165,7 +165,7 @@ const POSES_PER_ACTION: u32 = 8;
 /// The planned path of an environment.
 ///
 /// # Errors
-/// When the environment or its scene has errors, or a robot in it cannot drive.
+/// If the environment or its scene has errors, or a robot cannot drive.
 pub fn planned_path(database: &Database, environment: EntityId) -> Result<PlannedPath, String> {
     let id = environment;
     let environment = database.environment(id).map_err(|blocked: Blocked| blocked.reason())?;

@@ -114,7 +114,7 @@ impl Typed {
         }
         let cursor = touched.map_or(position.offset, |(_, span)| span.start + entity.span.start);
         if cursor == entity.span.start {
-            // A word that looks like a keyword begins an entity of its own; it is still only a word being typed.
+            // A typed word that equals a keyword is parsed as a new entity, but still continues the one before.
             entity = database.entity_at(position.file, cursor.checked_sub(1)?)?;
         }
         let start = entity.span.start;

@@ -22,7 +22,7 @@ const RELATED: [(&str, &[&str]); 6] = [
     ("sensor-not-on-robot", &["sensor-not-on-robot"]),
     ("unused-declaration", &["duplicate-name"]),
     ("wheel-count", &["slam-robot"]),
-    // One half of a pair of braces.
+    // One brace of a pair.
     ("syntax-error", &["syntax-error"]),
 ];
 
@@ -53,7 +53,7 @@ fn moved(span: Span, edits: &[Edit]) -> Option<Span> {
     let mut shift = 0;
     for edit in edits {
         let (length, new) = (i64::from(edit.span.len()), i64::try_from(edit.text.len()).unwrap());
-        // What is missing is missed right behind something.
+        // Missing tokens are reported at the end of the previous one.
         let is_beside = span.is_empty() && length > 0 && edit.span.touches(span.start);
         if is_beside || (edit.span.start < span.end && span.start < edit.span.end) {
             return None;
@@ -105,7 +105,7 @@ fn try_out(text: &str, database: &Database, before: &[Diagnostic], index: usize,
         }
     }
     for (other, span) in gone {
-        // What is said of a whole list may be said of another place in it.
+        // A diagnostic of a list may move within the list.
         if let Some(elsewhere) = after.iter().position(|left| left.code() == other.code()) {
             after.remove(elsewhere);
             continue;
@@ -193,7 +193,7 @@ fn broken(seed: u64) -> (String, Vec<Range<usize>>) {
     (text, entities)
 }
 
-/// Where a fix may change another entity than the one that its problem is in: a robot does not carry the sensor.
+/// Codes whose fix may change another entity than that of the diagnostic: the robot that lacks a sensor.
 const CONCERN_OTHERS: [&str; 1] = ["sensor-not-on-robot"];
 
 #[test]

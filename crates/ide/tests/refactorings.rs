@@ -56,8 +56,8 @@ fn problems(database: &Database, file: FileId) -> BTreeMap<&'static str, usize> 
     counts
 }
 
-/// What the robots of an environment do, as far as it is known: where each is behind each of its actions, the actions
-/// behind those, and how long it all takes.
+/// The planned behaviour of an environment's robots: their poses after each action, the remaining actions, and the total
+/// duration.
 #[derive(Debug)]
 struct Driven {
     poses: Vec<Vec<[f64; 3]>>,

@@ -48,13 +48,13 @@ fn problems(database: &Database, names: [&str; 2]) -> Vec<String> {
             found.push(format!("{} {number} {} {message}", database.path(file), problem.rule.code));
         }
     }
-    // Of two imported files that declared a name only one does afterwards, which is no mistake any more.
+    // A name declared by two imported files may be declared by only one of them afterwards, which fixes an error.
     found.retain(|problem| !problem.contains("ambiguous-import"));
     if found
         .iter()
         .any(|problem| problem.contains("unresolved-reference") || problem.contains("syntax-error"))
     {
-        // What nothing uses is not said where a name like it is used by mistake.
+        // Unused declarations are not reported if a similar name is unresolved.
         found.retain(|problem| !problem.contains("unused-declaration"));
     }
     found
@@ -64,7 +64,7 @@ fn texts(database: &Database) -> Vec<String> {
     database.files().map(|file| database.text(file).unwrap().to_string()).collect()
 }
 
-/// Makes a rename; false if it is refused.
+/// Applies a rename; false if it is refused.
 fn apply(database: &mut Database, position: FilePosition, new: &str) -> bool {
     let edits = match rename(database, position, new) {
         Ok(edits) => edits,
@@ -100,12 +100,12 @@ fn names(database: &Database) -> Vec<(EntityKind, SmolStr, FileSpan)> {
     found
 }
 
-/// Inside the name: between two that touch, as in `a^b`, the cursor means the first.
+/// An offset inside the name: between two adjacent names, as in `a^b`, the cursor refers to the first.
 fn at(place: FileSpan) -> FilePosition {
     FilePosition { file: place.file, offset: place.span.start + place.span.len() / 2 }
 }
 
-/// A database for every program of the project, with what it imports.
+/// A database for every program of the project, with its imports.
 fn programs() -> Vec<Database> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let folders = ["tests/paper", "tests/programs", "examples"].map(|folder| root.join(folder));
@@ -245,12 +245,12 @@ proptest! {
         let names = names(&database);
         prop_assume!(!names.is_empty());
         let (kind, name, place) = which.get(&names).clone();
-        // A keyword in a name's place counts as one, with an error that a rename mends.
+        // A keyword in place of a name counts as a name with an error, which a rename fixes.
         prop_assume!(!KEYWORDS.iter().any(|(token, word)| token.is_keyword() && name == *word));
         let (said, text) = (meaning(&database), texts(&database));
         let bare = new.trim_start_matches('^');
-        // How a problem is worded may depend on other names ("`x` is a robot, not a wheel"), and so may how many syntax
-        // errors a broken statement is reported as: recovery compares its words with keywords.
+        // Messages may depend on other names ("`x` is a robot, not a wheel"), and so may the number of syntax errors in a
+        // statement, because recovery compares its words with keywords.
         let unworded = |problems: Vec<String>| -> Vec<String> {
             problems.iter().filter(|problem| !problem.contains("syntax-error")).map(|problem| problem.split(' ').take(3).collect()).collect()
         };

@@ -1,6 +1,6 @@
 //! The legacy remote API on real ports, with the bytes of V-REP's client, next to ZeroMQ clients and invalid connections.
 
-// Clippy spares functions marked as tests only, not what they share.
+// Clippy exempts only functions marked as tests, not their helpers.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::io::{ErrorKind, Read, Write};

@@ -1,6 +1,6 @@
 //! The simulator on real ports, driven by another implementation of ZeroMQ and by invalid connections.
 
-// Clippy spares functions marked as tests only, not what they share.
+// Clippy exempts only functions marked as tests, not their helpers.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::io::{ErrorKind, Read, Write};

@@ -76,7 +76,7 @@ mod tests {
 
     #[test]
     fn both_ends_of_a_rest_are_kept() {
-        // It moves, stands for a second, and moves on.
+        // It moves, rests for a second, and moves on.
         let steps = (0..40).map(f64::from);
         let track = track(steps.map(|step| (0.05 * step, 0.01 * (step.min(10.0) + (step - 30.0).max(0.0)))));
         let poses = track.poses();

@@ -38,7 +38,7 @@ pub(super) struct CursorContext<'a> {
 impl<'a> CursorContext<'a> {
     pub(super) fn find(database: &'a Database, position: FilePosition, speed: f64) -> Option<Self> {
         let word = word_at(database, position)?;
-        // A word that looks like a keyword begins an entity of its own; it is still only a word being typed.
+        // A typed word that equals a keyword is parsed as a new entity, but still continues the one before.
         let own = database.entity_at(position.file, word.start)?;
         let at = match word.start.checked_sub(1) {
             Some(before) if own.span.start == word.start => database.entity_at(position.file, before)?,
@@ -148,7 +148,7 @@ fn word_at(database: &Database, position: FilePosition) -> Option<Span> {
     let entity = database.entity_at(position.file, position.offset)?;
     let start = entity.span.start;
     let offset = position.offset - start;
-    // A keyword right after the cursor begins an entity, and a word right before it belongs to the one before.
+    // At the start of an entity, the word before the cursor belongs to the previous one.
     let before = position.offset.checked_sub(1).filter(|_| offset == 0);
     if let Some(before) = before.and_then(|before| database.entity_at(position.file, before)) {
         return word_in(database, &before, position.offset);

@@ -263,7 +263,7 @@ impl Model {
     /// A fresh database with these inputs. Their order must not matter; `turn` varies it.
     pub(crate) fn fresh(&self, turn: usize) -> (Database, [FileId; 4]) {
         let mut database = Database::new();
-        // Numbers of files are given in the order of opening; they must be the same ones.
+        // File ids follow the order of opening and must match.
         let files = PATHS.map(|path| {
             let file = database.open(path, "");
             database.close(file);
@@ -526,7 +526,7 @@ impl Editing {
     }
 }
 
-/// The text that an anchor and a length stand for.
+/// The range of an anchor and a length.
 fn span(text: &str, at: Anchor, len: Length) -> Span {
     let tokens = lex(text);
     let start = match at {

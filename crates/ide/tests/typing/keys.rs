@@ -67,7 +67,7 @@ fn next_key(program: &str, at: usize) -> usize {
         return at + first;
     }
     let blanks = rest[1..].len() - rest[1..].trim_start_matches(' ').len();
-    // Down, to the brace that was closed when it was opened.
+    // Down, to the brace that was closed automatically.
     let closes = usize::from(rest[1 + blanks..].starts_with('}'));
     at + 1 + blanks + closes
 }

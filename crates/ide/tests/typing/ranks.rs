@@ -18,7 +18,7 @@ impl Ranks {
     }
 }
 
-/// Asks at each keyword and each name that was declared before: after a blank where the list opens then, else after the
+/// Requests completion at each keyword and each declared name: after a space if the list opens there, otherwise after the
 /// first letter.
 pub(crate) fn ranks(program: &str) -> Ranks {
     let mut ranks = Ranks::default();
@@ -56,8 +56,8 @@ fn declares(before: &[Token]) -> bool {
     before.last().is_some_and(|(token, _)| declaring.contains(token)) && !is_reference
 }
 
-/// The different words that are offered when the list opens, the best first; `None` where no list opens: of a short word,
-/// what is missing after the first letter is typed faster.
+/// The distinct words that are offered when the list opens, best first; `None` if no list opens, as for words that are
+/// almost complete after the first letter.
 fn offered(program: &str, word: Span) -> Option<Vec<String>> {
     let blank = program[..word.start as usize].chars().last();
     let by_blank = blank.map(|blank| asked(program, word.start, CompletionTrigger::Character(blank)));

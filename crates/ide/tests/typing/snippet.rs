@@ -38,7 +38,7 @@ fn parts(snippet: &str) -> Vec<Part> {
     parts
 }
 
-/// What a snippet gives, at most up to its last stop, if a program goes on like that: the end of that, and the stops.
+/// Matches a snippet with the rest of a program, at most up to its last tab stop: the end of the match, and the tab stops.
 ///
 /// Tab stops take only names, numbers and spaces, so that one ends at the text that follows it.
 pub(crate) fn matched(snippet: &str, program: &str, start: usize) -> Option<(usize, Vec<Filled>)> {

@@ -123,7 +123,7 @@ pub(super) fn angles(frame: &Isometry3<f64>) -> [f64; 3] {
     // asin(m02) would lose half the digits near ±90°.
     let beta = m[(0, 2)].atan2(m[(0, 0)].hypot(m[(0, 1)]));
     if m[(0, 2)].abs() > 1.0 - 1e-12 {
-        // Looking along x: α and γ turn about the same axis, all of it goes to γ.
+        // Gimbal lock: α and γ rotate about the same axis, so all of it goes to γ.
         return [0.0, beta, m[(1, 0)].atan2(m[(1, 1)])];
     }
     [(-m[(1, 2)]).atan2(m[(2, 2)]), beta, (-m[(0, 1)]).atan2(m[(0, 0)])]

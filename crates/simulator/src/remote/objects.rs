@@ -224,7 +224,7 @@ mod tests {
         assert_eq!((find("/a/l[1]"), find("/a/l[2]"), find("/b[0]/r")), (Some(5), None, Some(8)));
         assert_eq!((objects.find("./r", Some(6), 0), objects.find("./a", Some(6), 0)), (Some(8), None));
         assert_eq!(objects.find("..", Some(8), 0), Some(6));
-        // Indices count among neighbours: no two `r` stand side by side.
+        // Indices count siblings: no two `r` have the same parent.
         assert_eq!((find("/l[1]"), find("/r[0]"), find("/r[1]")), (Some(5), Some(3), None));
         for wrong in ["", "a", "/", "//", "/a/", "/a/nothing", "/a[", "/a[x]", "/l/a", "/a/r/r", ".", "./"] {
             assert_eq!(find(wrong), None, "{wrong}");

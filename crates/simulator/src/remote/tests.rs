@@ -527,7 +527,7 @@ fn values() -> impl Strategy<Value = Value> {
 
 #[test]
 fn a_sensor_reports_detections_in_its_own_frame() {
-    // The wall's surface is 0.5 m before the first robot, which looks along x, and turned a little to the left of it.
+    // The wall's surface is 0.5 m ahead of the first robot, which faces along x, and slightly rotated to the left.
     let wall = Obstacle::wall("wall_7", (0.72, -0.4), (0.68, 0.4), 0.01);
     let mut lab = Lab::among(2, vec![wall]);
     let (sensor, wall) = (lab.object("/robot_1/fSensor"), lab.object("/wall_7"));
@@ -543,7 +543,7 @@ fn a_sensor_reports_detections_in_its_own_frame() {
     let lean = (0.04_f64 / 0.8).atan();
     assert!((distance - (0.55 * lean.cos() - 0.005)).abs() < 1e-9, "{distance}");
     let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
-    // The sensor's z looks ahead, its y to the left.
+    // The sensor's z axis points ahead, its y axis to the left.
     assert!(
         near(point[0], 0.0) && near(point[1], distance * lean.sin()) && near(point[2], distance * lean.cos())
     );

@@ -281,7 +281,7 @@ fn a_sensor_reports_what_it_detects() {
     lab.ask(1, 0x1007, &[0], &[]);
     lab.session.tick();
     let seen = lab.ask(1, 0x1009, &[SENSOR], &[]);
-    // Half a body of 0.3 m is in front of the robot's middle, half a wall before the wall's.
+    // Minus half the body length (0.3 m) and half the wall thickness.
     let (point, normal) = (floats(&seen[1..13]), floats(&seen[17..]));
     assert!((point[2] - 0.8).abs() < 1e-6 && point[1].abs() < 1e-6 && (normal[2] + 1.0).abs() < 1e-6);
     assert_eq!((seen[0], seen.len(), &seen[13..17]), (1, 29, &(SENSOR + 1).to_le_bytes()[..]));
@@ -314,7 +314,7 @@ fn streams_come_with_every_pass_until_discontinued() {
     );
     assert_eq!(lab.send(1, &[command(0x200e + BLOCKING, &key, &[])]).commands.len(), 2);
     assert_eq!(lab.send(1, &[]).commands[0].key, keyed(&[LEFT, -1]));
-    // The same one again is no second one.
+    // Repeating a stream does not add a second one.
     lab.send(1, &[command(0x200e + STREAMING, &keyed(&[LEFT, -1]), &[])]);
     assert_eq!(lab.send(1, &[]).commands.len(), 1);
 }
@@ -409,7 +409,7 @@ fn stopping_ends_the_synchronous_mode_of_all() {
     assert_eq!((lab.send(1, &[]).state, lab.time(1)), (4, 0));
     lab.ask(1, 0x1007, &[0], &[]);
     assert!(lab.session.is_free_running());
-    // A pause holds free and triggered time alike.
+    // A pause stops both the free-running and the triggered clock.
     assert_eq!(lab.send(1, &[command(0x1007, &keyed(&[1]), &[])]).state, 7);
     lab.session.tick();
     assert_eq!(lab.time(1), 0);
@@ -454,7 +454,7 @@ fn invalid_messages_are_refused() {
         vec![],
         header(0)[..17].to_vec(),
         changed(2, 10),  // version
-        changed(18, 29), // a rest that is no command
+        changed(18, 29), // trailing bytes
         changed(18, 31), // more than there is
         changed(18, 25), // less than a header
         changed(18, 0),
