@@ -127,7 +127,7 @@ async def test_a_rename_across_files(client: LanguageClient, program: Program) -
     [
         ("b", types.LSPErrorCodes.RequestFailed, "there is already a wheel"),
         ("robots", types.ErrorCodes.InvalidParams, "^robots"),
-        ("two words", types.ErrorCodes.InvalidParams, "not a name"),
+        ("two words", types.ErrorCodes.InvalidParams, "not a valid name"),
     ],
 )
 async def test_a_rename_that_is_refused_says_why(
@@ -139,7 +139,7 @@ async def test_a_rename_that_is_refused_says_why(
         )
     assert refused.value.code == code
     assert word in refused.value.message
-    with pytest.raises(JsonRpcException, match="no name here"):
+    with pytest.raises(JsonRpcException, match="no name to rename here"):
         await client.text_document_prepare_rename_async(
             types.PrepareRenameParams(*program.where(program.main, "ro", "bot rover"))
         )
