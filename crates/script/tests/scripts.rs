@@ -1,7 +1,7 @@
 //! Whole scripts: what is in them, what is not, and that names stay names.
 //!
-//! The files in `snapshots/` are scripts as users get them; ruff, mypy and the tests in `python/tests` run on them.
-//! `UPDATE_EXPECT=1 cargo test -p pydslrep-script` rewrites them.
+//! `snapshots/` holds one whole script per target, and what other scripts change in it as diffs. The tests in
+//! `python/tests` run all of them. `UPDATE_EXPECT=1 cargo test -p pydslrep-script` rewrites them.
 
 #![allow(clippy::expect_used, reason = "helpers of tests are tests, too")]
 
@@ -14,6 +14,7 @@ use expect_test::{expect, expect_file};
 use pydslrep_analysis::environment::{Action, Environment, Sensor, SensorKind, Source};
 use pydslrep_kinematics::Drive;
 use pydslrep_script::{REQUIREMENTS, Target, file_name, generate, may_replace};
+use similar::TextDiff;
 
 fn script(environment: &Environment) -> String {
     generate(environment, Target::CoppeliaSim).expect("a script")
@@ -32,30 +33,75 @@ fn own_lines(script: &str) -> String {
     format!("{robots}{movements}\n\n\ndef drive({}", after("\ndef drive("))
 }
 
+/// What one script changes in another.
+fn changes(from: &str, to: &str) -> String {
+    TextDiff::from_lines(from, to).unified_diff().context_radius(1).to_string()
+}
+
 #[test]
-fn two_wheels() {
+fn whole_scripts() {
     expect_file!["../snapshots/area_1.py"].assert_eq(&script(&area_1(Drive::TwoWheel)));
+    expect_file!["../snapshots/area_1_vrep.py"].assert_eq(&vrep_script(&area_1(Drive::TwoWheel)));
 }
 
 #[test]
 fn turning_until_sensors_are_free() {
-    expect_file!["../snapshots/sensors.py"].assert_eq(&script(&sensors()));
-}
-
-#[test]
-fn exploring() {
-    expect_file!["../snapshots/rooms.py"].assert_eq(&script(&slam()));
+    let whole = script(&area_1(Drive::TwoWheel));
+    expect_file!["../snapshots/sensors.diff"].assert_eq(&changes(&whole, &script(&sensors())));
+    let whole = vrep_script(&area_1(Drive::TwoWheel));
+    expect_file!["../snapshots/sensors_vrep.diff"].assert_eq(&changes(&whole, &vrep_script(&sensors())));
 }
 
 #[test]
 fn four_robots_in_parallel() {
-    expect_file!["../snapshots/factory.py"].assert_eq(&script(&four_robots()));
+    let whole = script(&area_1(Drive::TwoWheel));
+    expect_file!["../snapshots/factory.diff"].assert_eq(&changes(&whole, &script(&four_robots())));
 }
 
+/// The parts that explore are 2 000 lines, tested where they are.
 #[test]
-fn the_same_for_vrep() {
-    expect_file!["../snapshots/area_1_vrep.py"].assert_eq(&vrep_script(&area_1(Drive::TwoWheel)));
-    expect_file!["../snapshots/sensors_vrep.py"].assert_eq(&vrep_script(&sensors()));
+fn exploring() {
+    expect![[r#"
+        ROBOTS = (
+            RobotModel(
+                name="robot_1",
+                port=19999,
+                drive=TwoWheelDrive,
+                wheels={
+                    "wheelL": 0.045,
+                    "wheelR": 0.045,
+                },
+                sensors=[
+                    "fSensor0",
+                    "fSensor1",
+                    "fSensor2",
+                    "lSensor",
+                    "rSensor",
+                ],
+                slam_sensors=[
+                    "fSensor0",
+                    "fSensor1",
+                    "fSensor2",
+                    "lSensor",
+                    "rSensor",
+                ],
+            ),
+        )
+
+        @movement("mov_1", of="robot_1")  # line 6
+        def movement_mov_1(robot: Robot) -> None:
+            robot.slam()  # line 14: slam
+
+
+        def drive(fleet: Fleet) -> None:
+            """Runs the movements of environment rooms in order."""
+            fleet.run(movement_mov_1)
+
+
+        if __name__ == "__main__":
+            sys.exit(main(__doc__, HOST, ROBOTS, drive, ENVIRONMENT))
+    "#]]
+    .assert_eq(&own_lines(&script(&slam())));
 }
 
 #[test]

@@ -1,8 +1,8 @@
 """Runs generated scripts unchanged in the fake simulator, from command line to exit code."""
 
-import importlib.util
 import json
 import math
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -16,16 +16,34 @@ from fake_simulator import FakeRobot, FakeWorld
 SNAPSHOTS = Path(__file__).parents[2] / "snapshots"
 
 
+def patched(text: str, diff: str) -> str:
+    """A text with a unified diff applied."""
+    lines, result, at = text.splitlines(keepends=True), "", 0
+    for line in diff.splitlines(keepends=True):
+        if hunk := re.match(r"@@ -(\d+)", line):
+            start = int(hunk[1]) - 1
+            result += "".join(lines[at:start])
+            at = start
+        elif line.startswith("+"):
+            result += line[1:]
+        else:
+            assert lines[at] == line[1:], "the diff is of another text"
+            result += lines[at] if line.startswith(" ") else ""
+            at += 1
+    return result + "".join(lines[at:])
+
+
 def load(name: str) -> ModuleType:
-    """The script of that name as a module."""
-    spec = importlib.util.spec_from_file_location(
-        f"generated_{name}", SNAPSHOTS / f"{name}.py"
-    )
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
+    """The script of that name as a module: whole, or as changes of the whole one."""
+    file = SNAPSHOTS / f"{name}.py"
+    if file.exists():
+        text = file.read_text(encoding="utf-8")
+    else:
+        changes = file.with_suffix(".diff").read_text(encoding="utf-8")
+        text = patched((SNAPSHOTS / "area_1.py").read_text(encoding="utf-8"), changes)
+    module = ModuleType(f"generated_{name}")
+    sys.modules[module.__name__] = module
+    exec(compile(text, file.name, "exec"), module.__dict__)
     return module
 
 
