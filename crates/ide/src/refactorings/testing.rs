@@ -33,7 +33,7 @@ pub(super) fn check_whole(fixture: &str, expected: &Expect) {
     for offer in refactorings(&database, file, range) {
         match offer.edits {
             Err(reason) => {
-                writeln!(report, "{:?}: {}\n  not here: {reason}", offer.kind, offer.title).unwrap()
+                writeln!(report, "{:?}: {}\n  not here: {reason}", offer.kind, offer.title).unwrap();
             }
             Ok(edits) => {
                 writeln!(report, "{:?}: {}", offer.kind, offer.title).unwrap();
