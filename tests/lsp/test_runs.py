@@ -186,7 +186,8 @@ def test_a_run_can_be_cancelled(endless: Session, tmp_path: pathlib.Path) -> Non
     arguments = (tmp_path / "bin" / "arguments").read_text(encoding="utf-8").split()
     assert arguments[0] == "run"
     assert arguments[2:5] == ["--environment", "area", "--picture"]
-    assert arguments[6:13:2] == ["--replay", "--trace", "--map", "--until-input-ends"]
+    assert arguments[6:13:2] == ["--replay", "--trace", "--map", "--figures"]
+    assert arguments[14] == "--until-input-ends"
     endless.raw.send(notification("window/workDoneProgress/cancel", {"token": token}))
     assert endless.raw.answer(1)["error"]["code"] == -32800
     assert not pathlib.Path(arguments[1]).exists(), "what was run is tidied up"
