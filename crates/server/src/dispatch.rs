@@ -73,9 +73,13 @@ struct Row {
 enum Handler {
     /// The framework's own, which begins or ends the session.
     Framework,
-    Request(Box<dyn Fn(&Server, Id, Option<Value>) -> Reply + Send + Sync>),
-    Notification(Box<dyn Fn(&Server, Option<Value>) -> Reply + Send + Sync>),
+    Request(RequestHandler),
+    Notification(NotificationHandler),
 }
+
+type RequestHandler = Box<dyn Fn(&Server, Id, Option<Value>) -> Reply + Send + Sync>;
+
+type NotificationHandler = Box<dyn Fn(&Server, Option<Value>) -> Reply + Send + Sync>;
 
 /// How rows are written. A handler's type says whether it changes the state or only reads it, the name of the method
 /// where it runs.
@@ -178,11 +182,11 @@ impl Table {
     }
 
     /// A notification that stops something; it needs no state, and may come after `shutdown` too.
-    pub(crate) fn interrupt<N: Notification>(&mut self, handler: fn(&Server, N::Params)) {
+    pub(crate) fn interrupt<N: Notification>(&mut self, handler: fn(&Server, &N::Params)) {
         self.notification::<N>(
             |_, _| {},
             move |server, params| {
-                handler(server, params);
+                handler(server, &params);
                 no_answer()
             },
         );

@@ -14,6 +14,8 @@
 //! With the feature `process` off there is no runtime, no stdio and no socket: a browser feeds a session itself.
 
 #[cfg(feature = "process")]
+mod arguments;
+#[cfg(feature = "process")]
 mod children;
 mod chosen;
 mod client;
@@ -43,7 +45,7 @@ mod typing;
 mod work;
 mod workspace;
 
-pub use message::Outbox;
 #[cfg(feature = "process")]
-pub use process::{run_socket, run_stdio};
+pub use arguments::{Arguments, Unreachable};
+pub use message::Outbox;
 pub use session::{Ending, Session};

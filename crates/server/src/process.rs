@@ -17,7 +17,7 @@ const PIPE_SIZE: usize = 1 << 20;
 /// # Errors
 ///
 /// If standard input or output is closed, or a thread cannot be started.
-pub fn run_stdio() -> io::Result<ExitCode> {
+pub(crate) fn run_stdio() -> io::Result<ExitCode> {
     let (input, output) = stdio()?;
     serve(input, output).map(ExitCode::from)
 }
@@ -27,7 +27,7 @@ pub fn run_stdio() -> io::Result<ExitCode> {
 /// # Errors
 ///
 /// If nothing listens there, or a thread cannot be started.
-pub fn run_socket(port: u16) -> io::Result<ExitCode> {
+pub(crate) fn run_socket(port: u16) -> io::Result<ExitCode> {
     let stream = TcpStream::connect((Ipv4Addr::LOCALHOST, port))?;
     // Messages are small and waited for: they must not be delayed to fill packets.
     stream.set_nodelay(true)?;

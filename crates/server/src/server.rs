@@ -162,11 +162,11 @@ impl Server {
     }
 
     /// `window/workDoneProgress/cancel`: somebody pressed the button next to a progress bar.
-    pub(crate) fn cancel_progress(&self, params: WorkDoneProgressCancelParams) {
+    pub(crate) fn cancel_progress(&self, params: &WorkDoneProgressCancelParams) {
         #[cfg(feature = "process")]
         self.children().interrupt(&params.token);
         #[cfg(not(feature = "process"))]
-        drop(params);
+        let _ = params;
     }
 
     async fn begin(&self, title: &str) -> Option<OngoingProgress<Unbounded, NotCancellable>> {

@@ -15,15 +15,8 @@ Examples:
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// Talk on standard input and output [default]
-    #[arg(long, conflicts_with = "socket")]
-    stdio: bool,
-    /// Connect to the editor, which listens on this port of this machine
-    #[arg(long, value_name = "PORT", value_parser = clap::value_parser!(u16).range(1..))]
-    socket: Option<u16>,
-    /// Editors add it to every server, with the number the protocol hands over anyway
-    #[arg(long = "clientProcessId", hide = true)]
-    client: Option<u32>,
+    #[command(flatten)]
+    server: pydslrep_server::Arguments,
 }
 
 /// Runs the command.
@@ -31,12 +24,11 @@ pub(crate) struct Arguments {
 /// # Errors
 /// When the editor cannot be reached.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    match arguments.socket {
-        None => pydslrep_server::run_stdio()
-            .map_err(|error| Failure::new(format!("cannot serve on standard input: {error}"))),
-        Some(port) => pydslrep_server::run_socket(port).map_err(|error| {
-            Failure::new(format!("cannot reach the editor on port {port}: {error}"))
-                .help("with --socket the editor listens first, and the server connects to it")
-        }),
-    }
+    arguments.server.serve().map_err(|unreachable| {
+        let failure = Failure::new(unreachable.to_string());
+        match unreachable.help() {
+            Some(help) => failure.help(help),
+            None => failure,
+        }
+    })
 }

@@ -1,7 +1,7 @@
 //! `workspace/executeCommand`: everything that can be executed. `docs/protocol.md` has its table from here.
 
 use futures::FutureExt;
-use futures::future::BoxFuture;
+use futures::future::{BoxFuture, ready};
 use serde::de::DeserializeOwned;
 use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::{ExecuteCommandOptions, ExecuteCommandParams, LSPAny, ServerCapabilities};
@@ -53,7 +53,7 @@ const COMMANDS: &[Command] = &[
         argument: "{uri, robot}",
         does: "nothing",
         returns: "Markdown: the robot's wheels and equations",
-        run: |server, params| hover::show_kinematics(server, params).boxed(),
+        run: |server, params| ready(hover::show_kinematics(&server.state(), &params)).boxed(),
     },
 ];
 

@@ -99,6 +99,7 @@ pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures)
 
 /// `textDocument/diagnostic`. The result's id depends on the diagnostics and on when the document was opened, not on its
 /// version, which may start again from the beginning.
+#[expect(clippy::unnecessary_wraps, reason = "what answers without a null look like")]
 pub(crate) fn pull(
     state: &State,
     params: &DocumentDiagnosticParams,

@@ -3,7 +3,6 @@
 
 use rustc_hash::FxHashMap;
 use serde_json::Value;
-use tower_lsp::jsonrpc::Result;
 #[cfg(feature = "process")]
 use tower_lsp::ls_types::notification::Notification;
 use tower_lsp::ls_types::request::Request;
@@ -21,7 +20,7 @@ pub(crate) enum DrivenPath {}
 
 impl Request for DrivenPath {
     type Params = ChosenEnvironment;
-    type Result = Value;
+    type Result = Option<Value>;
     const METHOD: &'static str = "pydslrep/drivenPath";
 }
 
@@ -35,10 +34,10 @@ impl Notification for DrivenPathChanged {
     const METHOD: &'static str = "pydslrep/drivenPathChanged";
 }
 
-/// The path of the latest run of an environment; null where there was none. From now on the client is notified of
+/// The path of the latest run of an environment; `None` where there was none. From now on the client is notified of
 /// another.
-pub(crate) fn driven_path(state: &mut State, which: &ChosenEnvironment) -> Result<Value> {
-    Ok(state.driven.watch(which))
+pub(crate) fn driven_path(state: &mut State, which: &ChosenEnvironment) -> Option<Value> {
+    state.driven.watch(which)
 }
 
 /// The latest path of each environment that was run in this session.
@@ -51,11 +50,11 @@ pub(crate) struct DrivenPaths {
 }
 
 impl DrivenPaths {
-    fn watch(&mut self, which: &ChosenEnvironment) -> Value {
+    fn watch(&mut self, which: &ChosenEnvironment) -> Option<Value> {
         if !self.watched.contains(which) {
             self.watched.push(which.clone());
         }
-        self.paths.get(&place(which)).cloned().unwrap_or_default()
+        self.paths.get(&place(which)).cloned()
     }
 
     /// Adds the path of a run that has ended, successfully or not; it may not have written any of these files.

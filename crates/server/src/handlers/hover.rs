@@ -11,7 +11,6 @@ use tower_lsp::ls_types::{
 use crate::documents::Sort;
 use crate::handlers::commands;
 use crate::handlers::scripts::failure;
-use crate::server::Server;
 use crate::state::State;
 
 /// Returns the kinematics of a robot as Markdown; its argument is a [`RobotOf`].
@@ -27,9 +26,8 @@ struct RobotOf {
 }
 
 /// The command [`SHOW_KINEMATICS`]: what a hover over the robot shows.
-pub(crate) async fn show_kinematics(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
-    let RobotOf { uri, robot } = commands::argument(&params)?;
-    let state = server.state();
+pub(crate) fn show_kinematics(state: &State, params: &ExecuteCommandParams) -> Result<Option<LSPAny>> {
+    let RobotOf { uri, robot } = commands::argument(params)?;
     let (_, file) = state
         .analysed(&uri)
         .ok_or_else(|| failure(format!("`{}` is not open in the editor", uri.as_str())))?;

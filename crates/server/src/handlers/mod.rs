@@ -83,7 +83,7 @@ fn sessions(table: &mut Table) {
     table.framework_request::<Initialize>(&[Stage::Starting, Stage::Serving]);
     table.follow::<Initialized, _>(workspace::start, NOTHING);
     table.change::<SetTrace>(synchronization::set_trace, NOTHING);
-    table.interrupt::<Cancel>(|server, params| server.pending.cancel(&params.id.into()));
+    table.interrupt::<Cancel>(|server, params| server.pending.cancel(&params.id.clone().into()));
     table.interrupt::<WorkDoneProgressCancel>(Server::cancel_progress);
     table.framework_request::<Shutdown>(&[Stage::Serving]);
     table.framework_notification::<Exit>(&[Stage::Starting, Stage::Serving, Stage::ShutDown]);

@@ -1,0 +1,61 @@
+//! How editors start the server: the arguments of `pydslrep-lsp` and of `pydslrep lsp`.
+
+use std::fmt;
+use std::io;
+use std::process::ExitCode;
+
+use clap::Args;
+
+use crate::process::{run_socket, run_stdio};
+
+/// Serve an editor: the language server
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Talk on standard input and output [default]
+    #[arg(long, conflicts_with = "socket")]
+    stdio: bool,
+    /// Connect to the editor, which listens on this port of this machine
+    #[arg(long, value_name = "PORT", value_parser = clap::value_parser!(u16).range(1..))]
+    socket: Option<u16>,
+    /// Editors add it to every server, with the number that the protocol sends anyway
+    #[arg(long = "clientProcessId", hide = true)]
+    client: Option<u32>,
+}
+
+/// Why an editor cannot be served.
+#[derive(Debug)]
+pub struct Unreachable {
+    port: Option<u16>,
+    error: io::Error,
+}
+
+impl Arguments {
+    /// Serves one client until it leaves. The exit code is the protocol's: success only after `shutdown` and `exit`.
+    ///
+    /// # Errors
+    ///
+    /// If the client cannot be reached.
+    pub fn serve(&self) -> Result<ExitCode, Unreachable> {
+        let served = match self.socket {
+            None => run_stdio(),
+            Some(port) => run_socket(port),
+        };
+        served.map_err(|error| Unreachable { port: self.socket, error })
+    }
+}
+
+impl fmt::Display for Unreachable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.port {
+            None => write!(f, "cannot serve on standard input: {}", self.error),
+            Some(port) => write!(f, "cannot reach the editor on port {port}: {}", self.error),
+        }
+    }
+}
+
+impl Unreachable {
+    /// What to do about it.
+    pub fn help(&self) -> Option<&'static str> {
+        self.port.map(|_| "with --socket the editor listens first, and the server connects to it")
+    }
+}
