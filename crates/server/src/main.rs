@@ -7,8 +7,8 @@ use clap::Parser;
 use pydslrep_server::Arguments;
 
 const EXIT_CODES: &str = "\
-Messages for people go to standard error. The exit code is 0 after `shutdown` and `exit`, 1 if the client left
-otherwise, 2 for wrong arguments or a port where nothing listens.";
+Messages for people go to standard error. Exit codes: 0 after `shutdown` and `exit`, 1 if the
+client left otherwise, 2 for wrong arguments or a port where nothing listens.";
 
 /// The language server of PyDSLRep, started by editors
 #[derive(Debug, Parser)]
