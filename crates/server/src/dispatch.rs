@@ -29,10 +29,7 @@ use crate::message::{Body, Outbox, WriteJson, encode, encode_answer, encode_erro
 use crate::reader::{Reader, yield_now};
 use crate::server::{Server, Stage};
 use crate::state::State;
-use crate::work::Work;
-
-/// Texts shorter than this many bytes are read before they could be handed to another thread.
-pub(crate) const SHORT: usize = 64 << 10;
+use crate::work::{SHORT, Work};
 
 /// The protocol's code for requests that come too early.
 const NOT_INITIALIZED: ErrorCode = ErrorCode::ServerError(-32002);
@@ -351,19 +348,23 @@ where
 
 /// Puts the table around the framework's service.
 #[derive(Debug)]
-pub(crate) struct TableLayer(pub(crate) Server);
+pub(crate) struct TableLayer {
+    pub(crate) table: Arc<Table>,
+    pub(crate) server: Server,
+}
 
 impl<S> Layer<S> for TableLayer {
     type Service = TableService<S>;
 
     fn layer(&self, inner: S) -> Self::Service {
-        TableService { server: self.0.clone(), inner }
+        TableService { table: Arc::clone(&self.table), server: self.server.clone(), inner }
     }
 }
 
 /// Messages in, encoded answers out. What begins and ends the session is the framework's; it does not see the rest.
 #[derive(Debug)]
 pub(crate) struct TableService<S> {
+    table: Arc<Table>,
     server: Server,
     inner: S,
 }
@@ -382,8 +383,7 @@ where
     }
 
     fn call(&mut self, request: Request) -> Self::Future {
-        let table = Arc::clone(&self.server.table);
-        let row = match table.row(&request, self.server.stage()) {
+        let row = match self.table.row(&request, self.server.stage()) {
             Ok(row) => row,
             Err(error) => return refuse(&request, error),
         };

@@ -26,6 +26,7 @@ mod driven;
 #[cfg(feature = "process")]
 mod frame;
 mod handlers;
+mod life_cycle;
 mod log;
 mod message;
 #[cfg(feature = "process")]

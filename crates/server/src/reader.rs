@@ -7,9 +7,9 @@ use std::task::Poll;
 
 use futures::channel::oneshot;
 
-use crate::dispatch::SHORT;
 use crate::server::Server;
 use crate::state::State;
+use crate::work::SHORT;
 
 /// Reads the state and lets other messages in between. What it saw of one file may have changed when it comes to the
 /// next: an answer is about each file as it was in its turn.

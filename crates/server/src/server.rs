@@ -6,23 +6,18 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 use futures::channel::oneshot;
-use tower_lsp::jsonrpc::Result;
 use tower_lsp::ls_types::{
-    InitializeParams, InitializeResult, ProgressToken, ServerInfo, WorkDoneProgressCancelParams,
-    WorkDoneProgressCreateParams, request,
+    ProgressToken, WorkDoneProgressCancelParams, WorkDoneProgressCreateParams, request,
 };
-use tower_lsp::{Client, LanguageServer, NotCancellable, OngoingProgress, Unbounded};
+use tower_lsp::{Client, NotCancellable, OngoingProgress, Unbounded};
 
 #[cfg(feature = "process")]
 use crate::children::Children;
-use crate::client::ClientFeatures;
-use crate::dispatch::Table;
-use crate::handlers::{diagnostics, planned_path, workspace};
+use crate::handlers::{diagnostics, planned_path, settings};
 use crate::log::log;
 use crate::message::Outbox;
 use crate::pending::PendingRequests;
 use crate::state::State;
-use crate::workspace::folders_of;
 
 /// How far a session is, which decides which messages it takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,7 +36,6 @@ pub(crate) enum Stage {
 /// them, is why an answer is always about the latest text the client sent before its request.
 #[derive(Debug, Clone)]
 pub(crate) struct Server {
-    pub(crate) table: Arc<Table>,
     stage: Arc<Mutex<Stage>>,
     state: Arc<Mutex<State>>,
     /// Sends requests to the client, and waits for its answers.
@@ -56,9 +50,8 @@ pub(crate) struct Server {
 
 impl Server {
     /// A session that talks to `client`; notifications of ours go to `outbox`, in order with the answers.
-    pub(crate) fn new(table: Table, client: Client, outbox: Outbox) -> Self {
+    pub(crate) fn new(client: Client, outbox: Outbox) -> Self {
         Self {
-            table: Arc::new(table),
             stage: Arc::new(Mutex::new(Stage::Starting)),
             state: Arc::default(),
             client,
@@ -74,7 +67,8 @@ impl Server {
         *self.stage.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn advance(&self, stage: Stage) {
+    /// Begins another stage.
+    pub(crate) fn advance(&self, stage: Stage) {
         *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = stage;
     }
 
@@ -91,39 +85,6 @@ impl Server {
     }
 }
 
-/// What the framework calls; all other methods are in the [table](crate::handlers::table).
-impl LanguageServer for Server {
-    async fn initialize(&self, params: InitializeParams) -> Result<InitializeResult> {
-        let features = ClientFeatures::new(&params.capabilities);
-        let capabilities = self.table.capabilities(&features);
-        let mut state = self.state();
-        state.client = features;
-        state.folders = folders_of(&params);
-        state.trace = params.trace.unwrap_or_default();
-        if let Some(settings) = &params.initialization_options {
-            workspace::set(&mut state, settings, &self.outbox);
-        }
-        drop(state);
-        #[cfg(all(target_os = "linux", feature = "process"))]
-        if let Some(client) = params.process_id {
-            let server = self.clone();
-            crate::parent::leave_with(client, move || server.leave());
-        }
-        self.advance(Stage::Serving);
-        let name = "pydslrep-lsp".to_owned();
-        let version = Some(env!("CARGO_PKG_VERSION").to_owned());
-        let server_info = Some(ServerInfo { name, version });
-        Ok(InitializeResult { capabilities, server_info, ..InitializeResult::default() })
-    }
-
-    async fn shutdown(&self) -> Result<()> {
-        self.leave();
-        self.advance(Stage::ShutDown);
-        self.outbox.only_answer();
-        Ok(())
-    }
-}
-
 /// What handlers start, and goes on while other messages are handled.
 impl Server {
     /// Reads the client's settings, where the client can be asked.
@@ -131,10 +92,10 @@ impl Server {
         if !self.state().client.settings {
             return;
         }
-        match self.client.configuration(workspace::wanted_settings()).await {
+        match self.client.configuration(settings::wanted()).await {
             Ok(settings) => {
                 let settings = settings.first().cloned().unwrap_or_default();
-                workspace::set(&mut self.state(), &settings, &self.outbox);
+                settings::set(&mut self.state(), &settings, &self.outbox);
                 self.flush_diagnostics();
             }
             Err(error) => log(format_args!("cannot read the client's settings: {error}")),

@@ -7,6 +7,7 @@
 use std::any::Any;
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
 use std::task::{Context, Poll, Waker};
 
 use futures::future::BoxFuture;
@@ -18,6 +19,7 @@ use tower_service::Service;
 
 use crate::dispatch::{Reply, Table, TableLayer, TableService};
 use crate::handlers;
+use crate::life_cycle::LifeCycle;
 use crate::log::log;
 use crate::message::{IGNORED, Incoming, Outbox, encode, parse, refuse};
 use crate::server::{Server, Stage};
@@ -36,7 +38,7 @@ type Spawn = Box<dyn Fn(BoxFuture<'static, ()>)>;
 
 /// One client's session.
 pub struct Session {
-    service: TableService<LspService<Server>>,
+    service: TableService<LspService<LifeCycle>>,
     server: Server,
     responses: Box<dyn FnMut(Response)>,
     spawn: Spawn,
@@ -57,9 +59,13 @@ impl Session {
 
     /// A session that handles the messages of a table.
     pub(crate) fn with_table(table: Table, outbox: Outbox, spawn: Spawn) -> Self {
-        let (service, socket) = LspService::new(|client| Server::new(table, client, outbox.clone()));
-        let server = service.inner().clone();
-        let service = TableLayer(server.clone()).layer(service);
+        let table = Arc::new(table);
+        let (service, socket) = LspService::new(|client| LifeCycle {
+            server: Server::new(client, outbox.clone()),
+            table: Arc::clone(&table),
+        });
+        let server = service.inner().server.clone();
+        let service = TableLayer { table, server: server.clone() }.layer(service);
         let (requests, mut responses) = socket.split();
         let forward = outbox.clone();
         let forwarding = requests.for_each(move |request| {

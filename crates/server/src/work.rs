@@ -2,6 +2,9 @@
 
 use pydslrep_analysis::{CancellationToken, Snapshot};
 
+/// Texts shorter than this many bytes are read before they could be handed to another thread.
+pub(crate) const SHORT: usize = 64 << 10;
+
 /// Work on one file.
 pub(crate) struct Work<R> {
     /// The file.

@@ -30,7 +30,7 @@ const COMMANDS: &[Command] = &[
         argument: "{uri, environment}",
         does: "writes the script next to the program, and shows it",
         returns: "nothing",
-        run: |server, params| scripts::generate_script(server, params).boxed(),
+        run: |server, params| generate_script(server, params).boxed(),
     },
     #[cfg(feature = "process")]
     Command {
@@ -38,7 +38,7 @@ const COMMANDS: &[Command] = &[
         argument: "{uri, environment}",
         does: "runs the environment in the embedded simulator, draws the planned and the driven path",
         returns: "`{picture, replay, output}`",
-        run: |server, params| runs::run(server, params).boxed(),
+        run: |server, params| run(server, params).boxed(),
     },
     #[cfg(feature = "process")]
     Command {
@@ -46,14 +46,14 @@ const COMMANDS: &[Command] = &[
         argument: "{uri, environment}",
         does: "draws the planned path",
         returns: "`{picture, replay, output}`",
-        run: |server, params| runs::run(server, params).boxed(),
+        run: |server, params| run(server, params).boxed(),
     },
     Command {
         name: hover::SHOW_KINEMATICS,
         argument: "{uri, robot}",
         does: "nothing",
         returns: "Markdown: the robot's wheels and equations",
-        run: |server, params| ready(hover::show_kinematics(&server.state(), &params)).boxed(),
+        run: |server, params| ready(show_kinematics(&server, &params)).boxed(),
     },
 ];
 
@@ -79,12 +79,32 @@ pub(crate) async fn execute(server: Server, params: ExecuteCommandParams) -> Res
     (command.run)(server, params).await
 }
 
+async fn generate_script(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
+    let written = scripts::write_script(&server.state(), &argument(&params)?, &server.outbox)?;
+    let shows_documents = server.state().client.show_document;
+    if shows_documents {
+        // The script exists, whether or not the client shows it.
+        let _ = server.client.show_document(scripts::show(written)).await;
+    }
+    Ok(None)
+}
+
+#[cfg(feature = "process")]
+async fn run(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
+    let which = argument(&params)?;
+    runs::run(server, params, which).await
+}
+
+fn show_kinematics(server: &Server, params: &ExecuteCommandParams) -> Result<Option<LSPAny>> {
+    hover::show_kinematics(&server.state(), &argument(params)?)
+}
+
 /// The argument of a command.
 ///
 /// # Errors
 ///
 /// If it is not what the command takes.
-pub(crate) fn argument<T: DeserializeOwned>(params: &ExecuteCommandParams) -> Result<T> {
+fn argument<T: DeserializeOwned>(params: &ExecuteCommandParams) -> Result<T> {
     let argument = match params.arguments.as_slice() {
         [argument] => serde_json::from_value(argument.clone()).ok(),
         _ => None,

@@ -9,23 +9,19 @@ use pydslrep_analysis as analysis;
 use pydslrep_analysis::diagnostics::Tag;
 use pydslrep_config::{Config, Problem};
 use pydslrep_syntax::Span;
-use rustc_hash::FxHashMap;
-use tower_lsp::jsonrpc::{Error, Result};
+use tower_lsp::jsonrpc::Result;
 use tower_lsp::ls_types::notification::PublishDiagnostics;
 use tower_lsp::ls_types::{
     CodeDescription, Diagnostic, DiagnosticOptions, DiagnosticRelatedInformation,
     DiagnosticServerCapabilities, DiagnosticSeverity, DiagnosticTag, DocumentDiagnosticParams,
     DocumentDiagnosticReport, DocumentDiagnosticReportResult, FullDocumentDiagnosticReport, NumberOrString,
     PublishDiagnosticsParams, RelatedFullDocumentDiagnosticReport, RelatedUnchangedDocumentDiagnosticReport,
-    ServerCapabilities, UnchangedDocumentDiagnosticReport, Uri, WorkspaceDiagnosticParams,
-    WorkspaceDiagnosticReport, WorkspaceDiagnosticReportResult, WorkspaceDocumentDiagnosticReport,
-    WorkspaceFullDocumentDiagnosticReport,
+    ServerCapabilities, UnchangedDocumentDiagnosticReport, Uri,
 };
 
 use crate::client::ClientFeatures;
 use crate::documents::{Document, Sort, key};
 use crate::message::Outbox;
-use crate::reader::Reader;
 use crate::state::State;
 
 /// The source that editors show with a diagnostic.
@@ -124,64 +120,8 @@ pub(crate) fn pull(
     Ok(report.into())
 }
 
-/// `workspace/diagnostic`: what changed since the client last asked; waits until something did.
-pub(crate) async fn pull_workspace(
-    mut reader: Reader,
-    params: WorkspaceDiagnosticParams,
-) -> Result<WorkspaceDiagnosticReportResult> {
-    let known: FxHashMap<String, &str> =
-        params.previous_result_ids.iter().map(|known| (key(&known.uri), known.value.as_str())).collect();
-    loop {
-        let change = reader.diagnostics_change();
-        let mut items = Vec::new();
-        let mut keys: Vec<String> = reader.state().documents.keys().cloned().collect();
-        keys.sort_unstable();
-        for key in keys {
-            let length = {
-                let state = reader.state();
-                let Some(document) = state.documents.get(&key) else { continue };
-                items.extend(changed_report(&state, document, known.get(&key).copied()));
-                document.text.len_bytes()
-            };
-            reader.has_read(length).await;
-        }
-        {
-            let state = reader.state();
-            let gone = params.previous_result_ids.iter().filter(|known| state.document(&known.uri).is_none());
-            items.extend(gone.map(|known| full_report(known.uri.clone(), None, None, Vec::new())));
-        }
-        // After an empty answer clients send the request again at once.
-        if !items.is_empty() || known.is_empty() {
-            return Ok(WorkspaceDiagnosticReport { items }.into());
-        }
-        change.await.map_err(|_| Error::internal_error())?;
-    }
-}
-
-fn changed_report(
-    state: &State,
-    document: &Document,
-    known: Option<&str>,
-) -> Option<WorkspaceDocumentDiagnosticReport> {
-    let found = of_document(state, document);
-    let id = result_id(&found, document.opening);
-    (known != Some(id.as_str())).then(|| full_report(document.uri.clone(), document.version, Some(id), found))
-}
-
-fn full_report(
-    uri: Uri,
-    version: Option<i32>,
-    result_id: Option<String>,
-    items: Vec<Diagnostic>,
-) -> WorkspaceDocumentDiagnosticReport {
-    WorkspaceDocumentDiagnosticReport::Full(WorkspaceFullDocumentDiagnosticReport {
-        uri,
-        version: version.map(i64::from),
-        full_document_diagnostic_report: FullDocumentDiagnosticReport { result_id, items },
-    })
-}
-
-fn result_id(items: &[Diagnostic], opening: u64) -> String {
+/// A name for diagnostics of a document, the same for the same diagnostics.
+pub(crate) fn result_id(items: &[Diagnostic], opening: u64) -> String {
     let mut hasher = DefaultHasher::new();
     opening.hash(&mut hasher);
     for item in items {

@@ -13,7 +13,6 @@ use crate::documents::key;
 use crate::driven;
 #[cfg(feature = "process")]
 use crate::message::Outbox;
-use crate::state::State;
 
 /// The request.
 pub(crate) enum DrivenPath {}
@@ -34,12 +33,6 @@ impl Notification for DrivenPathChanged {
     const METHOD: &'static str = "pydslrep/drivenPathChanged";
 }
 
-/// The path of the latest run of an environment; `None` where there was none. From now on the client is notified of
-/// another.
-pub(crate) fn driven_path(state: &mut State, which: &ChosenEnvironment) -> Option<Value> {
-    state.driven.watch(which)
-}
-
 /// The latest path of each environment that was run in this session.
 #[derive(Debug, Default)]
 pub(crate) struct DrivenPaths {
@@ -50,7 +43,9 @@ pub(crate) struct DrivenPaths {
 }
 
 impl DrivenPaths {
-    fn watch(&mut self, which: &ChosenEnvironment) -> Option<Value> {
+    /// The path of the latest run of an environment; `None` where there was none. From now on the client is notified of
+    /// another.
+    pub(crate) fn watch(&mut self, which: &ChosenEnvironment) -> Option<Value> {
         if !self.watched.contains(which) {
             self.watched.push(which.clone());
         }

@@ -4,12 +4,9 @@ use pydslrep_ide as ide;
 use pydslrep_syntax::EntityKind;
 use serde::Deserialize;
 use tower_lsp::jsonrpc::Result;
-use tower_lsp::ls_types::{
-    ExecuteCommandParams, Hover, HoverContents, HoverParams, LSPAny, MarkedString, MarkupContent, Uri,
-};
+use tower_lsp::ls_types::{Hover, HoverContents, HoverParams, LSPAny, MarkedString, MarkupContent, Uri};
 
 use crate::documents::Sort;
-use crate::handlers::commands;
 use crate::handlers::scripts::failure;
 use crate::state::State;
 
@@ -18,7 +15,7 @@ pub(crate) const SHOW_KINEMATICS: &str = "pydslrep.showKinematics";
 
 /// Which robot is meant.
 #[derive(Debug, Deserialize)]
-struct RobotOf {
+pub(crate) struct RobotOf {
     /// The program.
     uri: Uri,
     /// The robot in it.
@@ -26,10 +23,9 @@ struct RobotOf {
 }
 
 /// The command [`SHOW_KINEMATICS`]: what a hover over the robot shows.
-pub(crate) fn show_kinematics(state: &State, params: &ExecuteCommandParams) -> Result<Option<LSPAny>> {
-    let RobotOf { uri, robot } = commands::argument(params)?;
+pub(crate) fn show_kinematics(state: &State, RobotOf { uri, robot }: &RobotOf) -> Result<Option<LSPAny>> {
     let (_, file) = state
-        .analysed(&uri)
+        .analysed(uri)
         .ok_or_else(|| failure(format!("`{}` is not open in the editor", uri.as_str())))?;
     let declared = state.database.declarations(file, EntityKind::Robot, &robot.as_str().into());
     let at = declared.first().map(|span| ide::FilePosition { file, offset: span.start });

@@ -29,9 +29,11 @@ pub(crate) mod runs;
 pub(crate) mod scripts;
 pub(crate) mod selection;
 pub(crate) mod semantic_tokens;
+pub(crate) mod settings;
 pub(crate) mod signature;
 pub(crate) mod synchronization;
 pub(crate) mod workspace;
+pub(crate) mod workspace_diagnostics;
 pub(crate) mod workspace_symbols;
 
 use tower_lsp::ls_types::notification::{
@@ -109,7 +111,7 @@ fn workspaces(table: &mut Table) {
 
 fn problems_and_actions(table: &mut Table) {
     table.read::<DocumentDiagnosticRequest, _>(diagnostics::pull, diagnostics::announce);
-    table.read_workspace::<WorkspaceDiagnosticRequest, _>(diagnostics::pull_workspace, NOTHING);
+    table.read_workspace::<WorkspaceDiagnosticRequest, _>(workspace_diagnostics::pull_workspace, NOTHING);
     table.read::<Explain, _>(explain::explain, NOTHING);
     table.read_and_note::<CodeActionRequest, _>(code_actions::code_actions, code_actions::announce);
     table.read::<CodeActionResolveRequest, _>(code_actions::resolve, NOTHING);
@@ -195,7 +197,7 @@ fn editing(table: &mut Table) {
 /// What `docs/protocol.md` adds to the protocol, for previews.
 fn paths(table: &mut Table) {
     table.read_and_note::<PlannedPath, _>(planned_path::planned_path, NOTHING);
-    table.read_and_note::<DrivenPath, _>(driven_path::driven_path, NOTHING);
+    table.read_and_note::<DrivenPath, _>(|state, which| state.driven.watch(which), NOTHING);
     table.read_and_note::<PlannedAt, _>(planned_action::planned_at, NOTHING);
     table.read::<ActionLocation, _>(planned_action::action_location, NOTHING);
 }

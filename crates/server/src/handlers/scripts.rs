@@ -10,15 +10,13 @@ use serde::Serialize;
 use tower_lsp::jsonrpc::{self, Error, ErrorCode};
 use tower_lsp::ls_types::notification::ShowMessage;
 use tower_lsp::ls_types::{
-    CreateFile, CreateFileOptions, DocumentChangeOperation, DocumentChanges, ExecuteCommandParams, LSPAny,
-    Location, MessageType, OneOf, OptionalVersionedTextDocumentIdentifier, Position, Range, ResourceOp,
-    ShowDocumentParams, ShowMessageParams, TextDocumentEdit, TextEdit, Uri, WorkspaceEdit,
+    CreateFile, CreateFileOptions, DocumentChangeOperation, DocumentChanges, Location, MessageType, OneOf,
+    OptionalVersionedTextDocumentIdentifier, Position, Range, ResourceOp, ShowDocumentParams,
+    ShowMessageParams, TextDocumentEdit, TextEdit, Uri, WorkspaceEdit,
 };
 
 use crate::chosen::ChosenEnvironment;
-use crate::handlers::commands;
 use crate::message::Outbox;
-use crate::server::Server;
 use crate::state::State;
 
 /// A line after the last of any script: the protocol clamps it to the document's end.
@@ -139,23 +137,21 @@ pub(crate) fn edit(script: &Script) -> WorkspaceEdit {
     WorkspaceEdit { document_changes, ..WorkspaceEdit::default() }
 }
 
-/// The command `pydslrep.generateScript`, for clients that cannot create files: writes the script, and shows it where
-/// the client can.
-pub(crate) async fn generate_script(
-    server: Server,
-    params: ExecuteCommandParams,
-) -> jsonrpc::Result<Option<LSPAny>> {
-    let which = commands::argument(&params)?;
-    let script = generate(&server.state(), &which)?;
+/// The command `pydslrep.generateScript`, for clients that cannot create files: writes the script; returns its URI.
+///
+/// # Errors
+///
+/// As [`generate`], or if the script cannot be written.
+pub(crate) fn write_script(
+    state: &State,
+    which: &ChosenEnvironment,
+    outbox: &Outbox,
+) -> jsonrpc::Result<Uri> {
+    let script = generate(state, which)?;
     let path = path(&script.uri).ok_or_else(unsaved)?;
     write(&path, &script.text).map_err(failure)?;
-    tell(&server.outbox, MessageType::INFO, format!("Script written: {}", script.file_name()));
-    let shows_documents = server.state().client.show_document;
-    if shows_documents {
-        // The script exists, whether or not the client shows it.
-        let _ = server.client.show_document(show(script.uri)).await;
-    }
-    Ok(None)
+    tell(outbox, MessageType::INFO, format!("Script written: {}", script.file_name()));
+    Ok(script.uri)
 }
 
 /// Writes the scripts of all environments without errors, if that is set. Each script is reported once, and so is each
@@ -202,7 +198,7 @@ fn tell(outbox: &Outbox, typ: MessageType, message: String) {
 }
 
 /// The request to show a script next to its program.
-fn show(uri: Uri) -> ShowDocumentParams {
+pub(crate) fn show(uri: Uri) -> ShowDocumentParams {
     ShowDocumentParams { uri, external: Some(false), take_focus: Some(false), selection: None }
 }
 

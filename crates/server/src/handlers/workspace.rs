@@ -3,37 +3,19 @@
 use pydslrep_config::{FILE_NAME, SECTION};
 use pydslrep_files::EXTENSION;
 use pydslrep_scene::ENDING;
-use serde_json::Value;
-use tower_lsp::ls_types::notification::{
-    DidChangeConfiguration, DidChangeWatchedFiles, Notification, ShowMessage,
-};
+use tower_lsp::ls_types::notification::{DidChangeConfiguration, DidChangeWatchedFiles, Notification};
 use tower_lsp::ls_types::{
-    ConfigurationItem, DidChangeConfigurationParams, DidChangeWatchedFilesParams,
-    DidChangeWatchedFilesRegistrationOptions, DidChangeWorkspaceFoldersParams, FileSystemWatcher,
-    GlobPattern, InitializedParams, MessageType, OneOf, Registration, ServerCapabilities, ShowMessageParams,
-    WorkspaceFolder, WorkspaceFoldersServerCapabilities,
+    DidChangeConfigurationParams, DidChangeWatchedFilesParams, DidChangeWatchedFilesRegistrationOptions,
+    DidChangeWorkspaceFoldersParams, FileSystemWatcher, GlobPattern, InitializedParams, OneOf, Registration,
+    ServerCapabilities, WorkspaceFolder, WorkspaceFoldersServerCapabilities,
 };
 
 use crate::client::ClientFeatures;
+use crate::handlers::settings;
 use crate::log::log;
-use crate::message::Outbox;
 use crate::server::Server;
 use crate::state::State;
 use crate::workspace::folders;
-
-/// Our section of the client's settings.
-pub(crate) fn wanted_settings() -> Vec<ConfigurationItem> {
-    vec![ConfigurationItem { scope_uri: None, section: Some(SECTION.to_owned()) }]
-}
-
-/// Takes over the client's settings, and reports what is wrong with them.
-pub(crate) fn set(state: &mut State, settings: &Value, outbox: &Outbox) {
-    for problem in state.set_client_settings(settings) {
-        let help = problem.help.map(|help| format!(" ({help})")).unwrap_or_default();
-        let message = format!("settings of PyDSLRep: {}{help}", problem.message);
-        outbox.send_notification::<ShowMessage>(&ShowMessageParams { typ: MessageType::WARNING, message });
-    }
-}
 
 /// Asks to be notified when files change, and settings.
 fn registrations(state: &State) -> Vec<Registration> {
@@ -110,7 +92,7 @@ pub(crate) async fn settings_changed(server: Server, params: DidChangeConfigurat
     if server.state().client.settings {
         server.ask_for_settings().await;
     } else {
-        set(&mut server.state(), &params.settings, &server.outbox);
+        settings::set(&mut server.state(), &params.settings, &server.outbox);
     }
     server.refresh().await;
 }

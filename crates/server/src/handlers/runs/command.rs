@@ -11,7 +11,7 @@ use tower_lsp::ls_types::{
 
 use crate::children::{ChildEvent, KillOnDrop};
 use crate::chosen::ChosenEnvironment;
-use crate::handlers::{commands, runs};
+use crate::handlers::runs;
 use crate::server::Server;
 
 /// How many lines of a failed run's output are part of the error.
@@ -19,8 +19,11 @@ const MOST_LINES: usize = 50;
 
 /// Runs or plans an environment in a child process; answers with the picture's URI, the result in numbers
 /// and what was printed.
-pub(crate) async fn run(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
-    let which: ChosenEnvironment = commands::argument(&params)?;
+pub(crate) async fn run(
+    server: Server,
+    params: ExecuteCommandParams,
+    which: ChosenEnvironment,
+) -> Result<Option<LSPAny>> {
     let job = runs::prepare(&server.state(), &which, &params.command)?;
     let (running, mut events, picture) = job.start(&mut server.children())?;
     let _kill = KillOnDrop(running.clone());
