@@ -37,7 +37,7 @@ const COMMANDS: &[Command] = &[
         name: runs::RUN,
         argument: "{uri, environment}",
         does: "runs the environment in the embedded simulator, draws the planned and the driven path",
-        returns: "`{picture, replay, output}`",
+        returns: "`{picture, replay, output, figures}`",
         run: |server, params| run(server, params).boxed(),
     },
     #[cfg(feature = "process")]
