@@ -123,6 +123,7 @@ impl Server {
     }
 
     /// `window/workDoneProgress/cancel`: somebody pressed the button next to a progress bar.
+    #[cfg_attr(not(feature = "process"), expect(clippy::unused_self, reason = "nothing is started there"))]
     pub(crate) fn cancel_progress(&self, params: &WorkDoneProgressCancelParams) {
         #[cfg(feature = "process")]
         self.children().interrupt(&params.token);
@@ -172,6 +173,7 @@ impl Server {
     }
 
     /// The session has ended, for whatever reason.
+    #[cfg_attr(not(feature = "process"), expect(clippy::unused_self, reason = "nothing is started there"))]
     pub(crate) fn leave(&self) {
         #[cfg(feature = "process")]
         self.children().leave();

