@@ -20,7 +20,7 @@ pub enum Severity {
 
 impl Severity {
     /// The word people know it by.
-    pub fn word(self) -> &'static str {
+    pub const fn word(self) -> &'static str {
         match self {
             Self::Hint => "hint",
             Self::Information => "information",

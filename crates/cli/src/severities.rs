@@ -15,7 +15,7 @@ pub(crate) fn read(choices: &[String]) -> Result<Severities, Failure> {
             Failure::new(format!("`--severity {choice}` has no level"))
                 .help(format!("write the code, `=` and a level: `--severity {choice}=off`"))
         })?;
-        severities.set(find_rule(code)?, Level::from_word(level)?);
+        severities.set(find_rule(code)?.code, Level::from_word(level)?);
     }
     Ok(severities)
 }

@@ -1,25 +1,129 @@
-//! The one list of settings.
+//! The list of settings.
 
-use pydslrep_schema::Value;
+use std::sync::LazyLock;
 
-use crate::values::{self, Refusal, Values, Word};
-use crate::{Config, LensKind, Target};
+use pydslrep_schema::{Key, Schema, Table, TableKind, Value, Values, Word, key};
 
-/// A setting.
-#[derive(Debug)]
-pub struct Key {
-    /// What it is called, with dots between tables and what is in them: `inlay-hints.pose`.
-    pub name: &'static str,
-    /// What it can be.
-    pub values: Values,
-    /// What it does, in Markdown.
-    pub summary: &'static str,
-    /// What holds where nothing is said, in Markdown.
-    pub default: &'static str,
-    /// A value that is not the default, as TOML and JSON write it alike.
-    pub example: &'static str,
-    /// Puts a value into its place.
-    pub(crate) set: fn(&mut Config, &Value) -> Result<(), Refusal>,
+use crate::severities::{CODES, Severities};
+use crate::{Config, Target, folder};
+
+/// All settings.
+pub static SCHEMA: Schema = Schema {
+    noun: "setting",
+    tables: &[
+        Table { name: Settings::TABLE, kind: TableKind::Once, summary: "", keys: Settings::KEYS },
+        CODES,
+        Table {
+            name: InlayHints::TABLE,
+            kind: TableKind::Once,
+            summary: "What an editor shows between the words of a program.",
+            keys: InlayHints::KEYS,
+        },
+        Table {
+            name: CodeLens::TABLE,
+            kind: TableKind::Once,
+            summary: "What an editor shows above declarations.",
+            keys: CodeLens::KEYS,
+        },
+    ],
+    largest: f64::MAX,
+    too_large: "is not finite",
+};
+
+/// Declares the settings of a table: a struct of their values, and the list of keys that they are read from. The
+/// documentation of a field is the summary of its key.
+macro_rules! settings {
+    (
+        $(#[$about:meta])*
+        struct $name:ident in $table:literal {
+            $($(#[doc = $summary:literal])+ $field:ident: $type:ty = $key:expr,)*
+        }
+        $($(#[$part_about:meta])+ $part:ident: $part_type:ty,)*
+    ) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, PartialEq)]
+        pub struct $name {
+            $($(#[doc = $summary])+ pub $field: $type,)*
+            $($(#[$part_about])+ pub $part: $part_type,)*
+        }
+
+        impl $name {
+            const TABLE: &'static str = $table;
+            const KEYS: &'static [Key] = &[$($key.summary(concat!($($summary),+).trim_ascii())),*];
+        }
+
+        impl From<&Config> for $name {
+            fn from(config: &Config) -> Self {
+                Self {
+                    $($field: Setting::read(config.get_or_default($table, $key.name)),)*
+                    $($part: <$part_type>::from(config),)*
+                }
+            }
+        }
+    };
+}
+
+settings! {
+    /// What applies to a program.
+    struct Settings in "" {
+        /// The simulator that scripts are for.
+        target: Target = key("target", Values::Words(&TARGETS), "").default("`\"coppeliasim\"`").example("\"vrep\""),
+        /// The folder that scripts are written to, relative to the folder of this file and inside of it; created if
+        /// missing.
+        output: Option<String> = key("output", folder::FOLDER, "").default("beside each program").example("\"scripts\""),
+        /// Whether an editor writes the scripts of a program whenever it is saved without errors.
+        generate_on_save: bool = flag("generate-on-save", false),
+        /// The speed in snippets that an editor inserts, in centimetres per second.
+        default_speed: f64 = key("default-speed", Values::ABOVE_ZERO, "").default("`9.0`").example("12.5"),
+    }
+    /// The severities of diagnostics that differ from the catalogue.
+    severities: Severities,
+    /// What an editor shows between the words of a program.
+    inlay_hints: InlayHints,
+    /// What an editor shows above declarations.
+    code_lens: CodeLens,
+}
+
+settings! {
+    /// Which inlay hints are shown.
+    struct InlayHints in "inlay-hints" {
+        /// Whether an editor shows the pose after each action, relative to the start of its movement: x and y in metres,
+        /// and the heading.
+        pose: bool = flag("pose", true),
+        /// Whether an editor shows how long each action takes.
+        duration: bool = flag("duration", true),
+        /// Whether an editor shows speeds and angles that are left out.
+        defaults: bool = flag("defaults", true),
+    }
+}
+
+settings! {
+    /// Which code lenses are shown.
+    struct CodeLens in "code-lens" {
+        /// Whether an editor shows *Generate script* above an environment.
+        generate_script: bool = flag("generate-script", true),
+        /// Whether an editor shows *Run* above an environment.
+        run: bool = flag("run", true),
+        /// Whether an editor shows *Preview* above an environment.
+        preview: bool = flag("preview", true),
+        // What has many declarations, each used once, would fill the screen.
+        /// Whether an editor shows above a wheel how often it is used.
+        wheels: bool = flag("wheels", false),
+        /// Whether an editor shows above a sensor how often it is used.
+        sensors: bool = flag("sensors", false),
+        /// Whether an editor shows above an `ip` how often it is used.
+        ips: bool = flag("ips", true),
+        /// Whether an editor shows above a robot how often it is used.
+        robots: bool = flag("robots", true),
+        /// Whether an editor shows above a movement how often it is used.
+        movements: bool = flag("movements", true),
+    }
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Config::default().settings()
+    }
 }
 
 const TARGETS: [Word; Target::ALL.len()] = {
@@ -30,203 +134,94 @@ const TARGETS: [Word; Target::ALL.len()] = {
     ]
 };
 
-/// All settings, those outside of tables first.
-pub const KEYS: [Key; 16] = [
-    Key {
-        name: "target",
-        values: Values::Words(&TARGETS),
-        summary: "The simulator that scripts are for.",
-        default: "`\"coppeliasim\"`",
-        example: "\"vrep\"",
-        set: |config, value| values::target(value).map(|target| config.target = Some(target)),
-    },
-    Key {
-        name: "output",
-        values: Values::Folder,
-        summary: "The folder that scripts are written to, seen from the folder of this file and inside of it; made where \
-                  it is not there.",
-        default: "beside each program",
-        example: "\"scripts\"",
-        set: |config, value| values::folder(value).map(|folder| config.output = Some(folder)),
-    },
-    Key {
-        name: "generate-on-save",
-        values: Values::Flag,
-        summary: "Whether an editor writes the scripts of a program whenever it is saved without errors.",
-        default: "`false`",
-        example: "true",
-        set: |config, value| values::flag(value).map(|flag| config.generate_on_save = Some(flag)),
-    },
-    Key {
-        name: "default-speed",
-        values: Values::AboveZero,
-        summary: "The speed in snippets that an editor inserts, in centimetres per second.",
-        default: "`9.0`",
-        example: "12.5",
-        set: |config, value| values::above_zero(value).map(|speed| config.default_speed = Some(speed)),
-    },
-    Key {
-        name: "severity",
-        values: Values::Levels,
-        summary: "How bad problems of a code are to you: `\"off\"`, `\"hint\"`, `\"information\"`, `\"warning\"` or `\"error\"`. \
-                  This is about what is shown and the exit code of `pydslrep check`; what keeps a script from being made \
-                  does so at any level.",
-        default: "as in the [list of messages](diagnostics/README.md)",
-        example: "{ }",
-        // Each code is read on its own, so that one slip does not hide the others.
-        set: |_, value| values::table(value),
-    },
-    Key {
-        name: "inlay-hints.pose",
-        values: Values::Flag,
-        summary: "Whether an editor shows the pose after each action, counted from where its movement starts: x and y in metres, and \
-                  the heading.",
-        default: "`true`",
-        example: "false",
-        set: |config, value| values::flag(value).map(|flag| config.inlay_hints.pose = Some(flag)),
-    },
-    Key {
-        name: "inlay-hints.duration",
-        values: Values::Flag,
-        summary: "Whether an editor shows how long each action takes.",
-        default: "`true`",
-        example: "false",
-        set: |config, value| values::flag(value).map(|flag| config.inlay_hints.duration = Some(flag)),
-    },
-    Key {
-        name: "inlay-hints.defaults",
-        values: Values::Flag,
-        summary: "Whether an editor shows speeds and angles that are left out.",
-        default: "`true`",
-        example: "false",
-        set: |config, value| values::flag(value).map(|flag| config.inlay_hints.defaults = Some(flag)),
-    },
-    Key {
-        name: "code-lens.generate-script",
-        values: Values::Flag,
-        summary: "Whether an editor shows *Generate script* above an environment.",
-        default: "`true`",
-        example: "false",
-        set: |config, value| {
-            values::flag(value).map(|flag| config.code_lens.set(LensKind::GenerateScript, flag))
-        },
-    },
-    Key {
-        name: "code-lens.run",
-        values: Values::Flag,
-        summary: "Whether an editor shows *Run* above an environment.",
-        default: "`true`",
-        example: "false",
-        set: |config, value| values::flag(value).map(|flag| config.code_lens.set(LensKind::Run, flag)),
-    },
-    Key {
-        name: "code-lens.preview",
-        values: Values::Flag,
-        summary: "Whether an editor shows *Preview* above an environment.",
-        default: "`true`",
-        example: "false",
-        set: |config, value| values::flag(value).map(|flag| config.code_lens.set(LensKind::Preview, flag)),
-    },
-    Key {
-        name: "code-lens.wheels",
-        values: Values::Flag,
-        summary: "Whether an editor shows above a wheel how often it is used.",
-        default: "`false`",
-        example: "true",
-        set: |config, value| values::flag(value).map(|flag| config.code_lens.set(LensKind::Wheels, flag)),
-    },
-    Key {
-        name: "code-lens.sensors",
-        values: Values::Flag,
-        summary: "Whether an editor shows above a sensor how often it is used.",
-        default: "`false`",
-        example: "true",
-        set: |config, value| values::flag(value).map(|flag| config.code_lens.set(LensKind::Sensors, flag)),
-    },
-    Key {
-        name: "code-lens.ips",
-        values: Values::Flag,
-        summary: "Whether an editor shows above an `ip` how often it is used.",
-        default: "`true`",
-        example: "false",
-        set: |config, value| values::flag(value).map(|flag| config.code_lens.set(LensKind::Ips, flag)),
-    },
-    Key {
-        name: "code-lens.robots",
-        values: Values::Flag,
-        summary: "Whether an editor shows above a robot how often it is used.",
-        default: "`true`",
-        example: "false",
-        set: |config, value| values::flag(value).map(|flag| config.code_lens.set(LensKind::Robots, flag)),
-    },
-    Key {
-        name: "code-lens.movements",
-        values: Values::Flag,
-        summary: "Whether an editor shows above a movement how often it is used.",
-        default: "`true`",
-        example: "false",
-        set: |config, value| values::flag(value).map(|flag| config.code_lens.set(LensKind::Movements, flag)),
-    },
-];
-
-/// The names of all tables, each once.
-pub fn tables() -> Vec<&'static str> {
-    let table = |key: &'static Key| match key.values {
-        Values::Levels => Some(key.name),
-        _ => key.name.rsplit_once('.').map(|(table, _)| table),
-    };
-    let mut tables: Vec<&str> = KEYS.iter().filter_map(table).collect();
-    tables.dedup();
-    tables
+const fn flag(name: &'static str, default: bool) -> Key {
+    let (default, example) = if default { ("`true`", "false") } else { ("`false`", "true") };
+    key(name, Values::Flag, "").default(default).example(example)
 }
 
-/// The parts right behind this one, each once: of the whole for "", of a table for its name and a dot.
-pub(crate) fn parts_behind(prefix: &str) -> Vec<&'static str> {
-    let rest = KEYS.iter().filter_map(|key| key.name.strip_prefix(prefix));
-    let mut parts: Vec<&str> = rest.map(|rest| rest.split('.').next().unwrap_or(rest)).collect();
-    parts.dedup();
-    parts
+/// The value of a setting, from what the reader let pass.
+trait Setting {
+    /// `None` if it is not set and has no default.
+    fn read(value: Option<&Value>) -> Self;
 }
+
+impl Setting for bool {
+    fn read(value: Option<&Value>) -> Self {
+        value.and_then(Value::flag).unwrap_or_default()
+    }
+}
+
+impl Setting for f64 {
+    fn read(value: Option<&Value>) -> Self {
+        value.and_then(Value::number).unwrap_or_default()
+    }
+}
+
+impl Setting for Option<String> {
+    fn read(value: Option<&Value>) -> Self {
+        value.and_then(Value::text).map(str::to_owned)
+    }
+}
+
+impl Setting for Target {
+    fn read(value: Option<&Value>) -> Self {
+        value.and_then(Value::text).and_then(Self::from_word).unwrap_or_default()
+    }
+}
+
+/// All defaults that are values.
+pub(crate) static DEFAULTS: LazyLock<Config> = LazyLock::new(|| {
+    let defaults = SCHEMA.tables.iter().filter(|table| table.name != CODES.name).map(|table| {
+        let line = |key: &Key| key.default_value().map(|value| format!("{} = {value}\n", key.name));
+        let lines: String = table.keys.iter().filter_map(line).collect();
+        if table.name.is_empty() { lines } else { format!("[{}]\n{lines}", table.name) }
+    });
+    Config::from_toml(&defaults.collect::<String>()).0
+});
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::Settings;
+    use pydslrep_kinematics::motion::RIM_SPEED;
+    use pydslrep_schema::NAME;
 
-    fn toml(key: &Key, value: &str) -> String {
-        format!("{} = {value}\n", key.name)
+    use super::*;
+
+    fn keys() -> impl Iterator<Item = (&'static Table, &'static Key)> {
+        SCHEMA.tables.iter().flat_map(|table| table.keys.iter().map(move |key| (table, key)))
+    }
+
+    fn read(table: &Table, key: &Key, value: &str) -> Config {
+        let header = if table.name.is_empty() { String::new() } else { format!("[{}]\n", table.name) };
+        let (config, problems) = Config::from_toml(&format!("{header}{} = {value}\n", key.name));
+        assert_eq!(problems, [], "{} in {}", key.name, table.name);
+        config
     }
 
     #[test]
-    fn examples_are_read_and_are_not_the_default() {
-        for key in KEYS.iter().filter(|key| key.values != Values::Levels) {
-            let (config, problems) = Config::from_toml(&toml(key, key.example));
-            assert_eq!(problems, [], "{}", key.name);
-            assert_ne!(config.settings(), Settings::default(), "{}", key.name);
+    fn examples_are_not_the_default() {
+        for (table, key) in keys() {
+            assert_ne!(read(table, key, key.example).settings(), Settings::default(), "{}", key.name);
         }
     }
 
     #[test]
-    fn defaults_are_what_is_said_of_them() {
-        for key in &KEYS {
-            let Some(default) = key.default.strip_prefix('`').and_then(|rest| rest.strip_suffix('`')) else {
-                assert!(matches!(key.values, Values::Folder | Values::Levels), "{}", key.name);
-                continue;
-            };
-            let (config, problems) = Config::from_toml(&toml(key, default));
-            assert_eq!(problems, [], "{}", key.name);
+    fn defaults_are_values_and_have_no_effect() {
+        for (table, key) in keys().filter(|(table, key)| table.name != CODES.name && key.name != "output") {
+            let config = read(table, key, key.default_value().unwrap());
             assert_ne!(config, Config::default(), "{}", key.name);
             assert_eq!(config.settings(), Settings::default(), "{}", key.name);
         }
     }
 
     #[test]
-    fn tables_follow_what_is_outside_of_tables() {
-        assert_eq!(
-            parts_behind(""),
-            ["target", "output", "generate-on-save", "default-speed", "severity", "inlay-hints", "code-lens"]
-        );
-        assert_eq!(tables(), ["severity", "inlay-hints", "code-lens"]);
-        assert_eq!(parts_behind("inlay-hints."), ["pose", "duration", "defaults"]);
+    fn the_default_speed_is_that_of_scripts() {
+        assert!((Settings::default().default_speed - RIM_SPEED * 100.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn every_table_is_in_the_list_once() {
+        let names: Vec<&str> = SCHEMA.tables.iter().map(|table| table.name).collect();
+        assert_eq!(names, ["", "severity", "inlay-hints", "code-lens"]);
+        assert!(!names.contains(&NAME));
     }
 }

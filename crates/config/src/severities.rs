@@ -1,12 +1,58 @@
-//! How bad problems are to whoever asks.
+//! The severity of diagnostics.
 
 use std::collections::BTreeMap;
 
 use pydslrep_analysis::diagnostics::{CATALOGUE, Rule, rule};
 use pydslrep_analysis::{Diagnostic, Severity};
-use pydslrep_schema::{closest, did_you_mean};
+use pydslrep_schema::{Key, Table, TableKind, Values, Word, did_you_mean, key, suggestions};
 
-/// How bad problems of a code are, or that they are not shown at all.
+/// The table of severities.
+pub(crate) const TABLE: &str = "severity";
+
+/// The table of severities, with a key for each diagnostic.
+pub(crate) const CODES: Table = Table {
+    name: TABLE,
+    kind: TableKind::Catalogue {
+        noun: "diagnostic",
+        words: "a table: `CODE = \"LEVEL\"`",
+        default: "as in the [list of messages](diagnostics/README.md)",
+        help: "`pydslrep explain` lists all diagnostics",
+    },
+    summary: "The severity of each diagnostic: `\"off\"`, `\"hint\"`, `\"information\"`, `\"warning\"` or `\"error\"`. It decides what \
+              is shown and the exit code of `pydslrep check`; what keeps a script from being generated does so at any level.",
+    keys: &KEYS,
+};
+
+static KEYS: [Key; CATALOGUE.len()] = {
+    let mut keys = [key("", Values::Words(&LEVELS), "").example("\"off\""); CATALOGUE.len()];
+    let mut index = 0;
+    while index < keys.len() {
+        let rule = CATALOGUE[index];
+        keys[index].name = rule.code;
+        keys[index].summary = rule.summary;
+        keys[index].default = match rule.severity {
+            Severity::Hint => "`\"hint\"`",
+            Severity::Information => "`\"information\"`",
+            Severity::Warning => "`\"warning\"`",
+            Severity::Error => "`\"error\"`",
+        };
+        index += 1;
+    }
+    keys
+};
+
+static LEVELS: [Word; Level::ALL.len()] = {
+    let mut words = [Word { word: "", summary: "" }; Level::ALL.len()];
+    let mut index = 0;
+    while index < words.len() {
+        let level = Level::ALL[index];
+        words[index] = Word { word: level.word(), summary: level.summary() };
+        index += 1;
+    }
+    words
+};
+
+/// The severity of a diagnostic, or that it is not shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Level {
     /// Not shown.
@@ -22,11 +68,11 @@ pub enum Level {
 }
 
 impl Level {
-    /// All of them, mildest first.
+    /// All of them, the mildest first.
     pub const ALL: [Self; 5] = [Self::Off, Self::Hint, Self::Information, Self::Warning, Self::Error];
 
-    /// How bad it is; `None` where it is not shown.
-    pub fn severity(self) -> Option<Severity> {
+    /// The severity; `None` if it is not shown.
+    pub const fn severity(self) -> Option<Severity> {
         match self {
             Self::Off => None,
             Self::Hint => Some(Severity::Hint),
@@ -37,12 +83,15 @@ impl Level {
     }
 
     /// The word it is chosen by.
-    pub fn word(self) -> &'static str {
-        self.severity().map_or("off", Severity::word)
+    pub const fn word(self) -> &'static str {
+        match self.severity() {
+            None => "off",
+            Some(severity) => severity.word(),
+        }
     }
 
-    /// What it does with problems, in a few words.
-    pub fn summary(self) -> &'static str {
+    /// What it does, in a few words.
+    pub const fn summary(self) -> &'static str {
         match self {
             Self::Off => "not shown",
             Self::Hint => "shown as a hint, hardly visible",
@@ -55,15 +104,15 @@ impl Level {
     /// The level of a word.
     ///
     /// # Errors
-    /// When there is none.
+    /// If there is none.
     pub fn from_word(word: &str) -> Result<Self, UnknownWord> {
         Self::ALL.into_iter().find(|level| level.word() == word).ok_or_else(|| {
             let words = Self::ALL.map(Self::word);
-            // `warn` and `info` are no slips, but short for one.
-            let is_short_for = |level: &&str| word.len() > 2 && level.starts_with(word);
-            let near = closest(word, words).or_else(|| words.into_iter().find(is_short_for));
-            let help = near.map_or_else(|| format!("the levels are {}", words.join(", ")), did_you_mean);
-            UnknownWord { message: format!("there is no level `{word}`"), near, help }
+            let help = did_you_mean(&suggestions(word, &words));
+            UnknownWord {
+                message: format!("there is no level `{word}`"),
+                help: help.unwrap_or_else(|| format!("the levels are {}", words.join(", "))),
+            }
         })
     }
 }
@@ -73,46 +122,25 @@ impl Level {
 pub struct UnknownWord {
     /// What is wrong, in one sentence.
     pub message: String,
-    /// What may have been meant.
-    pub near: Option<&'static str>,
-    /// What to do, in words.
+    /// What to do.
     pub help: String,
 }
 
-/// The rule with a code.
+/// The rule of a code.
 ///
 /// # Errors
-/// When there is none.
+/// If there is none.
 pub fn find_rule(code: &str) -> Result<&'static Rule, UnknownWord> {
     rule(code).ok_or_else(|| {
-        let near = near_codes(code);
-        let help = match near.as_slice() {
-            [] => "`pydslrep explain` lists them all".to_owned(),
-            [one] => did_you_mean(one),
-            [several @ .., last] => format!("did you mean `{}` or `{last}`?", several.join("`, `")),
-        };
-        let near = near.first().copied().filter(|_| near.len() == 1);
-        UnknownWord { message: format!("there is no diagnostic `{code}`"), near, help }
+        let help = did_you_mean(&suggestions(code, &CATALOGUE.map(|rule| rule.code)));
+        UnknownWord {
+            message: format!("there is no diagnostic `{code}`"),
+            help: help.unwrap_or_else(|| "`pydslrep explain` lists them all".to_owned()),
+        }
     })
 }
 
-/// The codes that may have been meant: one that is nearly the same, else those with the same words in them.
-fn near_codes(code: &str) -> Vec<&'static str> {
-    /// Shorter words are in too many codes.
-    const SHORTEST: usize = 3;
-    let codes = || CATALOGUE.into_iter().map(|rule| rule.code);
-    if let Some(near) = closest(code, codes()) {
-        return vec![near];
-    }
-    let code = code.to_lowercase();
-    let words = || code.split(|c: char| !c.is_alphanumeric()).filter(|word| word.len() >= SHORTEST);
-    let shared =
-        |known: &&str| words().filter(|word| known.split('-').any(|other| other.starts_with(word))).count();
-    let most = codes().map(|code| shared(&code)).max().unwrap_or(0);
-    codes().filter(|code| most > 0 && shared(code) == most).collect()
-}
-
-/// Levels in place of the severities of the catalogue.
+/// Severities that differ from the catalogue.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Severities {
     /// By code.
@@ -120,29 +148,29 @@ pub struct Severities {
 }
 
 impl Severities {
-    /// Chooses the level of a rule's problems.
-    pub fn set(&mut self, rule: &'static Rule, level: Level) {
-        self.levels.insert(rule.code, level);
+    /// Sets the level of a code.
+    pub fn set(&mut self, code: &'static str, level: Level) {
+        self.levels.insert(code, level);
     }
 
-    /// The level that was chosen for a code.
+    /// The level that is set for a code.
     pub fn level(&self, code: &str) -> Option<Level> {
         self.levels.get(code).copied()
     }
 
-    /// Those of `self`, and of `base` for other codes.
+    /// Both, with `self` over `base`.
     pub fn merged_over(self, base: Self) -> Self {
         let mut levels = base.levels;
         levels.extend(self.levels);
         Self { levels }
     }
 
-    /// How bad problems of a rule are to be shown that the database thinks to be this bad; `None` for not at all.
+    /// The severity to show for a code whose severity is otherwise `usual`; `None` if it is not shown.
     pub fn severity(&self, code: &str, usual: Severity) -> Option<Severity> {
         self.level(code).map_or(Some(usual), Level::severity)
     }
 
-    /// Problems as they are to be shown.
+    /// Diagnostics with the severities to show, without those that are not shown.
     pub fn applied(&self, diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
         if self.levels.is_empty() {
             return diagnostics;

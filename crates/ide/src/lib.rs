@@ -1,5 +1,5 @@
-//! Editor features, one file each: a database and a position in, plain structs out. The features for settings files, in
-//! `settings`, take the text instead.
+//! Editor features, one file each: a database and a position in, plain structs out. Those for settings and scenes, in
+//! `toml`, take a text instead.
 //!
 //! Knows `analysis` and the crates below it. Must never know the editors' protocol, lines and columns (positions are byte
 //! offsets), the file system, or threads.
@@ -26,12 +26,11 @@ mod quick_fixes;
 mod refactorings;
 mod references;
 mod rename;
-mod scenes;
 mod selection;
 mod semantic_tokens;
-mod settings;
 mod signature;
 mod symbols;
+mod toml;
 mod type_definition;
 mod workspace_symbols;
 
@@ -64,12 +63,11 @@ pub use quick_fixes::{QuickFix, quick_fixes};
 pub use refactorings::{Refactoring, RefactoringKind, refactorings};
 pub use references::references;
 pub use rename::{RenameError, RenameTarget, prepare_rename, rename};
-pub use scenes::{scene_completions, scene_fixes, scene_hover};
 pub use selection::selection_ranges;
 pub use semantic_tokens::{HighlightKind, Modifier, SemanticToken, entity_tokens, semantic_tokens};
-pub use settings::{KeyFix, settings_completions, settings_fixes, settings_hover};
 pub use signature::{Signature, SignatureHelp, SignatureTrigger, signature_help};
 pub use symbols::{Symbol, SymbolKind, document_symbols};
+pub use toml::{KeyFix, TomlFile, toml_completions, toml_fixes, toml_hover};
 pub use type_definition::goto_type_definition;
 pub use workspace_symbols::{SymbolSearch, WorkspaceSymbol, workspace_symbols};
 

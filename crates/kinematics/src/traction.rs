@@ -8,10 +8,10 @@ use crate::{Drive, Geometry, Twist};
 /// how a robot should move, this is about how it does.
 ///
 /// Each wheel touches the floor in a point. What that point slips over the floor is resisted along the wheel and, by a
-/// share of it, across: the grip, 1 for a rubber tyre. Mecanum wheels resist along their rollers' axes and, as far as
+/// share of it, across: the lateral friction, 1 for a rubber tyre. Mecanum wheels resist along their rollers' axes and, as far as
 /// rollers do not turn freely, across them. The robot moves so that the least is lost, which with resistance in
-/// proportion to slip is a problem of least squares: minimise Σ (sₐ² + grip · s₀²) over the wheels. A skid-steered robot
-/// then turns less than its wheels do, by 1 + grip · (wheelbase/track)²; that real ones do is described in Mandow et al.,
+/// proportion to slip is a problem of least squares: minimise Σ (sₐ² + friction · s₀²) over the wheels. A skid-steered robot
+/// then turns less than its wheels do, by 1 + friction · (wheelbase/track)²; that real ones do is described in Mandow et al.,
 /// "Experimental kinematics for wheeled skid-steer mobile robots", 2007.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Traction {
@@ -20,16 +20,16 @@ pub struct Traction {
 }
 
 impl Traction {
-    /// The traction of a robot whose wheels have this grip across the direction they drive in, as a share of that along
+    /// The traction of a robot whose wheels have this friction across the direction they drive in, as a share of that along
     /// it: from 0 for none, which makes it the ideal model, to 1.
-    pub fn new(drive: Drive, geometry: Geometry, grip: f64) -> Self {
+    pub fn new(drive: Drive, geometry: Geometry, lateral_friction: f64) -> Self {
         let positions = geometry.wheel_positions(drive);
         let mut normal = Matrix3::zeros();
         let mut per_rim = Matrix3xX::zeros(positions.len());
         for (wheel, &(x, y)) in positions.iter().enumerate() {
             let along = direction_of_force(drive, wheel);
             let across = Vector2::new(-along.y, along.x);
-            for (direction, weight) in [(along, 1.0), (across, grip)] {
+            for (direction, weight) in [(along, 1.0), (across, lateral_friction)] {
                 // The speed of the point of contact in this direction is this times the twist.
                 let speed = Vector3::new(direction.x, direction.y, direction.y * x - direction.x * y);
                 normal += weight * speed * speed.transpose();
@@ -37,7 +37,7 @@ impl Traction {
                 column += weight * direction.x * speed;
             }
         }
-        // Without grip nothing keeps most robots from sideways motion, and nothing causes it: that is 0.
+        // Without lateral friction nothing keeps most robots from sideways motion, and nothing causes it: that is 0.
         let inverse = normal.pseudo_inverse(1e-12).unwrap_or_default();
         Self { twist_per_rim: inverse * per_rim }
     }
@@ -51,9 +51,9 @@ impl Traction {
 }
 
 /// How much wider a skid-steered robot seems when it turns; 1 for others, whose wheels follow.
-pub fn scrub_factor(drive: Drive, geometry: Geometry, grip: f64) -> f64 {
+pub fn scrub_factor(drive: Drive, geometry: Geometry, lateral_friction: f64) -> f64 {
     match drive {
-        Drive::FourWheel => 1.0 + grip * (geometry.wheelbase / geometry.track).powi(2),
+        Drive::FourWheel => 1.0 + lateral_friction * (geometry.wheelbase / geometry.track).powi(2),
         Drive::TwoWheel | Drive::FourMecanum => 1.0,
     }
 }
@@ -85,20 +85,24 @@ mod tests {
 
     #[test]
     fn a_skid_steered_robot_turns_less_than_its_wheels() {
-        let turn =
-            |grip| Traction::new(Drive::FourWheel, GEOMETRY, grip).twist(&[-0.15, -0.15, 0.15, 0.15]).omega;
+        let turn = |lateral_friction| {
+            Traction::new(Drive::FourWheel, GEOMETRY, lateral_friction)
+                .twist(&[-0.15, -0.15, 0.15, 0.15])
+                .omega
+        };
         assert!((turn(0.0) - 1.0).abs() < 1e-12);
-        for grip in [0.3, 1.0] {
-            let factor = scrub_factor(Drive::FourWheel, GEOMETRY, grip);
-            assert!((turn(grip) - 1.0 / factor).abs() < 1e-12, "{}", turn(grip));
+        for lateral_friction in [0.3, 1.0] {
+            let factor = scrub_factor(Drive::FourWheel, GEOMETRY, lateral_friction);
+            assert!((turn(lateral_friction) - 1.0 / factor).abs() < 1e-12, "{}", turn(lateral_friction));
         }
         assert!((scrub_factor(Drive::FourWheel, GEOMETRY, 1.0) - 1.694).abs() < 1e-3);
     }
 
     #[test]
     fn rollers_that_drag_cost_sideways_motion() {
-        let sideways =
-            |grip| Traction::new(Drive::FourMecanum, GEOMETRY, grip).twist(&[-0.1, 0.1, 0.1, -0.1]);
+        let sideways = |lateral_friction| {
+            Traction::new(Drive::FourMecanum, GEOMETRY, lateral_friction).twist(&[-0.1, 0.1, 0.1, -0.1])
+        };
         assert!((sideways(0.0).vy - 0.1).abs() < 1e-12);
         assert!((sideways(0.05).vy - 0.1 * 0.95 / 1.05).abs() < 1e-12);
         let ahead = Traction::new(Drive::FourMecanum, GEOMETRY, 0.05).twist(&[0.1; 4]);
@@ -110,8 +114,8 @@ mod tests {
 
     #[test]
     fn two_wheels_on_an_axle_do_not_scrub() {
-        for grip in [0.0, 1.0] {
-            let twist = Traction::new(Drive::TwoWheel, GEOMETRY, grip).twist(&[0.1, 0.2]);
+        for lateral_friction in [0.0, 1.0] {
+            let twist = Traction::new(Drive::TwoWheel, GEOMETRY, lateral_friction).twist(&[0.1, 0.2]);
             assert!(close(twist, Twist { vx: 0.15, vy: 0.0, omega: 0.1 / 0.30 }, 1e-12), "{twist:?}");
         }
     }
@@ -132,10 +136,10 @@ mod tests {
         #[test]
         fn nothing_is_gained_by_slipping(
             drive in prop::sample::select(DRIVES.to_vec()),
-            rims in prop::collection::vec(-1.0..1.0, 4), grip in 0.0..1.0,
+            rims in prop::collection::vec(-1.0..1.0, 4), lateral_friction in 0.0..1.0,
         ) {
             let rims = &rims[..drive.wheel_count()];
-            let twist = Traction::new(drive, GEOMETRY, grip).twist(rims);
+            let twist = Traction::new(drive, GEOMETRY, lateral_friction).twist(rims);
             let most = rims.iter().fold(0.0, |most: f64, rim| most.max(rim.abs()));
             prop_assert!(twist.vx.abs() <= most + 1e-12 && twist.vy.abs() <= most + 1e-12);
             prop_assert!(twist.omega.abs() <= most / 0.15 + 1e-9);

@@ -1,36 +1,36 @@
-//! Where planned paths meet something.
+//! Collisions of planned paths.
 
 use pydslrep_kinematics::{ActionIndex, Leg, Plan, Pose, RobotPath};
 
 use crate::{Body, Scene, Space, Thing, distance_between};
 
-/// Bodies this near to each other meet, metres: that near, contact stops robots.
+/// Bodies nearer to each other than this collide, metres: in a run, contact stops robots there.
 const TOUCH: f64 = 0.001;
 
-/// So many distances are looked at for one robot, or two, at most; what would come behind is not found. A long way takes
-/// some for each metre, and more only along something that it nearly touches.
-const MOST_LOOKS: u32 = 20_000;
+/// The most distances computed for one robot, or for two; collisions after them are not found. A path takes some for each
+/// metre, and more only along something that it nearly touches.
+const MOST_STEPS: u32 = 20_000;
 
-/// A robot that would run into something.
+/// A robot that would collide with something.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Collision {
     /// Its index in the scene.
     pub robot: usize,
     /// What it is doing.
     pub action: ActionIndex,
-    /// Seconds since the start of the run; `None` when some earlier action takes an unknown time.
+    /// Seconds since the start of the run; `None` if the duration of an earlier action is unknown.
     pub time: Option<f64>,
     /// Where it is.
     pub pose: Pose,
-    /// What it meets.
+    /// What it collides with.
     pub with: Thing,
-    /// What the robot that it meets is doing; `None` where that stands, or is no robot.
+    /// What the other robot is doing; `None` if it stands still, or if it is not a robot.
     pub other_action: Option<ActionIndex>,
 }
 
-/// Where the robots of a plan would run into obstacles or each other: for each robot the first obstacle on its way, and
-/// for each two robots the first time they meet. What follows from the first is not told. In the order of robots; nothing
-/// where the scene stops nobody.
+/// Where the robots of a plan would collide with obstacles or each other: for each robot the first obstacle on its path,
+/// and for each two robots their first collision. What follows from the first is not reported. In the order of robots;
+/// none if the scene has collisions switched off.
 pub fn collisions(scene: &Scene, plan: &Plan) -> Vec<Collision> {
     if !scene.collisions {
         return Vec::new();
@@ -47,20 +47,20 @@ pub fn collisions(scene: &Scene, plan: &Plan) -> Vec<Collision> {
     found
 }
 
-/// The radius of a circle that holds a body.
+/// The radius of a circle around a body.
 fn reach(body: Body) -> f64 {
     body.length.hypot(body.width) / 2.0
 }
 
-/// The first obstacle on a robot's way. It cannot meet anything before it has gone as far as the nearest thing is away,
-/// so that is how far each look may go; however thin something is, it is not missed.
+/// The first obstacle on a robot's path. Each step covers the distance to the nearest thing, since nothing can be hit
+/// earlier; so nothing is too thin to be found.
 fn with_obstacle(space: &Space, robot: usize, body: Body, path: &RobotPath) -> Option<Collision> {
-    let mut looks = 0;
+    let mut steps = 0;
     for leg in &path.legs {
         let speed = leg.top_speed(reach(body));
         let mut seconds = 0.0;
-        while seconds < leg.duration && looks < MOST_LOOKS {
-            looks += 1;
+        while seconds < leg.duration && steps < MOST_STEPS {
+            steps += 1;
             let pose = leg.pose_at(seconds);
             let left = speed * (leg.duration - seconds);
             let Some(near) = space.nearest(body, pose, left + TOUCH) else { break };
@@ -74,17 +74,17 @@ fn with_obstacle(space: &Space, robot: usize, body: Body, path: &RobotPath) -> O
     None
 }
 
-/// The time that may pass before things at this distance can touch, and a little more so that it comes to an end.
+/// The time before things at this distance can touch, and a little more so that the steps come to an end.
 fn step(distance: f64, speed: f64) -> f64 {
     (distance - TOUCH / 2.0) / speed
 }
 
-/// When two robots meet first, as far as it is known when they are where.
+/// The first collision of two robots, as far as the times of their actions are known.
 fn of_two(a: (usize, Body, &RobotPath), b: (usize, Body, &RobotPath)) -> Option<Collision> {
     let (first, second) = (Timetable::of(a.2), Timetable::of(b.2));
     let horizon = first.known_until.min(second.known_until).min(first.end().max(second.end()));
     let mut time = 0.0;
-    for _ in 0..MOST_LOOKS {
+    for _ in 0..MOST_STEPS {
         if time >= horizon {
             return None;
         }
@@ -97,7 +97,7 @@ fn of_two(a: (usize, Body, &RobotPath), b: (usize, Body, &RobotPath)) -> Option<
         }
         let distance = distance_between((a.1, one.pose), (b.1, two.pose));
         if distance < TOUCH {
-            // One of them moves; it is the one that meets the other.
+            // At least one of them moves; it collides with the other.
             let index = |moment: &Moment<'_>| moment.leg.map(|leg| leg.index);
             let (robot, other, me, you) =
                 if one.leg.is_some() { (a.0, b.0, one, two) } else { (b.0, a.0, two, one) };
@@ -116,19 +116,19 @@ fn of_two(a: (usize, Body, &RobotPath), b: (usize, Body, &RobotPath)) -> Option<
     None
 }
 
-/// When a robot is where.
+/// The poses of a robot over time.
 struct Timetable<'a> {
     start: Pose,
-    /// With the times at which they start.
+    /// With their start times.
     legs: Vec<(f64, &'a Leg)>,
     known_until: f64,
 }
 
-/// A robot at some time.
+/// The state of a robot at a time.
 struct Moment<'a> {
     pose: Pose,
     leg: Option<&'a Leg>,
-    /// When it begins to do something else.
+    /// When its next action begins.
     until: f64,
 }
 
@@ -199,11 +199,11 @@ mod tests {
     }
 
     #[test]
-    fn a_wall_is_met_when_and_where_the_body_touches_it() {
+    fn a_wall_is_hit_when_and_where_the_body_touches_it() {
         let wall = Obstacle::wall("w", (-1.0, 1.2), (1.0, 1.2), 1e-6);
         let scene = scene(&[Pose::default()], vec![wall]);
         let met = found(&scene, &[&[(0, &[AHEAD, LEFT])], &[(0, &[AHEAD])]]);
-        assert_eq!(met, [], "it passes beside the wall's end");
+        assert_eq!(met, [], "it passes the end of the wall");
         let scene = Scene {
             robots: scene.robots,
             obstacles: vec![Obstacle::wall("w", (1.0, 1.2), (3.0, 1.2), 1e-6)],
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn a_corner_that_turns_into_something_meets_it() {
+    fn a_corner_that_turns_into_something_hits_it() {
         let mut scene = scene(&[Pose::default()], vec![Obstacle::wall("w", (-1.0, 0.21), (1.0, 0.21), 0.1)]);
         scene.robots[0].body = Body { length: 0.5, width: 0.3 };
         let met = found(&scene, &[&[(0, &[LEFT])]]);
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn robots_meet_only_when_both_are_there() {
+    fn robots_collide_only_if_both_are_there_at_the_same_time() {
         let scene = scene(&[Pose::new(-1.0, 0.0, 0.0), Pose::new(0.0, -1.0, FRAC_PI_2)], vec![]);
         let met = found(&scene, &[&[(0, &[AHEAD]), (1, &[AHEAD])]]);
         let [met] = met.as_slice() else { panic!("{met:?}") };
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_stands_is_met_too() {
+    fn a_robot_that_stands_still_is_hit_too() {
         let scene = scene(&[Pose::new(1.0, 0.0, 0.0), Pose::default()], vec![]);
         let met = found(&scene, &[&[(1, &[AHEAD])]]);
         let [met] = met.as_slice() else { panic!("{met:?}") };
@@ -250,11 +250,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_known_is_not_told() {
+    fn nothing_is_reported_after_an_unknown_time() {
         let wall = Obstacle::wall("w", (1.0, -1.0), (1.0, 1.0), 0.1);
         let scene = scene(&[Pose::default(), Pose::new(0.0, -1.0, FRAC_PI_2)], vec![wall]);
         assert_eq!(found(&scene, &[&[(0, &[Action::Unknown, AHEAD])], &[(1, &[AHEAD])]]), []);
-        // Its own way is known, though not when.
+        // Its path is known, though not its times.
         let met = found(&scene, &[&[(1, &[Action::Unknown])], &[(0, &[AHEAD])]]);
         assert!(met.len() == 1 && met[0].time.is_none(), "{met:?}");
     }

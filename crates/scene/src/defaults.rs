@@ -1,33 +1,32 @@
-//! What a scene is like where nothing else is said. How robots move by default stands in
-//! [`pydslrep_kinematics::motion`].
+//! The defaults of a scene. Those for the motion of robots are in [`pydslrep_kinematics::motion`].
 
 use pydslrep_kinematics::{Drive, Geometry, Pose};
 
 use crate::{Body, SensorKind};
 
-/// Distance between wheels.
+/// Distances between wheels.
 pub const GEOMETRY: Geometry = Geometry { track: 0.30, wheelbase: 0.25 };
 
 /// Opening angle of a proximity sensor's cone, 20° in radians.
 pub const CONE: f64 = 20.0 * std::f64::consts::PI / 180.0;
 
-/// How fast motors can change the rim speed of a wheel, metres per second squared: twice
-/// [`pydslrep_kinematics::motion::RIM_ACCELERATION`], so that a controller which ramps at that rate has room to correct.
+/// The greatest acceleration of a wheel's rim, metres per second squared: twice
+/// [`pydslrep_kinematics::motion::RIM_ACCELERATION`], which leaves controllers room to correct.
 pub const MOTOR_ACCELERATION: f64 = 1.0;
 
-/// How thick walls are, metres.
+/// The thickness of walls, metres.
 pub const WALL_THICKNESS: f64 = 0.1;
 
-/// What noise is made from.
+/// The seed of noise.
 pub const SEED: u64 = 1;
 
-/// Standard deviation of wheel slip where noise is on, as a share of the way a wheel rolls.
+/// The standard deviation of wheel slip if noise is on, as a share of the distance that a wheel rolls.
 pub const WHEEL_SLIP: f64 = 0.02;
 
-/// Standard deviation of a sensor's reading where noise is on, metres.
+/// The standard deviation of a sensor's readings if noise is on, metres.
 pub const SENSOR_NOISE: f64 = 0.01;
 
-/// Where the robot at `index` (from 0) of an environment starts: (0, −index m, 0°).
+/// The start of the robot at `index` (from 0) of an environment: (0, −index m, 0°).
 pub fn start(index: usize) -> Pose {
     let row = u32::try_from(index).unwrap_or(u32::MAX);
     // Not −row: the first robot starts at 0, not at −0.
@@ -42,16 +41,16 @@ pub fn body(drive: Drive) -> Body {
     }
 }
 
-/// What wheels hold across the direction they drive in, as a share of what they hold along it: tyres of rubber as much,
-/// the rollers of mecanum wheels next to nothing.
-pub fn grip(drive: Drive) -> f64 {
+/// The friction of wheels across their rolling direction, as a share of that along it: the same for rubber tyres, next to
+/// nothing for the rollers of mecanum wheels.
+pub fn lateral_friction(drive: Drive) -> f64 {
     match drive {
         Drive::TwoWheel | Drive::FourWheel => 1.0,
         Drive::FourMecanum => 0.05,
     }
 }
 
-/// How far a sensor of this kind sees, metres.
+/// The range of a sensor of this kind, metres.
 pub fn range(kind: SensorKind) -> f64 {
     match kind {
         SensorKind::Distance => 1.0,

@@ -1,11 +1,10 @@
-//! The world robots drive in: their bodies, start poses, wheels and sensor mounts, and what stands in their way.
+//! The world robots drive in: their bodies, start poses, wheels and sensor mounts, and the obstacles around them.
 //!
-//! Knows `kinematics`, plain data, and how scene files are written. Must never know the language, clocks, sockets or
+//! Knows `kinematics`, plain data, and the format of scene files. Must never know the language, clocks, sockets or
 //! where files are. Units: metres and radians; x forward, y left, θ counter-clockwise.
 //!
-//! * [`Scene`] is the value. [`read`] makes one from a scene file; [`TABLES`] is the one list of what can stand in it.
-//! * [`Space`] answers how far things are from each other and what a sensor sees; [`collisions`] where planned paths meet
-//!   something.
+//! * [`Scene`] is the value. [`read`] makes one from a scene file; [`SCHEMA`] is the list of what it can contain.
+//! * [`Space`] computes distances and what a sensor sees; [`collisions`] finds those of planned paths.
 
 mod collision;
 pub mod defaults;
@@ -16,7 +15,7 @@ mod robot;
 mod space;
 
 pub use collision::{Collision, collisions};
-pub use file::{ENDING, Key, Sort, TABLES, Table, Values, json_schema, manual, problems, read};
+pub use file::{ENDING, SCHEMA, json_schema, manual, problems, read};
 pub use mount::{Mount, mounts_by_name};
 pub use obstacle::{Obstacle, Shape};
 pub use robot::{Body, Robot, Sensor, SensorKind, Wheel};
@@ -27,22 +26,22 @@ pub use space::{Near, Sighting, Space, Thing, distance_between};
 pub struct Scene {
     /// The robots, in the order the program's environment lists them.
     pub robots: Vec<Robot>,
-    /// What stands on the floor, walls around it included.
+    /// The obstacles on the floor, including the walls around it.
     pub obstacles: Vec<Obstacle>,
-    /// What goes wrong; `None` for nothing.
+    /// Deviations from an ideal world, if there are any.
     pub noise: Option<Noise>,
-    /// What noise is made from.
+    /// The seed of noise.
     pub seed: u64,
     /// Whether robots are stopped by what they touch.
     pub collisions: bool,
 }
 
-/// What goes wrong in a world: standard deviations.
+/// Deviations from an ideal world, as standard deviations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise {
-    /// How much of the way that a wheel rolls is lost or gained on the floor, as a share of it.
+    /// Of the distance that a wheel drives the robot, as a share of the distance that it rolls.
     pub wheel_slip: f64,
-    /// How far readings of a distance are off, metres.
+    /// Of the readings of distances, metres.
     pub sensor: f64,
 }
 
@@ -65,8 +64,8 @@ impl Default for Scene {
 }
 
 impl Scene {
-    /// An empty floor with each robot at its default start ([`defaults::start`]). Where nobody said where robots stand,
-    /// nobody meant them to be in each other's way: they are not stopped by each other.
+    /// An empty floor with each robot at its default start ([`defaults::start`]). Since these positions are not chosen by
+    /// anyone, robots are not stopped by each other.
     pub fn empty_floor(mut robots: Vec<Robot>) -> Self {
         for (index, robot) in robots.iter_mut().enumerate() {
             robot.start = defaults::start(index);
@@ -74,7 +73,7 @@ impl Scene {
         Self { robots, collisions: false, ..Self::default() }
     }
 
-    /// Robots that touch something where they start: each with the first obstacle or earlier robot that it touches.
+    /// Robots that touch something at their start: each with the first obstacle or earlier robot that it touches.
     pub fn overlaps(&self) -> Vec<(usize, Thing)> {
         let space = Space::of(self);
         let touches = |index: usize| {

@@ -1,4 +1,4 @@
-//! Where sensors sit that nobody placed: by the first letter of their names.
+//! The default positions of sensors, by the first letter of their names.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
@@ -6,18 +6,18 @@ use pydslrep_kinematics::Pose;
 
 use crate::{Body, SensorKind, defaults};
 
-/// Where a sensor sits on its robot and what it sees from there.
+/// The position of a sensor on its robot, and what it sees from there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mount {
-    /// In the body's frame; the heading is the direction it looks in.
+    /// In the body's frame; the heading is the direction it faces.
     pub pose: Pose,
-    /// How far it sees, metres.
+    /// Its range, metres.
     pub range: f64,
     /// Opening angle of its cone, radians.
     pub cone: f64,
 }
 
-/// The side of the robot that a sensor's name asks for.
+/// The side of the robot that a sensor's name stands for.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Side {
     Front,
@@ -27,7 +27,7 @@ enum Side {
     Any,
 }
 
-/// Mounts for sensors in listed order: names in f… make a fan of ±45° ahead, l… look left, r… right and b… back,
+/// Mounts for sensors in listed order: names in f… form a fan of ±45° ahead, l… face left, r… right and b… back,
 /// each group spread along its side; all others are spread over the front half, ±90°. Within a group the
 /// first listed is leftmost (on the sides: foremost).
 pub fn mounts_by_name(sensors: &[(String, SensorKind)], body: Body) -> Vec<Mount> {
@@ -39,7 +39,7 @@ pub fn mounts_by_name(sensors: &[(String, SensorKind)], body: Body) -> Vec<Mount
         .enumerate()
         .map(|(index, (&side, &(_, kind)))| {
             let before = sides[..index].iter().filter(|&&other| other == side).count();
-            let pose = place(side, spread(before, count(side)), body);
+            let pose = position(side, spread(before, count(side)), body);
             Mount { pose, range: defaults::range(kind), cone: defaults::CONE }
         })
         .collect()
@@ -55,7 +55,7 @@ fn side(name: &str) -> Side {
     }
 }
 
-/// The place of one of `count` in a row from +1 (the first) to −1 (the last); one alone stands in the middle.
+/// The position of one of `count` in a row from +1 (the first) to −1 (the last); a single one is in the middle.
 fn spread(index: usize, count: usize) -> f64 {
     let (Ok(index), Ok(last)) = (u32::try_from(index), u32::try_from(count.saturating_sub(1))) else {
         return 0.0;
@@ -63,8 +63,8 @@ fn spread(index: usize, count: usize) -> f64 {
     if last == 0 { 0.0 } else { 1.0 - 2.0 * f64::from(index) / f64::from(last) }
 }
 
-fn place(side: Side, along: f64, body: Body) -> Pose {
-    // Rows on a side keep clear of the corners.
+fn position(side: Side, along: f64, body: Body) -> Pose {
+    // Rows on a side stay clear of the corners.
     let (x, y) = (body.length / 2.0, body.width / 2.0);
     let row = 0.8 * along;
     match side {
@@ -76,7 +76,7 @@ fn place(side: Side, along: f64, body: Body) -> Pose {
     }
 }
 
-/// On the body's edge, looking straight out from its centre.
+/// On the body's edge, facing away from its centre.
 fn on_edge(direction: f64, body: Body) -> Pose {
     let (sin, cos) = direction.sin_cos();
     let to_edge = (body.length / 2.0 / cos.abs()).min(body.width / 2.0 / sin.abs());
@@ -111,13 +111,13 @@ mod tests {
     }
 
     #[test]
-    fn other_names_look_over_the_front_half() {
+    fn other_names_cover_the_front_half() {
         assert_eq!(directions(&["s1", "s2", "s3", "s4", "s5"]), [90, 45, 0, -45, -90]);
         assert_eq!(directions(&["only"]), [0]);
     }
 
     #[test]
-    fn two_on_a_side_stand_apart() {
+    fn two_on_a_side_are_apart() {
         let sensors = [("l1".to_owned(), SensorKind::Bumper), ("l2".to_owned(), SensorKind::Distance)];
         let mounts = mounts_by_name(&sensors, Body { length: 0.3, width: 0.3 });
         assert!(mounts[0].pose.x > 0.1 && mounts[1].pose.x < -0.1, "{mounts:?}");

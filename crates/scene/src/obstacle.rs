@@ -1,4 +1,4 @@
-//! What stands on the floor and does not move.
+//! Fixed obstacles on the floor.
 
 use pydslrep_kinematics::Pose;
 
@@ -7,9 +7,9 @@ use crate::Body;
 /// Something that robots cannot drive through.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Obstacle {
-    /// Its name, which is also its object's name for remote API clients.
+    /// Its name, also for clients of the remote API.
     pub name: String,
-    /// Where it stands: what its shape is given in.
+    /// The frame of its shape.
     pub pose: Pose,
     /// Its outline.
     pub shape: Shape,
@@ -40,7 +40,7 @@ impl Obstacle {
         }
     }
 
-    /// The corners of its outline on the floor, in order; those of a regular polygon of `sides` for a circle.
+    /// The corners of its outline on the floor, in order; for a circle, those of a regular polygon with `sides` corners.
     pub fn outline(&self, sides: u32) -> Vec<(f64, f64)> {
         let own: Vec<(f64, f64)> = match &self.shape {
             Shape::Box(body) => body.corners().to_vec(),

@@ -1,4 +1,4 @@
-//! One robot as it stands in the scene.
+//! A robot of a scene.
 
 use pydslrep_kinematics::{Drive, Geometry, Model, ModelError, Pose, Traction, scrub_factor};
 
@@ -7,7 +7,7 @@ use crate::{Mount, defaults, mounts_by_name};
 /// A robot: a rectangular body on driven wheels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Robot {
-    /// Its name, which is also its object's name for remote API clients.
+    /// Its name, also for clients of the remote API.
     pub name: String,
     /// Wheel layout.
     pub drive: Drive,
@@ -15,30 +15,30 @@ pub struct Robot {
     pub wheels: Vec<Wheel>,
     /// Sensors with their mounts.
     pub sensors: Vec<Sensor>,
-    /// Where the body's centre stands when a run starts.
+    /// The pose of the body's centre at the start of a run.
     pub start: Pose,
     /// Outer size.
     pub body: Body,
     /// Distance between wheels; their middle is the body's centre.
     pub geometry: Geometry,
-    /// What wheels hold across the direction they drive in, as a share of what they hold along it; see
+    /// The friction of its wheels across their rolling direction, as a share of that along it; see
     /// [`pydslrep_kinematics::Traction`].
-    pub grip: f64,
-    /// How fast the motors can change the wheels' rim speed, metres per second squared.
+    pub lateral_friction: f64,
+    /// The greatest acceleration of the wheels' rims, metres per second squared.
     pub motor_acceleration: f64,
-    /// The highest rim speed that the motors can give a wheel, metres per second; infinite for no limit.
+    /// The greatest speed of the wheels' rims, metres per second; infinite for no limit.
     pub motor_speed: f64,
 }
 
 /// A driven wheel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wheel {
-    /// Its name, which is also its joint's.
+    /// Its name, which is also that of its joint.
     pub name: String,
     /// Metres.
     pub radius: f64,
-    /// Whether its joint's axis points to the body's right (−y): then it rolls the robot backwards when its joint
-    /// turns forwards. Usual is the left.
+    /// Whether its joint's axis points to the body's right (−y) instead of the left: then positive rates roll the robot
+    /// backwards.
     pub mirrored: bool,
 }
 
@@ -52,20 +52,20 @@ impl Wheel {
 /// A proximity sensor on a robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensor {
-    /// Its name, which is also its object's.
+    /// Its name, which is also that of its object.
     pub name: String,
     /// What it measures.
     pub kind: SensorKind,
-    /// Where it sits and what it sees.
+    /// Its position, and what it sees from there.
     pub mount: Mount,
 }
 
 /// Kinds of proximity sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SensorKind {
-    /// Sees an obstacle at a distance.
+    /// Measures the distance of an obstacle.
     Distance,
-    /// Feels an obstacle at contact.
+    /// Detects contact with an obstacle.
     Bumper,
 }
 
@@ -87,7 +87,7 @@ impl Body {
 }
 
 impl Robot {
-    /// A robot of default size at the origin, its sensors placed by name ([`mounts_by_name`]).
+    /// A robot of default size at the origin, with its sensors in their default positions ([`mounts_by_name`]).
     pub fn new(
         name: impl Into<String>,
         drive: Drive,
@@ -109,25 +109,25 @@ impl Robot {
             start: Pose::default(),
             body,
             geometry: defaults::GEOMETRY,
-            grip: defaults::grip(drive),
+            lateral_friction: defaults::lateral_friction(drive),
             motor_acceleration: defaults::MOTOR_ACCELERATION,
             motor_speed: f64::INFINITY,
         }
     }
 
-    /// The robot's kinematic model, with the wider track that scrubbing wheels make of a skid-steered one.
+    /// The robot's kinematic model; that of a skid-steered one has a wider track, since its wheels scrub.
     ///
     /// # Errors
-    /// When wheels and layout do not fit or a length is not above zero.
+    /// If wheels and layout do not fit, or if a length is not above zero.
     pub fn model(&self) -> Result<Model, ModelError> {
         let radii: Vec<f64> = self.wheels.iter().map(|wheel| wheel.radius).collect();
         let model = Model::new(self.drive, &radii, self.geometry)?;
-        model.with_scrub_factor(scrub_factor(self.drive, self.geometry, self.grip))
+        model.with_scrub_factor(scrub_factor(self.drive, self.geometry, self.lateral_friction))
     }
 
     /// How it moves when its wheels turn.
     pub fn traction(&self) -> Traction {
-        Traction::new(self.drive, self.geometry, self.grip)
+        Traction::new(self.drive, self.geometry, self.lateral_friction)
     }
 }
 

@@ -1,4 +1,4 @@
-//! How far things are from each other: the geometry of a scene, by parry2d.
+//! The geometry of a scene: distances, and what sensors see, by parry2d.
 
 use parry2d_f64::math::{Pose as Placement, Vector};
 use parry2d_f64::query::{self, Ray};
@@ -7,20 +7,20 @@ use pydslrep_kinematics::Pose;
 
 use crate::{Body, Mount, Obstacle, Scene, Shape};
 
-/// The obstacles of a scene, cut into convex pieces.
+/// The obstacles of a scene, cut into convex parts.
 #[derive(Debug, Clone, Default)]
 pub struct Space {
-    pieces: Vec<Piece>,
+    parts: Vec<ConvexPart>,
 }
 
-/// A convex body somewhere on the floor.
+/// A convex part of an obstacle, or a robot, on the floor.
 #[derive(Debug, Clone, Copy)]
-struct Piece {
+struct ConvexPart {
     /// Which obstacle or robot it belongs to.
     owner: usize,
     solid: Solid,
     placement: Placement,
-    /// The centre of a circle that holds it all.
+    /// The centre of a circle around it.
     centre: Vector,
     /// The radius of that circle.
     reach: f64,
@@ -33,10 +33,10 @@ enum Solid {
     Triangle(Triangle),
 }
 
-/// What is near, and how near it is.
+/// An obstacle at a distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Near {
-    /// Metres; 0 where it touches or overlaps.
+    /// Metres; 0 if it touches or overlaps.
     pub distance: f64,
     /// Its index in [`Scene::obstacles`].
     pub obstacle: usize,
@@ -47,11 +47,11 @@ pub struct Near {
 pub struct Sighting {
     /// From the sensor to the nearest point in its cone, metres.
     pub distance: f64,
-    /// Where that point is on the floor.
+    /// That point on the floor.
     pub point: (f64, f64),
-    /// The direction away from the surface there, a unit vector on the floor.
+    /// The normal of the surface there: a unit vector on the floor.
     pub normal: (f64, f64),
-    /// What it belongs to.
+    /// What the point belongs to.
     pub what: Thing,
 }
 
@@ -65,41 +65,42 @@ pub enum Thing {
 }
 
 impl Space {
-    /// The obstacles of a scene. A polygon that crosses itself counts as its corners' hull.
+    /// The obstacles of a scene. A polygon that crosses itself is replaced by the hull of its corners.
     pub fn of(scene: &Scene) -> Self {
-        let pieces = scene.obstacles.iter().enumerate();
-        Self { pieces: pieces.flat_map(|(owner, obstacle)| pieces_of(owner, obstacle)).collect() }
+        let parts = scene.obstacles.iter().enumerate();
+        Self { parts: parts.flat_map(|(owner, obstacle)| parts_of(owner, obstacle)).collect() }
     }
 
-    /// The obstacle nearest to a body, if it is nearer than `within` metres; the first of equals.
+    /// The obstacle nearest to a body, if it is nearer than `within` metres; the first of several equally near.
     pub fn nearest(&self, body: Body, pose: Pose, within: f64) -> Option<Near> {
-        let body = Piece::robot(0, body, pose);
+        let body = ConvexPart::robot(0, body, pose);
         let mut nearest: Option<Near> = None;
-        for piece in &self.pieces {
+        for part in &self.parts {
             let bound = nearest.map_or(within, |near| near.distance);
-            if piece.is_beyond(&body, bound) {
+            if part.is_beyond(&body, bound) {
                 continue;
             }
-            let distance = piece.distance(&body);
+            let distance = part.distance(&body);
             if distance < bound {
-                nearest = Some(Near { distance, obstacle: piece.owner });
+                nearest = Some(Near { distance, obstacle: part.owner });
             }
         }
         nearest
     }
 
-    /// What a sensor with this mount sees first from a robot at `pose`: an obstacle, or one of the `others`, which are
-    /// robots by their index, with bodies and poses.
+    /// The nearest thing that a sensor of a robot at `pose` sees: an obstacle, or one of the `others`, which are robots by
+    /// their index, with bodies and poses.
     pub fn sight(&self, pose: Pose, mount: &Mount, others: &[(usize, Body, Pose)]) -> Option<Sighting> {
-        let eye = Eye::new(pose.compose(&mount.pose), mount);
-        let obstacles = self.pieces.iter().map(|piece| (Thing::Obstacle(piece.owner), *piece));
-        let robots =
-            others.iter().map(|&(robot, body, pose)| (Thing::Robot(robot), Piece::robot(robot, body, pose)));
+        let cone = SensorCone::new(pose.compose(&mount.pose), mount);
+        let obstacles = self.parts.iter().map(|part| (Thing::Obstacle(part.owner), *part));
+        let robots = others
+            .iter()
+            .map(|&(robot, body, pose)| (Thing::Robot(robot), ConvexPart::robot(robot, body, pose)));
         let mut first: Option<Sighting> = None;
-        for (what, piece) in obstacles.chain(robots) {
+        for (what, part) in obstacles.chain(robots) {
             let bound = first.map_or(mount.range, |sighting| sighting.distance);
-            let seen = eye
-                .sees(&piece, bound)
+            let seen = cone
+                .sees(&part, bound)
                 .filter(|(_, distance, _)| first.is_none_or(|first| *distance < first.distance));
             if let Some((point, distance, normal)) = seen {
                 let (point, normal) = ((point.x, point.y), (normal.x, normal.y));
@@ -110,31 +111,31 @@ impl Space {
     }
 }
 
-/// How far two bodies are apart, metres; 0 where they touch or overlap.
+/// The distance between two bodies, metres; 0 if they touch or overlap.
 pub fn distance_between(a: (Body, Pose), b: (Body, Pose)) -> f64 {
-    Piece::robot(0, a.0, a.1).distance(&Piece::robot(0, b.0, b.1))
+    ConvexPart::robot(0, a.0, a.1).distance(&ConvexPart::robot(0, b.0, b.1))
 }
 
 fn placement(pose: Pose) -> Placement {
     Placement::new(Vector::new(pose.x, pose.y), pose.theta)
 }
 
-fn pieces_of(owner: usize, obstacle: &Obstacle) -> Vec<Piece> {
+fn parts_of(owner: usize, obstacle: &Obstacle) -> Vec<ConvexPart> {
     match &obstacle.shape {
-        Shape::Box(body) => vec![Piece::robot(owner, *body, obstacle.pose)],
+        Shape::Box(body) => vec![ConvexPart::robot(owner, *body, obstacle.pose)],
         Shape::Cylinder { radius } => {
             let placement = placement(obstacle.pose);
             let (solid, centre) = (Solid::Ball(Ball::new(*radius)), placement.translation);
-            vec![Piece { owner, solid, placement, centre, reach: *radius }]
+            vec![ConvexPart { owner, solid, placement, centre, reach: *radius }]
         }
         Shape::Polygon(corners) => {
             let triangles = triangles(corners).into_iter();
-            triangles.map(|triangle| Piece::triangle(owner, triangle, obstacle.pose)).collect()
+            triangles.map(|triangle| ConvexPart::triangle(owner, triangle, obstacle.pose)).collect()
         }
     }
 }
 
-/// A polygon as triangles; nothing when it has fewer than three corners or crosses itself.
+/// A polygon as triangles; none if it has fewer than three corners or crosses itself.
 pub(crate) fn triangles(corners: &[(f64, f64)]) -> Vec<Triangle> {
     let mut corners: Vec<Vector> = corners.iter().map(|&(x, y)| Vector::new(x, y)).collect();
     let last = corners.len().saturating_sub(1);
@@ -150,7 +151,7 @@ pub(crate) fn triangles(corners: &[(f64, f64)]) -> Vec<Triangle> {
     TriMesh::from_polygon(corners).map_or_else(Vec::new, |mesh| mesh.triangles().collect())
 }
 
-impl Piece {
+impl ConvexPart {
     fn robot(owner: usize, body: Body, pose: Pose) -> Self {
         let half = Vector::new(body.length / 2.0, body.width / 2.0);
         let placement = placement(pose);
@@ -166,7 +167,7 @@ impl Piece {
         Self { owner, solid: Solid::Triangle(triangle), placement, centre, reach }
     }
 
-    /// Whether it is surely further away than `bound`.
+    /// Whether it is certainly further away than `bound`.
     fn is_beyond(&self, other: &Self, bound: f64) -> bool {
         self.centre.distance(other.centre) - self.reach - other.reach > bound
     }
@@ -174,7 +175,7 @@ impl Piece {
     fn distance(&self, other: &Self) -> f64 {
         let distance =
             query::distance(&self.placement, self.solid.shape(), &other.placement, other.solid.shape());
-        // Every pair of our shapes is supported.
+        // The library supports every pair of our shapes.
         distance.map_or(f64::INFINITY, |found| found.distance)
     }
 }
@@ -189,8 +190,8 @@ impl Solid {
     }
 }
 
-/// A sensor on the floor.
-struct Eye {
+/// What a sensor sees of the floor.
+struct SensorCone {
     at: Vector,
     heading: Vector,
     /// Cosine of half the cone's opening.
@@ -199,7 +200,7 @@ struct Eye {
     edges: [Vector; 2],
 }
 
-impl Eye {
+impl SensorCone {
     fn new(pose: Pose, mount: &Mount) -> Self {
         let direction = |angle: f64| Vector::new((pose.theta + angle).cos(), (pose.theta + angle).sin());
         let half = mount.cone / 2.0;
@@ -211,17 +212,16 @@ impl Eye {
         }
     }
 
-    /// The nearest point of a convex piece within the cone and `range`: the point, how far it is, the normal there.
+    /// The nearest point of a convex part within the cone and `range`, with its distance and the normal there.
     ///
-    /// The distance of a convex body, as a function of the direction in which one looks, falls to one least value and
-    /// rises again. So its nearest point counts if it is in the cone, and otherwise the nearest one in the cone is on
-    /// one of the cone's edges.
-    fn sees(&self, piece: &Piece, range: f64) -> Option<(Vector, f64, Vector)> {
-        if piece.centre.distance(self.at) - piece.reach > range {
+    /// The distance of a convex body, as a function of the direction, has a single minimum. So if the nearest point is not
+    /// in the cone, the nearest one that is lies on an edge of the cone.
+    fn sees(&self, part: &ConvexPart, range: f64) -> Option<(Vector, f64, Vector)> {
+        if part.centre.distance(self.at) - part.reach > range {
             return None;
         }
-        let shape = piece.solid.shape();
-        let nearest = shape.project_point(&piece.placement, self.at, true);
+        let shape = part.solid.shape();
+        let nearest = shape.project_point(&part.placement, self.at, true);
         let way = nearest.point - self.at;
         let distance = way.length();
         if distance > range {
@@ -235,7 +235,7 @@ impl Eye {
         }
         let hit = |edge: Vector| {
             let ray = Ray::new(self.at, edge);
-            let hit = shape.cast_ray_and_get_normal(&piece.placement, &ray, range, true)?;
+            let hit = shape.cast_ray_and_get_normal(&part.placement, &ray, range, true)?;
             Some((self.at + edge * hit.time_of_impact, hit.time_of_impact, hit.normal))
         };
         self.edges.into_iter().filter_map(hit).min_by(|a, b| a.1.total_cmp(&b.1))

@@ -1,24 +1,29 @@
-//! What the TOML files of a project have in common: values with the places they stand at, problems, and words for a
-//! text that is no TOML.
+//! One engine for the TOML files of a project. Given a list of keys, it reads and checks a file, says what is at a cursor
+//! in a half-typed one, and writes the manual page and the JSON schema.
 //!
-//! Knows texts and JSON values. Must never know which keys there are: that is for those who read a file to say.
+//! Knows text, TOML and JSON. Must never know which keys there are: each kind of file has its own [`Schema`].
 
-mod outline;
+mod cursor;
+mod keys;
+mod manual;
 mod problem;
-mod value;
+mod read;
+mod suggestions;
+mod toml;
+mod values;
 
-pub use outline::{Named, Place, Slot, names, place_at};
+pub use cursor::{CursorContext, NamePart, Slot, cursor_context, name_parts};
+pub use keys::{Item, Key, NAME, Names, Schema, Table, TableKind, key};
 pub use problem::{Problem, ProblemKind};
-pub use pydslrep_text::{Span, closest};
-pub use value::{Entry, Node, Value, from_json, parse, span};
+pub use pydslrep_text::Span;
+pub use read::{Contents, Section};
+pub use suggestions::{did_you_mean, either, suggestions};
+pub use values::{Range, Refusal, Values, Word};
 
-/// A name as it stands in a key: in quotes where it has other letters than keys may have without.
+pub use self::toml::Value;
+
+/// A name as a TOML key: quoted if it has characters that bare keys cannot have.
 pub fn as_key(name: &str) -> String {
     let is_bare = name.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'-'));
     if is_bare { name.to_owned() } else { format!("\"{name}\"") }
-}
-
-/// The help for a word that is nearly another one.
-pub fn did_you_mean(near: &str) -> String {
-    format!("did you mean `{near}`?")
 }

@@ -1,41 +1,53 @@
-//! What is wrong with settings.
+//! What is wrong with a file.
 
 use pydslrep_text::Span;
 
-/// One problem. What it is about does not hold; everything else that was set does, except where the text is no TOML.
+/// One problem. Its key has no effect; everything else in the file does, unless the text is not TOML.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problem {
-    /// What sort of problem it is.
+    /// Its kind.
     pub kind: ProblemKind,
-    /// The key it is about as it is written, with dots between its parts; empty for the whole.
+    /// The key as it is written, with dots between its parts; empty for the whole file.
     pub key: String,
-    /// Where it is in the text, which is TOML; `None` for settings from an editor.
+    /// Where it is in the TOML text; `None` for settings from an editor.
     pub span: Option<Span>,
-    /// What is wrong, in one sentence; names the key.
+    /// What is wrong, in one sentence that names the key.
     pub message: String,
     /// What to do.
     pub help: Option<String>,
-    /// What should probably stand in place of the text at `span`.
+    /// What probably belongs in place of the text at `span`.
     pub replacement: Option<String>,
 }
 
-/// Sorts of problems.
+impl Problem {
+    /// One without help or replacement.
+    pub fn new(kind: ProblemKind, key: impl Into<String>, span: Option<Span>, message: String) -> Self {
+        Self { kind, key: key.into(), span, message, help: None, replacement: None }
+    }
+
+    /// The same with help.
+    pub fn help(self, help: impl Into<String>) -> Self {
+        Self { help: Some(help.into()), ..self }
+    }
+}
+
+/// Kinds of problems.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ProblemKind {
-    /// The text is no TOML.
+    /// The text is not TOML.
     InvalidToml,
-    /// There is no such setting.
+    /// No such key.
     UnknownKey,
-    /// A setting cannot have this value.
+    /// The key cannot have this value.
     InvalidValue,
-    /// A key is missing that others make no sense without.
+    /// A required key is missing.
     MissingKey,
-    /// The program has nothing of this name.
+    /// The program declares nothing of this name.
     UnknownName,
 }
 
 impl ProblemKind {
-    /// The stable name of the sort.
+    /// Its stable name.
     pub fn code(self) -> &'static str {
         match self {
             Self::InvalidToml => "invalid-toml",

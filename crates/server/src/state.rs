@@ -7,7 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use futures::channel::oneshot;
 use pydslrep_analysis::{Database, EditCounts, FileId, Snapshot};
-use pydslrep_ide::FilePosition;
+use pydslrep_ide::{FilePosition, TomlFile};
 use pydslrep_syntax::Span;
 use ropey::Rope;
 use rustc_hash::FxHashSet;
@@ -293,10 +293,19 @@ impl State {
         Some(Place { document, file, offset: self.offset(document, at.position) })
     }
 
-    /// The file of settings or the scene at an address, with its text.
-    pub(crate) fn keyed_text(&self, uri: &Uri) -> Option<(&Document, String)> {
-        let document = self.document(uri).filter(|document| !document.is_program())?;
-        Some((document, document.text.to_string()))
+    /// The settings or the scene at an address, with its text.
+    pub(crate) fn toml_text(&self, uri: &Uri) -> Option<(&Document, TomlFile<'_>, String)> {
+        let document = self.document(uri)?;
+        Some((document, self.toml_file(document)?, document.text.to_string()))
+    }
+
+    /// What kind of TOML file a document is; `None` for a program.
+    pub(crate) fn toml_file(&self, document: &Document) -> Option<TomlFile<'_>> {
+        match document.sort() {
+            Sort::Program => None,
+            Sort::Settings => Some(TomlFile::Settings),
+            Sort::Scene => Some(TomlFile::Scene(&self.database, self.environment_in(&key(&document.uri)))),
+        }
     }
 
     /// The document that the database knows as `file`.

@@ -63,7 +63,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let here = [PathBuf::from(".")];
     let paths = if arguments.paths.is_empty() { &here } else { arguments.paths.as_slice() };
     let (mut sources, files, failures) = Sources::open(paths);
-    let options = Config { target: arguments.target, ..Config::default() };
+    let options = Config::of_target(arguments.target);
     let projects = Projects::open(&mut sources, &files, &options)?;
     let mut scripts = Vec::new();
     let (mut has_errors, mut found) = (false, false);

@@ -81,7 +81,7 @@ pub(crate) enum Deny {
 /// # Errors
 /// When the arguments do not fit, or nothing can be printed.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let options = Config { severities: severities::read(&arguments.severity)?, ..Config::default() };
+    let options = Config::of_severities(severities::read(&arguments.severity)?);
     let here = [PathBuf::from(".")];
     let paths = if arguments.paths.is_empty() { &here } else { arguments.paths.as_slice() };
     if arguments.watch {

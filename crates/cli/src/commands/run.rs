@@ -109,7 +109,7 @@ pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
 /// When anything outside of the program fails.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let (mut sources, file) = Sources::open_one(&arguments.program)?;
-    let options = Config { target: arguments.target, ..Config::default() };
+    let options = Config::of_target(arguments.target);
     let projects = Projects::open(&mut sources, &[file], &options)?;
     let target = projects.of(file).settings.target;
     let id = program::environment(&sources, file, arguments.environment.as_deref())?;

@@ -187,7 +187,7 @@ fn a_scene_with_a_mistake_is_not_driven() {
           |
           = help: did you mean `first`?
 
-        error: there is no key `rnage` in `robots.first.sensors.eye`
+        error: there is no key `robots.first.sensors.eye.rnage`
          --> hall.scene.toml:4:1
           |
         4 | rnage = 2

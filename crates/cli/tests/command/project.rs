@@ -95,13 +95,13 @@ fn no_toml_and_no_text_are_told_with_their_place() {
     place.write("pydslrep.toml", "output = scripts");
     let done = place.run(&["check"]);
     expect![[r#"
-        error: `scripts` is no value
+        error: `scripts` is not a value
          --> pydslrep.toml:1:10
           |
         1 | output = scripts
           |          ^^^^^^^
           |
-          = help: texts stand in quotes: `"scripts"`
+          = help: strings are in quotes: `"scripts"`
 
     "#]]
     .assert_eq(&done.err);

@@ -1,6 +1,6 @@
 //! Filters completion items by the typed word, so that the list never gets in the way of typing.
 
-use pydslrep_schema::{Place, Slot};
+use pydslrep_schema::{CursorContext, Slot};
 use pydslrep_syntax::Span;
 
 use super::{Completion, CompletionTrigger};
@@ -110,13 +110,12 @@ pub(crate) fn filter_in_toml(items: Vec<Completion>, text: &str, offset: u32) ->
 }
 
 impl CompletionTrigger {
-    /// Whether the list opens at this position of a TOML file: automatically where a value is expected and in a table's
-    /// brackets.
-    pub(crate) fn opens_in_toml(self, place: &Place) -> bool {
+    /// Whether the list opens in a TOML file: automatically where a value is expected and in a header.
+    pub(crate) fn opens_in_toml(self, cursor: &CursorContext) -> bool {
         match self {
             Self::Invoked => true,
-            Self::Character('[') => matches!(place.slot, Slot::Table { .. }),
-            Self::Character(' ' | '"') => matches!(place.slot, Slot::Value { .. }),
+            Self::Character('[') => matches!(cursor.slot, Slot::Table { .. }),
+            Self::Character(' ' | '"') => matches!(cursor.slot, Slot::Value { .. }),
             Self::Character(_) => false,
         }
     }

@@ -91,7 +91,7 @@ fn equations(robot: &Robot) -> String {
         }
         Drive::TwoWheel => format!("d = {track} m"),
         Drive::FourWheel => {
-            let scrub = scrub_factor(robot.drive, geometry, defaults::grip(robot.drive));
+            let scrub = scrub_factor(robot.drive, geometry, defaults::lateral_friction(robot.drive));
             let wide = number(scrub * geometry.track, 3);
             format!("d = {wide} m (track {track} m × {} for tyre scrub in turns)", number(scrub, 2))
         }

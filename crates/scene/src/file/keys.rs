@@ -1,166 +1,27 @@
-//! The one list of what a scene file can say.
+//! The list of what a scene file can contain.
 
-/// A table of a scene file.
-#[derive(Debug)]
-pub struct Table {
-    /// What it is called; for tables of a robot or a sensor with a placeholder for its name.
-    pub name: &'static str,
-    /// How often it can stand.
-    pub sort: Sort,
-    /// What it is about, in Markdown.
-    pub summary: &'static str,
-    /// What can be set in it.
-    pub keys: &'static [Key],
-}
+use pydslrep_schema::{Key, Range, Refusal, Schema, Table, TableKind, Values, key};
 
-/// How often a table can stand, and what for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sort {
-    /// Once: `[world]`.
-    Once,
-    /// Any number of times, each for another obstacle: `[[box]]`.
-    Each,
-    /// Once for every robot: `[robots.robot_1]`.
-    Robot,
-    /// Once for every sensor of a robot: `[robots.robot_1.sensors.fSensor]`.
-    Sensor,
-}
+/// Everything that a scene file can contain.
+pub static SCHEMA: Schema = Schema {
+    noun: "key",
+    tables: &TABLES,
+    // What is larger was meant in another unit.
+    largest: 1e6,
+    too_large: "is beyond 1000 km, or not finite",
+};
 
-/// Something that can be set.
-#[derive(Debug)]
-pub struct Key {
-    /// What it is called.
-    pub name: &'static str,
-    /// What it can be.
-    pub values: Values,
-    /// Whether the table makes no sense without it.
-    pub required: bool,
-    /// What it means, in Markdown.
-    pub summary: &'static str,
-    /// What holds where nothing is said, in Markdown.
-    pub default: &'static str,
-    /// A value that is not the default, as TOML and JSON write it alike.
-    pub example: &'static str,
-}
-
-/// What a key can be set to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Values {
-    /// `true` or `false`.
-    Flag,
-    /// A whole number from 0 to 2³².
-    Count,
-    /// A number above zero.
-    AboveZero,
-    /// A number, zero or above.
-    FromZero,
-    /// A number from 0 to 1.
-    Share,
-    /// An angle in degrees.
-    Angle,
-    /// An angle above 0° and up to 180°.
-    Opening,
-    /// A name.
-    Name,
-    /// `[x, y]`.
-    Point,
-    /// `[length, width]`, both above zero.
-    Size,
-    /// `[x, y]` or `[x, y, heading]`.
-    Pose,
-    /// Three points or more.
-    Points,
-}
-
-impl Values {
-    /// What is expected, in words.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Flag => "true or false",
-            Self::Count => "a whole number from 0",
-            Self::AboveZero => "a number above zero",
-            Self::FromZero => "a number from 0",
-            Self::Share => "a number from 0 to 1",
-            Self::Angle => "an angle in degrees",
-            Self::Opening => "an angle above 0 and up to 180 degrees",
-            Self::Name => "a text",
-            Self::Point => "a point `[x, y]`",
-            Self::Size => "a size `[length, width]`, both above zero",
-            Self::Pose => "a pose `[x, y, heading]`",
-            Self::Points => "a list of at least three points `[x, y]`",
-        }
-    }
-}
-
-const fn key(name: &'static str, values: Values, summary: &'static str) -> Key {
-    Key { name, values, required: false, summary, default: "", example: "" }
-}
-
-impl Key {
-    const fn required(self) -> Self {
-        Self { required: true, ..self }
-    }
-
-    const fn default(self, default: &'static str) -> Self {
-        Self { default, ..self }
-    }
-
-    /// What there is to say of it, in Markdown.
-    pub fn markdown(&self) -> String {
-        let default =
-            if self.required { "Required".to_owned() } else { format!("Default: {}", self.default) };
-        let (name, words, example) = (self.name, self.values.words(), self.example);
-        format!(
-            "**`{name}`**: {words}\n\n{}\n\n{default}\n\nFor example `{name} = {example}`\n",
-            self.summary
-        )
-    }
-
-    const fn example(self, example: &'static str) -> Self {
-        Self { example, ..self }
-    }
-}
-
-const NAME: Key =
-    key("name", Values::Name, "What it is called in messages and for clients of the remote API.")
-        .default("the table's name and a number: `box_1`")
-        .example("\"crate\"");
-
-const AT: Key = key("at", Values::Point, "Where its middle stands.").required().example("[1.0, 0.5]");
-
-const HEADING: Key = key("heading", Values::Angle, "How far it is turned about that, to the left.")
-    .default("`0`")
-    .example("30");
-
-impl Table {
-    /// As a file begins it.
-    pub fn header(&self) -> String {
-        match self.sort {
-            Sort::Each => format!("[[{}]]", self.name),
-            Sort::Once | Sort::Robot | Sort::Sensor => format!("[{}]", self.name),
-        }
-    }
-
-    /// What there is to say of it, in Markdown.
-    pub fn markdown(&self) -> String {
-        let keys: Vec<String> =
-            self.keys.iter().map(|key| format!("* `{}`: {}\n", key.name, key.summary)).collect();
-        format!("**`{}`**\n\n{}\n\n{}", self.header(), self.summary, keys.concat())
-    }
-}
-
-/// All tables.
-pub const TABLES: [Table; 8] = [
+const TABLES: [Table; 8] = [
     Table {
         name: "world",
-        sort: Sort::Once,
-        summary: "The floor, and what holds for everything on it.",
+        kind: TableKind::Once,
+        summary: "The floor, and what applies to everything on it.",
         keys: &[
-            key("size", Values::Size, "How long the floor is along x and along y.")
-                .default("without end")
+            key("size", SIZE, "The size of the floor along x and y.")
+                .default("unlimited")
                 .example("[7.0, 7.7]"),
-            key("corner", Values::Point, "Where the floor's corner with the least x and y is.")
-                .default("so that the middle is at `[0, 0]`")
+            key("corner", POINT, "The corner of the floor with the smallest x and y.")
+                .default("the middle of the floor is at `[0, 0]`")
                 .example("[0.0, 0.0]"),
             key("walls", Values::Flag, "Whether there are walls around a floor with a `size`.")
                 .default("`true`")
@@ -172,48 +33,48 @@ pub const TABLES: [Table; 8] = [
             )
             .default("`true`")
             .example("false"),
-            key("seed", Values::Count, "What noise is made from: the same seed, the same run.")
+            key("seed", COUNT, "The seed of noise: with the same seed, runs are the same.")
                 .default("`1`")
                 .example("7"),
         ],
     },
     Table {
         name: "noise",
-        sort: Sort::Once,
-        summary: "What goes wrong in the world. Without this table nothing does; with it alone, as much as below. What is \
-                  0 is off.",
+        kind: TableKind::Once,
+        summary: "Deviations from an ideal world. Without this table there are none; with it, the defaults below apply. 0 \
+                  switches one off.",
         keys: &[
             key(
                 "wheel-slip",
-                Values::FromZero,
-                "How much of the way that a wheel rolls is lost or gained on the floor: the standard deviation, in \
-                 percent. It changes slowly, over about a second.",
+                FROM_ZERO,
+                "How much wheels slip: the standard deviation, in percent of the distance that they roll. Slip changes \
+                 slowly, over about a second.",
             )
             .default("`2`")
             .example("5"),
-            key("sensor", Values::FromZero, "How far readings of a distance are off: the standard deviation, in metres.")
+            key("sensor", FROM_ZERO, "The error of measured distances: the standard deviation, in metres.")
                 .default("`0.01`")
                 .example("0.05"),
         ],
     },
     Table {
         name: "wall",
-        sort: Sort::Each,
+        kind: TableKind::Each,
         summary: "A straight wall between two points.",
         keys: &[
-            key("from", Values::Point, "Where the middle of one of its ends is.").required().example("[-1.0, 1.0]"),
-            key("to", Values::Point, "Where the middle of its other end is.").required().example("[1.0, 1.5]"),
-            key("thickness", Values::AboveZero, "How thick it is.").default("`0.1`").example("0.2"),
+            key("from", POINT, "The middle of one of its ends.").required().example("[-1.0, 1.0]"),
+            key("to", POINT, "The middle of its other end.").required().example("[1.0, 1.5]"),
+            key("thickness", Values::ABOVE_ZERO, "Its thickness.").default("`0.1`").example("0.2"),
             NAME,
         ],
     },
     Table {
         name: "box",
-        sort: Sort::Each,
+        kind: TableKind::Each,
         summary: "A rectangle.",
         keys: &[
             AT,
-            key("size", Values::Size, "How long it is along its heading, and how wide across it.")
+            key("size", SIZE, "Its length along its heading, and its width across it.")
                 .required()
                 .example("[0.6, 0.4]"),
             HEADING,
@@ -222,16 +83,16 @@ pub const TABLES: [Table; 8] = [
     },
     Table {
         name: "cylinder",
-        sort: Sort::Each,
+        kind: TableKind::Each,
         summary: "A circle.",
-        keys: &[AT, key("radius", Values::AboveZero, "Its radius.").required().example("0.25"), NAME],
+        keys: &[AT, key("radius", Values::ABOVE_ZERO, "Its radius.").required().example("0.25"), NAME],
     },
     Table {
         name: "polygon",
-        sort: Sort::Each,
+        kind: TableKind::Each,
         summary: "Any outline that does not cross itself.",
         keys: &[
-            key("corners", Values::Points, "Its corners, in order either way round.")
+            key("corners", POINTS, "Its corners, in order, in either direction.")
                 .required()
                 .example("[[0.0, 1.0], [1.0, 1.0], [0.2, 2.0]]"),
             NAME,
@@ -239,37 +100,37 @@ pub const TABLES: [Table; 8] = [
     },
     Table {
         name: "robots.NAME",
-        sort: Sort::Robot,
+        kind: TableKind::Named { owner: "the environment", noun: "robot" },
         summary: "A robot of the program.",
         keys: &[
-            key("start", Values::Pose, "Where it starts.")
-                .default("`[0, 0, 0]`, the next one a metre to its right, and so on")
+            key("start", POSE, "Its pose at the start.")
+                .default("`[0, 0, 0]`, each further robot a metre to the right")
                 .example("[0.5, -0.5, 90]"),
-            key("body", Values::Size, "Its outer length and width.")
+            key("body", SIZE, "Its outer length and width.")
                 .default("`[0.30, 0.30]` with two wheels, `[0.36, 0.30]` with four")
                 .example("[0.5, 0.4]"),
-            key("track", Values::AboveZero, "How far its left and right wheels are apart.")
+            key("track", Values::ABOVE_ZERO, "The distance between its left and right wheels.")
                 .default("`0.30`")
                 .example("0.35"),
-            key("wheelbase", Values::AboveZero, "How far its front and rear wheels are apart.")
+            key("wheelbase", Values::ABOVE_ZERO, "The distance between its front and rear wheels.")
                 .default("`0.25`")
                 .example("0.2"),
             key(
                 "grip",
-                Values::Share,
-                "What wheels hold across the direction they drive in, as a share of what they hold along it. Four wheels \
-                 with grip scrub in turns: the robot turns less than they do. Mecanum wheels with grip, whose rollers \
-                 drag, lose speed sideways.",
+                SHARE,
+                "The lateral friction of wheels, as a share of that along their rolling direction. Four wheels with \
+                 grip scrub in turns: the robot turns less than they do. Mecanum wheels with grip, whose rollers drag, \
+                 lose speed sideways.",
             )
-            .default("`1`, of mecanum wheels `0.05`")
+            .default("`1`, for mecanum wheels `0.05`")
             .example("0.5"),
-            key("rim-speed", Values::AboveZero, "The most its motors can do, at the wheels' rims, per second.")
-                .default("without end")
+            key("rim-speed", Values::ABOVE_ZERO, "The maximum speed of its wheels' rims, per second.")
+                .default("unlimited")
                 .example("0.4"),
             key(
                 "rim-acceleration",
-                Values::AboveZero,
-                "How fast its motors can change the speed of the wheels' rims, per second squared.",
+                Values::ABOVE_ZERO,
+                "The maximum acceleration of its wheels' rims, per second squared.",
             )
             .default("`1.0`")
             .example("0.7"),
@@ -277,25 +138,52 @@ pub const TABLES: [Table; 8] = [
     },
     Table {
         name: "robots.NAME.sensors.NAME",
-        sort: Sort::Sensor,
-        summary: "A proximity sensor of a robot. One that is not placed sits where its name says: f… ahead, l… left, \
-                  r… right, b… behind, any other one somewhere in front.",
+        kind: TableKind::Named { owner: "robot", noun: "sensor" },
+        summary: "A proximity sensor of a robot. Its default position depends on the first letter of its name: f… ahead, \
+                  l… left, r… right, b… behind, any other in the front half.",
         keys: &[
-            key("at", Values::Point, "Where it sits, ahead and to the left of the robot's middle.")
+            key("at", POINT, "Its position, ahead and to the left of the robot's middle.")
                 .default("by its name")
                 .example("[0.1, 0.05]"),
-            key("bearing", Values::Angle, "Where it looks: 0 is ahead, 90 left.")
+            key("bearing", ANGLE, "The direction it faces: 0 is ahead, 90 left.")
                 .default("by its name")
                 .example("-45"),
-            key("range", Values::AboveZero, "How far it sees.")
-                .default("`1.0`, of a bumper `0.05`")
+            key("range", Values::ABOVE_ZERO, "The greatest distance it measures.")
+                .default("`1.0`, for a bumper `0.05`")
                 .example("2.5"),
-            key("cone", Values::Opening, "How wide it looks.").default("`20`").example("30"),
+            key("cone", OPENING, "The opening angle of its cone.").default("`20`").example("30"),
         ],
     },
 ];
 
-/// The tables of obstacles, which stand any number of times.
-pub(crate) fn find(name: &str) -> Option<&'static Table> {
-    TABLES.iter().find(|table| table.name == name)
+const NAME: Key = key("name", TEXT, "Its name in messages and for clients of the remote API.")
+    .default("the table's name and a number: `box_1`")
+    .example("\"crate\"");
+
+const AT: Key = key("at", POINT, "Its middle.").required().example("[1.0, 0.5]");
+
+const HEADING: Key =
+    key("heading", ANGLE, "Its rotation about its middle, counter-clockwise.").default("`0`").example("30");
+
+const COUNT: Values = Values::Number(
+    "a whole number from 0",
+    Range { max: 4_294_967_295.0, is_whole: true, ..Range::FROM_ZERO },
+);
+const FROM_ZERO: Values = Values::Number("a number from 0", Range::FROM_ZERO);
+const SHARE: Values = Values::Number("a number from 0 to 1", Range { max: 1.0, ..Range::FROM_ZERO });
+const ANGLE: Values = Values::Number("an angle in degrees", Range::ANY);
+const OPENING: Values =
+    Values::Number("an angle above 0 and up to 180 degrees", Range { max: 180.0, ..Range::ABOVE_ZERO });
+const POINT: Values = Values::Numbers("a point `[x, y]`", Range::ANY, (2, 2));
+const SIZE: Values = Values::Numbers("a size `[length, width]`, both above zero", Range::ABOVE_ZERO, (2, 2));
+const POSE: Values = Values::Numbers("a pose `[x, y, heading]`", Range::ANY, (2, 3));
+const POINTS: Values = Values::Points("a list of at least three points `[x, y]`", 3);
+const TEXT: Values = Values::Text("a string", r"^[^/]*\S[^/]*$", name);
+
+/// Clients of the remote API address objects by paths with `/`.
+fn name(text: &str) -> Result<String, Refusal> {
+    if text.trim().is_empty() || text.contains('/') || text.chars().any(char::is_control) {
+        return Err("must not be empty, and must not contain `/` or line breaks".to_owned().into());
+    }
+    Ok(text.to_owned())
 }

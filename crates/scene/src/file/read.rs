@@ -1,405 +1,205 @@
 //! From the text of a scene file to a scene.
 
-use pydslrep_kinematics::{Drive, Pose};
-use pydslrep_schema::{Entry, Node, Problem, ProblemKind, Span, Value, as_key, closest, did_you_mean, parse};
+use pydslrep_kinematics::Pose;
+use pydslrep_schema::{Contents, Names, Problem, ProblemKind, Section, Span};
 
-use super::keys::{Key, Sort, TABLES, Table, Values, find};
-use crate::{Body, Noise, Obstacle, Robot, Scene, SensorKind, Shape, Thing, defaults, mounts_by_name, space};
+use super::keys::SCHEMA;
+use crate::{Body, Noise, Obstacle, Robot, Scene, Shape, Thing, defaults, mounts_by_name, space};
 
-/// Nothing is further away or longer, metres: what is, was meant in another unit.
-const FURTHEST: f64 = 1e6;
-
-/// Reads a scene file for robots on an empty floor. What is fine holds, whatever else is not; of a text that is no
-/// TOML, nothing does. Problems are in the order of the text. With a scene, things are in each other's way.
+/// Reads a scene file for robots on an empty floor. What is wrong is left out; if the text is not TOML, everything.
+/// Problems are in the order of the text. In a scene, robots are stopped by what they touch.
 pub fn read(text: &str, floor: Scene) -> (Scene, Vec<Problem>) {
     let floor = Scene { collisions: true, ..floor };
-    let mut reader = Reader { scene: floor, problems: Vec::new(), starts: Vec::new() };
-    match parse(text, "key") {
-        Err(problem) => return (reader.scene, vec![problem]),
-        Ok(entries) => reader.all(&entries),
+    match SCHEMA.read(text, Some(&names(&floor))) {
+        Err(problem) => (floor, vec![problem]),
+        Ok(contents) => {
+            let mut reader = Reader::new(floor, contents);
+            reader.check_starts();
+            reader.finish()
+        }
     }
-    reader.starts_in_something();
-    let Reader { scene, mut problems, .. } = reader;
-    problems.sort_by_key(|problem| problem.span.map(|span| span.start));
-    (scene, problems)
 }
 
-/// What is wrong with a scene file as long as the program is not known: every name is that of a robot or a sensor, and
-/// nobody knows where robots start.
+/// What is wrong with a scene file as long as its program is not known: any name can be that of a robot or a sensor, and
+/// the positions of robots are unspecified.
 pub fn problems(text: &str) -> Vec<Problem> {
-    let entries = match parse(text, "key") {
-        Err(problem) => return vec![problem],
-        Ok(entries) => entries,
-    };
-    let robots = inside(&entries, "robots").iter().map(|robot| {
-        let Value::Table(own) = &robot.node.value else { return named(robot, &[]) };
-        named(robot, inside(own, "sensors"))
-    });
-    let scene = Scene { robots: robots.collect(), ..Scene::default() };
-    let mut reader = Reader { scene, problems: Vec::new(), starts: Vec::new() };
-    reader.all(&entries);
-    reader.problems.sort_by_key(|problem| problem.span.map(|span| span.start));
-    reader.problems
-}
-
-/// What is in a table of this name; nothing where there is none.
-fn inside<'a>(entries: &'a [Entry], name: &str) -> &'a [Entry] {
-    match entries.iter().find(|entry| entry.key == name).map(|entry| &entry.node.value) {
-        Some(Value::Table(inner)) => inner,
-        _ => &[],
+    match SCHEMA.read(text, None) {
+        Err(problem) => vec![problem],
+        Ok(contents) => Reader::new(Scene::default(), contents).finish().1,
     }
 }
 
-/// A robot with the names that a file gives it and its sensors.
-fn named(robot: &Entry, sensors: &[Entry]) -> Robot {
-    let sensors = sensors.iter().map(|sensor| (sensor.key.clone(), SensorKind::Distance));
-    Robot::new(&robot.key, Drive::TwoWheel, Vec::new(), sensors.collect())
+fn names(scene: &Scene) -> Names {
+    let robot = |robot: &Robot| {
+        let sensors = robot.sensors.iter().map(|sensor| (sensor.name.clone(), Names::default()));
+        (robot.name.clone(), Names(sensors.collect()))
+    };
+    Names(scene.robots.iter().map(robot).collect())
 }
 
 struct Reader {
     scene: Scene,
     problems: Vec<Problem>,
-    /// Where the start of each robot is said, or at least something about it.
+    /// For robots in the file, where their start is set, or else their name.
     starts: Vec<(usize, Option<Span>)>,
 }
 
-/// A value that its key can have.
-enum Given {
-    Flag(bool),
-    Number(f64),
-    Text(String),
-    Points(Vec<(f64, f64)>),
-    Pose(Pose),
-}
-
-/// What a table sets.
-struct Fields {
-    given: Vec<(&'static str, Given, Option<Span>)>,
-    is_complete: bool,
-}
-
-impl Fields {
-    fn get(&self, name: &str) -> Option<&Given> {
-        self.given.iter().find(|(key, _, _)| *key == name).map(|(_, given, _)| given)
-    }
-
-    fn span(&self, name: &str) -> Option<Span> {
-        self.given.iter().find(|(key, _, _)| *key == name).and_then(|(_, _, span)| *span)
-    }
-
-    fn flag(&self, name: &str) -> Option<bool> {
-        if let Given::Flag(flag) = self.get(name)? { Some(*flag) } else { None }
-    }
-
-    fn number(&self, name: &str) -> Option<f64> {
-        if let Given::Number(number) = self.get(name)? { Some(*number) } else { None }
-    }
-
-    fn points(&self, name: &str) -> Option<&[(f64, f64)]> {
-        if let Given::Points(points) = self.get(name)? { Some(points) } else { None }
-    }
-
-    /// A point, or a pair of lengths.
-    fn pair(&self, name: &str) -> Option<(f64, f64)> {
-        self.points(name)?.first().copied()
-    }
-
-    fn body(&self, name: &str) -> Option<Body> {
-        self.pair(name).map(|(length, width)| Body { length, width })
-    }
-
-    fn radians(&self, name: &str) -> Option<f64> {
-        self.number(name).map(f64::to_radians)
-    }
-
-    fn pose(&self, name: &str) -> Option<Pose> {
-        if let Given::Pose(pose) = self.get(name)? { Some(*pose) } else { None }
-    }
-
-    /// A table that only makes sense with all of its keys.
-    fn if_complete(&self) -> Option<&Self> {
-        self.is_complete.then_some(self)
-    }
-}
-
 impl Reader {
-    fn all(&mut self, entries: &[Entry]) {
-        for entry in entries {
-            match (entry.key.as_str(), &entry.node.value) {
-                ("robots", Value::Table(robots)) => self.robots(robots),
-                ("robots", _) => self.refuse("robots", &entry.node, "must be a table: `[robots.NAME]`", None),
-                (name, value) => match (find(name), value) {
-                    (None, _) => self.unknown_table(entry),
-                    (Some(table), Value::Table(entries)) if table.sort == Sort::Once => {
-                        let fields = self.fields(table, name, &entry.node, entries);
-                        self.take_once(name, &fields);
-                    }
-                    (Some(table), Value::List(nodes)) if table.sort == Sort::Each => {
-                        for (index, node) in nodes.iter().enumerate() {
-                            self.each(table, index, node);
-                        }
-                    }
-                    (Some(table), _) => {
-                        let header = match table.sort {
-                            Sort::Each => format!("begin each one by `[[{name}]]`"),
-                            _ => format!("begin it by `[{name}]`"),
-                        };
-                        self.refuse(name, &entry.node, "must be a table", Some(header));
-                    }
-                },
-            }
+    fn new(scene: Scene, contents: Contents) -> Self {
+        let mut reader = Self { scene, problems: contents.problems, starts: Vec::new() };
+        for section in &contents.sections {
+            reader.section(section);
+        }
+        reader
+    }
+
+    fn finish(self) -> (Scene, Vec<Problem>) {
+        let Self { scene, mut problems, .. } = self;
+        problems.sort_by_key(|problem| problem.span.map(|span| span.start));
+        (scene, problems)
+    }
+
+    fn section(&mut self, section: &Section) {
+        let robot = section.names.first();
+        let robot = robot.and_then(|name| self.scene.robots.iter().position(|robot| robot.name == *name));
+        match (section.table.name, robot) {
+            ("world", _) => self.world(section),
+            ("noise", _) => self.noise(section),
+            ("robots.NAME", Some(robot)) => self.robot(robot, section),
+            ("robots.NAME.sensors.NAME", Some(robot)) => self.sensor(robot, section),
+            ("robots.NAME" | "robots.NAME.sensors.NAME", None) => {}
+            _ => self.obstacle(section),
         }
     }
 
-    fn take_once(&mut self, name: &str, fields: &Fields) {
-        if name == "noise" {
-            let usual = Noise::default();
-            self.scene.noise = Some(Noise {
-                wheel_slip: fields.number("wheel-slip").map_or(usual.wheel_slip, |percent| percent / 100.0),
-                sensor: fields.number("sensor").unwrap_or(usual.sensor),
-            });
-            return;
-        }
-        self.scene.collisions = fields.flag("collisions").unwrap_or(self.scene.collisions);
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // it was checked to be a count
-        let seed = fields.number("seed").map(|seed| seed as u64);
+    fn world(&mut self, section: &Section) {
+        self.scene.collisions = section.flag("collisions").unwrap_or(self.scene.collisions);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // the reader lets only counts pass
+        let seed = section.number("seed").map(|seed| seed as u64);
         self.scene.seed = seed.unwrap_or(self.scene.seed);
-        if let (Some((x, y)), true) = (fields.pair("size"), fields.flag("walls").unwrap_or(true)) {
-            let corner = fields.pair("corner").unwrap_or((-x / 2.0, -y / 2.0));
+        if let (Some((x, y)), true) = (section.pair("size"), section.flag("walls").unwrap_or(true)) {
+            let corner = section.pair("corner").unwrap_or((-x / 2.0, -y / 2.0));
             let walls = walls_around(corner, (corner.0 + x, corner.1 + y));
-            // Before those that the file names, wherever it says how large the floor is.
+            // Before those of the file, wherever in it the size is.
             self.scene.obstacles.splice(0..0, walls);
         }
     }
 
-    fn each(&mut self, table: &'static Table, index: usize, node: &Node) {
-        let Value::Table(entries) = &node.value else {
-            let help = format!("begin each one by `[[{}]]`", table.name);
-            return self.refuse(table.name, node, "must be a table", Some(help));
-        };
-        let fields = self.fields(table, table.name, node, entries);
-        let name = match fields.get("name") {
-            Some(Given::Text(name)) => name.clone(),
-            _ => format!("{}_{}", table.name, index + 1),
-        };
-        let obstacle = fields.if_complete().and_then(|fields| obstacle(table.name, name, fields));
-        let Some(obstacle) = obstacle else { return };
+    fn noise(&mut self, section: &Section) {
+        let usual = Noise::default();
+        self.scene.noise = Some(Noise {
+            wheel_slip: section.number("wheel-slip").map_or(usual.wheel_slip, |percent| percent / 100.0),
+            sensor: section.number("sensor").unwrap_or(usual.sensor),
+        });
+    }
+
+    fn obstacle(&mut self, section: &Section) {
+        let number = || format!("{}_{}", section.table.name, section.index + 1);
+        let name = section.text("name").map_or_else(number, str::to_owned);
+        let whole = Some(section).filter(|section| section.is_complete);
+        let Some(obstacle) = whole.and_then(|section| obstacle(name, section)) else { return };
         match &obstacle.shape {
-            Shape::Polygon(corners) if space::triangles(corners).is_empty() => self.problems.push(Problem {
-                kind: ProblemKind::InvalidValue,
-                key: "polygon.corners".to_owned(),
-                span: fields.span("corners"),
-                message: "the outline of the polygon crosses itself or has no area".to_owned(),
-                help: Some(
-                    "list the corners in the order in which one meets them walking around it".to_owned(),
-                ),
-                replacement: None,
-            }),
+            Shape::Polygon(corners) if space::triangles(corners).is_empty() => {
+                let message = "the outline of the polygon crosses itself or has no area";
+                let help = "list the corners in their order around the outline";
+                self.problems.push(refusal(section, "corners", message).help(help));
+            }
             Shape::Box(body) if body.length == 0.0 => {
-                self.refuse_span("wall.to", fields.span("to"), "is where the wall begins", None);
+                self.problems.push(refusal(section, "to", "`wall.to` is where the wall begins"));
             }
             _ => self.scene.obstacles.push(obstacle),
         }
     }
 
-    fn robots(&mut self, entries: &[Entry]) {
-        for entry in entries {
-            let found = self.scene.robots.iter().position(|robot| robot.name == entry.key);
-            let Some(index) = found else {
-                let names = self.scene.robots.iter().map(|robot| robot.name.as_str());
-                let problem = unknown_name(
-                    "the environment has no robot",
-                    "its robots are",
-                    entry,
-                    &names.collect::<Vec<_>>(),
-                );
-                self.problems.push(problem);
-                continue;
-            };
-            match &entry.node.value {
-                Value::Table(entries) => self.robot(index, entry, entries),
-                _ => self.refuse(&entry.key, &entry.node, "must be a table", None),
-            }
-        }
-    }
-
-    fn robot(&mut self, index: usize, entry: &Entry, entries: &[Entry]) {
-        let (sensors, own): (Vec<&Entry>, Vec<&Entry>) =
-            entries.iter().partition(|entry| entry.key == "sensors");
-        let written = format!("robots.{}", entry.key);
-        let Some(table) = find("robots.NAME") else { return };
-        let fields = self.fields_of(table, &written, &entry.node, own.into_iter());
-        self.starts.push((index, fields.span("start").or(entry.key_span)));
+    fn robot(&mut self, index: usize, section: &Section) {
+        self.starts.push((index, section.span("start").or(section.name_span)));
         let robot = &mut self.scene.robots[index];
-        robot.start = fields.pose("start").unwrap_or(robot.start);
-        robot.geometry.track = fields.number("track").unwrap_or(robot.geometry.track);
-        robot.geometry.wheelbase = fields.number("wheelbase").unwrap_or(robot.geometry.wheelbase);
-        robot.grip = fields.number("grip").unwrap_or(robot.grip);
-        robot.motor_speed = fields.number("rim-speed").unwrap_or(robot.motor_speed);
-        robot.motor_acceleration = fields.number("rim-acceleration").unwrap_or(robot.motor_acceleration);
-        if let Some(body) = fields.body("body") {
+        match section.numbers("start").as_deref() {
+            Some([x, y]) => robot.start = Pose::new(*x, *y, 0.0),
+            Some([x, y, heading]) => robot.start = Pose::new(*x, *y, heading.to_radians()),
+            _ => {}
+        }
+        robot.geometry.track = section.number("track").unwrap_or(robot.geometry.track);
+        robot.geometry.wheelbase = section.number("wheelbase").unwrap_or(robot.geometry.wheelbase);
+        robot.lateral_friction = section.number("grip").unwrap_or(robot.lateral_friction);
+        robot.motor_speed = section.number("rim-speed").unwrap_or(robot.motor_speed);
+        robot.motor_acceleration = section.number("rim-acceleration").unwrap_or(robot.motor_acceleration);
+        if let Some(body) = body(section, "body") {
             robot.body = body;
-            place_by_name(robot);
-        }
-        for sensors in sensors {
-            let Value::Table(entries) = &sensors.node.value else {
-                self.refuse(&written, &sensors.node, "has sensors in a table", None);
-                continue;
-            };
-            for entry in entries {
-                self.sensor(index, &written, entry);
-            }
+            mount_by_name(robot);
         }
     }
 
-    fn sensor(&mut self, robot: usize, robot_written: &str, entry: &Entry) {
-        let sensors = &self.scene.robots[robot].sensors;
-        let Some(index) = sensors.iter().position(|sensor| sensor.name == entry.key) else {
-            let names: Vec<&str> = sensors.iter().map(|sensor| sensor.name.as_str()).collect();
-            let what = format!("robot `{}` has no sensor", self.scene.robots[robot].name);
-            let problem = unknown_name(&what, "its sensors are", entry, &names);
-            return self.problems.push(problem);
-        };
-        let written = format!("{robot_written}.sensors.{}", entry.key);
-        let (Value::Table(entries), Some(table)) = (&entry.node.value, find("robots.NAME.sensors.NAME"))
-        else {
-            return self.refuse(&written, &entry.node, "must be a table", None);
-        };
-        let fields = self.fields(table, &written, &entry.node, entries);
-        let mount = &mut self.scene.robots[robot].sensors[index].mount;
-        (mount.pose.x, mount.pose.y) = fields.pair("at").unwrap_or((mount.pose.x, mount.pose.y));
-        mount.pose.theta = fields.radians("bearing").unwrap_or(mount.pose.theta);
-        mount.range = fields.number("range").unwrap_or(mount.range);
-        mount.cone = fields.radians("cone").unwrap_or(mount.cone);
+    fn sensor(&mut self, robot: usize, section: &Section) {
+        let name = section.names.last();
+        let sensors = &mut self.scene.robots[robot].sensors;
+        let Some(sensor) = sensors.iter_mut().find(|sensor| Some(&sensor.name) == name) else { return };
+        let mount = &mut sensor.mount;
+        (mount.pose.x, mount.pose.y) = section.pair("at").unwrap_or((mount.pose.x, mount.pose.y));
+        mount.pose.theta = radians(section, "bearing").unwrap_or(mount.pose.theta);
+        mount.range = section.number("range").unwrap_or(mount.range);
+        mount.cone = radians(section, "cone").unwrap_or(mount.cone);
     }
 
-    fn fields(&mut self, table: &'static Table, written: &str, node: &Node, entries: &[Entry]) -> Fields {
-        self.fields_of(table, written, node, entries.iter())
-    }
-
-    fn fields_of<'a>(
-        &mut self,
-        table: &'static Table,
-        written: &str,
-        node: &Node,
-        entries: impl Iterator<Item = &'a Entry>,
-    ) -> Fields {
-        let mut fields = Fields { given: Vec::new(), is_complete: true };
-        let mut wrong = Vec::new();
-        for entry in entries {
-            let Some(key) = table.keys.iter().find(|key| key.name == entry.key) else {
-                self.problems.push(unknown_key(table, written, entry));
-                continue;
-            };
-            match given(key, &entry.node) {
-                Ok(given) => fields.given.push((key.name, given, entry.node.span)),
-                Err((message, help)) => {
-                    wrong.push(key.name);
-                    self.refuse(&format!("{written}.{}", key.name), &entry.node, &message, Some(help));
-                }
-            }
-        }
-        let is_missing = |key: &&Key| key.required && fields.get(key.name).is_none();
-        let missing: Vec<&Key> = table.keys.iter().filter(is_missing).collect();
-        fields.is_complete = missing.is_empty();
-        for key in missing {
-            if !wrong.contains(&key.name) {
-                self.problems.push(Problem {
-                    kind: ProblemKind::MissingKey,
-                    key: written.to_owned(),
-                    span: node.span,
-                    message: format!("`{}` is missing in this `{written}`", key.name),
-                    help: Some(format!("write for example `{} = {}`", key.name, key.example)),
-                    replacement: None,
-                });
-            }
-        }
-        fields
-    }
-
-    fn refuse(&mut self, written: &str, node: &Node, message: &str, help: Option<String>) {
-        self.refuse_span(written, node.span, message, help);
-    }
-
-    fn refuse_span(&mut self, written: &str, span: Option<Span>, message: &str, help: Option<String>) {
-        self.problems.push(Problem {
-            kind: ProblemKind::InvalidValue,
-            key: written.to_owned(),
-            span,
-            message: format!("`{written}` {message}"),
-            help,
-            replacement: None,
-        });
-    }
-
-    fn unknown_table(&mut self, entry: &Entry) {
-        let mut tops: Vec<&str> = TABLES.iter().filter_map(|table| table.name.split('.').next()).collect();
-        tops.dedup();
-        let near = closest(&entry.key, tops.iter().copied());
-        let home = TABLES.iter().find(|table| table.keys.iter().any(|key| key.name == entry.key));
-        let help = match (near, home) {
-            (Some(near), _) => did_you_mean(near),
-            (None, Some(home)) => format!("it belongs into the table `{}`", home.name),
-            (None, None) => format!("a scene has {}", tops.join(", ")),
-        };
-        self.problems.push(Problem {
-            kind: ProblemKind::UnknownKey,
-            key: entry.key.clone(),
-            span: entry.key_span,
-            message: format!("there is nothing called `{}` in a scene", entry.key),
-            help: Some(help),
-            replacement: near.map(str::to_owned),
-        });
-    }
-
-    /// Robots that stand in something when they start could never leave it.
-    fn starts_in_something(&mut self) {
+    /// Robots that touch something at their start could never leave it.
+    fn check_starts(&mut self) {
         if !self.scene.collisions {
             return;
         }
         for (robot, thing) in self.scene.overlaps() {
-            let said = |robot: usize| self.starts.iter().find(|(index, _)| *index == robot);
+            let start = |robot: usize| self.starts.iter().find(|(index, _)| *index == robot);
             let (what, other) = match thing {
                 Thing::Obstacle(index) => (&self.scene.obstacles[index].name, None),
-                Thing::Robot(index) => (&self.scene.robots[index].name, said(index)),
+                Thing::Robot(index) => (&self.scene.robots[index].name, start(index)),
             };
             let name = &self.scene.robots[robot].name;
-            self.problems.push(Problem {
-                kind: ProblemKind::InvalidValue,
-                key: format!("robots.{name}.start"),
-                span: said(robot).or(other).and_then(|(_, span)| *span),
-                message: format!("robot `{name}` starts in `{what}`"),
-                help: Some(format!("move it: `start = [x, y, heading]` in `[robots.{name}]`")),
-                replacement: None,
-            });
+            let span = start(robot).or(other).and_then(|(_, span)| *span);
+            let message = format!("robot `{name}` starts in `{what}`");
+            let problem =
+                Problem::new(ProblemKind::InvalidValue, format!("robots.{name}.start"), span, message);
+            let help = format!("move it: `start = [x, y, heading]` in `[robots.{name}]`");
+            self.problems.push(problem.help(help));
         }
     }
 }
 
-/// Sensors back to where their names put them on the robot's body.
-fn place_by_name(robot: &mut Robot) {
+fn refusal(section: &Section, key: &str, message: &str) -> Problem {
+    let name = format!("{}.{key}", section.written);
+    Problem::new(ProblemKind::InvalidValue, name, section.span(key), message.to_owned())
+}
+
+fn radians(section: &Section, key: &str) -> Option<f64> {
+    section.number(key).map(f64::to_radians)
+}
+
+fn body(section: &Section, key: &str) -> Option<Body> {
+    section.pair(key).map(|(length, width)| Body { length, width })
+}
+
+/// Moves sensors back to the default positions for their names.
+fn mount_by_name(robot: &mut Robot) {
     let named: Vec<_> = robot.sensors.iter().map(|sensor| (sensor.name.clone(), sensor.kind)).collect();
     for (sensor, mount) in robot.sensors.iter_mut().zip(mounts_by_name(&named, robot.body)) {
         sensor.mount.pose = mount.pose;
     }
 }
 
-fn obstacle(table: &str, name: String, fields: &Fields) -> Option<Obstacle> {
-    if table == "wall" {
-        let thickness = fields.number("thickness").unwrap_or(defaults::WALL_THICKNESS);
-        return Some(Obstacle::wall(name, fields.pair("from")?, fields.pair("to")?, thickness));
+fn obstacle(name: String, section: &Section) -> Option<Obstacle> {
+    if section.table.name == "wall" {
+        let thickness = section.number("thickness").unwrap_or(defaults::WALL_THICKNESS);
+        return Some(Obstacle::wall(name, section.pair("from")?, section.pair("to")?, thickness));
     }
-    let (x, y) = fields.pair("at").unwrap_or_default();
-    let pose = Pose::new(x, y, fields.radians("heading").unwrap_or_default());
-    let shape = match table {
-        "box" => Shape::Box(fields.body("size")?),
-        "cylinder" => Shape::Cylinder { radius: fields.number("radius")? },
-        _ => Shape::Polygon(fields.points("corners")?.to_vec()),
+    let (x, y) = section.pair("at").unwrap_or_default();
+    let pose = Pose::new(x, y, radians(section, "heading").unwrap_or_default());
+    let shape = match section.table.name {
+        "box" => Shape::Box(body(section, "size")?),
+        "cylinder" => Shape::Cylinder { radius: section.number("radius")? },
+        _ => Shape::Polygon(section.points("corners")?),
     };
     Some(Obstacle { name, pose, shape })
 }
 
-/// Walls that stand outside of a rectangle, with no gap at its corners.
+/// Walls around a rectangle, outside of it and without gaps at its corners.
 fn walls_around((left, bottom): (f64, f64), (right, top): (f64, f64)) -> [Obstacle; 4] {
     let thickness = defaults::WALL_THICKNESS;
     let off = thickness / 2.0;
@@ -413,113 +213,12 @@ fn walls_around((left, bottom): (f64, f64), (right, top): (f64, f64)) -> [Obstac
     ]
 }
 
-/// The value of a key; else what is wrong, to stand behind the key, and what to do.
-fn given(key: &Key, node: &Node) -> Result<Given, (String, String)> {
-    let refuse = |message: String| Err((message, format!("write for example `{}`", key.example)));
-    let expected = || format!("must be {}, not {}", key.values.words(), node.value.sort());
-    let limits = || format!("must be {}", key.values.words());
-    let numbers = |node: &Node| -> Option<Vec<f64>> {
-        let Value::List(nodes) = &node.value else { return None };
-        nodes
-            .iter()
-            .map(|node| if let Value::Number(number) = node.value { Some(number) } else { None })
-            .collect()
-    };
-    let is_far = |number: &f64| number.is_nan() || number.abs() > FURTHEST;
-    let far = || format!("is beyond {} km, or no number", FURTHEST / 1000.0);
-    match (key.values, &node.value) {
-        (Values::Flag, Value::Flag(flag)) => Ok(Given::Flag(*flag)),
-        (Values::Name, Value::Text(text)) => {
-            let is_name =
-                !text.trim().is_empty() && !text.contains('/') && !text.chars().any(char::is_control);
-            if is_name {
-                Ok(Given::Text(text.clone()))
-            } else {
-                refuse("must have letters in it, and neither `/` nor line ends".to_owned())
-            }
-        }
-        (Values::Count, Value::Number(number)) => {
-            let is_count = number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(number);
-            if is_count { Ok(Given::Number(*number)) } else { refuse(limits()) }
-        }
-        (
-            Values::AboveZero | Values::FromZero | Values::Share | Values::Angle | Values::Opening,
-            Value::Number(number),
-        ) => {
-            if is_far(number) {
-                return refuse(far());
-            }
-            let fits = match key.values {
-                Values::AboveZero => *number > 0.0,
-                Values::FromZero => *number >= 0.0,
-                Values::Share => (0.0..=1.0).contains(number),
-                Values::Opening => *number > 0.0 && *number <= 180.0,
-                _ => true,
-            };
-            if fits { Ok(Given::Number(*number)) } else { refuse(limits()) }
-        }
-        (Values::Point | Values::Size | Values::Pose, Value::List(_)) => match numbers(node).as_deref() {
-            Some(list) if list.iter().any(is_far) => refuse(far()),
-            Some([x, y]) if key.values == Values::Pose => Ok(Given::Pose(Pose::new(*x, *y, 0.0))),
-            Some([x, y, heading]) if key.values == Values::Pose => {
-                Ok(Given::Pose(Pose::new(*x, *y, heading.to_radians())))
-            }
-            Some([x, y]) if key.values == Values::Point || (*x > 0.0 && *y > 0.0) => {
-                Ok(Given::Points(vec![(*x, *y)]))
-            }
-            _ => refuse(limits()),
-        },
-        (Values::Points, Value::List(nodes)) => {
-            let point = |node: &Node| match numbers(node).as_deref() {
-                Some([x, y]) => Some((*x, *y)),
-                _ => None,
-            };
-            match nodes.iter().map(point).collect::<Option<Vec<_>>>() {
-                Some(points) if points.iter().any(|(x, y)| is_far(x) || is_far(y)) => refuse(far()),
-                Some(points) if points.len() >= 3 => Ok(Given::Points(points)),
-                _ => refuse(limits()),
-            }
-        }
-        _ => refuse(expected()),
-    }
-}
-
-fn unknown_key(table: &Table, written: &str, entry: &Entry) -> Problem {
-    let keys = || table.keys.iter().map(|key| key.name);
-    let near = closest(&entry.key, keys());
-    let listed = keys().collect::<Vec<_>>().join(", ");
-    Problem {
-        kind: ProblemKind::UnknownKey,
-        key: format!("{written}.{}", entry.key),
-        span: entry.key_span,
-        message: format!("there is no key `{}` in `{written}`", entry.key),
-        help: Some(near.map_or_else(|| format!("the keys here are {listed}"), did_you_mean)),
-        replacement: near.map(str::to_owned),
-    }
-}
-
-fn unknown_name(what: &str, they_are: &str, entry: &Entry, names: &[&str]) -> Problem {
-    let near = closest(&entry.key, names.iter().copied());
-    let help = match near {
-        Some(near) => did_you_mean(near),
-        None if names.is_empty() => "it has none".to_owned(),
-        None => format!("{they_are} {}", names.join(", ")),
-    };
-    Problem {
-        kind: ProblemKind::UnknownName,
-        key: entry.key.clone(),
-        span: entry.key_span,
-        message: format!("{what} `{}`", entry.key),
-        help: Some(help),
-        replacement: near.map(as_key),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use expect_test::{Expect, expect};
     use proptest::prelude::*;
     use pydslrep_kinematics::Drive;
+    use pydslrep_schema::Key;
 
     use super::*;
     use crate::{SensorKind, Wheel};
@@ -576,13 +275,13 @@ mod tests {
             "[wrld]\n[[boxs]]\nat = [0, 0]\n[world]\nsise = [1, 2]\nx = 1\nseed = 3\n[robots.robt_1]\n[robots.x]\n\
              [robots.robot_1.sensors.fSenso]\n[robots.robot_1]\nstrat = [0, 1]\n[robots.robot_2.sensors.q]\n",
             &expect![[r#"
-                unknown-key `wrld`: there is nothing called `wrld` in a scene
+                unknown-key `wrld`: there is no key `wrld`
                   help: did you mean `world`?
-                unknown-key `boxs`: there is nothing called `boxs` in a scene
+                unknown-key `boxs`: there is no key `boxs`
                   help: did you mean `box`?
-                unknown-key `sise`: there is no key `sise` in `world`
+                unknown-key `sise`: there is no key `world.sise`
                   help: did you mean `size`?
-                unknown-key `x`: there is no key `x` in `world`
+                unknown-key `x`: there is no key `world.x`
                   help: the keys here are size, corner, walls, collisions, seed
                 unknown-name `robt_1`: the environment has no robot `robt_1`
                   help: did you mean `robot_1`?
@@ -590,7 +289,7 @@ mod tests {
                   help: its robots are robot_1, robot_2
                 unknown-name `fSenso`: robot `robot_1` has no sensor `fSenso`
                   help: did you mean `fSensor`?
-                unknown-key `strat`: there is no key `strat` in `robots.robot_1`
+                unknown-key `strat`: there is no key `robots.robot_1.strat`
                   help: did you mean `start`?
                 unknown-name `q`: robot `robot_2` has no sensor `q`
                   help: its sensors are fSensor, lSensor
@@ -608,36 +307,36 @@ mod tests {
              [robots.robot_1]\nstart = [nan, 0]\ntrack = 1e9\nbody = [1, -1]\n\
              [robots.robot_1.sensors.fSensor]\ncone = 400\n",
             &expect![[r#"
-                invalid-value `1`: `world` must be a table
-                  help: begin it by `[world]`
-                invalid-value `true`: `noise` must be a table
-                  help: begin it by `[noise]`
-                invalid-value `4`: `wall` must be a table
-                  help: begin each one by `[[wall]]`
-                invalid-value `[box]`: `box` must be a table
-                  help: begin each one by `[[box]]`
+                invalid-value `1`: `world` must be a table, not a number
+                  help: begin it with `[world]`
+                invalid-value `true`: `noise` must be a table, not a boolean
+                  help: begin it with `[noise]`
+                invalid-value `4`: `wall` must be a list of tables, not a number
+                  help: begin it with `[[wall]]`
+                invalid-value `[box]`: `box` must be a list of tables, not a table
+                  help: begin it with `[[box]]`
                 invalid-value `[1]`: `cylinder.at` must be a point `[x, y]`
-                  help: write for example `[1.0, 0.5]`
+                  help: write, for example, `[1.0, 0.5]`
                 invalid-value `0`: `cylinder.radius` must be a number above zero
-                  help: write for example `0.25`
-                invalid-value `"1 m"`: `cylinder.radius` must be a number above zero, not a text
-                  help: write for example `0.25`
+                  help: write, for example, `0.25`
+                invalid-value `"1 m"`: `cylinder.radius` must be a number above zero, not a string
+                  help: write, for example, `0.25`
                 missing-key `[[cylinder]]`: `at` is missing in this `cylinder`
-                  help: write for example `at = [1.0, 0.5]`
+                  help: write, for example, `at = [1.0, 0.5]`
                 missing-key `[[cylinder]]`: `radius` is missing in this `cylinder`
-                  help: write for example `radius = 0.25`
+                  help: write, for example, `radius = 0.25`
                 invalid-value `[[0, 5], [1, 6], [1, 5], [0, 6]]`: the outline of the polygon crosses itself or has no area
-                  help: list the corners in the order in which one meets them walking around it
+                  help: list the corners in their order around the outline
                 invalid-value `[[0, 0], [1, 1]]`: `polygon.corners` must be a list of at least three points `[x, y]`
-                  help: write for example `[[0.0, 1.0], [1.0, 1.0], [0.2, 2.0]]`
-                invalid-value `[nan, 0]`: `robots.robot_1.start` is beyond 1000 km, or no number
-                  help: write for example `[0.5, -0.5, 90]`
-                invalid-value `1e9`: `robots.robot_1.track` is beyond 1000 km, or no number
-                  help: write for example `0.35`
+                  help: write, for example, `[[0.0, 1.0], [1.0, 1.0], [0.2, 2.0]]`
+                invalid-value `[nan, 0]`: `robots.robot_1.start` is beyond 1000 km, or not finite
+                  help: write, for example, `[0.5, -0.5, 90]`
+                invalid-value `1e9`: `robots.robot_1.track` is beyond 1000 km, or not finite
+                  help: write, for example, `0.35`
                 invalid-value `[1, -1]`: `robots.robot_1.body` must be a size `[length, width]`, both above zero
-                  help: write for example `[0.5, 0.4]`
+                  help: write, for example, `[0.5, 0.4]`
                 invalid-value `400`: `robots.robot_1.sensors.fSensor.cone` must be an angle above 0 and up to 180 degrees
-                  help: write for example `30`
+                  help: write, for example, `30`
             "#]],
         );
         check(
@@ -645,22 +344,23 @@ mod tests {
             &expect![[r#"
                 invalid-value `[4, 4]`: `wall.to` is where the wall begins
                 invalid-value `1.5`: `world.seed` must be a whole number from 0
-                  help: write for example `7`
-                invalid-value `1`: `world.walls` must be true or false, not a number
-                  help: write for example `false`
+                  help: write, for example, `7`
+                invalid-value `1`: `world.walls` must be `true` or `false`, not a number
+                  help: write, for example, `false`
                 missing-key `[[box]]`: `at` is missing in this `box`
-                  help: write for example `at = [1.0, 0.5]`
+                  help: write, for example, `at = [1.0, 0.5]`
                 missing-key `[[box]]`: `size` is missing in this `box`
-                  help: write for example `size = [0.6, 0.4]`
-                invalid-value `"a/b"`: `box.name` must have letters in it, and neither `/` nor line ends
-                  help: write for example `"crate"`
+                  help: write, for example, `size = [0.6, 0.4]`
+                invalid-value `"a/b"`: `box.name` must not be empty, and must not contain `/` or line breaks
+                  help: write, for example, `"crate"`
             "#]],
         );
         check(
             "robots = 2\n",
             &expect![[r#"
-            invalid-value `2`: `robots` must be a table: `[robots.NAME]`
-        "#]],
+                invalid-value `2`: `robots` must be a table, not a number
+                  help: begin it with `[robots.NAME]`
+            "#]],
         );
         check(
             "[world\n",
@@ -692,14 +392,9 @@ mod tests {
 
     #[test]
     fn every_key_does_something_and_its_default_is_true() {
-        for table in &TABLES {
-            let header = match table.sort {
-                Sort::Each => format!("[[{}]]", table.name),
-                Sort::Once => format!("[{}]", table.name),
-                _ => {
-                    format!("[{}]", table.name.replacen("NAME", "robot_1", 1).replacen("NAME", "fSensor", 1))
-                }
-            };
+        for table in SCHEMA.tables {
+            let name = table.name.replacen("NAME", "robot_1", 1).replacen("NAME", "fSensor", 1);
+            let header = table.header(&name);
             let with = |key: &Key, value: &str| {
                 let others = table.keys.iter().filter(|other| {
                     // What there are walls around depends on these.
@@ -708,10 +403,7 @@ mod tests {
                 });
                 let others: Vec<String> =
                     others.map(|key| format!("{} = {}", key.name, key.example)).collect();
-                let others = others.join(
-                    "
-",
-                );
+                let others = others.join("\n");
                 let own = if value.is_empty() { String::new() } else { format!("{} = {value}\n", key.name) };
                 let text = format!("{header}\n{others}\n{own}");
                 let (scene, problems) = read(&text, Scene { robots: floor().robots, ..Scene::default() });
@@ -727,8 +419,7 @@ mod tests {
                 }
                 let unset = with(key, "");
                 assert_ne!(example, unset, "{} in {}", key.name, table.name);
-                let plain = key.default.strip_prefix('`').and_then(|rest| rest.strip_suffix('`'));
-                if let Some(default) = plain.filter(|default| !default.contains('`')) {
+                if let Some(default) = key.default_value() {
                     assert_eq!(with(key, default), unset, "{} in {}", key.name, table.name);
                 }
             }

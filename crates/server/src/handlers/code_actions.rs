@@ -18,7 +18,7 @@ use tower_lsp::ls_types::{
 use self::rewriting::FixAllOf;
 use crate::chosen::ChosenEnvironment;
 use crate::client::ClientFeatures;
-use crate::documents::{Document, Sort, key};
+use crate::documents::Document;
 use crate::handlers::diagnostics;
 use crate::handlers::scripts;
 use crate::state::State;
@@ -59,9 +59,10 @@ fn actions(state: &State, params: &CodeActionParams) -> Option<CodeActionRespons
     let wanted = |kind: &CodeActionKind| {
         params.context.only.as_ref().is_none_or(|only| only.iter().any(|wish| covers(wish, kind)))
     };
-    if let Some((document, text)) = state.keyed_text(&params.text_document.uri) {
+    if let Some((document, file, text)) = state.toml_text(&params.text_document.uri) {
         let is_wanted = wanted(&CodeActionKind::QUICKFIX) && state.client.action_literals;
-        return Some(if is_wanted { key_fixes(state, document, &text, params) } else { Vec::new() });
+        let fixes = || ide::toml_fixes(file, &text, state.span(document, params.range));
+        return Some(if is_wanted { key_fixes(state, document, fixes(), params) } else { Vec::new() });
     }
     let (document, file) = state.analysed(&params.text_document.uri)?;
     let mut actions = Vec::new();
@@ -119,16 +120,9 @@ fn quick_fixes(
 fn key_fixes(
     state: &State,
     document: &Document,
-    text: &str,
+    found: Vec<ide::KeyFix>,
     params: &CodeActionParams,
 ) -> Vec<CodeActionOrCommand> {
-    let range = state.span(document, params.range);
-    let found = if document.sort() == Sort::Scene {
-        let environment = state.environment_in(&key(&document.uri));
-        ide::scene_fixes(&state.database, environment, text, range)
-    } else {
-        ide::settings_fixes(text, range)
-    };
     let action = |fix: ide::KeyFix| {
         let edit = TextEdit::new(state.range(document, fix.span), fix.text);
         let shown = diagnostics::convert_problem(state, document, fix.problem);

@@ -1,7 +1,7 @@
 //! `textDocument/codeLens`: commands for environments, and for all other declarations how often they are used, which is
 //! counted only for visible lenses.
 
-use pydslrep_config::LensKind;
+use pydslrep_config::CodeLens as Wanted;
 use pydslrep_ide as ide;
 use pydslrep_syntax::EntityKind;
 use serde::{Deserialize, Serialize};
@@ -19,22 +19,25 @@ use crate::state::State;
 use crate::typing::Typing;
 
 /// The commands for an environment, with their labels. The argument of each is a [`ChosenEnvironment`].
-const OF_ENVIRONMENTS: &[(LensKind, &str, &str)] = &[
-    (LensKind::GenerateScript, "Generate script", GENERATE_SCRIPT),
+const OF_ENVIRONMENTS: &[(IsShown, &str, &str)] = &[
+    (|wanted| wanted.generate_script, "Generate script", GENERATE_SCRIPT),
     #[cfg(feature = "process")]
-    (LensKind::Run, "Run", runs::RUN),
+    (|wanted| wanted.run, "Run", runs::RUN),
     #[cfg(feature = "process")]
-    (LensKind::Preview, "Preview", runs::PREVIEW_PATH),
+    (|wanted| wanted.preview, "Preview", runs::PREVIEW_PATH),
 ];
 
-/// The setting for the references of a kind; environments have none.
-fn lens_kind(kind: EntityKind) -> Option<LensKind> {
+/// Whether a lens is shown.
+type IsShown = fn(&Wanted) -> bool;
+
+/// Whether the references of a kind are shown; `None` for environments, which have none.
+fn shows_references(wanted: &Wanted, kind: EntityKind) -> Option<bool> {
     match kind {
-        EntityKind::Wheel => Some(LensKind::Wheels),
-        EntityKind::Sensor => Some(LensKind::Sensors),
-        EntityKind::Ip => Some(LensKind::Ips),
-        EntityKind::Robot => Some(LensKind::Robots),
-        EntityKind::Movement => Some(LensKind::Movements),
+        EntityKind::Wheel => Some(wanted.wheels),
+        EntityKind::Sensor => Some(wanted.sensors),
+        EntityKind::Ip => Some(wanted.ips),
+        EntityKind::Robot => Some(wanted.robots),
+        EntityKind::Movement => Some(wanted.movements),
         EntityKind::Environment => None,
     }
 }
@@ -57,15 +60,15 @@ pub(crate) fn code_lenses(state: &mut State, params: &CodeLensParams) -> Option<
     let typed = typing.map_or(&[][..], Typing::unsaved_places);
     let found = ide::code_lenses(&state.database, document.file?, typed, &mut document.lenses);
     let table = LineTable::new(&document.text, state.client.encoding);
-    let wanted = document.settings.code_lens;
+    let wanted = &document.settings.code_lens;
     let mut lenses = Vec::new();
     for lens in found {
         let range = table.range(lens.span);
-        let Some(kind) = lens_kind(lens.kind) else {
+        let Some(is_shown) = shows_references(wanted, lens.kind) else {
             lenses.extend(of_environment(uri, &lens.name, range, wanted));
             continue;
         };
-        if wanted.shows(kind) {
+        if is_shown {
             let data =
                 LensOf { uri: uri.clone(), kind: lens.kind.noun().to_owned(), name: lens.name.to_string() };
             lenses.push(CodeLens { range, command: None, data: serde_json::to_value(&data).ok() });
@@ -74,12 +77,12 @@ pub(crate) fn code_lenses(state: &mut State, params: &CodeLensParams) -> Option<
     Some(lenses)
 }
 
-fn of_environment(uri: &Uri, name: &str, range: Range, wanted: pydslrep_config::CodeLens) -> Vec<CodeLens> {
+fn of_environment(uri: &Uri, name: &str, range: Range, wanted: &Wanted) -> Vec<CodeLens> {
     let argument = serde_json::to_value(ChosenEnvironment { uri: uri.clone(), environment: name.to_owned() });
     let arguments = argument.ok().map(|argument| vec![argument]);
     OF_ENVIRONMENTS
         .iter()
-        .filter(|(kind, ..)| wanted.shows(*kind))
+        .filter(|(is_shown, ..)| is_shown(wanted))
         .map(|(_, title, command)| {
             let command = Command::new((*title).to_owned(), (*command).to_owned(), arguments.clone());
             CodeLens { range, command: Some(command), data: None }

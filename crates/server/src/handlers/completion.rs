@@ -12,7 +12,7 @@ use tower_lsp::ls_types::{
 };
 
 use crate::client::ClientFeatures;
-use crate::documents::{Document, Sort, key};
+use crate::documents::Document;
 use crate::state::State;
 
 /// How many items have documentation where the client does not resolve it: finding a declaration takes a while in a long
@@ -42,15 +42,9 @@ pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
 pub(crate) fn completion(state: &State, params: &CompletionParams) -> Option<CompletionResponse> {
     let at = &params.text_document_position;
     let trigger = trigger(params.context.as_ref());
-    if let Some((document, text)) = state.keyed_text(&at.text_document.uri) {
+    if let Some((document, file, text)) = state.toml_text(&at.text_document.uri) {
         let offset = state.offset(document, at.position);
-        let items = if document.sort() == Sort::Scene {
-            let environment = state.environment_in(&key(&document.uri));
-            ide::scene_completions(&state.database, environment, &text, offset, trigger)
-        } else {
-            ide::settings_completions(&text, offset, trigger)
-        };
-        return Some(list(state, document, items));
+        return Some(list(state, document, ide::toml_completions(file, &text, offset, trigger)));
     }
     let place = state.place(at)?;
     let speed = place.document.settings.default_speed;

@@ -7,7 +7,7 @@ use std::str::FromStr;
 
 use pydslrep_analysis as analysis;
 use pydslrep_analysis::diagnostics::Tag;
-use pydslrep_config::{Config, Problem};
+use pydslrep_config::Problem;
 use pydslrep_syntax::Span;
 use tower_lsp::jsonrpc::Result;
 use tower_lsp::ls_types::notification::PublishDiagnostics;
@@ -20,7 +20,7 @@ use tower_lsp::ls_types::{
 };
 
 use crate::client::ClientFeatures;
-use crate::documents::{Document, Sort, key};
+use crate::documents::Document;
 use crate::message::Outbox;
 use crate::state::State;
 
@@ -133,17 +133,9 @@ pub(crate) fn result_id(items: &[Diagnostic], opening: u64) -> String {
 
 /// All diagnostics of a document, as this client can show them.
 pub(crate) fn of_document(state: &State, document: &Document) -> Vec<Diagnostic> {
-    match document.sort() {
-        Sort::Settings => {
-            let (_, problems) = Config::from_toml(&document.text.to_string());
-            return of_keys(state, document, problems);
-        }
-        Sort::Scene => {
-            let environment = state.environment_in(&key(&document.uri));
-            let text = document.text.to_string();
-            return of_keys(state, document, state.database.scene_problems(environment, &text));
-        }
-        Sort::Program => {}
+    if let Some(file) = state.toml_file(document) {
+        let problems = file.problems(&document.text.to_string()).into_iter();
+        return problems.map(|problem| convert_problem(state, document, problem)).collect();
     }
     let Some(file) = document.file else { return Vec::new() };
     let found = state.database.diagnostics(file);
@@ -174,11 +166,6 @@ pub(crate) fn convert(
             .map(|tag| vec![tag]),
         data: None,
     })
-}
-
-/// The diagnostics of a `pydslrep.toml` or a scene.
-fn of_keys(state: &State, document: &Document, problems: Vec<Problem>) -> Vec<Diagnostic> {
-    problems.into_iter().map(|problem| convert_problem(state, document, problem)).collect()
 }
 
 /// One problem of a `pydslrep.toml` or a scene.

@@ -6,7 +6,6 @@ use serde::Deserialize;
 use tower_lsp::jsonrpc::Result;
 use tower_lsp::ls_types::{Hover, HoverContents, HoverParams, LSPAny, MarkedString, MarkupContent, Uri};
 
-use crate::documents::Sort;
 use crate::handlers::scripts::failure;
 use crate::state::State;
 
@@ -37,11 +36,8 @@ pub(crate) fn show_kinematics(state: &State, RobotOf { uri, robot }: &RobotOf) -
 /// What is known about the thing at a position.
 pub(crate) fn hover(state: &State, params: &HoverParams) -> Option<Hover> {
     let at = &params.text_document_position_params;
-    let (document, found) = if let Some((document, text)) = state.keyed_text(&at.text_document.uri) {
-        let offset = state.offset(document, at.position);
-        let is_scene = document.sort() == Sort::Scene;
-        let hover = if is_scene { ide::scene_hover } else { ide::settings_hover };
-        (document, hover(&text, offset)?)
+    let (document, found) = if let Some((document, file, text)) = state.toml_text(&at.text_document.uri) {
+        (document, ide::toml_hover(file, &text, state.offset(document, at.position))?)
     } else {
         let place = state.place(at)?;
         (place.document, ide::hover(&state.database, place.position())?)

@@ -21,7 +21,7 @@ pub(crate) fn inlay_hints(state: &mut State, params: &InlayHintParams) -> Option
         range: to_span(&document.text, params.range, encoding),
         typed: &typing.map_or_else(Vec::new, |typing| typing.lines(&document.text)),
     };
-    let wanted = document.settings.inlay_hints;
+    let wanted = &document.settings.inlay_hints;
     let options =
         ide::InlayHintOptions { pose: wanted.pose, duration: wanted.duration, defaults: wanted.defaults };
     let hints = ide::inlay_hints(&state.database, places, options, &mut document.movements);

@@ -79,7 +79,7 @@ impl State {
         let key = key(program);
         let folder = key.rsplit_once('/').filter(|_| key.starts_with('/'))?.0;
         let output = self.documents.get(&key)?.settings.output.clone()?;
-        let base = if self.settings.client.output.is_some() {
+        let base = if self.settings.client.sets_output() {
             let open = self.folders.iter().filter(|open| key.starts_with(open.as_str()));
             open.max_by_key(|open| open.len()).map_or(folder, String::as_str)
         } else {

@@ -1,4 +1,4 @@
-//! Values as TOML and JSON have them in common.
+//! Values that TOML and JSON have in common, and how they are read.
 
 use pydslrep_text::Span;
 use toml::Spanned;
@@ -6,11 +6,11 @@ use toml::de::{DeFloat, DeInteger, DeTable, DeValue, Error};
 
 use crate::{Problem, ProblemKind};
 
-/// Nothing that means anything lies deeper; what does is not looked at.
+/// No key is nested deeper; what is, is ignored.
 const DEEPEST: usize = 8;
 
 /// A value and where it is.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Node {
     /// The value.
     pub value: Value,
@@ -19,11 +19,11 @@ pub struct Node {
 }
 
 /// A value.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// A text, without its quotes.
+    /// A string, without its quotes.
     Text(String),
-    /// A number; not a number where it is none that counts.
+    /// A number; NaN if it is out of range.
     Number(f64),
     /// True or false.
     Flag(bool),
@@ -38,7 +38,7 @@ pub enum Value {
 }
 
 /// A key with its value.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
     /// The key alone, without the tables it is in.
     pub key: String,
@@ -49,16 +49,31 @@ pub struct Entry {
 }
 
 impl Value {
-    /// What sort of value it is, in words.
-    pub fn sort(&self) -> &'static str {
+    /// The boolean.
+    pub fn flag(&self) -> Option<bool> {
+        if let Self::Flag(flag) = self { Some(*flag) } else { None }
+    }
+
+    /// The number.
+    pub fn number(&self) -> Option<f64> {
+        if let Self::Number(number) = self { Some(*number) } else { None }
+    }
+
+    /// The string.
+    pub fn text(&self) -> Option<&str> {
+        if let Self::Text(text) = self { Some(text) } else { None }
+    }
+
+    /// Its kind, in words.
+    pub(crate) fn kind(&self) -> &'static str {
         match self {
-            Self::Text(_) => "a text",
+            Self::Text(_) => "a string",
             Self::Number(_) => "a number",
-            Self::Flag(_) => "true or false",
+            Self::Flag(_) => "a boolean",
             Self::Table(_) => "a table",
             Self::List(_) => "a list",
             Self::Date => "a date or time",
-            Self::Nothing => "empty",
+            Self::Nothing => "null",
         }
     }
 }
@@ -66,12 +81,12 @@ impl Value {
 /// The entries of a TOML document, in the order of the text.
 ///
 /// # Errors
-/// When the text is no TOML; `name` is what an entry of such a file is called in the words for it, such as `setting`.
-pub fn parse(text: &str, name: &str) -> Result<Vec<Entry>, Problem> {
+/// If the text is not TOML; `noun` is what the message calls an entry of the file.
+pub(crate) fn parse(text: &str, noun: &str) -> Result<Vec<Entry>, Problem> {
     let (table, errors) = DeTable::parse_recoverable(text);
-    // One slip makes several errors, and only the first one is about the slip.
+    // One mistake causes several errors, and only the first is about the mistake.
     match errors.iter().min_by_key(|error| error.span().map(|span| span.start)) {
-        Some(error) => Err(no_toml(text, name, error)),
+        Some(error) => Err(invalid_toml(text, noun, error)),
         None => Ok(toml_entries(table.get_ref(), 0)),
     }
 }
@@ -107,7 +122,7 @@ fn toml_value(value: &DeValue<'_>, depth: usize) -> Value {
     }
 }
 
-/// What is no number by our reading is not one that a setting can have.
+/// NaN if it has more digits than any key can have.
 fn integer(number: &DeInteger<'_>) -> f64 {
     if number.radix() == 10 {
         return number.as_str().parse().unwrap_or(f64::NAN);
@@ -120,14 +135,14 @@ fn float(number: &DeFloat<'_>) -> f64 {
     number.as_str().parse().unwrap_or(f64::NAN)
 }
 
-/// A place as our crates have it; texts are smaller than 4 GiB.
-pub fn span(range: std::ops::Range<usize>) -> Span {
+/// A range as our crates have it; texts are smaller than 4 GiB.
+pub(crate) fn span(range: std::ops::Range<usize>) -> Span {
     let offset = |offset| u32::try_from(offset).unwrap_or(u32::MAX);
     Span::new(offset(range.start), offset(range.end))
 }
 
-/// The value of JSON.
-pub fn from_json(value: &serde_json::Value) -> Value {
+/// A JSON value.
+pub(crate) fn from_json(value: &serde_json::Value) -> Value {
     json_value(value, 0)
 }
 
@@ -155,41 +170,34 @@ fn json_value(value: &serde_json::Value, depth: usize) -> Value {
     }
 }
 
-/// What the library found, in words for people who may have never heard of TOML.
-fn no_toml(text: &str, name: &str, error: &Error) -> Problem {
+/// What the library found, in words for people who may never have heard of TOML.
+fn invalid_toml(text: &str, noun: &str, error: &Error) -> Problem {
     let span = error.span().map_or(Span::default(), self::span);
     let (what, expected) = match error.message().split_once(", expected ") {
         Some((what, expected)) => (what, Some(expected)),
         None => (error.message(), None),
     };
-    let found = text.get(span.start as usize..span.end as usize).unwrap_or_default();
+    let found = span.text(text);
+    let form = || format!("a {noun} is written `KEY = VALUE`");
     let (message, help) = match what {
         "string values must be quoted" if found.is_empty() => {
-            ("the value is missing".to_owned(), Some(format!("a {name} is written `KEY = VALUE`")))
+            ("the value is missing".to_owned(), Some(form()))
         }
         "string values must be quoted" => {
-            (format!("`{found}` is no value"), Some(format!("texts stand in quotes: `\"{found}\"`")))
+            (format!("`{found}` is not a value"), Some(format!("strings are in quotes: `\"{found}\"`")))
         }
-        "key with no value" => {
-            ("there is no `=` behind the key".to_owned(), Some(format!("a {name} is written `KEY = VALUE`")))
-        }
-        "duplicate key" => (format!("`{found}` is set twice"), Some("leave one of them out".to_owned())),
+        "key with no value" => ("`=` is missing after the key".to_owned(), Some(form())),
+        "duplicate key" => (format!("`{found}` is set twice"), Some("remove one of them".to_owned())),
         "unclosed table" => ("`]` is missing".to_owned(), Some("a table begins with `[NAME]`".to_owned())),
         "invalid basic string" | "invalid literal string" => (
-            "the text does not end on its line".to_owned(),
-            expected.map(|quote| format!("close it by {quote}")),
+            "the string does not end on its line".to_owned(),
+            expected.map(|quote| format!("close it with {quote}")),
         ),
         other => {
             let expected = expected.filter(|expected| *expected != "nothing");
-            (format!("this is no TOML: {other}"), expected.map(|expected| format!("expected: {expected}")))
+            (format!("invalid TOML: {other}"), expected.map(|expected| format!("expected: {expected}")))
         }
     };
-    Problem {
-        kind: ProblemKind::InvalidToml,
-        key: String::new(),
-        span: Some(span),
-        message,
-        help,
-        replacement: None,
-    }
+    let problem = Problem::new(ProblemKind::InvalidToml, "", Some(span), message);
+    Problem { help, ..problem }
 }

@@ -1,4 +1,4 @@
-//! What stands where in a file, also where it is half typed and no TOML.
+//! What is where in a text, even if it is half typed and not TOML yet.
 
 use std::borrow::Cow;
 
@@ -6,96 +6,93 @@ use pydslrep_text::Span;
 use toml_parser::Source;
 use toml_parser::parser::{Event, EventKind, RecursionGuard, parse_document};
 
-use crate::span;
+use crate::toml::span;
 
-/// How deep values may lie in each other; what lies deeper is not looked at.
+/// How deep values may be nested; what is deeper is ignored.
 const DEEPEST: u32 = 16;
 
-/// A part of a name, in a key or in the brackets that begin a table.
+/// A part of a name, in a key or in the header of a table.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Named {
-    /// The whole name up to and with this part, tables included: `inlay-hints.pose`.
+pub struct NamePart {
+    /// The whole name up to and including this part, with its tables: `inlay-hints.pose`.
     pub name: String,
     /// Where the part is.
     pub span: Span,
-    /// Which stretch of the text it is in: each begins with a table.
-    pub stretch: usize,
+    /// Which section of the text it is in; each but the first begins with a header.
+    pub section: usize,
 }
 
-/// What can stand at a place.
+/// What can be typed at an offset.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Place {
-    /// The text there, which is being typed or would be replaced.
+pub struct CursorContext {
+    /// The word there, which is being typed or would be replaced.
     pub word: Span,
-    /// Which stretch of the text it is in: each begins with a table.
-    pub stretch: usize,
-    /// What it is.
+    /// Which section of the text it is in; each but the first begins with a header.
+    pub section: usize,
+    /// What the word is.
     pub slot: Slot,
 }
 
-/// What a text at a place would be.
+/// What a word is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Slot {
-    /// A part of the name of a table, in brackets.
+    /// A part of a table's name in its header.
     Table {
-        /// The parts before it, each with a dot behind it.
+        /// The parts before it, each with a dot after it.
         outer: String,
         /// Whether more parts follow.
         has_more: bool,
-        /// Whether it stands in two brackets, as tables do that may stand any number of times.
+        /// Whether the header has two brackets, as tables have that can appear any number of times.
         is_each: bool,
-        /// Whether the brackets behind it are there.
+        /// Whether the closing brackets are there.
         is_closed: bool,
     },
     /// A key.
     Key {
-        /// The table it is in, with a dot behind it; empty outside of all tables.
+        /// The table it is in, with a dot after it; empty outside of tables.
         table: String,
         /// Whether a `=` follows.
         has_value: bool,
-        /// Whether it is the first on its line, so that a table could begin there.
+        /// Whether it is the first word of its line, where a table could begin.
         begins_line: bool,
     },
-    /// The value of the key with this name.
+    /// The value of a key.
     Value {
-        /// The whole name, tables included.
+        /// The whole name of the key, with its tables.
         key: String,
     },
 }
 
 /// All parts of names, in the order of the text.
-pub fn names(text: &str) -> Vec<Named> {
-    let mut names = Vec::new();
-    for (stretch, chunk) in chunks(text).into_iter().enumerate() {
-        let mut reader = Reader::new(chunk);
-        for event in chunk.events() {
+pub fn name_parts(text: &str) -> Vec<NamePart> {
+    let mut parts = Vec::new();
+    for (index, section) in sections(text).into_iter().enumerate() {
+        let mut reader = Reader::new(section);
+        for event in section.events() {
             reader.take(&event);
             if event.kind() == EventKind::SimpleKey && !event.span().is_empty() {
-                names.push(Named { name: reader.name(), span: chunk.span(&event), stretch });
+                parts.push(NamePart { name: reader.name(), span: section.span(&event), section: index });
             }
         }
     }
-    names
+    parts
 }
 
-/// What a text at an offset in bytes would be; `None` where no setting can be typed.
-pub fn place_at(text: &str, offset: u32) -> Option<Place> {
-    let (stretch, chunk) = chunks(text).into_iter().enumerate().rfind(|(_, chunk)| chunk.start <= offset)?;
-    let events = chunk.events();
-    let next = events.iter().position(|event| chunk.span(event).start >= offset).unwrap_or(events.len());
-    let (before, behind) = events.split_at(next);
-    let mut reader = Reader::new(chunk);
+/// What can be typed at an offset in bytes; `None` where neither keys nor values can be.
+pub fn cursor_context(text: &str, offset: u32) -> Option<CursorContext> {
+    let (index, section) =
+        sections(text).into_iter().enumerate().rfind(|(_, section)| section.start <= offset)?;
+    let events = section.events();
+    let touches = |event: &&Event| is_word(event) && section.span(event).touches(offset);
+    let word = events.iter().find(touches).map_or(Span::at(offset), |event| section.span(event));
+    let is_next = |event: &Event| section.span(event).start >= word.start;
+    let (before, rest) = events.split_at(events.iter().position(is_next).unwrap_or(events.len()));
+    let mut reader = Reader::new(section);
     for event in before {
         reader.take(event);
     }
-    let last = before.last().filter(|event| is_word(event) && chunk.span(event).end >= offset);
-    let next = behind.first().filter(|event| is_word(event) && chunk.span(event).start == offset);
-    if last.is_some() {
-        reader.take_back();
-    }
-    let word = last.or(next).map_or(Span::at(offset), |event| chunk.span(event));
     let rest =
-        || behind.iter().take_while(|event| !ends_statement(event)).filter(|event| !event.span().is_empty());
+        || rest.iter().take_while(|event| !ends_statement(event)).filter(|event| !event.span().is_empty());
     let slot = match reader.stage {
         Stage::Header if reader.wants_part => Slot::Table {
             outer: reader.table(),
@@ -111,7 +108,7 @@ pub fn place_at(text: &str, offset: u32) -> Option<Place> {
         Stage::Value => Slot::Value { key: reader.name() },
         Stage::Header | Stage::Key | Stage::Nothing => return None,
     };
-    Some(Place { word, stretch, slot })
+    Some(CursorContext { word, section: index, slot })
 }
 
 fn is_word(event: &Event) -> bool {
@@ -126,54 +123,50 @@ fn ends_statement(event: &Event) -> bool {
     matches!(event.kind(), EventKind::Newline | EventKind::ValueSep | EventKind::InlineTableClose)
 }
 
-/// A piece of the text that is understood on its own.
+/// A part of the text that is parsed on its own.
 #[derive(Debug, Clone, Copy)]
-struct Chunk<'t> {
+struct Section<'t> {
     text: &'t str,
     start: u32,
 }
 
-impl Chunk<'_> {
+impl Section<'_> {
     fn events(self) -> Vec<Event> {
         let tokens = Source::new(self.text).lex().into_vec();
         let mut events = Vec::new();
-        let mut take = |event: Event| events.push(event);
-        parse_document(&tokens, &mut RecursionGuard::new(&mut take, DEEPEST), &mut ());
+        parse_document(&tokens, &mut RecursionGuard::new(&mut events, DEEPEST), &mut ());
         events
     }
 
     fn span(self, event: &Event) -> Span {
-        let place = event.span();
-        span(place.start()..place.end()).shifted(self.start)
-    }
-
-    fn begins_table(self) -> bool {
-        begins_table(self.text)
+        let range = event.span();
+        span(range.start()..range.end()).shifted(self.start)
     }
 }
 
-/// A line that begins with a bracket begins a table, whatever is left open above it, unless there is a number in the
-/// bracket: lists may go over several lines, and they hold points.
-fn begins_table(line: &str) -> bool {
-    let Some(inside) = line.trim_start().strip_prefix('[') else { return false };
-    let inside = inside.strip_prefix('[').unwrap_or(inside).trim_start();
-    !inside.starts_with(|first: char| first.is_ascii_digit() || matches!(first, '[' | '-' | '+' | '.'))
-}
-
-fn chunks(text: &str) -> Vec<Chunk<'_>> {
-    let mut chunks = Vec::new();
+/// Cuts a text before each header, so that what is left open in a table does not reach into the next one.
+fn sections(text: &str) -> Vec<Section<'_>> {
+    let mut sections = Vec::new();
     let (mut start, mut at) = (0, 0);
     for line in text.split_inclusive('\n') {
-        if begins_table(line) && at > start {
-            chunks.push(start..at);
+        if is_header(line) && at > start {
+            sections.push(start..at);
             start = at;
         }
         at += line.len();
     }
-    chunks.push(start..at);
-    let chunk =
-        |range: std::ops::Range<usize>| Chunk { text: &text[range.clone()], start: span(range).start };
-    chunks.into_iter().map(chunk).collect()
+    sections.push(start..at);
+    let section =
+        |range: std::ops::Range<usize>| Section { text: &text[range.clone()], start: span(range).start };
+    sections.into_iter().map(section).collect()
+}
+
+/// A line that begins with a bracket is a header, whatever is open before it, unless a number follows: lists can span
+/// several lines, and they contain points.
+fn is_header(line: &str) -> bool {
+    let Some(inside) = line.trim_start().strip_prefix('[') else { return false };
+    let inside = inside.strip_prefix('[').unwrap_or(inside).trim_start();
+    !inside.starts_with(|first: char| first.is_ascii_digit() || matches!(first, '[' | '-' | '+' | '.'))
 }
 
 /// What the next word is.
@@ -185,38 +178,34 @@ enum Stage {
     Nothing,
 }
 
-/// Where in the nest of tables one is while reading.
+/// Keeps track of the table and the key while events are read.
 struct Reader<'t> {
     source: Source<'t>,
     stage: Stage,
     /// The table that keys are in.
     path: Vec<String>,
-    /// For each brace that is open, the table outside of it.
+    /// For each open brace, the table outside of it.
     outer: Vec<Vec<String>>,
     /// The parts of the name that is being read.
     parts: Vec<String>,
-    /// Whether another part may follow at once.
+    /// Whether the next word can be another part.
     wants_part: bool,
-    /// What the last word changed: the stage before it.
-    before_word: Stage,
     /// How many lists are open.
     lists: usize,
-    /// Whether the table began with two brackets.
+    /// Whether the header has two brackets.
     is_each: bool,
 }
 
 impl<'t> Reader<'t> {
-    fn new(chunk: Chunk<'t>) -> Self {
-        // Before a bracket there is room for nothing.
-        let stage = if chunk.begins_table() { Stage::Nothing } else { Stage::Key };
+    fn new(section: Section<'t>) -> Self {
         Self {
-            source: Source::new(chunk.text),
-            stage,
+            source: Source::new(section.text),
+            // Nothing can be typed before a bracket.
+            stage: if is_header(section.text) { Stage::Nothing } else { Stage::Key },
             path: Vec::new(),
             outer: Vec::new(),
             parts: Vec::new(),
             wants_part: true,
-            before_word: stage,
             lists: 0,
             is_each: false,
         }
@@ -238,16 +227,12 @@ impl<'t> Reader<'t> {
             }
             EventKind::KeySep => self.wants_part = true,
             EventKind::KeyValSep => self.stage = Stage::Value,
-            EventKind::Scalar => {
-                self.before_word = self.stage;
-                self.stage = Stage::Nothing;
-            }
             EventKind::InlineTableOpen => {
                 self.outer.push(self.path.clone());
                 self.path.append(&mut self.parts);
                 self.begin(Stage::Key);
             }
-            // What is not there does not close anything: what is typed there is still inside.
+            // The parser inserts a missing brace here; what is typed is still inside.
             EventKind::InlineTableClose if event.span().is_empty() => {}
             EventKind::InlineTableClose => {
                 self.path = self.outer.pop().unwrap_or_default();
@@ -268,18 +253,8 @@ impl<'t> Reader<'t> {
                 self.lists = self.lists.saturating_sub(1);
                 self.stage = Stage::Nothing;
             }
-            EventKind::Comment | EventKind::Error => self.stage = Stage::Nothing,
+            EventKind::Scalar | EventKind::Comment | EventKind::Error => self.stage = Stage::Nothing,
             EventKind::ValueSep | EventKind::Newline | EventKind::Whitespace => {}
-        }
-    }
-
-    /// Forgets the word that was taken last.
-    fn take_back(&mut self) {
-        if self.stage == Stage::Nothing {
-            self.stage = self.before_word;
-        } else {
-            self.parts.pop();
-            self.wants_part = true;
         }
     }
 
@@ -298,7 +273,7 @@ impl<'t> Reader<'t> {
     }
 
     fn whole(&self) -> impl Iterator<Item = &str> {
-        // The brackets of a table say its whole name.
+        // A header contains the whole name.
         let path = if self.stage == Stage::Header { &[][..] } else { &self.path };
         path.iter().chain(&self.parts).map(String::as_str)
     }
@@ -325,7 +300,7 @@ mod tests {
         for fixture in fixtures {
             let offset = u32::try_from(fixture.find("$0").unwrap()).unwrap();
             let text = fixture.replacen("$0", "", 1);
-            let told = place_at(&text, offset).map(|Place { word, slot, .. }| match slot {
+            let found = cursor_context(&text, offset).map(|CursorContext { word, slot, .. }| match slot {
                 Slot::Table { outer, has_more, is_each, is_closed } => format!(
                     "table `{}` in `{outer}`, more: {has_more}, each: {is_each}, closed: {is_closed}",
                     word.text(&text)
@@ -336,7 +311,7 @@ mod tests {
                 ),
                 Slot::Value { key } => format!("value `{}` of `{key}`", word.text(&text)),
             });
-            out += &format!("{fixture:?}: {}\n", told.as_deref().unwrap_or("nothing"));
+            out += &format!("{fixture:?}: {}\n", found.as_deref().unwrap_or("nothing"));
         }
         expected.assert_eq(&out);
     }
@@ -472,7 +447,7 @@ mod tests {
     #[test]
     fn names_are_whole() {
         let text = "target = 1\nseverity.wheel-count = 1\n[inlay-hints]\n'pose' = {\n[severity]\nwheel-order";
-        let told: Vec<String> = names(text)
+        let found: Vec<String> = name_parts(text)
             .into_iter()
             .map(|named| format!("{} `{}`", named.name, named.span.text(text)))
             .collect();
@@ -484,29 +459,29 @@ mod tests {
             inlay-hints.pose `'pose'`
             severity `severity`
             severity.wheel-order `wheel-order`"#]]
-        .assert_eq(&told.join("\n"));
+        .assert_eq(&found.join("\n"));
     }
 
     proptest! {
         #[test]
-        fn any_text_has_places(text in "[a-z\\[\\]{}=.,#\"'\\n\\r é-]{0,60}", at in 0..70_usize) {
+        fn any_text_has_a_context(text in "[a-z\\[\\]{}=.,#\"'\\n\\r é-]{0,60}", at in 0..70_usize) {
             let offset = text.char_indices().map(|(offset, _)| offset).nth(at).unwrap_or(text.len());
             let offset = u32::try_from(offset).unwrap();
-            if let Some(place) = place_at(&text, offset) {
-                prop_assert!(place.word.touches(offset));
-                prop_assert!(text.get(std::ops::Range::from(place.word)).is_some());
+            if let Some(context) = cursor_context(&text, offset) {
+                prop_assert!(context.word.touches(offset));
+                prop_assert!(text.get(std::ops::Range::from(context.word)).is_some());
             }
-            for named in names(&text) {
+            for named in name_parts(&text) {
                 prop_assert!(text.get(std::ops::Range::from(named.span)).is_some());
             }
         }
     }
 
     #[test]
-    fn a_deep_nest_is_no_danger() {
+    fn deep_nesting_is_harmless() {
         for open in ["[", "{ a = ", "a = [", "a = {"] {
             let text = open.repeat(100_000);
-            place_at(&text, Span::of(&text).end);
+            cursor_context(&text, Span::of(&text).end);
         }
     }
 }
