@@ -4,6 +4,7 @@ mod change;
 #[cfg(test)]
 mod counts;
 mod imports;
+mod reads;
 mod references;
 mod scenes;
 
@@ -17,6 +18,7 @@ use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Parse, Span, TokenKind};
 use ropey::Rope;
 use rustc_hash::{FxHashMap, FxHashSet};
+use smallvec::SmallVec;
 use smol_str::SmolStr;
 
 use self::imports::Imports;
@@ -24,6 +26,7 @@ use self::scenes::Scenes;
 use crate::diagnostics::{self, Problem};
 use crate::file::File;
 use crate::names::Names;
+use crate::reads::Reads;
 use crate::slots::EntitySlot;
 use crate::{Diagnostic, Target};
 
@@ -77,6 +80,10 @@ struct EntityData {
     order: u64,
     parse: Arc<Parse>,
     problems: Vec<Problem>,
+    /// What they come from.
+    reads: Reads,
+    /// Who looked at this one's signature.
+    readers: SmallVec<[EntityId; 4]>,
 }
 
 /// Documents and everything known about them. A clone shares texts and trees, so that something can be tried on it.
@@ -103,8 +110,8 @@ pub struct Database {
     changed_environments: FxHashMap<(FileId, SmolStr), i32>,
     /// Entities with problems.
     troubled: FxHashMap<FileId, FxHashSet<EntityId>>,
-    /// Entities whose problems speak of all names there are ("did you mean …"), not only of those they use.
-    seekers: FxHashSet<EntityId>,
+    /// Entities whose problems speak of all names of a kind ("did you mean …"), not only of those they use.
+    name_dependents: FxHashSet<EntityId>,
     last_edit: EditCounts,
     /// The files whose diagnostics may have changed since they were last asked for.
     touched: FxHashSet<FileId>,

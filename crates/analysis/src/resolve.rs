@@ -173,21 +173,28 @@ impl Database {
     pub fn drive(&self, robot: EntityId) -> Option<Drive> {
         let file = self.file_of(robot)?;
         let Entity::Robot(tree) = self.tree(robot)? else { return None };
-        let wheels = &tree.wheels.as_ref()?.names;
-        let mecanum = |name: &Name| {
-            let wheel =
-                self.resolve(file, EntityKind::Wheel, &name.text).entity().and_then(|id| self.tree(id));
-            matches!(wheel, Some(Entity::Wheel(wheel)) if wheel.mecanum)
-        };
-        let all_mecanum = wheels.len() == 4 && wheels.iter().all(mecanum);
-        match (tree.drive.map(|clause| clause.word), wheels.len()) {
-            (Some(Some(DriveWord::Tw)), _) | (None, 2) => Some(Drive::TwoWheel),
-            (Some(Some(DriveWord::Fwh)), _) => Some(Drive::FourMecanum),
-            (Some(Some(DriveWord::Fw)), _) | (None, 4) => {
-                Some(if all_mecanum { Drive::FourMecanum } else { Drive::FourWheel })
-            }
-            (Some(None) | None, _) => None,
+        drive(tree, |name| match self.tree(self.resolve(file, EntityKind::Wheel, &name.text).entity()?)? {
+            Entity::Wheel(wheel) => Some(wheel),
+            _ => None,
+        })
+    }
+}
+
+/// The wheel layout of a robot whose wheels are those that `wheel` finds by their names.
+pub(crate) fn drive<'a>(
+    robot: &ast::Robot,
+    wheel: impl Fn(&Name) -> Option<&'a ast::Wheel>,
+) -> Option<Drive> {
+    let wheels = &robot.wheels.as_ref()?.names;
+    let is_mecanum = |name: &Name| wheel(name).is_some_and(|wheel| wheel.mecanum);
+    match (robot.drive.map(|clause| clause.word), wheels.len()) {
+        (Some(Some(DriveWord::Tw)), _) | (None, 2) => Some(Drive::TwoWheel),
+        (Some(Some(DriveWord::Fwh)), _) => Some(Drive::FourMecanum),
+        (Some(Some(DriveWord::Fw)), _) | (None, 4) => {
+            let all_mecanum = wheels.len() == 4 && wheels.iter().all(is_mecanum);
+            Some(if all_mecanum { Drive::FourMecanum } else { Drive::FourWheel })
         }
+        (Some(None) | None, _) => None,
     }
 }
 

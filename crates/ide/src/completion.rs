@@ -12,7 +12,7 @@ mod paths;
 mod snippets;
 
 use pydslrep_analysis::{Database, FileId};
-use pydslrep_syntax::{EntityKind, Expected, Span, TextEdit, TokenKind, expected_after};
+use pydslrep_syntax::{EntityKind, Expected, Quantity, Span, TextEdit, TokenKind, expected_after};
 
 use self::context::CursorContext;
 pub use self::documentation::completion_documentation;
@@ -191,17 +191,15 @@ fn items_for(context: &CursorContext<'_>, expected: Expected) -> Vec<Completion>
         Expected::ReferenceTo(kind) => names::names(context, kind),
         Expected::Action => {
             let mut found = snippets::actions(context);
-            found.extend(keywords::plain_keywords(
-                context,
-                &[TokenKind::Move, TokenKind::Turn, TokenKind::Slam],
-            ));
+            found.extend(keywords::plain_keywords(context, &TokenKind::ACTIONS));
             found
         }
         Expected::Declaration => {
             let mut found = snippets::entities(context);
-            let words =
-                if context.may_import() { &DECLARATION_KEYWORDS[..] } else { &DECLARATION_KEYWORDS[1..] };
-            found.extend(keywords::plain_keywords(context, words));
+            let words = TokenKind::DECLARATIONS.into_iter();
+            let words: Vec<_> =
+                words.filter(|word| *word != TokenKind::Import || context.may_import()).collect();
+            found.extend(keywords::plain_keywords(context, &words));
             found
         }
         Expected::Port => {
@@ -209,26 +207,14 @@ fn items_for(context: &CursorContext<'_>, expected: Expected) -> Vec<Completion>
             port.map(|port| keywords::value(context, &port, "simulator port")).into_iter().collect()
         }
         Expected::Address => vec![keywords::value(context, "127.0.0.1", "this machine")],
-        Expected::Radius => vec![keywords::value(context, "4.5", "centimetres")],
-        Expected::Speed => {
+        Expected::Number(Quantity::Radius) => vec![keywords::value(context, "4.5", "centimetres")],
+        Expected::Number(Quantity::Speed) => {
             vec![keywords::value(context, &format!("{:?}", context.speed), "centimetres per second")]
         }
         Expected::Path => paths::quoted_paths(context),
-        Expected::Distance | Expected::Angle | Expected::NameOf(_) => Vec::new(),
+        Expected::Number(_) | Expected::NameOf(_) => Vec::new(),
     }
 }
-
-const DECLARATION_KEYWORDS: [TokenKind; 9] = [
-    TokenKind::Import,
-    TokenKind::Wheel,
-    TokenKind::WheelH,
-    TokenKind::Sensor,
-    TokenKind::Ip,
-    TokenKind::Robot,
-    TokenKind::Movement,
-    TokenKind::Parallel,
-    TokenKind::Environment,
-];
 
 #[cfg(test)]
 mod tests {

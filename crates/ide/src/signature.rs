@@ -139,8 +139,7 @@ impl Typed {
     /// The tokens of the last action, in a movement's body.
     fn action(&self) -> Option<&[Token]> {
         let body = self.tokens.iter().position(|(token, _)| *token == TokenKind::OpenBrace)?;
-        let begins =
-            |(token, _): &Token| matches!(token, TokenKind::Move | TokenKind::Turn | TokenKind::Slam);
+        let begins = |(token, _): &Token| token.is_action();
         let last = self.tokens.iter().rposition(begins)?;
         (self.is_movement() && last > body).then(|| &self.tokens[last..])
     }
@@ -170,8 +169,7 @@ fn signatures(typed: &[Token], expected: &[Expected]) -> Option<SignatureHelp> {
 }
 
 fn is_statement(token: TokenKind) -> bool {
-    token.entity_kind().is_some()
-        || matches!(token, TokenKind::Import | TokenKind::Move | TokenKind::Turn | TokenKind::Slam)
+    token.is_action() || TokenKind::DECLARATIONS.contains(&token)
 }
 
 /// A part of a form: a keyword, alternatives, or a placeholder.
@@ -251,12 +249,9 @@ fn placeholder(expected: Expected) -> Option<&'static str> {
         Expected::ReferenceTo(EntityKind::Sensor) => "SENSORS",
         Expected::ReferenceTo(EntityKind::Ip) => "IP",
         Expected::ReferenceTo(EntityKind::Movement) => "MOVEMENTS",
-        Expected::Radius => "CENTIMETRES",
+        Expected::Number(quantity) => quantity.placeholder(),
         Expected::Port => "PORT",
         Expected::Address => "127.0.0.1",
-        Expected::Distance => "DISTANCE",
-        Expected::Speed => "SPEED",
-        Expected::Angle => "DEGREES",
         Expected::Path => "\"FILE.pyr\"",
         Expected::Action => "ACTIONS",
         Expected::ReferenceTo(_) | Expected::Word(_) | Expected::Declaration => return None,
@@ -514,7 +509,7 @@ mod tests {
             if !is_statement(token) {
                 continue;
             }
-            let in_movement = matches!(token, TokenKind::Move | TokenKind::Turn | TokenKind::Slam);
+            let in_movement = token.is_action();
             for label in keyword_page(token).unwrap().syntax.lines() {
                 for text in written(label) {
                     let text = if in_movement { format!("movement m of r {{ {text} }}") } else { text };

@@ -1,7 +1,7 @@
 //! Document symbols: the outline of a file.
 
 use pydslrep_analysis::{EntityRef, Snapshot};
-use pydslrep_syntax::ast::{Action, ActionKind, Entity, References};
+use pydslrep_syntax::ast::{Action, Entity, References};
 use pydslrep_syntax::{EntityKind, Span};
 use smol_str::{SmolStr, SmolStrBuilder};
 
@@ -109,20 +109,18 @@ fn children(snapshot: &Snapshot, entity: &EntityRef<'_>, tree: &Entity) -> Vec<S
             detail: detail.finish(),
             kind: SymbolKind::Action,
             full,
-            focus: Span::new(full.start, full.start + keyword_length(action)),
+            focus: keyword(entity, action).shifted(entity.span.start),
             children: Vec::new(),
         }
     };
     movement.actions.iter().map(child).collect()
 }
 
-fn keyword_length(action: &Action) -> u32 {
-    let word = match action.kind {
-        ActionKind::Move(_) => "move",
-        ActionKind::Turn(_) => "turn",
-        ActionKind::Slam => "slam",
-    };
-    u32::try_from(word.len()).unwrap_or(0).min(action.span.len())
+/// Where the keyword of an action is in its entity.
+fn keyword(entity: &EntityRef<'_>, action: &Action) -> Span {
+    let tokens = &entity.parse.tokens;
+    let first = tokens.partition_point(|(_, span)| span.start < action.span.start);
+    tokens.get(first).map_or(action.span, |(_, span)| *span)
 }
 
 #[cfg(test)]

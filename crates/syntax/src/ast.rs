@@ -208,6 +208,21 @@ pub enum DriveWord {
 }
 
 impl DriveWord {
+    /// The layout that wheels make by their number and kind: of each, whether it is a `wheelH`.
+    pub fn from_wheels(mecanum: &[bool]) -> Option<Self> {
+        match mecanum {
+            [false, false] => Some(Self::Tw),
+            [false, false, false, false] => Some(Self::Fw),
+            [true, true, true, true] => Some(Self::Fwh),
+            _ => None,
+        }
+    }
+
+    /// How many wheels it has.
+    pub fn wheel_count(self) -> usize {
+        if self == Self::Tw { 2 } else { 4 }
+    }
+
     /// As the language spells it.
     pub fn spelling(self) -> &'static str {
         match self {
@@ -249,6 +264,18 @@ impl Action {
             ActionKind::Turn(Turn { extent: Some(TurnExtent::Until(sensors)), .. }) => Some(sensors),
             _ => None,
         }
+    }
+
+    /// The numbers in it.
+    pub fn numbers(&self) -> impl Iterator<Item = &Number> {
+        let [one, other] = match &self.kind {
+            ActionKind::Move(step) => {
+                [step.distance.as_ref(), step.speed.as_ref().and_then(|clause| clause.value.as_ref())]
+            }
+            ActionKind::Turn(Turn { extent: Some(TurnExtent::Angle(angle)), .. }) => [Some(angle), None],
+            ActionKind::Turn(_) | ActionKind::Slam => [None, None],
+        };
+        one.into_iter().chain(other)
     }
 }
 

@@ -54,15 +54,8 @@ fn may_end(previous: Option<TokenKind>, token: TokenKind, inside: Option<EntityK
     match previous {
         // `{ a b } wheels`
         TokenKind::CloseBrace => token == TokenKind::Name,
-        TokenKind::Wheels
-        | TokenKind::Sensors
-        | TokenKind::Robots
-        | TokenKind::Moves
-        | TokenKind::String
-        | TokenKind::UnterminatedString
-        | TokenKind::Slam
-        | TokenKind::Meters
-        | TokenKind::Centimeters => true,
+        TokenKind::String | TokenKind::UnterminatedString => true,
+        _ if TokenKind::ENDS.has(previous) => true,
         // A port never ends a robot, and a list may stand without its braces.
         _ if previous.is_number() => inside != Some(EntityKind::Robot),
         _ if previous.is_name() => {
@@ -95,21 +88,8 @@ pub(crate) fn misspelt_beginning(text: &str, tokens: &[Token]) -> Option<TokenKi
         keyword => next.is_name() && after.is_some_and(|after| is_one_of(text, *after, clauses(keyword))),
     };
     let written = span.text(text);
-    TokenKind::closest(written, BEGINNINGS.into_iter().filter(follows))
+    TokenKind::closest(written, TokenKind::DECLARATIONS.into_iter().filter(follows))
 }
-
-/// All that begin an entity.
-pub(crate) const BEGINNINGS: [TokenKind; 9] = [
-    TokenKind::Wheel,
-    TokenKind::WheelH,
-    TokenKind::Sensor,
-    TokenKind::Ip,
-    TokenKind::Robot,
-    TokenKind::Parallel,
-    TokenKind::Movement,
-    TokenKind::Environment,
-    TokenKind::Import,
-];
 
 /// What can stand after the name of an entity with such a keyword, also where a word is missing.
 const fn clauses(keyword: TokenKind) -> TokenSet {

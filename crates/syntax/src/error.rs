@@ -109,24 +109,53 @@ pub enum Expected {
     NameOf(EntityKind),
     /// The name of an entity declared elsewhere.
     ReferenceTo(EntityKind),
-    /// A wheel's radius.
-    Radius,
+    /// A number.
+    Number(Quantity),
     /// A port.
     Port,
     /// An IPv4 address.
     Address,
-    /// How far to move.
-    Distance,
-    /// How fast to move.
-    Speed,
-    /// How far to turn.
-    Angle,
     /// A path in quotes.
     Path,
     /// Another action.
     Action,
     /// The next entity, or nothing.
     Declaration,
+}
+
+/// What a number measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Quantity {
+    /// A wheel's radius.
+    Radius,
+    /// How far to move.
+    Distance,
+    /// How fast to move.
+    Speed,
+    /// How far to turn.
+    Angle,
+}
+
+impl Quantity {
+    /// What a person calls it, with its unit where it has only one.
+    pub fn phrase(self) -> &'static str {
+        match self {
+            Self::Radius => "a radius in centimetres",
+            Self::Distance => "a distance",
+            Self::Speed => "a speed in centimetres per second",
+            Self::Angle => "an angle in degrees",
+        }
+    }
+
+    /// What stands for it in the shape of a statement.
+    pub fn placeholder(self) -> &'static str {
+        match self {
+            Self::Radius => "CENTIMETRES",
+            Self::Distance => "DISTANCE",
+            Self::Speed => "SPEED",
+            Self::Angle => "DEGREES",
+        }
+    }
 }
 
 /// What stands where something else was expected.

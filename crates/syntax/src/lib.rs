@@ -16,7 +16,7 @@ mod parser;
 mod token;
 
 pub use cut::{LOOKAHEAD, cut};
-pub use error::{Expected, Found, SyntaxError, SyntaxErrorKind};
+pub use error::{Expected, Found, Quantity, SyntaxError, SyntaxErrorKind};
 pub use format::{COLUMNS, TextEdit, apply_edits, format, format_edits};
 pub use lexer::{Token, lex};
 pub use parser::{Parse, expected_after, parse, parse_cut, parse_each};

@@ -209,6 +209,48 @@ pub fn escape(name: &str) -> String {
 }
 
 impl TokenKind {
+    /// The keywords that begin an action.
+    pub const ACTIONS: [Self; 3] = [Self::Move, Self::Turn, Self::Slam];
+
+    /// The keywords that begin a declaration, `import` included.
+    pub const DECLARATIONS: [Self; 9] = [
+        Self::Import,
+        Self::Wheel,
+        Self::WheelH,
+        Self::Sensor,
+        Self::Ip,
+        Self::Robot,
+        Self::Movement,
+        Self::Parallel,
+        Self::Environment,
+    ];
+
+    /// The keywords that a declaration may end with, also one whose last brace is missing.
+    pub(crate) const ENDS: TokenSet = TokenSet::of(&[
+        Self::Wheels,
+        Self::Sensors,
+        Self::Robots,
+        Self::Moves,
+        Self::Meters,
+        Self::Centimeters,
+        Self::Slam,
+    ]);
+
+    /// How the statement that an action's keyword begins is written; nothing for other tokens.
+    pub fn examples(self) -> &'static [&'static str] {
+        match self {
+            Self::Move => &["move 4.0 meters", "move 40 centimeters at 9.0"],
+            Self::Turn => &["turn left 90", "turn right until { SENSORS }"],
+            Self::Slam => &["slam"],
+            _ => &[],
+        }
+    }
+
+    /// Whether it begins an action.
+    pub fn is_action(self) -> bool {
+        Self::ACTIONS.contains(&self)
+    }
+
     /// How a keyword or sign is written; `None` for tokens whose text varies.
     pub fn spelling(self) -> Option<&'static str> {
         match self {

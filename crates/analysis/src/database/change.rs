@@ -1,4 +1,4 @@
-//! How the database changes: what an edit replaces, and whose answers it makes doubtful.
+//! How the database changes: what an edit replaces, and whose problems it invalidates.
 
 use std::hash::Hash;
 use std::ops::Range;
@@ -8,6 +8,7 @@ use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Parse, Span, Token, parse_each};
 use ropey::Rope;
 use rustc_hash::{FxHashMap, FxHashSet};
+use smallvec::SmallVec;
 use smol_str::SmolStr;
 
 use super::scenes::count_environment;
@@ -16,6 +17,8 @@ use crate::Target;
 use crate::diagnostics;
 use crate::file::{File, Window};
 use crate::names::Key;
+use crate::reads::{Kinds, Reads};
+use crate::signature::Signature;
 use crate::slots::{EntitySlot, EntitySlots};
 
 /// The space between the orders of two neighbours in a fresh file.
@@ -106,11 +109,11 @@ impl Database {
         let had_imports = self.any_import(&old);
         let imports_before = self.which_are_imports(&old);
         let had_environments = self.count(file, EntityKind::Environment) > 0;
-        let mut doubtful = Doubtful::default();
+        let mut invalidated = Invalidated::default();
         let new: Vec<EntitySlot> = if old.len() == parses.len() {
-            old.iter().zip(parses).map(|(id, parsed)| self.update(*id, parsed, &mut doubtful)).collect()
+            old.iter().zip(parses).map(|(id, parsed)| self.update(*id, parsed, &mut invalidated)).collect()
         } else {
-            self.exchange(file, &replaced, parses, &mut doubtful)
+            self.exchange(file, &replaced, parses, &mut invalidated)
         };
         let ids: Vec<EntityId> = new.iter().map(|slot| slot.entity).collect();
         if let Some(open) = self.files[file.0 as usize].as_mut() {
@@ -131,10 +134,10 @@ impl Database {
             && self.which_are_imports(&ids) != imports_before
         {
             // Whether an import comes too late, and where it belongs, depends on what stands before it.
-            doubtful.entities.extend(&imports.entities);
+            invalidated.entities.extend(&imports.entities);
         }
-        doubtful.entities.extend(ids);
-        self.validate_doubtful(doubtful);
+        invalidated.entities.extend(ids);
+        self.validate_invalidated(invalidated);
     }
 
     /// Slots at either end of a window that the edit did not touch and that read as before keep their entities and
@@ -154,16 +157,24 @@ impl Database {
     }
 
     /// Reads an entity anew in its place.
-    fn update(&mut self, id: EntityId, (span, parse): (Span, Parse), doubtful: &mut Doubtful) -> EntitySlot {
+    fn update(
+        &mut self,
+        id: EntityId,
+        (span, parse): (Span, Parse),
+        invalidated: &mut Invalidated,
+    ) -> EntitySlot {
         let Some(file) = self.file_of(id) else { return EntitySlot { entity: id, len: span.len() } };
         self.unregister(id, file);
         if let Some(data) = self.entities[id.0 as usize].as_mut() {
-            doubtful.uses.extend(only_in_one(used_keys(file, &data.parse), used_keys(file, &parse)));
+            invalidated.uses.extend(only_in_one(used_keys(file, &data.parse), used_keys(file, &parse)));
             let (before, after) = (data.parse.skipped_names.iter(), parse.skipped_names.iter());
-            doubtful.keys.extend(hidden_keys(file, only_in_one(before, after)));
-            if !looks_alike(&data.parse, &parse) {
-                doubtful.keys.extend(defined_key(file, &data.parse));
-                doubtful.keys.extend(defined_key(file, &parse));
+            invalidated.names.extend(hidden_keys(file, only_in_one(before, after)));
+            let (before, after) = (defined_key(file, &data.parse), defined_key(file, &parse));
+            if before != after {
+                invalidated.names.extend(before.into_iter().chain(after));
+            }
+            if Signature::of(&data.parse) != Signature::of(&parse) {
+                invalidated.entities.extend(&data.readers);
             }
             data.parse = Arc::new(parse);
         }
@@ -177,18 +188,19 @@ impl Database {
         file: FileId,
         replaced: &Range<usize>,
         parses: Vec<(Span, Parse)>,
-        doubtful: &mut Doubtful,
+        invalidated: &mut Invalidated,
     ) -> Vec<EntitySlot> {
         for id in self.slots(file)[replaced.clone()].iter().map(|slot| slot.entity).collect::<Vec<_>>() {
             if let Some(data) = self.data(id) {
-                doubtful.keys.extend(visible_keys(file, &data.parse));
-                doubtful.uses.extend(used_keys(file, &data.parse));
+                invalidated.names.extend(visible_keys(file, &data.parse));
+                invalidated.uses.extend(used_keys(file, &data.parse));
+                invalidated.entities.extend(&data.readers);
             }
             self.remove(id);
         }
         let orders = self.orders_between(file, replaced, parses.len());
-        doubtful.keys.extend(parses.iter().flat_map(|(_, parse)| visible_keys(file, parse)));
-        doubtful.uses.extend(parses.iter().flat_map(|(_, parse)| used_keys(file, parse)));
+        invalidated.names.extend(parses.iter().flat_map(|(_, parse)| visible_keys(file, parse)));
+        invalidated.uses.extend(parses.iter().flat_map(|(_, parse)| used_keys(file, parse)));
         parses
             .into_iter()
             .zip(orders)
@@ -226,7 +238,14 @@ impl Database {
     }
 
     fn add(&mut self, file: FileId, span: Span, parse: Parse, order: u64) -> EntitySlot {
-        let data = Some(EntityData { file, order, parse: Arc::new(parse), problems: Vec::new() });
+        let data = Some(EntityData {
+            file,
+            order,
+            parse: Arc::new(parse),
+            problems: Vec::new(),
+            reads: Reads::default(),
+            readers: SmallVec::new(),
+        });
         let id = if let Some(index) = self.free.pop() {
             self.entities[index as usize] = data;
             EntityId(index)
@@ -241,7 +260,7 @@ impl Database {
     fn remove(&mut self, id: EntityId) {
         if let Some(file) = self.file_of(id) {
             self.unregister(id, file);
-            self.seekers.remove(&id);
+            self.forget_reads(id);
             self.set_troubled(id, file, false);
             self.entities[id.0 as usize] = None;
             self.free.push(id.0);
@@ -300,71 +319,46 @@ impl Database {
         }
     }
 
-    fn validate_doubtful(&mut self, mut doubtful: Doubtful) {
-        if !doubtful.keys.is_empty() {
-            doubtful.entities.extend(&self.seekers);
+    fn validate_invalidated(&mut self, invalidated: Invalidated) {
+        let Invalidated { mut entities, names, uses } = invalidated;
+        let kinds = names.iter().fold(Kinds::default(), |kinds, (_, kind, _)| kinds.with(*kind));
+        let looked_through =
+            |id: &&EntityId| self.data(**id).is_some_and(|data| data.reads.kinds().meets(kinds));
+        entities.extend(self.name_dependents.iter().filter(looked_through));
+        for key in &names {
+            entities.extend(self.dependents(key));
         }
-        for (file, kind, name) in &doubtful.keys {
-            // Two environments whose names differ by case only cannot both have a script of their name.
-            if *kind == EntityKind::Environment {
-                let twins = self.names.environments_but_for_case(*file, name).iter();
-                let twins = twins.flat_map(|other| self.names.defined(&(*file, *kind, other.clone())));
-                doubtful.entities.extend(twins);
-            }
+        for key in &uses {
+            entities.extend(self.names.mentions(key));
         }
-        let mut asked: FxHashSet<Key> = FxHashSet::default();
-        while let Some(key) = doubtful.keys.pop() {
-            if !asked.insert(key.clone()) {
-                continue;
-            }
-            for id in self.affected(&key) {
-                doubtful.entities.insert(id);
-                if let Some(data) = self.data(id) {
-                    doubtful
-                        .keys
-                        .extend(defined_key(data.file, &data.parse).filter(|key| key.1 > EntityKind::Ip));
-                }
-            }
-        }
-        // How an environment runs its movements is also a question to the movements.
-        for id in &doubtful.entities {
-            if let Some(data) =
-                self.data(*id).filter(|data| matches!(data.parse.entity, Some(Entity::Environment(_))))
-            {
-                doubtful.uses.extend(used_keys(data.file, &data.parse));
-            }
-        }
-        for key in &doubtful.uses {
-            doubtful.entities.extend(self.names.defined(key));
-            doubtful.entities.extend(self.names.used(key));
-        }
-        for id in doubtful.entities {
+        for id in entities {
             self.validate(id);
         }
     }
 
-    /// Who must be asked again when the meaning of a name changes: all who declare or use it, here and in the files
-    /// that import this one.
-    fn affected(&self, key: &Key) -> Vec<EntityId> {
+    /// Who must be checked again when the meaning of a name changes: all who declare it, use it or looked it up, here and
+    /// in the files that import this one.
+    fn dependents(&self, key: &Key) -> Vec<EntityId> {
         let (file, kind, name) = key;
-        let mut ids = [self.names.defined(key), self.names.used(key)].concat();
+        let mut ids: Vec<EntityId> = self.names.mentions(key).collect();
         for importer in self.importers(self.path(*file)) {
-            ids.extend(self.names.used(&(importer, *kind, name.clone())));
+            ids.extend(self.names.mentions(&(importer, *kind, name.clone())));
+        }
+        if *kind == EntityKind::Environment {
+            // Two environments whose names differ by case only cannot both have a script of their name.
+            let twins = self.names.environments_but_for_case(*file, name).iter();
+            ids.extend(twins.flat_map(|other| self.names.defined(&(*file, *kind, other.clone()))));
         }
         ids
     }
 
     fn validate(&mut self, id: EntityId) {
         let Some(file) = self.file_of(id) else { return };
-        let problems = diagnostics::in_entity(self, id);
+        let (problems, reads) = diagnostics::in_entity(self, id);
+        self.set_reads(id, reads);
         self.set_troubled(id, file, !problems.is_empty());
         self.touched.insert(file);
         self.last_edit.revalidated += 1;
-        if problems.iter().any(|problem| problem.rule.seeks_names) {
-            self.seekers.insert(id);
-        } else {
-            self.seekers.remove(&id);
-        }
         if let Some(data) = self.entities[id.0 as usize].as_mut() {
             data.problems = problems;
         }
@@ -379,12 +373,12 @@ impl Database {
     }
 }
 
-/// What an edit makes doubtful.
+/// What an edit invalidates.
 #[derive(Debug, Default)]
-struct Doubtful {
+struct Invalidated {
     entities: FxHashSet<EntityId>,
     /// Names whose meaning changed.
-    keys: Vec<Key>,
+    names: Vec<Key>,
     /// Names that are used more, less or otherwise than before.
     uses: Vec<Key>,
 }
@@ -422,17 +416,6 @@ fn visible_keys(file: FileId, parse: &Parse) -> impl Iterator<Item = Key> {
 /// What names in skipped text may declare.
 fn hidden_keys<'a>(file: FileId, names: impl Iterator<Item = &'a SmolStr>) -> impl Iterator<Item = Key> {
     names.flat_map(move |name| EntityKind::ALL.map(|kind| (file, kind, name.clone())))
-}
-
-/// Whether two versions of an entity look the same to all others. Places count as looks, because others point at
-/// them; what stands inside a movement's braces does not.
-fn looks_alike(before: &Parse, after: &Parse) -> bool {
-    match (&before.entity, &after.entity) {
-        (Some(Entity::Movement(before)), Some(Entity::Movement(after))) => {
-            (&before.parallel, &before.name, &before.robot) == (&after.parallel, &after.name, &after.robot)
-        }
-        (tree, changed) => tree == changed && before.tokens == after.tokens,
-    }
 }
 
 /// The nearest range that fits the text and cuts no character.

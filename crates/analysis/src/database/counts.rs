@@ -57,12 +57,12 @@ fn an_edit_inside_a_movement_asks_nobody_else() {
 
 #[test]
 fn a_radius_is_of_interest_to_the_robots_that_have_the_wheel() {
-    assert_eq!(cost("wheel l5 with radius 4\n", "wheel l5 with radius 45\n"), counts(40, 1, 4));
+    assert_eq!(cost("wheel l5 with radius 4\n", "wheel l5 with radius 45\n"), counts(40, 1, 2));
 }
 
 #[test]
-fn a_port_is_of_interest_to_those_who_use_the_robot() {
-    assert_eq!(cost("robot5 type tw with port 1 ", "robot5 type tw with port 12 "), counts(55, 1, 3));
+fn a_port_is_of_interest_to_the_movements_of_the_robot() {
+    assert_eq!(cost("robot5 type tw with port 1 ", "robot5 type tw with port 12 "), counts(55, 1, 2));
 }
 
 #[test]

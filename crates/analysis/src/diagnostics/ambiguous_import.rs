@@ -2,11 +2,11 @@
 
 use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::Name;
-use rustc_hash::FxHashSet;
 
 use crate::EntityId;
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::Severity;
 
@@ -16,7 +16,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "a name that two imported files both declare",
     tag: None,
     remedy: Remedy::Never,
-    seeks_names: false,
     page: PAGE,
     check,
 };
@@ -42,24 +41,14 @@ robot scout with port 23000 has { wheelL wheelR } wheels",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
-    let Some(tree) = context.tree else { return };
-    for (kind, name) in tree.references() {
-        if let [first, second, ..] = imported(context, kind, name)[..] {
-            problems.push(problem(context, kind, name, [first, second]));
+    for (kind, name) in &context.references {
+        if !context.declarations(*kind, name).is_empty() {
+            continue;
+        }
+        if let [first, second, ..] = context.imported_declarations(*kind, name)[..] {
+            problems.push(problem(context, *kind, name, [first, second]));
         }
     }
-}
-
-/// The first declaration of a name in each imported file; none where this file declares it itself.
-fn imported(context: &Context<'_>, kind: EntityKind, name: &Name) -> Vec<EntityId> {
-    let database = context.database;
-    if !database.definitions(context.file, kind, &name.text).is_empty() {
-        return Vec::new();
-    }
-    // A file may be imported twice.
-    let mut seen = FxHashSet::default();
-    let files = database.imported_files(context.file).filter(|file| seen.insert(*file));
-    files.filter_map(|file| database.definitions(file, kind, &name.text).first().copied()).collect()
 }
 
 fn problem(context: &Context<'_>, kind: EntityKind, name: &Name, declared: [EntityId; 2]) -> Problem {
@@ -68,11 +57,9 @@ fn problem(context: &Context<'_>, kind: EntityKind, name: &Name, declared: [Enti
         .help(
             "import only one of the files, rename one of the two, or declare the one you mean in this file",
         );
-    declared.into_iter().fold(problem, |problem, id| {
-        match context.database.tree(id).and_then(|tree| tree.name()) {
-            Some(name) => problem.related(id, name.span, "declared here"),
-            None => problem,
-        }
+    declared.into_iter().fold(problem, |problem, id| match context.name_of(id) {
+        Some(name) => problem.related(id, name.span, "declared here"),
+        None => problem,
     })
 }
 

@@ -3,7 +3,7 @@
 use pydslrep_syntax::EntityKind;
 use smol_str::SmolStr;
 
-use super::context::Problem;
+use super::problem::Problem;
 use super::{syntax_error, unresolved_reference, unused_declaration};
 use crate::{Database, EntityId, FileId};
 

@@ -1,8 +1,7 @@
 //! `duplicate-name`: one name, two entities of a kind.
 
-use smol_str::SmolStr;
-
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::Severity;
 
@@ -12,7 +11,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "two things of one kind have the same name",
     tag: None,
     remedy: Remedy::Suggested,
-    seeks_names: true,
     page: PAGE,
     check,
 };
@@ -32,11 +30,10 @@ wheel wheelR with radius 4.5",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
-    let Some(tree) = context.tree else { return };
-    let (Some(kind), Some(name)) = (tree.kind(), tree.name()) else { return };
-    let all = context.database.definitions(context.file, kind, &name.text);
-    let Some(first) = all.first().filter(|first| **first != context.id) else { return };
-    let Some(first_name) = context.database.tree(*first).and_then(|tree| tree.name()) else { return };
+    let Some((kind, name)) = context.declared() else { return };
+    let first = context.declarations(kind, name).first();
+    let Some(first) = first.filter(|first| **first != context.id) else { return };
+    let Some(first_name) = context.name_of(*first) else { return };
     let free = free_name(context, kind, &name.text);
     problems.push(
         RULE.problem(name.span, format!("there is already {} called `{}`", kind.a_noun(), name.text))
@@ -51,9 +48,7 @@ fn free_name(context: &Context<'_>, kind: pydslrep_syntax::EntityKind, name: &st
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
     let stem = if stem.is_empty() { name } else { stem };
     let mut candidates = (2_u32..).map(|number| format!("{stem}_{number}"));
-    let is_free =
-        |candidate: &String| !context.database.is_in_sight(context.file, kind, &SmolStr::new(candidate));
-    candidates.find(is_free).unwrap_or_default()
+    candidates.find(|candidate| !context.is_declared(kind, candidate)).unwrap_or_default()
 }
 
 #[cfg(test)]

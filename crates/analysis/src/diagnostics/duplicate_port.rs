@@ -2,7 +2,9 @@
 
 use pydslrep_syntax::ast::{Entity, Name, Robot};
 
-use super::context::{Context, Problem, ProblemEdit};
+use super::context::Context;
+use super::edits::ProblemEdit;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::{EntityId, Severity, Target};
 
@@ -12,7 +14,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "two robots of an environment share a port, and the target is `vrep`",
     tag: None,
     remedy: Remedy::Safe,
-    seeks_names: false,
     page: PAGE,
     check,
 };
@@ -54,7 +55,7 @@ struct Listed<'a> {
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Environment(environment)) = context.tree else { return };
-    if context.database.target(context.file) != Target::VRep {
+    if context.target() != Target::VRep {
         return;
     }
     let names = environment.robots.iter().flat_map(|list| &list.names);
@@ -90,24 +91,16 @@ fn problem(context: &Context<'_>, robots: &[Listed<'_>], first: &Listed<'_>, sec
         }
     }
     // Whichever environment complains, the same robot keeps its port: else two of them could go on for ever.
-    let later = if is_behind(context, first, second) { second } else { first };
+    let later = if context.is_before(first.id, second.id) { second } else { first };
     match (free_port(robots, later.port), &later.robot.port) {
         (Some(free), Some(port)) => {
             let edit = ProblemEdit::new(later.id, port.span, free.to_string());
-            let name = context.database.tree(later.id).and_then(|tree| tree.name());
+            let name = context.name_of(later.id);
             let name = name.map_or("", |name| name.text.as_str());
             problem.fix(format!("give `{name}` port {free}"), [edit])
         }
         _ => problem.help("give each robot a port of its own"),
     }
-}
-
-fn is_behind(context: &Context<'_>, first: &Listed<'_>, second: &Listed<'_>) -> bool {
-    let database = context.database;
-    let place = |robot: &Listed<'_>| {
-        (database.file_of(robot.id).map(|file| database.path(file)), database.order(robot.id))
-    };
-    place(first) < place(second)
 }
 
 /// The next port that no robot of the environment has.

@@ -5,7 +5,8 @@ use pydslrep_syntax::ast::Entity;
 
 use crate::EntityId;
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::Severity;
 
@@ -15,7 +16,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "an environment lists a robot that none of its movements drives",
     tag: None,
     remedy: Remedy::Never,
-    seeks_names: false,
     page: PAGE,
     check,
 };

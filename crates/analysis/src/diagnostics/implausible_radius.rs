@@ -2,7 +2,8 @@
 
 use pydslrep_syntax::ast::{Entity, Number};
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::Severity;
 
@@ -12,7 +13,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "a wheel's radius is above 100 cm or below 0.5 cm, so it was probably measured in another unit",
     tag: None,
     remedy: Remedy::Suggested,
-    seeks_names: false,
     page: PAGE,
     check,
 };

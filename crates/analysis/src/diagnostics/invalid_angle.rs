@@ -3,7 +3,8 @@
 use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{Action, ActionKind, Direction, Entity, Number, Turn, TurnExtent};
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::Severity;
 
@@ -13,7 +14,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "an angle is negative, zero or more than a full turn",
     tag: None,
     remedy: Remedy::Safe,
-    seeks_names: false,
     page: PAGE,
     check,
 };

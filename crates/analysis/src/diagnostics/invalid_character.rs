@@ -3,7 +3,8 @@
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{Span, SyntaxError, SyntaxErrorKind, TokenKind};
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::Severity;
 
@@ -13,7 +14,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "a character that has no meaning in the language",
     tag: None,
     remedy: Remedy::Suggested,
-    seeks_names: false,
     page: PAGE,
     check,
 };

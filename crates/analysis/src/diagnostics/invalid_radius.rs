@@ -2,7 +2,8 @@
 
 use pydslrep_syntax::ast::Entity;
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::Severity;
 
@@ -12,7 +13,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "a wheel's radius is zero or negative",
     tag: None,
     remedy: Remedy::Never,
-    seeks_names: false,
     page: PAGE,
     check,
 };

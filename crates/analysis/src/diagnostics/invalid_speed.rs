@@ -3,7 +3,8 @@
 use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{ActionKind, Entity, Move, Number};
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::Severity;
 
@@ -13,7 +14,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "a speed is zero or negative",
     tag: None,
     remedy: Remedy::Suggested,
-    seeks_names: false,
     page: PAGE,
     check,
 };
@@ -74,7 +74,7 @@ fn problem(context: &Context<'_>, step: &Move, speed: &Number) -> Problem {
     }
 }
 
-fn negated(context: &Context<'_>, distance: &Number) -> super::context::ProblemEdit {
+fn negated(context: &Context<'_>, distance: &Number) -> super::edits::ProblemEdit {
     if context.text(distance.span).starts_with('-') {
         context.replace(Span::new(distance.span.start, distance.span.start + 1), "")
     } else {

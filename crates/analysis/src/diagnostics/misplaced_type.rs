@@ -3,7 +3,8 @@
 use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::Entity;
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule, Tag};
 use crate::Severity;
 
@@ -13,7 +14,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "a robot's type is written before its name",
     tag: Some(Tag::Deprecated),
     remedy: Remedy::Safe,
-    seeks_names: false,
     page: PAGE,
     check,
 };

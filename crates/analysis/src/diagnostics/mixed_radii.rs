@@ -4,7 +4,8 @@ use pydslrep_syntax::ast::{Entity, Name, Wheel};
 
 use crate::EntityId;
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::Severity;
 
@@ -14,7 +15,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "the wheels of a robot differ in radius",
     tag: None,
     remedy: Remedy::Never,
-    seeks_names: false,
     page: PAGE,
     check,
 };

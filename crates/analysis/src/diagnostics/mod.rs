@@ -6,6 +6,7 @@ mod context;
 mod deprecated_ip_clause;
 mod duplicate_name;
 mod duplicate_port;
+mod edits;
 mod empty_environment;
 mod empty_movement;
 mod idle_robot;
@@ -25,6 +26,7 @@ mod number_out_of_range;
 mod parallel_conflict;
 mod planned_collision;
 mod port_of_other_target;
+mod problem;
 mod repeated_robot;
 mod repeated_sensor;
 mod repeated_wheel;
@@ -48,14 +50,15 @@ mod zero_distance;
 mod testing;
 
 use pydslrep_syntax::Span;
-use pydslrep_syntax::ast::Entity;
 
 use self::consequences::Consequences;
-use self::context::{Brace, Context};
-pub(crate) use self::context::{Problem, ProblemFix};
+use self::context::Context;
 pub use self::manual::{Page, Remedy, index};
 pub(crate) use self::planned_collision::PlannedRun;
-use crate::{Database, Diagnostic, Edit, EntityId, FileId, Fix, Related, Severity};
+use self::problem::Brace;
+pub(crate) use self::problem::Problem;
+use crate::reads::Reads;
+use crate::{Database, Diagnostic, EntityId, FileId, Related, Severity};
 
 /// A way to show text besides underlining it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,8 +82,6 @@ pub struct Rule {
     pub tag: Option<Tag>,
     /// The best fix it may offer.
     pub remedy: Remedy,
-    /// Whether its words depend on which other names there are.
-    pub(crate) seeks_names: bool,
     /// What there is to say about it beside its messages.
     pub page: Page,
     check: fn(&Context<'_>, &mut Vec<Problem>),
@@ -154,16 +155,15 @@ pub fn rule(code: &str) -> Option<&'static Rule> {
     CATALOGUE.into_iter().find(|rule| rule.code == code)
 }
 
-/// The problems of one entity, in the order of the text.
-pub(crate) fn in_entity(database: &Database, id: EntityId) -> Vec<Problem> {
+/// The problems of one entity, in the order of the text, and what was looked at to find them.
+pub(crate) fn in_entity(database: &Database, id: EntityId) -> (Vec<Problem>, Reads) {
     let mut problems = Vec::new();
-    if let Some(context) = Context::new(database, id) {
-        for rule in CATALOGUE {
-            (rule.check)(&context, &mut problems);
-        }
+    let Some(context) = Context::new(database, id) else { return (problems, Reads::default()) };
+    for rule in CATALOGUE {
+        (rule.check)(&context, &mut problems);
     }
     problems.sort_by_key(|problem| (problem.span.start, problem.span.end));
-    problems
+    (problems, context.into_reads())
 }
 
 /// The problems of a file with absolute places.
@@ -208,48 +208,6 @@ pub(crate) fn of_entities(database: &Database, ids: &[EntityId]) -> Vec<Diagnost
     diagnostics
 }
 
-/// What to remove so that the lines around it stay as they are: where something else stands before it on its line, the
-/// end of that line is not part of it, but the space between the two is.
-fn tidy_removal(database: &Database, file: FileId, span: Span) -> Span {
-    /// Longer white space between two things of one line may stay.
-    const FAR: u32 = 256;
-    let removed = database.slice(file, span);
-    if !removed.ends_with(['\n', '\r']) || span.start == 0 {
-        return span;
-    }
-    let before = (1..=FAR.min(span.start))
-        .map(|back| (back, database.slice(file, Span::new(span.start - back, span.start - back + 1))));
-    let Some((back, text)) = before.into_iter().find(|(_, text)| text != " " && text != "\t") else {
-        return span;
-    };
-    if text == "\n" || text == "\r" {
-        return span;
-    }
-    let trailing = removed.len() - removed.trim_end().len();
-    Span::new(span.start + 1 - back, span.end - u32::try_from(trailing).unwrap_or_default())
-}
-
-/// The text of an edit, with a space where a word in it, or beside a gap it leaves, would run into another one: before
-/// `^` or a sign, a number or a name needs none.
-fn kept_apart(database: &Database, file: FileId, span: Span, text: &str) -> String {
-    let is_word = |c: char| c.is_alphanumeric() || c == '_';
-    let first = |text: &str| text.chars().next().is_some_and(is_word);
-    let last = |text: &str| text.chars().next_back().is_some_and(is_word);
-    // Texts are cut between characters, and no character is longer than this.
-    let beside = |start: u32, end: u32| database.slice(file, Span::new(start, end));
-    let before = (1..=4_u32.min(span.start)).map(|back| beside(span.start - back, span.start));
-    let runs_in = before.into_iter().find(|text| !text.is_empty()).is_some_and(|text| last(&text));
-    let behind = (1..=4).map(|ahead| beside(span.end, span.end + ahead)).find(|text| !text.is_empty());
-    let runs_on = behind.is_some_and(|text| first(&text));
-    let replaced = database.slice(file, span);
-    if text.is_empty() {
-        return if runs_in && runs_on { " ".to_owned() } else { String::new() };
-    }
-    let left = if runs_in && first(text) && !first(&replaced) { " " } else { "" };
-    let right = if runs_on && last(text) && !last(&replaced) { " " } else { "" };
-    format!("{left}{text}{right}")
-}
-
 fn located(database: &Database, file: FileId, start: u32, problem: &Problem) -> Diagnostic {
     let related = problem.related.iter().filter_map(|related| {
         let (file, span) = absolute(database, related.entity, related.span)?;
@@ -264,45 +222,11 @@ fn located(database: &Database, file: FileId, start: u32, problem: &Problem) -> 
         help: problem.help.clone(),
         note: problem.note.clone(),
         related: related.collect(),
-        fixes: problem.fixes.iter().filter_map(|fix| located_fix(database, fix)).collect(),
+        fixes: problem.fixes.iter().filter_map(|fix| edits::located(database, fix)).collect(),
     }
 }
 
-fn located_fix(database: &Database, fix: &ProblemFix) -> Option<Fix> {
-    let edits = fix.edits.iter().map(|edit| {
-        let entity = if edit.declares { declared_before(database, edit.entity)? } else { edit.entity };
-        let (file, span) = absolute(database, entity, edit.span)?;
-        let span = if edit.text.is_empty() { tidy_removal(database, file, span) } else { span };
-        let text = if edit.joins { edit.text.clone() } else { kept_apart(database, file, span, &edit.text) };
-        Some(Edit { file, span, text: text.replace('\n', database.line_ending(file)) })
-    });
-    Some(Fix { title: fix.title.clone(), safe: fix.safe, edits: edits.collect::<Option<_>>()? })
-}
-
-/// The entity, it or one before it, that a declaration can stand before without cutting another one in two: what comes
-/// before it is complete, and ends on a line before.
-fn declared_before(database: &Database, id: EntityId) -> Option<EntityId> {
-    /// A text that is broken for longer is no place for a declaration.
-    const FARTHEST: usize = 64;
-    let entity = database.entity(id)?;
-    let (index, _) = database.slot_at(entity.file, entity.span.start);
-    let slots = database.slots(entity.file).get(..=index)?;
-    let is_free =
-        |at: &usize| *at == 0 || slots.get(at - 1).is_some_and(|before| is_over(database, before.entity));
-    let at = (index.saturating_sub(FARTHEST)..=index).rev().find(is_free)?;
-    slots.get(at).map(|slot| slot.entity)
-}
-
-/// Whether an entity is complete, and the next one starts on another line.
-fn is_over(database: &Database, id: EntityId) -> bool {
-    let Some(entity) = database.entity(id) else { return false };
-    let last = entity.parse.tokens.iter().rev().find(|(token, _)| !token.is_comment());
-    let Some((_, last)) = last else { return true };
-    let rest = database.slice(entity.file, Span::new(entity.span.start + last.end, entity.span.end));
-    let is_import = matches!(entity.parse.entity, Some(Entity::Import(_)));
-    (is_import || entity.parse.errors.is_empty()) && rest.contains(['\n', '\r'])
-}
-
+/// Where a part of an entity is.
 fn absolute(database: &Database, id: EntityId, span: Span) -> Option<(FileId, Span)> {
     let entity = database.entity(id)?;
     Some((entity.file, span.shifted(entity.span.start)))

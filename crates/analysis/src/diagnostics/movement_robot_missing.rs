@@ -1,10 +1,13 @@
 //! `movement-robot-missing`: an environment runs a movement of a robot that it does not have.
 
 use pydslrep_syntax::EntityKind;
-use pydslrep_syntax::ast::{Entity, Movement, Name, References};
+use pydslrep_syntax::ast::{Entity, Name, References};
 
-use super::context::{Context, Problem, append};
+use super::context::Context;
+use super::edits::append;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
+use crate::signature::MovementSignature;
 use crate::{EntityId, Severity};
 
 pub(super) static RULE: Rule = Rule {
@@ -13,7 +16,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "an environment lists a movement whose robot it does not list",
     tag: None,
     remedy: Remedy::Safe,
-    seeks_names: true,
     page: PAGE,
     check,
 };
@@ -64,21 +66,21 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 fn problem(
     context: &Context<'_>,
     name: &Name,
-    (id, movement): (EntityId, &Movement),
+    (id, movement): (EntityId, MovementSignature<'_>),
     robot: EntityId,
     robots: &References,
 ) -> Problem {
-    let driven = movement.robot.as_ref().map_or("", |name| name.text.as_str());
+    let driven = movement.robot.map_or("", |name| name.text.as_str());
     let mut problem = RULE.problem(
         name.span,
         format!("`{}` moves `{driven}`, which is not among the robots of this environment", name.text),
     );
     problem = problem.help(format!("list `{driven}` among the robots, or leave `{}` out", name.text));
-    if let Some(reference) = &movement.robot {
+    if let Some(reference) = movement.robot {
         problem = problem.related(id, reference.span, format!("`{}` is a movement of `{driven}`", name.text));
     }
     // The name must mean the same robot here.
-    let visible = movement.robot.as_ref().and_then(|name| context.resolve(EntityKind::Robot, name).entity());
+    let visible = movement.robot.and_then(|name| context.resolve(EntityKind::Robot, name).entity());
     if visible == Some(robot) {
         problem =
             problem.fix(format!("add `{driven}` to the robots"), [append(context.id, robots, driven, " ")]);

@@ -1,8 +1,9 @@
 //! `no-environment`: robots and movements, but nothing that runs them.
 
-use pydslrep_syntax::{EntityKind, Span};
+use pydslrep_syntax::{EntityKind, Span, escape};
 
-use super::context::{Context, Problem, escape};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::{Database, Diagnostic, Edit, EntityRef, FileId, Fix, Severity};
 
@@ -12,7 +13,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "robots and movements, but no environment to run them",
     tag: None,
     remedy: Remedy::Suggested,
-    seeks_names: false,
     page: PAGE,
     check,
 };

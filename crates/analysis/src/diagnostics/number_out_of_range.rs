@@ -1,8 +1,9 @@
 //! `number-out-of-range`: a distance nobody drives, or digits without end.
 
-use pydslrep_syntax::ast::{ActionKind, Entity, Number, TurnExtent};
+use pydslrep_syntax::ast::{ActionKind, Entity, Move, Number};
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::Severity;
 
@@ -12,7 +13,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "a distance beyond 1000 km, or a number too large to calculate with",
     tag: None,
     remedy: Remedy::Never,
-    seeks_names: false,
     page: PAGE,
     check,
 };
@@ -47,22 +47,12 @@ const FARTHEST: f64 = 1_000_000.0;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     match context.tree {
-        Some(Entity::Wheel(wheel)) => problems.extend(infinite(wheel.radius.as_ref())),
+        Some(Entity::Wheel(wheel)) => problems.extend(wheel.radius.as_ref().and_then(infinite)),
         Some(Entity::Movement(movement)) => {
             for action in &movement.actions {
-                match &action.kind {
-                    ActionKind::Move(step) => {
-                        let unit = step.unit.map_or(1.0, |(unit, _)| unit.in_metres());
-                        problems.extend(step.distance.as_ref().and_then(|distance| too_far(distance, unit)));
-                        problems
-                            .extend(infinite(step.speed.as_ref().and_then(|clause| clause.value.as_ref())));
-                    }
-                    ActionKind::Turn(turn) => {
-                        if let Some(TurnExtent::Angle(angle)) = &turn.extent {
-                            problems.extend(infinite(Some(angle)));
-                        }
-                    }
-                    ActionKind::Slam => {}
+                problems.extend(action.numbers().filter_map(infinite));
+                if let ActionKind::Move(step) = &action.kind {
+                    problems.extend(too_far(step));
                 }
             }
         }
@@ -70,18 +60,16 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     }
 }
 
-fn infinite(number: Option<&Number>) -> Option<Problem> {
-    let number = number?;
+fn infinite(number: &Number) -> Option<Problem> {
     let problem = RULE.problem(number.span, "this number is too large to compute with");
     (!number.value?.is_finite()).then(|| problem.help("write fewer digits"))
 }
 
-fn too_far(distance: &Number, unit: f64) -> Option<Problem> {
-    if !distance.value?.is_finite() {
-        return infinite(Some(distance));
-    }
+fn too_far(step: &Move) -> Option<Problem> {
+    let distance = step.distance.as_ref()?;
+    let metres = distance.value?.abs() * step.unit.map_or(1.0, |(unit, _)| unit.in_metres());
     let problem = RULE.problem(distance.span, "a move can be at most 1000 km (1000000 meters) long");
-    (distance.value?.abs() * unit > FARTHEST).then(|| problem.help("write a shorter distance"))
+    (metres.is_finite() && metres > FARTHEST).then(|| problem.help("write a shorter distance"))
 }
 
 #[cfg(test)]

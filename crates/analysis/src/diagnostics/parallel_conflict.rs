@@ -2,7 +2,8 @@
 
 use pydslrep_syntax::ast::{Entity, Name};
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::{EntityId, Severity};
 
@@ -12,7 +13,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "two movements of one robot run at the same time",
     tag: None,
     remedy: Remedy::Never,
-    seeks_names: false,
     page: PAGE,
     check,
 };
@@ -61,7 +61,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         };
         let Some(robot) = context.robot_of(id, movement) else { continue };
         if let Some(other) = group.iter().find(|other| other.robot == robot) {
-            let driven = movement.robot.as_ref().map_or("", |name| name.text.as_str());
+            let driven = movement.robot.map_or("", |name| name.text.as_str());
             problems.push(problem(context, driven, other, name));
         }
         group.push(Running { robot, name });

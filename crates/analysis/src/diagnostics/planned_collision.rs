@@ -4,7 +4,8 @@ use pydslrep_kinematics::ActionIndex;
 use pydslrep_scene::{Collision, ENDING, Scene, Thing, collisions};
 use pydslrep_syntax::ast::Entity;
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::environment::Environment;
 use crate::{Database, Diagnostic, EntityId, FileId, Related, Severity, plan};
@@ -15,7 +16,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "the planned path meets an obstacle of the scene, or another robot",
     tag: None,
     remedy: Remedy::Never,
-    seeks_names: false,
     page: PAGE,
     check,
 };

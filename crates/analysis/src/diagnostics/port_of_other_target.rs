@@ -4,7 +4,8 @@ use std::ops::RangeInclusive;
 
 use pydslrep_syntax::ast::Entity;
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::{Severity, Target};
 
@@ -14,7 +15,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "a robot has a port of V-REP's, and the target is `coppeliasim`",
     tag: None,
     remedy: Remedy::Suggested,
-    seeks_names: false,
     page: PAGE,
     check,
 };
@@ -49,7 +49,7 @@ const OF_VREP: RangeInclusive<u16> = 19997..=Target::VRep.default_port();
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Robot(robot)) = context.tree else { return };
-    if context.database.target(context.file) != Target::CoppeliaSim {
+    if context.target() != Target::CoppeliaSim {
         return;
     }
     let Some(port) = &robot.port else { return };

@@ -2,7 +2,8 @@
 
 use pydslrep_syntax::ast::Entity;
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::repeated_wheel::repeats;
 use super::{Page, Remedy, Rule};
 use crate::Severity;
@@ -13,7 +14,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "an environment lists a robot twice",
     tag: None,
     remedy: Remedy::Safe,
-    seeks_names: false,
     page: PAGE,
     check,
 };

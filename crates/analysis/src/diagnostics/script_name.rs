@@ -2,7 +2,8 @@
 
 use pydslrep_syntax::ast::{Entity, Name};
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::script_name::{Obstacle, obstacle, script_names};
 use crate::{EntityId, Severity};
@@ -13,7 +14,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "an environment whose script cannot have the same name",
     tag: None,
     remedy: Remedy::Suggested,
-    seeks_names: true,
     page: PAGE,
     check,
 };
@@ -49,11 +49,11 @@ environment math_room has { rover } robots with { trip } moves",
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Environment(environment)) = context.tree else { return };
     let Some(name) = &environment.name else { return };
-    if obstacle(&name.text).is_none() && !has_twin(context, name) {
+    if obstacle(&name.text).is_none() && !context.has_twin(name) {
         return;
     }
-    let environments = context.database.environments(context.file);
-    let names: Vec<&str> = environments.iter().map(|(_, name)| name.text.as_str()).collect();
+    let environments = context.environments();
+    let names: Vec<&str> = environments.iter().map(|(_, name)| name.as_str()).collect();
     let Some(index) = environments.iter().position(|(id, _)| *id == context.id) else { return };
     let Some(script) = script_names(&names).into_iter().nth(index) else { return };
     let Some(obstacle) = script.obstacle else { return };
@@ -64,11 +64,6 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     problems.push(problem(context, name, &script.stem, obstacle, other));
 }
 
-/// Whether another environment of the file has the same name but for case.
-fn has_twin(context: &Context<'_>, name: &Name) -> bool {
-    context.database.environments_but_for_case(context.file, &name.text).len() > 1
-}
-
 fn problem(
     context: &Context<'_>,
     name: &Name,
@@ -77,7 +72,7 @@ fn problem(
     other: Option<EntityId>,
 ) -> Problem {
     let text = &name.text;
-    let other = other.and_then(|id| Some((id, context.database.tree(id)?.name()?)));
+    let other = other.and_then(|id| Some((id, context.name_of(id)?)));
     let why = match obstacle {
         Obstacle::StandardModule => format!("a script `{text}.py` would hide Python's own module `{text}`"),
         Obstacle::ClientModule => {

@@ -1,9 +1,11 @@
 //! `sensor-not-on-robot`: a turn waits for a sensor that its robot does not carry.
 
 use pydslrep_syntax::ast::{Entity, Name, Robot};
-use pydslrep_syntax::{EntityKind, Span};
+use pydslrep_syntax::{EntityKind, Span, escape};
 
-use super::context::{Context, Problem, ProblemEdit, append, escape};
+use super::context::Context;
+use super::edits::{ProblemEdit, append};
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::{EntityId, Severity};
 
@@ -13,7 +15,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "`turn … until` names a sensor that the robot does not carry",
     tag: None,
     remedy: Remedy::Suggested,
-    seeks_names: false,
     page: PAGE,
     check,
 };
@@ -92,8 +93,7 @@ fn added(context: &Context<'_>, id: EntityId, robot: &Robot, sensor: &str) -> Op
     if let Some(list) = &robot.sensors {
         return Some(append(id, list, sensor, ", "));
     }
-    let tokens = &context.database.parse(id)?.tokens;
-    let end = tokens.iter().rev().find(|(token, _)| !token.is_comment())?.1.end;
+    let end = context.signature(id)?.end()?;
     Some(ProblemEdit::new(id, Span::at(end), format!(" with sensors {{ {} }}", escape(sensor))))
 }
 

@@ -1,13 +1,13 @@
 //! `single-parallel`: a parallel movement that never runs beside another.
 
+use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::{Entity, Environment, Name};
-use pydslrep_syntax::{EntityKind, Parse};
 
-use crate::FileId;
-
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule, Tag};
 use crate::Severity;
+use crate::signature::Signature;
 
 pub(super) static RULE: Rule = Rule {
     code: "single-parallel",
@@ -15,7 +15,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "a `parallel` movement that never runs beside another",
     tag: Some(Tag::Unnecessary),
     remedy: Remedy::Suggested,
-    seeks_names: false,
     page: PAGE,
     check,
 };
@@ -52,16 +51,15 @@ environment yard has { rover scout } robots with { go follow } moves",
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
     let (Some(parallel), Some(name)) = (movement.parallel, &movement.name) else { return };
-    let users = context.database.users(context.file, EntityKind::Movement, &name.text);
-    if !context.errors.is_empty() || users.is_empty() || context.database.is_imported(context.file) {
+    let users = context.users(EntityKind::Movement, name);
+    if !context.errors.is_empty() || users.is_empty() || context.is_imported() {
         return;
     }
-    let beside = users.iter().any(|user| match context.database.parse(*user) {
-        Some(Parse { entity: Some(Entity::Environment(environment)), errors, .. }) if errors.is_empty() => {
-            runs_beside_another(context, environment, name)
-        }
-        // It cannot be told.
-        _ => true,
+    let beside = users.iter().any(|user| {
+        let signature = context.signature(*user).filter(|user| user.is_sound());
+        // With errors in it, the movement may run beside any other.
+        let environment = signature.and_then(Signature::environment);
+        environment.is_none_or(|environment| runs_beside_another(context, environment, name))
     });
     if !beside {
         problems.push(
@@ -81,20 +79,16 @@ fn runs_beside_another(context: &Context<'_>, environment: &Environment, name: &
     let names = environment.movements.as_ref().map_or(&[][..], |list| &list.names);
     let parallel = |index: Option<usize>| {
         let neighbour = index.and_then(|index| names.get(index));
-        // One that is not known may be parallel.
-        neighbour.is_some_and(|name| is_parallel(context, context.file, name) != Some(false))
+        neighbour.is_some_and(|name| may_be_parallel(context, name))
     };
     let mut places =
         names.iter().enumerate().filter(|(_, other)| other.text == name.text).map(|(index, _)| index);
     places.any(|index| parallel(index.checked_sub(1)) || parallel(Some(index + 1)))
 }
 
-fn is_parallel(context: &Context<'_>, file: FileId, name: &Name) -> Option<bool> {
-    let id = context.database.resolve(file, EntityKind::Movement, &name.text).entity()?;
-    match context.database.tree(id)? {
-        Entity::Movement(movement) => Some(movement.parallel.is_some()),
-        _ => None,
-    }
+/// Also one that is not known.
+fn may_be_parallel(context: &Context<'_>, name: &Name) -> bool {
+    context.movement(name).is_none_or(|(_, movement)| movement.parallel.is_some())
 }
 
 /// The start of the token behind a place.

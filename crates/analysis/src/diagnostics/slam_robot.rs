@@ -3,7 +3,8 @@
 use pydslrep_kinematics::Drive;
 use pydslrep_syntax::ast::{ActionKind, Entity};
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::Severity;
 
@@ -13,7 +14,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "`slam` on a robot with four wheels",
     tag: None,
     remedy: Remedy::Never,
-    seeks_names: false,
     page: PAGE,
     check,
 };
@@ -65,7 +65,7 @@ environment maze has { rover } robots with { explore } moves",
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
     let Some((id, robot)) = movement.robot.as_ref().and_then(|name| context.robot(name)) else { return };
-    let Some(drive) = context.database.drive(id).filter(|drive| *drive != Drive::TwoWheel) else { return };
+    let Some(drive) = context.drive(id).filter(|drive| *drive != Drive::TwoWheel) else { return };
     let Some(name) = &robot.name else { return };
     for action in movement.actions.iter().filter(|action| action.kind == ActionKind::Slam) {
         problems.push(

@@ -1,11 +1,11 @@
 //! `slam-sensors`: exploring takes five distance sensors.
 
-use pydslrep_syntax::EntityKind;
-use pydslrep_syntax::ast::{ActionKind, Entity, Name, Robot, SensorKind};
+use pydslrep_syntax::ast::{ActionKind, Entity, Robot, SensorKind};
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
-use crate::{Database, EntityId, FileId, Severity};
+use crate::{EntityId, Severity};
 
 pub(super) static RULE: Rule = Rule {
     code: "slam-sensors",
@@ -13,7 +13,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "`slam` with fewer than five distance sensors",
     tag: None,
     remedy: Remedy::Never,
-    seeks_names: false,
     page: PAGE,
     check,
 };
@@ -90,23 +89,16 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 
 /// How many distance sensors the robot has; `None` where one of its sensors is not known.
 fn distance_sensors(context: &Context<'_>, id: EntityId, robot: &Robot) -> Option<usize> {
-    // Its names mean what they do in its own file, which need not be the movement's.
-    let file = context.database.file_of(id)?;
     let names = robot.sensors.as_ref().map_or(&[][..], |list| &list.names);
     let mut counted: Vec<&str> = Vec::new();
     for name in names {
-        if sees_distance(context.database, file, name)? && !counted.contains(&name.text.as_str()) {
+        let sensor = context.sensor_of(id, name)?.sensor()?;
+        let sees = !matches!(sensor.kind, Some((SensorKind::Bumper, _)));
+        if sees && !counted.contains(&name.text.as_str()) {
             counted.push(&name.text);
         }
     }
     Some(counted.len())
-}
-
-fn sees_distance(database: &Database, file: FileId, name: &Name) -> Option<bool> {
-    match database.tree(database.resolve(file, EntityKind::Sensor, &name.text).entity()?)? {
-        Entity::Sensor(sensor) => Some(!matches!(sensor.kind, Some((SensorKind::Bumper, _)))),
-        _ => None,
-    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,8 @@
 
 use pydslrep_syntax::ast::Entity;
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::{Absence, Severity};
 
@@ -12,7 +13,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "an imported file is missing, cannot be read, or is outside of the workspace",
     tag: None,
     remedy: Remedy::Never,
-    seeks_names: false,
     page: PAGE,
     check,
 };
@@ -40,9 +40,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         return;
     }
     let (Some(written), Some(span)) = (&import.path, import.path_span) else { return };
-    let path = context.database.import_path(context.id);
-    let absence = path.and_then(|path| context.database.absence(context.file, &path));
-    problems.extend(absence.map(|absence| match absence {
+    problems.extend(context.absence().map(|absence| match absence {
         Absence::Missing => RULE
             .problem(span, format!("there is no file `{written}`"))
             .help("check the spelling; the path counts from the folder of this file, with `/` between its parts"),

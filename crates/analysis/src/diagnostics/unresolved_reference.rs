@@ -3,9 +3,13 @@
 use std::collections::BTreeSet;
 
 use pydslrep_syntax::ast::{DriveWord, Entity, Name, Robot};
-use pydslrep_syntax::{EntityKind, SyntaxError, SyntaxErrorKind};
+use pydslrep_syntax::{EntityKind, SyntaxError, SyntaxErrorKind, escape};
+use pydslrep_text::closest_of_any_order;
+use smol_str::SmolStr;
 
-use super::context::{Context, Problem, ProblemEdit, escape};
+use super::context::Context;
+use super::edits::ProblemEdit;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::{Resolution, Severity};
 
@@ -15,7 +19,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "a name that is not declared",
     tag: None,
     remedy: Remedy::Suggested,
-    seeks_names: true,
     page: PAGE,
     check,
 };
@@ -39,7 +42,7 @@ robot rover with port 23000 has { wheelL wheelR } wheels",
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(tree) = context.tree else { return };
-    let references = tree.references();
+    let references = &context.references;
     // A word that cannot be a name has been reported as that.
     let is_about = |error: &SyntaxError, name: &Name| match error.kind {
         SyntaxErrorKind::InvalidName { .. } => {
@@ -65,7 +68,7 @@ fn problem(context: &Context<'_>, tree: &Entity, kind: EntityKind, name: &Name, 
             .suggestion(format!("remove `{}`", name.text), context.remove_item(name.span));
     }
     // A name that the list has already would only make another problem.
-    if let Some(nearest) = context.nearest(kind, name, taken) {
+    if let Some(nearest) = nearest(context, kind, name, taken) {
         let edit = context.replace(name.span, escape(&nearest));
         problem = problem
             .help(format!("did you mean `{nearest}`?"))
@@ -90,11 +93,23 @@ fn message(context: &Context<'_>, kind: EntityKind, name: &Name) -> String {
     }
 }
 
+/// The visible name of a kind that `name` is most likely a slip for: a near one, else the only one there is. None of
+/// those `taken` already.
+fn nearest(context: &Context<'_>, kind: EntityKind, name: &Name, taken: &[&str]) -> Option<SmolStr> {
+    let names = || context.names_in_sight(kind);
+    let free = names().map(SmolStr::as_str).filter(|other| !taken.contains(other));
+    let near = closest_of_any_order(&name.text, free).map(SmolStr::new);
+    near.or_else(|| {
+        let first = names().next().filter(|first| !taken.contains(&first.as_str()))?;
+        names().all(|other| other == first).then(|| first.clone())
+    })
+}
+
 /// The few names there are, where there are few.
 fn known(context: &Context<'_>, kind: EntityKind) -> Option<String> {
     const FEW: usize = 4;
     let mut names: BTreeSet<&str> = BTreeSet::new();
-    for name in context.database.names_in_sight(context.file, kind) {
+    for name in context.names_in_sight(kind) {
         names.insert(name);
         if names.len() > FEW {
             return None;

@@ -2,7 +2,8 @@
 
 use pydslrep_syntax::{Span, SyntaxErrorKind};
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::Severity;
 
@@ -12,7 +13,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "a comment that is never closed and hides the rest of the file",
     tag: None,
     remedy: Remedy::Suggested,
-    seeks_names: false,
     page: PAGE,
     check,
 };

@@ -1,9 +1,10 @@
 //! `unused-declaration`: a part that nothing uses.
 
 use pydslrep_syntax::EntityKind;
-use pydslrep_syntax::ast::Entity;
+use pydslrep_syntax::ast::Name;
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule, Tag};
 use crate::Severity;
 
@@ -13,7 +14,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "a wheel, sensor, ip, robot or movement that nothing uses",
     tag: Some(Tag::Unnecessary),
     remedy: Remedy::Suggested,
-    seeks_names: false,
     page: PAGE,
     check,
 };
@@ -47,17 +47,11 @@ environment yard has { rover } robots with { trip } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
-    let Some(tree) = context.tree else { return };
-    let (Some(kind), Some(name)) = (tree.kind(), tree.name()) else { return };
-    let database = context.database;
+    let Some((kind, name)) = context.declared() else { return };
     let Some(place) = place_of(kind) else { return };
-    let asked =
-        database.count(context.file, EntityKind::Environment) > 0 && !database.is_imported(context.file);
+    let asked = context.has_environments() && !context.is_imported();
     // A name in text that was not understood may well be a use of it.
-    if !asked
-        || database.is_skipped(context.file, &name.text)
-        || !database.users(context.file, kind, &name.text).is_empty()
-    {
+    if !asked || context.is_skipped(kind, name) || !context.users(kind, name).is_empty() {
         return;
     }
     let problem = RULE
@@ -66,7 +60,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         .about(kind, name.text.clone())
         .users(users_of(kind));
     problems.push(match context.whole() {
-        Some(whole) if context.errors.is_empty() && leaves_nothing_unused(context, tree) => {
+        Some(whole) if context.errors.is_empty() && leaves_nothing_unused(context) => {
             problem.suggestion("remove it", [whole])
         }
         _ => problem,
@@ -97,11 +91,11 @@ fn users_of(kind: EntityKind) -> &'static [EntityKind] {
 }
 
 /// Whether all that it uses is used elsewhere, too; otherwise removing it would only move the problem.
-fn leaves_nothing_unused(context: &Context<'_>, tree: &Entity) -> bool {
-    tree.references().into_iter().all(|(kind, name)| {
-        let users = context.database.users(context.file, kind, &name.text);
-        users.iter().any(|user| *user != context.id)
-    })
+fn leaves_nothing_unused(context: &Context<'_>) -> bool {
+    let is_used = |(kind, name): &(EntityKind, &Name)| {
+        context.users(*kind, name).iter().any(|user| *user != context.id)
+    };
+    context.references.iter().all(is_used)
 }
 
 #[cfg(test)]

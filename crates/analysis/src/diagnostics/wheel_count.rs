@@ -3,7 +3,8 @@
 use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{DriveWord, Entity, References, Robot};
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule};
 use crate::Severity;
 
@@ -13,7 +14,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "a robot does not have the 2 wheels of a `tw`, or the 4 of an `fw` or `fwh`",
     tag: None,
     remedy: Remedy::Suggested,
-    seeks_names: false,
     page: PAGE,
     check,
 };
@@ -42,12 +42,8 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     if robot.drive.is_some() && drive.is_none() {
         return;
     }
-    let wanted = match drive {
-        Some(DriveWord::Tw) => &[2][..],
-        Some(DriveWord::Fw | DriveWord::Fwh) => &[4],
-        None => &[2, 4],
-    };
-    if !wanted.contains(&list.names.len()) {
+    let count = list.names.len();
+    if drive.map_or(count != 2 && count != 4, |drive| count != drive.wheel_count()) {
         problems.push(problem(context, robot, list, drive));
     }
 }
@@ -83,12 +79,7 @@ fn problem(context: &Context<'_>, robot: &Robot, list: &References, drive: Optio
 pub(super) fn fitting(context: &Context<'_>, list: &References) -> Option<DriveWord> {
     let kinds: Option<Vec<bool>> =
         list.names.iter().map(|name| context.wheel(name).map(|(_, wheel)| wheel.mecanum)).collect();
-    match kinds?[..] {
-        [false, false] => Some(DriveWord::Tw),
-        [false, false, false, false] => Some(DriveWord::Fw),
-        [true, true, true, true] => Some(DriveWord::Fwh),
-        _ => None,
-    }
+    DriveWord::from_wheels(&kinds?)
 }
 
 /// Where the type is written or could be.

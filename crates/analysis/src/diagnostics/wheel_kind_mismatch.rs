@@ -3,7 +3,8 @@
 use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{DriveWord, Entity, Name, Robot};
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::wheel_count::{fitting, type_place};
 use super::{Page, Remedy, Rule};
 use crate::Severity;
@@ -14,7 +15,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "a robot's wheels do not suit its type: `tw` and `fw` drive on `wheel`, `fwh` on `wheelH`",
     tag: None,
     remedy: Remedy::Safe,
-    seeks_names: false,
     page: PAGE,
     check,
 };
@@ -46,8 +46,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(list) = robot.wheels.as_ref().filter(|list| !list.broken) else { return };
     let drive = robot.drive.and_then(|clause| clause.word);
     let counts = match drive {
-        Some(DriveWord::Tw) => list.names.len() == 2,
-        Some(_) => list.names.len() == 4,
+        Some(drive) => list.names.len() == drive.wheel_count(),
         None => robot.drive.is_none() && matches!(list.names.len(), 2 | 4),
     };
     if !counts {

@@ -2,7 +2,8 @@
 
 use pydslrep_syntax::ast::{ActionKind, Entity};
 
-use super::context::{Context, Problem};
+use super::context::Context;
+use super::problem::Problem;
 use super::{Page, Remedy, Rule, Tag};
 use crate::Severity;
 
@@ -12,7 +13,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "a move over no distance, which does nothing",
     tag: Some(Tag::Unnecessary),
     remedy: Remedy::Safe,
-    seeks_names: false,
     page: PAGE,
     check,
 };

@@ -118,10 +118,7 @@ impl<'a> CursorContext<'a> {
         let Some(Entity::Robot(robot)) = self.tree else { return false };
         let in_wheels =
             !self.before.iter().any(|(token, _)| matches!(token, TokenKind::Wheels | TokenKind::Sensors));
-        let wanted = match robot.drive.and_then(|clause| clause.word) {
-            Some(DriveWord::Tw) | None => 2,
-            Some(DriveWord::Fw | DriveWord::Fwh) => 4,
-        };
+        let wanted = robot.drive.and_then(|clause| clause.word).map_or(2, DriveWord::wheel_count);
         in_wheels && self.listed().len() < wanted
     }
 

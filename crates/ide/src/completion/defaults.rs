@@ -158,12 +158,7 @@ impl<'a> Defaults<'a> {
     fn layout(&self, names: &[SmolStr]) -> Option<Layout> {
         let mecanum: Option<Vec<bool>> =
             names.iter().map(|name| super::keywords::is_mecanum(self.context, name)).collect();
-        let drive = match mecanum?[..] {
-            [false, false] => DriveWord::Tw,
-            [false, false, false, false] => DriveWord::Fw,
-            [true, true, true, true] => DriveWord::Fwh,
-            _ => return None,
-        };
+        let drive = DriveWord::from_wheels(&mecanum?)?;
         let names = names.iter().map(|name| escape(name)).collect();
         Some(Layout { drive: drive.spelling(), names })
     }

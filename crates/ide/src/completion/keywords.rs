@@ -66,13 +66,8 @@ fn matches_wheels(context: &CursorContext<'_>, word: TokenKind) -> bool {
     };
     let names = robot.wheels.iter().flat_map(|list| &list.names);
     let mecanum: Vec<bool> = names.filter_map(|name| is_mecanum(context, &name.text)).collect();
-    let drive = match mecanum[..] {
-        [false, false] => DriveWord::Tw,
-        [false, false, false, false] => DriveWord::Fw,
-        [true, true, true, true] => DriveWord::Fwh,
-        _ => return false,
-    };
-    word.spelling() == Some(drive.spelling())
+    let drive = DriveWord::from_wheels(&mecanum);
+    drive.is_some_and(|drive| word.spelling() == Some(drive.spelling()))
 }
 
 /// Whether the wheel of this name is a mecanum wheel; `None` if there is no such wheel.

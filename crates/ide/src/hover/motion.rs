@@ -85,7 +85,7 @@ pub(super) fn movement(database: &Database, id: EntityId) -> Option<String> {
         match action.kind {
             ActionKind::Move { distance, .. } => length += distance.abs(),
             ActionKind::Turn { degrees } => turning += degrees.abs(),
-            ActionKind::TurnUntil { .. } | ActionKind::Slam => {}
+            _ => {}
         }
     }
     let mut text = format!(

@@ -94,7 +94,7 @@ impl Layout<'_> {
     /// Whether a token outside lists begins a line: an action of a movement, or the end of its body.
     fn begins_line(&self, previous: usize, index: usize) -> bool {
         let (token, _) = self.tokens[index];
-        let begins = begins_action(token) || token == TokenKind::CloseBrace;
+        let begins = token.is_action() || token == TokenKind::CloseBrace;
         self.in_body && (begins || self.tokens[previous].0 == TokenKind::OpenBrace)
     }
 
@@ -117,7 +117,7 @@ impl Layout<'_> {
                 continue;
             }
             let closes = token == TokenKind::CloseBrace;
-            if !in_list && (closes || begins_action(token)) {
+            if !in_list && (closes || token.is_action()) {
                 break;
             }
             let gap = Gap::new(self.text, self.tokens, Some(previous), index);
@@ -145,10 +145,6 @@ impl Layout<'_> {
         }
         column <= COLUMNS || names == 0
     }
-}
-
-fn begins_action(token: TokenKind) -> bool {
-    matches!(token, TokenKind::Move | TokenKind::Turn | TokenKind::Slam)
 }
 
 fn spaces(count: usize) -> &'static str {

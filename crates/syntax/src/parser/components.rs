@@ -5,7 +5,7 @@ use chumsky::prelude::{Parser, choice, just};
 use super::slot::{NUMBER, declared_name, keyword, nothing_more, number, slot, take};
 use super::{Rule, tidy};
 use crate::ast::{Entity, Import, Ip, Sensor, SensorKind, Wheel};
-use crate::{EntityKind, Expected, TokenKind, TokenSet};
+use crate::{EntityKind, Expected, Quantity, TokenKind, TokenSet};
 
 /// What stands before the first entity: nothing, or text that fits nowhere.
 pub(super) fn preamble<'s>() -> Rule<'s, Option<Entity>> {
@@ -35,7 +35,7 @@ pub(super) fn wheel<'s>() -> Rule<'s, Option<Entity>> {
     head.then(declared_name(EntityKind::Wheel, WITH, RADIUS.or(NUMBER)))
         .then_ignore(keyword(TokenKind::With, RADIUS, NUMBER))
         .then_ignore(keyword(TokenKind::Radius, NUMBER, TokenSet::default()))
-        .then(slot(number(Expected::Radius), NUMBER, TokenSet::default()))
+        .then(slot(number(Quantity::Radius), NUMBER, TokenSet::default()))
         .then_ignore(nothing_more())
         .map(|(((token, keyword), name), radius)| {
             Some(Entity::Wheel(Wheel { keyword, mecanum: token == TokenKind::WheelH, name, radius }))

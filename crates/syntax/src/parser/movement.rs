@@ -11,12 +11,12 @@ use super::{Extra, Input, Rule};
 use crate::ast::{
     Action, ActionKind, Direction, Entity, Move, Movement, SpeedClause, Turn, TurnExtent, Unit,
 };
-use crate::{EntityKind, Expected, TokenKind, TokenSet};
+use crate::{EntityKind, Expected, Quantity, TokenKind, TokenSet};
 
 const OPEN: TokenSet = TokenSet::of(&[TokenKind::OpenBrace]);
 const CLOSE: TokenSet = TokenSet::of(&[TokenKind::CloseBrace]);
 const OF: TokenSet = TokenSet::of(&[TokenKind::Of]);
-const ACTIONS: TokenSet = TokenSet::of(&[TokenKind::Move, TokenKind::Turn, TokenKind::Slam]);
+const ACTIONS: TokenSet = TokenSet::of(&TokenKind::ACTIONS);
 const UNITS: TokenSet = TokenSet::of(&[TokenKind::Meters, TokenKind::Centimeters]);
 const AT: TokenSet = TokenSet::of(&[TokenKind::At]);
 const DIRECTIONS: TokenSet = TokenSet::of(&[TokenKind::Left, TokenKind::Right]);
@@ -68,10 +68,10 @@ fn move_action<'s>() -> Rule<'s, ActionKind> {
     ))
     .map_with(|unit, extra| (unit, extra.span()));
     let speed = just(TokenKind::At)
-        .ignore_then(slot(number(Expected::Speed), NUMBER, NEXT))
+        .ignore_then(slot(number(Quantity::Speed), NUMBER, NEXT))
         .map_with(|value, extra| SpeedClause { value, span: extra.span() });
     just(TokenKind::Move)
-        .ignore_then(slot(number(Expected::Distance), NUMBER, UNITS.or(AT).or(NEXT)))
+        .ignore_then(slot(number(Quantity::Distance), NUMBER, UNITS.or(AT).or(NEXT)))
         .then(slot(unit, UNITS, AT.or(NEXT)))
         .then(speed.or_not())
         .map(|((distance, unit), speed)| ActionKind::Move(Move { distance, unit, speed }))
@@ -88,7 +88,7 @@ fn turn_action<'s>() -> Rule<'s, ActionKind> {
     let until = just(TokenKind::Until)
         .ignore_then(references(EntityKind::Sensor, false, ACTIONS))
         .map(TurnExtent::Until);
-    let extent = choice((number(Expected::Angle).map(TurnExtent::Angle).boxed(), until.boxed()));
+    let extent = choice((number(Quantity::Angle).map(TurnExtent::Angle).boxed(), until.boxed()));
     just(TokenKind::Turn)
         .ignore_then(slot(direction, DIRECTIONS, NUMBER.or(UNTIL).or(NEXT)))
         .then(extent.or_not())

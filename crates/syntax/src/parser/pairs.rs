@@ -47,12 +47,12 @@ fn fills(token: TokenKind, expected: Expected) -> bool {
             word == token && !matches!(word, TokenKind::Comma | TokenKind::OpenBrace | TokenKind::CloseBrace)
         }
         Expected::NameOf(_) | Expected::ReferenceTo(_) => token.is_name(),
-        Expected::Radius | Expected::Port | Expected::Distance | Expected::Speed => {
+        Expected::Number(_) | Expected::Port => {
             matches!(token, TokenKind::Integer | TokenKind::Float)
         }
         Expected::Address => token == TokenKind::Ipv4,
         Expected::Path => token == TokenKind::String,
-        Expected::Angle | Expected::Action | Expected::Declaration => false,
+        Expected::Action | Expected::Declaration => false,
     }
 }
 

@@ -13,7 +13,7 @@ use chumsky::util::MaybeRef;
 
 use super::{Extra, Input, Rule};
 use crate::ast::{Name, Number, References};
-use crate::{EntityKind, Expected, Span, TokenKind, TokenSet};
+use crate::{EntityKind, Expected, Quantity, Span, TokenKind, TokenSet};
 
 /// What a rule reports while it runs; [`super::tidy`] makes errors of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -247,7 +247,7 @@ fn name_at(span: Span, text: &str) -> Name {
 }
 
 /// A number.
-pub(super) fn number<'s>(label: Expected) -> impl Parser<'s, Input<'s>, Number, Extra<'s>> + Clone {
+pub(super) fn number<'s>(quantity: Quantity) -> impl Parser<'s, Input<'s>, Number, Extra<'s>> + Clone {
     take(|token, span, text| NUMBER.has(token).then_some((token, span, text)))
         .validate(|(token, span, text): (TokenKind, Span, &str), _, emitter| {
             let value = match token {
@@ -259,7 +259,7 @@ pub(super) fn number<'s>(label: Expected) -> impl Parser<'s, Input<'s>, Number, 
             };
             Number { value, span }
         })
-        .labelled(label)
+        .labelled(Expected::Number(quantity))
 }
 
 /// `{ a, b c }` up to and with its closing brace. `later` is what can stand behind the list.

@@ -187,7 +187,7 @@ movement m of r { move 4 4 meters turn 90 left turn left right , }
               5..5 Missing { expected: [NameOf(Wheel)], found: End, inside: Some(Wheel) }
             wheel a Some(4.0)
               19..23 Unexpected { expected: [Word(Radius)], found: Text("with"), inside: Some(Wheel) }
-              31..37 Unexpected { expected: [Radius], found: Text("radius"), inside: Some(Wheel) }
+              31..37 Unexpected { expected: [Number(Radius)], found: Text("radius"), inside: Some(Wheel) }
               40..41 Unexpected { expected: [Declaration], found: Text("4"), inside: Some(Wheel) }
             robot r None Some(Some(1)) {a b}? -
               68..69 Unexpected { expected: [ReferenceTo(Wheel)], found: Text("{"), inside: Some(Robot) }
@@ -196,7 +196,7 @@ movement m of r { move 4 4 meters turn 90 left turn left right , }
             movement m Some("r") [move turn turn]
               112..113 Unexpected { expected: [Word(Meters), Word(Centimeters)], found: Text("4"), inside: Some(Movement) }
               126..128 Unexpected { expected: [Word(Left), Word(Right)], found: Text("90"), inside: Some(Movement) }
-              144..149 Unexpected { expected: [Word(Until), Angle, Action], found: Text("right"), inside: Some(Movement) }
+              144..149 Unexpected { expected: [Word(Until), Number(Angle), Action], found: Text("right"), inside: Some(Movement) }
               154..155 Unexpected { expected: [Declaration], found: Text("}"), inside: Some(Movement) }
             environment e None {r} -
               174..175 InvalidCharacter { written: "(" }
@@ -341,7 +341,7 @@ fn the_grammar_says_what_can_follow() {
     check_expected("movement m of r {", &expect!["[Word(CloseBrace), Action]"]);
     check_expected("movement m of r { move 4", &expect!["[Word(Meters), Word(Centimeters)]"]);
     check_expected("movement m of r { move 4 meters", &expect!["[Word(CloseBrace), Word(At), Action]"]);
-    check_expected("movement m of r { turn left", &expect!["[Word(CloseBrace), Word(Until), Angle, Action]"]);
+    check_expected("movement m of r { turn left", &expect!["[Word(CloseBrace), Word(Until), Number(Angle), Action]"]);
     check_expected(
         "movement m of r { turn left until { s",
         &expect!["[Word(CloseBrace), Word(Comma), ReferenceTo(Sensor)]"],
@@ -353,7 +353,7 @@ fn the_grammar_says_what_can_follow() {
     );
     // A mistake before the cursor does not change what fits at it.
     check_expected("movment m of r {", &expect!["[Word(CloseBrace), Action]"]);
-    check_expected("Wheel a with radius", &expect!["[Radius]"]);
+    check_expected("Wheel a with radius", &expect!["[Number(Radius)]"]);
     check_expected("robot r tpye tw with port has { a } wheel with", &expect!["[Word(Sensors)]"]);
 }
 

@@ -7,7 +7,6 @@ use smol_str::SmolStr;
 
 use super::pairs;
 use super::slot::Fault;
-use crate::cut::BEGINNINGS;
 use crate::{EntityKind, Expected, Found, Span, SyntaxError, SyntaxErrorKind, Token, TokenKind};
 
 /// The errors behind `faults`. `significant` is what the parser saw, `tokens` everything that stands in the text.
@@ -253,14 +252,13 @@ impl EntitySource<'_> {
 
 /// The expected keyword that `written` is a slip for.
 fn meant(token: TokenKind, written: &str, expected: &[Expected]) -> Option<TokenKind> {
-    const ACTIONS: [TokenKind; 3] = [TokenKind::Move, TokenKind::Turn, TokenKind::Slam];
     if !token.is_name() && !token.is_keyword() {
         return None;
     }
     let words = expected.iter().flat_map(|expected| match expected {
         Expected::Word(word) => vec![*word],
-        Expected::Action => ACTIONS.to_vec(),
-        Expected::Declaration => BEGINNINGS.to_vec(),
+        Expected::Action => TokenKind::ACTIONS.to_vec(),
+        Expected::Declaration => TokenKind::DECLARATIONS.to_vec(),
         _ => Vec::new(),
     });
     TokenKind::closest(written, words)

@@ -1,10 +1,11 @@
 //! What people write who know it from elsewhere, or who put it in the wrong place: each gets its own words.
 
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{Expected, Span, TokenKind};
+use pydslrep_syntax::{Expected, Quantity, Span, TokenKind};
 
 use super::{RULE, mend};
-use crate::diagnostics::context::{Brace, Context, Problem};
+use crate::diagnostics::context::Context;
+use crate::diagnostics::problem::{Brace, Problem};
 
 /// The problem in its own words, if it is such a habit.
 pub(super) fn problem(
@@ -219,7 +220,7 @@ fn two_names(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Optio
 
 /// `move 4 meters` between declarations.
 fn action_outside(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
-    let is_action = matches!(place.here(), Some(TokenKind::Move | TokenKind::Turn | TokenKind::Slam));
+    let is_action = place.here().is_some_and(TokenKind::is_action);
     if !is_action || !expected.contains(&Expected::Declaration) {
         return None;
     }
@@ -334,7 +335,7 @@ fn number_for_name(place: &Place<'_, '_>, expected: &[Expected], found: &str) ->
 
 /// `move forward 4 meters`
 fn way_of_moving(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
-    let early = expected.contains(&Expected::Distance);
+    let early = expected.contains(&Expected::Number(Quantity::Distance));
     let late = matches!(place.before(1), Some((TokenKind::Meters | TokenKind::Centimeters, _)));
     if !early && !late {
         return None;
@@ -383,9 +384,9 @@ fn until(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Problem> {
         return None;
     }
     let turned = matches!(place.before(2), Some((TokenKind::Left | TokenKind::Right, _)));
-    if expected.contains(&Expected::Distance) || !turned {
+    if expected.contains(&Expected::Number(Quantity::Distance)) || !turned {
         let problem = RULE.problem(place.span, "only a turn has `until`, and a move has its distance");
-        return Some(problem.help("a turn is written `turn left 90` or `turn right until { SENSORS }`"));
+        return Some(problem.help(words::action(TokenKind::Turn)));
     }
     Some(
         RULE.problem(place.span, "a turn has either an angle or `until`, not both")

@@ -3,7 +3,9 @@
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{Expected, Span, TokenKind, parse};
 
-use crate::diagnostics::context::{Context, Problem, ProblemEdit};
+use crate::diagnostics::context::Context;
+use crate::diagnostics::edits::ProblemEdit;
+use crate::diagnostics::problem::Problem;
 
 /// Trying costs as much as reading the entity again, so it ends where an entity is a mess or very long.
 const MOST_ERRORS: usize = 4;

@@ -13,7 +13,8 @@ use pydslrep_syntax::{EntityKind, Expected, Found, Span, SyntaxError, SyntaxErro
 
 pub(super) use self::rewrite::{Rewrite, find as rewrites};
 use self::words::{listed, shape, telling};
-use super::context::{Brace, Context, Problem};
+use super::context::Context;
+use super::problem::{Brace, Problem};
 use super::{Page, Remedy, Rule};
 use crate::{Diagnostic, Resolution, Severity};
 
@@ -23,7 +24,6 @@ pub(super) static RULE: Rule = Rule {
     summary: "a word is missing, misspelt, doubled or in the wrong place",
     tag: None,
     remedy: Remedy::Safe,
-    seeks_names: false,
     page: PAGE,
     check,
 };
@@ -224,7 +224,7 @@ fn unexpected(
         }
         Some(_) if expected.contains(&Expected::Action) && found.starts_with(char::is_alphabetic) => {
             let problem = RULE.problem(span, format!("`{found}` does not belong here: it is no action"));
-            problem.help(words::ACTIONS)
+            problem.help(words::actions())
         }
         Some(_) => {
             let problem = RULE.problem(span, format!("expected {}, found `{found}`", listed(&expected)));
@@ -279,20 +279,12 @@ fn unbraced(context: &Context<'_>, span: Span, close: u32, inside: Option<Entity
 
 fn late_import(context: &Context<'_>) -> Option<Problem> {
     let Some(Entity::Import(_)) = context.tree else { return None };
-    if !context.database.is_late_import(context.id) {
-        return None;
-    }
+    let top = context.place_of_late_import()?;
     let first = context.tokens.first()?.1;
     let last = context.tokens.iter().rev().find(|(token, _)| !token.is_comment())?.1;
     let span = first.to(last);
-    let top = context.database.entities(context.file).next()?.id;
     let text = format!("{}\n", context.text(span).replace("\r\n", "\n"));
-    let start = if context.database.parse(top)?.entity.is_none() {
-        context.database.entities(context.file).nth(1)?.id
-    } else {
-        top
-    };
-    let insert = super::context::ProblemEdit::new(start, Span::at(0), text);
+    let insert = super::edits::ProblemEdit::new(top, Span::at(0), text);
     Some(
         RULE.problem(span, "an import must stand before everything else")
             .help("move it to the top of the file")

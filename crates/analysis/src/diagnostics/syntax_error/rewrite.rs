@@ -12,7 +12,8 @@ use pydslrep_syntax::{EntityKind, KEYWORDS, Span, SyntaxErrorKind, Token, TokenK
 use pydslrep_text::is_similar;
 
 use super::{RULE, mend, words};
-use crate::diagnostics::context::{Context, Problem};
+use crate::diagnostics::context::Context;
+use crate::diagnostics::problem::Problem;
 
 /// Longer statements are not looked at.
 const MOST_TOKENS: usize = 64;

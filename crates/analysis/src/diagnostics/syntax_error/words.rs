@@ -1,14 +1,19 @@
 //! What was expected, in a person's terms.
 
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{EntityKind, Expected, TokenKind};
+use pydslrep_syntax::{EntityKind, Expected, Quantity, TokenKind};
 
 use crate::diagnostics::context::Context;
 
-pub(super) const MOVE: &str = "a move is written `move 4.0 meters` or `move 40 centimeters at 9.0`";
-pub(super) const TURN: &str = "a turn is written `turn left 90` or `turn right until { SENSORS }`";
-pub(super) const ACTIONS: &str = "an action is written `move 4.0 meters`, `move 40 centimeters at 9.0`, `turn left 90`, \
-    `turn right until { SENSORS }` or `slam`";
+/// How all actions are written.
+pub(super) fn actions() -> String {
+    format!("an action is written {}", quoted(TokenKind::ACTIONS.iter().flat_map(|action| action.examples())))
+}
+
+/// How the action that a keyword begins is written.
+pub(super) fn action(keyword: TokenKind) -> String {
+    format!("a {} is written {}", keyword.spelling().unwrap_or_default(), quoted(keyword.examples()))
+}
 
 /// The pattern to follow.
 pub(super) fn shape(
@@ -22,16 +27,18 @@ pub(super) fn shape(
     let wants = |asked: &[Expected]| expected.iter().any(|expected| asked.contains(expected));
     let word = Expected::Word;
     if wants(&[Expected::Action]) {
-        return Some(ACTIONS.to_owned());
+        return Some(actions());
     }
-    if wants(&[Expected::Distance, Expected::Speed, word(TokenKind::Meters), word(TokenKind::Centimeters)]) {
-        return Some(MOVE.to_owned());
+    let number = Expected::Number;
+    let moves = [number(Quantity::Distance), number(Quantity::Speed)];
+    if wants(&moves) || wants(&[word(TokenKind::Meters), word(TokenKind::Centimeters)]) {
+        return Some(action(TokenKind::Move));
     }
-    let turns = [Expected::Angle, Expected::ReferenceTo(EntityKind::Sensor)];
+    let turns = [number(Quantity::Angle), Expected::ReferenceTo(EntityKind::Sensor)];
     let in_turn =
         wants(&[word(TokenKind::Left), word(TokenKind::Right), word(TokenKind::Until)]) || wants(&turns);
     if in_turn && inside == Some(EntityKind::Movement) {
-        return Some(TURN.to_owned());
+        return Some(action(TokenKind::Turn));
     }
     let kind = inside?;
     let shape = match kind {
@@ -67,7 +74,7 @@ pub(super) fn telling(expected: &[Expected]) -> Vec<Expected> {
         Expected::Word(TokenKind::With | TokenKind::OpenBrace) if has => false,
         Expected::ReferenceTo(_)
         | Expected::Action
-        | Expected::Angle
+        | Expected::Number(Quantity::Angle)
         | Expected::Word(TokenKind::At | TokenKind::Until) => !closes,
         Expected::Word(_) => !ends,
         _ => true,
@@ -77,9 +84,21 @@ pub(super) fn telling(expected: &[Expected]) -> Vec<Expected> {
 }
 
 pub(super) fn listed(expected: &[Expected]) -> String {
-    let words: Vec<String> = expected.iter().map(|expected| phrase(*expected)).collect();
-    match words.split_last() {
-        None => "something else".to_owned(),
+    match expected {
+        [] => "something else".to_owned(),
+        _ => any_of(expected.iter().map(|expected| phrase(*expected))),
+    }
+}
+
+/// `a`, `b` or `c`
+fn quoted<'a>(texts: impl IntoIterator<Item = &'a &'a str>) -> String {
+    any_of(texts.into_iter().map(|text| format!("`{text}`")))
+}
+
+fn any_of(texts: impl Iterator<Item = String>) -> String {
+    let texts: Vec<String> = texts.collect();
+    match texts.split_last() {
+        None => String::new(),
         Some((last, [])) => last.clone(),
         Some((last, others)) => format!("{} or {last}", others.join(", ")),
     }
@@ -90,14 +109,16 @@ fn phrase(expected: Expected) -> String {
         Expected::Word(word) => format!("`{}`", word.spelling().unwrap_or_default()),
         Expected::NameOf(kind) => format!("a name for the {}", kind.noun()),
         Expected::ReferenceTo(kind) => format!("the name of {}", kind.a_noun()),
-        Expected::Radius => "a radius in centimetres".to_owned(),
+        Expected::Number(quantity) => quantity.phrase().to_owned(),
         Expected::Port => "a port from 1 to 65535".to_owned(),
         Expected::Address => "an address such as `127.0.0.1`".to_owned(),
-        Expected::Distance => "a distance".to_owned(),
-        Expected::Speed => "a speed in centimetres per second".to_owned(),
-        Expected::Angle => "an angle in degrees".to_owned(),
         Expected::Path => "a path in quotes".to_owned(),
-        Expected::Action => "an action (`move`, `turn` or `slam`)".to_owned(),
+        Expected::Action => {
+            format!(
+                "an action ({})",
+                any_of(TokenKind::ACTIONS.into_iter().map(|action| phrase(Expected::Word(action))))
+            )
+        }
         Expected::Declaration => "the next declaration".to_owned(),
     }
 }

@@ -83,7 +83,7 @@ fn statements<'a>(context: &Context<'_>, body: &'a [Token]) -> Vec<&'a [Token]> 
         let is_over = previous.is_some_and(|(token, span)| {
             token == TokenKind::Invalid && context.text(span).contains(';') || token == TokenKind::CloseBrace
         });
-        let is_action = matches!(token, TokenKind::Move | TokenKind::Turn | TokenKind::Slam) && depth == 0;
+        let is_action = token.is_action() && depth == 0;
         if index > 0 && (is_new_line || is_over || is_action || token == TokenKind::CloseBrace) {
             starts.push(index);
         }
@@ -104,7 +104,7 @@ fn statements<'a>(context: &Context<'_>, body: &'a [Token]) -> Vec<&'a [Token]> 
 /// Whether the parser takes a statement for an action; it has passed over what follows one that it does not.
 fn begins_action(statement: &[Token]) -> bool {
     let first = statement.iter().find(|(token, _)| !token.is_comment());
-    first.is_some_and(|(token, _)| matches!(token, TokenKind::Move | TokenKind::Turn | TokenKind::Slam))
+    first.is_some_and(|(token, _)| token.is_action())
 }
 
 /// A statement as an action with a movement around it; `follows` where the one before begins with no action.
@@ -128,7 +128,7 @@ fn statement_as_action(
     let whole = format!("movement m of r {{ {text} }}");
     let is_other_word = !text.split(' ').next().is_some_and(|verb| is_nearly(&first.text, verb));
     let message = format!("there is no action `{}`; did you mean `{text}`?", first.text);
-    let rewrite = rewrite(&words, text, help.to_owned(), is_fallback)?;
+    let rewrite = rewrite(&words, text, help, is_fallback)?;
     Some((if is_other_word { Rewrite { message, ..rewrite } } else { rewrite }, whole))
 }
 
@@ -212,7 +212,7 @@ fn said(words: &[Word]) -> Option<Said<'_>> {
 }
 
 /// The action that a statement is meant to be, and how such are written.
-fn action(words: &[Word]) -> Option<(String, &'static str)> {
+fn action(words: &[Word]) -> Option<(String, String)> {
     let (first, rest) = words.split_first()?;
     let verb = verb(&first.text)?;
     let said = said(rest)?;
@@ -226,7 +226,7 @@ fn action(words: &[Word]) -> Option<(String, &'static str)> {
             let sign = if backwards { "-" } else { "" };
             let speed = said.speed.map_or(String::new(), |speed| format!(" at {speed}"));
             let unit = said.unit.unwrap_or("meters");
-            Some((format!("move {sign}{distance} {unit}{speed}"), words::MOVE))
+            Some((format!("move {sign}{distance} {unit}{speed}"), words::action(TokenKind::Move)))
         }
         Verb::Turn { direction } => {
             let direction = direction.or(said.direction)?;
@@ -234,11 +234,11 @@ fn action(words: &[Word]) -> Option<(String, &'static str)> {
                 return None;
             }
             let angle = said.numbers.first().map_or(String::new(), |angle| format!(" {angle}"));
-            Some((format!("turn {direction}{angle}"), words::TURN))
+            Some((format!("turn {direction}{angle}"), words::action(TokenKind::Turn)))
         }
         Verb::Slam => {
             let is_plain = said.numbers.is_empty() && said.unit.is_none() && said.direction.is_none();
-            (is_plain && said.speed.is_none()).then(|| ("slam".to_owned(), words::ACTIONS))
+            (is_plain && said.speed.is_none()).then(|| ("slam".to_owned(), words::actions()))
         }
     }
 }

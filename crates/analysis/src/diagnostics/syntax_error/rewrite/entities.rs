@@ -25,7 +25,7 @@ pub(super) fn find(context: &Context<'_>, kind: EntityKind) -> Option<Rewrite> {
         EntityKind::Wheel => wheel(&words)?,
         EntityKind::Sensor => sensor(&words)?,
         EntityKind::Ip => ip(&words)?,
-        EntityKind::Robot => robot(&words, context.database.target(context.file).default_port())?,
+        EntityKind::Robot => robot(&words, context.target().default_port())?,
         EntityKind::Environment => environment(&words)?,
         EntityKind::Movement => return None,
     };

@@ -1,0 +1,244 @@
+//! The edits of fixes: which text one replaces, and where it is once the fix gets its place.
+
+use pydslrep_syntax::ast::{Entity, References};
+use pydslrep_syntax::{Span, Token, TokenKind, escape};
+
+use super::absolute;
+use super::context::Context;
+use super::problem::ProblemFix;
+use crate::{Database, Edit, EntityId, FileId, Fix};
+
+/// A replacement of text in one entity.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct ProblemEdit {
+    pub(crate) entity: EntityId,
+    pub(crate) span: Span,
+    /// With `\n` for the end of a line, whatever the file uses; which it is may change with any edit.
+    pub(crate) text: String,
+    /// Whether what stands on its sides is to become one word; else words are kept apart.
+    pub(crate) joins: bool,
+    /// Whether it is a declaration to put before the entity: at the nearest place where no other one is cut in two.
+    pub(crate) declares: bool,
+}
+
+impl ProblemEdit {
+    /// A replacement that keeps words apart.
+    pub(super) fn new(entity: EntityId, span: Span, text: impl Into<String>) -> Self {
+        Self { entity, span, text: text.into(), joins: false, declares: false }
+    }
+}
+
+/// What people write within a number or a name, such as `1'000`: what is left on either side of it is one word.
+const WITHIN_WORDS: [char; 4] = ['\'', '’', '$', '@'];
+
+impl Context<'_> {
+    /// A replacement of text in this entity.
+    pub(super) fn replace(&self, span: Span, text: impl Into<String>) -> ProblemEdit {
+        ProblemEdit::new(self.id, span, text)
+    }
+
+    /// A replacement that makes one word of what stands on its sides.
+    pub(super) fn join(&self, span: Span, text: impl Into<String>) -> ProblemEdit {
+        ProblemEdit { joins: true, ..self.replace(span, text) }
+    }
+
+    /// A declaration before this entity.
+    pub(super) fn declare(&self, text: impl Into<String>) -> ProblemEdit {
+        ProblemEdit { declares: true, ..self.replace(Span::at(0), text) }
+    }
+
+    /// The smallest edit that removes `span` and the white space around it that would be left over. A comment that the
+    /// end of its line ends would swallow what follows, and keeps it.
+    pub(super) fn remove(&self, span: Span) -> ProblemEdit {
+        let before = self.tokens.iter().rev().find(|(_, other)| other.end <= span.start);
+        match before {
+            Some((token, comment)) if token.ends_line() => self.remove_behind(*comment, span),
+            Some((_, other)) => self.replace(Span::new(other.end, span.end), ""),
+            None => self.replace(span, ""),
+        }
+    }
+
+    /// Removes what a comment of the line before stands before: with its line, or as far as the line goes on.
+    fn remove_behind(&self, comment: Span, span: Span) -> ProblemEdit {
+        let rest = self.len().unwrap_or(span.end);
+        let next = self.tokens.iter().find(|(_, other)| other.start >= span.end);
+        let next = next.map_or(rest, |(_, other)| other.start);
+        let gap = self.text(Span::new(comment.end, span.start));
+        let last_line = gap.rfind(['\n', '\r']).map_or(0, |end| end + 1);
+        let behind = self.text(Span::new(span.end, next));
+        match behind.find(['\n', '\r']) {
+            Some(end) => {
+                let end = end + if behind[end..].starts_with("\r\n") { 2 } else { 1 };
+                let length = |bytes: usize| u32::try_from(bytes).unwrap_or_default();
+                self.replace(Span::new(comment.end + length(last_line), span.end + length(end)), "")
+            }
+            None => self.replace(Span::new(span.start, next), ""),
+        }
+    }
+
+    /// Removes characters, with one space where they have one on both sides.
+    pub(super) fn remove_character(&self, span: Span) -> ProblemEdit {
+        let end = self.len().unwrap_or(span.end);
+        let blank = |span: Span| [" ", "\t"].contains(&self.text(span).as_str());
+        let before = span.start > 0 && blank(Span::new(span.start - 1, span.start));
+        let behind = self.text(Span::new(span.end, end.min(span.end + 1)));
+        if before && (behind.is_empty() || behind.starts_with(char::is_whitespace)) {
+            return self.replace(Span::new(span.start - 1, span.end), "");
+        }
+        let first = span.start == 0 && behind.starts_with(' ');
+        if self.text(span).contains(WITHIN_WORDS) {
+            return self.join(span, "");
+        }
+        self.replace(Span::new(span.start, span.end + u32::from(first)), "")
+    }
+
+    /// Removes a word; what stands on other lines stays there.
+    pub(super) fn remove_word(&self, span: Span) -> ProblemEdit {
+        let before = self.tokens.iter().rev().find(|(_, other)| other.end <= span.start);
+        let start = before.map_or(0, |(_, other)| other.end);
+        let first = self.text(Span::new(start, span.start)).contains(['\n', '\r']) || before.is_none();
+        let behind = self.tokens.iter().find(|(_, other)| other.start >= span.end);
+        match behind.map(|(_, other)| Span::new(span.end, other.start)) {
+            Some(gap) if first && !self.text(gap).contains(['\n', '\r']) => self.replace(span.to(gap), ""),
+            _ => self.remove(span),
+        }
+    }
+
+    /// Removes what stands on lines of its own together with the end of its line. Whether something else stands
+    /// before it on its line can change with any edit there, and is looked at when the edit gets its place.
+    pub(super) fn remove_line(&self, span: Span) -> ProblemEdit {
+        let end = self.len().unwrap_or(span.end);
+        let behind = self.text(Span::new(span.end, end));
+        let blank = behind.len() - behind.trim_start_matches([' ', '\t']).len();
+        let line_end = ["\r\n", "\n", "\r"].into_iter().find(|end| behind[blank..].starts_with(end));
+        let Some(line_end) = line_end else {
+            let start = self.tokens.first().is_some_and(|(_, first)| first.start == span.start);
+            let blank = u32::try_from(blank).unwrap_or_default();
+            return if start {
+                self.replace(Span::new(span.start, span.end + blank), "")
+            } else {
+                self.remove(span)
+            };
+        };
+        let taken = u32::try_from(blank + line_end.len()).unwrap_or_default();
+        self.replace(Span::new(span.start, span.end + taken), "")
+    }
+
+    /// Removes one item of a list with the comma before it, or else, of the first item, the one behind it.
+    pub(super) fn remove_item(&self, item: Span) -> Vec<ProblemEdit> {
+        let is_word = |(token, _): &&Token| !token.is_comment();
+        let before = self.tokens.iter().rev().filter(is_word).find(|(_, span)| span.end <= item.start);
+        let behind = self.tokens.iter().filter(is_word).find(|(_, span)| span.start >= item.end);
+        let is_comment_between = |comma: Span| {
+            self.tokens.iter().any(|(token, span)| {
+                token.is_comment() && comma.start <= span.start && span.end <= item.start
+            })
+        };
+        match (before, behind) {
+            (Some((TokenKind::Comma, comma)), _) if is_comment_between(*comma) => {
+                vec![self.replace(*comma, ""), self.remove(item)]
+            }
+            (Some((TokenKind::Comma, comma)), _) => vec![self.remove(comma.to(item))],
+            (Some((TokenKind::OpenBrace, _)), Some((TokenKind::Comma, comma))) => {
+                vec![self.remove(item), self.replace(*comma, "")]
+            }
+            _ => vec![self.remove(item)],
+        }
+    }
+
+    /// Removes the whole entity, but not the comments behind it.
+    pub(super) fn whole(&self) -> Option<ProblemEdit> {
+        let end = self.len()?;
+        let is_word = |(token, _): &Token| !token.is_comment();
+        let behind = self.tokens.iter().rposition(is_word).map_or(0, |last| last + 1);
+        let end = self.tokens.get(behind).map_or(end, |(_, comment)| comment.start);
+        Some(self.replace(Span::new(0, end), ""))
+    }
+}
+
+/// The edit that adds a name to a list in braces, which may be in another entity.
+pub(super) fn append(entity: EntityId, list: &References, name: &str, separator: &str) -> ProblemEdit {
+    let (offset, text) = match list.names.last() {
+        Some(last) => (last.span.end, format!("{separator}{}", escape(name))),
+        None => (list.span.start + 1, format!(" {} ", escape(name))),
+    };
+    ProblemEdit::new(entity, Span::at(offset), text)
+}
+
+/// A fix with its edits where their entities are now.
+pub(super) fn located(database: &Database, fix: &ProblemFix) -> Option<Fix> {
+    let edits = fix.edits.iter().map(|edit| {
+        let entity = if edit.declares { declared_before(database, edit.entity)? } else { edit.entity };
+        let (file, span) = absolute(database, entity, edit.span)?;
+        let span = if edit.text.is_empty() { tidy_removal(database, file, span) } else { span };
+        let text = if edit.joins { edit.text.clone() } else { kept_apart(database, file, span, &edit.text) };
+        Some(Edit { file, span, text: text.replace('\n', database.line_ending(file)) })
+    });
+    Some(Fix { title: fix.title.clone(), safe: fix.safe, edits: edits.collect::<Option<_>>()? })
+}
+
+/// The entity, it or one before it, that a declaration can stand before without cutting another one in two: what comes
+/// before it is complete, and ends on a line before.
+fn declared_before(database: &Database, id: EntityId) -> Option<EntityId> {
+    /// A text that is broken for longer is no place for a declaration.
+    const FARTHEST: usize = 64;
+    let entity = database.entity(id)?;
+    let (index, _) = database.slot_at(entity.file, entity.span.start);
+    let slots = database.slots(entity.file).get(..=index)?;
+    let is_free =
+        |at: &usize| *at == 0 || slots.get(at - 1).is_some_and(|before| is_over(database, before.entity));
+    let at = (index.saturating_sub(FARTHEST)..=index).rev().find(is_free)?;
+    slots.get(at).map(|slot| slot.entity)
+}
+
+/// Whether an entity is complete, and the next one starts on another line.
+fn is_over(database: &Database, id: EntityId) -> bool {
+    let Some(entity) = database.entity(id) else { return false };
+    let last = entity.parse.tokens.iter().rev().find(|(token, _)| !token.is_comment());
+    let Some((_, last)) = last else { return true };
+    let rest = database.slice(entity.file, Span::new(entity.span.start + last.end, entity.span.end));
+    let is_import = matches!(entity.parse.entity, Some(Entity::Import(_)));
+    (is_import || entity.parse.errors.is_empty()) && rest.contains(['\n', '\r'])
+}
+
+/// What to remove so that the lines around it stay as they are: where something else stands before it on its line, the
+/// end of that line is not part of it, but the space between the two is.
+fn tidy_removal(database: &Database, file: FileId, span: Span) -> Span {
+    /// Longer white space between two things of one line may stay.
+    const FAR: u32 = 256;
+    let removed = database.slice(file, span);
+    if !removed.ends_with(['\n', '\r']) || span.start == 0 {
+        return span;
+    }
+    let before = (1..=FAR.min(span.start))
+        .map(|back| (back, database.slice(file, Span::new(span.start - back, span.start - back + 1))));
+    let Some((back, text)) = before.into_iter().find(|(_, text)| text != " " && text != "\t") else {
+        return span;
+    };
+    if text == "\n" || text == "\r" {
+        return span;
+    }
+    let trailing = removed.len() - removed.trim_end().len();
+    Span::new(span.start + 1 - back, span.end - u32::try_from(trailing).unwrap_or_default())
+}
+
+/// The text of an edit, with a space where a word in it, or beside a gap it leaves, would run into another one: before
+/// `^` or a sign, a number or a name needs none.
+fn kept_apart(database: &Database, file: FileId, span: Span, text: &str) -> String {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let first = |text: &str| text.chars().next().is_some_and(is_word);
+    let last = |text: &str| text.chars().next_back().is_some_and(is_word);
+    // Texts are cut between characters, and no character is longer than this.
+    let beside = |start: u32, end: u32| database.slice(file, Span::new(start, end));
+    let before = (1..=4_u32.min(span.start)).map(|back| beside(span.start - back, span.start));
+    let runs_in = before.into_iter().find(|text| !text.is_empty()).is_some_and(|text| last(&text));
+    let behind = (1..=4).map(|ahead| beside(span.end, span.end + ahead)).find(|text| !text.is_empty());
+    let runs_on = behind.is_some_and(|text| first(&text));
+    let replaced = database.slice(file, span);
+    if text.is_empty() {
+        return if runs_in && runs_on { " ".to_owned() } else { String::new() };
+    }
+    let left = if runs_in && first(text) && !first(&replaced) { " " } else { "" };
+    let right = if runs_on && last(text) && !last(&replaced) { " " } else { "" };
+    format!("{left}{text}{right}")
+}

@@ -1,0 +1,132 @@
+//! What a rule reports.
+
+use pydslrep_syntax::{EntityKind, Span};
+use smol_str::SmolStr;
+
+use super::Rule;
+use super::edits::ProblemEdit;
+use crate::{EntityId, Severity};
+
+/// A problem whose places count from the start of the entities they are in, so that it stays true wherever those
+/// move.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Problem {
+    pub(crate) rule: &'static Rule,
+    pub(crate) severity: Severity,
+    pub(crate) span: Span,
+    pub(crate) message: String,
+    pub(crate) help: Option<String>,
+    pub(crate) note: Option<String>,
+    pub(crate) related: Vec<ProblemPlace>,
+    /// The declaration that the problem is about, where another problem could be about it too.
+    pub(crate) about: Option<(EntityKind, SmolStr)>,
+    /// The kind and the name that were looked for in vain.
+    pub(crate) sought: Option<(EntityKind, SmolStr)>,
+    /// The kinds of entities that could have prevented it by using what it is about.
+    pub(crate) users: &'static [EntityKind],
+    /// What it says of a brace, where another entity may have the other half.
+    pub(crate) brace: Option<Brace>,
+    pub(crate) fixes: Vec<ProblemFix>,
+}
+
+/// One half of a pair of braces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Brace {
+    /// Nothing closes it.
+    Unclosed,
+    /// It closes nothing.
+    Stray,
+}
+
+/// A second place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct ProblemPlace {
+    pub(crate) entity: EntityId,
+    pub(crate) span: Span,
+    pub(crate) message: String,
+}
+
+/// A fix by edits in any entities.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct ProblemFix {
+    pub(crate) title: String,
+    pub(crate) safe: bool,
+    pub(crate) edits: Vec<ProblemEdit>,
+}
+
+impl Rule {
+    /// A problem at `span` of the entity that is checked.
+    pub(super) fn problem(&'static self, span: Span, message: impl Into<String>) -> Problem {
+        Problem {
+            rule: self,
+            severity: self.severity,
+            span,
+            message: message.into(),
+            help: None,
+            note: None,
+            related: Vec::new(),
+            about: None,
+            sought: None,
+            users: &[],
+            brace: None,
+            fixes: Vec::new(),
+        }
+    }
+}
+
+impl Problem {
+    pub(super) fn severity(mut self, severity: Severity) -> Self {
+        self.severity = severity;
+        self
+    }
+
+    pub(super) fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    pub(super) fn note(mut self, note: impl Into<String>) -> Self {
+        self.note = Some(note.into());
+        self
+    }
+
+    pub(super) fn related(mut self, entity: EntityId, span: Span, message: impl Into<String>) -> Self {
+        self.related.push(ProblemPlace { entity, span, message: message.into() });
+        self
+    }
+
+    pub(super) fn about(mut self, kind: EntityKind, name: impl Into<SmolStr>) -> Self {
+        self.about = Some((kind, name.into()));
+        self
+    }
+
+    pub(super) fn sought(mut self, kind: EntityKind, name: &SmolStr) -> Self {
+        self.sought = Some((kind, name.clone()));
+        self
+    }
+
+    pub(super) fn users(mut self, kinds: &'static [EntityKind]) -> Self {
+        self.users = kinds;
+        self
+    }
+
+    pub(super) fn brace(mut self, brace: Brace) -> Self {
+        self.brace = Some(brace);
+        self
+    }
+
+    /// A fix that can be applied without asking.
+    pub(super) fn fix(self, title: impl Into<String>, edits: impl Into<Vec<ProblemEdit>>) -> Self {
+        self.add_fix(title.into(), true, edits.into())
+    }
+
+    /// A fix that is only offered.
+    pub(super) fn suggestion(self, title: impl Into<String>, edits: impl Into<Vec<ProblemEdit>>) -> Self {
+        self.add_fix(title.into(), false, edits.into())
+    }
+
+    fn add_fix(mut self, title: String, safe: bool, edits: Vec<ProblemEdit>) -> Self {
+        self.fixes.push(ProblemFix { title, safe, edits });
+        self
+    }
+}
