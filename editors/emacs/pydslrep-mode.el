@@ -24,11 +24,26 @@
   "The command that starts the language server."
   :type '(repeat string))
 
+;; The keywords, which crates/syntax/tests/keywords.rs writes.
 (defconst pydslrep-keywords
-  '("wheel" "wheelH" "with" "radius" "sensor" "ip" "robot" "type" "tw" "fw" "fwh" "port" "has" "wheels" "sensors"
+  '(
+    "wheel" "wheelH" "with" "radius" "sensor" "ip" "robot" "type" "tw" "fw" "fwh" "port" "has" "wheels" "sensors"
     "parallel" "movement" "of" "move" "meters" "centimeters" "at" "turn" "left" "right" "until" "slam" "environment"
     "robots" "moves")
   "The keywords; contextual ones are left out.")
+
+(defconst pydslrep-keyword-tokens
+  '(
+    "wheel" "wheelH" "with" "radius" "sensor" "ip" "robot" "type" "tw" "fw" "fwh" "port" "has" "wheels" "sensors"
+    "parallel" "movement" "of" "move" "meters" "centimeters" "at" "turn" "left" "right" "until" "environment"
+    "robots" "moves" "distance" "bumper" "import")
+  "The keywords that are tokens of the parser.")
+
+(defconst pydslrep-keyword-nodes
+  '(
+    slam)
+  "The keywords that are nodes of the parser.")
+;; End of the keywords.
 
 (defvar pydslrep-mode-syntax-table
   (let ((table (make-syntax-table)))
@@ -64,8 +79,8 @@
    :language 'pydslrep :feature 'comment '((comment) @font-lock-comment-face)
    :language 'pydslrep :feature 'string '((string) @font-lock-string-face)
    :language 'pydslrep :feature 'keyword
-   `([,@(remove "slam" pydslrep-keywords) "distance" "bumper" "import"] @font-lock-keyword-face
-     (slam) @font-lock-keyword-face)
+   `([,@pydslrep-keyword-tokens] @font-lock-keyword-face
+     ,@(mapcar (lambda (node) `((,node) @font-lock-keyword-face)) pydslrep-keyword-nodes))
    :language 'pydslrep :feature 'number '([(number) (address)] @font-lock-number-face)
    :language 'pydslrep :feature 'definition
    '((wheel_definition name: (name) @font-lock-variable-name-face)

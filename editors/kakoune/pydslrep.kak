@@ -8,7 +8,9 @@ add-highlighter shared/pydslrep/line region '//' '$' fill comment
 add-highlighter shared/pydslrep/block region '/\*' '\*/' fill comment
 add-highlighter shared/pydslrep/string region '"' '"|$' fill string
 add-highlighter shared/pydslrep/code default-region group
+# The keywords, which crates/syntax/tests/keywords.rs writes.
 add-highlighter shared/pydslrep/code/ regex '(?<![\w^])(wheel|wheelH|with|radius|sensor|ip|robot|type|tw|fw|fwh|port|has|wheels|sensors|parallel|movement|of|move|meters|centimeters|at|turn|left|right|until|slam|environment|robots|moves)(?!\w)' 0:keyword
+# End of the keywords.
 add-highlighter shared/pydslrep/code/ regex '^\h*(import)\h*(?=")' 1:keyword
 add-highlighter shared/pydslrep/code/ regex '(?<!\w)-?\d+(\.\d+)*' 0:value
 

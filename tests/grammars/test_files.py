@@ -22,7 +22,6 @@ OTHERS = {
     "helix": ROOT / "editors" / "helix" / "queries" / "pydslrep",
     "zed": ROOT / "editors" / "zed" / "languages" / "pydslrep",
 }
-CONTEXTUAL = {"distance", "bumper", "import"}
 
 
 def words() -> set[str]:
@@ -31,22 +30,10 @@ def words() -> set[str]:
     return set(re.findall(r'"([A-Za-z]+)"', rules))
 
 
-def query(name: str) -> str:
-    """A query without its comments."""
-    return re.sub(r";.*", "", (TREE_SITTER / "queries" / name).read_text())
-
-
 def test_the_tree_sitter_grammar_has_all_keywords() -> None:
     grammar = (TREE_SITTER / "src" / "grammar.json").read_text()
     literals = set(re.findall(r'"type": "STRING",\s*"value": "(\w+)"', grammar))
     assert literals == words()
-
-
-def test_the_query_for_colours_has_all_keywords() -> None:
-    plain, _, misplaced = query("highlights.scm").partition("#any-of?")
-    named = set(re.findall(r"\((\w+)\) @keyword", plain)) - {"name"}
-    assert set(re.findall(r'"(\w+)"', plain)) | named == words()
-    assert set(re.findall(r'"(\w+)"', misplaced)) == words() - CONTEXTUAL
 
 
 def test_textmate_has_exactly_the_keywords(textmate: TextMate) -> None:
@@ -133,19 +120,6 @@ def test_other_editors_have_their_names_of_the_colours(editor: str) -> None:
     if os.environ.get("UPDATE_EXPECT"):
         file.write_text(expected)
     assert file.read_text() == expected, "UPDATE_EXPECT=1 writes it"
-
-
-def test_emacs_has_all_keywords() -> None:
-    mode = (ROOT / "editors" / "emacs" / "pydslrep-mode.el").read_text()
-    _, _, listed = mode.partition("(defconst pydslrep-keywords")
-    assert set(re.findall(r'"(\w+)"', listed.partition(")")[0])) == words() - CONTEXTUAL
-
-
-def test_kakoune_has_all_keywords() -> None:
-    highlighter = (ROOT / "editors" / "kakoune" / "pydslrep.kak").read_text()
-    listed = re.search(r"\((wheel\|[\w|]+)\)", highlighter)
-    assert listed
-    assert set(listed[1].split("|")) == words() - CONTEXTUAL
 
 
 def test_the_versions_are_the_project_s() -> None:

@@ -15,8 +15,10 @@ syn keyword pydslrepKeyword ip nextgroup=pydslrepIp skipwhite skipempty
 syn keyword pydslrepKeyword robot of nextgroup=pydslrepRobot skipwhite skipempty
 syn keyword pydslrepKeyword movement nextgroup=pydslrepMovement skipwhite skipempty
 syn keyword pydslrepKeyword environment nextgroup=pydslrepEnvironment skipwhite skipempty
+" The other keywords, which crates/syntax/tests/keywords.rs writes.
 syn keyword pydslrepKeyword with radius type tw fw fwh port has wheels sensors parallel move meters centimeters at
 syn keyword pydslrepKeyword turn left right until slam robots moves
+" End of the keywords.
 
 " Names; those of unknown kind have no colour.
 syn match pydslrepWheel /\^\=\<\h\w*/ contained

@@ -1,19 +1,19 @@
 ; ../../colours.json defines what each capture means. No node has two captures, so it does not matter whether an editor
 ; prefers the first or the last.
 
+; The keywords, which crates/syntax/tests/keywords.rs writes. Where one is not allowed, the parser reads it as a name.
 [
   "wheel" "wheelH" "with" "radius" "sensor" "ip" "robot" "type" "tw" "fw" "fwh" "port" "has" "wheels" "sensors"
   "parallel" "movement" "of" "move" "meters" "centimeters" "at" "turn" "left" "right" "until" "environment" "robots"
   "moves" "distance" "bumper" "import"
 ] @keyword
 (slam) @keyword
-
-; Where a keyword is not allowed, the parser reads it as a name.
 ((ERROR (name) @keyword)
   (#any-of? @keyword
     "wheel" "wheelH" "with" "radius" "sensor" "ip" "robot" "type" "tw" "fw" "fwh" "port" "has" "wheels" "sensors"
     "parallel" "movement" "of" "move" "meters" "centimeters" "at" "turn" "left" "right" "until" "slam" "environment"
     "robots" "moves"))
+; End of the keywords.
 
 [(number) (address)] @number
 (string) @string

@@ -6,7 +6,9 @@
 (robot_definition) @class.outer
 (environment_definition) @class.outer
 
+; The actions, which crates/syntax/tests/keywords.rs writes.
 [(move) (turn) (slam)] @statement.outer
+; End of the actions.
 
 (wheel_references (name) @parameter.inner)
 (sensor_references (name) @parameter.inner)

@@ -1,18 +1,18 @@
 ; Generated from grammar/tree-sitter/queries/highlights.scm.
 
+; The keywords, which crates/syntax/tests/keywords.rs writes. Where one is not allowed, the parser reads it as a name.
 [
   "wheel" "wheelH" "with" "radius" "sensor" "ip" "robot" "type" "tw" "fw" "fwh" "port" "has" "wheels" "sensors"
   "parallel" "movement" "of" "move" "meters" "centimeters" "at" "turn" "left" "right" "until" "environment" "robots"
   "moves" "distance" "bumper" "import"
 ] @keyword
 (slam) @keyword
-
-; Where a keyword is not allowed, the parser reads it as a name.
 ((ERROR (name) @keyword)
   (#any-of? @keyword
     "wheel" "wheelH" "with" "radius" "sensor" "ip" "robot" "type" "tw" "fw" "fwh" "port" "has" "wheels" "sensors"
     "parallel" "movement" "of" "move" "meters" "centimeters" "at" "turn" "left" "right" "until" "slam" "environment"
     "robots" "moves"))
+; End of the keywords.
 
 [(number) (address)] @number
 (string) @string
