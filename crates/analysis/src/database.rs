@@ -43,7 +43,7 @@ pub struct EntityId(u32);
 pub enum Resolution {
     /// This entity; the first of several that bear the name.
     To(EntityId),
-    /// It cannot be said: the name stands in text that was not understood, or a file to import is not there.
+    /// It cannot be said: the name is in text that was not understood, or a file to import is not there.
     Unknown,
     /// Nothing.
     Nothing,
@@ -68,7 +68,7 @@ pub struct EntityRef<'a> {
     pub file: FileId,
     /// From its first byte to where the next entity starts.
     pub span: Span,
-    /// The tree (`None` for what stands before the first entity), tokens and errors; their spans count from
+    /// The tree (`None` for the text before the first entity), tokens and errors; their spans count from
     /// `span.start`.
     pub parse: &'a Parse,
 }
@@ -120,7 +120,7 @@ pub struct Database {
 /// How much the latest edit cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct EditCounts {
-    /// Tokens read again, each as often as it was; also those behind the edit that show where its effect ends.
+    /// Tokens read again, each as often as it was; also those after the edit that show where its effect ends.
     pub relexed: usize,
     /// Entities read again.
     pub reparsed: usize,
@@ -174,7 +174,7 @@ impl Database {
         self.last_edit
     }
 
-    /// The entities of a file in the order of the text; also what stands before the first.
+    /// The entities of a file in the order of the text; also what is before the first.
     pub fn entities(&self, file: FileId) -> impl Iterator<Item = EntityRef<'_>> {
         let slots = self.get(file).map_or(&[][..], |file| &file.slots);
         slots
@@ -203,7 +203,7 @@ impl Database {
         })
     }
 
-    /// The entity that holds an offset: at a boundary the one behind it, at the end of the text the last one.
+    /// The entity that holds an offset: at a boundary the one after it, at the end of the text the last one.
     pub fn entity_at(&self, file: FileId, offset: u32) -> Option<EntityRef<'_>> {
         let open = self.get(file)?;
         let (index, start) = open.slots.at(offset);
@@ -314,7 +314,7 @@ impl Database {
         self.names.all(file, kind)
     }
 
-    /// The names of environments of a file that are the same as `name` but for case, itself included, in no order.
+    /// The names of environments of a file that are the same as `name` except for case, itself included, in no order.
     pub(crate) fn environments_but_for_case(&self, file: FileId, name: &SmolStr) -> &[SmolStr] {
         self.names.environments_but_for_case(file, name)
     }
@@ -338,7 +338,7 @@ impl Database {
         self.counts.get(&(file, kind)).copied().unwrap_or(0)
     }
 
-    /// Whether a name stands in text of the file that had to be skipped.
+    /// Whether a name is in text of the file that had to be skipped.
     pub(crate) fn is_skipped(&self, file: FileId, name: &SmolStr) -> bool {
         self.names.is_skipped(file, name)
     }
@@ -348,7 +348,7 @@ impl Database {
         self.names.any_skipped(file)
     }
 
-    /// Whether the file ends inside a comment: whatever stands in it is hidden.
+    /// Whether the file ends inside a comment: whatever is in it is hidden.
     pub(crate) fn has_open_comment(&self, file: FileId) -> bool {
         let last = self.get(file).and_then(|file| file.slots.last()).and_then(|slot| self.data(slot.entity));
         last.and_then(|data| data.parse.tokens.last())

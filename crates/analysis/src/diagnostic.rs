@@ -49,7 +49,7 @@ pub struct Diagnostic {
     pub note: Option<String>,
     /// Second places that matter.
     pub related: Vec<Related>,
-    /// Edits that mend it, the likeliest first.
+    /// Edits that fix it, the likeliest first.
     pub fixes: Vec<Fix>,
 }
 
@@ -71,7 +71,7 @@ pub struct Related {
     pub message: String,
 }
 
-/// Edits that mend a problem.
+/// Edits that fix a problem.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fix {
     /// What it does, as an order: "change to `wheelL`".

@@ -10,7 +10,7 @@ pub use pydslrep_scene::SensorKind;
 pub struct Environment {
     /// The environment's name as declared (without `^`).
     pub name: String,
-    /// What its script's file is called, without `.py`: its name, with `_env` behind it where that would hide a Python
+    /// What its script's file is called, without `.py`: its name, with `_env` after it where that would hide a Python
     /// module or would not do as a file's name.
     pub script: String,
     /// Where the program says the simulator runs; `None` means this machine.
@@ -80,7 +80,7 @@ pub struct Action {
     pub kind: ActionKind,
     /// The statement as the program writes it, on one line, white space folded, without comments.
     pub text: String,
-    /// Where it stands.
+    /// Its span.
     pub source: Source,
 }
 

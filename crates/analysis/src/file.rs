@@ -20,7 +20,7 @@ pub(crate) struct File {
 #[derive(Debug)]
 pub(crate) struct Window {
     pub(crate) replaced: Range<usize>,
-    /// How many slots at the window's head and tail the edit did not touch; they were read for what stands around
+    /// How many slots at the window's head and tail the edit did not touch; they were read for what is around
     /// them, and can turn out as before.
     pub(crate) untouched: (usize, usize),
     /// How many tokens were lexed to find all this.
@@ -106,7 +106,7 @@ impl File {
     }
 
     /// The first slot to read again. Whether a slot begins where it does depends on its first token, those few after
-    /// it and what stands before; so that many of its tokens must lie wholly before the edit.
+    /// it and what is before; so that many of its tokens must be wholly before the edit.
     fn window_start<'a>(
         &self,
         offset: u32,

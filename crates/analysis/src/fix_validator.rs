@@ -1,4 +1,4 @@
-//! Fixes tried out: what one would leave behind.
+//! Fixes tried on a copy of the database, to see what they leave.
 
 use std::collections::BTreeMap;
 
@@ -46,7 +46,7 @@ pub struct FixValidator {
     tried: Database,
 }
 
-/// How many problems there are in a file by code. Hints are left out: they say what could be nicer, which mending
+/// How many problems there are in a file by code. Hints are left out: they say what could be nicer, which fixing
 /// something may well lead on to.
 type Counts = BTreeMap<(FileId, &'static str), usize>;
 
@@ -57,7 +57,7 @@ impl FixValidator {
     }
 
     /// Whether a fix solves its problem and brings no other into the files it changes. What is said of the meaning of
-    /// text that was not understood before was hidden, and is not brought; nor is a mistake that comes to light behind
+    /// text that was not understood before was hidden, and is not brought; nor is a mistake that comes to light after
     /// it, because more of the text is understood.
     pub fn holds(&mut self, problem: &Diagnostic, fix: &Fix) -> bool {
         let mut files: Vec<FileId> = fix.edits.iter().map(|edit| edit.file).collect();

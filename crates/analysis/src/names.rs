@@ -19,7 +19,7 @@ pub(crate) struct Names {
     known: FxHashMap<Key, Mentions>,
     /// The names that are declared, by file and kind.
     by_kind: FxHashMap<(FileId, EntityKind), FxHashSet<SmolStr>>,
-    /// The names of environments that are the same but for case, by how they are in lower case: their scripts would
+    /// The names of environments that are the same except for case, by how they are in lower case: their scripts would
     /// be the same file on some computers.
     folded: FxHashMap<(FileId, SmolStr), Vec<SmolStr>>,
     skipped: FxHashMap<(FileId, SmolStr), u32>,
@@ -61,22 +61,22 @@ impl Names {
         self.by_kind.get(&(file, kind)).into_iter().flatten()
     }
 
-    /// Whether the name stands in text that had to be skipped, and may be declared there.
+    /// Whether the name is in text that had to be skipped, and may be declared there.
     pub(crate) fn is_skipped(&self, file: FileId, name: &SmolStr) -> bool {
         self.skipped.contains_key(&(file, name.clone()))
     }
 
-    /// Whether any name of the file stands in skipped text.
+    /// Whether any name of the file is in skipped text.
     pub(crate) fn any_skipped(&self, file: FileId) -> bool {
         self.skipped.keys().any(|(other, _)| *other == file)
     }
 
-    /// The declared names of environments that are the same as `name` but for case, itself included, in no order.
+    /// The declared names of environments that are the same as `name` except for case, itself included, in no order.
     pub(crate) fn environments_but_for_case(&self, file: FileId, name: &SmolStr) -> &[SmolStr] {
         self.folded.get(&(file, name.to_ascii_lowercase().into())).map_or(&[], Vec::as_slice)
     }
 
-    /// Adds a declaration; `order` tells where in the file an entity stands.
+    /// Adds a declaration; `order` tells where in the file an entity is.
     pub(crate) fn define(&mut self, key: Key, entity: EntityId, order: impl Fn(EntityId) -> u64) {
         if self.defined(&key).is_empty() {
             self.by_kind.entry((key.0, key.1)).or_default().insert(key.2.clone());

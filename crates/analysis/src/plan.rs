@@ -1,4 +1,4 @@
-//! From an environment to numbers: the scene its robots stand in, and the paths they are to drive.
+//! From an environment to numbers: the scene its robots are in, and the paths they are to drive.
 
 use pydslrep_kinematics as kinematics;
 use pydslrep_scene as scenery;

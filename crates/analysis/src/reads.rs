@@ -15,7 +15,7 @@ pub(crate) struct Reads {
     names: Vec<Key>,
     /// Entities whose [signatures](crate::signature::Signature) were looked at.
     entities: SmallVec<[EntityId; 4]>,
-    /// Kinds of which all names in sight were looked through.
+    /// Kinds of which all names in sight were iterated over.
     kinds: Kinds,
 }
 

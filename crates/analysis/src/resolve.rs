@@ -50,7 +50,7 @@ impl PartialEq for Fingerprint {
 }
 
 impl Database {
-    /// The environments of a file in the order of the text: each with its name and where it stands.
+    /// The environments of a file in the order of the text: each with its name and where it is.
     pub fn environments(&self, file: FileId) -> Vec<(EntityId, Name)> {
         let environments = self.entities(file).filter_map(|entity| match &entity.parse.entity {
             Some(Entity::Environment(environment)) => {
@@ -162,7 +162,7 @@ impl Database {
         Parts { database: self, file: None }.folded_text(entity, action)
     }
 
-    /// Where the errors of an entity stand in its file.
+    /// Where the errors of an entity are in its file.
     pub fn errors(&self, entity: &EntityRef<'_>) -> impl Iterator<Item = Span> {
         let errors = self.problems(entity.id).iter().filter(|problem| problem.severity == Severity::Error);
         let start = entity.span.start;

@@ -26,7 +26,7 @@ const CLIENT_MODULES: [&str; 10] = [
 /// What a script is called.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct ScriptName {
-    /// The file's name without `.py`: the environment's name, with `_env` behind it where that would not do.
+    /// The file's name without `.py`: the environment's name, with `_env` after it where that would not do.
     pub(crate) stem: String,
     /// Why it is not the environment's name.
     pub(crate) obstacle: Option<Obstacle>,

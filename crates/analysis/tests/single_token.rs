@@ -15,7 +15,7 @@ struct Slip {
     text: String,
     /// What was replaced, in the program as it was.
     was: Range<usize>,
-    /// What stands there now.
+    /// What is there now.
     at: Range<usize>,
     what: String,
 }
@@ -93,7 +93,7 @@ fn finding(diagnostic: &Diagnostic) -> Finding {
 }
 
 impl Slip {
-    /// The same place in the program as it was, for what lies before or behind the slip.
+    /// The same place in the program as it was, for what is before or after the slip.
     fn place_before(&self, mut finding: Finding) -> Finding {
         for place in [&mut finding.start, &mut finding.end] {
             if *place >= self.at.end {
@@ -146,7 +146,7 @@ fn check_program(verdict: pydslrep_naive::Verdict, said: &BTreeSet<Finding>) -> 
     }
 }
 
-/// Where it does not, that is said near the slip, once or twice, and elsewhere stands nothing but the truth.
+/// Where it does not, that is said near the slip, once or twice, and elsewhere is nothing but the truth.
 fn check_broken(slip: &Slip, before: &str, said: &[Finding], syntax: &[Finding]) -> Result<(), String> {
     let near = slip.surroundings(before);
     let is_near = |finding: &Finding| near.start <= finding.start && finding.start <= near.end;

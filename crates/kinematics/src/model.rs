@@ -6,7 +6,7 @@ use nalgebra::{DVector, MatrixXx3, Vector3};
 
 use crate::{Drive, Twist};
 
-/// How far apart a robot's wheels stand.
+/// How far apart a robot's wheels are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Geometry {
     /// Distance between left and right wheels (d of equations 1 to 6), metres.
@@ -16,7 +16,7 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// Where the wheels stand in the body's frame, (x, y) in metres, in the order of [`Drive`].
+    /// Where the wheels are in the body's frame, (x, y) in metres, in the order of [`Drive`].
     pub fn wheel_positions(&self, drive: Drive) -> Vec<(f64, f64)> {
         let (lx, ly) = (self.wheelbase / 2.0, self.track / 2.0);
         match drive {

@@ -1,6 +1,6 @@
 //! How robots move where neither program nor scene says otherwise.
 //!
-//! The one place where these figures stand: plans, scripts and the simulator all read them here.
+//! The only place for these figures: plans, scripts and the simulator all read them here.
 
 /// Length of a simulation step, in seconds (CoppeliaSim's default too).
 pub const STEP: f64 = 0.05;

@@ -95,7 +95,7 @@ pub struct Name {
 pub struct Number {
     /// `None` where the text is no number (an error has been reported).
     pub value: Option<f64>,
-    /// Where it stands.
+    /// Its span.
     pub span: Span,
 }
 
@@ -104,7 +104,7 @@ pub struct Number {
 pub struct PortNumber {
     /// `None` where it is out of range, however far.
     pub value: Option<u16>,
-    /// Where it stands.
+    /// Its span.
     pub span: Span,
     /// Whether it is a whole number at all; where it is not, an error has been reported.
     pub whole: bool,
@@ -126,14 +126,14 @@ pub struct References {
 pub struct Import {
     /// The path between the quotes.
     pub path: Option<SmolStr>,
-    /// Where the path stands, with its quotes.
+    /// Where the path is, with its quotes.
     pub path_span: Option<Span>,
 }
 
 /// `wheel` or `wheelH`
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wheel {
-    /// Where the keyword stands.
+    /// Where the keyword is.
     pub keyword: Span,
     /// `wheelH`: 45° rollers.
     pub mecanum: bool,
@@ -148,7 +148,7 @@ pub struct Wheel {
 pub struct Sensor {
     /// Its name.
     pub name: Option<Name>,
-    /// What is written behind `:`.
+    /// What is written after `:`.
     pub kind: Option<(SensorKind, Span)>,
 }
 
@@ -192,7 +192,7 @@ pub struct DriveClause {
     pub word: Option<DriveWord>,
     /// From `type` to the word.
     pub span: Span,
-    /// Whether it stands before the name, as the article's grammar prints it.
+    /// Whether it is before the name, as the article's grammar prints it.
     pub before_name: bool,
 }
 
@@ -236,7 +236,7 @@ impl DriveWord {
 /// `movement`
 #[derive(Debug, Clone, PartialEq)]
 pub struct Movement {
-    /// Where `parallel` stands, if it does.
+    /// Where `parallel` is, if it is there.
     pub parallel: Option<Span>,
     /// Its name.
     pub name: Option<Name>,

@@ -1,10 +1,10 @@
 //! Cutting a file's tokens into entities, before any of them is parsed.
 //!
-//! Entities tile the file: each begins at its keyword and reaches to the next one's; what stands before the first is
+//! Entities tile the file: each begins at its keyword and reaches to the next one's; what is before the first is
 //! a piece of its own. A mistake inside an entity, such as a brace that is never closed, therefore never reaches the
 //! next one. A word that is nearly a keyword begins an entity, too, where what follows it leaves no doubt.
 //!
-//! Whether a token begins an entity depends on the entity it stands in, the token before it and the [`LOOKAHEAD`] tokens
+//! Whether a token begins an entity depends on the entity it is in, the token before it and the [`LOOKAHEAD`] tokens
 //! after it and on nothing else. That bound is what incremental analysis relies on; widen it only together with
 //! `pydslrep-analysis`'s rule for growing the window of an edit.
 
@@ -56,7 +56,7 @@ fn may_end(previous: Option<TokenKind>, token: TokenKind, inside: Option<EntityK
         TokenKind::CloseBrace => token == TokenKind::Name,
         TokenKind::String | TokenKind::UnterminatedString => true,
         _ if TokenKind::ENDS.has(previous) => true,
-        // A port never ends a robot, and a list may stand without its braces.
+        // A port never ends a robot, and a list may lack its braces.
         _ if previous.is_number() => inside != Some(EntityKind::Robot),
         _ if previous.is_name() => {
             !matches!(inside, Some(EntityKind::Robot | EntityKind::Environment | EntityKind::Movement))
@@ -91,7 +91,7 @@ pub(crate) fn misspelt_beginning(text: &str, tokens: &[Token]) -> Option<TokenKi
     TokenKind::closest(written, TokenKind::DECLARATIONS.into_iter().filter(follows))
 }
 
-/// What can stand after the name of an entity with such a keyword, also where a word is missing.
+/// What can follow the name of an entity with such a keyword, also where a word is missing.
 const fn clauses(keyword: TokenKind) -> TokenSet {
     const NUMBER: TokenSet =
         TokenSet::of(&[TokenKind::Integer, TokenKind::Float, TokenKind::Ipv4, TokenKind::MalformedNumber]);
@@ -130,7 +130,7 @@ fn begins_entity(
         TokenKind::Movement | TokenKind::Parallel if previous == Some(TokenKind::Parallel) => false,
         // `with { parallel m }`: it is said where the movement is declared.
         TokenKind::Parallel if inside == Some(EntityKind::Environment) => !is_listed(previous, next),
-        // `movement parallel m`; before `parallel movement` somebody is about to write another one.
+        // `movement parallel m`; before `parallel movement` someone is about to write another one.
         TokenKind::Parallel if previous == Some(TokenKind::Movement) => next == Some(TokenKind::Movement),
         // `} wheel`, `with sensor {`, `} robot with` and `} movement` are slips for the plural, not entities.
         TokenKind::Wheel if inside == Some(EntityKind::Robot) => !closes_list(previous, next),
@@ -143,7 +143,7 @@ fn begins_entity(
 }
 
 /// `wheel robot with …`, `movement m of robot { … }`: a keyword where only a name can be meant. (`wheel` right before
-/// `robot r` is a wheel that somebody is about to write.)
+/// `robot r` is a wheel that someone is about to write.)
 fn is_taken_for_name(previous: Option<TokenKind>, next: Option<TokenKind>) -> bool {
     let (Some(previous), Some(next)) = (previous, next) else { return false };
     match previous {

@@ -1,4 +1,4 @@
-//! Syntax errors as data. How they are worded is the business of whoever shows them.
+//! Syntax errors as data. Their wording is up to the caller.
 
 use smol_str::SmolStr;
 
@@ -16,25 +16,25 @@ pub struct SyntaxError {
 /// The kinds of mistake.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum SyntaxErrorKind {
-    /// Something has to stand between what came before and what comes next.
+    /// Something has to be between what came before and what comes next.
     Missing {
-        /// What could stand there.
+        /// What could be there.
         expected: Vec<Expected>,
         /// What comes next.
         found: Found,
         /// The entity it is part of.
         inside: Option<EntityKind>,
     },
-    /// Something stands where something else belongs.
+    /// Something is where something else belongs.
     Unexpected {
-        /// What could stand there.
+        /// What could be there.
         expected: Vec<Expected>,
-        /// What stands there.
+        /// What is there.
         found: Found,
         /// The entity it is part of.
         inside: Option<EntityKind>,
     },
-    /// Something that is missing elsewhere: it stands too early or too late.
+    /// Something that is missing elsewhere: it is too early or too late.
     Misplaced {
         /// As written.
         written: SmolStr,
@@ -50,7 +50,7 @@ pub enum SyntaxErrorKind {
         /// The entity it is part of.
         inside: Option<EntityKind>,
     },
-    /// A word that is nearly a keyword that could stand there.
+    /// A word that is nearly a keyword that could be there.
     Misspelt {
         /// As written.
         written: SmolStr,
@@ -74,7 +74,7 @@ pub enum SyntaxErrorKind {
         /// As written.
         written: SmolStr,
     },
-    /// `{ }` where at least one reference must stand.
+    /// `{ }` where at least one reference must be.
     EmptyList {
         /// What it should list.
         of: EntityKind,
@@ -100,7 +100,7 @@ pub enum SyntaxErrorKind {
     UnterminatedString,
 }
 
-/// What could stand in a place, in a person's terms.
+/// What could be in a place, in a person's terms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Expected {
     /// A certain word or sign.
@@ -158,7 +158,7 @@ impl Quantity {
     }
 }
 
-/// What stands where something else was expected.
+/// What is where something else was expected.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Found {
     /// The end of the entity.

@@ -4,12 +4,12 @@ use logos::Logos;
 
 use crate::{Span, TokenKind};
 
-/// A token and where it stands.
+/// A token and where it is.
 pub type Token = (TokenKind, Span);
 
 const BYTE_ORDER_MARK: &str = "\u{feff}";
 
-/// All tokens of `text`, comments included, in order. A leading byte order mark is passed over; it can only stand at
+/// All tokens of `text`, comments included, in order. A leading byte order mark is passed over; it can only be at
 /// the start of a file, because every other text handed in starts at an entity's keyword.
 ///
 /// Texts beyond 4 GiB are cut off there.

@@ -5,7 +5,7 @@
 //!
 //! Parsing never fails: any text gives a tree, as much of it as could be understood, and a list of errors. All spans
 //! are byte offsets from the start of the text that was handed in, so a parsed entity stays valid wherever in a file
-//! it stands.
+//! it is.
 
 pub mod ast;
 mod cut;

@@ -11,7 +11,7 @@ pub enum TokenKind {
     /// A name, also one escaped by `^`.
     #[regex(r"\^?[A-Za-z_][A-Za-z0-9_]*")]
     Name,
-    /// What somebody took for a name: `left-wheel`, `räder`, `rover.left`. It stands where a name does, and is one
+    /// What someone took for a name: `left-wheel`, `räder`, `rover.left`. It is where a name does, and is one
     /// mistake instead of a row of them.
     #[regex(r"\^?[\p{L}_][\p{L}\p{M}\p{N}_]*([-.'’][\p{L}_][\p{L}\p{M}\p{N}_]*)*", priority = 1)]
     MalformedName,
@@ -200,8 +200,8 @@ pub const KEYWORDS: [(TokenKind, &str); 33] = [
     (TokenKind::Import, "import"),
 ];
 
-/// A name as a program has to write it: keywords need their `^`. So does `import`, although it can stand without in
-/// most places: behind `} wheel` it would be taken for the next entity.
+/// A name as a program has to write it: keywords need their `^`. So does `import`, although it can do without in
+/// most places: after `} wheel` it would be taken for the next entity.
 pub fn escape(name: &str) -> String {
     let is_escaped = |token: TokenKind| token.is_keyword() || token == TokenKind::Import;
     let escaped = KEYWORDS.iter().any(|(token, word)| is_escaped(*token) && *word == name);
@@ -278,7 +278,7 @@ impl TokenKind {
         (self as u8) >= (Self::Wheel as u8) && (self as u8) <= (Self::Moves as u8)
     }
 
-    /// Whether it can stand where a name is wanted.
+    /// Whether it can be where a name is wanted.
     pub fn is_name(self) -> bool {
         matches!(self, Self::Name | Self::MalformedName | Self::Distance | Self::Bumper | Self::Import)
     }

@@ -92,7 +92,11 @@ fn emacs_has_the_keywords() {
     };
     let nodes: Vec<String> = words(is_node).into_iter().map(str::to_owned).collect();
     let lines = [
-        list("pydslrep-keywords", &quoted(&words(TokenKind::is_keyword)), "The keywords; contextual ones are left out."),
+        list(
+            "pydslrep-keywords",
+            &quoted(&words(TokenKind::is_keyword)),
+            "The keywords; contextual ones are left out.",
+        ),
         list(
             "pydslrep-keyword-tokens",
             &quoted(&words(|kind| !is_node(kind))),

@@ -25,7 +25,7 @@ impl Span {
         Self { start: offset, end: offset }
     }
 
-    /// The range of a whole text. Texts beyond 4 GiB are for whoever reads files to refuse; here they count as 4 GiB.
+    /// The range of a whole text. Texts beyond 4 GiB are for the reader of files to refuse; here they count as 4 GiB.
     pub fn of(text: &str) -> Self {
         Self { start: 0, end: u32::try_from(text.len()).unwrap_or(u32::MAX) }
     }
@@ -45,7 +45,7 @@ impl Span {
         self.start == self.end
     }
 
-    /// Whether `offset` lies inside or at either end, as a cursor does.
+    /// Whether `offset` is inside or at either end, as a cursor does.
     pub fn touches(self, offset: u32) -> bool {
         self.start <= offset && offset <= self.end
     }

@@ -1,6 +1,6 @@
 //! When one word is close enough to another to be meant.
 
-/// Whether `written` is plausibly a slip for `meant`: equal but for case, or an edit distance of up to a third of
+/// Whether `written` is plausibly a slip for `meant`: equal except for case, or an edit distance of up to a third of
 /// the length. Words of one or two letters count as slips only by case or by two letters changing places.
 pub fn is_similar(written: &str, meant: &str) -> bool {
     slip(written, meant).is_some()

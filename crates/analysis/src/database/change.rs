@@ -133,7 +133,7 @@ impl Database {
         if let Some(imports) = self.imports.get(&file)
             && self.which_are_imports(&ids) != imports_before
         {
-            // Whether an import comes too late, and where it belongs, depends on what stands before it.
+            // Whether an import comes too late, and where it belongs, depends on what is before it.
             invalidated.entities.extend(&imports.entities);
         }
         invalidated.entities.extend(ids);

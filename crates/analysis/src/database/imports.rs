@@ -13,7 +13,7 @@ pub enum Absence {
     Missing,
     /// The path leads to where imports may not lead.
     Outside,
-    /// The file is there and cannot be read; in words that go behind "because".
+    /// The file is there and cannot be read; in words that go after "because".
     Unreadable(String),
 }
 
@@ -96,7 +96,7 @@ impl Database {
         self.importers(path).any(may)
     }
 
-    /// Whether an import stands behind an entity of another kind.
+    /// Whether an import is after an entity of another kind.
     pub(crate) fn is_late_import(&self, id: EntityId) -> bool {
         let Some(data) = self.data(id) else { return false };
         let Some(open) = self.get(data.file) else { return false };
@@ -140,7 +140,7 @@ impl Database {
         ids.iter().any(|id| matches!(self.tree(*id), Some(Entity::Import(_))))
     }
 
-    /// Of entities in a row, whether each is an import; `None` for what stands before the first entity.
+    /// Of entities in a row, whether each is an import; `None` for the text before the first entity.
     pub(super) fn which_are_imports(&self, ids: &[EntityId]) -> Vec<Option<bool>> {
         ids.iter().map(|id| self.tree(*id).map(|tree| matches!(tree, Entity::Import(_)))).collect()
     }

@@ -77,7 +77,7 @@ impl Database {
             .collect()
     }
 
-    /// Whether a name stands in text of the file that was not understood, where it may be a declaration or a use: in
+    /// Whether a name is in text of the file that was not understood, where it may be a declaration or a use: in
     /// skipped text, or in a comment that is never closed.
     pub fn may_hide(&self, file: FileId, name: &SmolStr) -> bool {
         let word = |c: char| c.is_alphanumeric() || c == '_';

@@ -96,7 +96,7 @@ impl Database {
         self.scenes.get(&self.file_of(id)?)?.get(name).map(|scene| &scene.text)
     }
 
-    /// How the environments with a scene drive whose actions may be in a file; worked out again only where one is made of
+    /// How the environments with a scene drive whose actions may be in a file; computed again only where one is made of
     /// something else than before.
     pub(crate) fn planned_runs(&self, file: FileId) -> Vec<Arc<PlannedRun>> {
         let mut planned_runs = Vec::new();
@@ -217,7 +217,7 @@ mod tests {
         assert!(!run(&database).meets_something());
     }
 
-    /// What is typed elsewhere in the program does not make the imported files doubtful.
+    /// What is typed elsewhere in the program does not make the imported files outdated.
     #[test]
     fn files_are_touched_where_what_is_met_may_change() {
         let mut database = Database::new();

@@ -172,7 +172,7 @@ impl<'a> Context<'a> {
         self.database.names_in_sight(self.file, kind)
     }
 
-    /// Whether another environment of the file has this one's name but for case. Environments whose names are so alike
+    /// Whether another environment of the file has this one's name except for case. Environments whose names are so alike
     /// invalidate each other.
     pub(super) fn has_twin(&self, environment: &Name) -> bool {
         self.note_name(self.file, EntityKind::Environment, environment);

@@ -2,7 +2,7 @@
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -10,7 +10,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Error,
     summary: "two things of one kind have the same name",
     tag: None,
-    remedy: Remedy::Suggested,
+    applicability: Applicability::Suggested,
     page: PAGE,
     check,
 };
@@ -43,7 +43,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     );
 }
 
-/// The name with the first number behind it that nobody of the kind has.
+/// The name with the first number after it that nobody of the kind has.
 fn free_name(context: &Context<'_>, kind: pydslrep_syntax::EntityKind, name: &str) -> String {
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
     let stem = if stem.is_empty() { name } else { stem };

@@ -5,7 +5,7 @@ use pydslrep_syntax::ast::{Entity, Name, Robot};
 use super::context::Context;
 use super::edits::ProblemEdit;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::{EntityId, Severity, Target};
 
 pub(super) static RULE: Rule = Rule {
@@ -13,7 +13,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Warning,
     summary: "two robots of an environment share a port, and the target is `vrep`",
     tag: None,
-    remedy: Remedy::Safe,
+    applicability: Applicability::Safe,
     page: PAGE,
     check,
 };
@@ -134,8 +134,8 @@ mod tests {
             out += &format!("{} @ {}: {}\n", found.span.text(program), found.span.start, found.message);
             out += found.help.as_ref().map_or("", |help| help.as_str());
             for fix in &found.fixes {
-                let mended = apply(program, file, &fix.edits);
-                let changed = mended.lines().filter(|line| !program.lines().any(|old| old == *line));
+                let fixed = apply(program, file, &fix.edits);
+                let changed = fixed.lines().filter(|line| !program.lines().any(|old| old == *line));
                 out += &format!("  {}: {}\n", fix.title, changed.collect::<Vec<_>>().join(" / "));
             }
         }

@@ -15,7 +15,7 @@ pub(crate) struct ProblemEdit {
     pub(crate) span: Span,
     /// With `\n` for the end of a line, whatever the file uses; which it is may change with any edit.
     pub(crate) text: String,
-    /// Whether what stands on its sides is to become one word; else words are kept apart.
+    /// Whether what is on its sides is to become one word; else words are kept apart.
     pub(crate) joins: bool,
     /// Whether it is a declaration to put before the entity: at the nearest place where no other one is cut in two.
     pub(crate) declares: bool,
@@ -37,7 +37,7 @@ impl Context<'_> {
         ProblemEdit::new(self.id, span, text)
     }
 
-    /// A replacement that makes one word of what stands on its sides.
+    /// A replacement that makes one word of what is on its sides.
     pub(super) fn join(&self, span: Span, text: impl Into<String>) -> ProblemEdit {
         ProblemEdit { joins: true, ..self.replace(span, text) }
     }
@@ -52,14 +52,14 @@ impl Context<'_> {
     pub(super) fn remove(&self, span: Span) -> ProblemEdit {
         let before = self.tokens.iter().rev().find(|(_, other)| other.end <= span.start);
         match before {
-            Some((token, comment)) if token.ends_line() => self.remove_behind(*comment, span),
+            Some((token, comment)) if token.ends_line() => self.remove_after_comment(*comment, span),
             Some((_, other)) => self.replace(Span::new(other.end, span.end), ""),
             None => self.replace(span, ""),
         }
     }
 
-    /// Removes what a comment of the line before stands before: with its line, or as far as the line goes on.
-    fn remove_behind(&self, comment: Span, span: Span) -> ProblemEdit {
+    /// Removes what a comment at the end of a line precedes: with its line, or as far as the line goes on.
+    fn remove_after_comment(&self, comment: Span, span: Span) -> ProblemEdit {
         let rest = self.len().unwrap_or(span.end);
         let next = self.tokens.iter().find(|(_, other)| other.start >= span.end);
         let next = next.map_or(rest, |(_, other)| other.start);
@@ -92,7 +92,7 @@ impl Context<'_> {
         self.replace(Span::new(span.start, span.end + u32::from(first)), "")
     }
 
-    /// Removes a word; what stands on other lines stays there.
+    /// Removes a word; what is on other lines stays there.
     pub(super) fn remove_word(&self, span: Span) -> ProblemEdit {
         let before = self.tokens.iter().rev().find(|(_, other)| other.end <= span.start);
         let start = before.map_or(0, |(_, other)| other.end);
@@ -104,7 +104,7 @@ impl Context<'_> {
         }
     }
 
-    /// Removes what stands on lines of its own together with the end of its line. Whether something else stands
+    /// Removes what is on lines of its own together with the end of its line. Whether something else is
     /// before it on its line can change with any edit there, and is looked at when the edit gets its place.
     pub(super) fn remove_line(&self, span: Span) -> ProblemEdit {
         let end = self.len().unwrap_or(span.end);
@@ -124,7 +124,7 @@ impl Context<'_> {
         self.replace(Span::new(span.start, span.end + taken), "")
     }
 
-    /// Removes one item of a list with the comma before it, or else, of the first item, the one behind it.
+    /// Removes one item of a list with the comma before it, or else, of the first item, the one after it.
     pub(super) fn remove_item(&self, item: Span) -> Vec<ProblemEdit> {
         let is_word = |(token, _): &&Token| !token.is_comment();
         let before = self.tokens.iter().rev().filter(is_word).find(|(_, span)| span.end <= item.start);
@@ -146,7 +146,7 @@ impl Context<'_> {
         }
     }
 
-    /// Removes the whole entity, but not the comments behind it.
+    /// Removes the whole entity, but not the comments after it.
     pub(super) fn whole(&self) -> Option<ProblemEdit> {
         let end = self.len()?;
         let is_word = |(token, _): &Token| !token.is_comment();
@@ -177,7 +177,7 @@ pub(super) fn located(database: &Database, fix: &ProblemFix) -> Option<Fix> {
     Some(Fix { title: fix.title.clone(), safe: fix.safe, edits: edits.collect::<Option<_>>()? })
 }
 
-/// The entity, it or one before it, that a declaration can stand before without cutting another one in two: what comes
+/// The entity, it or one before it, that a declaration can precede without cutting another one in two: what comes
 /// before it is complete, and ends on a line before.
 fn declared_before(database: &Database, id: EntityId) -> Option<EntityId> {
     /// A text that is broken for longer is no place for a declaration.
@@ -201,7 +201,7 @@ fn is_over(database: &Database, id: EntityId) -> bool {
     (is_import || entity.parse.errors.is_empty()) && rest.contains(['\n', '\r'])
 }
 
-/// What to remove so that the lines around it stay as they are: where something else stands before it on its line, the
+/// What to remove so that the lines around it stay as they are: where something else is before it on its line, the
 /// end of that line is not part of it, but the space between the two is.
 fn tidy_removal(database: &Database, file: FileId, span: Span) -> Span {
     /// Longer white space between two things of one line may stay.

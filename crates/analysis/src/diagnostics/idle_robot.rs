@@ -7,7 +7,7 @@ use crate::EntityId;
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -15,7 +15,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Hint,
     summary: "an environment lists a robot that none of its movements drives",
     tag: None,
-    remedy: Remedy::Never,
+    applicability: Applicability::Never,
     page: PAGE,
     check,
 };

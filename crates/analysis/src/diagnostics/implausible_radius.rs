@@ -4,7 +4,7 @@ use pydslrep_syntax::ast::{Entity, Number};
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -12,7 +12,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Warning,
     summary: "a wheel's radius is above 100 cm or below 0.5 cm, so it was probably measured in another unit",
     tag: None,
-    remedy: Remedy::Suggested,
+    applicability: Applicability::Suggested,
     page: PAGE,
     check,
 };

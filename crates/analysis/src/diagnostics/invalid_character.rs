@@ -5,7 +5,7 @@ use pydslrep_syntax::{Span, SyntaxError, SyntaxErrorKind, TokenKind};
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -13,7 +13,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Error,
     summary: "a character that has no meaning in the language",
     tag: None,
-    remedy: Remedy::Suggested,
+    applicability: Applicability::Suggested,
     page: PAGE,
     check,
 };
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn habits_from_elsewhere_are_known() {
+    fn mistakes_from_other_languages_are_known() {
         check(
             "wheel aä with radius 4.5",
             &expect![[r#"

@@ -24,7 +24,7 @@ pub struct Page {
 
 /// The best fix that a rule may offer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Remedy {
+pub enum Applicability {
     /// None: only a person knows what was meant.
     Never,
     /// One that a person should look at first.
@@ -33,7 +33,7 @@ pub enum Remedy {
     Safe,
 }
 
-impl Remedy {
+impl Applicability {
     fn word(self) -> &'static str {
         match self {
             Self::Never => "no",
@@ -64,7 +64,7 @@ impl Rule {
              This says:\n\n```text\n{says}```\n\n## Write instead\n\n{}",
             self.code,
             capitalised(self.severity.word()),
-            self.remedy.word(),
+            self.applicability.word(),
             code(example),
             code(fixed),
         )
@@ -83,8 +83,8 @@ pub fn index() -> String {
         .to_owned();
     for rule in CATALOGUE {
         let (code, summary) = (rule.code, rule.summary);
-        let (severity, remedy) = (rule.severity.word(), rule.remedy.word());
-        out += &format!("| [{code}]({code}.md) | {severity} | {summary} | {remedy} |\n");
+        let (severity, applicability) = (rule.severity.word(), rule.applicability.word());
+        out += &format!("| [{code}]({code}.md) | {severity} | {summary} | {applicability} |\n");
     }
     out
 }
@@ -152,7 +152,7 @@ mod tests {
     use expect_test::expect_file;
 
     use super::*;
-    use crate::diagnostics::testing::{apply, remedy};
+    use crate::diagnostics::testing::{applicability, apply};
 
     #[test]
     fn every_example_has_its_problem_and_no_other() {
@@ -170,12 +170,12 @@ mod tests {
     fn every_fix_of_an_example_mends_it() {
         for rule in CATALOGUE {
             for diagnostic in example_diagnostics(&rule.page, rule.page.example) {
-                let best = diagnostic.fixes.iter().map(remedy).max();
-                assert_eq!(best.unwrap_or(Remedy::Never), rule.remedy, "{}", rule.code);
+                let best = diagnostic.fixes.iter().map(applicability).max();
+                assert_eq!(best.unwrap_or(Applicability::Never), rule.applicability, "{}", rule.code);
                 for fix in &diagnostic.fixes {
-                    let mended = apply(rule.page.example, diagnostic.file, &fix.edits);
-                    let left = example_diagnostics(&rule.page, &mended);
-                    assert!(left.is_empty(), "{}: {}\n{mended}\n{left:#?}", rule.code, fix.title);
+                    let fixed = apply(rule.page.example, diagnostic.file, &fix.edits);
+                    let left = example_diagnostics(&rule.page, &fixed);
+                    assert!(left.is_empty(), "{}: {}\n{fixed}\n{left:#?}", rule.code, fix.title);
                 }
             }
         }

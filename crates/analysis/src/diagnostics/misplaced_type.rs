@@ -5,7 +5,7 @@ use pydslrep_syntax::ast::Entity;
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule, Tag};
+use super::{Applicability, Page, Rule, Tag};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -13,7 +13,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Warning,
     summary: "a robot's type is written before its name",
     tag: Some(Tag::Deprecated),
-    remedy: Remedy::Safe,
+    applicability: Applicability::Safe,
     page: PAGE,
     check,
 };

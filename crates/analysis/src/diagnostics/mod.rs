@@ -53,7 +53,7 @@ use pydslrep_syntax::Span;
 
 use self::consequences::Consequences;
 use self::context::Context;
-pub use self::manual::{Page, Remedy, index};
+pub use self::manual::{Applicability, Page, index};
 pub(crate) use self::planned_collision::PlannedRun;
 use self::problem::Brace;
 pub(crate) use self::problem::Problem;
@@ -81,7 +81,7 @@ pub struct Rule {
     /// How an editor may show the text it is about.
     pub tag: Option<Tag>,
     /// The best fix it may offer.
-    pub remedy: Remedy,
+    pub applicability: Applicability,
     /// What there is to say about it beside its messages.
     pub page: Page,
     check: fn(&Context<'_>, &mut Vec<Problem>),

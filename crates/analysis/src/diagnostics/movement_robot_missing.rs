@@ -6,7 +6,7 @@ use pydslrep_syntax::ast::{Entity, Name, References};
 use super::context::Context;
 use super::edits::append;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::signature::MovementSignature;
 use crate::{EntityId, Severity};
 
@@ -15,7 +15,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Error,
     summary: "an environment lists a movement whose robot it does not list",
     tag: None,
-    remedy: Remedy::Safe,
+    applicability: Applicability::Safe,
     page: PAGE,
     check,
 };
@@ -130,7 +130,7 @@ mod tests {
             "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has { a b } wheels\n\
              movement m of r { turn left }",
         );
-        // What stands right beside an edit is read again anyway; neither the environment nor its robot may be.
+        // What is right beside an edit is read again anyway; neither the environment nor its robot may be right beside it.
         let twin = "robot r\n";
         let program = format!(
             "import \"lib.pyr\"\n{twin}sensor between\nrobot q with port 3 has {{ a b }} wheels\n\

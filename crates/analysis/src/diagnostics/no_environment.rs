@@ -4,7 +4,7 @@ use pydslrep_syntax::{EntityKind, Span, escape};
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::{Database, Diagnostic, Edit, EntityRef, FileId, Fix, Severity};
 
 pub(super) static RULE: Rule = Rule {
@@ -12,7 +12,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Information,
     summary: "robots and movements, but no environment to run them",
     tag: None,
-    remedy: Remedy::Suggested,
+    applicability: Applicability::Suggested,
     page: PAGE,
     check,
 };
@@ -69,7 +69,7 @@ pub(super) fn in_file(database: &Database, file: FileId) -> Option<Diagnostic> {
     })
 }
 
-/// An environment with every robot and every movement of the file, behind its last entity.
+/// An environment with every robot and every movement of the file, after its last entity.
 fn with_all(database: &Database, last: &EntityRef<'_>) -> Fix {
     let names = |wanted: EntityKind| {
         let named = database.entities(last.file).filter_map(|entity| {

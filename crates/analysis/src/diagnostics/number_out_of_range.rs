@@ -4,7 +4,7 @@ use pydslrep_syntax::ast::{ActionKind, Entity, Move, Number};
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -12,7 +12,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Error,
     summary: "a distance beyond 1000 km, or a number too large to calculate with",
     tag: None,
-    remedy: Remedy::Never,
+    applicability: Applicability::Never,
     page: PAGE,
     check,
 };

@@ -4,7 +4,7 @@ use pydslrep_syntax::ast::{Entity, Name};
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::{EntityId, Severity};
 
 pub(super) static RULE: Rule = Rule {
@@ -12,7 +12,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Error,
     summary: "two movements of one robot run at the same time",
     tag: None,
-    remedy: Remedy::Never,
+    applicability: Applicability::Never,
     page: PAGE,
     check,
 };

@@ -6,7 +6,7 @@ use pydslrep_syntax::ast::Entity;
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::environment::Environment;
 use crate::{Database, Diagnostic, EntityId, FileId, Related, Severity, plan};
 
@@ -15,7 +15,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Warning,
     summary: "the planned path meets an obstacle of the scene, or another robot",
     tag: None,
-    remedy: Remedy::Never,
+    applicability: Applicability::Never,
     page: PAGE,
     check,
 };
@@ -132,7 +132,7 @@ impl Located<'_> {
         })
     }
 
-    /// Where an action stands.
+    /// Where an action is.
     fn place(&self, index: ActionIndex, message: String) -> Option<Related> {
         let movement = *self.run.environment.schedule.get(index.group)?.get(index.run)?;
         let entity = self.database.entity(*self.run.movements.get(movement)?)?;

@@ -6,7 +6,7 @@ use pydslrep_syntax::ast::Entity;
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::{Severity, Target};
 
 pub(super) static RULE: Rule = Rule {
@@ -14,7 +14,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Hint,
     summary: "a robot has a port of V-REP's, and the target is `coppeliasim`",
     tag: None,
-    remedy: Remedy::Suggested,
+    applicability: Applicability::Suggested,
     page: PAGE,
     check,
 };

@@ -20,7 +20,7 @@ pub(crate) struct Problem {
     pub(crate) related: Vec<ProblemPlace>,
     /// The declaration that the problem is about, where another problem could be about it too.
     pub(crate) about: Option<(EntityKind, SmolStr)>,
-    /// The kind and the name that were looked for in vain.
+    /// The kind and the name that were looked for without success.
     pub(crate) sought: Option<(EntityKind, SmolStr)>,
     /// The kinds of entities that could have prevented it by using what it is about.
     pub(crate) users: &'static [EntityKind],

@@ -5,7 +5,7 @@ use pydslrep_syntax::ast::Entity;
 use super::context::Context;
 use super::problem::Problem;
 use super::repeated_wheel::repeats;
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -13,7 +13,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Warning,
     summary: "an environment lists a robot twice",
     tag: None,
-    remedy: Remedy::Safe,
+    applicability: Applicability::Safe,
     page: PAGE,
     check,
 };

@@ -4,7 +4,7 @@ use pydslrep_syntax::ast::{Entity, Name};
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -12,7 +12,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Error,
     summary: "a robot lists a wheel twice",
     tag: None,
-    remedy: Remedy::Never,
+    applicability: Applicability::Never,
     page: PAGE,
     check,
 };
@@ -49,7 +49,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     }
 }
 
-/// The names that stand in a list again, each with its first mention.
+/// The names that are in a list again, each with its first mention.
 pub(super) fn repeats(names: &[Name]) -> Vec<(&Name, &Name)> {
     let first = |index: usize| names[..index].iter().find(|other| other.text == names[index].text);
     (0..names.len()).filter_map(|index| Some((first(index)?, &names[index]))).collect()

@@ -4,7 +4,7 @@ use pydslrep_syntax::ast::{Entity, Name};
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::script_name::{Obstacle, obstacle, script_names};
 use crate::{EntityId, Severity};
 
@@ -13,7 +13,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Warning,
     summary: "an environment whose script cannot have the same name",
     tag: None,
-    remedy: Remedy::Suggested,
+    applicability: Applicability::Suggested,
     page: PAGE,
     check,
 };

@@ -6,7 +6,7 @@ use pydslrep_syntax::{EntityKind, Span, escape};
 use super::context::Context;
 use super::edits::{ProblemEdit, append};
 use super::problem::Problem;
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::{EntityId, Severity};
 
 pub(super) static RULE: Rule = Rule {
@@ -14,7 +14,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Error,
     summary: "`turn … until` names a sensor that the robot does not carry",
     tag: None,
-    remedy: Remedy::Suggested,
+    applicability: Applicability::Suggested,
     page: PAGE,
     check,
 };

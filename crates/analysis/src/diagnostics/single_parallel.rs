@@ -5,7 +5,7 @@ use pydslrep_syntax::ast::{Entity, Environment, Name};
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule, Tag};
+use super::{Applicability, Page, Rule, Tag};
 use crate::Severity;
 use crate::signature::Signature;
 
@@ -14,7 +14,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Hint,
     summary: "a `parallel` movement that never runs beside another",
     tag: Some(Tag::Unnecessary),
-    remedy: Remedy::Suggested,
+    applicability: Applicability::Suggested,
     page: PAGE,
     check,
 };
@@ -91,7 +91,7 @@ fn may_be_parallel(context: &Context<'_>, name: &Name) -> bool {
     context.movement(name).is_none_or(|(_, movement)| movement.parallel.is_some())
 }
 
-/// The start of the token behind a place.
+/// The start of the token after a place.
 fn after(context: &Context<'_>, place: pydslrep_syntax::Span) -> pydslrep_syntax::Span {
     let next = context.tokens.iter().find(|(_, span)| span.start >= place.end);
     pydslrep_syntax::Span::at(next.map_or(place.end, |(_, span)| span.start))

@@ -3,7 +3,7 @@
 use expect_test::Expect;
 use pydslrep_syntax::Span;
 
-use super::Remedy;
+use super::Applicability;
 use crate::{Database, Diagnostic, Edit, FileId, Fix};
 
 /// Rules about what is still to be written; fixtures are fragments and would all break them.
@@ -49,7 +49,7 @@ fn check_those(program: &str, expected: &Expect, asked: fn(&Diagnostic) -> bool)
     for diagnostic in &diagnostics {
         for fix in &diagnostic.fixes {
             assert!(
-                remedy(fix) <= diagnostic.rule.remedy,
+                applicability(fix) <= diagnostic.rule.applicability,
                 "{} promises less than {fix:?}",
                 diagnostic.code()
             );
@@ -59,12 +59,12 @@ fn check_those(program: &str, expected: &Expect, asked: fn(&Diagnostic) -> bool)
     }
 }
 
-fn check_fix(program: &str, before: &[Diagnostic], mended: &Diagnostic, after: &str, left: &[Diagnostic]) {
+fn check_fix(program: &str, before: &[Diagnostic], fixed: &Diagnostic, after: &str, left: &[Diagnostic]) {
     let count = |list: &[Diagnostic], code: &str| list.iter().filter(|other| other.code() == code).count();
-    let code = mended.code();
+    let code = fixed.code();
     assert!(
         count(left, code) < count(before, code),
-        "the fix does not mend it\n{program}\n->\n{after}\n{left:#?}"
+        "the fix does not solve it\n{program}\n->\n{after}\n{left:#?}"
     );
     for other in left {
         let code = other.code();
@@ -76,8 +76,8 @@ fn check_fix(program: &str, before: &[Diagnostic], mended: &Diagnostic, after: &
 }
 
 /// What sort of fix it is.
-pub(super) fn remedy(fix: &Fix) -> Remedy {
-    if fix.safe { Remedy::Safe } else { Remedy::Suggested }
+pub(super) fn applicability(fix: &Fix) -> Applicability {
+    if fix.safe { Applicability::Safe } else { Applicability::Suggested }
 }
 
 /// The program after edits.

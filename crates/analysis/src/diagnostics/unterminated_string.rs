@@ -4,7 +4,7 @@ use pydslrep_syntax::{Span, SyntaxErrorKind};
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -12,7 +12,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Error,
     summary: "a path in quotes that has no closing quote on its line",
     tag: None,
-    remedy: Remedy::Safe,
+    applicability: Applicability::Safe,
     page: PAGE,
     check,
 };

@@ -5,7 +5,7 @@ use pydslrep_syntax::ast::Name;
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule, Tag};
+use super::{Applicability, Page, Rule, Tag};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -13,7 +13,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Hint,
     summary: "a wheel, sensor, ip, robot or movement that nothing uses",
     tag: Some(Tag::Unnecessary),
-    remedy: Remedy::Suggested,
+    applicability: Applicability::Suggested,
     page: PAGE,
     check,
 };

@@ -6,7 +6,7 @@ use pydslrep_syntax::ast::{DriveWord, Entity, Name, Robot};
 use super::context::Context;
 use super::problem::Problem;
 use super::wheel_count::{fitting, type_place};
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -14,7 +14,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Error,
     summary: "a robot's wheels do not suit its type: `tw` and `fw` drive on `wheel`, `fwh` on `wheelH`",
     tag: None,
-    remedy: Remedy::Safe,
+    applicability: Applicability::Safe,
     page: PAGE,
     check,
 };

@@ -4,7 +4,7 @@ use pydslrep_syntax::ast::{Entity, Name};
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -12,7 +12,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Hint,
     summary: "a wheel named as a right one stands where the left one belongs",
     tag: None,
-    remedy: Remedy::Suggested,
+    applicability: Applicability::Suggested,
     page: PAGE,
     check,
 };
@@ -43,7 +43,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         let is_its_left = |second: &Name| is_right_of(&first.text, &second.text);
         if let Some(other) = names.iter().rposition(is_its_left).filter(|other| *other > index) {
             let second = &names[other];
-            // Two wheels stand left, right; of four, the left two stand before the right two.
+            // Two wheels are listed left, right; of four, the left two come before the right two.
             let half = names.len() / 2;
             problems.push(if index < half && other >= half {
                 swapped(context, first, second)

@@ -4,7 +4,7 @@ use pydslrep_syntax::ast::{ActionKind, Entity};
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Page, Remedy, Rule, Tag};
+use super::{Applicability, Page, Rule, Tag};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -12,7 +12,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Warning,
     summary: "a move over no distance, which does nothing",
     tag: Some(Tag::Unnecessary),
-    remedy: Remedy::Safe,
+    applicability: Applicability::Safe,
     page: PAGE,
     check,
 };

@@ -3,7 +3,7 @@
 use std::fs;
 
 use expect_test::expect;
-use pydslrep_analysis::diagnostics::{CATALOGUE, Remedy};
+use pydslrep_analysis::diagnostics::{CATALOGUE, Applicability};
 
 use crate::process::Place;
 
@@ -69,7 +69,7 @@ fn everything_safe_is_fixed() {
 #[test]
 fn every_safe_fix_of_the_catalogue_is_applied() {
     let mut count = 0;
-    for rule in CATALOGUE.into_iter().filter(|rule| rule.remedy == Remedy::Safe) {
+    for rule in CATALOGUE.into_iter().filter(|rule| rule.applicability == Applicability::Safe) {
         let place = Place::with("x.pyr", rule.page.example);
         // The target with more rules, as for the pages.
         place.write("pydslrep.toml", "target = \"vrep\"\n");

@@ -5,7 +5,7 @@ use super::piece::{Item, ItemKind};
 use super::writer::Writer;
 use crate::{EntityKind, Token, TokenKind};
 
-/// The longest line, in characters, that a list may stand on.
+/// The longest line, in characters, that a list may be on.
 pub const COLUMNS: usize = 100;
 
 const SPACES: &str = "          ";
@@ -24,7 +24,7 @@ struct List {
     indent: usize,
 }
 
-/// Writes the entity that `item` is; what stands around it is not touched.
+/// Writes the entity that `item` is; what is around it is not touched.
 pub(super) fn lay_out(writer: &mut Writer<'_>, text: &str, tokens: &[Token], item: &Item) {
     let is_movement = item.first_kind == Some(ItemKind::Declaration(EntityKind::Movement));
     let mut layout = Layout { text, tokens, item, is_movement, in_body: false, list: None };
@@ -66,7 +66,7 @@ impl Layout<'_> {
         }
     }
 
-    /// Writes what stands between two neighbouring tokens.
+    /// Writes what is between two neighbouring tokens.
     fn separate(&self, writer: &mut Writer<'_>, previous: usize, index: usize) {
         let gap = Gap::new(self.text, self.tokens, Some(previous), index);
         let opens = self.tokens[previous].0 == TokenKind::OpenBrace;
@@ -105,7 +105,7 @@ impl Layout<'_> {
         List { commas, broken, indent: writer.line_indent() }
     }
 
-    /// Whether a list can stand on one line, together with what follows it up to the next place for a line break.
+    /// Whether a list can be on one line, together with what follows it up to the next place for a line break.
     fn fits(&self, column: usize, open: usize, commas: bool) -> bool {
         let mut column = column;
         let mut previous = open;

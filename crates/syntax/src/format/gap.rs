@@ -1,14 +1,14 @@
 //! Comments between two tokens, and how they stay where they are.
 //!
-//! Comments that share a line are a group. A group stands behind the token before it (at the end of its line), before
-//! the token behind it (at the start of its line), or on a line of its own; that is what the layout keeps.
+//! Comments that share a line are a group. A group is after the token before it (at the end of its line), before
+//! the token after it (at the start of its line), or on a line of its own; that is what the layout keeps.
 
 use std::ops::Range;
 
 use super::writer::{BLANKS, BYTE_ORDER_MARK, LINE_ENDS, Writer};
 use crate::{Span, Token};
 
-/// What stands between two neighbouring tokens that are not comments.
+/// What is between two neighbouring tokens that are not comments.
 pub(super) struct Gap<'a> {
     text: &'a str,
     tokens: &'a [Token],
@@ -17,7 +17,7 @@ pub(super) struct Gap<'a> {
     next_lines: usize,
 }
 
-/// Comments on one line. In lists a comma may stand among them.
+/// Comments on one line. In lists a comma may be among them.
 struct Group {
     /// Indices into the tokens.
     range: Range<usize>,
@@ -36,13 +36,13 @@ pub(super) enum Blank {
     One,
 }
 
-/// Where a gap with a line break stands.
+/// Where a gap with a line break is.
 pub(super) struct Place<'a> {
     /// Before comments on lines of their own.
     pub(super) indent: &'a str,
     /// Before the second token.
     pub(super) next_indent: &'a str,
-    /// Whether the first token opens something; a blank line behind it goes.
+    /// Whether the first token opens something; a blank line after it is removed.
     pub(super) opens: bool,
     /// Whether the second token closes something; a blank line before it goes.
     pub(super) closes: bool,
@@ -80,7 +80,7 @@ impl<'a> Gap<'a> {
         self.tokens[group.range.clone()].iter().copied().filter(|(token, _)| token.is_comment())
     }
 
-    /// Line ends behind a group.
+    /// Line ends after a group.
     fn lines_after(&self, index: usize) -> usize {
         self.groups.get(index + 1).map_or(self.next_lines, |group| group.lines)
     }
@@ -89,7 +89,7 @@ impl<'a> Gap<'a> {
         self.groups[index].lines > 0 && self.lines_after(index) > 0
     }
 
-    /// The first of the comments that stand right above the second token.
+    /// The first of the comments that are right above the second token.
     pub(super) fn first_attached(&self) -> Option<usize> {
         let attached = |index: &usize| self.groups[*index].lines > 0 && self.lines_after(*index) < 2;
         (0..self.groups.len()).rev().take_while(attached).last().map(|index| self.groups[index].range.start)

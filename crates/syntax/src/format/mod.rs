@@ -1,6 +1,6 @@
 //! The canonical layout of a program.
 //!
-//! Only what stands between tokens is ever changed: white space, the commas of lists, blank ends of comment lines.
+//! Only what is between tokens is ever changed: white space, the commas of lists, blank ends of comment lines.
 //! The layout is therefore a list of small edits, and meaning cannot change. Entities with errors are left byte for
 //! byte as they are, because what a person meant there is not known.
 
@@ -71,7 +71,7 @@ pub fn format_edits<'a>(text: &str, pieces: impl IntoIterator<Item = (Span, &'a 
     writer.finish()
 }
 
-/// Writes what stands between two items: comments, and the right number of line ends.
+/// Writes what is between two items: comments, and the right number of line ends.
 fn separate(
     writer: &mut Writer<'_>,
     text: &str,
@@ -101,7 +101,7 @@ fn begins_with_mark(text: &str, tokens: &[Token], item: &Item) -> bool {
     item.first == 0 && tokens[0].1.text(text).starts_with(BYTE_ORDER_MARK)
 }
 
-/// Declarations of one line stand together, kind by kind; everything else stands apart.
+/// Declarations of one line stay together, kind by kind; everything else is kept apart.
 fn blank_between(previous: Option<&Item>, next: Option<&Item>, gap: &Gap<'_>) -> Blank {
     let (Some(previous), Some(next)) = (previous, next) else { return Blank::Kept };
     let (Some(above), Some(below)) = (previous.last_kind, next.first_kind) else { return Blank::Kept };

@@ -12,7 +12,7 @@ pub(super) enum ItemKind {
 }
 
 impl ItemKind {
-    /// Whether neighbours of this kind stand on adjacent lines.
+    /// Whether neighbours of this kind are on adjacent lines.
     pub(super) fn stands_in_runs(self) -> bool {
         use EntityKind::{Ip, Sensor, Wheel};
         matches!(self, Self::Import | Self::Declaration(Wheel | Sensor | Ip))
@@ -64,8 +64,8 @@ fn kind_of(entity: &Entity) -> ItemKind {
     entity.kind().map_or(ItemKind::Import, ItemKind::Declaration)
 }
 
-/// Broken neighbours stay as they are together with what stands between them: a mistake may have cut one entity in
-/// two. Comments behind a broken entity may be part of it, so they stay too, unless they belong to the next one.
+/// Broken neighbours stay as they are together with what is between them: a mistake may have cut one entity in
+/// two. Comments after a broken entity may be part of it, so they stay too, unless they belong to the next one.
 fn join_broken(text: &str, tokens: &[Token], items: Vec<Item>) -> Vec<Item> {
     let mut joined: Vec<Item> = Vec::with_capacity(items.len());
     for item in items {

@@ -318,7 +318,7 @@ movement  m of r {
             wheel d with radius 3
         "#]],
     );
-    // A comment that may be part of a broken entity does not come to stand above the next one.
+    // A comment that may be part of a broken entity does not move above the next one.
     check(
         "wheel b with 3\n// of b\n\n\nwheel  c with radius 3",
         &expect![[r#"

@@ -1,4 +1,4 @@
-//! Walks over the text and notes where what stands between tokens has to change.
+//! Walks over the text and notes where what is between tokens has to change.
 
 use std::borrow::Cow;
 
@@ -13,7 +13,7 @@ pub(super) struct Writer<'a> {
     line_ending: &'static str,
     /// Everything before this byte is done.
     at: u32,
-    /// What is to stand between `at` and the next token.
+    /// What is to be between `at` and the next token.
     gap: String,
     /// Whether anything is written yet.
     started: bool,
@@ -49,7 +49,7 @@ impl<'a> Writer<'a> {
         self.line_indent
     }
 
-    /// Adds to what is to stand before the next token.
+    /// Adds to what is to be before the next token.
     pub(super) fn glue(&mut self, glue: &str) {
         self.gap.push_str(glue);
     }
@@ -72,7 +72,7 @@ impl<'a> Writer<'a> {
         self.line_indent = indent.len();
     }
 
-    /// Lets what stands before the next token, which begins at `until`, stay as it is.
+    /// Lets what is before the next token, which begins at `until`, stay as it is.
     pub(super) fn keep(&mut self, until: u32) {
         self.glue(Span::new(self.at, until).text(self.text));
     }
@@ -106,7 +106,7 @@ impl<'a> Writer<'a> {
         let parts = self.edits.split_off(first);
         let mut joined = TextEdit { span: parts[0].span, text: String::new() };
         for part in parts {
-            // Between two edits stands what is kept; nothing does before the first.
+            // Between two edits is what is kept; before the first there is nothing.
             joined.text += Span::new(joined.span.end.min(part.span.start), part.span.start).text(self.text);
             joined.text += &part.text;
             joined.span.end = part.span.end;
@@ -165,7 +165,7 @@ fn line_ending(text: &str) -> &'static str {
 }
 
 /// A block comment with the file's line ending; where it begins a line and its further lines all begin with `*`,
-/// those stand below the `*` of the first.
+/// those are below the `*` of the first.
 fn block_comment<'t>(written: &'t str, line_ending: &str, indent: Option<&str>) -> Cow<'t, str> {
     if !written.contains(LINE_ENDS) {
         return Cow::Borrowed(written);

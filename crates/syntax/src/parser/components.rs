@@ -3,11 +3,11 @@
 use chumsky::prelude::{Parser, choice, just};
 
 use super::slot::{NUMBER, declared_name, keyword, nothing_more, number, slot, take};
-use super::{Rule, tidy};
+use super::{Rule, errors};
 use crate::ast::{Entity, Import, Ip, Sensor, SensorKind, Wheel};
 use crate::{EntityKind, Expected, Quantity, TokenKind, TokenSet};
 
-/// What stands before the first entity: nothing, or text that fits nowhere.
+/// The text before the first entity: nothing, or text that fits nowhere.
 pub(super) fn preamble<'s>() -> Rule<'s, Option<Entity>> {
     nothing_more().to(None).boxed()
 }
@@ -15,7 +15,8 @@ pub(super) fn preamble<'s>() -> Rule<'s, Option<Entity>> {
 /// `import "file.pyr"`
 pub(super) fn import<'s>() -> Rule<'s, Option<Entity>> {
     let strings = TokenSet::of(&[TokenKind::String, TokenKind::UnterminatedString]);
-    let path = take(move |token, span, text| strings.has(token).then(|| (tidy::unquoted(span, text), span)));
+    let path =
+        take(move |token, span, text| strings.has(token).then(|| (errors::unquoted(span, text), span)));
     just(TokenKind::Import)
         .ignore_then(slot(path.labelled(Expected::Path), strings, TokenSet::default()))
         .then_ignore(nothing_more())

@@ -1,15 +1,15 @@
 //! From the tokens of one entity to its tree, with chumsky.
 //!
-//! One parser per kind of entity; [`slot`] holds the way all of them recover, [`tidy`] turns what they report into
+//! One parser per kind of entity; [`slot`] holds the way all of them recover, [`errors`] turns what they report into
 //! one error per mistake.
 
 mod components;
 mod environment;
+mod errors;
 mod movement;
 mod pairs;
 mod robot;
 mod slot;
-mod tidy;
 
 use chumsky::Boxed;
 use chumsky::Parser as _;
@@ -29,13 +29,13 @@ type Rule<'s, O> = Boxed<'s, 's, Input<'s>, O, Extra<'s>>;
 /// What one piece of a file turned out to be.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parse {
-    /// The tree; `None` for what stands before the first entity.
+    /// The tree; `None` for the text before the first entity.
     pub entity: Option<Entity>,
     /// In the order of the text.
     pub errors: Vec<SyntaxError>,
     /// All tokens, comments included.
     pub tokens: Box<[Token]>,
-    /// Names in text that had to be skipped. They may be declarations that a mistake hides, so nobody should be told
+    /// Names in text that had to be skipped. They may be declarations that a mistake hides, so nothing should report
     /// that such a name does not exist.
     pub skipped_names: Vec<SmolStr>,
 }
@@ -134,8 +134,9 @@ fn parse_batch(text: &str, bounds: &[(&[Token], Span)], emit: &mut impl FnMut(Sp
         let piece = span.text(text);
         let significant = some.as_deref().unwrap_or(&tokens);
         let faults = with_beginning(&tokens, significant, faults);
-        let errors = tidy::tidy(piece, entity.as_ref().and_then(Entity::kind), significant, &tokens, &faults);
-        let skipped_names = tidy::skipped_names(piece, significant, &faults);
+        let errors =
+            errors::of_faults(piece, entity.as_ref().and_then(Entity::kind), significant, &tokens, &faults);
+        let skipped_names = errors::skipped_names(piece, significant, &faults);
         emit(*span, Parse { entity, errors, tokens, skipped_names });
     }
 }

@@ -22,7 +22,7 @@ const AT: TokenSet = TokenSet::of(&[TokenKind::At]);
 const DIRECTIONS: TokenSet = TokenSet::of(&[TokenKind::Left, TokenKind::Right]);
 const UNTIL: TokenSet = TokenSet::of(&[TokenKind::Until]);
 
-/// What can stand behind an action.
+/// What can follow an action.
 const NEXT: TokenSet = ACTIONS.or(CLOSE);
 
 /// `parallel movement name of robot { … }`

@@ -1,4 +1,4 @@
-//! Two complaints that are one mistake: something is missing in one place because it stands in another, or both braces
+//! Two complaints that are one mistake: something is missing in one place because it is in another, or both braces
 //! of a list are missing.
 
 use crate::{Expected, Found, Span, SyntaxError, SyntaxErrorKind, Token, TokenKind};

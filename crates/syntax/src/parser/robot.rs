@@ -19,7 +19,7 @@ const CLOSE: TokenSet = TokenSet::of(&[TokenKind::CloseBrace]);
 const WHEELS: TokenSet = TokenSet::of(&[TokenKind::Wheels]);
 const SENSORS: TokenSet = TokenSet::of(&[TokenKind::Sensors]);
 
-/// What can stand behind the port clause.
+/// What can follow the port clause.
 const TAIL: TokenSet = HAS.or(OPEN).or(CLOSE).or(WHEELS);
 
 /// `robot name type tw with port 23000 has { … } wheels with sensors { … }`
@@ -49,7 +49,7 @@ type Head = ((Option<DriveClause>, Option<Name>), Option<DriveClause>);
 
 fn head<'s>() -> Rule<'s, Head> {
     let name = || declared_name(EntityKind::Robot, TYPE.or(WITH), PORT.or(NUMBER).or(TAIL));
-    // Before the name, and behind the name once more, a type is understood, but never expected.
+    // Before the name, and after the name once more, a type is understood, but never expected.
     let before = drive(one_in(TYPE), NAME.or(WITH)).map(Some).then(name());
     let before = before.then(drive(one_in(TYPE), WITH.or(PORT)).or_not());
     let behind = empty().to(None).then(name()).then(drive(just(TokenKind::Type), WITH.or(PORT)).or_not());

@@ -1,7 +1,7 @@
 //! How every rule recovers: a program is a row of slots, each of which is filled, empty, or holds something else.
 //!
 //! A slot never fails. Where its content is absent it reports one fault, passes over what fits nowhere up to a token
-//! that the slot itself or something behind it can begin with, and lets the rest of the entity go on.
+//! that the slot itself or something after it can begin with, and lets the rest of the entity go on.
 
 use chumsky::DefaultExpected;
 use chumsky::IterParser;
@@ -15,7 +15,7 @@ use super::{Extra, Input, Rule};
 use crate::ast::{Name, Number, References};
 use crate::{EntityKind, Expected, Quantity, Span, TokenKind, TokenSet};
 
-/// What a rule reports while it runs; [`super::tidy`] makes errors of it.
+/// What a rule reports while it runs; [`super::errors`] makes errors of it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Fault {
     /// Something else was expected at this token (or at the end).
@@ -82,7 +82,7 @@ pub(super) fn take<'s, O>(
     })
 }
 
-/// `part`, or nothing and a fault. `first` is what `part` begins with, `later` what can stand behind it.
+/// `part`, or nothing and a fault. `first` is what `part` begins with, `later` what can follow it.
 pub(super) fn slot<'s, O: 's>(
     part: impl Parser<'s, Input<'s>, O, Extra<'s>> + Clone + 's,
     first: TokenSet,
@@ -160,7 +160,7 @@ pub(super) fn skip_statement<'s>(until: TokenSet) -> impl Parser<'s, Input<'s>, 
     skipped.validate(|span, _, emitter| emitter.emit(Fault::Skipped(span)))
 }
 
-/// Passes over one token of `set` that stands right before one of `next`.
+/// Passes over one token of `set` that is right before one of `next`.
 pub(super) fn skip_before<'s>(
     set: TokenSet,
     next: TokenSet,
@@ -183,11 +183,11 @@ pub(super) fn nothing_more<'s>() -> Rule<'s, ()> {
 /// Every token that may be passed over.
 const ANY: TokenSet = TokenSet::all_but(TokenKind::Cursor);
 
-/// What never stands for a name.
+/// What is never taken for a name.
 const SIGNS: TokenSet =
     TokenSet::of(&[TokenKind::CloseBrace, TokenKind::Comma, TokenKind::Colon, TokenKind::String]).or(NUMBER);
 
-/// Nothing passes over the cursor: what could stand there is what was asked.
+/// Nothing passes over the cursor: the question is what could be there.
 const CURSOR: TokenSet = TokenSet::of(&[TokenKind::Cursor]);
 
 /// The first tokens of a name.
@@ -262,7 +262,7 @@ pub(super) fn number<'s>(quantity: Quantity) -> impl Parser<'s, Input<'s>, Numbe
         .labelled(Expected::Number(quantity))
 }
 
-/// `{ a, b c }` up to and with its closing brace. `later` is what can stand behind the list.
+/// `{ a, b c }` up to and with its closing brace. `later` is what can follow the list.
 pub(super) fn references<'s>(
     kind: EntityKind,
     may_be_empty: bool,

@@ -373,7 +373,7 @@ proptest! {
         prop_assert_eq!(end as usize, text.len());
     }
 
-    /// An entity means the same wherever it stands, which is what lets an edit touch it alone.
+    /// An entity means the same wherever it is, which is what lets an edit touch it alone.
     #[test]
     fn a_piece_parses_alone_as_it_does_in_its_file(text in any_text()) {
         for (span, parsed) in parse(&text) {

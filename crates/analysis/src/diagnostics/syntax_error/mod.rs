@@ -1,10 +1,10 @@
 //! `syntax-error`: the text does not follow the grammar.
 //!
-//! [`words`] holds how what was expected is said, [`habits`] what people bring along from elsewhere, [`rewrite`] whole
-//! statements of that sort, [`mend`] how a fix is found: by trying what could be one.
+//! [`words`] holds how what was expected is said, [`common_mistakes`] what people bring along from elsewhere, [`rewrite`] whole
+//! statements of that sort, [`repair`] how a fix is found: by trying what could be one.
 
-mod habits;
-mod mend;
+mod common_mistakes;
+mod repair;
 mod rewrite;
 mod words;
 
@@ -15,7 +15,7 @@ pub(super) use self::rewrite::{Rewrite, find as rewrites};
 use self::words::{listed, shape, telling};
 use super::context::Context;
 use super::problem::{Brace, Problem};
-use super::{Page, Remedy, Rule};
+use super::{Applicability, Page, Rule};
 use crate::{Diagnostic, Resolution, Severity};
 
 pub(super) static RULE: Rule = Rule {
@@ -23,7 +23,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Error,
     summary: "a word is missing, misspelt, doubled or in the wrong place",
     tag: None,
-    remedy: Remedy::Safe,
+    applicability: Applicability::Safe,
     page: PAGE,
     check,
 };
@@ -53,7 +53,7 @@ fn problem(context: &Context<'_>, error: &SyntaxError) -> Option<Problem> {
             missing(context, span, expected, found, *inside)
         }
         SyntaxErrorKind::Unexpected { expected, found: Found::Text(found), inside } => {
-            habits::problem(context, span, expected, found)
+            common_mistakes::problem(context, span, expected, found)
                 .unwrap_or_else(|| unexpected(context, span, expected, found, *inside))
         }
         SyntaxErrorKind::Misplaced { written, to, inside } => misplaced(context, span, written, *to, *inside),
@@ -85,7 +85,7 @@ fn misspelt(context: &Context<'_>, span: Span, written: &str, keyword: TokenKind
     };
     let problem = RULE.problem(span, message);
     let edit = context.replace(span, word);
-    if mend::is_split(context, std::slice::from_ref(&edit)) {
+    if repair::is_split(context, std::slice::from_ref(&edit)) {
         problem.fix(format!("change to `{word}`"), [edit])
     } else {
         problem.suggestion(format!("change to `{word}`"), [edit])
@@ -150,11 +150,11 @@ fn missing(
     }
     if let Some((_, Some(text))) = clause {
         let edit = context.replace(span, format!(" {text}"));
-        if mend::is_mended(context, std::slice::from_ref(&edit)) {
+        if repair::is_fixed(context, std::slice::from_ref(&edit)) {
             return problem.suggestion(format!("insert `{text}`"), [edit]);
         }
     }
-    mend::insert(context, problem, span, all)
+    repair::insert(context, problem, span, all)
 }
 
 /// A whole clause that is missing, and what it could be.
@@ -178,7 +178,7 @@ fn clause(
     }
 }
 
-/// Says of a brace that is closed only behind other declarations that those do not belong between.
+/// Says of a brace that is closed only after other declarations that those do not belong between.
 pub(super) fn nested(unclosed: &mut Diagnostic) {
     "a declaration stands between the braces here".clone_into(&mut unclosed.message);
     unclosed.help =
@@ -195,7 +195,7 @@ fn unexpected(
 ) -> Problem {
     let all = expected;
     let expected = telling(expected);
-    if mend::is_doubled(context, span) {
+    if repair::is_doubled(context, span) {
         let problem = RULE.problem(span, format!("`{found}` stands here twice"));
         return problem.fix(format!("remove the second `{found}`"), [context.remove(span)]);
     }
@@ -234,7 +234,7 @@ fn unexpected(
             }
         }
     };
-    mend::repair(context, problem, span, found, all)
+    repair::repair(context, problem, span, found, all)
 }
 
 fn misplaced(
@@ -255,7 +255,7 @@ fn misplaced(
     };
     let edits = [context.remove(span), context.replace(Span::at(to), format!(" {written}"))];
     let apart = !context.remove(span).span.touches(to);
-    if apart && mend::is_mended(context, &edits) {
+    if apart && repair::is_fixed(context, &edits) {
         problem.fix(format!("move `{written}` there"), edits)
     } else {
         problem
@@ -263,7 +263,7 @@ fn misplaced(
 }
 
 fn unbraced(context: &Context<'_>, span: Span, close: u32, inside: Option<EntityKind>) -> Problem {
-    let what = if inside == Some(EntityKind::Movement) && mend::is_body(context, span) {
+    let what = if inside == Some(EntityKind::Movement) && repair::is_body(context, span) {
         "actions"
     } else {
         "lists"
@@ -273,8 +273,8 @@ fn unbraced(context: &Context<'_>, span: Span, close: u32, inside: Option<Entity
         Some(shape) => problem.help(shape),
         None => problem,
     };
-    let edits = [context.replace(Span::at(span.start), " {"), mend::closing(context, Span::at(close))];
-    if mend::is_mended(context, &edits) { problem.fix("insert `{` and `}`", edits) } else { problem }
+    let edits = [context.replace(Span::at(span.start), " {"), repair::closing(context, Span::at(close))];
+    if repair::is_fixed(context, &edits) { problem.fix("insert `{` and `}`", edits) } else { problem }
 }
 
 fn late_import(context: &Context<'_>) -> Option<Problem> {

@@ -1,7 +1,7 @@
 //! Statements written as in another language, such as `radius = 4.5`, `move(2)` or `robot r wheels { a b }`: one problem
 //! for each, with the whole statement as its fix.
 //!
-//! What is meant is read off the names, numbers and keywords that are there; where anything else stands among them,
+//! What is meant is read off the names, numbers and keywords that are there; where anything else is among them,
 //! nothing is guessed.
 
 mod actions;
@@ -11,7 +11,7 @@ use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, KEYWORDS, Span, SyntaxErrorKind, Token, TokenKind, lex, parse};
 use pydslrep_text::is_similar;
 
-use super::{RULE, mend, words};
+use super::{RULE, repair, words};
 use crate::diagnostics::context::Context;
 use crate::diagnostics::problem::Problem;
 
@@ -66,7 +66,7 @@ impl Rewrite {
 /// The statements of an entity that are one problem each.
 pub(crate) fn find(context: &Context<'_>) -> Vec<Rewrite> {
     let end = context.tokens.last().map_or(0, |(_, last)| last.end);
-    if context.errors.is_empty() || end > mend::LONGEST {
+    if context.errors.is_empty() || end > repair::LONGEST {
         return Vec::new();
     }
     match context.tree {
@@ -83,13 +83,13 @@ pub(super) fn with_fallback(context: &Context<'_>, problem: Problem) -> Problem 
     else {
         return problem;
     };
-    if problem.fixes.iter().any(|fix| fix.safe || mend::is_split(context, &fix.edits)) {
+    if problem.fixes.iter().any(|fix| fix.safe || repair::is_split(context, &fix.edits)) {
         return problem;
     }
     rewrite.offer(context, Problem { fixes: Vec::new(), ..problem })
 }
 
-/// A token with its text; a number with a comma is one, and so is what stands in quotes.
+/// A token with its text; a number with a comma is one, and so is what is in quotes.
 #[derive(Debug, Clone, PartialEq)]
 struct Word {
     token: TokenKind,
@@ -112,7 +112,7 @@ impl Word {
     }
 }
 
-/// The words among some tokens; `None` where a comment stands among them, which would be lost.
+/// The words among some tokens; `None` where a comment is among them, which would be lost.
 fn words_of(context: &Context<'_>, tokens: &[Token]) -> Option<Vec<Word>> {
     let is_word = |(token, _): &Token| !token.is_comment();
     let last = tokens.iter().rposition(is_word)?;

@@ -58,7 +58,7 @@ pub(super) fn shape(
     Some(format!("{} is written `{shape}`", kind.a_noun()))
 }
 
-/// What is worth saying of all that could stand in a place: where a name or a brace would do, not that a comma would
+/// What is worth saying of all that could be in a place: where a name or a brace would do, not that a comma would
 /// as well; where a movement's brace is open, not every word that could continue its last action; and nothing that
 /// is optional where something must follow.
 pub(super) fn telling(expected: &[Expected]) -> Vec<Expected> {

@@ -1,4 +1,4 @@
-//! Movements: their actions and what stands before them.
+//! Movements: their actions and what is before them.
 
 use pydslrep_syntax::{EntityKind, Span, Token, TokenKind};
 use pydslrep_text::is_similar;

@@ -1,6 +1,6 @@
 //! From what the rules report to one error per mistake.
 //!
-//! A mistake makes several slots complain: the one it stands in, and those behind it that find the same token. Only
+//! A mistake makes several slots complain: the one it is in, and those after it that find the same token. Only
 //! the first complaint is kept unless some token was understood in between.
 
 use smol_str::SmolStr;
@@ -9,8 +9,8 @@ use super::pairs;
 use super::slot::Fault;
 use crate::{EntityKind, Expected, Found, Span, SyntaxError, SyntaxErrorKind, Token, TokenKind};
 
-/// The errors behind `faults`. `significant` is what the parser saw, `tokens` everything that stands in the text.
-pub(super) fn tidy(
+/// The errors that `faults` amount to. `significant` is what the parser saw, `tokens` everything that is in the text.
+pub(super) fn of_faults(
     text: &str,
     inside: Option<EntityKind>,
     significant: &[Token],
@@ -106,7 +106,7 @@ impl EntitySource<'_> {
         Span::new(place(start), place(end))
     }
 
-    /// Whether characters stand inside of text that was passed over: that has been said where it begins.
+    /// Whether characters are inside text that was passed over: that is reported where it begins.
     fn is_passed_over(&self, error: &SyntaxError) -> bool {
         let minor = matches!(
             error.kind,
@@ -123,7 +123,7 @@ impl EntitySource<'_> {
         minor && self.faults.iter().any(inside)
     }
 
-    /// An import whose path is not in quotes: all that stands on its line is one mistake.
+    /// An import whose path is not in quotes: all that is on its line is one mistake.
     fn broken_path(&self) -> Option<SyntaxError> {
         let (&(first, import), rest) = self.tokens.split_first()?;
         let next = rest.iter().find(|(token, _)| !token.is_comment())?;
@@ -204,7 +204,7 @@ impl EntitySource<'_> {
     }
 
     /// Whether the mistake at `index` has been reported otherwise: the token was taken for something, or something
-    /// that is no token stands right before it.
+    /// that is no token is right before it.
     fn is_consequence(&self, index: usize) -> bool {
         let here = self.significant.get(index).map(|(_, span)| *span);
         let taken = self.faults.iter().any(|fault| {
@@ -234,7 +234,7 @@ impl EntitySource<'_> {
         if !skipped {
             return self.missing(complaint.index, expected, Found::Text(written));
         }
-        // `with sensors` behind a robot is no other declaration.
+        // `with sensors` after a robot is no other declaration.
         let clause = token == TokenKind::Sensors && self.inside == Some(EntityKind::Robot);
         if let Some(keyword) = meant(token, &written, &expected).filter(|_| !clause) {
             return SyntaxError { span, kind: SyntaxErrorKind::Misspelt { written, keyword } };

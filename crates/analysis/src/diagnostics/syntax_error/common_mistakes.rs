@@ -3,11 +3,11 @@
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{Expected, Quantity, Span, TokenKind};
 
-use super::{RULE, mend};
+use super::{RULE, repair, words};
 use crate::diagnostics::context::Context;
 use crate::diagnostics::problem::{Brace, Problem};
 
-/// The problem in its own words, if it is such a habit.
+/// The problem in its own words, if it is a common mistake.
 pub(super) fn problem(
     context: &Context<'_>,
     span: Span,
@@ -47,7 +47,7 @@ struct Place<'a, 'c> {
 
 impl<'a, 'c> Place<'a, 'c> {
     fn new(context: &'a Context<'c>, span: Span) -> Option<Self> {
-        /// No habit is longer.
+        /// No common mistake is longer.
         const AROUND: usize = 4;
         let all = context.tokens;
         let at = all.partition_point(|(_, other)| other.start < span.start);
@@ -189,7 +189,7 @@ fn decimal_comma(place: &Place<'_, '_>) -> Option<Problem> {
         return None;
     }
     let edit = place.context.replace(place.span, ".");
-    if !mend::is_mended(place.context, std::slice::from_ref(&edit)) {
+    if !repair::is_fixed(place.context, std::slice::from_ref(&edit)) {
         return None;
     }
     let number = format!("{}.{}", place.context.text(whole), place.context.text(fraction));
@@ -209,7 +209,7 @@ fn two_names(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Optio
     }
     let gap = place.context.join(Span::new(first.end, place.span.start), "_");
     let name = format!("{}_{found}", place.context.text(first));
-    (place.context.text(first) != found && mend::is_mended(place.context, std::slice::from_ref(&gap))).then(
+    (place.context.text(first) != found && repair::is_fixed(place.context, std::slice::from_ref(&gap))).then(
         || {
             RULE.problem(place.span, format!("a name is one word, so `{found}` does not belong here"))
                 .help(format!("join the words, such as `{name}`"))
@@ -245,8 +245,8 @@ fn stray_brace(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Problem> 
         .brace(Brace::Stray)
         .help("remove it, or write the `{` that it closes");
     let edit = place.context.remove(place.span);
-    let mended = mend::is_mended(place.context, std::slice::from_ref(&edit));
-    Some(if mended { problem.suggestion("remove `}`", [edit]) } else { problem })
+    let fixed = repair::is_fixed(place.context, std::slice::from_ref(&edit));
+    Some(if fixed { problem.suggestion("remove `}`", [edit]) } else { problem })
 }
 
 /// A comma where nothing is listed.
@@ -264,8 +264,8 @@ fn separator(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Optio
     let problem =
         RULE.problem(place.span, format!("{what} follow each other without `{found}`")).help("leave it out");
     let edit = place.context.remove(place.span);
-    let mended = mend::is_mended(place.context, std::slice::from_ref(&edit));
-    Some(if mended { problem.fix(format!("remove `{found}`"), [edit]) } else { problem })
+    let fixed = repair::is_fixed(place.context, std::slice::from_ref(&edit));
+    Some(if fixed { problem.fix(format!("remove `{found}`"), [edit]) } else { problem })
 }
 
 /// `ip home localhost`, `ip home 127.0.1`
@@ -294,8 +294,8 @@ fn address(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<
 fn quoted(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
     let inner = found.strip_prefix('"')?.strip_suffix('"')?;
     let edit = place.context.replace(place.span, inner);
-    let mended = !inner.is_empty() && mend::is_mended(place.context, std::slice::from_ref(&edit));
-    mended.then(|| {
+    let fixed = !inner.is_empty() && repair::is_fixed(place.context, std::slice::from_ref(&edit));
+    fixed.then(|| {
         RULE.problem(place.span, format!("only the path of an import stands in quotes: write `{inner}`"))
             .fix(format!("write `{inner}`"), [edit])
     })
@@ -371,7 +371,7 @@ fn angle_first(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
     let edits = [place.context.replace(place.span, word.clone()), place.context.replace(direction, found)];
     let problem =
         RULE.problem(place.span, format!("the angle comes after the direction: `turn {word} {found}`"));
-    Some(if mend::is_mended(place.context, &edits) {
+    Some(if repair::is_fixed(place.context, &edits) {
         problem.fix(format!("write `turn {word} {found}`"), edits)
     } else {
         problem
@@ -422,8 +422,8 @@ fn foreign_action(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> 
     };
     let edit = place.context.replace(place.span, meant);
     let problem = problem.help(format!("did you mean `{meant}`?"));
-    let mended = mend::is_mended(place.context, std::slice::from_ref(&edit));
-    Some(if mended { problem.suggestion(format!("change to `{meant}`"), [edit]) } else { problem })
+    let fixed = repair::is_fixed(place.context, std::slice::from_ref(&edit));
+    Some(if fixed { problem.suggestion(format!("change to `{meant}`"), [edit]) } else { problem })
 }
 
 /// `sensor s, t`
@@ -438,8 +438,8 @@ fn another_sensor(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Proble
         .problem(place.span, "each sensor is declared on its own")
         .help(format!("write `sensor {}` on a line of its own", place.context.text(name)));
     let gap = place.context.replace(Span::new(place.span.start, name.start), "\nsensor ");
-    let mended = mend::is_split(place.context, std::slice::from_ref(&gap));
-    Some(if mended { problem.suggestion("declare it on its own", [gap]) } else { problem })
+    let fixed = repair::is_split(place.context, std::slice::from_ref(&gap));
+    Some(if fixed { problem.suggestion("declare it on its own", [gap]) } else { problem })
 }
 
 /// `ip home 127.0.0.1:23000`

@@ -1,4 +1,4 @@
-//! Finding fixes: what could mend an entity is tried, and offered where it does.
+//! Finding fixes: what could fix an entity is tried, and offered where it does.
 
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{Expected, Span, TokenKind, parse};
@@ -12,16 +12,16 @@ const MOST_ERRORS: usize = 4;
 pub(super) const LONGEST: u32 = 16 * 1024;
 
 /// Whether the entity has fewer errors after the edits, and is still one entity.
-pub(super) fn is_mended(context: &Context<'_>, edits: &[ProblemEdit]) -> bool {
-    pieces_if_mended(context, edits) == Some(1)
+pub(super) fn is_fixed(context: &Context<'_>, edits: &[ProblemEdit]) -> bool {
+    entities_if_fixed(context, edits) == Some(1)
 }
 
 /// The same, where the edits may also begin another entity.
 pub(super) fn is_split(context: &Context<'_>, edits: &[ProblemEdit]) -> bool {
-    pieces_if_mended(context, edits).is_some()
+    entities_if_fixed(context, edits).is_some()
 }
 
-fn pieces_if_mended(context: &Context<'_>, edits: &[ProblemEdit]) -> Option<usize> {
+fn entities_if_fixed(context: &Context<'_>, edits: &[ProblemEdit]) -> Option<usize> {
     let end = context.tokens.last()?.1.end;
     if context.errors.len() > MOST_ERRORS || end > LONGEST {
         return None;
@@ -39,7 +39,7 @@ fn pieces_if_mended(context: &Context<'_>, edits: &[ProblemEdit]) -> Option<usiz
     (errors < context.errors.len()).then_some(pieces.len())
 }
 
-/// Offers to insert what is missing at `span`, where exactly one thing mends it.
+/// Offers to insert what is missing at `span`, where exactly one thing fixes it.
 pub(super) fn insert(context: &Context<'_>, problem: Problem, span: Span, expected: &[Expected]) -> Problem {
     /// What is often forgotten together.
     const TOGETHER: [&str; 4] = ["with radius", "} wheels", "} robots", "} moves"];
@@ -55,16 +55,16 @@ pub(super) fn insert(context: &Context<'_>, problem: Problem, span: Span, expect
         "}" => closing(context, span),
         text => context.replace(span, format!(" {text}")),
     };
-    let mending: Vec<&str> = words.iter().copied().filter(|text| is_mended(context, &[edit(text)])).collect();
-    let text = match mending[..] {
+    let fixing: Vec<&str> = words.iter().copied().filter(|text| is_fixed(context, &[edit(text)])).collect();
+    let text = match fixing[..] {
         [only] => Some(only),
         [] => TOGETHER
             .into_iter()
             .filter(|text| words.iter().any(|word| text.split(' ').next() == Some(*word)))
-            .find(|text| is_mended(context, &[edit(text)])),
+            .find(|text| is_fixed(context, &[edit(text)])),
         _ => None,
     };
-    match (text, &mending[..]) {
+    match (text, &fixing[..]) {
         (Some(text), _) => problem.fix(format!("insert `{text}`"), [edit(text)]),
         // `meters` or `centimeters`, `left` or `right`
         (None, choices @ [_, _]) => choices
@@ -117,15 +117,15 @@ fn token_before(context: &Context<'_>, span: Span) -> Option<TokenKind> {
     before.map(|(token, _)| *token)
 }
 
-/// Whether the text at `span` is what stands right before it, too, and once is enough.
+/// Whether the text at `span` is what is right before it, too, and once is enough.
 pub(super) fn is_doubled(context: &Context<'_>, span: Span) -> bool {
     let before =
         context.tokens.iter().rev().find(|(token, other)| !token.is_comment() && other.end <= span.start);
     let same = before.is_some_and(|(_, before)| context.text(*before) == context.text(span));
-    same && is_mended(context, &[context.remove(span)])
+    same && is_fixed(context, &[context.remove(span)])
 }
 
-/// Offers what mends a token that does not fit: a word before it, another one in its place, or nothing.
+/// Offers what fixes a token that does not fit: a word before it, another one in its place, or nothing.
 pub(super) fn repair(
     context: &Context<'_>,
     problem: Problem,
@@ -142,9 +142,9 @@ pub(super) fn repair(
         })
         .collect();
     let only = |edit: &dyn Fn(&str) -> ProblemEdit| {
-        let mending: Vec<&str> =
-            words.iter().copied().filter(|word| is_mended(context, &[edit(word)])).collect();
-        match mending[..] {
+        let fixing: Vec<&str> =
+            words.iter().copied().filter(|word| is_fixed(context, &[edit(word)])).collect();
+        match fixing[..] {
             [word] => Some(word.to_owned()),
             _ => None,
         }
@@ -160,7 +160,7 @@ pub(super) fn repair(
     }
     if let Some(close) = braces(context, span, found) {
         let both = [context.remove(span), context.remove(close)];
-        if is_mended(context, &both) {
+        if is_fixed(context, &both) {
             return problem.fix("remove `{` and `}`", both);
         }
     }
@@ -171,7 +171,7 @@ pub(super) fn repair(
         return problem;
     }
     let nothing = context.remove_word(span);
-    if is_mended(context, std::slice::from_ref(&nothing)) {
+    if is_fixed(context, std::slice::from_ref(&nothing)) {
         return problem.suggestion(format!("remove `{found}`"), [nothing]);
     }
     problem
