@@ -64,7 +64,7 @@ fn is_said(context: &Context<'_>, error: &SyntaxError) -> bool {
 /// `left-wheel`
 fn name(context: &Context<'_>, span: Span, written: &str) -> Problem {
     let foreign = context.text(span);
-    let message = format!("`{}` cannot stand in a name", if foreign.is_empty() { written } else { &foreign });
+    let message = format!("names cannot contain `{}`", if foreign.is_empty() { written } else { &foreign });
     let problem = RULE.problem(span, message).help(NAMES);
     let whole = context.tokens.iter().find(|(_, other)| other.start <= span.start && span.end <= other.end);
     let plain = plain_name(written);
@@ -96,7 +96,7 @@ fn plain_name(written: &str) -> String {
 
 /// `# my robot`
 fn comment(context: &Context<'_>, span: Span, written: &str) -> Problem {
-    let problem = RULE.problem(span, format!("`{written}` begins no comment here"));
+    let problem = RULE.problem(span, format!("`{written}` does not start a comment"));
     let line = context.tokens.iter().find(|(_, other)| other.start == span.start);
     let text = line.map_or_else(String::new, |(_, line)| context.text(*line));
     let problem = problem.help(if text.starts_with("#include") {
@@ -132,7 +132,7 @@ fn partner(context: &Context<'_>, error: &SyntaxError, written: &str) -> Option<
 /// Two brackets.
 fn pair(context: &Context<'_>, open: Span, close: Span, written: &str) -> Problem {
     let other = context.text(close);
-    let problem = RULE.problem(open, format!("`{written}` and `{other}` have no meaning here"));
+    let problem = RULE.problem(open, format!("unexpected `{written}` and `{other}`"));
     let braces = [context.replace(open, "{"), context.replace(close, "}")];
     let nothing = [context.remove_character(open), context.remove_character(close)];
     let body = matches!(context.tree, Some(Entity::Movement(_)));
@@ -155,7 +155,7 @@ fn pair(context: &Context<'_>, open: Span, close: Span, written: &str) -> Proble
 
 fn characters(context: &Context<'_>, span: Span, written: &str) -> Problem {
     let shown = shown(written);
-    let problem = RULE.problem(span, format!("{shown} has no meaning here")).help(help(written));
+    let problem = RULE.problem(span, format!("unexpected {shown}")).help(help(written));
     if written.chars().all(|c| MINUS.contains(&c)) && written.chars().count() == 1 && written != "-" {
         return problem.suggestion("change to `-`", [context.replace(span, "-")]);
     }
@@ -179,7 +179,7 @@ fn characters(context: &Context<'_>, span: Span, written: &str) -> Problem {
 }
 
 const NAMES: &str = "names are made of the letters a to z and A to Z, digits and `_`";
-const BRACES: &str = "lists and actions stand between `{` and `}`";
+const BRACES: &str = "lists and actions are written between `{` and `}`";
 
 /// What looks like a minus sign.
 const MINUS: [char; 5] = ['-', '\u{2212}', '\u{2013}', '\u{2014}', '\u{2010}'];
@@ -200,7 +200,7 @@ fn shown(written: &str) -> String {
         return format!("`{written}`");
     }
     let numbers: Vec<String> = written.chars().map(|c| format!("U+{:04X}", u32::from(c))).collect();
-    format!("the invisible character {}", numbers.join(" "))
+    format!("invisible character {}", numbers.join(" "))
 }
 
 /// What somebody who is used to these characters may not know of the language.
@@ -209,9 +209,9 @@ fn help(written: &str) -> &'static str {
     if written.chars().any(char::is_alphabetic) {
         NAMES
     } else if written.chars().all(is_space) {
-        "it looks like a space, but is none; type a plain space"
+        "it looks like a space but is not one; type a plain space"
     } else if has(&[';']) {
-        "nothing has to mark the end of a line; leave it out"
+        "lines need no end mark; leave it out"
     } else if has(&['=']) {
         "a value comes right after its word, such as `radius 4.5`; leave it out"
     } else if has(&['(', ')', '[', ']']) {
@@ -219,11 +219,11 @@ fn help(written: &str) -> &'static str {
     } else if has(&['°']) {
         "an angle is always in degrees; leave the sign out"
     } else if has(&['\'', '“', '”', '„', '‘', '’', '`', '«', '»']) {
-        "only the path of an import stands in quotes, and in these: `\"`"
+        "only the path of an import is quoted, with `\"`"
     } else if written == "*/" {
         "no comment is open here: the first `*/` closes one, however many `/*` came before it"
     } else if has(&['^']) {
-        "`^` stands right before a word that is to be a name, such as `^left`"
+        "`^` goes right before a keyword that is used as a name, such as `^left`"
     } else if written == "/" {
         "a comment starts with `//`; a number is written out, such as `0.5`"
     } else if has(&['+']) {
@@ -248,11 +248,11 @@ mod tests {
         check(
             "wheel a with §§ radius 4.5;",
             &expect![[r#"
-                error[invalid-character] 1:14 "§§" `§§` has no meaning here
+                error[invalid-character] 1:14 "§§" unexpected `§§`
                   help: leave it out; in a comment, after `//`, every character is fine
                   suggestion: remove `§§` -> wheel a with radius 4.5;
-                error[invalid-character] 1:29 ";" `;` has no meaning here
-                  help: nothing has to mark the end of a line; leave it out
+                error[invalid-character] 1:29 ";" unexpected `;`
+                  help: lines need no end mark; leave it out
                   suggestion: remove `;` -> wheel a with §§ radius 4.5
             "#]],
         );
@@ -264,7 +264,7 @@ mod tests {
         check(
             "wheel aä with radius 4.5",
             &expect![[r#"
-                error[invalid-character] 1:8 "ä" `ä` cannot stand in a name
+                error[invalid-character] 1:8 "ä" names cannot contain `ä`
                   help: names are made of the letters a to z and A to Z, digits and `_`
                   suggestion: write `aae` -> wheel aae with radius 4.5
             "#]],
@@ -272,7 +272,7 @@ mod tests {
         check(
             "wheel a with radius = 4.5",
             &expect![[r#"
-                error[invalid-character] 1:21 "=" `=` has no meaning here
+                error[invalid-character] 1:21 "=" unexpected `=`
                   help: a value comes right after its word, such as `radius 4.5`; leave it out
                   suggestion: remove `=` -> wheel a with radius 4.5
             "#]],
@@ -280,7 +280,7 @@ mod tests {
         check(
             "wheel a with radius 4.5 #",
             &expect![[r##"
-                error[invalid-character] 1:25 "#" `#` begins no comment here
+                error[invalid-character] 1:25 "#" `#` does not start a comment
                   help: a comment starts with `//`
                   suggestion: start it with `//` -> wheel a with radius 4.5 //
             "##]],
@@ -288,8 +288,8 @@ mod tests {
         check(
             "wheel a with radius (4.5",
             &expect![[r#"
-            error[invalid-character] 1:21 "(" `(` has no meaning here
-              help: lists and actions stand between `{` and `}`
+            error[invalid-character] 1:21 "(" unexpected `(`
+              help: lists and actions are written between `{` and `}`
               suggestion: remove `(` -> wheel a with radius 4.5
         "#]],
         );

@@ -50,7 +50,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         ),
         Absence::Unreadable(why) => RULE
             .problem(span, format!("`{written}` cannot be read: {why}"))
-            .help("programs are text files in UTF-8 that you have the right to read"),
+            .help("programs are UTF-8 text files that you are allowed to read"),
     }));
 }
 

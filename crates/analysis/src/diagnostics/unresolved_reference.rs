@@ -64,7 +64,7 @@ fn problem(context: &Context<'_>, tree: &Entity, kind: EntityKind, name: &Name, 
     let mut problem = RULE.problem(name.span, message(context, kind, name)).sought(kind, &name.text);
     if ["and", "then", "or"].contains(&name.text.as_str()) {
         return problem
-            .help("names in a list stand side by side, with or without commas")
+            .help("list the names one after another, with or without commas")
             .suggestion(format!("remove `{}`", name.text), context.remove_item(name.span));
     }
     // A name that the list has already would only make another problem.

@@ -59,18 +59,18 @@ fn swapped(context: &Context<'_>, first: &Name, second: &Name) -> Problem {
         context.replace(first.span, context.text(second.span)),
         context.replace(second.span, context.text(first.span)),
     ];
-    RULE.problem(first.span, format!("`{}` stands where the left wheel belongs", first.text))
-        .related(context.id, second.span, format!("and `{}` where the right one does", second.text))
+    RULE.problem(first.span, format!("`{}` is in the place of the left wheel", first.text))
+        .related(context.id, second.span, format!("and `{}` in the place of the right wheel", second.text))
         .help(HELP)
         .suggestion(format!("swap `{}` and `{}`", first.text, second.text), swap)
 }
 
 /// Right and left on the same side of the list, as in `{ wheelR0 wheelL0 wheelR1 wheelL1 }`.
 fn alternating(context: &Context<'_>, first: &Name, second: &Name, names: &[Name]) -> Problem {
-    let message = format!("`{}` stands before `{}`, but left wheels come first", first.text, second.text);
+    let message = format!("`{}` comes before `{}`, but left wheels come first", first.text, second.text);
     let problem = RULE
         .problem(first.span, message)
-        .related(context.id, second.span, format!("`{}` stands here", second.text))
+        .related(context.id, second.span, format!("`{}` is here", second.text))
         .help(HELP);
     let has_right = |name: &Name| names.iter().any(|other| is_right_of(&other.text, &name.text));
     let has_left = |name: &Name| names.iter().any(|other| is_right_of(&name.text, &other.text));
@@ -108,8 +108,8 @@ mod tests {
         check(
             &format!("{WHEELS}robot r with port 1 has {{ wheelR wheelL }} wheels"),
             &expect![[r#"
-                hint[wheel-order] 7:27 "wheelR" `wheelR` stands where the left wheel belongs
-                  see 7:34 "wheelL" and `wheelL` where the right one does
+                hint[wheel-order] 7:27 "wheelR" `wheelR` is in the place of the left wheel
+                  see 7:34 "wheelL" and `wheelL` in the place of the right wheel
                   help: list two wheels as left, right; or four as left front, left rear, right front, right rear
                   suggestion: swap `wheelR` and `wheelL` -> robot r with port 1 has { wheelL wheelR } wheels
             "#]],
@@ -117,12 +117,12 @@ mod tests {
         check(
             &format!("{WHEELS}robot r with port 1 has {{ wrf wrr wlf wlr }} wheels"),
             &expect![[r#"
-                hint[wheel-order] 7:27 "wrf" `wrf` stands where the left wheel belongs
-                  see 7:35 "wlf" and `wlf` where the right one does
+                hint[wheel-order] 7:27 "wrf" `wrf` is in the place of the left wheel
+                  see 7:35 "wlf" and `wlf` in the place of the right wheel
                   help: list two wheels as left, right; or four as left front, left rear, right front, right rear
                   suggestion: swap `wrf` and `wlf` -> robot r with port 1 has { wlf wrr wrf wlr } wheels
-                hint[wheel-order] 7:31 "wrr" `wrr` stands where the left wheel belongs
-                  see 7:39 "wlr" and `wlr` where the right one does
+                hint[wheel-order] 7:31 "wrr" `wrr` is in the place of the left wheel
+                  see 7:39 "wlr" and `wlr` in the place of the right wheel
                   help: list two wheels as left, right; or four as left front, left rear, right front, right rear
                   suggestion: swap `wrr` and `wlr` -> robot r with port 1 has { wrf wlr wlf wrr } wheels
             "#]],
@@ -130,12 +130,12 @@ mod tests {
         check(
             &format!("{WHEELS}robot r with port 1 has {{ wrf wlf wrr wlr }} wheels"),
             &expect![[r#"
-            hint[wheel-order] 7:27 "wrf" `wrf` stands before `wlf`, but left wheels come first
-              see 7:31 "wlf" `wlf` stands here
+            hint[wheel-order] 7:27 "wrf" `wrf` comes before `wlf`, but left wheels come first
+              see 7:31 "wlf" `wlf` is here
               help: list two wheels as left, right; or four as left front, left rear, right front, right rear
               suggestion: list the left wheels first -> robot r with port 1 has { wlf wlr wrf wrr } wheels
-            hint[wheel-order] 7:35 "wrr" `wrr` stands before `wlr`, but left wheels come first
-              see 7:39 "wlr" `wlr` stands here
+            hint[wheel-order] 7:35 "wrr" `wrr` comes before `wlr`, but left wheels come first
+              see 7:39 "wlr" `wlr` is here
               help: list two wheels as left, right; or four as left front, left rear, right front, right rear
               suggestion: list the left wheels first -> robot r with port 1 has { wlf wlr wrf wrr } wheels
         "#]],

@@ -330,7 +330,7 @@ fn imports_are_read_and_bounded() {
         1 | import "lib.pyr"
           |        ^^^^^^^^^
           |
-          = help: programs are text files in UTF-8 that you have the right to read
+          = help: programs are UTF-8 text files that you are allowed to read
 
         1 error in 1 file.
     "#]]

@@ -196,13 +196,13 @@ fn unexpected(
     let all = expected;
     let expected = telling(expected);
     if repair::is_doubled(context, span) {
-        let problem = RULE.problem(span, format!("`{found}` stands here twice"));
+        let problem = RULE.problem(span, format!("`{found}` is written twice"));
         return problem.fix(format!("remove the second `{found}`"), [context.remove(span)]);
     }
     let complete = expected.contains(&Expected::Declaration);
     let problem = match inside {
         None if matches!(context.tree, Some(Entity::Import(_))) => {
-            RULE.problem(span, format!("`{found}` does not belong here: this import is complete"))
+            RULE.problem(span, format!("unexpected `{found}`: this import is complete"))
                 .help("each file has an import of its own, such as `import \"wheels.pyr\"`")
         }
         None if ["include", "from", "using", "require", "use"].contains(&found) => RULE
@@ -214,7 +214,7 @@ fn unexpected(
         Some(kind) if complete => {
             let problem = RULE.problem(
                 span,
-                format!("`{found}` does not belong here: the {} before it is complete", kind.noun()),
+                format!("unexpected `{found}`: the {} before it is complete", kind.noun()),
             );
             let is_clause = ["with", "has", "at", "until", "of", "type"].contains(&found);
             problem.help(match shape(context, inside, &[]).filter(|_| is_clause) {
@@ -223,7 +223,7 @@ fn unexpected(
             })
         }
         Some(_) if expected.contains(&Expected::Action) && found.starts_with(char::is_alphabetic) => {
-            let problem = RULE.problem(span, format!("`{found}` does not belong here: it is no action"));
+            let problem = RULE.problem(span, format!("unexpected `{found}`: not an action"));
             problem.help(words::actions())
         }
         Some(_) => {
@@ -268,7 +268,7 @@ fn unbraced(context: &Context<'_>, span: Span, close: u32, inside: Option<Entity
     } else {
         "lists"
     };
-    let problem = RULE.problem(span, format!("missing `{{` and `}}`: {what} stand between braces"));
+    let problem = RULE.problem(span, format!("missing `{{` and `}}`: {what} are written between braces"));
     let problem = match shape(context, inside, &[]) {
         Some(shape) => problem.help(shape),
         None => problem,
@@ -286,7 +286,7 @@ fn late_import(context: &Context<'_>) -> Option<Problem> {
     let text = format!("{}\n", context.text(span).replace("\r\n", "\n"));
     let insert = super::edits::ProblemEdit::new(top, Span::at(0), text);
     Some(
-        RULE.problem(span, "an import must stand before everything else")
+        RULE.problem(span, "imports must come first in a file")
             .help("move it to the top of the file")
             .fix("move to the top", [insert, context.remove_line(span)]),
     )
@@ -387,7 +387,7 @@ mod tests {
         check(
             "wheel a with radius 4.5 4.5",
             &expect![[r#"
-                error[syntax-error] 1:25 "4.5" `4.5` stands here twice
+                error[syntax-error] 1:25 "4.5" `4.5` is written twice
                   fix: remove the second `4.5` -> wheel a with radius 4.5
             "#]],
         );
@@ -434,7 +434,7 @@ mod tests {
         check(
             "// top\nwheel a with radius 4.5\nimport \"b.pyr\"\n",
             &expect![[r#"
-            error[syntax-error] 3:1 "import \"b.pyr\"" an import must stand before everything else
+            error[syntax-error] 3:1 "import \"b.pyr\"" imports must come first in a file
               help: move it to the top of the file
               fix: move to the top -> 
         "#]],
