@@ -150,6 +150,18 @@ def test_a_preview_draws_what_the_editor_shows(session: Session, command: str) -
     replay.unlink()
 
 
+def test_the_command_runs_itself_whatever_it_is_called(
+    command: str, tmp_path: pathlib.Path
+) -> None:
+    renamed = shutil.copy2(command, tmp_path / "renamed")
+    with RawServer(str(renamed), "lsp", "--stdio") as raw:
+        session = Session(raw, tmp_path)
+        session.execute(1, "pydslrep.previewPath", session.area)
+        session.accept_progress()
+        done = session.raw.answer(1)
+    assert done["result"]["output"].startswith("area: ")
+
+
 @pytest.mark.parametrize(
     "wrong",
     [

@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::io;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
@@ -9,7 +10,9 @@ use clap::Args;
 use crate::process::{run_socket, run_stdio};
 
 /// Serve an editor: the language server
+// The command's own arguments have the same name.
 #[derive(Debug, Args)]
+#[group(skip)]
 pub struct Arguments {
     /// Talk on standard input and output [default]
     #[arg(long, conflicts_with = "socket")]
@@ -31,14 +34,15 @@ pub struct Unreachable {
 
 impl Arguments {
     /// Serves one client until it leaves. The exit code is the protocol's: success only after `shutdown` and `exit`.
+    /// `command` is the program `pydslrep`, which runs environments.
     ///
     /// # Errors
     ///
     /// If the client cannot be reached.
-    pub fn serve(&self) -> Result<ExitCode, Unreachable> {
+    pub fn serve(&self, command: PathBuf) -> Result<ExitCode, Unreachable> {
         let served = match self.socket {
-            None => run_stdio(),
-            Some(port) => run_socket(port),
+            None => run_stdio(command),
+            Some(port) => run_socket(port, command),
         };
         served.map_err(|error| Unreachable { port: self.socket, error })
     }

@@ -16,6 +16,8 @@ use tower_lsp::ls_types::ProgressToken;
 /// The child processes of a session.
 #[derive(Debug, Default)]
 pub(crate) struct Children {
+    /// The program `pydslrep`.
+    pub(crate) command: PathBuf,
     running: Vec<(Option<ProgressToken>, Running)>,
     /// How many were started.
     count: u64,

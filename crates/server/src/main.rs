@@ -1,6 +1,7 @@
 //! The program `pydslrep-lsp`.
 
 use std::io::{self, Write};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -19,10 +20,17 @@ struct Program {
 }
 
 fn main() -> ExitCode {
-    Program::parse().arguments.serve().unwrap_or_else(|unreachable| {
+    Program::parse().arguments.serve(command()).unwrap_or_else(|unreachable| {
         let _ = writeln!(io::stderr(), "pydslrep-lsp: {unreachable}");
         ExitCode::from(2)
     })
+}
+
+/// The command `pydslrep`: next to this program, otherwise wherever the system finds it.
+fn command() -> PathBuf {
+    let name = format!("pydslrep{}", std::env::consts::EXE_SUFFIX);
+    let sibling = std::env::current_exe().ok().map(|own| own.with_file_name(&name));
+    sibling.filter(|path| path.is_file()).unwrap_or_else(|| name.into())
 }
 
 #[cfg(test)]

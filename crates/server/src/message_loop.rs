@@ -4,6 +4,7 @@
 //! that a client that writes a lot before it reads does not cause a deadlock.
 
 use std::io::{self, BufWriter, Read, Write};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::mpsc::{self, Receiver};
 use std::thread;
@@ -28,14 +29,20 @@ impl From<Ending> for ExitCode {
     }
 }
 
-/// Serves one client until it leaves.
+/// Serves one client until it leaves; `command` runs environments.
 ///
 /// # Errors
 ///
 /// Only if the runtime or the writing thread cannot be started.
-pub(crate) fn serve(input: impl Read, output: impl Write + Send + 'static) -> io::Result<Ending> {
+pub(crate) fn serve(
+    input: impl Read,
+    output: impl Write + Send + 'static,
+    command: PathBuf,
+) -> io::Result<Ending> {
     serve_with(input, output, |outbox, runtime| {
-        Session::new(outbox, move |unfinished| drop(runtime.spawn(unfinished)))
+        let session = Session::new(outbox, move |unfinished| drop(runtime.spawn(unfinished)));
+        session.run_with(command);
+        session
     })
 }
 

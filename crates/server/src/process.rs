@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io;
 use std::net::{Ipv4Addr, TcpStream};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use crate::message_loop::serve;
@@ -17,9 +18,9 @@ const PIPE_SIZE: usize = 1 << 20;
 /// # Errors
 ///
 /// If standard input or output is closed, or a thread cannot be started.
-pub(crate) fn run_stdio() -> io::Result<ExitCode> {
+pub(crate) fn run_stdio(command: PathBuf) -> io::Result<ExitCode> {
     let (input, output) = stdio()?;
-    serve(input, output).map(ExitCode::from)
+    serve(input, output, command).map(ExitCode::from)
 }
 
 /// Serves the client that listens on a port of this machine; the exit code as for [`run_stdio`].
@@ -27,12 +28,12 @@ pub(crate) fn run_stdio() -> io::Result<ExitCode> {
 /// # Errors
 ///
 /// If nothing listens there, or a thread cannot be started.
-pub(crate) fn run_socket(port: u16) -> io::Result<ExitCode> {
+pub(crate) fn run_socket(port: u16, command: PathBuf) -> io::Result<ExitCode> {
     let stream = TcpStream::connect((Ipv4Addr::LOCALHOST, port))?;
     // Messages are small and waited for: they must not be delayed to fill packets.
     stream.set_nodelay(true)?;
     let input = stream.try_clone()?;
-    serve(input, stream).map(ExitCode::from)
+    serve(input, stream, command).map(ExitCode::from)
 }
 
 /// Standard input and output as plain files: those of the standard library would flush at each line break.

@@ -79,6 +79,12 @@ impl Session {
         Self { service, server, responses, spawn, outbox }
     }
 
+    /// Sets the program that runs environments.
+    #[cfg(feature = "process")]
+    pub(crate) fn run_with(&self, command: std::path::PathBuf) {
+        self.server.children().command = command;
+    }
+
     /// Handles one message, the bytes of a frame; returns how the session ended, if it did.
     pub fn handle(&mut self, body: &[u8]) -> Option<Ending> {
         match parse(body) {

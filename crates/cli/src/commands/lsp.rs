@@ -24,7 +24,9 @@ pub(crate) struct Arguments {
 /// # Errors
 /// When the editor cannot be reached.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    arguments.server.serve().map_err(|unreachable| {
+    // Runs are started by this program, whatever it is called.
+    let own = std::env::current_exe().unwrap_or_else(|_| "pydslrep".into());
+    arguments.server.serve(own).map_err(|unreachable| {
         let failure = Failure::new(unreachable.to_string());
         match unreachable.help() {
             Some(help) => failure.help(help),

@@ -143,7 +143,7 @@ impl Job {
         let picture = children
             .picture(&format!("{}-{}", self.environment, self.what))
             .map_err(|error| failure(format!("cannot create a folder for pictures: {error}")))?;
-        let program = executable();
+        let program = children.command.clone();
         let mut command = Command::new(&program);
         command.arg(self.subcommand).arg(&self.program);
         command.args(["--environment", &self.environment, "--picture"]).arg(&picture);
@@ -180,13 +180,6 @@ pub(crate) fn map(picture: &Path) -> PathBuf {
 /// The path of the result of a run, next to the picture.
 pub(crate) fn figures(picture: &Path) -> PathBuf {
     picture.with_extension("figures.json")
-}
-
-/// The program `pydslrep`: beside this one, else wherever the system finds it.
-fn executable() -> PathBuf {
-    let name = format!("pydslrep{}", std::env::consts::EXE_SUFFIX);
-    let beside = std::env::current_exe().ok().map(|own| own.with_file_name(&name));
-    beside.filter(|path| path.is_file()).unwrap_or_else(|| name.into())
 }
 
 /// The error for a run that failed or was interrupted.
