@@ -70,9 +70,10 @@ impl Table {
     /// What an editor shows of it, in Markdown.
     pub fn markdown(&self) -> String {
         let (header, summary) = (self.header(self.name), self.summary);
+        let lines = self.keys.iter().map(|key| format!("* `{}`: {}\n", key.name, key.summary));
         let keys = match self.kind {
             TableKind::Catalogue { help, .. } => format!("{help}\n"),
-            _ => self.keys.iter().map(|key| format!("* `{}`: {}\n", key.name, key.summary)).collect(),
+            _ => lines.collect(),
         };
         format!("**`{header}`**\n\n{summary}\n\n{keys}")
     }
