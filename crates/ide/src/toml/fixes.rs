@@ -40,7 +40,8 @@ mod tests {
     fn fixes(file: TomlFile<'_>, fixture: &str, expected: &Expect) {
         let (text, offset) = at_cursor(fixture);
         let before = file.problems(&text);
-        let mut out: String = before.iter().map(|problem| format!("{}\n", problem.message)).collect();
+        let lines = before.iter().map(|problem| format!("{}\n", problem.message));
+        let mut out: String = lines.collect();
         for fix in toml_fixes(file, &text, Span::at(offset)) {
             let mut fixed = text.clone();
             fixed.replace_range(std::ops::Range::from(fix.span), &fix.text);
