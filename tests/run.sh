@@ -60,7 +60,8 @@ else
   cargo test --workspace --locked --no-fail-fast
 fi
 # Every crate but the command builds for browsers: the server without its process, the simulator without sockets.
-cargo check --workspace --exclude pydslrep-cli --no-default-features --target wasm32-unknown-unknown --locked
+cargo check --workspace --exclude pydslrep-cli --exclude pydslrep-naive --no-default-features \
+  --target wasm32-unknown-unknown --locked
 
 step "Extension for VS Code: types, lints, build and tests"
 npm run --silent --prefix editors/vscode check
