@@ -42,12 +42,12 @@ impl File {
         }
     }
 
-    /// Replaces `span` by `text` and reads again what the edit may have changed. The caller puts the new slots in
-    /// place. `lexemes_of` gives the tokens of a slot as they were.
+    /// Takes `after` as the text, in which only `span` is replaced, and reads again what that may have changed. The
+    /// caller puts the new slots in place. `lexemes_of` gives the tokens of a slot as they were.
     pub(crate) fn edit<'a>(
         &mut self,
         span: Span,
-        text: &str,
+        after: Rope,
         lexemes_of: impl Fn(EntityId) -> &'a [(TokenKind, Span)],
     ) -> Window {
         let (first, first_start) = self.window_start(span.start, lexemes_of);
@@ -55,7 +55,7 @@ impl File {
         let before = self.slots.at(span.start).0 - first;
         let untouched = |window: &Range<usize>| (before, window.end - touched - 1);
         let old_len = Span::of_rope(&self.text).len();
-        self.replace(span, text);
+        self.text = after;
         let grown = i64::from(Span::of_rope(&self.text).len()) - i64::from(old_len);
         let mut end = touched + 1;
         let mut end_offset = touched_start + self.slots[touched].len;
@@ -125,13 +125,6 @@ impl File {
             index -= 1;
             start -= self.slots[index].len;
         }
-    }
-
-    fn replace(&mut self, span: Span, text: &str) {
-        let from = self.text.byte_to_char(span.start as usize);
-        let to = self.text.byte_to_char(span.end as usize);
-        self.text.remove(from..to);
-        self.text.insert(from, text);
     }
 }
 

@@ -25,15 +25,22 @@ use crate::slots::{EntitySlot, EntitySlots};
 const ORDER_STEP: u64 = 1 << 32;
 
 impl Database {
-    /// Opens a file, or replaces its text where it is open already.
+    /// Opens a file, or replaces its text if it is open.
     pub fn open(&mut self, path: &str, text: &str) -> FileId {
+        self.open_rope(path, Rope::from_str(text))
+    }
+
+    /// As [`Database::open`], by a caller that has the text as a rope. It is kept, not copied, so that a text has one
+    /// owner.
+    pub fn open_rope(&mut self, path: &str, text: Rope) -> FileId {
         let file = self.file_for(path);
         self.forget(file);
+        let whole = text.to_string();
         self.files[file.0 as usize] =
-            Some(File { path: path.to_owned(), text: Rope::from_str(text), slots: EntitySlots::default() });
+            Some(File { path: path.to_owned(), text, slots: EntitySlots::default() });
         let before = self.imports(file).to_vec();
         let (mut slots, mut relexed) = (Vec::new(), 0);
-        parse_each(text, |span, parse| {
+        parse_each(&whole, |span, parse| {
             let order = (slots.len() as u64 + 1) * ORDER_STEP;
             relexed += parse.tokens.len();
             slots.push(self.add(file, span, parse, order));
@@ -66,13 +73,24 @@ impl Database {
     /// Replaces a range of bytes. A range that does not fit the text, or that cuts a character in two, is moved back
     /// to where it does.
     pub fn edit(&mut self, file: FileId, span: Span, text: &str) {
+        let Some(open) = self.get(file) else { return };
+        let span = fit(&open.text, span);
+        let mut after = open.text.clone();
+        let start = after.byte_to_char(span.start as usize);
+        after.remove(start..after.byte_to_char(span.end as usize));
+        after.insert(start, text);
+        self.edit_to(file, span, after);
+    }
+
+    /// As [`Database::edit`], by a caller that has edited the text already: `after` is the whole text, in which only
+    /// `span` is replaced. It is kept, not copied.
+    pub fn edit_to(&mut self, file: FileId, span: Span, after: Rope) {
         let entities = &self.entities;
         let tokens = |id: EntityId| -> &[Token] {
             entities[id.0 as usize].as_ref().map_or(&[], |data| &data.parse.tokens)
         };
         let Some(open) = self.files.get_mut(file.0 as usize).and_then(Option::as_mut) else { return };
-        let span = fit(&open.text, span);
-        let window = open.edit(span, text, tokens);
+        let window = open.edit(fit(&open.text, span), after, tokens);
         self.touch(file);
         self.apply(file, window);
     }
