@@ -39,7 +39,7 @@ pub fn manual() -> String {
     format!(
         "# Configuration\n\n\
         A file `{FILE_NAME}` sets how the programs in its folder, and in all folders below, are checked and built. For each\n\
-        program, the nearest file above it applies. Imports cannot leave the folder of that file. Nothing in it is required:\n\n\
+        program, the nearest file above it applies. Imports may lead anywhere in its folder. Nothing in it is required:\n\n\
         ```toml\n{EXAMPLE}```\n\n\
         Options of a command override the file. So do the settings of an editor, under `pydslrep`, where keys can also be\n\
         written like `generateOnSave`. Unknown keys and wrong values are reported with their location; an editor still applies\n\

@@ -21,8 +21,8 @@ const PAGE: Page = Page {
     what: "The file that is imported is not there, cannot be read, or lies outside of the workspace.",
     why: "Nothing of that file can be used. The path counts from the folder of the program that imports it, not \
         from where a command is started, and its parts are separated by `/` on every system. To keep programs in \
-        one piece, a path may not lead out of the workspace: that is every folder open in the editor; on the \
-        command line it is the folder of the nearest `pydslrep.toml`, or else that of the program.",
+        one piece, a path may not lead out of the workspace: the folders that are open in an editor or named on the \
+        command line, and the folder of the nearest `pydslrep.toml`, or without one that of the program.",
     imports: &[("rover.pyr", "wheel wheelL with radius 4.5\nwheel wheelR with radius 4.5")],
     example: "\
 import \"rovers.pyr\"
