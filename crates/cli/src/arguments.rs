@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::builder::styling::{AnsiColor, Effects, Styles};
 use clap::error::{ContextKind, ContextValue};
 use clap::{Parser, Subcommand, ValueEnum};
-use pydslrep_files::is_program;
+use pydslrep_workspace::DocumentKind;
 
 use crate::commands::{build, check, completions, explain, fmt, lsp, new, plan, run, sim, stats};
 use crate::failure::Failure;
@@ -89,7 +89,7 @@ pub(crate) fn meant(error: &clap::Error) -> Option<Failure> {
     let path = Path::new(word);
     let command = if path.is_dir() {
         "check"
-    } else if path.is_file() || is_program(path) {
+    } else if path.is_file() || DocumentKind::of_file(path) == Some(DocumentKind::Program) {
         "run"
     } else {
         return None;

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use pydslrep_analysis::{Database, Diagnostic, FileId, Fixing};
+use pydslrep_analysis::{Database, FileId, Fixing};
 
 use crate::failure::Failure;
-use crate::sources::Sources;
+use crate::inputs::Inputs;
 use crate::{output, rewrite};
 
 /// What was fixed.
@@ -20,16 +20,11 @@ pub(crate) struct Fixed {
 
 /// Applies safe fixes of the problems that are found until none is left. Only the given files are changed, and nothing
 /// is written yet.
-pub(crate) fn fix(
-    sources: &mut Sources,
-    files: &[FileId],
-    find: impl Fn(&Sources) -> Vec<Diagnostic>,
-) -> Fixed {
-    let mut fixing = Fixing::new(&sources.database, files);
+pub(crate) fn fix(inputs: &mut Inputs) -> Fixed {
+    let mut fixing = Fixing::new(inputs.database(), inputs.files());
     loop {
-        let problems = find(sources);
-        let goes_on = fixing.round(&mut sources.database, &problems);
-        sources.follow_imports(files);
+        let problems = inputs.all_diagnostics();
+        let goes_on = inputs.update(|database| fixing.round(database, &problems));
         if !goes_on {
             return Fixed { problems: fixing.problems().clone(), before: fixing.before().clone() };
         }
@@ -46,24 +41,19 @@ impl Fixed {
     ///
     /// # Errors
     /// When standard output cannot be written.
-    pub(crate) fn write(
-        &mut self,
-        sources: &mut Sources,
-        files: &[FileId],
-        failures: &mut Vec<Failure>,
-    ) -> Result<(), Failure> {
-        for &file in files {
-            let now = text(&sources.database, file);
-            if sources.place(file).is_none() {
+    pub(crate) fn write(&mut self, inputs: &mut Inputs, failures: &mut Vec<Failure>) -> Result<(), Failure> {
+        for file in inputs.files().to_vec() {
+            let now = text(inputs.database(), file);
+            if inputs.place(file).is_none() {
                 output::print_raw(&now)?;
                 continue;
             }
             let Some(before) = self.before.get(&file) else { continue };
-            if let Err(failure) = rewrite::replace(Path::new(sources.shown(file)), before, &now) {
+            if let Err(failure) = rewrite::replace(Path::new(inputs.shown(file)), before, &now) {
                 failures.push(failure);
                 self.problems.remove(&file);
-                let path = sources.database.path(file).to_owned();
-                sources.database.open(&path, before);
+                let path = inputs.database().path(file).to_owned();
+                inputs.update(|database| database.open(&path, before));
             }
         }
         Ok(())

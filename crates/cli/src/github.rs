@@ -2,34 +2,38 @@
 
 use pydslrep_analysis::{Diagnostic, Severity};
 
-use crate::mistakes::{self, Mistake};
+use crate::inputs::Inputs;
+use crate::inputs::scenes::{self, SceneProblem};
 use crate::place::{self, PlaceRange};
-use crate::sources::Sources;
 
 /// The problems as workflow commands, a line each.
-pub(crate) fn commands(sources: &Sources, diagnostics: &[Diagnostic], mistakes: &[Mistake]) -> String {
-    let commands = diagnostics.iter().map(|diagnostic| of_diagnostic(sources, diagnostic));
-    commands.chain(mistakes.iter().map(of_mistake)).collect()
+pub(crate) fn commands(
+    inputs: &Inputs,
+    diagnostics: &[Diagnostic],
+    scene_problems: &[SceneProblem],
+) -> String {
+    let commands = diagnostics.iter().map(|diagnostic| of_diagnostic(inputs, diagnostic));
+    commands.chain(scene_problems.iter().map(of_scene)).collect()
 }
 
-fn of_mistake(mistake: &Mistake) -> String {
-    let Mistake { shown, range, problem, .. } = mistake;
+fn of_scene(problem: &SceneProblem) -> String {
+    let SceneProblem { shown, range, problem, .. } = problem;
     let mut message = problem.message.clone();
     if let Some(help) = &problem.help {
         message += &format!("\nhelp: {help}");
     }
-    command(mistakes::SEVERITY, shown, *range, problem.kind.code(), &message)
+    command(scenes::SEVERITY, shown, *range, problem.kind.code(), &message)
 }
 
-fn of_diagnostic(sources: &Sources, diagnostic: &Diagnostic) -> String {
-    let range = place::range(&sources.database, diagnostic.file, diagnostic.span);
+fn of_diagnostic(inputs: &Inputs, diagnostic: &Diagnostic) -> String {
+    let range = place::range(inputs.database(), diagnostic.file, diagnostic.span);
     let mut message = diagnostic.message.clone();
     for (word, text) in [("help", &diagnostic.help), ("note", &diagnostic.note)] {
         if let Some(text) = text {
             message += &format!("\n{word}: {text}");
         }
     }
-    let (severity, file) = (diagnostic.severity, sources.shown(diagnostic.file));
+    let (severity, file) = (diagnostic.severity, inputs.shown(diagnostic.file));
     command(severity, file, range, diagnostic.code(), &message)
 }
 

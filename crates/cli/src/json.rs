@@ -5,9 +5,9 @@ use std::borrow::Cow;
 use pydslrep_analysis::{Diagnostic, Edit, Fix, Related};
 use serde::Serialize;
 
-use crate::mistakes::{self, Mistake};
+use crate::inputs::Inputs;
+use crate::inputs::scenes::{self, SceneProblem};
 use crate::place::{self, PlaceRange};
-use crate::sources::Sources;
 
 #[derive(Debug, Serialize)]
 struct Problem<'a> {
@@ -44,58 +44,58 @@ struct Replacement<'a> {
 /// # Errors
 /// Never, with what is handed in here.
 pub(crate) fn array(
-    sources: &Sources,
+    inputs: &Inputs,
     diagnostics: &[Diagnostic],
-    mistakes: &[Mistake],
+    scene_problems: &[SceneProblem],
 ) -> serde_json::Result<String> {
-    let problems = diagnostics.iter().map(|diagnostic| problem(sources, diagnostic));
-    let problems: Vec<Problem> = problems.chain(mistakes.iter().map(in_scene)).collect();
+    let problems = diagnostics.iter().map(|diagnostic| problem(inputs, diagnostic));
+    let problems: Vec<Problem> = problems.chain(scene_problems.iter().map(in_scene)).collect();
     serde_json::to_string_pretty(&problems)
 }
 
-fn problem<'a>(sources: &'a Sources, diagnostic: &'a Diagnostic) -> Problem<'a> {
+fn problem<'a>(inputs: &'a Inputs, diagnostic: &'a Diagnostic) -> Problem<'a> {
     let file = diagnostic.file;
     // An edit has no file of its own here, so only fixes within the file can be told.
     let fix = diagnostic.fixes.iter().find(|fix| fix.edits.iter().all(|edit| edit.file == file));
     Problem {
-        file: sources.shown(file),
+        file: inputs.shown(file),
         code: diagnostic.code(),
         severity: diagnostic.severity.word(),
         message: &diagnostic.message,
-        range: place::range(&sources.database, file, diagnostic.span),
-        related: diagnostic.related.iter().map(|related| second_place(sources, related)).collect(),
-        fix: fix.map(|fix| first_fix(sources, fix)),
+        range: place::range(inputs.database(), file, diagnostic.span),
+        related: diagnostic.related.iter().map(|related| second_place(inputs, related)).collect(),
+        fix: fix.map(|fix| first_fix(inputs, fix)),
     }
 }
 
-fn in_scene(mistake: &Mistake) -> Problem<'_> {
-    let replacement = mistake.problem.replacement.as_deref();
+fn in_scene(problem: &SceneProblem) -> Problem<'_> {
+    let replacement = problem.problem.replacement.as_deref();
     let fix = replacement.map(|text| FirstFix {
         title: format!("change to `{}`", text.trim_matches('"')).into(),
-        edits: vec![Replacement { range: mistake.range, text }],
+        edits: vec![Replacement { range: problem.range, text }],
     });
     Problem {
-        file: &mistake.shown,
-        code: mistake.problem.kind.code(),
-        severity: mistakes::SEVERITY.word(),
-        message: &mistake.problem.message,
-        range: mistake.range,
+        file: &problem.shown,
+        code: problem.problem.kind.code(),
+        severity: scenes::SEVERITY.word(),
+        message: &problem.problem.message,
+        range: problem.range,
         related: Vec::new(),
         fix,
     }
 }
 
-fn second_place<'a>(sources: &'a Sources, related: &'a Related) -> SecondPlace<'a> {
+fn second_place<'a>(inputs: &'a Inputs, related: &'a Related) -> SecondPlace<'a> {
     SecondPlace {
         message: &related.message,
-        file: sources.shown(related.file),
-        range: place::range(&sources.database, related.file, related.span),
+        file: inputs.shown(related.file),
+        range: place::range(inputs.database(), related.file, related.span),
     }
 }
 
-fn first_fix<'a>(sources: &Sources, fix: &'a Fix) -> FirstFix<'a> {
+fn first_fix<'a>(inputs: &Inputs, fix: &'a Fix) -> FirstFix<'a> {
     let replacement = |edit: &'a Edit| Replacement {
-        range: place::range(&sources.database, edit.file, edit.span),
+        range: place::range(inputs.database(), edit.file, edit.span),
         text: &edit.text,
     };
     FirstFix { title: Cow::from(&fix.title), edits: fix.edits.iter().map(replacement).collect() }

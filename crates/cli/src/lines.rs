@@ -1,16 +1,13 @@
 //! Lines of programs and scripts, as the article counts them: those with more on them than spaces and comments.
 
-use pydslrep_analysis::FileId;
+use pydslrep_analysis::{Database, FileId};
 use pydslrep_syntax::lex;
-
-use crate::sources::Sources;
 
 /// What quotes docstrings. A script has no other text in such quotes.
 const DOCSTRING: &str = "\"\"\"";
 
 /// Lines of a program and of all that it imports, which is as much to write.
-pub(crate) fn of_program(sources: &Sources, program: FileId) -> usize {
-    let database = &sources.database;
+pub(crate) fn of_program(database: &Database, program: FileId) -> usize {
     let mut files = vec![program];
     let mut next = 0;
     while let Some(file) = files.get(next).copied() {
@@ -21,11 +18,11 @@ pub(crate) fn of_program(sources: &Sources, program: FileId) -> usize {
         }
         next += 1;
     }
-    files.into_iter().map(|file| of_file(sources, file)).sum()
+    files.into_iter().map(|file| of_file(database, file)).sum()
 }
 
-fn of_file(sources: &Sources, file: FileId) -> usize {
-    let Some(text) = sources.database.text(file) else { return 0 };
+fn of_file(database: &Database, file: FileId) -> usize {
+    let Some(text) = database.text(file) else { return 0 };
     let whole = text.to_string();
     let tokens = lex(&whole).into_iter().filter(|(token, _)| !token.is_comment());
     let mut lines: Vec<usize> = tokens.map(|(_, span)| text.byte_to_line(span.start as usize)).collect();
@@ -61,23 +58,23 @@ mod tests {
 
     #[test]
     fn programs_have_two_kinds_of_comments() {
-        let mut sources = Sources::default();
-        let count = |sources: &mut Sources, text: &str| {
-            let file = sources.database.open("/x.pyr", text);
-            of_program(sources, file)
+        let mut database = Database::new();
+        let count = |database: &mut Database, text: &str| {
+            let file = database.open("/x.pyr", text);
+            of_program(database, file)
         };
-        assert_eq!(count(&mut sources, ""), 0);
-        assert_eq!(count(&mut sources, "// a\n/* b\nc */\n\n \t\n"), 0);
-        assert_eq!(count(&mut sources, "/* b\nc */ wheel // d\n\na\r\nwith radius 4 wheel"), 3);
-        assert_eq!(count(&mut sources, "sensor a ; ?"), 1, "mistakes are lines, too");
+        assert_eq!(count(&mut database, ""), 0);
+        assert_eq!(count(&mut database, "// a\n/* b\nc */\n\n \t\n"), 0);
+        assert_eq!(count(&mut database, "/* b\nc */ wheel // d\n\na\r\nwith radius 4 wheel"), 3);
+        assert_eq!(count(&mut database, "sensor a ; ?"), 1, "mistakes are lines, too");
     }
 
     #[test]
     fn imported_lines_count_once() {
-        let mut sources = Sources::default();
-        sources.database.open("/a.pyr", "import \"b.pyr\"\nsensor a");
-        sources.database.open("/b.pyr", "import \"a.pyr\" // again\nsensor b\nsensor c");
-        let file = sources.database.open("/x.pyr", "import \"a.pyr\"\nimport \"b.pyr\"");
-        assert_eq!(of_program(&sources, file), 2 + 2 + 3);
+        let mut database = Database::new();
+        database.open("/a.pyr", "import \"b.pyr\"\nsensor a");
+        database.open("/b.pyr", "import \"a.pyr\" // again\nsensor b\nsensor c");
+        let file = database.open("/x.pyr", "import \"a.pyr\"\nimport \"b.pyr\"");
+        assert_eq!(of_program(&database, file), 2 + 2 + 3);
     }
 }

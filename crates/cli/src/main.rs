@@ -4,11 +4,10 @@
 //! have logic of the language, of motion or of scripts: that is asked of the crates below.
 //!
 //! * [`arguments`]: the command line; each command's own arguments stand with it in [`commands`].
-//! * [`sources`]: programs, what they import and their scenes, from files into the database.
+//! * [`inputs`]: programs, what they import and their scenes, from files into the database.
 //! * [`texts`], [`paths`]: what stands in files, and what files are called.
 //! * [`render`], [`summary`], [`json`], [`github`], [`sarif`]: problems for people and for programs.
-//! * [`project`], [`severities`]: what is set for programs, and how bad problems are to whoever asks.
-//! * [`scenes`], [`mistakes`]: what else stands on the floor, and what is wrong with the files that say so.
+//! * [`severities`]: the option that sets severities.
 //! * [`fixing`], [`rewrite`]: what is done about them.
 //! * [`lines`]: how much people and the generator write.
 //! * [`watch`]: when to look again.
@@ -23,29 +22,24 @@ mod driver;
 mod failure;
 mod fixing;
 mod github;
+mod inputs;
 mod interrupt;
 mod json;
 mod lines;
-mod mistakes;
 mod outcome;
 mod output;
-mod paths;
 mod pictures;
 mod place;
 mod program;
 mod progress;
-mod project;
 mod python;
 mod render;
 mod rewrite;
 mod sarif;
-mod scenes;
 mod severities;
-mod sources;
 mod summary;
 mod survey;
 mod target;
-mod texts;
 mod watch;
 
 use std::process::ExitCode;

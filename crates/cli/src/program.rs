@@ -4,15 +4,14 @@ use pydslrep_analysis::environment::Environment;
 use pydslrep_analysis::{Diagnostic, EntityId, FileId, Severity};
 
 use crate::failure::Failure;
+use crate::inputs::Inputs;
 use crate::output::{count, say};
-use crate::project::Project;
 use crate::render;
-use crate::sources::Sources;
 use crate::summary::summary;
 
 /// The environments of a program that were asked for: all, or those of that name.
-pub(crate) fn environments(sources: &Sources, file: FileId, name: Option<&str>) -> Vec<EntityId> {
-    let all = sources.database.environments(file).into_iter();
+pub(crate) fn environments(inputs: &Inputs, file: FileId, name: Option<&str>) -> Vec<EntityId> {
+    let all = inputs.database().environments(file).into_iter();
     all.filter(|(_, other)| name.is_none_or(|name| other.text == name)).map(|(id, _)| id).collect()
 }
 
@@ -20,29 +19,29 @@ pub(crate) fn environments(sources: &Sources, file: FileId, name: Option<&str>) 
 ///
 /// # Errors
 /// When there is none, or several and none was chosen.
-pub(crate) fn environment(sources: &Sources, file: FileId, name: Option<&str>) -> Result<EntityId, Failure> {
-    let shown = sources.shown(file);
-    match (environments(sources, file, name).as_slice(), name) {
+pub(crate) fn environment(inputs: &Inputs, file: FileId, name: Option<&str>) -> Result<EntityId, Failure> {
+    let shown = inputs.shown(file);
+    match (environments(inputs, file, name).as_slice(), name) {
         ([one], _) => Ok(*one),
         // Of several with the same name the first one counts, as everywhere.
         ([first, ..], Some(_)) => Ok(*first),
-        ([], None) => Err(Failure::new(format!("{shown} has no environment")).help(known(sources, &[file]))),
+        ([], None) => Err(Failure::new(format!("{shown} has no environment")).help(known(inputs, &[file]))),
         (several, None) => Err(Failure::new(format!("{shown} has {}", count(several.len(), "environment")))
-            .help(format!("choose one by --environment NAME; {}", known(sources, &[file])))),
-        ([], Some(name)) => Err(no_environment(sources, &[file], name)),
+            .help(format!("choose one by --environment NAME; {}", known(inputs, &[file])))),
+        ([], Some(name)) => Err(no_environment(inputs, &[file], name)),
     }
 }
 
 /// That no program has an environment of that name.
-pub(crate) fn no_environment(sources: &Sources, files: &[FileId], name: &str) -> Failure {
-    let shown: Vec<&str> = files.iter().map(|file| sources.shown(*file)).collect();
+pub(crate) fn no_environment(inputs: &Inputs, files: &[FileId], name: &str) -> Failure {
+    let shown: Vec<&str> = files.iter().map(|file| inputs.shown(*file)).collect();
     Failure::new(format!("there is no environment `{name}` in {}", shown.join(", ")))
-        .help(known(sources, files))
+        .help(known(inputs, files))
 }
 
 /// Which environments there are, in words.
-fn known(sources: &Sources, files: &[FileId]) -> String {
-    let environments = files.iter().flat_map(|file| sources.database.environments(*file));
+fn known(inputs: &Inputs, files: &[FileId]) -> String {
+    let environments = files.iter().flat_map(|file| inputs.database().environments(*file));
     let names: Vec<String> = environments.map(|(_, name)| format!("`{}`", name.text)).collect();
     match names.as_slice() {
         [] => "add one: `environment NAME has { ROBOTS } robots with { MOVEMENTS } moves`".to_owned(),
@@ -61,11 +60,11 @@ pub(crate) struct Prepared {
 
 /// Makes environments of a program ready to run. The problems of the program are shown on the way, but for hints, which
 /// are for those who ask; and those of other files where they stand in the way.
-pub(crate) fn prepare(sources: &Sources, project: &Project, file: FileId, ids: &[EntityId]) -> Prepared {
+pub(crate) fn prepare(inputs: &Inputs, file: FileId, ids: &[EntityId]) -> Prepared {
     let (mut prepared, mut stuck) = (Vec::new(), Vec::new());
     let mut errors = Vec::new();
     for id in ids {
-        match sources.database.environment(*id) {
+        match inputs.database().environment(*id) {
             Ok(environment) => prepared.push(environment),
             Err(blocked) => {
                 add(&mut errors, &blocked.errors);
@@ -73,9 +72,9 @@ pub(crate) fn prepare(sources: &Sources, project: &Project, file: FileId, ids: &
             }
         }
     }
-    let mut problems = problems(sources, project, file, &errors);
+    let mut problems = problems(inputs, file, &errors);
     problems.retain(|problem| problem.severity > Severity::Hint);
-    show(sources, &problems);
+    show(inputs, &problems);
     for name in &stuck {
         say(&format!("environment `{name}` is skipped because of these errors\n"));
     }
@@ -85,15 +84,17 @@ pub(crate) fn prepare(sources: &Sources, project: &Project, file: FileId, ids: &
 
 /// The problems of a program as they are to be shown, and errors in other files. An error that keeps an environment
 /// from being ready is shown as that, however bad it was said to be.
-fn problems(sources: &Sources, project: &Project, file: FileId, errors: &[Diagnostic]) -> Vec<Diagnostic> {
+fn problems(inputs: &Inputs, file: FileId, errors: &[Diagnostic]) -> Vec<Diagnostic> {
+    let severities = inputs.settings(file).severities;
     let as_shown = |problem: Diagnostic| {
         if errors.contains(&problem) {
             return Some(problem);
         }
-        let severity = project.settings.severities.severity(problem.code(), problem.severity)?;
+        let severity = severities.severity(problem.code(), problem.severity)?;
         Some(Diagnostic { severity, ..problem })
     };
-    let mut problems: Vec<Diagnostic> = sources.diagnostics(file).into_iter().filter_map(as_shown).collect();
+    let mut problems: Vec<Diagnostic> =
+        inputs.database().diagnostics(file).into_iter().filter_map(as_shown).collect();
     add(&mut problems, errors);
     problems
 }
@@ -106,10 +107,10 @@ fn add(problems: &mut Vec<Diagnostic>, more: &[Diagnostic]) {
     }
 }
 
-fn show(sources: &Sources, problems: &[Diagnostic]) {
+fn show(inputs: &Inputs, problems: &[Diagnostic]) {
     if !problems.is_empty() {
         let mut problems = problems.to_vec();
-        sources.retain_offered(&mut problems);
-        say(&format!("{}{}.\n", render::diagnostics(sources, &problems), summary(sources, &problems, &[])));
+        inputs.retain_offered(&mut problems);
+        say(&format!("{}{}.\n", render::diagnostics(inputs, &problems), summary(inputs, &problems, &[])));
     }
 }

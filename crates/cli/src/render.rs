@@ -7,14 +7,14 @@ use pydslrep_analysis::{Database, Diagnostic, FileId, Fix, Severity};
 use pydslrep_config::Problem;
 use pydslrep_syntax::Span;
 
+use crate::inputs::Inputs;
 use crate::output::renderer;
-use crate::sources::Sources;
 
 /// Problems as they are shown on a terminal, each with an empty line behind it.
-pub(crate) fn diagnostics(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
+pub(crate) fn diagnostics(inputs: &Inputs, diagnostics: &[Diagnostic]) -> String {
     let mut text = String::new();
     for diagnostic in diagnostics {
-        text += &one(sources, diagnostic);
+        text += &one(inputs, diagnostic);
         text += "\n\n";
     }
     text
@@ -34,16 +34,16 @@ pub(crate) fn problem(path: &str, text: &str, problem: &Problem) -> String {
     format!("{}\n\n", renderer().render(&[group]))
 }
 
-fn one(sources: &Sources, diagnostic: &Diagnostic) -> String {
+fn one(inputs: &Inputs, diagnostic: &Diagnostic) -> String {
     let title = level(diagnostic.severity).primary_title(&diagnostic.message).id(diagnostic.code());
-    let mut problem = title.elements(snippets(sources, diagnostic));
+    let mut problem = title.elements(snippets(inputs, diagnostic));
     for (level, text) in [(Level::HELP, &diagnostic.help), (Level::NOTE, &diagnostic.note)] {
         if let Some(text) = text {
             problem = problem.element(level.message(text));
         }
     }
     let mut groups = vec![problem];
-    groups.extend(diagnostic.fixes.iter().map(|fix| self::fix(sources, fix)));
+    groups.extend(diagnostic.fixes.iter().map(|fix| self::fix(inputs, fix)));
     renderer().render(&groups)
 }
 
@@ -57,7 +57,7 @@ fn level(severity: Severity) -> Level<'static> {
 }
 
 /// The problem's own file first, then the other files that matter.
-fn snippets<'a>(sources: &'a Sources, diagnostic: &'a Diagnostic) -> Vec<Element<'a>> {
+fn snippets<'a>(inputs: &'a Inputs, diagnostic: &'a Diagnostic) -> Vec<Element<'a>> {
     let mut files = vec![diagnostic.file];
     for related in &diagnostic.related {
         if !files.contains(&related.file) {
@@ -71,7 +71,7 @@ fn snippets<'a>(sources: &'a Sources, diagnostic: &'a Diagnostic) -> Vec<Element
             .into_iter()
             .chain(related.map(|related| (related.span, Some(&*related.message))))
             .collect();
-        let window = Window::about(&sources.database, file, places.iter().map(|(span, _)| *span));
+        let window = Window::about(inputs.database(), file, places.iter().map(|(span, _)| *span));
         let annotations: Vec<Annotation> = places
             .iter()
             .map(|(span, label)| {
@@ -80,7 +80,7 @@ fn snippets<'a>(sources: &'a Sources, diagnostic: &'a Diagnostic) -> Vec<Element
             })
             .collect();
         Snippet::source(window.text)
-            .path(sources.shown(file))
+            .path(inputs.shown(file))
             .line_start(window.line)
             .annotations(annotations)
             .into()
@@ -89,7 +89,7 @@ fn snippets<'a>(sources: &'a Sources, diagnostic: &'a Diagnostic) -> Vec<Element
 }
 
 /// A fix with what it would write. What `--fix` would do goes by another name than what a person should look at first.
-fn fix<'a>(sources: &'a Sources, fix: &'a Fix) -> Group<'a> {
+fn fix<'a>(inputs: &'a Inputs, fix: &'a Fix) -> Group<'a> {
     let name = if fix.safe { "fix" } else { "suggestion" };
     let title = Level::HELP.with_name(name).secondary_title(&fix.title);
     let Some(file) = fix.edits.first().map(|edit| edit.file) else {
@@ -97,13 +97,13 @@ fn fix<'a>(sources: &'a Sources, fix: &'a Fix) -> Group<'a> {
     };
     // What a fix changes in other files is seen there.
     let edits: Vec<_> = fix.edits.iter().filter(|edit| edit.file == file).collect();
-    let window = Window::about(&sources.database, file, edits.iter().map(|edit| edit.span));
+    let window = Window::about(inputs.database(), file, edits.iter().map(|edit| edit.span));
     let patches: Vec<Patch> = edits
         .iter()
         .map(|edit| Patch::new(window.place(edit.span), edit.text.replace("\r\n", "\n")))
         .collect();
     title.element(
-        Snippet::source(window.text).path(sources.shown(file)).line_start(window.line).patches(patches),
+        Snippet::source(window.text).path(inputs.shown(file)).line_start(window.line).patches(patches),
     )
 }
 

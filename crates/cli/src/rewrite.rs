@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
-use pydslrep_files::without_mark;
+use pydslrep_workspace::without_byte_order_mark as without_mark;
 use tempfile::Builder;
 
 use crate::failure::Failure;

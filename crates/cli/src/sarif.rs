@@ -6,9 +6,9 @@ use pydslrep_analysis::{Database, Diagnostic, Edit, FileId, Fix, Severity};
 use pydslrep_syntax::Span;
 use serde_json::{Value, json};
 
-use crate::mistakes::{self, Mistake};
+use crate::inputs::Inputs;
+use crate::inputs::scenes::{self, SceneProblem};
 use crate::place::{self, PlaceRange};
-use crate::sources::Sources;
 
 const SCHEMA: &str = "https://json.schemastore.org/sarif-2.1.0.json";
 
@@ -36,12 +36,12 @@ const RESERVED: &AsciiSet = &CONTROLS
 /// # Errors
 /// Never, with what is handed in here.
 pub(crate) fn log(
-    sources: &Sources,
+    inputs: &Inputs,
     diagnostics: &[Diagnostic],
-    mistakes: &[Mistake],
+    scene_problems: &[SceneProblem],
 ) -> serde_json::Result<String> {
-    let results = diagnostics.iter().map(|diagnostic| result(sources, diagnostic));
-    let results: Vec<Value> = results.chain(mistakes.iter().map(in_scene)).collect();
+    let results = diagnostics.iter().map(|diagnostic| result(inputs, diagnostic));
+    let results: Vec<Value> = results.chain(scene_problems.iter().map(in_scene)).collect();
     serde_json::to_string_pretty(&json!({
         "$schema": SCHEMA,
         "version": "2.1.0",
@@ -76,7 +76,7 @@ fn level(severity: Severity) -> &'static str {
     }
 }
 
-fn result(sources: &Sources, diagnostic: &Diagnostic) -> Value {
+fn result(inputs: &Inputs, diagnostic: &Diagnostic) -> Value {
     let mut text = diagnostic.message.clone();
     for (word, more) in [("help", &diagnostic.help), ("note", &diagnostic.note)] {
         if let Some(more) = more {
@@ -86,7 +86,7 @@ fn result(sources: &Sources, diagnostic: &Diagnostic) -> Value {
     let related = diagnostic.related.iter().enumerate().map(|(index, related)| {
         json!({
             "id": index + 1,
-            "physicalLocation": location(sources, related.file, related.span),
+            "physicalLocation": location(inputs, related.file, related.span),
             "message": { "text": related.message },
         })
     });
@@ -95,15 +95,15 @@ fn result(sources: &Sources, diagnostic: &Diagnostic) -> Value {
         "ruleIndex": CATALOGUE.iter().position(|rule| *rule == diagnostic.rule),
         "level": level(diagnostic.severity),
         "message": { "text": text },
-        "locations": [{ "physicalLocation": location(sources, diagnostic.file, diagnostic.span) }],
+        "locations": [{ "physicalLocation": location(inputs, diagnostic.file, diagnostic.span) }],
         "relatedLocations": related.collect::<Vec<_>>(),
-        "fixes": diagnostic.fixes.iter().map(|fix| self::fix(sources, fix)).collect::<Vec<_>>(),
+        "fixes": diagnostic.fixes.iter().map(|fix| self::fix(inputs, fix)).collect::<Vec<_>>(),
     })
 }
 
 /// These have no rule in the catalogue: it is about programs.
-fn in_scene(mistake: &Mistake) -> Value {
-    let Mistake { shown, range, problem, .. } = mistake;
+fn in_scene(problem: &SceneProblem) -> Value {
+    let SceneProblem { shown, range, problem, .. } = problem;
     let mut text = problem.message.clone();
     if let Some(help) = &problem.help {
         text += &format!("\nhelp: {help}");
@@ -111,14 +111,14 @@ fn in_scene(mistake: &Mistake) -> Value {
     let place = json!({ "artifactLocation": { "uri": uri(shown) }, "region": region_of(*range) });
     json!({
         "ruleId": problem.kind.code(),
-        "level": level(mistakes::SEVERITY),
+        "level": level(scenes::SEVERITY),
         "message": { "text": text },
         "locations": [{ "physicalLocation": place }],
     })
 }
 
-fn location(sources: &Sources, file: FileId, span: Span) -> Value {
-    json!({ "artifactLocation": artifact(sources, file), "region": region(&sources.database, file, span) })
+fn location(inputs: &Inputs, file: FileId, span: Span) -> Value {
+    json!({ "artifactLocation": artifact(inputs, file), "region": region(inputs.database(), file, span) })
 }
 
 /// From the first character to right behind the last one, as everywhere here.
@@ -135,8 +135,8 @@ fn region_of(range: PlaceRange) -> Value {
     })
 }
 
-fn artifact(sources: &Sources, file: FileId) -> Value {
-    json!({ "uri": uri(sources.shown(file)) })
+fn artifact(inputs: &Inputs, file: FileId) -> Value {
+    json!({ "uri": uri(inputs.shown(file)) })
 }
 
 /// A path as it is printed, as a URI: relative to the current folder where the path is.
@@ -152,15 +152,15 @@ fn uri(shown: &str) -> String {
     }
 }
 
-fn fix(sources: &Sources, fix: &Fix) -> Value {
+fn fix(inputs: &Inputs, fix: &Fix) -> Value {
     let mut files: Vec<FileId> = fix.edits.iter().map(|edit| edit.file).collect();
     files.sort_unstable();
     files.dedup();
     let change = |file: FileId| {
         let edits = fix.edits.iter().filter(|edit| edit.file == file);
         json!({
-            "artifactLocation": artifact(sources, file),
-            "replacements": edits.map(|edit| replacement(sources, edit)).collect::<Vec<_>>(),
+            "artifactLocation": artifact(inputs, file),
+            "replacements": edits.map(|edit| replacement(inputs, edit)).collect::<Vec<_>>(),
         })
     };
     json!({
@@ -169,9 +169,9 @@ fn fix(sources: &Sources, fix: &Fix) -> Value {
     })
 }
 
-fn replacement(sources: &Sources, edit: &Edit) -> Value {
+fn replacement(inputs: &Inputs, edit: &Edit) -> Value {
     json!({
-        "deletedRegion": region(&sources.database, edit.file, edit.span),
+        "deletedRegion": region(inputs.database(), edit.file, edit.span),
         "insertedContent": { "text": edit.text },
     })
 }

@@ -2,14 +2,18 @@
 
 use pydslrep_analysis::{Diagnostic, Severity};
 
-use crate::mistakes::{self, Mistake};
+use crate::inputs::Inputs;
+use crate::inputs::scenes::{self, SceneProblem};
 use crate::output::count;
-use crate::sources::Sources;
 
 /// "2 errors and 1 warning in 1 file".
-pub(crate) fn summary(sources: &Sources, diagnostics: &[Diagnostic], mistakes: &[Mistake]) -> String {
-    let found = diagnostics.iter().map(|diagnostic| (diagnostic.severity, sources.shown(diagnostic.file)));
-    let in_scenes = mistakes.iter().map(|mistake| (mistakes::SEVERITY, mistake.shown.as_str()));
+pub(crate) fn summary(
+    inputs: &Inputs,
+    diagnostics: &[Diagnostic],
+    scene_problems: &[SceneProblem],
+) -> String {
+    let found = diagnostics.iter().map(|diagnostic| (diagnostic.severity, inputs.shown(diagnostic.file)));
+    let in_scenes = scene_problems.iter().map(|problem| (scenes::SEVERITY, problem.shown.as_str()));
     let found: Vec<(Severity, &str)> = found.chain(in_scenes).collect();
     let counts =
         [Severity::Error, Severity::Warning, Severity::Information, Severity::Hint].map(|severity| {

@@ -8,7 +8,7 @@ use std::time::Duration;
 use notify::event::ModifyKind;
 use notify::{Event, EventKind, RecommendedWatcher, RecursiveMode, Watcher};
 use pydslrep_config::FILE_NAME;
-use pydslrep_files::is_program;
+use pydslrep_workspace::DocumentKind;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::time::timeout;
 
@@ -125,7 +125,7 @@ impl Scope {
     fn concerns_path(&self, path: &Path, is_move: bool) -> bool {
         path.file_name() == Some(OsStr::new(FILE_NAME))
             || self.files.contains(path)
-            || (self.is_inside(path) && (is_program(path) || is_move))
+            || (self.is_inside(path) && (DocumentKind::of_file(path).is_some() || is_move))
             // A folder on the way to something came or went.
             || (is_move && self.files.iter().chain(&self.folders).any(|other| other.starts_with(path)))
     }

@@ -1,53 +1,35 @@
-//! Program files: finds and reads them, and bounds their imports.
+//! The workspace's files on a disk.
 //!
-//! Shared by the command and the server, so that they see the same workspace. Knows paths and bytes. Must never know the
-//! content of programs.
+//! Knows paths and bytes, and the workspace's [`FileSystem`], which [`Disk`] is one of. Must never know what is in a
+//! file.
 
+mod list;
 mod read;
-mod search;
 
 use std::path::Path;
 
-use pydslrep_text::file_names::SCENE_SUFFIX;
-pub use pydslrep_text::file_names::{PROGRAM_EXTENSION as EXTENSION, SETTINGS_FILE as FILE_NAME};
-pub use read::{MAX_BYTES, Unread, decode, read, without_mark};
-pub use search::{Found, belongs, find};
+use pydslrep_workspace::{FileSystem, Listing, ReadError};
 
-/// Whether a path has the extension of programs.
-pub fn is_program(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension == EXTENSION)
-}
+pub use read::{decode, read};
 
-/// Whether a path has the ending of scene files.
-pub fn is_scene(path: &Path) -> bool {
-    path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(SCENE_SUFFIX))
-}
+/// The files of this machine.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Disk;
 
-/// The nearest folder above a file that contains a `pydslrep.toml`.
-pub fn project_folder(file: &Path) -> Option<&Path> {
-    let own = file.parent()?;
-    own.ancestors().find(|folder| folder.join(FILE_NAME).is_file())
-}
+impl FileSystem for Disk {
+    fn read(&self, path: &Path) -> Result<String, ReadError> {
+        read(path)
+    }
 
-/// The folder that imports of a program may not leave: that of the nearest `pydslrep.toml`, or the program's own.
-pub fn import_bound(program: &Path) -> &Path {
-    project_folder(program).or_else(|| program.parent()).unwrap_or(program)
-}
+    fn is_file(&self, path: &Path) -> bool {
+        path.is_file()
+    }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+    fn list(&self, folder: &Path, max_entries: usize) -> Listing {
+        list::list(folder, max_entries)
+    }
 
-    #[test]
-    fn the_nearest_project_file_bounds_imports() {
-        let folder = tempfile::tempdir().unwrap();
-        let below = folder.path().join("a/b");
-        std::fs::create_dir_all(&below).unwrap();
-        let program = below.join("x.pyr");
-        assert_eq!(import_bound(&program), below);
-        std::fs::write(folder.path().join(FILE_NAME), "").unwrap();
-        assert_eq!(import_bound(&program), folder.path());
-        std::fs::write(folder.path().join("a").join(FILE_NAME), "").unwrap();
-        assert_eq!(import_bound(&program), folder.path().join("a"));
+    fn lists(&self, folder: &Path, file: &Path) -> bool {
+        list::lists(folder, file)
     }
 }

@@ -1,45 +1,96 @@
-//! The documents: what the client shows, exactly as it sent it, and the files of the workspace besides.
+//! Documents as the client knows them: their addresses, and what the client has of each.
 
 use std::sync::{Arc, OnceLock};
 
 use pydslrep_analysis::{CancellationToken, FileId, Snapshot};
-use pydslrep_config::{FILE_NAME, Settings};
+use pydslrep_config::Settings;
 use pydslrep_ide::{KnownMovements, ShownLenses};
-use pydslrep_scene::ENDING;
-use pydslrep_syntax::Span;
+use pydslrep_text::Span;
+use pydslrep_workspace::{DocumentKind, TextChange};
 use ropey::Rope;
-use rustc_hash::FxHashMap;
-use tower_lsp::ls_types::{Diagnostic, TextDocumentContentChangeEvent, Uri};
+use tower_lsp::ls_types::{Diagnostic, InitializeParams, TextDocumentContentChangeEvent, Uri};
 
 use crate::positions::{self, Encoding};
 
-/// A document that is open in the client, or a file that matters to one of those.
-#[derive(Debug)]
-pub(crate) struct Document {
-    /// As the client writes it, for it is the client that has to recognise it.
-    pub(crate) uri: Uri,
-    /// The client's number for this text; `None` if it is not open there and was read from a disk.
-    pub(crate) version: Option<i32>,
-    /// The text. It shares its memory with the database's copy and outlives a database that failed.
-    pub(crate) text: Rope,
-    /// Its number in the database; `None` if it cannot be analysed.
+/// A document of the workspace, and what the client has of it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Document<'a> {
+    /// Its key in the workspace.
+    pub(crate) key: &'a str,
+    /// What it is.
+    pub(crate) kind: DocumentKind,
+    /// Its text.
+    pub(crate) text: &'a Rope,
+    /// A program's number in the database; `None` if it could not be analysed.
     pub(crate) file: Option<FileId>,
-    /// Which opening this is, counted over the session: an editor that opens a document again remembers nothing of it.
-    pub(crate) opening: u64,
-    /// What the client was last told about it, if anything.
-    pub(crate) published: Option<Vec<Diagnostic>>,
-    /// The paths it imported when they were last looked for.
-    pub(crate) imports: Vec<String>,
     /// What is set for it.
-    pub(crate) settings: Arc<Settings>,
+    pub(crate) settings: &'a Settings,
+    client: Option<&'a ClientDocument>,
+}
+
+impl<'a> Document<'a> {
+    /// A document of the workspace, with what the client has of it.
+    pub(crate) fn new(
+        document: &'a pydslrep_workspace::Document,
+        client: Option<&'a ClientDocument>,
+    ) -> Self {
+        let pydslrep_workspace::Document { key, kind, text, file, settings, .. } = document;
+        Self { key, kind: *kind, text, file: *file, settings, client }
+    }
+
+    /// Its address, as the client writes it: the client has to recognise it. A file that is not open has that of its
+    /// path.
+    pub(crate) fn uri(self) -> Option<Uri> {
+        address(self.key, self.client)
+    }
+
+    /// The client's number for this text; `None` if the document is not open there.
+    pub(crate) fn version(self) -> Option<i32> {
+        self.client?.version
+    }
+
+    /// Which opening this is, counted over the session: an editor that opens a document again remembers nothing of it.
+    pub(crate) fn opening(self) -> u64 {
+        self.client.map_or(0, |client| client.opening)
+    }
+
+    /// The diagnostics that were last published, if any were.
+    pub(crate) fn published(self) -> Option<&'a [Diagnostic]> {
+        self.client?.published.as_deref()
+    }
+
+    /// Cancelled when the text changes.
+    pub(crate) fn outdated(self) -> CancellationToken {
+        self.client.map(|client| client.outdated.clone()).unwrap_or_default()
+    }
+}
+
+/// What the client has of a document.
+#[derive(Debug, Default)]
+pub(crate) struct ClientDocument {
+    /// Its address as the client writes it, if it was opened there.
+    pub(crate) uri: Option<Uri>,
+    /// The client's number for the text; `None` if it is not open there.
+    pub(crate) version: Option<i32>,
+    /// See [`Document::opening`].
+    pub(crate) opening: u64,
+    /// What was last published about it, if anything.
+    pub(crate) published: Option<Vec<Diagnostic>>,
     /// Cancelled when the text changes.
     pub(crate) outdated: CancellationToken,
     /// What was last known of its movements.
     pub(crate) movements: KnownMovements,
-    /// The lenses the client was last told of.
+    /// The lenses the client last got.
     pub(crate) lenses: ShownLenses,
     /// The semantic tokens the client has, if it takes changes of them.
     pub(crate) tokens: Option<SentTokens>,
+}
+
+impl ClientDocument {
+    /// Stops work on the text as it was.
+    pub(crate) fn set_outdated(&mut self) {
+        std::mem::take(&mut self.outdated).cancel();
+    }
 }
 
 /// What the client has of a document's semantic tokens.
@@ -56,85 +107,37 @@ pub(crate) struct SentTokens {
 /// How many semantic tokens each entity of a text has; not there before the work is done.
 pub(crate) type TokenCounts = Arc<OnceLock<Vec<usize>>>;
 
-impl Document {
-    /// A document that was just opened or found, not yet analysed.
-    pub(crate) fn new(uri: Uri, text: Rope, version: Option<i32>) -> Self {
-        Self {
-            uri,
-            version,
-            text,
-            file: None,
-            opening: 0,
-            published: None,
-            imports: Vec::new(),
-            settings: Arc::default(),
-            outdated: CancellationToken::default(),
-            movements: KnownMovements::default(),
-            lenses: ShownLenses::default(),
-            tokens: None,
+/// The address of a document, as the client writes it or, if it was never opened there, that of its path.
+pub(crate) fn address(key: &str, client: Option<&ClientDocument>) -> Option<Uri> {
+    client.and_then(|client| client.uri.clone()).or_else(|| Uri::from_file_path(key))
+}
+
+/// What the changes of one message make of a text, one after the other.
+pub(crate) fn text_changes(
+    text: &Rope,
+    changes: &[TextDocumentContentChangeEvent],
+    encoding: Encoding,
+) -> Vec<TextChange> {
+    let mut now = text.clone();
+    let changes = changes.iter().map(|change| {
+        let span = change.range.map(|range| positions::to_span(&now, range, encoding));
+        match span {
+            Some(span) => replace(&mut now, span, &change.text),
+            None => now = Rope::from_str(&change.text),
         }
-    }
-
-    /// Stops work on the text as it was.
-    pub(crate) fn set_outdated(&mut self) {
-        std::mem::take(&mut self.outdated).cancel();
-    }
-
-    /// Whether it is a program.
-    pub(crate) fn is_program(&self) -> bool {
-        self.sort() == Sort::Program
-    }
-
-    /// What sort of file it is.
-    pub(crate) fn sort(&self) -> Sort {
-        Sort::of(self.uri.as_str())
-    }
-
-    /// Applies one change; returns the bytes it replaces in the text before it, `None` if it replaces all of them.
-    pub(crate) fn apply(
-        &mut self,
-        change: &TextDocumentContentChangeEvent,
-        encoding: Encoding,
-    ) -> Option<Span> {
-        let Some(range) = change.range else {
-            self.text = Rope::from_str(&change.text);
-            return None;
-        };
-        let span = positions::to_span(&self.text, range, encoding);
-        let start = self.text.byte_to_char(span.start as usize);
-        let end = self.text.byte_to_char(span.end as usize);
-        self.text.remove(start..end);
-        self.text.insert(start, &change.text);
-        Some(span)
-    }
+        TextChange { span, after: now.clone() }
+    });
+    changes.collect()
 }
 
-/// What a document may be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Sort {
-    /// A program.
-    Program,
-    /// The settings of a folder, `pydslrep.toml`.
-    Settings,
-    /// What an environment stands in, `<environment>.scene.toml`.
-    Scene,
+fn replace(text: &mut Rope, span: Span, new: &str) {
+    let start = text.byte_to_char(span.start as usize);
+    let end = text.byte_to_char(span.end as usize);
+    text.remove(start..end);
+    text.insert(start, new);
 }
 
-impl Sort {
-    /// That of a document, by its key or address.
-    pub(crate) fn of(name: &str) -> Self {
-        match name.rsplit('/').next().unwrap_or(name) {
-            FILE_NAME => Self::Settings,
-            name if name.ends_with(ENDING) => Self::Scene,
-            _ => Self::Program,
-        }
-    }
-}
-
-/// All documents by [`key`].
-pub(crate) type Documents = FxHashMap<String, Document>;
-
-/// The name under which a document is known, one for all spellings of its address: a file's path, decoded, with the
+/// The key of a document in the workspace, one for all spellings of its address: a file's path, decoded, with the
 /// letter of a drive in upper case; the address itself for what is not a file.
 pub(crate) fn key(uri: &Uri) -> String {
     if !uri.scheme().as_str().eq_ignore_ascii_case("file") {
@@ -153,6 +156,20 @@ pub(crate) fn key(uri: &Uri) -> String {
     }
 }
 
+/// Folders that a client has open, as prefixes of keys.
+pub(crate) fn folders<'a>(uris: impl IntoIterator<Item = &'a Uri>) -> Vec<String> {
+    uris.into_iter().map(|uri| format!("{}/", key(uri).trim_end_matches('/'))).collect()
+}
+
+/// The folders that a client opens from the start.
+pub(crate) fn folders_of(params: &InitializeParams) -> Vec<String> {
+    match &params.workspace_folders {
+        Some(open) => folders(open.iter().map(|folder| &folder.uri)),
+        // Older clients know one folder only.
+        #[allow(deprecated, reason = "older clients send nothing else")]
+        None => folders(&params.root_uri),
+    }
+}
 #[cfg(test)]
 mod tests {
     use std::str::FromStr;
@@ -207,17 +224,21 @@ mod tests {
             changes in prop::collection::vec((position(), position(), "[b\r\n🤖é]{0,4}"), 1..6),
             encoding in prop::sample::select(vec![Encoding::Utf8, Encoding::Utf16, Encoding::Utf32]),
         ) {
-            let mut expected = text.clone();
-            let uri = Uri::from_str("file:///a.pyr").unwrap();
-            let mut document = Document::new(uri, Rope::from_str(&text), Some(0));
+            let rope = Rope::from_str(&text);
+            let (mut expected, mut now) = (text, rope.clone());
+            let (mut events, mut texts) = (Vec::new(), Vec::new());
             for (a, b, new_text) in changes {
                 let (start, end) = (naive_offset(&expected, a, encoding), naive_offset(&expected, b, encoding));
                 expected.replace_range(start.min(end)..start.max(end), &new_text);
                 let range = Some(Range::new(a, b));
-                let change = TextDocumentContentChangeEvent { range, range_length: None, text: new_text };
-                document.apply(&change, encoding);
-                prop_assert_eq!(document.text.to_string(), expected.clone());
+                events.push(TextDocumentContentChangeEvent { range, range_length: None, text: new_text });
+                texts.push(expected.clone());
             }
+            for (change, expected) in text_changes(&rope, &events, encoding).into_iter().zip(texts) {
+                prop_assert_eq!(change.after.to_string(), expected);
+                now = change.after;
+            }
+            prop_assert_eq!(now.to_string(), expected);
         }
     }
 }

@@ -44,7 +44,6 @@ mod session;
 mod state;
 mod typing;
 mod work;
-mod workspace;
 
 #[cfg(feature = "process")]
 pub use arguments::{Arguments, Unreachable};

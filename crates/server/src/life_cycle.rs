@@ -9,9 +9,9 @@ use tower_lsp::ls_types::{InitializeParams, InitializeResult, ServerInfo};
 
 use crate::client::ClientFeatures;
 use crate::dispatch::Table;
+use crate::documents::folders_of;
 use crate::handlers::settings;
 use crate::server::{Server, Stage};
-use crate::workspace::folders_of;
 
 /// The framework's view of the server.
 #[derive(Debug)]
@@ -27,7 +27,7 @@ impl LanguageServer for LifeCycle {
         let capabilities = self.table.capabilities(&features);
         let mut state = server.state();
         state.client = features;
-        state.folders = folders_of(&params);
+        state.workspace.set_folders(folders_of(&params));
         state.trace = params.trace.unwrap_or_default();
         if let Some(settings) = &params.initialization_options {
             settings::set(&mut state, settings, &server.outbox);

@@ -181,6 +181,6 @@ impl Server {
 
     /// Rebuilds the analysis from the documents: a handler that panicked may have left it half changed.
     pub(crate) fn recover(&self) {
-        self.state().rebuild();
+        self.state().workspace.rebuild();
     }
 }

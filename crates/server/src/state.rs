@@ -1,27 +1,26 @@
 //! What the server knows between two messages.
 
-mod scenes;
-mod settings;
-
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
 
 use futures::channel::oneshot;
 use pydslrep_analysis::{Database, EditCounts, FileId, Snapshot};
+use pydslrep_config::{Config, Problem};
+use pydslrep_files::Disk;
 use pydslrep_ide::{FilePosition, TomlFile};
-use pydslrep_syntax::Span;
+use pydslrep_text::Span;
+use pydslrep_workspace::{DocumentKind, TextChange, Workspace};
 use ropey::Rope;
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
+use serde_json::Value;
 use tower_lsp::ls_types::request::{CodeLensRefresh, InlayHintRefreshRequest};
 use tower_lsp::ls_types::{
-    DidChangeTextDocumentParams, Location, Position, Range, TextDocumentItem, TextDocumentPositionParams,
-    TraceValue, Uri,
+    DidChangeTextDocumentParams, Location, Position, Range, TextDocumentContentChangeEvent, TextDocumentItem,
+    TextDocumentPositionParams, TraceValue, Uri,
 };
 
-use self::scenes::SceneUsers;
-use self::settings::SettingsStore;
 use crate::chosen::Watched;
 use crate::client::ClientFeatures;
-use crate::documents::{Document, Documents, Sort, key};
+use crate::documents::{ClientDocument, Document, key, text_changes};
 use crate::handlers::driven_path::DrivenPaths;
 use crate::message::Outbox;
 use crate::positions::{Encoding, to_offset, to_range, to_span};
@@ -29,28 +28,22 @@ use crate::typing::{Typing, replacements};
 use crate::work::Work;
 
 /// Documents, their analysis, and what the client can do.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct State {
     /// What the client can do.
     pub(crate) client: ClientFeatures,
-    /// The analysis of the open documents.
-    pub(crate) database: Database,
-    /// The open documents and the other files of the workspace.
-    pub(crate) documents: Documents,
-    /// What is set.
-    pub(crate) settings: SettingsStore,
-    /// Which programs want which scenes.
-    pub(crate) scenes: SceneUsers,
-    /// The keys of the folders open in the client, each with `/` at its end.
-    pub(crate) folders: Vec<String>,
+    /// The documents that are open in the client, the files around them, and their analysis.
+    pub(crate) workspace: Workspace,
+    /// What the client has of documents, by their keys.
+    pub(crate) clients: FxHashMap<String, ClientDocument>,
+    /// Documents that were closed since diagnostics were last published.
+    pub(crate) closed: Vec<Uri>,
     /// How many answers have been given a number so far.
     pub(crate) answers: u64,
     /// How many documents have been opened so far, each time counted.
     openings: u64,
     /// How many times progress was told so far; each time needs a name of its own.
     pub(crate) progresses: u64,
-    /// Whose diagnostics may have changed since they were last told, beside what the database says.
-    pub(crate) stale: Stale,
     /// Whether the client wants to know what changes cost.
     pub(crate) trace: TraceValue,
     /// What the changes of the last message cost, one by one, if that is wanted.
@@ -80,88 +73,82 @@ pub(crate) struct Outdated {
     pub(crate) lenses: bool,
 }
 
-/// Documents whose diagnostics have to be told again.
-#[derive(Debug, Default)]
-pub(crate) struct Stale {
-    /// All of them.
-    pub(crate) all: bool,
-    /// These, by their keys.
-    pub(crate) documents: FxHashSet<String>,
-    /// Those that are no longer there and had some.
-    pub(crate) gone: Vec<Uri>,
+impl Default for State {
+    fn default() -> Self {
+        Self {
+            workspace: Workspace::new(Arc::new(Disk)),
+            client: ClientFeatures::default(),
+            clients: FxHashMap::default(),
+            closed: Vec::new(),
+            answers: 0,
+            openings: 0,
+            progresses: 0,
+            trace: TraceValue::default(),
+            costs: Vec::new(),
+            waiting: Vec::new(),
+            told: FxHashSet::default(),
+            watched: Vec::new(),
+            typing: None,
+            outdated: Outdated::default(),
+            refreshes: 0,
+            driven: DrivenPaths::default(),
+        }
+    }
 }
 
 impl State {
-    /// Takes in a document; one that is open already gets the new text.
+    /// Opens a document, or gives one that is open a new text.
     pub(crate) fn open(&mut self, opened: &TextDocumentItem) {
         let key = key(&opened.uri);
-        if let Some(mut before) = self.documents.remove(&key) {
-            before.set_outdated();
-        }
         self.typing.take_if(|typing| typing.key == key);
         self.openings += 1;
-        let mut document =
-            Document::new(opened.uri.clone(), Rope::from_str(&opened.text), Some(opened.version));
-        document.opening = self.openings;
-        self.stale.documents.insert(key.clone());
-        let document = self.documents.entry(key.clone()).insert_entry(document).into_mut();
-        match document.sort() {
-            Sort::Settings => return self.reload_settings(),
-            Sort::Scene => return self.give_scene(&key),
-            Sort::Program => {}
+        let client = ClientDocument {
+            uri: Some(opened.uri.clone()),
+            version: Some(opened.version),
+            opening: self.openings,
+            ..ClientDocument::default()
+        };
+        if let Some(mut before) = self.clients.insert(key.clone(), client) {
+            before.set_outdated();
         }
-        document.file = Some(self.database.open(&key, &opened.text));
-        self.apply_settings(&key);
-        self.follow_changed_imports(&key);
-        self.follow_imports_of(&key);
-        self.follow_scenes();
+        self.workspace.open(&key, Rope::from_str(&opened.text));
     }
 
     /// Makes the changes of one message; false if the document is not open.
     pub(crate) fn change(&mut self, params: &DidChangeTextDocumentParams) -> bool {
-        let encoding = self.client.encoding;
         let key = key(&params.text_document.uri);
-        let open = self.documents.get_mut(&key).filter(|document| document.version.is_some());
-        let Some(document) = open else { return false };
-        document.version = Some(params.text_document.version);
-        document.set_outdated();
-        let before = document.text.clone();
-        // All of the document before any of the analysis: should that fail, the document is still right.
-        let spans: Vec<Option<Span>> =
-            params.content_changes.iter().map(|change| document.apply(change, encoding)).collect();
-        match document.sort() {
-            Sort::Settings => {
-                self.reload_settings();
-                return true;
-            }
-            Sort::Scene => {
-                self.stale.documents.insert(key.clone());
-                self.give_scene(&key);
-                return true;
-            }
-            Sort::Program => {}
+        let open = self.workspace.document(&key).filter(|document| document.is_open);
+        let (Some(document), Some(client)) = (open, self.clients.get_mut(&key)) else { return false };
+        client.version = Some(params.text_document.version);
+        client.set_outdated();
+        let (is_program, before) = (document.is_program(), document.text.clone());
+        let changes = text_changes(&before, &params.content_changes, self.client.encoding);
+        if is_program {
+            self.note_typing(&key, &params.content_changes, &changes, &before);
         }
-        let changes = &params.content_changes;
-        let replaced = replacements(changes, &spans, &before, &document.text);
-        let are_alike = changes.windows(2).all(|pair| pair[0].text == pair[1].text);
+        let costs = self.workspace.change(&key, changes);
+        if self.trace == TraceValue::Verbose {
+            self.costs.extend(costs);
+        }
+        true
+    }
+
+    fn note_typing(
+        &mut self,
+        key: &str,
+        events: &[TextDocumentContentChangeEvent],
+        changes: &[TextChange],
+        before: &Rope,
+    ) {
+        let spans: Vec<Option<Span>> = changes.iter().map(|change| change.span).collect();
+        let after = changes.last().map_or(before, |change| &change.after);
+        let replaced = replacements(events, &spans, before, after);
+        let are_alike = events.windows(2).all(|pair| pair[0].text == pair[1].text);
         let is_elsewhere = self.typing.as_ref().is_some_and(|typing| typing.key != key);
-        self.typing = Typing::after(self.typing.take(), &key, &replaced, are_alike);
+        self.typing = Typing::after(self.typing.take(), key, &replaced, are_alike);
         if is_elsewhere {
             self.outdated = Outdated { hints: true, lenses: true };
         }
-        let Some(file) = document.file else { return true };
-        for (change, span) in params.content_changes.iter().zip(spans) {
-            match span {
-                Some(span) => self.database.edit(file, span, &change.text),
-                None => document.file = Some(self.database.open(&key, &change.text)),
-            }
-            if self.trace == TraceValue::Verbose {
-                self.costs.push(self.database.last_edit());
-            }
-        }
-        self.follow_changed_imports(&key);
-        self.follow_scenes();
-        true
     }
 
     /// Notes that the cursor is at a place.
@@ -172,7 +159,7 @@ impl State {
     /// Notes what a request says about the cursor: who has gone on to another line has done with the one before.
     pub(crate) fn cursor_is_at(&mut self, uri: &Uri, range: Range) {
         let key = key(uri);
-        let (Some(typing), Some(document)) = (&self.typing, self.documents.get(&key)) else { return };
+        let (Some(typing), Some(document)) = (&self.typing, self.workspace.document(&key)) else { return };
         if typing.is_left(&key, range, &document.text) {
             self.typing = None;
             self.outdated = Outdated { hints: true, lenses: true };
@@ -198,77 +185,48 @@ impl State {
         self.outdated.lenses |= self.typing.as_mut().is_some_and(|typing| typing.save(&key));
     }
 
-    /// Lets go of a document; false if it is not open. From now on its file counts, if there is one.
+    /// Closes a document; false if it is not open. From now on its file counts, if there is one.
     pub(crate) fn close(&mut self, uri: &Uri) -> bool {
         let key = key(uri);
-        let Some(document) = self.documents.get(&key).filter(|document| document.version.is_some()) else {
+        if !self.workspace.close(&key) {
             return false;
-        };
-        let sort = document.sort();
-        self.stale.gone.push(uri.clone());
-        self.remove(&key);
-        match sort {
-            Sort::Program | Sort::Scene => self.file_changed(uri),
-            Sort::Settings => self.reload_settings(),
         }
+        if let Some(mut client) = self.clients.remove(&key) {
+            client.set_outdated();
+        }
+        self.closed.push(uri.clone());
         true
     }
 
-    /// Forgets a document, open or not.
-    pub(crate) fn remove(&mut self, key: &str) {
-        if let Some(mut document) = self.documents.remove(key) {
-            document.set_outdated();
-            if document.published.is_some_and(|published| !published.is_empty()) {
-                self.stale.gone.push(document.uri);
-            }
-            if let Some(file) = document.file {
-                self.database.close(file);
-            }
-        }
+    /// A file was created, changed or deleted, by whomever.
+    pub(crate) fn file_changed(&mut self, uri: &Uri) {
+        self.workspace.file_changed(&key(uri));
     }
 
-    /// Analyses all documents afresh, after a defect that may have left the database half changed. A document that
-    /// brings the defect up again stays open, but without answers until it is opened anew.
-    pub(crate) fn rebuild(&mut self) {
-        let mut left_out = FxHashSet::default();
-        while let Some(failed) = self.try_rebuild(&left_out) {
-            left_out.insert(failed);
-        }
-        let all: Vec<String> = self.documents.keys().cloned().collect();
-        for key in all {
-            self.apply_settings(&key);
-            self.follow_imports(&key);
-        }
-        self.follow_scenes();
+    /// Applies the client's settings; returns what is wrong with them.
+    pub(crate) fn set_client_settings(&mut self, value: &Value) -> Vec<Problem> {
+        let (config, problems) = Config::from_json(value);
+        self.workspace.set_overrides(config);
+        problems
     }
 
-    /// The key of the document that cannot be analysed, if one cannot.
-    fn try_rebuild(&mut self, left_out: &FxHashSet<String>) -> Option<String> {
-        self.database = Database::new();
-        self.scenes = SceneUsers::default();
-        self.stale.all = true;
-        for (key, document) in &mut self.documents {
-            document.file = None;
-            if left_out.contains(key) || !document.is_program() {
-                continue;
-            }
-            let text = document.text.to_string();
-            let opening = AssertUnwindSafe(|| self.database.open(key, &text));
-            match catch_unwind(opening) {
-                Ok(file) => document.file = Some(file),
-                Err(_) => return Some(key.clone()),
-            }
-        }
-        None
+    /// The analysis of all programs.
+    pub(crate) fn database(&self) -> &Database {
+        self.workspace.database()
+    }
+
+    /// A document by its key.
+    pub(crate) fn document_at(&self, key: &str) -> Option<Document<'_>> {
+        Some(Document::new(self.workspace.document(key)?, self.clients.get(key)))
     }
 
     /// The document at an address.
-    pub(crate) fn document(&self, uri: &Uri) -> Option<&Document> {
-        self.documents.get(&key(uri))
+    pub(crate) fn document(&self, uri: &Uri) -> Option<Document<'_>> {
+        self.document_at(&key(uri))
     }
 
     /// The document at an address, if it could be analysed.
-    pub(crate) fn analysed(&self, uri: &Uri) -> Option<(&Document, FileId)> {
+    pub(crate) fn analysed(&self, uri: &Uri) -> Option<(Document<'_>, FileId)> {
         let document = self.document(uri)?;
         Some((document, document.file?))
     }
@@ -277,12 +235,12 @@ impl State {
     pub(crate) fn work<R>(
         &self,
         uri: &Uri,
-        run: impl FnOnce(&Document, Encoding) -> Box<dyn FnOnce(Snapshot) -> R + Send>,
+        run: impl FnOnce(Document<'_>, Encoding) -> Box<dyn FnOnce(Snapshot) -> R + Send>,
     ) -> Option<Work<R>> {
         let (document, file) = self.analysed(uri)?;
         Some(Work {
-            snapshot: self.database.snapshot(file, None)?,
-            outdated: document.outdated.clone(),
+            snapshot: self.database().snapshot(file, None)?,
+            outdated: document.outdated(),
             run: run(document, self.client.encoding),
         })
     }
@@ -294,51 +252,49 @@ impl State {
     }
 
     /// The settings or the scene at an address, with its text.
-    pub(crate) fn toml_text(&self, uri: &Uri) -> Option<(&Document, TomlFile<'_>, String)> {
+    pub(crate) fn toml_text(&self, uri: &Uri) -> Option<(Document<'_>, TomlFile<'_>, String)> {
         let document = self.document(uri)?;
-        Some((document, self.toml_file(document)?, document.text.to_string()))
-    }
-
-    /// What kind of TOML file a document is; `None` for a program.
-    pub(crate) fn toml_file(&self, document: &Document) -> Option<TomlFile<'_>> {
-        match document.sort() {
-            Sort::Program => None,
-            Sort::Settings => Some(TomlFile::Settings),
-            Sort::Scene => Some(TomlFile::Scene(&self.database, self.environment_in(&key(&document.uri)))),
-        }
+        let file = match document.kind {
+            DocumentKind::Program => return None,
+            DocumentKind::Settings => TomlFile::Settings,
+            DocumentKind::Scene => {
+                TomlFile::Scene(self.database(), self.workspace.environment_of_scene(document.key))
+            }
+        };
+        Some((document, file, document.text.to_string()))
     }
 
     /// The document that the database knows as `file`.
-    pub(crate) fn document_of(&self, file: FileId) -> Option<&Document> {
-        self.documents.get(self.database.path(file))
+    pub(crate) fn document_of(&self, file: FileId) -> Option<Document<'_>> {
+        self.document_at(self.database().path(file))
     }
 
     /// A position as a byte offset.
-    pub(crate) fn offset(&self, document: &Document, position: Position) -> u32 {
-        to_offset(&document.text, position, self.client.encoding)
+    pub(crate) fn offset(&self, document: Document<'_>, position: Position) -> u32 {
+        to_offset(document.text, position, self.client.encoding)
     }
 
     /// A range as the bytes it covers.
-    pub(crate) fn span(&self, document: &Document, range: Range) -> Span {
-        to_span(&document.text, range, self.client.encoding)
+    pub(crate) fn span(&self, document: Document<'_>, range: Range) -> Span {
+        to_span(document.text, range, self.client.encoding)
     }
 
     /// Bytes as the range they cover.
-    pub(crate) fn range(&self, document: &Document, span: Span) -> Range {
-        to_range(&document.text, span, self.client.encoding)
+    pub(crate) fn range(&self, document: Document<'_>, span: Span) -> Range {
+        to_range(document.text, span, self.client.encoding)
     }
 
     /// A place in any document.
     pub(crate) fn location(&self, file: FileId, span: Span) -> Option<Location> {
         let document = self.document_of(file)?;
-        Some(Location::new(document.uri.clone(), self.range(document, span)))
+        Some(Location::new(document.uri()?, self.range(document, span)))
     }
 }
 
 /// A place in a document.
 pub(crate) struct Place<'a> {
     /// The document.
-    pub(crate) document: &'a Document,
+    pub(crate) document: Document<'a>,
     /// Its number in the database.
     pub(crate) file: FileId,
     /// The byte offset in it.

@@ -10,8 +10,7 @@ use pydslrep_config::{Config, Target};
 use pydslrep_script::{file_name, generate, may_replace};
 
 use crate::failure::Failure;
-use crate::project::{Project, Projects};
-use crate::sources::Sources;
+use crate::inputs::Inputs;
 use crate::target::target_parser;
 use crate::{lines, output, program};
 
@@ -62,25 +61,23 @@ struct Script {
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let here = [PathBuf::from(".")];
     let paths = if arguments.paths.is_empty() { &here } else { arguments.paths.as_slice() };
-    let (mut sources, files, failures) = Sources::open(paths);
-    let options = Config::of_target(arguments.target);
-    let projects = Projects::open(&mut sources, &files, &options)?;
+    let (inputs, failures) = Inputs::open(paths, &Config::of_target(arguments.target));
+    inputs.check_settings()?;
     let mut scripts = Vec::new();
     let (mut has_errors, mut found) = (false, false);
-    for &file in &files {
-        let ids = program::environments(&sources, file, arguments.environment.as_deref());
+    for &file in inputs.files() {
+        let ids = program::environments(&inputs, file, arguments.environment.as_deref());
         if ids.is_empty() && arguments.environment.is_some() {
             continue;
         }
         found |= !ids.is_empty();
-        let project = projects.of(file);
-        let prepared = program::prepare(&sources, project, file, &ids);
+        let prepared = program::prepare(&inputs, file, &ids);
         has_errors |= prepared.has_errors;
         if ids.is_empty() {
-            output::say(&format!("{} has no environment: nothing to generate\n", sources.shown(file)));
+            output::say(&format!("{} has no environment: nothing to generate\n", inputs.shown(file)));
         }
         for environment in &prepared.environments {
-            let text = match generate(environment, project.settings.target) {
+            let text = match generate(environment, inputs.settings(file).target) {
                 Ok(text) => text,
                 Err(error) => {
                     output::error(&error.to_string(), None);
@@ -88,14 +85,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
                     continue;
                 }
             };
-            let path = folder(&sources, file, project, arguments)?.join(file_name(environment));
-            let lines_in = lines::of_program(&sources, file);
+            let path = folder(&inputs, file, arguments)?.join(file_name(environment));
+            let lines_in = lines::of_program(inputs.database(), file);
             scripts.push(Script { path, environment: environment.name.clone(), lines_in, text });
         }
     }
     failures.iter().for_each(output::fail);
-    if let (Some(name), false) = (&arguments.environment, found || files.is_empty()) {
-        return Err(program::no_environment(&sources, &files, name));
+    if let (Some(name), false) = (&arguments.environment, found || inputs.files().is_empty()) {
+        return Err(program::no_environment(&inputs, inputs.files(), name));
     }
     if arguments.stdout {
         print(&scripts)?;
@@ -105,27 +102,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     Ok(ExitCode::from(if failures.is_empty() { u8::from(has_errors) } else { Failure::EXIT_CODE }))
 }
 
-fn folder(
-    sources: &Sources,
-    file: FileId,
-    project: &Project,
-    arguments: &Arguments,
-) -> Result<PathBuf, Failure> {
-    match arguments.output.clone().or_else(|| usual_folder(sources, file, project)) {
+fn folder(inputs: &Inputs, file: FileId, arguments: &Arguments) -> Result<PathBuf, Failure> {
+    match arguments.output.clone().or_else(|| inputs.script_folder(file)) {
         Some(folder) => Ok(folder),
         None if arguments.stdout => Ok(PathBuf::new()),
         None => Err(Failure::new("a program from standard input has no place for its script")
             .help("choose one by -o DIR, or use --stdout")),
     }
-}
-
-/// Where scripts of a program go that nobody chose a folder for; `None` for one from standard input.
-pub(crate) fn usual_folder(sources: &Sources, file: FileId, project: &Project) -> Option<PathBuf> {
-    let beside = || {
-        sources.place(file)?;
-        Some(Path::new(sources.shown(file)).parent().unwrap_or(Path::new("")).to_owned())
-    };
-    project.output().or_else(beside)
 }
 
 fn print(scripts: &[Script]) -> Result<(), Failure> {

@@ -6,15 +6,14 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
-use pydslrep_analysis::{Diagnostic, FileId, Severity};
+use pydslrep_analysis::{Diagnostic, Severity};
 use pydslrep_config::Config;
 
 use crate::failure::Failure;
 use crate::fixing::{self, Fixed};
-use crate::mistakes::{self, Mistake};
+use crate::inputs::scenes::{self, SceneProblem};
+use crate::inputs::{Inputs, count_files};
 use crate::output::{self, count};
-use crate::project::Projects;
-use crate::sources::{Sources, count_files};
 use crate::{github, json, render, sarif, severities, summary};
 
 const EXAMPLES: &str = "\
@@ -91,22 +90,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         }
         return watching::run(paths, &options);
     }
-    let (mut sources, files, mut failures) = Sources::open(paths);
-    let projects = Projects::open(&mut sources, &files, &options)?;
-    let find = |sources: &Sources| diagnostics(sources, &files, &projects);
+    let (mut inputs, mut failures) = Inputs::open(paths, &options);
+    inputs.check_settings()?;
     let fixed = if arguments.fix {
-        let mut fixed = fixing::fix(&mut sources, &files, find);
-        fixed.write(&mut sources, &files, &mut failures)?;
+        let mut fixed = fixing::fix(&mut inputs);
+        fixed.write(&mut inputs, &mut failures)?;
         Some(fixed)
     } else {
         None
     };
-    let mut diagnostics = find(&sources);
-    sources.retain_offered(&mut diagnostics);
-    let (mistakes, unread) = mistakes::find(&sources, &files);
+    let mut diagnostics = inputs.all_diagnostics();
+    inputs.retain_offered(&mut diagnostics);
+    let (scene_problems, unread) = inputs.scene_problems();
     failures.extend(unread);
-    let report = report(arguments.format, &sources, &files, &diagnostics, &mistakes)?;
-    if fixed.is_some() && files.iter().any(|file| sources.place(*file).is_none()) {
+    let report = report(arguments.format, &inputs, &diagnostics, &scene_problems)?;
+    if fixed.is_some() && inputs.files().iter().any(|file| inputs.place(*file).is_none()) {
         // The fixed program is on standard output.
         output::say(&report);
     } else {
@@ -117,30 +115,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
     failures.iter().for_each(output::fail);
     Ok(ExitCode::from(if failures.is_empty() {
-        exit_code(&diagnostics, &mistakes, arguments.deny)
+        exit_code(&diagnostics, &scene_problems, arguments.deny)
     } else {
         Failure::EXIT_CODE
     }))
 }
 
-/// What is wrong with programs, as bad as it is said to be for each.
-fn diagnostics(sources: &Sources, files: &[FileId], projects: &Projects) -> Vec<Diagnostic> {
-    let of_file = |file: &FileId| projects.of(*file).settings.severities.applied(sources.diagnostics(*file));
-    files.iter().flat_map(of_file).collect()
-}
-
 fn report(
     format: Format,
-    sources: &Sources,
-    files: &[FileId],
+    inputs: &Inputs,
     diagnostics: &[Diagnostic],
-    mistakes: &[Mistake],
+    scene_problems: &[SceneProblem],
 ) -> Result<String, Failure> {
     match format {
-        Format::Human => Ok(human(sources, files, diagnostics, mistakes)),
-        Format::Json => written(json::array(sources, diagnostics, mistakes)),
-        Format::Sarif => written(sarif::log(sources, diagnostics, mistakes)),
-        Format::Github => Ok(github::commands(sources, diagnostics, mistakes)),
+        Format::Human => Ok(human(inputs, diagnostics, scene_problems)),
+        Format::Json => written(json::array(inputs, diagnostics, scene_problems)),
+        Format::Sarif => written(sarif::log(inputs, diagnostics, scene_problems)),
+        Format::Github => Ok(github::commands(inputs, diagnostics, scene_problems)),
     }
 }
 
@@ -148,23 +139,19 @@ fn written(json: serde_json::Result<String>) -> Result<String, Failure> {
     json.map(|json| json + "\n").map_err(|error| Failure::new(format!("cannot write JSON: {error}")))
 }
 
-fn human(sources: &Sources, files: &[FileId], diagnostics: &[Diagnostic], mistakes: &[Mistake]) -> String {
-    let problems = render::diagnostics(sources, diagnostics) + &mistakes::render(mistakes);
-    summary(sources, files, diagnostics, mistakes)
+fn human(inputs: &Inputs, diagnostics: &[Diagnostic], scene_problems: &[SceneProblem]) -> String {
+    let problems = render::diagnostics(inputs, diagnostics) + &scenes::render(scene_problems);
+    summary(inputs, diagnostics, scene_problems)
         .map_or(problems.clone(), |summary| format!("{problems}{summary}\n"))
 }
 
 /// What was found, in one line; `None` where nothing was read: there is nothing to be pleased about.
-fn summary(
-    sources: &Sources,
-    files: &[FileId],
-    diagnostics: &[Diagnostic],
-    mistakes: &[Mistake],
-) -> Option<String> {
-    if diagnostics.is_empty() && mistakes.is_empty() {
+fn summary(inputs: &Inputs, diagnostics: &[Diagnostic], scene_problems: &[SceneProblem]) -> Option<String> {
+    if diagnostics.is_empty() && scene_problems.is_empty() {
+        let files = inputs.files();
         return (!files.is_empty()).then(|| format!("No problems in {}.", count_files(files)));
     }
-    let summary = summary::summary(sources, diagnostics, mistakes);
+    let summary = summary::summary(inputs, diagnostics, scene_problems);
     let is_fixable = |diagnostic: &&Diagnostic| diagnostic.fixes.iter().any(|fix| fix.safe);
     Some(match diagnostics.iter().filter(is_fixable).count() {
         0 => format!("{summary}."),
@@ -184,8 +171,8 @@ fn told(fixed: &Fixed, left: &[Diagnostic]) -> String {
 }
 
 /// 1 where problems are bad enough.
-fn exit_code(diagnostics: &[Diagnostic], mistakes: &[Mistake], deny: Option<Deny>) -> u8 {
-    let in_scenes = mistakes.iter().map(|_| mistakes::SEVERITY);
+fn exit_code(diagnostics: &[Diagnostic], scene_problems: &[SceneProblem], deny: Option<Deny>) -> u8 {
+    let in_scenes = scene_problems.iter().map(|_| scenes::SEVERITY);
     let worst = diagnostics.iter().map(|diagnostic| diagnostic.severity).chain(in_scenes).max();
     let denied = if deny.is_some() { Severity::Warning } else { Severity::Error };
     u8::from(worst >= Some(denied))

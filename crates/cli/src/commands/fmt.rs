@@ -9,9 +9,9 @@ use pydslrep_syntax::{apply_edits, format_edits, parse};
 use similar::TextDiff;
 
 use crate::failure::Failure;
+use crate::inputs::read::{Found, Source, read_programs};
 use crate::output::{self, count};
 use crate::rewrite::replace;
-use crate::sources::{Source, read_programs};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -64,8 +64,8 @@ impl Formatted {
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let here = [PathBuf::from(".")];
     let paths = if arguments.paths.is_empty() { &here } else { arguments.paths.as_slice() };
-    let (sources, mut failures) = read_programs(paths);
-    let programs: Vec<Formatted> = sources.into_iter().map(Formatted::of).collect();
+    let Found { programs, mut failures, .. } = read_programs(paths);
+    let programs: Vec<Formatted> = programs.into_iter().map(Formatted::of).collect();
     let only_looks = arguments.check || arguments.diff;
     if arguments.diff {
         output::print(&programs.iter().map(diff).collect::<String>())?;

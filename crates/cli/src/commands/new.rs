@@ -8,8 +8,8 @@ use clap::Args;
 
 use crate::failure::Failure;
 use crate::output;
-use pydslrep_files::EXTENSION;
 use pydslrep_scene::ENDING;
+use pydslrep_text::file_names::PROGRAM_EXTENSION as EXTENSION;
 
 const EXAMPLES: &str = "\
 Examples:

@@ -15,10 +15,9 @@ use serde::Serialize;
 
 use crate::driven::Driven;
 use crate::failure::Failure;
+use crate::inputs::Inputs;
 use crate::pictures::Pictures;
-use crate::project::Projects;
-use crate::sources::Sources;
-use crate::{output, program, scenes};
+use crate::{output, program};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -130,20 +129,18 @@ fn plan(environment: &Environment, scene: &Scene) -> Result<Plan, Failure> {
 /// # Errors
 /// When the program cannot be read, or nothing can be written.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let (mut sources, file) = Sources::open_one(&arguments.program)?;
-    let projects = Projects::open(&mut sources, &[file], &Config::default())?;
-    let ids = program::environments(&sources, file, arguments.environment.as_deref());
+    let (mut inputs, file) = Inputs::open_one(&arguments.program, &Config::default())?;
+    let ids = program::environments(&inputs, file, arguments.environment.as_deref());
     if ids.is_empty() || arguments.pictures.are_wanted() || arguments.scene.is_some() {
         // A picture shows one environment, as a scene is of one; and where there is none, this says which there are.
-        program::environment(&sources, file, arguments.environment.as_deref())?;
+        program::environment(&inputs, file, arguments.environment.as_deref())?;
     }
-    for id in &ids {
-        sources.tell_scene(file, *id, arguments.scene.as_deref());
+    if let (Some(scene), [id, ..]) = (&arguments.scene, ids.as_slice()) {
+        inputs.use_scene(file, *id, scene)?;
     }
-    let prepared = program::prepare(&sources, projects.of(file), file, &ids);
-    let named = arguments.scene.as_deref();
+    let prepared = program::prepare(&inputs, file, &ids);
     let planned = |environment: Environment| {
-        let scene = scenes::scene(&environment, sources.place(file), named)?;
+        let scene = inputs.scene(file, &environment)?;
         Planned::new(environment, scene)
     };
     let plans: Vec<Planned> = prepared.environments.into_iter().map(planned).collect::<Result<_, _>>()?;

@@ -18,14 +18,13 @@ use super::plan::Planned;
 use crate::driven::Driven;
 use crate::driver::{Ending, Script, drive};
 use crate::failure::Failure;
+use crate::inputs::Inputs;
 use crate::interrupt::{self, Interrupts};
 use crate::outcome::Outcome;
 use crate::pictures::Pictures;
 use crate::progress::Progress;
-use crate::project::Projects;
-use crate::sources::Sources;
 use crate::target::target_parser;
-use crate::{client, output, program, python, scenes, survey};
+use crate::{client, output, program, python, survey};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -108,14 +107,13 @@ pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
 /// # Errors
 /// When anything outside of the program fails.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let (mut sources, file) = Sources::open_one(&arguments.program)?;
-    let options = Config::of_target(arguments.target);
-    let projects = Projects::open(&mut sources, &[file], &options)?;
-    let target = projects.of(file).settings.target;
-    let id = program::environment(&sources, file, arguments.environment.as_deref())?;
-    sources.tell_scene(file, id, arguments.scene.as_deref());
-    let Some(environment) = program::prepare(&sources, projects.of(file), file, &[id]).environments.pop()
-    else {
+    let (mut inputs, file) = Inputs::open_one(&arguments.program, &Config::of_target(arguments.target))?;
+    let target = inputs.settings(file).target;
+    let id = program::environment(&inputs, file, arguments.environment.as_deref())?;
+    if let Some(scene) = &arguments.scene {
+        inputs.use_scene(file, id, scene)?;
+    }
+    let Some(environment) = program::prepare(&inputs, file, &[id]).environments.pop() else {
         return Ok(ExitCode::FAILURE);
     };
     let name = file_name(&environment);
@@ -126,9 +124,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             return Ok(ExitCode::FAILURE);
         }
     };
-    let mut scene = scenes::scene(&environment, sources.place(file), arguments.scene.as_deref())?;
+    let mut scene = inputs.scene(file, &environment)?;
     scene.seed = arguments.seed.unwrap_or(scene.seed);
-    let home = sources.place(file).and_then(Path::parent).unwrap_or(Path::new("")).to_owned();
+    let home = inputs.place(file).and_then(Path::parent).unwrap_or(Path::new("")).to_owned();
     let run = Run { arguments, target, home, planned: Planned::new(environment, scene)? };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let code = runtime.map_err(|error| unstarted(&error))?.block_on(run.drive(&name, &text))?;

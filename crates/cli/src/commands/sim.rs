@@ -16,10 +16,9 @@ use pydslrep_trace::TraceRecord;
 use tokio::time::{MissedTickBehavior, interval};
 
 use crate::failure::Failure;
+use crate::inputs::Inputs;
 use crate::interrupt::{self, Interrupts};
-use crate::project::Projects;
-use crate::sources::Sources;
-use crate::{output, program, scenes};
+use crate::{output, program};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -65,17 +64,16 @@ pub(crate) struct Arguments {
 /// # Errors
 /// When anything outside of the program fails.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let (mut sources, file) = Sources::open_one(&arguments.program)?;
-    let projects = Projects::open(&mut sources, &[file], &Config::default())?;
-    let id = program::environment(&sources, file, arguments.environment.as_deref())?;
-    sources.tell_scene(file, id, arguments.scene.as_deref());
-    let Some(environment) = program::prepare(&sources, projects.of(file), file, &[id]).environments.pop()
-    else {
+    let (mut inputs, file) = Inputs::open_one(&arguments.program, &Config::default())?;
+    let id = program::environment(&inputs, file, arguments.environment.as_deref())?;
+    if let Some(scene) = &arguments.scene {
+        inputs.use_scene(file, id, scene)?;
+    }
+    let Some(environment) = program::prepare(&inputs, file, &[id]).environments.pop() else {
         return Ok(ExitCode::FAILURE);
     };
-    let script = super::build::usual_folder(&sources, file, projects.of(file));
-    let script = script.map(|folder| folder.join(file_name(&environment)));
-    let mut scene = scenes::scene(&environment, sources.place(file), arguments.scene.as_deref())?;
+    let script = inputs.script_folder(file).map(|folder| folder.join(file_name(&environment)));
+    let mut scene = inputs.scene(file, &environment)?;
     scene.seed = arguments.seed.unwrap_or(scene.seed);
     let mut trace = arguments.trace.as_deref().map(Trace::create).transpose()?;
     let options = Options {

@@ -9,8 +9,7 @@ use pydslrep_script::{Target, generate};
 use serde::Serialize;
 
 use crate::failure::Failure;
-use crate::project::Projects;
-use crate::sources::Sources;
+use crate::inputs::Inputs;
 use crate::{lines, output, program};
 
 const EXAMPLES: &str = "\
@@ -71,16 +70,15 @@ struct Stats {
 /// # Errors
 /// When the program cannot be read or has no environment, or nothing can be printed.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let (mut sources, file) = Sources::open_one(&arguments.program)?;
-    let projects = Projects::open(&mut sources, &[file], &Config::default())?;
-    let ids = program::environments(&sources, file, None);
+    let (inputs, file) = Inputs::open_one(&arguments.program, &Config::default())?;
+    let ids = program::environments(&inputs, file, None);
     if ids.is_empty() {
         // This says what to do about it.
-        program::environment(&sources, file, None)?;
+        program::environment(&inputs, file, None)?;
     }
-    let prepared = program::prepare(&sources, projects.of(file), file, &ids);
+    let prepared = program::prepare(&inputs, file, &ids);
     let mut has_errors = prepared.has_errors;
-    let in_program = lines::of_program(&sources, file);
+    let in_program = lines::of_program(inputs.database(), file);
     let mut environments = Vec::new();
     for environment in &prepared.environments {
         match generate(environment, Target::CoppeliaSim) {

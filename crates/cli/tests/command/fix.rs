@@ -3,7 +3,7 @@
 use std::fs;
 
 use expect_test::expect;
-use pydslrep_analysis::diagnostics::{CATALOGUE, Applicability};
+use pydslrep_analysis::diagnostics::{Applicability, CATALOGUE};
 
 use crate::process::Place;
 

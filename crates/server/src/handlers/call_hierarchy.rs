@@ -16,7 +16,7 @@ use crate::state::State;
 /// The environment, movement or robot at a position.
 pub(crate) fn prepare(state: &State, params: &CallHierarchyPrepareParams) -> Option<Vec<CallHierarchyItem>> {
     let place = state.place(&params.text_document_position_params)?;
-    let found = ide::call_items(&state.database, place.position()).into_iter();
+    let found = ide::call_items(state.database(), place.position()).into_iter();
     let items: Vec<_> = found.filter_map(|item| convert(state, item)).collect();
     (!items.is_empty()).then_some(items)
 }
@@ -27,7 +27,7 @@ pub(crate) fn incoming(
     params: &CallHierarchyIncomingCallsParams,
 ) -> Option<Vec<CallHierarchyIncomingCall>> {
     let called = find(state, &params.item)?;
-    let calls = ide::incoming_calls(&state.database, &called).into_iter().filter_map(|call| {
+    let calls = ide::incoming_calls(state.database(), &called).into_iter().filter_map(|call| {
         let from_ranges = ranges(state, state.document_of(call.item.file)?, &call.ranges);
         Some(CallHierarchyIncomingCall { from: convert(state, call.item)?, from_ranges })
     });
@@ -41,7 +41,7 @@ pub(crate) fn outgoing(
 ) -> Option<Vec<CallHierarchyOutgoingCall>> {
     let caller = find(state, &params.item)?;
     let document = state.document_of(caller.file)?;
-    let calls = ide::outgoing_calls(&state.database, &caller).into_iter().filter_map(|call| {
+    let calls = ide::outgoing_calls(state.database(), &caller).into_iter().filter_map(|call| {
         let from_ranges = ranges(state, document, &call.ranges);
         Some(CallHierarchyOutgoingCall { to: convert(state, call.item)?, from_ranges })
     });
@@ -52,7 +52,7 @@ fn find(state: &State, item: &CallHierarchyItem) -> Option<ide::CallItem> {
     let (document, file) = state.analysed(&item.uri)?;
     let of_kind = |entity: &EntityKind| kind(ide::SymbolKind::Entity(*entity)) == item.kind;
     let kind = EntityKind::ALL.into_iter().find(of_kind)?;
-    ide::call_item(&state.database, file, kind, &item.name, state.span(document, item.selection_range))
+    ide::call_item(state.database(), file, kind, &item.name, state.span(document, item.selection_range))
 }
 
 fn convert(state: &State, item: ide::CallItem) -> Option<CallHierarchyItem> {
@@ -62,13 +62,13 @@ fn convert(state: &State, item: ide::CallItem) -> Option<CallHierarchyItem> {
         kind: kind(ide::SymbolKind::Entity(item.kind)),
         tags: None,
         detail: Some(item.detail).filter(|detail| !detail.is_empty()),
-        uri: document.uri.clone(),
+        uri: document.uri()?,
         range: state.range(document, item.full),
         selection_range: state.range(document, item.focus),
         data: None,
     })
 }
 
-fn ranges(state: &State, document: &Document, spans: &[Span]) -> Vec<Range> {
+fn ranges(state: &State, document: Document<'_>, spans: &[Span]) -> Vec<Range> {
     spans.iter().map(|span| state.range(document, *span)).collect()
 }

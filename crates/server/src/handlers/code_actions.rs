@@ -97,12 +97,12 @@ fn covers(wish: &CodeActionKind, kind: &CodeActionKind) -> bool {
 /// The fixes of every diagnostic that touches the range.
 fn quick_fixes(
     state: &State,
-    document: &Document,
+    document: Document<'_>,
     file: FileId,
     params: &CodeActionParams,
 ) -> Vec<CodeActionOrCommand> {
     let range = state.span(document, params.range);
-    let fixes = ide::quick_fixes(&state.database, file, range).into_iter().filter_map(|found| {
+    let fixes = ide::quick_fixes(state.database(), file, range).into_iter().filter_map(|found| {
         let shown = diagnostics::convert(state, document, &found.diagnostic)?;
         Some(CodeActionOrCommand::CodeAction(CodeAction {
             title: sentence(&found.fix.title),
@@ -119,7 +119,7 @@ fn quick_fixes(
 /// The fixes of the problems of a settings file or a scene in the range.
 fn key_fixes(
     state: &State,
-    document: &Document,
+    document: Document<'_>,
     found: Vec<ide::KeyFix>,
     params: &CodeActionParams,
 ) -> Vec<CodeActionOrCommand> {
@@ -160,32 +160,28 @@ pub(crate) fn workspace_edit(state: &State, edits: &[analysis::Edit]) -> Workspa
 
 fn edit_of_documents<'a>(
     state: &State,
-    of_documents: impl IntoIterator<Item = (&'a Document, Vec<TextEdit>)>,
+    of_documents: impl IntoIterator<Item = (Document<'a>, Vec<TextEdit>)>,
 ) -> WorkspaceEdit {
     let of_documents = of_documents.into_iter();
     if state.client.versioned_edits {
-        let changes = of_documents.map(|(document, edits)| TextDocumentEdit {
-            text_document: OptionalVersionedTextDocumentIdentifier {
-                uri: document.uri.clone(),
-                version: document.version,
-            },
-            edits: edits.into_iter().map(OneOf::Left).collect(),
+        let changes = of_documents.filter_map(|(document, edits)| {
+            let (uri, version) = (document.uri()?, document.version());
+            let text_document = OptionalVersionedTextDocumentIdentifier { uri, version };
+            Some(TextDocumentEdit { text_document, edits: edits.into_iter().map(OneOf::Left).collect() })
         });
         let document_changes = Some(DocumentChanges::Edits(changes.collect()));
         WorkspaceEdit { document_changes, ..WorkspaceEdit::default() }
     } else {
-        let changes = of_documents.map(|(document, edits)| (document.uri.clone(), edits)).collect();
+        let changes = of_documents.filter_map(|(document, edits)| Some((document.uri()?, edits))).collect();
         WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }
     }
 }
 
 /// **Generate script** for every environment of the document.
-fn script_actions(state: &State, document: &Document, file: FileId) -> Vec<CodeActionOrCommand> {
-    let environments = state.database.environments(file);
-    environments
-        .iter()
-        .filter_map(|(id, name)| script_action(state, &document.uri, *id, &name.text))
-        .collect()
+fn script_actions(state: &State, document: Document<'_>, file: FileId) -> Vec<CodeActionOrCommand> {
+    let Some(uri) = document.uri() else { return Vec::new() };
+    let environments = state.database().environments(file);
+    environments.iter().filter_map(|(id, name)| script_action(state, &uri, *id, &name.text)).collect()
 }
 
 fn script_action(state: &State, uri: &Uri, id: EntityId, name: &str) -> Option<CodeActionOrCommand> {

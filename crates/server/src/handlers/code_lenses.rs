@@ -55,10 +55,11 @@ struct LensOf {
 pub(crate) fn code_lenses(state: &mut State, params: &CodeLensParams) -> Option<Vec<CodeLens>> {
     let uri = &params.text_document.uri;
     let key = key(uri);
-    let document = state.documents.get_mut(&key)?;
+    let document = state.workspace.document(&key)?;
+    let client = state.clients.entry(key.clone()).or_default();
     let typing = state.typing.as_ref().filter(|typing| typing.key == key);
     let typed = typing.map_or(&[][..], Typing::unsaved_places);
-    let found = ide::code_lenses(&state.database, document.file?, typed, &mut document.lenses);
+    let found = ide::code_lenses(state.workspace.database(), document.file?, typed, &mut client.lenses);
     let table = LineTable::new(&document.text, state.client.encoding);
     let wanted = &document.settings.code_lens;
     let mut lenses = Vec::new();
@@ -100,7 +101,7 @@ pub(crate) fn resolve(state: &State, lens: &CodeLens) -> Result<CodeLens> {
     let known = kind.and_then(|kind| Some((kind, state.analysed(&of.uri)?.1)));
     // A document may be closed before its lenses are resolved.
     let places = known
-        .map(|(kind, file)| state.database.references(file, kind, &of.name.as_str().into()))
+        .map(|(kind, file)| state.database().references(file, kind, &of.name.as_str().into()))
         .unwrap_or_default();
     let title = match places.len() {
         1 => "1 reference".to_owned(),

@@ -48,10 +48,10 @@ pub(crate) fn completion(state: &State, params: &CompletionParams) -> Option<Com
     }
     let place = state.place(at)?;
     let speed = place.document.settings.default_speed;
-    let mut found = ide::completions(&state.database, place.position(), trigger, speed);
+    let mut found = ide::completions(state.database(), place.position(), trigger, speed);
     found.retain(|item| {
-        let path = |file: FileId| state.database.path(file);
-        item.imports.is_none_or(|imported| state.may_import(path(place.file), path(imported)))
+        let path = |file: FileId| state.database().path(file);
+        item.imports.is_none_or(|imported| state.workspace.may_import(path(place.file), path(imported)))
     });
     Some(list(state, place.document, found))
 }
@@ -65,7 +65,7 @@ fn trigger(context: Option<&CompletionContext>) -> ide::CompletionTrigger {
 
 /// The list is incomplete, so that editors request it again after each character. A list that they filter themselves
 /// would still show a word that is complete, and Enter would accept it instead of starting a new line.
-fn list(state: &State, document: &Document, found: Vec<ide::Completion>) -> CompletionResponse {
+fn list(state: &State, document: Document<'_>, found: Vec<ide::Completion>) -> CompletionResponse {
     let items = found.into_iter().zip(0..);
     let items = items.map(|(completion, at)| convert(state, document, completion, at)).collect();
     CompletionResponse::List(CompletionList { is_incomplete: true, items })
@@ -78,17 +78,17 @@ pub(crate) fn resolve(state: &State, item: &CompletionItem) -> Result<Completion
     let of: CompletionOf = serde_json::from_value(data.clone())
         .map_err(|error| Error::invalid_params(format!("not a completion of this server: {error}")))?;
     let kind = EntityKind::ALL.into_iter().find(|kind| kind.noun() == of.kind);
-    let home = state.database.file(&of.home);
+    let home = state.database().file(&of.home);
     // The entity may be gone.
     let known = kind.zip(home);
     let text = known.and_then(|(kind, home)| {
-        ide::completion_documentation(&state.database, home, kind, &of.name.as_str().into())
+        ide::completion_documentation(state.database(), home, kind, &of.name.as_str().into())
     });
     Ok(CompletionItem { documentation: text.and_then(|text| documentation(state, text)), ..item })
 }
 
 /// `at` is its index in the list, which clients would otherwise sort by label.
-fn convert(state: &State, document: &Document, completion: ide::Completion, at: usize) -> CompletionItem {
+fn convert(state: &State, document: Document<'_>, completion: ide::Completion, at: usize) -> CompletionItem {
     let is_snippet = completion.is_snippet && state.client.snippets;
     let new_text = if is_snippet { completion.insert.clone() } else { completion.plain() };
     let range = state.range(document, completion.replace);
@@ -109,13 +109,13 @@ fn convert(state: &State, document: &Document, completion: ide::Completion, at: 
     match completion.documentation {
         ide::Documentation::Text(text) => item.documentation = documentation(state, text),
         ide::Documentation::Of(home, kind) if state.client.resolve_completions => {
-            let home = state.database.path(home).to_owned();
+            let home = state.database().path(home).to_owned();
             let of = CompletionOf { home, kind: kind.noun().to_owned(), name: item.label.clone() };
             item.data = serde_json::to_value(of).ok();
         }
         ide::Documentation::Of(home, kind) if at < MOST_DOCUMENTED => {
             let name = item.label.as_str().into();
-            let text = ide::completion_documentation(&state.database, home, kind, &name);
+            let text = ide::completion_documentation(state.database(), home, kind, &name);
             item.documentation = text.and_then(|text| documentation(state, text));
         }
         ide::Documentation::Of(..) => {}

@@ -1,6 +1,5 @@
 //! Diagnostics of all documents, pushed to the client or pulled by it.
 
-use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::str::FromStr;
@@ -8,7 +7,8 @@ use std::str::FromStr;
 use pydslrep_analysis as analysis;
 use pydslrep_analysis::diagnostics::Tag;
 use pydslrep_config::Problem;
-use pydslrep_syntax::Span;
+use pydslrep_text::Span;
+use pydslrep_workspace::Workspace;
 use tower_lsp::jsonrpc::Result;
 use tower_lsp::ls_types::notification::PublishDiagnostics;
 use tower_lsp::ls_types::{
@@ -20,7 +20,7 @@ use tower_lsp::ls_types::{
 };
 
 use crate::client::ClientFeatures;
-use crate::documents::Document;
+use crate::documents::{Document, address};
 use crate::message::Outbox;
 use crate::state::State;
 
@@ -30,10 +30,13 @@ const SOURCE: &str = "pydslrep";
 /// Pushes what has changed since the last time, once per document, however many changes there were. Returns whether
 /// anything has changed.
 pub(crate) fn publish(state: &mut State, outbox: &Outbox) -> bool {
-    let touched = state.database.take_touched();
-    let stale = std::mem::take(&mut state.stale);
-    let is_changed =
-        stale.all || !touched.is_empty() || !stale.documents.is_empty() || !stale.gone.is_empty();
+    let changes = state.workspace.take_changes();
+    let closed = std::mem::take(&mut state.closed);
+    let is_changed = !changes.is_empty() || !closed.is_empty();
+    if changes.all {
+        // Settings may say where an environment is.
+        state.watched.iter_mut().for_each(|watched| watched.fingerprint = None);
+    }
     if state.client.pull_diagnostics {
         if is_changed {
             // Wake all waiters; each re-checks. A cancelled one no longer listens.
@@ -41,40 +44,42 @@ pub(crate) fn publish(state: &mut State, outbox: &Outbox) -> bool {
                 let _ = waiting.send(());
             }
         }
+        let State { clients, workspace, .. } = state;
+        clients.retain(|key, _| !changes.documents.contains(key) || workspace.document(key).is_some());
         return is_changed;
     }
-    for gone in stale.gone {
-        publish_one(gone, Vec::new(), None, outbox);
+    for closed in closed {
+        publish_one(closed, Vec::new(), None, outbox);
     }
-    let keys: BTreeSet<String> = if stale.all {
-        state.documents.keys().cloned().collect()
-    } else {
-        // The problems of a scene depend on the robots in it.
-        let scenes: Vec<String> = touched.iter().flat_map(|file| state.scenes_of(*file)).collect();
-        let touched = touched.into_iter().map(|file| state.database.path(file).to_owned());
-        touched.chain(scenes).chain(stale.documents).collect()
-    };
-    for key in keys {
-        publish_changed(state, &key, outbox);
+    let mut keys = changes.documents;
+    if changes.all {
+        keys.extend(state.workspace.documents().map(|document| document.key.clone()));
+    }
+    for key in Workspace::in_order(keys.iter().map(String::as_str)) {
+        publish_changed(state, key, outbox);
     }
     is_changed
 }
 
 fn publish_changed(state: &mut State, key: &str, outbox: &Outbox) {
-    let Some(document) = state.documents.get(key) else { return };
-    let diagnostics = of_document(state, document);
-    let is_published = match &document.published {
-        Some(published) => *published == diagnostics,
-        // A closed file without problems needs no notification.
-        None => document.version.is_none() && diagnostics.is_empty(),
-    };
-    if is_published {
+    let Some(document) = state.document_at(key) else {
+        let gone = state.clients.remove(key);
+        let had_some =
+            gone.as_ref().is_some_and(|gone| gone.published.as_ref().is_some_and(|it| !it.is_empty()));
+        if let (true, Some(uri)) = (had_some, address(key, gone.as_ref())) {
+            publish_one(uri, Vec::new(), None, outbox);
+        }
         return;
-    }
-    publish_one(document.uri.clone(), diagnostics.clone(), document.version, outbox);
-    if let Some(document) = state.documents.get_mut(key) {
-        document.published = Some(diagnostics);
-    }
+    };
+    let diagnostics = of_document(state, document);
+    let is_published = match document.published() {
+        Some(published) => published == diagnostics,
+        // A closed file without problems needs no notification.
+        None => document.version().is_none() && diagnostics.is_empty(),
+    };
+    let (false, Some(uri)) = (is_published, document.uri()) else { return };
+    publish_one(uri, diagnostics.clone(), document.version(), outbox);
+    state.clients.entry(key.to_owned()).or_default().published = Some(diagnostics);
 }
 
 fn publish_one(uri: Uri, diagnostics: Vec<Diagnostic>, version: Option<i32>, outbox: &Outbox) {
@@ -102,7 +107,7 @@ pub(crate) fn pull(
 ) -> Result<DocumentDiagnosticReportResult> {
     let document = state.document(&params.text_document.uri);
     let items = document.map(|document| of_document(state, document)).unwrap_or_default();
-    let result_id = result_id(&items, document.map_or(0, |document| document.opening));
+    let result_id = result_id(&items, document.map_or(0, Document::opening));
     let report = if params.previous_result_id.as_ref() == Some(&result_id) {
         DocumentDiagnosticReport::Unchanged(RelatedUnchangedDocumentDiagnosticReport {
             related_documents: None,
@@ -132,20 +137,17 @@ pub(crate) fn result_id(items: &[Diagnostic], opening: u64) -> String {
 }
 
 /// All diagnostics of a document, as this client can show them.
-pub(crate) fn of_document(state: &State, document: &Document) -> Vec<Diagnostic> {
-    if let Some(file) = state.toml_file(document) {
-        let problems = file.problems(&document.text.to_string()).into_iter();
-        return problems.map(|problem| convert_problem(state, document, problem)).collect();
-    }
-    let Some(file) = document.file else { return Vec::new() };
-    let found = state.database.diagnostics(file);
-    found.iter().filter_map(|diagnostic| convert(state, document, diagnostic)).collect()
+pub(crate) fn of_document(state: &State, document: Document<'_>) -> Vec<Diagnostic> {
+    let in_program = document.file.map(|file| state.database().diagnostics(file)).unwrap_or_default();
+    let in_program = in_program.iter().filter_map(|diagnostic| convert(state, document, diagnostic));
+    let problems = state.workspace.problems(document.key).into_iter();
+    in_program.chain(problems.map(|problem| convert_problem(state, document, problem))).collect()
 }
 
 /// One diagnostic, as this client can show it; `None` where it is switched off.
 pub(crate) fn convert(
     state: &State,
-    document: &Document,
+    document: Document<'_>,
     diagnostic: &analysis::Diagnostic,
 ) -> Option<Diagnostic> {
     let client = &state.client;
@@ -169,7 +171,7 @@ pub(crate) fn convert(
 }
 
 /// One problem of a `pydslrep.toml` or a scene.
-pub(crate) fn convert_problem(state: &State, document: &Document, problem: Problem) -> Diagnostic {
+pub(crate) fn convert_problem(state: &State, document: Document<'_>, problem: Problem) -> Diagnostic {
     Diagnostic {
         range: state.range(document, problem.span.unwrap_or(Span::at(0))),
         severity: Some(DiagnosticSeverity::ERROR),

@@ -14,8 +14,8 @@ use crate::work::Work;
 /// The outline of a document.
 pub(crate) fn document_symbols(state: &mut State, params: &DocumentSymbolParams) -> Option<Work<Outline>> {
     let as_tree = state.client.symbol_tree;
-    state.work(&params.text_document.uri, |document, encoding| {
-        let uri = document.uri.clone();
+    let uri = params.text_document.uri.clone();
+    state.work(&params.text_document.uri, |_, encoding| {
         Box::new(move |snapshot| {
             let table = LineTable::new(snapshot.text(), encoding);
             if as_tree {

@@ -7,9 +7,9 @@ use std::path::Path;
 use std::str::FromStr;
 
 use pydslrep_config::FILE_NAME;
-use pydslrep_files::EXTENSION;
 use pydslrep_ide as ide;
 use pydslrep_scene::ENDING;
+use pydslrep_text::file_names::PROGRAM_EXTENSION as EXTENSION;
 use tower_lsp::ls_types::{
     CreateFilesParams, DeleteFilesParams, FileOperationFilter, FileOperationPattern,
     FileOperationPatternKind, FileOperationRegistrationOptions, RenameFilesParams, ServerCapabilities, Uri,
@@ -17,11 +17,11 @@ use tower_lsp::ls_types::{
 };
 
 use crate::client::ClientFeatures;
+use crate::documents::folders;
 use crate::documents::key;
 use crate::handlers::code_actions;
 use crate::server::Server;
 use crate::state::State;
-use crate::workspace::folders;
 
 /// The operations that matter to programs: on themselves, on folders, which may hold some, on settings and on scenes.
 pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
@@ -54,7 +54,7 @@ pub(crate) fn will_rename(state: &State, params: &RenameFilesParams) -> Option<W
         .iter()
         .filter_map(|file| Some(ide::FileRename { from: path(&file.old_uri)?, to: path(&file.new_uri)? }))
         .collect();
-    let edits = ide::rename_files(&state.database, &renames);
+    let edits = ide::rename_files(state.database(), &renames);
     (!edits.is_empty()).then(|| code_actions::workspace_edit(state, &edits))
 }
 
@@ -86,11 +86,11 @@ pub(crate) async fn did_delete(server: Server, params: DeleteFilesParams) {
 fn remove<'a>(state: &mut State, addresses: impl Iterator<Item = &'a str>) {
     for uri in addresses.filter_map(|address| Uri::from_str(address).ok()) {
         let [folder] = &folders([&uri])[..] else { continue };
-        let inside = state.documents.iter().filter(|(key, _)| key.starts_with(folder));
-        let inside: Vec<Uri> = inside.map(|(_, document)| document.uri.clone()).collect();
+        let inside = state.workspace.documents().filter(|document| document.key.starts_with(folder));
+        let inside: Vec<String> = inside.map(|document| document.key.clone()).collect();
         state.file_changed(&uri);
-        for uri in inside {
-            state.file_changed(&uri);
+        for key in inside {
+            state.workspace.file_changed(&key);
         }
     }
 }
@@ -103,9 +103,9 @@ fn add<'a>(state: &mut State, addresses: impl Iterator<Item = &'a str>) -> Vec<S
             state.file_changed(&uri);
             continue;
         }
-        new.extend(folders([&uri]).into_iter().filter(|folder| state.is_in_workspace(folder)));
+        new.extend(folders([&uri]).into_iter().filter(|folder| state.workspace.contains(folder)));
         // It may contain a file of settings.
-        state.reload_settings();
+        state.workspace.settings_files_changed();
     }
     new
 }

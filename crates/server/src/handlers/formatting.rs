@@ -27,7 +27,7 @@ pub(crate) fn range(
     params: &DocumentRangeFormattingParams,
 ) -> Option<Work<Vec<TextEdit>>> {
     state.work(&params.text_document.uri, |document, encoding| {
-        let span = to_span(&document.text, params.range, encoding);
+        let span = to_span(document.text, params.range, encoding);
         Box::new(move |snapshot| convert(&snapshot, encoding, ide::format_range(&snapshot, span)))
     })
 }
@@ -43,8 +43,8 @@ pub(crate) fn announce_on_type(server: &mut ServerCapabilities, _: &ClientFeatur
 pub(crate) fn on_type(state: &State, params: &DocumentOnTypeFormattingParams) -> Option<Vec<TextEdit>> {
     let place = state.place(&params.text_document_position)?;
     let edits = match params.ch.as_str() {
-        "}" => ide::format_after_brace(&state.database, place.position()),
-        "\n" => ide::format_after_line_break(&state.database, place.position()),
+        "}" => ide::format_after_brace(state.database(), place.position()),
+        "\n" => ide::format_after_line_break(state.database(), place.position()),
         _ => Vec::new(),
     };
     Some(

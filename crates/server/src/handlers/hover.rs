@@ -26,9 +26,9 @@ pub(crate) fn show_kinematics(state: &State, RobotOf { uri, robot }: &RobotOf) -
     let (_, file) = state
         .analysed(uri)
         .ok_or_else(|| failure(format!("`{}` is not open in the editor", uri.as_str())))?;
-    let declared = state.database.declarations(file, EntityKind::Robot, &robot.as_str().into());
+    let declared = state.database().declarations(file, EntityKind::Robot, &robot.as_str().into());
     let at = declared.first().map(|span| ide::FilePosition { file, offset: span.start });
-    let found = at.and_then(|position| ide::hover(&state.database, position));
+    let found = at.and_then(|position| ide::hover(state.database(), position));
     let found = found.ok_or_else(|| failure(format!("there is no robot `{robot}`")))?;
     Ok(Some(found.markdown.into()))
 }
@@ -40,7 +40,7 @@ pub(crate) fn hover(state: &State, params: &HoverParams) -> Option<Hover> {
         (document, ide::toml_hover(file, &text, state.offset(document, at.position))?)
     } else {
         let place = state.place(at)?;
-        (place.document, ide::hover(&state.database, place.position())?)
+        (place.document, ide::hover(state.database(), place.position())?)
     };
     let contents = match &state.client.hover_format {
         Some(kind) => HoverContents::Markup(MarkupContent { kind: kind.clone(), value: found.markdown }),

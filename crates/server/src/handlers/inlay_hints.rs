@@ -14,7 +14,8 @@ use crate::state::State;
 pub(crate) fn inlay_hints(state: &mut State, params: &InlayHintParams) -> Option<Vec<InlayHint>> {
     let key = key(&params.text_document.uri);
     let encoding = state.client.encoding;
-    let document = state.documents.get_mut(&key)?;
+    let document = state.workspace.document(&key)?;
+    let client = state.clients.entry(key.clone()).or_default();
     let typing = state.typing.as_ref().filter(|typing| typing.key == key);
     let places = ide::InlayHintPlaces {
         file: document.file?,
@@ -24,7 +25,7 @@ pub(crate) fn inlay_hints(state: &mut State, params: &InlayHintParams) -> Option
     let wanted = &document.settings.inlay_hints;
     let options =
         ide::InlayHintOptions { pose: wanted.pose, duration: wanted.duration, defaults: wanted.defaults };
-    let hints = ide::inlay_hints(&state.database, places, options, &mut document.movements);
+    let hints = ide::inlay_hints(state.workspace.database(), places, options, &mut client.movements);
     let hints = hints.into_iter().map(|hint| {
         let position = to_range(&document.text, Span::at(hint.offset), encoding).start;
         let edit = |text| vec![TextEdit::new(Range::new(position, position), text)];

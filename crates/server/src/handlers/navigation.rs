@@ -31,7 +31,7 @@ fn go_to(
     links: bool,
 ) -> Option<GotoDefinitionResponse> {
     let place = state.place(&params.text_document_position_params)?;
-    let found = feature(&state.database, place.position())?;
+    let found = feature(state.database(), place.position())?;
     if !links {
         let locations = found.targets.iter().filter_map(|target| state.location(target.file, target.focus));
         return Some(GotoDefinitionResponse::Array(locations.collect()));
@@ -41,7 +41,7 @@ fn go_to(
         let document = state.document_of(target.file)?;
         Some(LocationLink {
             origin_selection_range: Some(origin),
-            target_uri: document.uri.clone(),
+            target_uri: document.uri()?,
             target_range: state.range(document, target.full),
             target_selection_range: state.range(document, target.focus),
         })

@@ -43,7 +43,7 @@ pub(crate) struct ActionOf {
 pub(crate) fn planned_at(state: &mut State, at: &TextDocumentPositionParams) -> Option<ide::PlannedAt> {
     state.cursor_is(at);
     let place = state.place(at)?;
-    Some(ide::planned_at(&state.database, place.position()))
+    Some(ide::planned_at(state.database(), place.position()))
 }
 
 /// Where an action of an environment is written; `None` if it is gone.
@@ -53,6 +53,6 @@ pub(crate) fn planned_at(state: &mut State, at: &TextDocumentPositionParams) -> 
 /// If the document is not open, or has no such environment.
 pub(crate) fn action_location(state: &State, of: &ActionOf) -> Result<Option<Location>> {
     let id = environment(state, &of.which)?;
-    let place = ide::action_place(&state.database, id, &of.action);
+    let place = ide::action_place(state.database(), id, &of.action);
     Ok(place.and_then(|(file, span)| state.location(file, span)))
 }

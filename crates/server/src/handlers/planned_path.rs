@@ -39,11 +39,11 @@ pub(crate) fn planned_path(state: &mut State, which: &ChosenEnvironment) -> Resu
 }
 
 fn plan(state: &State, which: &ChosenEnvironment) -> Result<ide::PlannedPath> {
-    ide::planned_path(&state.database, environment(state, which)?).map_err(failure)
+    ide::planned_path(state.database(), environment(state, which)?).map_err(failure)
 }
 
 fn fingerprint(state: &State, which: &ChosenEnvironment) -> Option<Fingerprint> {
-    state.database.fingerprint(environment(state, which).ok()?)
+    state.database().fingerprint(environment(state, which).ok()?)
 }
 
 /// Notifies the client which of its paths are outdated, each once; it requests them again if it still needs them.

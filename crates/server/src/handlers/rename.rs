@@ -33,7 +33,7 @@ pub(crate) fn prepare(
     params: &TextDocumentPositionParams,
 ) -> Result<Option<PrepareRenameResponse>> {
     let Some(place) = state.place(params) else { return Ok(None) };
-    let target = ide::prepare_rename(&state.database, place.position()).map_err(refused)?;
+    let target = ide::prepare_rename(state.database(), place.position()).map_err(refused)?;
     Ok(Some(PrepareRenameResponse::RangeWithPlaceholder {
         range: state.range(place.document, target.span),
         placeholder: target.text,
@@ -47,7 +47,7 @@ pub(crate) fn prepare(
 /// If it is refused; the message is the reason.
 pub(crate) fn rename(state: &State, params: &RenameParams) -> Result<Option<WorkspaceEdit>> {
     let Some(place) = state.place(&params.text_document_position) else { return Ok(None) };
-    let edits = ide::rename(&state.database, place.position(), &params.new_name).map_err(refused)?;
+    let edits = ide::rename(state.database(), place.position(), &params.new_name).map_err(refused)?;
     Ok(Some(code_actions::workspace_edit(state, &edits)))
 }
 
@@ -57,7 +57,7 @@ pub(crate) fn linked_editing_ranges(
     params: &LinkedEditingRangeParams,
 ) -> Option<LinkedEditingRanges> {
     let place = state.place(&params.text_document_position_params)?;
-    let spans = ide::linked_editing_ranges(&state.database, place.position());
+    let spans = ide::linked_editing_ranges(state.database(), place.position());
     let ranges: Vec<_> = spans.into_iter().map(|span| state.range(place.document, span)).collect();
     let word_pattern = Some(NAME_PATTERN.to_owned());
     (!ranges.is_empty()).then_some(LinkedEditingRanges { ranges, word_pattern })

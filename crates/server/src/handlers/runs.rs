@@ -15,7 +15,7 @@ use std::process::Command;
 
 use futures::channel::mpsc::UnboundedReceiver;
 use pydslrep_analysis::{FileId, Target};
-use pydslrep_files::FILE_NAME;
+use pydslrep_config::FILE_NAME;
 use pydslrep_scene::ENDING;
 use pydslrep_script::{VREP_CLIENT_PARTS, VREP_CLIENTS};
 use tempfile::TempDir;
@@ -51,7 +51,7 @@ pub(crate) struct Job {
 /// If the environment does not exist or has errors, or the files cannot be written.
 pub(crate) fn prepare(state: &State, which: &ChosenEnvironment, command: &str) -> Result<Job> {
     let id = environment(state, which)?;
-    state.database.environment(id).map_err(|errors| blocked(state, &errors))?;
+    state.database().environment(id).map_err(|errors| blocked(state, &errors))?;
     let (subcommand, what) = if command == RUN { ("run", "driven") } else { ("plan", "planned") };
     let unwritten = |error: io::Error| failure(format!("cannot write the program to run: {error}"));
     let folder = tempfile::Builder::new().prefix("pydslrep-").tempdir().map_err(unwritten)?;
@@ -63,7 +63,7 @@ pub(crate) fn prepare(state: &State, which: &ChosenEnvironment, command: &str) -
 fn write_programs(state: &State, which: &ChosenEnvironment, folder: &Path) -> Result<PathBuf> {
     let unopened = || failure(format!("`{}` is not open in the editor", which.uri.as_str()));
     let (document, file) = state.analysed(&which.uri).ok_or_else(unopened)?;
-    let database = &state.database;
+    let database = state.database();
     let own = database.path(file);
     let mut needed = vec![file];
     let mut next = 0;

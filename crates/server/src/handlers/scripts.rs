@@ -16,6 +16,7 @@ use tower_lsp::ls_types::{
 };
 
 use crate::chosen::ChosenEnvironment;
+use crate::documents::{Document, key};
 use crate::message::Outbox;
 use crate::state::State;
 
@@ -44,8 +45,8 @@ impl Script {
 /// If the document is not open or was never saved, or the environment does not exist or has errors.
 pub(crate) fn generate(state: &State, which: &ChosenEnvironment) -> jsonrpc::Result<Script> {
     let id = environment(state, which)?;
-    let program = state.document(&which.uri).map_or(&which.uri, |document| &document.uri);
-    of_environment(state, program, id)
+    let program = state.document(&which.uri).and_then(Document::uri);
+    of_environment(state, program.as_ref().unwrap_or(&which.uri), id)
 }
 
 /// The environment that is meant.
@@ -58,7 +59,7 @@ pub(crate) fn environment(state: &State, which: &ChosenEnvironment) -> jsonrpc::
         .analysed(&which.uri)
         .ok_or_else(|| failure(format!("`{}` is not open in the editor", which.uri.as_str())))?;
     let name = which.environment.as_str().into();
-    let declared = state.database.definitions(file, EntityKind::Environment, &name);
+    let declared = state.database().definitions(file, EntityKind::Environment, &name);
     let first = declared.first().copied();
     first.ok_or_else(|| failure(format!("there is no environment `{}`", which.environment)))
 }
@@ -69,11 +70,11 @@ pub(crate) fn environment(state: &State, which: &ChosenEnvironment) -> jsonrpc::
 ///
 /// If it has errors, or its program was never saved.
 pub(crate) fn of_environment(state: &State, program: &Uri, id: EntityId) -> jsonrpc::Result<Script> {
-    let environment = state.database.environment(id).map_err(|errors| blocked(state, &errors))?;
+    let environment = state.database().environment(id).map_err(|errors| blocked(state, &errors))?;
     let target = state.document(program).map(|document| document.settings.target).unwrap_or_default();
     let file_name = pydslrep_script::file_name(&environment);
-    let uri = match state.output_folder(program) {
-        Some(folder) => Uri::from_file_path(folder.join(file_name)),
+    let uri = match state.workspace.output_folder(&key(program)) {
+        Some(folder) => Uri::from_file_path(Path::new(&folder).join(file_name)),
         None => address(program, &file_name),
     };
     let uri = uri.ok_or_else(unsaved)?;
@@ -161,8 +162,9 @@ pub(crate) fn save(state: &mut State, program: &Uri, outbox: &Outbox) {
     if !document.settings.generate_on_save {
         return;
     }
-    let environments = state.database.environments(file);
-    let generated = environments.iter().filter_map(|(id, _)| of_environment(state, &document.uri, *id).ok());
+    let uri = document.uri().unwrap_or_else(|| program.clone());
+    let environments = state.database().environments(file);
+    let generated = environments.iter().filter_map(|(id, _)| of_environment(state, &uri, *id).ok());
     let scripts: Vec<Script> = generated.collect();
     for script in scripts {
         let Some(path) = path(&script.uri) else { continue };

@@ -10,7 +10,7 @@ pub(crate) fn selection_ranges(state: &State, params: &SelectionRangeParams) -> 
     let (document, file) = state.analysed(&params.text_document.uri)?;
     let offsets: Vec<u32> =
         params.positions.iter().map(|position| state.offset(document, *position)).collect();
-    let found = ide::selection_ranges(&state.database, file, &offsets);
+    let found = ide::selection_ranges(state.database(), file, &offsets);
     let nest = |spans: Vec<_>| {
         spans.into_iter().rev().fold(None, |parent, span| {
             Some(SelectionRange { range: state.range(document, span), parent: parent.map(Box::new) })

@@ -41,7 +41,7 @@ pub(crate) fn delta(
     params: &SemanticTokensDeltaParams,
 ) -> Option<Work<SemanticTokensFullDeltaResult>> {
     let uri = &params.text_document.uri;
-    let before = state.documents.get_mut(&key(uri)).and_then(|document| document.tokens.take());
+    let before = state.clients.get_mut(&key(uri)).and_then(|client| client.tokens.take());
     let before = before.filter(|before| before.id == params.previous_result_id);
     let (result_id, counts) = remember(state, uri);
     state.work(uri, |_, encoding| {
@@ -64,9 +64,10 @@ fn remember(state: &mut State, uri: &Uri) -> (Option<String>, TokenCounts) {
     }
     state.answers += 1;
     let id = state.answers.to_string();
-    let snapshot = state.analysed(uri).and_then(|(_, file)| state.database.snapshot(file, None));
-    if let (Some(snapshot), Some(document)) = (snapshot, state.documents.get_mut(&key(uri))) {
-        document.tokens = Some(SentTokens { id: id.clone(), snapshot, counts: Arc::clone(&counts) });
+    let snapshot = state.analysed(uri).and_then(|(_, file)| state.database().snapshot(file, None));
+    if let Some(snapshot) = snapshot {
+        let client = state.clients.entry(key(uri)).or_default();
+        client.tokens = Some(SentTokens { id: id.clone(), snapshot, counts: Arc::clone(&counts) });
     }
     (Some(id), counts)
 }
@@ -142,13 +143,13 @@ fn numbers(tokens: usize) -> u32 {
 pub(crate) fn range(state: &State, params: &SemanticTokensRangeParams) -> Option<SemanticTokensRangeResult> {
     let (document, file) = state.analysed(&params.text_document.uri)?;
     let span = state.span(document, params.range);
-    let snapshot = state.database.snapshot(file, Some(span))?;
+    let snapshot = state.database().snapshot(file, Some(span))?;
     let tokens = ide::semantic_tokens(&snapshot, Some(span));
     let (Some(first), Some(last)) = (tokens.first(), tokens.last()) else {
         return Some(SemanticTokens { result_id: None, data: Vec::new() }.into());
     };
     let covered = first.span.to(last.span);
-    let table = LineTable::of_part(&document.text, covered, state.client.encoding);
+    let table = LineTable::of_part(document.text, covered, state.client.encoding);
     Some(SemanticTokens { result_id: None, data: encode(&table, Position::new(0, 0), &tokens) }.into())
 }
 

@@ -20,7 +20,7 @@ pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
 pub(crate) fn signature_help(state: &State, params: &SignatureHelpParams) -> Option<SignatureHelp> {
     let place = state.place(&params.text_document_position_params)?;
     let trigger = trigger(params.context.as_ref())?;
-    let found = ide::signature_help(&state.database, place.position(), trigger)?;
+    let found = ide::signature_help(state.database(), place.position(), trigger)?;
     let current = found.signatures.get(found.active).and_then(|signature| signature.current);
     Some(SignatureHelp {
         signatures: found.signatures.iter().map(|signature| convert(state, signature)).collect(),

@@ -1,8 +1,8 @@
 //! Changes around the documents: folders, files on the disk, settings.
 
 use pydslrep_config::{FILE_NAME, SECTION};
-use pydslrep_files::EXTENSION;
 use pydslrep_scene::ENDING;
+use pydslrep_text::file_names::PROGRAM_EXTENSION as EXTENSION;
 use tower_lsp::ls_types::notification::{DidChangeConfiguration, DidChangeWatchedFiles, Notification};
 use tower_lsp::ls_types::{
     DidChangeConfigurationParams, DidChangeWatchedFilesParams, DidChangeWatchedFilesRegistrationOptions,
@@ -11,11 +11,11 @@ use tower_lsp::ls_types::{
 };
 
 use crate::client::ClientFeatures;
+use crate::documents::folders;
 use crate::handlers::settings;
 use crate::log::log;
 use crate::server::Server;
 use crate::state::State;
-use crate::workspace::folders;
 
 /// Asks to be notified when files change, and settings.
 fn registrations(state: &State) -> Vec<Registration> {
@@ -53,7 +53,7 @@ pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
 pub(crate) async fn start(server: Server, _: InitializedParams) {
     let (registrations, folders) = {
         let state = server.state();
-        (registrations(&state), state.folders.clone())
+        (registrations(&state), state.workspace.folders().to_vec())
     };
     if !registrations.is_empty()
         && let Err(error) = server.client.register_capability(registrations).await
@@ -78,10 +78,10 @@ pub(crate) async fn folders_changed(server: Server, params: DidChangeWorkspaceFo
     let (removed, added) = (of(&params.event.removed), of(&params.event.added));
     {
         let mut state = server.state();
-        let mut now = std::mem::take(&mut state.folders);
+        let mut now = state.workspace.folders().to_vec();
         now.retain(|folder| !removed.contains(folder));
         now.extend(added.iter().cloned());
-        state.set_folders(now);
+        state.workspace.set_folders(now);
     }
     server.index(added).await;
 }

@@ -1,5 +1,6 @@
 //! `workspace/diagnostic`.
 
+use pydslrep_workspace::Workspace;
 use rustc_hash::FxHashMap;
 use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::{
@@ -23,12 +24,15 @@ pub(crate) async fn pull_workspace(
     loop {
         let change = reader.diagnostics_change();
         let mut items = Vec::new();
-        let mut keys: Vec<String> = reader.state().documents.keys().cloned().collect();
-        keys.sort_unstable();
+        let keys: Vec<String> = {
+            let state = reader.state();
+            let keys = state.workspace.documents().map(|document| document.key.as_str());
+            Workspace::in_order(keys).into_iter().map(str::to_owned).collect()
+        };
         for key in keys {
             let length = {
                 let state = reader.state();
-                let Some(document) = state.documents.get(&key) else { continue };
+                let Some(document) = state.document_at(&key) else { continue };
                 items.extend(changed_report(&state, document, known.get(&key).copied()));
                 document.text.len_bytes()
             };
@@ -49,12 +53,15 @@ pub(crate) async fn pull_workspace(
 
 fn changed_report(
     state: &State,
-    document: &Document,
+    document: Document<'_>,
     known: Option<&str>,
 ) -> Option<WorkspaceDocumentDiagnosticReport> {
     let found = of_document(state, document);
-    let id = result_id(&found, document.opening);
-    (known != Some(id.as_str())).then(|| full_report(document.uri.clone(), document.version, Some(id), found))
+    let id = result_id(&found, document.opening());
+    if known == Some(id.as_str()) {
+        return None;
+    }
+    Some(full_report(document.uri()?, document.version(), Some(id), found))
 }
 
 fn full_report(

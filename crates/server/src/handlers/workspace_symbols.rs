@@ -16,14 +16,14 @@ pub(crate) async fn workspace_symbols(
     params: WorkspaceSymbolParams,
 ) -> Result<Option<WorkspaceSymbolResponse>> {
     let mut search = ide::SymbolSearch::new(&params.query);
-    let files: Vec<FileId> = reader.state().database.files().collect();
+    let files: Vec<FileId> = reader.state().database().files().collect();
     for file in files {
-        search.add(&reader.state().database, file);
-        let length = reader.state().database.text(file).map_or(0, Rope::len_bytes);
+        search.add(reader.state().database(), file);
+        let length = reader.state().database().text(file).map_or(0, Rope::len_bytes);
         reader.has_read(length).await;
     }
     let state = reader.state();
-    let found = search.finish(&state.database).into_iter();
+    let found = search.finish(state.database()).into_iter();
     Ok(Some(WorkspaceSymbolResponse::Flat(found.filter_map(|symbol| convert(&state, symbol)).collect())))
 }
 

@@ -30,7 +30,7 @@ impl Request for TestText {
 }
 
 fn text(state: &State, document: &TextDocumentIdentifier) -> Option<String> {
-    let analysed = state.analysed(&document.uri).and_then(|(_, file)| state.database.text(file));
+    let analysed = state.analysed(&document.uri).and_then(|(_, file)| state.database().text(file));
     analysed.map(ToString::to_string)
 }
 
@@ -67,7 +67,7 @@ impl Request for TestForever {
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "what handlers look like")]
 fn panic_now(state: &mut State, (): &()) -> Option<()> {
-    state.database = Database::new();
+    state.workspace.update(|database| *database = Database::new());
     panic!("on purpose");
 }
 

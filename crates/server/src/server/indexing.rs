@@ -1,42 +1,55 @@
-//! The search for programs in folders.
+//! Reads the programs and scenes of folders.
 
 use std::path::Path;
 
-use super::Server;
-use crate::log::log;
-use crate::workspace::{MOST_ENTRIES, MOST_PROGRAMS};
+use pydslrep_workspace::DocumentKind;
+use tower_lsp::ls_types::Uri;
 
-/// Opens all programs in folders; returns a summary for the user. Runs on a thread of its own: messages are handled
-/// between two files.
+use super::Server;
+use crate::documents::key;
+use crate::log::log;
+
+/// More programs than these are read only when they are opened.
+const MAX_PROGRAMS: usize = 5_000;
+
+/// No more files and folders than these are visited in search of programs: somebody may have opened a whole disk.
+const MAX_ENTRIES: usize = 100_000;
+
+/// Adds all programs and scenes of folders to the workspace; returns a summary. To be run on a thread of its own: each
+/// file is read without holding the state, and messages are handled in between.
 pub(super) fn index(server: &Server, folders: &[String]) -> String {
-    let (mut programs, mut left_out) = (0, false);
+    let files = server.state().workspace.files();
+    let (mut programs, mut is_incomplete) = (0, false);
     for folder in folders {
-        let found = pydslrep_files::find(Path::new(folder), MOST_ENTRIES);
-        left_out |= !found.complete;
-        for failure in found.failures {
-            log(format_args!("cannot read {failure}"));
+        let listing = files.list(Path::new(folder), MAX_ENTRIES);
+        is_incomplete |= listing.is_truncated;
+        for error in listing.errors {
+            log(format_args!("cannot read the folder {error}"));
         }
-        // A nested folder may be excluded from the outer one.
-        let is_open = server.state().folders.contains(folder);
-        // Programs first: in a large workspace, scenes without a program are read when they are opened.
-        for path in found.programs.into_iter().chain(found.scenes) {
-            if !is_open && !server.state().is_part_of_workspace(&path.to_string_lossy()) {
+        // A folder inside another may be ignored there.
+        let is_open = server.state().workspace.folders().contains(folder);
+        // Programs first: in a large workspace, scenes without one wait until they are opened.
+        for path in listing.programs.into_iter().chain(listing.scenes) {
+            let Some(key) = Uri::from_file_path(&path).map(|uri| key(&uri)) else { continue };
+            if !is_open && !server.state().workspace.is_listed(&key) {
                 continue;
             }
-            if programs == MOST_PROGRAMS {
-                left_out = true;
+            if programs == MAX_PROGRAMS {
+                is_incomplete = true;
                 break;
             }
-            match pydslrep_files::read(&path) {
+            match files.read(&path) {
                 Ok(text) => {
-                    server.state().add_found(&path, &text);
-                    programs += usize::from(pydslrep_files::is_program(&path));
+                    server.state().workspace.add(&key, &text);
+                    let is_program = DocumentKind::of_document(&key) == DocumentKind::Program;
+                    programs += usize::from(is_program);
                 }
-                Err(unread) => log(format_args!("cannot read {}: {unread}", path.display())),
+                Err(error) => log(format_args!("cannot read {}: {error}", path.display())),
             }
         }
     }
     server.flush_diagnostics();
-    let so_far = if left_out { "; the workspace is large: others are read when they are opened" } else { "" };
-    format!("{programs} programs{so_far}")
+    let rest =
+        if is_incomplete { "; the workspace is large, and the rest is read when it is opened" } else { "" };
+    format!("{programs} programs{rest}")
 }

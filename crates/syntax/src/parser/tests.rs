@@ -341,7 +341,10 @@ fn the_grammar_says_what_can_follow() {
     check_expected("movement m of r {", &expect!["[Word(CloseBrace), Action]"]);
     check_expected("movement m of r { move 4", &expect!["[Word(Meters), Word(Centimeters)]"]);
     check_expected("movement m of r { move 4 meters", &expect!["[Word(CloseBrace), Word(At), Action]"]);
-    check_expected("movement m of r { turn left", &expect!["[Word(CloseBrace), Word(Until), Number(Angle), Action]"]);
+    check_expected(
+        "movement m of r { turn left",
+        &expect!["[Word(CloseBrace), Word(Until), Number(Angle), Action]"],
+    );
     check_expected(
         "movement m of r { turn left until { s",
         &expect!["[Word(CloseBrace), Word(Comma), ReferenceTo(Sensor)]"],

@@ -8,14 +8,14 @@ use std::process::ExitCode;
 
 use pydslrep_config::Config;
 
-use super::{diagnostics, summary};
+use super::summary;
 use crate::failure::Failure;
+use crate::inputs::Inputs;
+use crate::inputs::paths::absolute;
+use crate::inputs::scenes;
 use crate::interrupt::{self, Interrupts};
-use crate::paths::absolute;
-use crate::project::Projects;
-use crate::sources::Sources;
 use crate::watch::{Scope, Watch};
-use crate::{mistakes, output, render};
+use crate::{output, render};
 
 /// Erases what is on a terminal and above it.
 const CLEAR: &str = "\u{1b}[2J\u{1b}[3J\u{1b}[H";
@@ -39,7 +39,7 @@ fn unstarted(error: &dyn std::fmt::Display) -> Failure {
 async fn watch(paths: &[PathBuf], options: &Config) -> Result<ExitCode, Failure> {
     let mut interrupts = Interrupts::listen().map_err(|error| unstarted(&error))?;
     let mut watch = Watch::new();
-    watch.look_at(scope(paths, &Sources::default())?)?;
+    watch.look_at(scope(paths, &Inputs::default())?)?;
     let mut shown = None;
     loop {
         let look = Look::take(paths, options)?;
@@ -72,15 +72,15 @@ struct Look {
 
 impl Look {
     fn take(paths: &[PathBuf], options: &Config) -> Result<Self, Failure> {
-        let (mut sources, files, mut failures) = Sources::open(paths);
-        let (problems, summary) = match Projects::open(&mut sources, &files, options) {
-            Ok(projects) => {
-                let mut found = diagnostics(&sources, &files, &projects);
-                sources.retain_offered(&mut found);
-                let (mistakes, unread) = mistakes::find(&sources, &files);
+        let (inputs, mut failures) = Inputs::open(paths, options);
+        let (problems, summary) = match inputs.check_settings() {
+            Ok(()) => {
+                let mut found = inputs.all_diagnostics();
+                inputs.retain_offered(&mut found);
+                let (scene_problems, unread) = inputs.scene_problems();
                 failures.extend(unread);
-                let problems = render::diagnostics(&sources, &found) + &mistakes::render(&mistakes);
-                (problems, summary(&sources, &files, &found, &mistakes))
+                let problems = render::diagnostics(&inputs, &found) + &scenes::render(&scene_problems);
+                (problems, summary(&inputs, &found, &scene_problems))
             }
             Err(failure) => {
                 failures.push(failure);
@@ -88,8 +88,8 @@ impl Look {
             }
         };
         let mut hasher = DefaultHasher::new();
-        (sources.texts(), &problems, format!("{failures:?}")).hash(&mut hasher);
-        let scope = scope(paths, &sources)?;
+        (inputs.texts(), &problems, format!("{failures:?}")).hash(&mut hasher);
+        let scope = scope(paths, &inputs)?;
         Ok(Self { problems, summary, failures, scope, fingerprint: hasher.finish() })
     }
 
@@ -106,7 +106,7 @@ impl Look {
 }
 
 /// What matters for these programs, which were opened or could not be.
-fn scope(paths: &[PathBuf], sources: &Sources) -> Result<Scope, Failure> {
+fn scope(paths: &[PathBuf], inputs: &Inputs) -> Result<Scope, Failure> {
     let mut scope = Scope::default();
     for path in paths {
         let whole = absolute(path)?;
@@ -116,6 +116,6 @@ fn scope(paths: &[PathBuf], sources: &Sources) -> Result<Scope, Failure> {
             scope.files.insert(whole);
         }
     }
-    scope.files.extend(sources.paths());
+    scope.files.extend(inputs.paths());
     Ok(scope)
 }

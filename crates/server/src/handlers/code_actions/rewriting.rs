@@ -25,12 +25,12 @@ pub(crate) struct FixAllOf {
 /// reason.
 pub(super) fn refactorings(
     state: &State,
-    document: &Document,
+    document: Document<'_>,
     file: FileId,
     params: &CodeActionParams,
     wanted: impl Fn(&CodeActionKind) -> bool,
 ) -> Vec<CodeActionOrCommand> {
-    let offers = ide::refactorings(&state.database, file, state.span(document, params.range));
+    let offers = ide::refactorings(state.database(), file, state.span(document, params.range));
     let action = |offer: ide::Refactoring| {
         let kind = kind(offer.kind);
         if !wanted(&kind) {
@@ -59,52 +59,52 @@ fn kind(kind: ide::RefactoringKind) -> CodeActionKind {
 /// "Fix all … problems" for each code in the range that occurs more than once.
 pub(super) fn fix_all_of_a_code(
     state: &State,
-    document: &Document,
+    document: Document<'_>,
     file: FileId,
     params: &CodeActionParams,
 ) -> Vec<CodeActionOrCommand> {
     let range = state.span(document, params.range);
-    let mut shown = shown(&state.database, document, file);
+    let mut shown = shown(state.database(), document, file);
     shown.retain(|problem| problem.span.start <= range.end && range.start <= problem.span.end);
-    let codes = ide::codes_to_fix_all(&state.database, file, &shown).into_iter();
+    let codes = ide::codes_to_fix_all(state.database(), file, &shown).into_iter();
     let action = |code: &str| {
         let title = format!("Fix all `{code}` problems");
         offer(state, document, title, CodeActionKind::QUICKFIX, Some(code))
     };
-    codes.map(action).collect()
+    codes.filter_map(action).collect()
 }
 
 /// `source.fixAll`, where there is anything to fix.
-pub(super) fn fix_all(state: &State, document: &Document, file: FileId) -> Option<CodeActionOrCommand> {
-    let any = shown(&state.database, document, file).iter().any(ide::has_safe_fix);
+pub(super) fn fix_all(state: &State, document: Document<'_>, file: FileId) -> Option<CodeActionOrCommand> {
+    let any = shown(state.database(), document, file).iter().any(ide::has_safe_fix);
     let title = "Apply all safe fixes".to_owned();
-    any.then(|| offer(state, document, title, CodeActionKind::SOURCE_FIX_ALL, None))
+    any.then(|| offer(state, document, title, CodeActionKind::SOURCE_FIX_ALL, None))?
 }
 
 /// The problems that are not switched off.
-fn shown(database: &Database, document: &Document, file: FileId) -> Vec<Diagnostic> {
+fn shown(database: &Database, document: Document<'_>, file: FileId) -> Vec<Diagnostic> {
     let mut problems = database.diagnostics(file);
     problems.retain(|problem| is_shown(document, problem));
     problems
 }
 
-fn is_shown(document: &Document, problem: &Diagnostic) -> bool {
+fn is_shown(document: Document<'_>, problem: &Diagnostic) -> bool {
     document.settings.severities.severity(problem.code(), problem.severity).is_some()
 }
 
 fn offer(
     state: &State,
-    document: &Document,
+    document: Document<'_>,
     title: String,
     kind: CodeActionKind,
     code: Option<&str>,
-) -> CodeActionOrCommand {
+) -> Option<CodeActionOrCommand> {
     let action = CodeAction { title, kind: Some(kind), ..CodeAction::default() };
-    let which = FixAllOf { uri: document.uri.clone(), fix_all: code.map(str::to_owned) };
+    let which = FixAllOf { uri: document.uri()?, fix_all: code.map(str::to_owned) };
     if state.client.resolve_edits {
-        return CodeAction { data: serde_json::to_value(which).ok(), ..action }.into();
+        return Some(CodeAction { data: serde_json::to_value(which).ok(), ..action }.into());
     }
-    CodeAction { edit: Some(workspace_edit(state, &edits(state, &which))), ..action }.into()
+    Some(CodeAction { edit: Some(workspace_edit(state, &edits(state, &which))), ..action }.into())
 }
 
 /// The edits of these fixes, in the current text.
@@ -113,5 +113,5 @@ pub(super) fn edits(state: &State, which: &FixAllOf) -> Vec<Edit> {
     let is_meant = |problem: &Diagnostic| {
         is_shown(document, problem) && which.fix_all.as_ref().is_none_or(|code| code == problem.code())
     };
-    ide::fix_all(&state.database, file, is_meant)
+    ide::fix_all(state.database(), file, is_meant)
 }

@@ -1,57 +1,45 @@
-//! Finds programs and scenes in folders.
+//! All programs and scenes of a folder.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use ignore::WalkBuilder;
+use pydslrep_workspace::{DocumentKind, Listing};
 
-use crate::{is_program, is_scene};
-
-/// The result of a search.
-#[derive(Debug, Default)]
-pub struct Found {
-    /// The programs, by name.
-    pub programs: Vec<PathBuf>,
-    /// The scenes, by name.
-    pub scenes: Vec<PathBuf>,
-    /// The errors for folders that could not be read.
-    pub failures: Vec<String>,
-    /// Whether the search was completed.
-    pub complete: bool,
-}
-
-/// Finds all programs and scenes in a folder and its subfolders, except for hidden and ignored (`.gitignore`) ones. Visits
-/// at most `most` files and folders. Does not follow links to folders, which may be cyclic.
-pub fn find(folder: &Path, most: usize) -> Found {
-    let mut found = Found { complete: true, ..Found::default() };
+/// All programs and scenes in a folder and below it, except what is hidden or what a `.gitignore` excludes. Links to
+/// folders are not followed: they may form cycles.
+pub(crate) fn list(folder: &Path, max_entries: usize) -> Listing {
+    let mut listing = Listing::default();
     for (count, entry) in walk(folder).build().enumerate() {
-        if count >= most {
-            found.complete = false;
+        if count >= max_entries {
+            listing.is_truncated = true;
             break;
         }
         match entry {
             Ok(entry) if !entry.file_type().is_some_and(|kind| kind.is_dir()) => {
                 let path = entry.into_path();
-                if is_program(&path) {
-                    found.programs.push(path);
-                } else if is_scene(&path) {
-                    found.scenes.push(path);
+                match DocumentKind::of_file(&path) {
+                    Some(DocumentKind::Program) => listing.programs.push(path),
+                    Some(DocumentKind::Scene) => listing.scenes.push(path),
+                    Some(DocumentKind::Settings) | None => {}
                 }
             }
             Ok(_) => {}
-            Err(error) => found.failures.push(error.to_string()),
+            Err(error) => listing.errors.push(error.to_string()),
         }
     }
-    found
+    listing
 }
 
-/// Whether a search in a folder would find a program or a scene; visits only the folders on its path.
-pub fn belongs(folder: &Path, file: &Path) -> bool {
-    if !(is_program(file) || is_scene(file)) || !file.starts_with(folder) {
+/// Whether [`list`] would find a file; visits only the folders on the way to it.
+pub(crate) fn lists(folder: &Path, file: &Path) -> bool {
+    let kind = DocumentKind::of_file(file);
+    if !matches!(kind, Some(DocumentKind::Program | DocumentKind::Scene)) || !file.starts_with(folder) {
         return false;
     }
     let wanted = file.to_owned();
-    let mut way = walk(folder).filter_entry(move |entry| wanted.starts_with(entry.path())).build();
-    way.any(|entry| entry.is_ok_and(|entry| entry.path() == file))
+    let mut on_the_way = walk(folder);
+    on_the_way.filter_entry(move |entry| wanted.starts_with(entry.path()));
+    on_the_way.build().any(|entry| entry.is_ok_and(|entry| entry.path() == file))
 }
 
 fn walk(folder: &Path) -> WalkBuilder {
@@ -63,6 +51,7 @@ fn walk(folder: &Path) -> WalkBuilder {
 #[cfg(test)]
 mod tests {
     use std::fs;
+    use std::path::PathBuf;
 
     use super::*;
 
@@ -77,41 +66,41 @@ mod tests {
     }
 
     fn names(folder: &tempfile::TempDir, most: usize) -> (Vec<String>, bool) {
-        let found = find(folder.path(), most);
-        assert_eq!(found.failures, [""; 0]);
+        let found = list(folder.path(), most);
+        assert_eq!(found.errors, [""; 0]);
         let name = |path: &PathBuf| path.strip_prefix(folder.path()).unwrap().display().to_string();
-        (found.programs.iter().map(name).collect(), found.complete)
+        (found.programs.iter().map(name).collect(), !found.is_truncated)
     }
 
     #[test]
-    fn programs_are_found_by_name() {
+    fn programs_are_listed_by_name() {
         let folder = folder(&["b/y.pyr", "a.pyr", "b/x.txt", ".git/z.pyr", "pyr", "c.PYR"]);
         assert_eq!(names(&folder, 100), (vec!["a.pyr".to_owned(), "b/y.pyr".to_owned()], true));
     }
 
     #[test]
-    fn ignored_files_are_not_part_of_the_workspace() {
+    fn ignored_files_are_not_listed() {
         let folder = folder(&["target/x.pyr", "a.pyr", "old.pyr", "a.scene.toml", "old.scene.toml"]);
         fs::write(folder.path().join(".gitignore"), "/target/\nold*\n").unwrap();
         assert_eq!(names(&folder, 100), (vec!["a.pyr".to_owned()], true));
-        let belongs = |name: &str| super::belongs(folder.path(), &folder.path().join(name));
-        let scenes = find(folder.path(), 100).scenes;
+        let is_listed = |name: &str| super::lists(folder.path(), &folder.path().join(name));
+        let scenes = list(folder.path(), 100).scenes;
         assert_eq!(scenes, [folder.path().join("a.scene.toml")]);
-        assert!(belongs("a.pyr") && belongs("a.scene.toml"));
+        assert!(is_listed("a.pyr") && is_listed("a.scene.toml"));
         for name in ["target/x.pyr", "old.pyr", "old.scene.toml", "gone.pyr", "a.txt", "../a.pyr"] {
-            assert!(!belongs(name), "{name}");
+            assert!(!is_listed(name), "{name}");
         }
     }
 
     #[test]
-    fn searches_are_limited() {
+    fn a_search_has_an_end() {
         let folder = folder(&["a.pyr", "b.pyr", "c.pyr"]);
         assert_eq!(names(&folder, 2), (vec!["a.pyr".to_owned()], false), "the folder itself counts");
     }
 
     #[cfg(unix)]
     #[test]
-    fn links_to_folders_are_not_followed() {
+    fn links_do_not_lead_in_circles() {
         let folder = folder(&["a.pyr"]);
         std::os::unix::fs::symlink(folder.path(), folder.path().join("again")).unwrap();
         std::os::unix::fs::symlink(folder.path().join("a.pyr"), folder.path().join("b.pyr")).unwrap();
@@ -119,8 +108,8 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_folder_is_reported() {
+    fn a_missing_folder_is_an_error() {
         let folder = folder(&[]);
-        assert_eq!(find(&folder.path().join("x"), 9).failures.len(), 1);
+        assert_eq!(list(&folder.path().join("x"), 9).errors.len(), 1);
     }
 }

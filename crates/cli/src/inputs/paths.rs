@@ -1,12 +1,10 @@
-//! Paths of files: whole, near to where the command runs, as the database knows them and as they are printed.
+//! Paths of files: absolute, relative to the current folder, as keys of the workspace, and as they are printed.
 
 use std::path::{Component, Path, PathBuf};
 
-use pydslrep_scene::ENDING;
-
 use crate::failure::Failure;
 
-/// The whole path, without `.` and `..`: the same file has the same one however it was named.
+/// The absolute path without `.` and `..`, the same however a file was named.
 pub(crate) fn absolute(path: &Path) -> Result<PathBuf, Failure> {
     let whole = std::path::absolute(path)
         .map_err(|error| Failure::new(format!("cannot find {}: {error}", path.display())))?;
@@ -23,13 +21,13 @@ pub(crate) fn absolute(path: &Path) -> Result<PathBuf, Failure> {
     Ok(clean)
 }
 
-/// The path as the database knows it.
+/// The path as the workspace knows it.
 pub(crate) fn key(absolute: &Path) -> String {
     let key = absolute.to_string_lossy();
     if cfg!(windows) { key.replace('\\', "/") } else { key.into_owned() }
 }
 
-/// The path from the current folder, where it is in it.
+/// The path relative to the current folder, if it is inside it.
 pub(crate) fn near(path: &Path) -> PathBuf {
     let here = std::env::current_dir().unwrap_or_default();
     match path.strip_prefix(&here) {
@@ -41,9 +39,4 @@ pub(crate) fn near(path: &Path) -> PathBuf {
 /// The path as it is printed.
 pub(crate) fn shown(path: &Path) -> String {
     path.strip_prefix(".").unwrap_or(path).display().to_string()
-}
-
-/// Where the scene of an environment of a program would be.
-pub(crate) fn scene_path(program: &Path, environment: &str) -> PathBuf {
-    program.with_file_name(format!("{environment}{ENDING}"))
 }
