@@ -7,7 +7,8 @@ use pydslrep_analysis::{Database, FileId, Fixing};
 
 use crate::failure::Failure;
 use crate::inputs::Inputs;
-use crate::{output, rewrite};
+use crate::inputs::rewrite;
+use crate::report::output;
 
 /// What was fixed.
 #[derive(Debug, Default)]

@@ -15,32 +15,14 @@
 //! * [`python`], [`client`], [`driver`], [`progress`], [`driven`], [`outcome`]: a run, from an interpreter to its result.
 
 mod arguments;
-mod client;
 mod commands;
-mod driven;
-mod driver;
 mod failure;
 mod fixing;
-mod github;
 mod inputs;
-mod interrupt;
-mod json;
-mod lines;
-mod outcome;
-mod output;
-mod pictures;
-mod place;
-mod program;
-mod progress;
-mod python;
-mod render;
-mod rewrite;
-mod sarif;
+mod report;
+mod run;
 mod severities;
-mod summary;
-mod survey;
 mod target;
-mod watch;
 
 use std::process::ExitCode;
 
@@ -48,6 +30,7 @@ use clap::{CommandFactory, Parser};
 
 use crate::arguments::{Arguments, Command};
 use crate::failure::Failure;
+use crate::report::output;
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {

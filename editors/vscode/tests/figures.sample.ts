@@ -1,4 +1,4 @@
-// Written by a test of crates/cli/src/outcome.rs.
+// Written by a test of crates/cli/src/run/outcome.rs.
 import type { Figures } from "../src/figures";
 
 export const figures: Figures = {

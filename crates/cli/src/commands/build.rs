@@ -11,8 +11,10 @@ use pydslrep_script::{file_name, generate, may_replace};
 
 use crate::failure::Failure;
 use crate::inputs::Inputs;
+use crate::inputs::lines;
+use crate::inputs::program;
+use crate::report::output;
 use crate::target::target_parser;
-use crate::{lines, output, program};
 
 const EXAMPLES: &str = "\
 Examples:

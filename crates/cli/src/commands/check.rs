@@ -13,8 +13,13 @@ use crate::failure::Failure;
 use crate::fixing::{self, Fixed};
 use crate::inputs::scenes::{self, SceneProblem};
 use crate::inputs::{Inputs, count_files};
-use crate::output::{self, count};
-use crate::{github, json, render, sarif, severities, summary};
+use crate::report::github;
+use crate::report::json;
+use crate::report::output::{self, count};
+use crate::report::render;
+use crate::report::sarif;
+use crate::report::summary;
+use crate::severities;
 
 const EXAMPLES: &str = "\
 Examples:

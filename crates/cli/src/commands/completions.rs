@@ -6,7 +6,7 @@ use clap::{Args, Command};
 use clap_complete::Shell;
 
 use crate::failure::Failure;
-use crate::output;
+use crate::report::output;
 
 const EXAMPLES: &str = "\
 Examples:

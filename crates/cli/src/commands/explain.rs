@@ -9,7 +9,7 @@ use pydslrep_analysis::diagnostics::{CATALOGUE, Rule};
 use pydslrep_config::find_rule;
 
 use crate::failure::Failure;
-use crate::output;
+use crate::report::output;
 
 const EXAMPLES: &str = "\
 Examples:

@@ -10,8 +10,8 @@ use similar::TextDiff;
 
 use crate::failure::Failure;
 use crate::inputs::read::{Found, Source, read_programs};
-use crate::output::{self, count};
-use crate::rewrite::replace;
+use crate::inputs::rewrite::replace;
+use crate::report::output::{self, count};
 
 const EXAMPLES: &str = "\
 Examples:

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::Args;
 
 use crate::failure::Failure;
-use crate::output;
+use crate::report::output;
 use pydslrep_scene::ENDING;
 use pydslrep_text::file_names::PROGRAM_EXTENSION as EXTENSION;
 

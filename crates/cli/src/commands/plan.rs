@@ -13,11 +13,12 @@ use pydslrep_scene::{Collision, Scene, Thing, collisions};
 use pydslrep_trace::Map;
 use serde::Serialize;
 
-use crate::driven::Driven;
 use crate::failure::Failure;
 use crate::inputs::Inputs;
-use crate::pictures::Pictures;
-use crate::{output, program};
+use crate::inputs::program;
+use crate::report::output;
+use crate::run::driven::Driven;
+use crate::run::pictures::Pictures;
 
 const EXAMPLES: &str = "\
 Examples:

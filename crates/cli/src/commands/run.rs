@@ -15,16 +15,20 @@ use pydslrep_trace::Map;
 use tempfile::TempDir;
 
 use super::plan::Planned;
-use crate::driven::Driven;
-use crate::driver::{Ending, Script, drive};
 use crate::failure::Failure;
 use crate::inputs::Inputs;
-use crate::interrupt::{self, Interrupts};
-use crate::outcome::Outcome;
-use crate::pictures::Pictures;
-use crate::progress::Progress;
+use crate::inputs::program;
+use crate::report::output;
+use crate::run::driven::Driven;
+use crate::run::exploring;
+use crate::run::interrupt::{self, Interrupts};
+use crate::run::outcome::Outcome;
+use crate::run::pictures::Pictures;
+use crate::run::progress::Progress;
+use crate::run::python;
+use crate::run::script::{Ending, Script, drive};
+use crate::run::vrep_client;
 use crate::target::target_parser;
-use crate::{client, output, program, python, survey};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -158,7 +162,7 @@ impl Run<'_> {
         let folder =
             tempfile::Builder::new().prefix("pydslrep-").tempdir().map_err(|error| unstarted(&error))?;
         if self.target == Target::VRep {
-            client::prepare(&python, &self.home, folder.path()).await?;
+            vrep_client::prepare(&python, &self.home, folder.path()).await?;
         }
         let simulator = if self.arguments.host.is_none() { Some(self.simulator()?) } else { None };
         let path = folder.path().join(name);
@@ -255,14 +259,14 @@ impl Run<'_> {
         if let Some(trace) = trace {
             all.extend(["--trace".into(), trace.into()]);
         }
-        if survey::explores(&self.planned.environment) {
+        if exploring::explores(&self.planned.environment) {
             all.extend(["--map".into(), map.into()]);
             all.extend(self.arguments.odometry.then(|| "--odometry".into()));
             if let Some(extent) = self.arguments.extent {
                 all.extend(["--extent".into(), extent.to_string().into()]);
             }
             if simulator.is_some() {
-                all.extend(survey::arguments(&self.planned.scene));
+                all.extend(exploring::arguments(&self.planned.scene));
             }
         }
         all
@@ -270,7 +274,7 @@ impl Run<'_> {
 
     /// Where the map of robots that explore goes.
     fn map_file(&self) -> PathBuf {
-        let default = || survey::default_file(&self.planned.environment);
+        let default = || exploring::default_file(&self.planned.environment);
         self.arguments.map.clone().unwrap_or_else(default)
     }
 
@@ -287,7 +291,7 @@ impl Run<'_> {
             fs::copy(&picture, &file).map_err(|error| Failure::unwritten(&file, &error))?;
         }
         let robots = &self.planned.environment.robots;
-        robots.iter().map(|robot| survey::read(map, &robot.name)).collect()
+        robots.iter().map(|robot| exploring::read(map, &robot.name)).collect()
     }
 
     fn report(&self, ending: Ending, driven: &Driven, wall: std::time::Duration) -> Result<u8, Failure> {

@@ -17,8 +17,9 @@ use tokio::time::{MissedTickBehavior, interval};
 
 use crate::failure::Failure;
 use crate::inputs::Inputs;
-use crate::interrupt::{self, Interrupts};
-use crate::{output, program};
+use crate::inputs::program;
+use crate::report::output;
+use crate::run::interrupt::{self, Interrupts};
 
 const EXAMPLES: &str = "\
 Examples:

@@ -10,7 +10,9 @@ use serde::Serialize;
 
 use crate::failure::Failure;
 use crate::inputs::Inputs;
-use crate::{lines, output, program};
+use crate::inputs::lines;
+use crate::inputs::program;
+use crate::report::output;
 
 const EXAMPLES: &str = "\
 Examples:

@@ -1,8 +1,12 @@
 //! What the command works on: the programs that were named, in the workspace they belong to.
 
+pub(crate) mod lines;
 pub(crate) mod paths;
+pub(crate) mod program;
 pub(crate) mod read;
+pub(crate) mod rewrite;
 pub(crate) mod scenes;
+pub(crate) mod watch;
 
 use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
@@ -18,8 +22,8 @@ use ropey::Rope;
 use self::paths::{absolute, key, near, shown};
 use self::read::{Found, STDIN_SHOWN, read_failure, read_programs};
 use crate::failure::Failure;
-use crate::output::count;
-use crate::render;
+use crate::report::output::count;
+use crate::report::render;
 
 /// The programs that were named, and the workspace around them.
 #[derive(Debug)]

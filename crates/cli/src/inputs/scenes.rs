@@ -15,8 +15,8 @@ use super::Inputs;
 use super::paths::shown;
 use super::read::{read_failure, read_file};
 use crate::failure::Failure;
-use crate::place::{self, PlaceRange};
-use crate::render;
+use crate::report::place::{self, PlaceRange};
+use crate::report::render;
 
 /// The severity of all problems in scenes: nothing is driven in such a scene.
 pub(crate) const SEVERITY: pydslrep_analysis::Severity = pydslrep_analysis::Severity::Error;

@@ -13,9 +13,10 @@ use crate::failure::Failure;
 use crate::inputs::Inputs;
 use crate::inputs::paths::absolute;
 use crate::inputs::scenes;
-use crate::interrupt::{self, Interrupts};
-use crate::watch::{Scope, Watch};
-use crate::{output, render};
+use crate::inputs::watch::{Scope, Watch};
+use crate::report::output;
+use crate::report::render;
+use crate::run::interrupt::{self, Interrupts};
 
 /// Erases what is on a terminal and above it.
 const CLEAR: &str = "\u{1b}[2J\u{1b}[3J\u{1b}[H";

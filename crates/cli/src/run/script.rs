@@ -11,10 +11,10 @@ use tokio::process::{Child, ChildStdout, Command};
 use tokio::task::JoinHandle;
 use tokio::time::{MissedTickBehavior, interval, timeout};
 
-use crate::driven::Driven;
 use crate::failure::Failure;
-use crate::interrupt::Interrupts;
-use crate::progress::Progress;
+use crate::run::driven::Driven;
+use crate::run::interrupt::Interrupts;
+use crate::run::progress::Progress;
 
 /// How often the simulator is polled.
 const POLL_PERIOD: Duration = Duration::from_millis(50);

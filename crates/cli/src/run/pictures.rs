@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use pydslrep_picture::{Picture, png};
 
 use crate::failure::Failure;
-use crate::output;
+use crate::report::output;
 
 /// Where to write pictures, if at all.
 #[derive(Debug, Clone, clap::Args)]

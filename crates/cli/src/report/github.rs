@@ -4,7 +4,7 @@ use pydslrep_analysis::{Diagnostic, Severity};
 
 use crate::inputs::Inputs;
 use crate::inputs::scenes::{self, SceneProblem};
-use crate::place::{self, PlaceRange};
+use crate::report::place::{self, PlaceRange};
 
 /// The problems as workflow commands, a line each.
 pub(crate) fn commands(

@@ -5,9 +5,9 @@ use pydslrep_analysis::{Diagnostic, EntityId, FileId, Severity};
 
 use crate::failure::Failure;
 use crate::inputs::Inputs;
-use crate::output::{count, say};
-use crate::render;
-use crate::summary::summary;
+use crate::report::output::{count, say};
+use crate::report::render;
+use crate::report::summary::summary;
 
 /// The environments of a program that were asked for: all, or those of that name.
 pub(crate) fn environments(inputs: &Inputs, file: FileId, name: Option<&str>) -> Vec<EntityId> {

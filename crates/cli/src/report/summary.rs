@@ -4,7 +4,7 @@ use pydslrep_analysis::{Diagnostic, Severity};
 
 use crate::inputs::Inputs;
 use crate::inputs::scenes::{self, SceneProblem};
-use crate::output::count;
+use crate::report::output::count;
 
 /// "2 errors and 1 warning in 1 file".
 pub(crate) fn summary(

@@ -8,7 +8,7 @@ use pydslrep_config::Problem;
 use pydslrep_syntax::Span;
 
 use crate::inputs::Inputs;
-use crate::output::renderer;
+use crate::report::output::renderer;
 
 /// Problems as they are shown on a terminal, each with an empty line behind it.
 pub(crate) fn diagnostics(inputs: &Inputs, diagnostics: &[Diagnostic]) -> String {

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use crate::inputs::Inputs;
 use crate::inputs::scenes::{self, SceneProblem};
-use crate::place::{self, PlaceRange};
+use crate::report::place::{self, PlaceRange};
 
 const SCHEMA: &str = "https://json.schemastore.org/sarif-2.1.0.json";
 

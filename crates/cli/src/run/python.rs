@@ -17,7 +17,7 @@ use tokio::process::Command;
 use tokio::time::timeout;
 
 use crate::failure::Failure;
-use crate::output;
+use crate::report::output;
 
 /// Asking an interpreter, creating an environment, installing: none may hang forever.
 const ASK_LIMIT: Duration = Duration::from_secs(30);
@@ -28,7 +28,7 @@ const INSTALL_LIMIT: Duration = Duration::from_secs(600);
 const INDEX_LIMIT: Duration = Duration::from_millis(2500);
 
 /// Asks whether the package index can be reached; if not, exits with [`ABSENT`] and prints why.
-const ASK_INDEX: &str = include_str!("../python/ask_index.py");
+const ASK_INDEX: &str = include_str!("../../python/ask_index.py");
 const ABSENT: i32 = 3;
 
 /// Prints version and path, one per line; works on Python 2, too, so that an old one is not reported as broken.

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::inputs::Inputs;
 use crate::inputs::scenes::{self, SceneProblem};
-use crate::place::{self, PlaceRange};
+use crate::report::place::{self, PlaceRange};
 
 #[derive(Debug, Serialize)]
 struct Problem<'a> {

@@ -9,8 +9,8 @@ use pydslrep_trace::Track;
 use serde::Serialize;
 
 use crate::commands::plan::{Planned, fixed, heading};
-use crate::driven::Driven;
-use crate::output;
+use crate::report::output;
+use crate::run::driven::Driven;
 
 /// A run that has ended.
 pub(crate) struct Outcome<'a> {
@@ -194,8 +194,8 @@ mod tests {
             ],
         };
         let json = serde_json::to_string_pretty(&figures).unwrap();
-        expect_file!["../../../editors/vscode/tests/figures.sample.ts"].assert_eq(&format!(
-            "// Written by a test of crates/cli/src/outcome.rs.\n\
+        expect_file!["../../../../editors/vscode/tests/figures.sample.ts"].assert_eq(&format!(
+            "// Written by a test of crates/cli/src/run/outcome.rs.\n\
              import type {{ Figures }} from \"../src/figures\";\n\n\
              export const figures: Figures = {json};\n"
         ));

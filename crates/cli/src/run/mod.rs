@@ -1,0 +1,11 @@
+//! Runs: from a Python interpreter to the result.
+
+pub(crate) mod driven;
+pub(crate) mod exploring;
+pub(crate) mod interrupt;
+pub(crate) mod outcome;
+pub(crate) mod pictures;
+pub(crate) mod progress;
+pub(crate) mod python;
+pub(crate) mod script;
+pub(crate) mod vrep_client;
