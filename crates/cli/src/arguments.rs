@@ -19,22 +19,22 @@ const STYLES: Styles = Styles::styled()
 
 const EXAMPLES: &str = "\
 Examples:
-  pydslrep new patrol                    start with a program that drives a square
-  pydslrep check patrol/patrol.pyr       see what is wrong with it
-  pydslrep run patrol/patrol.pyr         drive it in the embedded simulator
-  pydslrep build patrol/patrol.pyr       write its Python script for CoppeliaSim
+  pydslrep new patrol                    create a program that drives a square
+  pydslrep check patrol/patrol.pyr       show its errors and how to fix them
+  pydslrep run patrol/patrol.pyr         run it in the embedded simulator
+  pydslrep build patrol/patrol.pyr       generate its Python script for CoppeliaSim
 
 Exit codes: 0 fine, 1 errors in the program or a movement that failed, 2 wrong use or
 an outside failure (file, port, missing Python), 130 interrupted.";
 
-/// Programs for mobile robots: checked, planned, turned into Python scripts for the simulators CoppeliaSim and V-REP, and driven.
+/// Check, plan and run programs for mobile robots, and generate Python scripts for the simulators CoppeliaSim and V-REP.
 #[derive(Debug, Parser)]
 #[command(name = "pydslrep", version, styles = STYLES, after_help = EXAMPLES, propagate_version = true)]
 #[command(max_term_width = 100)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
-    /// When to use colours; `auto` is on terminals and where `NO_COLOR` is not set.
+    /// When to use colours; `auto` uses them on terminals unless `NO_COLOR` is set.
     #[arg(
         long,
         global = true,
@@ -72,7 +72,7 @@ pub(crate) enum Color {
 }
 
 impl Color {
-    /// Makes it hold for everything that is printed from now on.
+    /// Applies to everything that is printed from now on.
     pub(crate) fn write_global(self) {
         match self {
             Self::Auto => anstream::ColorChoice::Auto,
@@ -83,8 +83,8 @@ impl Color {
     }
 }
 
-/// What was probably meant where a program stands in place of a command.
-pub(crate) fn meant(error: &clap::Error) -> Option<Failure> {
+/// A suggestion if a program is in the place of a command.
+pub(crate) fn suggestion(error: &clap::Error) -> Option<Failure> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else { return None };
     let path = Path::new(word);
     let command = if path.is_dir() {

@@ -10,12 +10,12 @@ use crate::inputs::Inputs;
 use crate::inputs::rewrite;
 use crate::report::output;
 
-/// What was fixed.
+/// The result of applying fixes.
 #[derive(Debug, Default)]
 pub(crate) struct Fixed {
-    /// How many problems, in the files where there were any.
+    /// The number of fixed problems, by file.
     pub(crate) problems: BTreeMap<FileId, usize>,
-    /// What the changed files were like before.
+    /// The texts of the changed files before.
     before: BTreeMap<FileId, String>,
 }
 

@@ -35,7 +35,7 @@ use crate::report::output;
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(error) => match arguments::meant(&error) {
+        Err(error) => match arguments::suggestion(&error) {
             Some(failure) => {
                 output::fail(&failure);
                 return ExitCode::from(Failure::EXIT_CODE);

@@ -18,12 +18,12 @@ use crate::target::target_parser;
 
 const EXAMPLES: &str = "\
 Examples:
-  pydslrep build patrol.pyr                     writes a script per environment beside it
+  pydslrep build patrol.pyr                     writes a script per environment next to it
   pydslrep build rooms/ -o scripts              all programs of a folder
   pydslrep build patrol.pyr --environment hall --stdout | less
   pydslrep build patrol.pyr --target vrep       for V-REP's legacy remote API
 
-The nearest pydslrep.toml above a program sets the folder and the target for good:
+The nearest pydslrep.toml above a program sets the default folder and target:
   output = \"scripts\"
   target = \"coppeliasim\"";
 
@@ -34,7 +34,7 @@ pub(crate) struct Arguments {
     /// Programs, folders with programs, or `-` for standard input [default: this folder]
     #[arg(value_name = "PATH")]
     paths: Vec<PathBuf>,
-    /// The folder to write to; made if it is not there [default: that of pydslrep.toml, else beside each program]
+    /// The folder to write to, created if missing [default: that of pydslrep.toml, else next to each program]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// The simulator that the scripts are for [default: that of pydslrep.toml, else coppeliasim]
@@ -48,7 +48,7 @@ pub(crate) struct Arguments {
     stdout: bool,
 }
 
-/// A script and where it goes.
+/// A script and its destination.
 struct Script {
     path: PathBuf,
     environment: String,
@@ -59,7 +59,7 @@ struct Script {
 /// Runs the command.
 ///
 /// # Errors
-/// When a script cannot be written, or the arguments do not fit the programs.
+/// If a script cannot be written, or the arguments do not fit the programs.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let here = [PathBuf::from(".")];
     let paths = if arguments.paths.is_empty() { &here } else { arguments.paths.as_slice() };
@@ -108,8 +108,8 @@ fn folder(inputs: &Inputs, file: FileId, arguments: &Arguments) -> Result<PathBu
     match arguments.output.clone().or_else(|| inputs.script_folder(file)) {
         Some(folder) => Ok(folder),
         None if arguments.stdout => Ok(PathBuf::new()),
-        None => Err(Failure::new("a program from standard input has no place for its script")
-            .help("choose one by -o DIR, or use --stdout")),
+        None => Err(Failure::new("no folder for the script of a program from standard input")
+            .help("choose one with -o DIR, or use --stdout")),
     }
 }
 
@@ -120,13 +120,13 @@ fn print(scripts: &[Script]) -> Result<(), Failure> {
         several => {
             let names: Vec<String> =
                 several.iter().map(|script| format!("`{}`", script.environment)).collect();
-            Err(Failure::new(format!("--stdout is for one script, but there are {}", names.len()))
-                .help(format!("choose one by --environment NAME; there are {}", names.join(", "))))
+            Err(Failure::new(format!("--stdout prints one script, but there are {}", names.len()))
+                .help(format!("choose one with --environment NAME: {}", names.join(", "))))
         }
     }
 }
 
-/// Writes all scripts or, where one of them has no place, none.
+/// Writes all scripts; or none, if one of them cannot be written where it belongs.
 fn write(scripts: &[Script]) -> Result<(), Failure> {
     for (index, script) in scripts.iter().enumerate() {
         if scripts[..index].iter().any(|other| other.path == script.path) {
@@ -135,8 +135,11 @@ fn write(scripts: &[Script]) -> Result<(), Failure> {
             ));
         }
         if is_foreign(&script.path) {
-            return Err(Failure::new(format!("{} exists and is no generated script", script.path.display()))
-                .help("move it away, or choose another folder by -o DIR"));
+            return Err(Failure::new(format!(
+                "{} exists and is not a generated script",
+                script.path.display()
+            ))
+            .help("move it away, or choose another folder with -o DIR"));
         }
     }
     for script in scripts {
@@ -148,7 +151,7 @@ fn write(scripts: &[Script]) -> Result<(), Failure> {
     if scripts.is_empty() { Ok(()) } else { output::print(&report(scripts)) }
 }
 
-/// Whether there is something at the path that this command did not write.
+/// Whether the path holds anything that this command did not write.
 fn is_foreign(path: &Path) -> bool {
     match fs::read(path) {
         Ok(bytes) => !may_replace(&bytes),

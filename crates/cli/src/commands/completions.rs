@@ -1,4 +1,4 @@
-//! `pydslrep completions`: completion of this command line in shells.
+//! `pydslrep completions`: shell completion.
 
 use std::process::ExitCode;
 
@@ -26,7 +26,7 @@ pub(crate) struct Arguments {
 /// Runs the command; `command` is the whole of the command line.
 ///
 /// # Errors
-/// When it cannot be printed.
+/// If it cannot be printed.
 pub(crate) fn run(arguments: &Arguments, mut command: Command) -> Result<ExitCode, Failure> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut command, "pydslrep", &mut script);

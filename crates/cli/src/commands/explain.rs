@@ -14,7 +14,7 @@ use crate::report::output;
 const EXAMPLES: &str = "\
 Examples:
   pydslrep explain                  all diagnostics
-  pydslrep explain invalid-radius   what one is about, with an example";
+  pydslrep explain invalid-radius   one of them, with an example";
 
 /// Longer lines are hard to read.
 const MOST_COLUMNS: usize = 100;
@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
 /// Runs the command.
 ///
 /// # Errors
-/// When there is no such diagnostic, or nothing can be printed.
+/// If there is no such diagnostic, or nothing can be printed.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let columns = textwrap::termwidth().min(MOST_COLUMNS);
     output::print(&match &arguments.code {
@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// All diagnostics, a line each where it is long enough.
+/// All diagnostics, one per line if the terminal is wide enough.
 fn list(columns: usize) -> String {
     let length =
         |word: fn(&Rule) -> &str| CATALOGUE.into_iter().map(|rule| word(rule).len()).max().unwrap_or(0);
@@ -53,7 +53,7 @@ fn list(columns: usize) -> String {
         let (code, severity) = (rule.code, rule.severity.word());
         let plain = format!("{code:codes$}  {severity:severities$}  {}", rule.summary);
         let wrapped = textwrap::fill(&plain, &options);
-        // Colours come last: they have no width.
+        // Colours are added last: they have no width.
         let rest = wrapped.get(codes + 2 + severities..).unwrap_or_default();
         let colour = colour(rule.severity);
         out += &format!("{bold}{code:codes$}{bold:#}  {colour}{severity:severities$}{colour:#}{rest}\n");
@@ -61,7 +61,7 @@ fn list(columns: usize) -> String {
     out
 }
 
-/// The colours in which problems are shown.
+/// The colour of a severity.
 fn colour(severity: Severity) -> Style {
     match severity {
         Severity::Error => AnsiColor::BrightRed.on_default(),

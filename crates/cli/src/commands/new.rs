@@ -1,4 +1,4 @@
-//! `pydslrep new`: a program to start from.
+//! `pydslrep new`: a starter program with its scene.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use pydslrep_text::file_names::PROGRAM_EXTENSION as EXTENSION;
 
 const EXAMPLES: &str = "\
 Examples:
-  pydslrep new patrol           makes patrol/patrol.pyr and its scene
+  pydslrep new patrol           creates patrol/patrol.pyr and its scene
   pydslrep run patrol/patrol.pyr";
 
 /// Start a program: a robot that drives a square
@@ -27,13 +27,13 @@ pub(crate) struct Arguments {
 /// Runs the command.
 ///
 /// # Errors
-/// When the name does not fit, is taken, or cannot be written.
+/// If the name is not valid or taken, or the files cannot be written.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let folder = &arguments.name;
     let name =
         folder.file_name().and_then(|name| name.to_str()).filter(|name| is_name(name)).ok_or_else(|| {
             Failure::new(format!("`{}` cannot be a name in a program", folder.display()))
-                .help("use letters, digits and `_`, with no digit in front: `pydslrep new patrol_1`")
+                .help("use letters, digits and `_`; don't start with a digit: `pydslrep new patrol_1`")
         })?;
     if folder.exists() {
         return Err(Failure::new(format!("{} already exists", folder.display())).help("choose another name"));
@@ -118,5 +118,5 @@ start = [0, 0, 0]
 
 fn next_steps(program: &Path, scene: &Path) -> String {
     let (program, scene) = (program.display(), scene.display());
-    format!("Made {program} and its scene {scene}. Drive it with\n\n    pydslrep run {program}\n")
+    format!("Created {program} and its scene {scene}. Run it with\n\n    pydslrep run {program}\n")
 }

@@ -1,4 +1,4 @@
-//! `pydslrep plan`: where and when robots are to be, without a simulator.
+//! `pydslrep plan`: planned poses and times, without a simulator.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -25,7 +25,7 @@ Examples:
   pydslrep plan patrol.pyr
   pydslrep plan patrol.pyr --json
   pydslrep plan patrol.pyr --picture patrol.svg
-  pydslrep plan patrol.pyr --replay patrol.svg     robots that drive, for a browser";
+  pydslrep plan patrol.pyr --replay patrol.svg     an animated SVG for a browser";
 
 /// Points of a planned leg in a picture.
 const POINTS_PER_LEG: u32 = 24;
@@ -44,7 +44,7 @@ pub(crate) struct Arguments {
     json: bool,
     #[command(flatten)]
     pictures: Pictures,
-    /// The scene to plan in [default: ENVIRONMENT.scene.toml beside the program, if it is there]
+    /// The scene to plan in [default: ENVIRONMENT.scene.toml next to the program, if it exists]
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
 }
@@ -60,16 +60,16 @@ impl Planned {
     /// Plans an environment in a scene.
     ///
     /// # Errors
-    /// When a robot cannot drive.
+    /// If a robot cannot drive.
     pub(crate) fn new(environment: Environment, scene: Scene) -> Result<Self, Failure> {
         let plan = plan(&environment, &scene)?;
         Ok(Self { environment, scene, plan })
     }
 
-    /// Plans it again from where robots really started, where a scene that is not ours put them.
+    /// Plans again from where robots really started, for a scene in another simulator.
     ///
     /// # Errors
-    /// When a robot cannot drive.
+    /// If a robot cannot drive.
     pub(crate) fn start_from(&mut self, driven: &Driven) -> Result<(), Failure> {
         for (robot, path) in self.scene.robots.iter_mut().zip(driven.tracks()) {
             robot.start = path.start().unwrap_or(robot.start);
@@ -78,7 +78,7 @@ impl Planned {
         Ok(())
     }
 
-    /// What to draw of each robot, with nothing driven yet.
+    /// The planned route of each robot.
     pub(crate) fn routes(&self) -> Vec<Route> {
         let robots = self.scene.robots.iter().zip(&self.plan.robots);
         let routes = robots.map(|(robot, path)| Route {
@@ -93,10 +93,10 @@ impl Planned {
         routes.collect()
     }
 
-    /// Draws such routes in its scene, with what the plan runs into.
+    /// Draws routes in the scene, with the collisions of the plan.
     ///
     /// # Errors
-    /// When a file cannot be written.
+    /// If a file cannot be written.
     pub(crate) fn draw(&self, pictures: &Pictures, title: &str, routes: &[Route]) -> Result<(), Failure> {
         let met = collisions(&self.scene, &self.plan);
         let collisions: Vec<(f64, f64)> = met.iter().map(|met| (met.pose.x, met.pose.y)).collect();
@@ -109,7 +109,7 @@ impl Planned {
         self.environment.movements.get(*self.environment.schedule.get(index.group)?.get(index.run)?)
     }
 
-    /// The movement of an action and the action as the program writes it.
+    /// The names of an action's movement and of the action, as the program writes them.
     fn words(&self, index: ActionIndex) -> (String, String) {
         let movement = self.movement(index);
         let action = movement.and_then(|movement| movement.actions.get(index.action));
@@ -128,7 +128,7 @@ fn plan(environment: &Environment, scene: &Scene) -> Result<Plan, Failure> {
 /// Runs the command.
 ///
 /// # Errors
-/// When the program cannot be read, or nothing can be written.
+/// If the program cannot be read or nothing can be written.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let (mut inputs, file) = Inputs::open_one(&arguments.program, &Config::default())?;
     let ids = program::environments(&inputs, file, arguments.environment.as_deref());
@@ -153,7 +153,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     Ok(ExitCode::from(u8::from(prepared.has_errors)))
 }
 
-/// The cells of a row: what happens, when that ends, where the robot is then, and how its wheels turned.
+/// The cells of a row: an action, when it ends, the pose at its end, and the wheel rates.
 type Row = [String; 6];
 
 const HEAD: [&str; 6] = ["action", "at s", "x m", "y m", "heading °", "wheels rad/s"];
@@ -161,16 +161,16 @@ const HEAD: [&str; 6] = ["action", "at s", "x m", "y m", "heading °", "wheels r
 /// Between two columns.
 const GAP: usize = 2;
 
-/// Narrower than this, words are hard to read.
+/// A narrower column is hard to read.
 const FEWEST_COLUMNS: usize = 16;
 
-/// Two robots or actions begin at the same time where they do so within this many seconds.
+/// Actions that begin within this many seconds of each other begin together.
 const AT_ONCE: f64 = 0.005;
 
 fn table(planned: &Planned) -> String {
     let duration = match planned.plan.duration {
         Some(seconds) => format!("{} s", fixed(seconds, 2)),
-        None => "duration unknown until it runs: what is marked ? depends on what the robot meets".to_owned(),
+        None => "duration unknown until it runs: values marked ? depend on sensors".to_owned(),
     };
     let title = output::wrapped(&format!("{}: {duration}", planned.environment.name));
     let robots = planned.scene.robots.iter().zip(&planned.plan.robots);
@@ -182,7 +182,7 @@ fn table(planned: &Planned) -> String {
     let others: usize = (1..HEAD.len()).map(width).sum();
     let last = HEAD.len() - 1;
     let left = |others: usize| output::columns().saturating_sub(others + 1);
-    // On a narrow terminal the wheels stand below their action.
+    // On a narrow terminal, wheel rates are below their action.
     let is_narrow = left(others) < FEWEST_COLUMNS;
     let columns = if is_narrow { left(others - width(last)) } else { left(others) }.max(FEWEST_COLUMNS);
     let mut table = output::table(HEAD);
@@ -207,7 +207,7 @@ fn table(planned: &Planned) -> String {
     format!("{title}\n\n{}\n\n{met}", table.trim_fmt())
 }
 
-/// Text in lines of so many columns, which all begin where the first does, and later ones a little further.
+/// Text wrapped to a width; continuation lines keep its indentation and two columns more.
 fn indented(text: &str, columns: usize) -> String {
     let words = text.trim_start();
     let indentation = " ".repeat(text.len() - words.len());
@@ -216,7 +216,7 @@ fn indented(text: &str, columns: usize) -> String {
     textwrap::fill(words, options)
 }
 
-/// What a robot does, from where it starts: its movements, and below each what it is made of.
+/// The rows of a robot: its start, its movements, and the actions of each.
 fn rows(planned: &Planned, robot: &str, path: &RobotPath) -> Vec<Row> {
     let row = |what: String, at: String, pose: Pose, rates: String| {
         [what, at, fixed(pose.x, 3), fixed(pose.y, 3), heading(pose.theta), rates]
@@ -252,7 +252,7 @@ fn rows(planned: &Planned, robot: &str, path: &RobotPath) -> Vec<Row> {
     rows
 }
 
-/// What a robot would run into, in words.
+/// A collision in a sentence.
 fn meeting(planned: &Planned, collision: &Collision) -> String {
     let (movement, action) = planned.words(collision.action);
     let time = collision.time.map_or_else(String::new, |time| format!(" after {} s", fixed(time, 2)));
@@ -268,7 +268,7 @@ fn meeting(planned: &Planned, collision: &Collision) -> String {
     )
 }
 
-/// What an obstacle or a robot is called.
+/// The name of an obstacle or a robot.
 fn thing(scene: &Scene, thing: Thing) -> &str {
     match thing {
         Thing::Obstacle(index) => scene.obstacles.get(index).map_or("", |obstacle| &obstacle.name),
@@ -280,12 +280,12 @@ fn time(seconds: Option<f64>) -> String {
     seconds.map_or_else(|| "?".to_owned(), |seconds| fixed(seconds, 2))
 }
 
-/// A heading in degrees, in (−180, 180] also when rounded.
+/// A heading in degrees, in (−180, 180] even when rounded.
 pub(crate) fn heading(radians: f64) -> String {
     fixed(heading_degrees(radians, 1), 1)
 }
 
-/// A number with so many digits after the point, and no −0.
+/// A number with a fixed number of decimals, never −0.
 pub(crate) fn fixed(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
     match text.strip_prefix('-') {
@@ -303,7 +303,7 @@ struct JsonPlan<'a> {
     collisions: Vec<JsonCollision<'a>>,
 }
 
-/// Where a robot would run into something: seconds, metres, radians.
+/// A collision: seconds, metres, radians.
 #[derive(Serialize)]
 struct JsonCollision<'a> {
     robot: &'a str,
@@ -316,7 +316,7 @@ struct JsonCollision<'a> {
     with: JsonThing<'a>,
 }
 
-/// What a robot would run into.
+/// What a robot collides with.
 #[derive(Serialize)]
 #[serde(rename_all = "snake_case")]
 enum JsonThing<'a> {
@@ -331,7 +331,7 @@ struct JsonRobot<'a> {
     unknown_after: Option<JsonAction<'a>>,
 }
 
-/// Where an action stands.
+/// The index of an action.
 #[derive(Serialize)]
 struct JsonAction<'a> {
     movement: &'a str,

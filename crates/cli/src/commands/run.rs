@@ -1,4 +1,4 @@
-//! `pydslrep run`: from a program to a driven path.
+//! `pydslrep run`: generates the script of a program, simulates it, and plots the result.
 
 use std::ffi::OsString;
 use std::fs;
@@ -34,30 +34,30 @@ const EXAMPLES: &str = "\
 Examples:
   pydslrep run patrol.pyr                          in the embedded simulator
   pydslrep run patrol.pyr --picture patrol.svg     and draw planned and driven path
-  pydslrep run patrol.pyr --replay driven.svg      and draw robots that drive, for a browser
-  pydslrep run patrol.pyr --scene hall.scene.toml  among what stands in a hall
+  pydslrep run patrol.pyr --replay driven.svg      and draw an animated SVG for a browser
+  pydslrep run patrol.pyr --scene hall.scene.toml  with the obstacles of a hall
   pydslrep run patrol.pyr --host 127.0.0.1 --port 23000
-                                                   in a CoppeliaSim that runs there
-  pydslrep run patrol.pyr --target vrep            by V-REP's legacy remote API
+                                                   in a CoppeliaSim that is running there
+  pydslrep run patrol.pyr --target vrep            with V-REP's legacy remote API
 
-The first run makes a virtual environment for Python in the user's cache folder and installs
-the client of CoppeliaSim's remote API into it, which needs Python 3.11 or later and network.
-With --target vrep the user's own Python runs the script, with V-REP's client (sim.py or vrep.py
-and its library) from beside the program or from Python's path.";
+The first run creates a Python virtual environment in your cache folder and installs the
+CoppeliaSim client library into it, which needs Python 3.11 or later and network access.
+With --target vrep, your own Python runs the script with V-REP's client (sim.py or vrep.py and
+its library) from the program's folder or from Python's path.";
 
-/// Drive a program: check it, generate its script, and run that in the embedded simulator
+/// Run a program: check it, generate its script, and run that in the embedded simulator
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
     /// A program, or `-` for standard input
     program: PathBuf,
-    /// The environment to run; needed where there are several
+    /// The environment to run; required if there are several
     #[arg(long, value_name = "NAME")]
     environment: Option<String>,
-    /// The scene to drive in [default: ENVIRONMENT.scene.toml beside the program, if it is there]
+    /// The scene to run in [default: ENVIRONMENT.scene.toml next to the program, if it exists]
     #[arg(long, value_name = "FILE", conflicts_with = "host")]
     scene: Option<PathBuf>,
-    /// What the noise of the scene is made from: the same number, the same run
+    /// The seed of the scene's noise: the same seed gives the same run
     #[arg(long, value_name = "N", conflicts_with = "host")]
     seed: Option<u64>,
     /// The simulator that the script is for [default: that of pydslrep.toml, else coppeliasim]
@@ -65,25 +65,25 @@ pub(crate) struct Arguments {
     target: Option<Target>,
     #[command(flatten)]
     pictures: Pictures,
-    /// Write every step into a file, as JSON lines
+    /// Write every step to a file, as JSON lines
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
-    /// Write the map of robots that explore into a file, as JSON [default: `ENVIRONMENT_map.json`]
+    /// Write the map of robots that explore to a file, as JSON [default: `ENVIRONMENT_map.json`]
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
-    /// Write the result into a file, as JSON: times, and where each robot ends
+    /// Write the result to a file, as JSON: times, and where each robot ends
     #[arg(long, value_name = "FILE")]
     figures: Option<PathBuf>,
-    /// Explore by how the wheels turn, without asking the simulator where the robot is
+    /// Explore by wheel odometry, without poses from the simulator
     #[arg(long)]
     odometry: bool,
-    /// How far an area may go on from where a robot starts to explore it, in metres [default: 20]
+    /// How far from its start a robot explores an area at most, in metres [default: 20]
     #[arg(long, value_name = "METRES", value_parser = above_zero)]
     extent: Option<f64>,
-    /// Simulated seconds per second, so that the run can be watched [default: as fast as it goes]
+    /// Simulated seconds per second, to watch the run [default: as fast as possible]
     #[arg(long, value_name = "X", value_parser = above_zero, conflicts_with = "host")]
     speed: Option<f64>,
-    /// Show no progress
+    /// Hide progress
     #[arg(long)]
     no_progress: bool,
     /// Use the CoppeliaSim on this machine instead of the embedded simulator
@@ -92,7 +92,7 @@ pub(crate) struct Arguments {
     /// Port of that CoppeliaSim, for all robots or for one; may be repeated
     #[arg(long, value_name = "[ROBOT=]PORT", requires = "host")]
     port: Vec<String>,
-    /// End like by Ctrl-C when standard input ends: for programs that start this one and may be killed
+    /// End as after Ctrl-C when standard input ends: for a parent process that may be killed
     #[arg(long, hide = true)]
     until_input_ends: bool,
     /// The Python to run the script with [default: python3]
@@ -100,16 +100,16 @@ pub(crate) struct Arguments {
     python: Option<PathBuf>,
 }
 
-/// A factor from the command line.
+/// Parses a number above zero.
 pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
     let speed = text.parse().ok().filter(|speed: &f64| speed.is_finite() && *speed > 0.0);
-    speed.ok_or_else(|| "a number above zero is expected, such as 1 or 2.5".to_owned())
+    speed.ok_or_else(|| "expected a number above zero, such as 1 or 2.5".to_owned())
 }
 
 /// Runs the command.
 ///
 /// # Errors
-/// When anything outside of the program fails.
+/// If anything outside of the program fails.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let (mut inputs, file) = Inputs::open_one(&arguments.program, &Config::of_target(arguments.target))?;
     let target = inputs.settings(file).target;
@@ -182,7 +182,7 @@ impl Run<'_> {
         progress.clear();
         drop(simulator);
         if let (Some(trace), true) = (&trace, self.arguments.host.is_some()) {
-            // Nothing was driven where there is no trace.
+            // Without a trace, nothing was driven.
             let _ = driven.read(trace);
             self.planned.start_from(&driven)?;
         }
@@ -198,7 +198,7 @@ impl Run<'_> {
         }
     }
 
-    /// The port of each robot; any for those whose port an earlier one has, where each needs one of its own.
+    /// The port of each robot. V-REP needs a different one for each: a robot with the port of an earlier one gets a free one.
     fn ports(&self) -> Vec<u16> {
         let robots = &self.planned.environment.robots;
         let is_taken = |index: usize, port| robots[..index].iter().any(|robot| robot.port == port);
@@ -221,11 +221,11 @@ impl Run<'_> {
             .map_err(|error| Failure::new(error.to_string()))
     }
 
-    /// Where the script writes its trace: where the user wants it, else only if it is the only source of the path.
+    /// Where the script writes its trace: where the user wants it, or a temporary file if the path is known from nothing else.
     fn trace(&self, folder: &TempDir) -> Result<Option<PathBuf>, Failure> {
         match (&self.arguments.trace, &self.arguments.host) {
             (Some(path), _) => {
-                // The script would say so too, but only after the simulator was started.
+                // The script would report it too, but only after the simulator has started.
                 fs::File::create(path).map_err(|error| Failure::unwritten(path, &error))?;
                 Ok(Some(path.clone()))
             }
@@ -272,13 +272,13 @@ impl Run<'_> {
         all
     }
 
-    /// Where the map of robots that explore goes.
+    /// The destination of the map of robots that explore.
     fn map_file(&self) -> PathBuf {
         let default = || exploring::default_file(&self.planned.environment);
         self.arguments.map.clone().unwrap_or_else(default)
     }
 
-    /// Puts the map that the script left where it belongs, if there is one, and reads it.
+    /// Copies the script's map, if there is one, to its destination, and reads it.
     fn keep_map(&self, map: &Path) -> Result<Vec<Map>, Failure> {
         if !map.exists() {
             return Ok(Vec::new());
@@ -299,12 +299,12 @@ impl Run<'_> {
         let outcome = Outcome { planned: &self.planned, driven, wall, is_complete };
         let code = match ending {
             Ending::Done => 0,
-            Ending::Failed(words) => {
-                complain(&words);
+            Ending::Failed(message) => {
+                report_error(&message);
                 1
             }
-            Ending::Broken(words) => {
-                complain(&words);
+            Ending::Broken(message) => {
+                report_error(&message);
                 return Ok(Failure::EXIT_CODE);
             }
             Ending::Interrupted => {
@@ -331,10 +331,10 @@ impl Run<'_> {
     }
 }
 
-/// What a script said, as this command says it.
-fn complain(words: &str) {
-    match words.strip_prefix("error: ") {
+/// Reports a script's message in the style of this command.
+fn report_error(message: &str) {
+    match message.strip_prefix("error: ") {
         Some(message) if !message.contains('\n') => output::error(message, None),
-        _ => output::say(&format!("{words}\n")),
+        _ => output::say(&format!("{message}\n")),
     }
 }

@@ -1,4 +1,4 @@
-//! `pydslrep sim`: the embedded simulator alone, for scripts that are started by hand.
+//! `pydslrep sim`: the embedded simulator alone, for scripts that you start yourself.
 
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
@@ -25,13 +25,13 @@ const EXAMPLES: &str = "\
 Examples:
   pydslrep sim patrol.pyr                          serves the port of each robot, until Ctrl+C
   python3 yard.py                                  in another terminal: the script of the program
-  pydslrep sim patrol.pyr --trace driven.jsonl     writes where the robots are, step by step
+  pydslrep sim patrol.pyr --trace driven.jsonl     also write the poses of the robots
 
-Scripts of both targets can drive at the same time: what a client says first tells which remote
-API it speaks. Time passes as scripts step it, and by itself while none does. A script that is
-gone leaves its wheels at rest.";
+Scripts of both targets can connect at the same time: the first message of a client tells which
+remote API it uses. Scripts step the simulation; while none does, it runs by itself. The wheels of
+a script that disconnects stop.";
 
-/// How often what happened is written to the trace.
+/// How often the trace is written.
 const WRITE_PERIOD: Duration = Duration::from_millis(50);
 
 /// Start the embedded simulator alone, for scripts of your own
@@ -40,22 +40,22 @@ const WRITE_PERIOD: Duration = Duration::from_millis(50);
 pub(crate) struct Arguments {
     /// A program, or `-` for standard input
     program: PathBuf,
-    /// The environment to simulate; needed where there are several
+    /// The environment to simulate; required if there are several
     #[arg(long, value_name = "NAME")]
     environment: Option<String>,
-    /// The scene to drive in [default: ENVIRONMENT.scene.toml beside the program, if it is there]
+    /// The scene to simulate [default: ENVIRONMENT.scene.toml next to the program, if it exists]
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
-    /// What the noise of the scene is made from: the same number, the same run
+    /// The seed of the scene's noise: the same seed gives the same run
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// Where to listen; the default is for programs on this machine only
+    /// The address to listen on; the default accepts connections from this machine only
     #[arg(long, value_name = "ADDRESS", default_value_t = Ipv4Addr::LOCALHOST.into())]
     listen: IpAddr,
-    /// Simulated seconds per second while no script steps the time
+    /// Simulated seconds per second while no script steps the simulation
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = super::run::above_zero)]
     speed: f64,
-    /// Write every step into a file, as JSON lines
+    /// Write every step to a file, as JSON lines
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
 }
@@ -63,7 +63,7 @@ pub(crate) struct Arguments {
 /// Runs the command.
 ///
 /// # Errors
-/// When anything outside of the program fails.
+/// If anything outside of the program fails.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let (mut inputs, file) = Inputs::open_one(&arguments.program, &Config::default())?;
     let id = program::environment(&inputs, file, arguments.environment.as_deref())?;
@@ -110,7 +110,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     Ok(ExitCode::from(interrupt::EXIT_CODE))
 }
 
-/// How to end it, and how to drive: `script` is where `build` writes it.
+/// How to stop the simulator, and how to run the script: `script` is where `build` writes it.
 fn next_steps(arguments: &Arguments, environment: &Environment, script: Option<&Path>) -> String {
     let ready = "Ready. Press Ctrl+C to stop.\n";
     let Some(script) = script else { return ready.to_owned() };
@@ -128,7 +128,7 @@ fn next_steps(arguments: &Arguments, environment: &Environment, script: Option<&
     )
 }
 
-/// A path as shells take it.
+/// A path, quoted for a shell.
 fn quoted(path: &Path) -> String {
     let path = path.display().to_string();
     if path.contains(char::is_whitespace) { format!("\"{path}\"") } else { path }

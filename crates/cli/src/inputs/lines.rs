@@ -1,12 +1,12 @@
-//! Lines of programs and scripts, as the article counts them: those with more on them than spaces and comments.
+//! Lines of programs and scripts as the article counts them: without blank lines and comments.
 
 use pydslrep_analysis::{Database, FileId};
 use pydslrep_syntax::lex;
 
-/// What quotes docstrings. A script has no other text in such quotes.
+/// The quotes of docstrings; scripts use them for nothing else.
 const DOCSTRING: &str = "\"\"\"";
 
-/// Lines of a program and of all that it imports, which is as much to write.
+/// Lines of a program and of all its imports.
 pub(crate) fn of_program(database: &Database, program: FileId) -> usize {
     let mut files = vec![program];
     let mut next = 0;

@@ -9,7 +9,7 @@ use crate::report::output::{count, say};
 use crate::report::render;
 use crate::report::summary::summary;
 
-/// The environments of a program that were asked for: all, or those of that name.
+/// The environments of a program: all, or those with a name.
 pub(crate) fn environments(inputs: &Inputs, file: FileId, name: Option<&str>) -> Vec<EntityId> {
     let all = inputs.database().environments(file).into_iter();
     all.filter(|(_, other)| name.is_none_or(|name| other.text == name)).map(|(id, _)| id).collect()
@@ -18,28 +18,28 @@ pub(crate) fn environments(inputs: &Inputs, file: FileId, name: Option<&str>) ->
 /// The one environment to work on.
 ///
 /// # Errors
-/// When there is none, or several and none was chosen.
+/// If there is none, or several and none was chosen.
 pub(crate) fn environment(inputs: &Inputs, file: FileId, name: Option<&str>) -> Result<EntityId, Failure> {
     let shown = inputs.shown(file);
     match (environments(inputs, file, name).as_slice(), name) {
         ([one], _) => Ok(*one),
-        // Of several with the same name the first one counts, as everywhere.
+        // Of several with the same name, the first one counts, as everywhere.
         ([first, ..], Some(_)) => Ok(*first),
         ([], None) => Err(Failure::new(format!("{shown} has no environment")).help(known(inputs, &[file]))),
         (several, None) => Err(Failure::new(format!("{shown} has {}", count(several.len(), "environment")))
-            .help(format!("choose one by --environment NAME; {}", known(inputs, &[file])))),
+            .help(format!("choose one with --environment NAME; {}", known(inputs, &[file])))),
         ([], Some(name)) => Err(no_environment(inputs, &[file], name)),
     }
 }
 
-/// That no program has an environment of that name.
+/// The failure for a name that no environment has.
 pub(crate) fn no_environment(inputs: &Inputs, files: &[FileId], name: &str) -> Failure {
     let shown: Vec<&str> = files.iter().map(|file| inputs.shown(*file)).collect();
     Failure::new(format!("there is no environment `{name}` in {}", shown.join(", ")))
         .help(known(inputs, files))
 }
 
-/// Which environments there are, in words.
+/// The names of the environments, for a help text.
 fn known(inputs: &Inputs, files: &[FileId]) -> String {
     let environments = files.iter().flat_map(|file| inputs.database().environments(*file));
     let names: Vec<String> = environments.map(|(_, name)| format!("`{}`", name.text)).collect();
@@ -50,16 +50,16 @@ fn known(inputs: &Inputs, files: &[FileId]) -> String {
     }
 }
 
-/// Environments ready to run, and what keeps the others from it.
+/// Environments without errors.
 pub(crate) struct Prepared {
     /// In the order asked for.
     pub(crate) environments: Vec<Environment>,
-    /// Whether something keeps an environment from being ready, or its program has other errors.
+    /// Whether an environment was skipped, or the program has other errors.
     pub(crate) has_errors: bool,
 }
 
-/// Makes environments of a program ready to run. The problems of the program are shown on the way, but for hints, which
-/// are for those who ask; and those of other files where they stand in the way.
+/// Resolves environments of a program. Prints the program's problems, except hints, and the errors in other files that
+/// block an environment.
 pub(crate) fn prepare(inputs: &Inputs, file: FileId, ids: &[EntityId]) -> Prepared {
     let (mut prepared, mut stuck) = (Vec::new(), Vec::new());
     let mut errors = Vec::new();
@@ -82,8 +82,8 @@ pub(crate) fn prepare(inputs: &Inputs, file: FileId, ids: &[EntityId]) -> Prepar
     Prepared { environments: prepared, has_errors: !stuck.is_empty() || problems.iter().any(is_error) }
 }
 
-/// The problems of a program as they are to be shown, and errors in other files. An error that keeps an environment
-/// from being ready is shown as that, however bad it was said to be.
+/// The problems of a program with their severities, and errors in other files. An error that blocks an environment stays
+/// an error, whatever its severity is set to.
 fn problems(inputs: &Inputs, file: FileId, errors: &[Diagnostic]) -> Vec<Diagnostic> {
     let severities = inputs.settings(file).severities;
     let as_shown = |problem: Diagnostic| {

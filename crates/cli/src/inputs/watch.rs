@@ -1,4 +1,4 @@
-//! When to look again: `check --watch`.
+//! Watches files for `check --watch`.
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
@@ -14,51 +14,51 @@ use tokio::time::timeout;
 
 use crate::failure::Failure;
 
-/// How long nothing may happen before it is looked again: editors save in several steps.
+/// How long changes must pause before the next check: editors save in several steps.
 const QUIET: Duration = Duration::from_millis(50);
 
-/// What never comes to rest is looked at nonetheless.
+/// A check starts after this many events even if they do not pause.
 const MOST_EVENTS: usize = 10_000;
 
-/// What matters of the disk.
+/// The files and folders to watch.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Scope {
-    /// Folders whose programs count, however deep below.
+    /// Folders whose programs count, at any depth.
     pub(crate) folders: BTreeSet<PathBuf>,
-    /// Files that count, whether they are there or not.
+    /// Files that count, whether they exist or not.
     pub(crate) files: BTreeSet<PathBuf>,
 }
 
-/// Watches what matters.
+/// A watcher of a [`Scope`].
 pub(crate) struct Watch {
     sender: UnboundedSender<Event>,
     events: UnboundedReceiver<Event>,
     scope: Scope,
-    /// Kept, since it ends with its value.
+    /// Watches until it is dropped.
     watcher: Option<RecommendedWatcher>,
 }
 
 impl Watch {
-    /// Watches nothing yet.
+    /// A watcher of nothing.
     pub(crate) fn new() -> Self {
         let (sender, events) = unbounded_channel();
         Self { sender, events, scope: Scope::default(), watcher: None }
     }
 
-    /// Watches this from now on. It is begun anew each time, so that folders count that were replaced; what happens
-    /// meanwhile is seen by the old watcher, except in what only matters from now on.
+    /// Watches this from now on, with a new watcher, so that replaced folders count. The old one still reports changes in
+    /// between, except in what is watched only from now on.
     ///
     /// # Errors
-    /// When the system does not allow it.
+    /// If the system does not allow it.
     pub(crate) fn look_at(&mut self, scope: Scope) -> Result<(), Failure> {
         let sender = self.sender.clone();
-        // Nobody listens any more only where the command ends.
+        // The receiver is gone only when the command ends.
         let tell = move |event: notify::Result<Event>| drop(event.map(|event| sender.send(event)));
         let mut watcher = notify::recommended_watcher(tell).map_err(|error| unwatched(&error))?;
         for (folder, mode) in scope.watched() {
             match watcher.watch(&folder, mode) {
                 Ok(()) => {}
-                // Removed meanwhile: the folder above it tells. Not all folders above are ours to look into.
+                // Removed in the meantime: its parent reports it. Not all parents are readable.
                 Err(_) if !folder.exists() || mode == RecursiveMode::NonRecursive => {}
                 Err(error) => return Err(unwatched(&error)),
             }
@@ -68,12 +68,12 @@ impl Watch {
         Ok(())
     }
 
-    /// What is watched.
+    /// The current scope.
     pub(crate) fn scope(&self) -> &Scope {
         &self.scope
     }
 
-    /// Waits until something has changed that matters, and then until nothing does any more.
+    /// Waits for a change in the scope, and then until changes pause.
     pub(crate) async fn change(&mut self) {
         while let Some(event) = self.events.recv().await {
             if self.scope.concerns(&event) {
@@ -90,12 +90,12 @@ impl Watch {
 
 fn unwatched(error: &notify::Error) -> Failure {
     Failure::new(format!("cannot watch for changes: {error}"))
-        .help("a smaller folder may do, or a higher limit of the system for watched files")
+        .help("watch a smaller folder, or raise the system's limit for watched files")
 }
 
 impl Scope {
-    /// The folders to watch: those that count with all below them; and of every file its own and those above it, since
-    /// a settings file may come to any of them, and folders may come and go.
+    /// The folders to watch: those that count, recursively; and all parents of every file, since a settings file may
+    /// appear in any of them, and folders may come and go.
     fn watched(&self) -> Vec<(PathBuf, RecursiveMode)> {
         let above = self.files.iter().chain(&self.folders).flat_map(|path| path.ancestors().skip(1));
         let above: BTreeSet<&Path> =
@@ -113,12 +113,12 @@ impl Scope {
 
     fn concerns(&self, event: &Event) -> bool {
         let is_move = match event.kind {
-            // Reading is no change.
+            // Reading is not a change.
             EventKind::Access(_) => return false,
             EventKind::Create(_) | EventKind::Remove(_) | EventKind::Modify(ModifyKind::Name(_)) => true,
             _ => false,
         };
-        // Nothing was told about what: the system could not keep up.
+        // The system could not keep up, so the paths are unknown.
         event.need_rescan() || event.paths.iter().any(|path| self.concerns_path(path, is_move))
     }
 
@@ -126,7 +126,7 @@ impl Scope {
         path.file_name() == Some(OsStr::new(FILE_NAME))
             || self.files.contains(path)
             || (self.is_inside(path) && (DocumentKind::of_file(path).is_some() || is_move))
-            // A folder on the way to something came or went.
+            // A parent of a watched path appeared or disappeared.
             || (is_move && self.files.iter().chain(&self.folders).any(|other| other.starts_with(path)))
     }
 }
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_matters_is_a_reason_to_look() {
+    fn only_changes_in_the_scope_count() {
         let write = EventKind::Modify(ModifyKind::Data(DataChange::Any));
         let rename = EventKind::Modify(ModifyKind::Name(RenameMode::Any));
         let (create, remove) = (EventKind::Create(CreateKind::Any), EventKind::Remove(RemoveKind::Any));

@@ -18,13 +18,13 @@ use crate::report::output;
 use crate::report::render;
 use crate::run::interrupt::{self, Interrupts};
 
-/// Erases what is on a terminal and above it.
+/// Clears the terminal and its scrollback.
 const CLEAR: &str = "\u{1b}[2J\u{1b}[3J\u{1b}[H";
 
 /// Checks again whenever something changes, until it is interrupted.
 ///
 /// # Errors
-/// When nothing can be watched or printed. What is wrong with a file is told, and no reason to end.
+/// If nothing can be watched or printed. Problems of a file are reported and do not end it.
 pub(super) fn run(paths: &[PathBuf], options: &Config) -> Result<ExitCode, Failure> {
     if paths.iter().any(|path| path == Path::new("-")) {
         return Err(Failure::new("standard input cannot be watched").help("name a file or a folder"));
@@ -49,7 +49,7 @@ async fn watch(paths: &[PathBuf], options: &Config) -> Result<ExitCode, Failure>
             shown = Some(look.fingerprint);
         }
         if *watch.scope() != look.scope {
-            // What is watched only from now on may have changed before.
+            // A file that is watched only from now on may have changed before.
             watch.look_at(look.scope)?;
             continue;
         }
@@ -61,13 +61,13 @@ async fn watch(paths: &[PathBuf], options: &Config) -> Result<ExitCode, Failure>
     }
 }
 
-/// What was found at one time.
+/// The result of one check.
 struct Look {
     problems: String,
     summary: Option<String>,
     failures: Vec<Failure>,
     scope: Scope,
-    /// Tells apart what was read and found.
+    /// A hash of the inputs and the result.
     fingerprint: u64,
 }
 
@@ -102,11 +102,11 @@ impl Look {
         self.failures.iter().for_each(output::fail);
         let time = jiff::Zoned::now().strftime("%H:%M:%S");
         let summary = self.summary.as_deref().unwrap_or("Nothing was checked.");
-        output::print(&format!("[{time}] {summary} Watching for changes; Ctrl+C ends.\n"))
+        output::print(&format!("[{time}] {summary} Watching for changes; press Ctrl+C to stop.\n"))
     }
 }
 
-/// What matters for these programs, which were opened or could not be.
+/// The files and folders that these programs depend on.
 fn scope(paths: &[PathBuf], inputs: &Inputs) -> Result<Scope, Failure> {
     let mut scope = Scope::default();
     for path in paths {
