@@ -215,7 +215,7 @@ def test_a_terminal_is_cleared_before_each_look(
 
     try:
         for _ in range(2):
-            assert read_until(b"Ctrl+C ends.\r\n").startswith(b"\x1b[2J\x1b[3J\x1b[H")
+            assert read_until(b"press Ctrl+C to stop.\r\n").startswith(b"\x1b[2J\x1b[3J\x1b[H")
             program.write_text(program.read_text() + "\n")
     finally:
         process.send_signal(signal.SIGINT)

@@ -1,28 +1,23 @@
 //! The command `pydslrep`.
 //!
-//! Knows every other crate, files, the terminal and processes; it opens, prints, draws and starts things. Must never
-//! have logic of the language, of motion or of scripts: that is asked of the crates below.
+//! Knows every other crate, files, the terminal and processes. Must never have logic of the language, of motion or of
+//! scripts: the crates below have it.
 //!
-//! * [`arguments`]: the command line; each command's own arguments stand with it in [`commands`].
-//! * [`inputs`]: programs, what they import and their scenes, from files into the database.
-//! * [`texts`], [`paths`]: what stands in files, and what files are called.
-//! * [`render`], [`summary`], [`json`], [`github`], [`sarif`]: problems for people and for programs.
-//! * [`severities`]: the option that sets severities.
-//! * [`fixing`], [`rewrite`]: what is done about them.
-//! * [`lines`]: how much people and the generator write.
-//! * [`watch`]: when to look again.
-//! * [`commands`]: one file per command.
-//! * [`python`], [`client`], [`driver`], [`progress`], [`driven`], [`outcome`]: a run, from an interpreter to its result.
+//! * [`arguments`]: the command line. [`commands`] has one file per command, with its own arguments; [`options`] what
+//!   several of them share.
+//! * [`inputs`]: the programs a command works on, and the workspace around them.
+//! * [`report`]: what is printed: diagnostics in every format, tables, failures.
+//! * [`run`]: a run, from a Python interpreter to its result.
+//! * [`fixing`]: `check --fix`.
 
 mod arguments;
 mod commands;
 mod failure;
 mod fixing;
 mod inputs;
+mod options;
 mod report;
 mod run;
-mod severities;
-mod target;
 
 use std::process::ExitCode;
 

@@ -11,10 +11,9 @@ use pydslrep_script::{file_name, generate, may_replace};
 
 use crate::failure::Failure;
 use crate::inputs::Inputs;
-use crate::inputs::lines;
-use crate::inputs::program;
+use crate::inputs::{lines, program};
+use crate::options::target_parser;
 use crate::report::output;
-use crate::target::target_parser;
 
 const EXAMPLES: &str = "\
 Examples:

@@ -13,13 +13,9 @@ use crate::failure::Failure;
 use crate::fixing::{self, Fixed};
 use crate::inputs::scenes::{self, SceneProblem};
 use crate::inputs::{Inputs, count_files};
-use crate::report::github;
-use crate::report::json;
+use crate::options;
 use crate::report::output::{self, count};
-use crate::report::render;
-use crate::report::sarif;
-use crate::report::summary;
-use crate::severities;
+use crate::report::{github, json, render, sarif, summary};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -27,13 +23,13 @@ Examples:
   pydslrep check patrol.pyr rooms/       one program, and all in a folder
   pydslrep check --format json - < x.pyr
   pydslrep check --fix                   apply all safe fixes, and show what is left
-  pydslrep check --watch                 look again whenever something changes
+  pydslrep check --watch                 check again whenever something changes
   pydslrep check --deny warnings         for use in CI
-  pydslrep check --format github         the same, with marks beside the lines of a pull request
+  pydslrep check --format github         the same, as annotations of a pull request
   pydslrep check --format sarif > x.sarif
   pydslrep check --severity unused-declaration=off --severity wheel-count=warning
 
-The nearest pydslrep.toml above a program sets severities for good:
+The nearest pydslrep.toml above a program sets default severities:
   [severity]
   unused-declaration = \"off\"";
 
@@ -44,7 +40,7 @@ pub(crate) struct Arguments {
     /// Programs, folders with programs, or `-` for standard input [default: this folder]
     #[arg(value_name = "PATH")]
     paths: Vec<PathBuf>,
-    /// How to show problems
+    /// Output format
     #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
     format: Format,
     /// Apply all safe fixes, and show what is left; a program from standard input goes to standard output
@@ -53,10 +49,10 @@ pub(crate) struct Arguments {
     /// Check again whenever a program, an import, a scene or a pydslrep.toml changes, until Ctrl+C
     #[arg(long, conflicts_with_all = ["fix", "deny"])]
     watch: bool,
-    /// How bad problems of a code are: off, hint, information, warning or error; for each code once
+    /// Severity of a diagnostic: off, hint, information, warning or error; may be repeated
     #[arg(long, value_name = "CODE=LEVEL")]
     severity: Vec<String>,
-    /// End with exit code 1 for these as well
+    /// Exit with code 1 for these as well
     #[arg(long, value_enum, value_name = "WHAT")]
     deny: Option<Deny>,
 }
@@ -70,11 +66,11 @@ enum Format {
     Json,
     /// Workflow commands, for GitHub Actions
     Github,
-    /// SARIF 2.1.0, for tools that collect what checkers find
+    /// SARIF 2.1.0, for code scanning tools
     Sarif,
 }
 
-/// What is denied beside errors.
+/// What is denied besides errors.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(crate) enum Deny {
     Warnings,
@@ -83,9 +79,9 @@ pub(crate) enum Deny {
 /// Runs the command.
 ///
 /// # Errors
-/// When the arguments do not fit, or nothing can be printed.
+/// If the arguments do not fit together, or nothing can be printed.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let options = Config::of_severities(severities::read(&arguments.severity)?);
+    let options = Config::of_severities(options::severities(&arguments.severity)?);
     let here = [PathBuf::from(".")];
     let paths = if arguments.paths.is_empty() { &here } else { arguments.paths.as_slice() };
     if arguments.watch {

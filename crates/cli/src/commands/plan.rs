@@ -5,20 +5,19 @@ use std::process::ExitCode;
 
 use clap::Args;
 use comfy_table::{ColumnConstraint, ContentArrangement};
-use pydslrep_analysis::environment::{Environment, Movement};
+use pydslrep_analysis::environment::Environment;
 use pydslrep_config::Config;
-use pydslrep_kinematics::{ActionIndex, Leg, Plan, Pose, RobotPath, heading_degrees};
-use pydslrep_picture::{Picture, Route};
+use pydslrep_kinematics::{ActionIndex, Leg, Pose, RobotPath};
 use pydslrep_scene::{Collision, Scene, Thing, collisions};
-use pydslrep_trace::Map;
 use serde::Serialize;
 
 use crate::failure::Failure;
 use crate::inputs::Inputs;
 use crate::inputs::program;
+use crate::report::numbers::{fixed, heading};
 use crate::report::output;
-use crate::run::driven::Driven;
 use crate::run::pictures::Pictures;
+use crate::run::planned::Planned;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -26,9 +25,6 @@ Examples:
   pydslrep plan patrol.pyr --json
   pydslrep plan patrol.pyr --picture patrol.svg
   pydslrep plan patrol.pyr --replay patrol.svg     an animated SVG for a browser";
-
-/// Points of a planned leg in a picture.
-const POINTS_PER_LEG: u32 = 24;
 
 /// Show the planned path of each robot: poses, times and wheel rates
 #[derive(Debug, Args)]
@@ -47,82 +43,6 @@ pub(crate) struct Arguments {
     /// The scene to plan in [default: ENVIRONMENT.scene.toml next to the program, if it exists]
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
-}
-
-/// An environment with its plan.
-pub(crate) struct Planned {
-    pub(crate) environment: Environment,
-    pub(crate) scene: Scene,
-    pub(crate) plan: Plan,
-}
-
-impl Planned {
-    /// Plans an environment in a scene.
-    ///
-    /// # Errors
-    /// If a robot cannot drive.
-    pub(crate) fn new(environment: Environment, scene: Scene) -> Result<Self, Failure> {
-        let plan = plan(&environment, &scene)?;
-        Ok(Self { environment, scene, plan })
-    }
-
-    /// Plans again from where robots really started, for a scene in another simulator.
-    ///
-    /// # Errors
-    /// If a robot cannot drive.
-    pub(crate) fn start_from(&mut self, driven: &Driven) -> Result<(), Failure> {
-        for (robot, path) in self.scene.robots.iter_mut().zip(driven.tracks()) {
-            robot.start = path.start().unwrap_or(robot.start);
-        }
-        self.plan = plan(&self.environment, &self.scene)?;
-        Ok(())
-    }
-
-    /// The planned route of each robot.
-    pub(crate) fn routes(&self) -> Vec<Route> {
-        let robots = self.scene.robots.iter().zip(&self.plan.robots);
-        let routes = robots.map(|(robot, path)| Route {
-            name: robot.name.clone(),
-            body: robot.body,
-            planned: path.sample(POINTS_PER_LEG),
-            unknown_after: path.unknown_after.is_some(),
-            driven: Vec::new(),
-            seen: Vec::new(),
-            map: Map::default(),
-        });
-        routes.collect()
-    }
-
-    /// Draws routes in the scene, with the collisions of the plan.
-    ///
-    /// # Errors
-    /// If a file cannot be written.
-    pub(crate) fn draw(&self, pictures: &Pictures, title: &str, routes: &[Route]) -> Result<(), Failure> {
-        let met = collisions(&self.scene, &self.plan);
-        let collisions: Vec<(f64, f64)> = met.iter().map(|met| (met.pose.x, met.pose.y)).collect();
-        let title = &format!("{}: {title}", self.environment.name);
-        let obstacles = &self.scene.obstacles;
-        pictures.draw(&Picture { title, routes, obstacles, collisions: &collisions })
-    }
-
-    fn movement(&self, index: ActionIndex) -> Option<&Movement> {
-        self.environment.movements.get(*self.environment.schedule.get(index.group)?.get(index.run)?)
-    }
-
-    /// The names of an action's movement and of the action, as the program writes them.
-    fn words(&self, index: ActionIndex) -> (String, String) {
-        let movement = self.movement(index);
-        let action = movement.and_then(|movement| movement.actions.get(index.action));
-        (
-            movement.map_or_else(String::new, |movement| movement.name.clone()),
-            action.map_or_else(String::new, |action| action.text.clone()),
-        )
-    }
-}
-
-fn plan(environment: &Environment, scene: &Scene) -> Result<Plan, Failure> {
-    pydslrep_analysis::plan(environment, scene)
-        .map_err(|error| Failure::new(format!("`{}` cannot be planned: {error}", environment.name)))
 }
 
 /// Runs the command.
@@ -280,20 +200,6 @@ fn time(seconds: Option<f64>) -> String {
     seconds.map_or_else(|| "?".to_owned(), |seconds| fixed(seconds, 2))
 }
 
-/// A heading in degrees, in (−180, 180] even when rounded.
-pub(crate) fn heading(radians: f64) -> String {
-    fixed(heading_degrees(radians, 1), 1)
-}
-
-/// A number with a fixed number of decimals, never −0.
-pub(crate) fn fixed(value: f64, digits: usize) -> String {
-    let text = format!("{value:.digits$}");
-    match text.strip_prefix('-') {
-        Some(positive) if positive.chars().all(|c| c == '0' || c == '.') => positive.to_owned(),
-        _ => text,
-    }
-}
-
 #[derive(Serialize)]
 struct JsonPlan<'a> {
     environment: &'a str,
@@ -399,20 +305,5 @@ fn json_action(planned: &Planned, index: ActionIndex) -> JsonAction<'_> {
         movement: planned.movement(index).map_or("", |movement| &movement.name),
         run: before + index.run + 1,
         action: index.action + 1,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::f64::consts::PI;
-
-    use super::{fixed, heading};
-
-    #[test]
-    fn zero_has_no_sign() {
-        assert_eq!(fixed(-0.0001, 3), "0.000");
-        assert_eq!(fixed(-0.0006, 3), "-0.001");
-        assert_eq!(fixed(4.0, 2), "4.00");
-        assert_eq!([0.00001 - PI, PI, -3.1].map(heading), ["180.0", "180.0", "-177.6"]);
     }
 }

@@ -14,21 +14,19 @@ use pydslrep_simulator::{Options, Simulator};
 use pydslrep_trace::Map;
 use tempfile::TempDir;
 
-use super::plan::Planned;
 use crate::failure::Failure;
 use crate::inputs::Inputs;
 use crate::inputs::program;
+use crate::options::{above_zero, target_parser};
 use crate::report::output;
 use crate::run::driven::Driven;
-use crate::run::exploring;
 use crate::run::interrupt::{self, Interrupts};
 use crate::run::outcome::Outcome;
 use crate::run::pictures::Pictures;
+use crate::run::planned::Planned;
 use crate::run::progress::Progress;
-use crate::run::python;
 use crate::run::script::{Ending, Script, drive};
-use crate::run::vrep_client;
-use crate::target::target_parser;
+use crate::run::{exploring, python, vrep_client};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -98,12 +96,6 @@ pub(crate) struct Arguments {
     /// The Python to run the script with [default: python3]
     #[arg(long, value_name = "PATH")]
     python: Option<PathBuf>,
-}
-
-/// Parses a number above zero.
-pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
-    let speed = text.parse().ok().filter(|speed: &f64| speed.is_finite() && *speed > 0.0);
-    speed.ok_or_else(|| "expected a number above zero, such as 1 or 2.5".to_owned())
 }
 
 /// Runs the command.

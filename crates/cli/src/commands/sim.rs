@@ -18,6 +18,7 @@ use tokio::time::{MissedTickBehavior, interval};
 use crate::failure::Failure;
 use crate::inputs::Inputs;
 use crate::inputs::program;
+use crate::options::above_zero;
 use crate::report::output;
 use crate::run::interrupt::{self, Interrupts};
 
@@ -53,7 +54,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "ADDRESS", default_value_t = Ipv4Addr::LOCALHOST.into())]
     listen: IpAddr,
     /// Simulated seconds per second while no script steps the simulation
-    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = super::run::above_zero)]
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = above_zero)]
     speed: f64,
     /// Write every step to a file, as JSON lines
     #[arg(long, value_name = "FILE")]

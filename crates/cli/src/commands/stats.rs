@@ -10,8 +10,7 @@ use serde::Serialize;
 
 use crate::failure::Failure;
 use crate::inputs::Inputs;
-use crate::inputs::lines;
-use crate::inputs::program;
+use crate::inputs::{lines, program};
 use crate::report::output;
 
 const EXAMPLES: &str = "\

@@ -1,10 +1,14 @@
 //! Runs: from a Python interpreter to the result.
+//!
+//! [`python`] and [`vrep_client`] prepare what a script needs, [`script`] runs it, [`progress`] shows it, and [`outcome`]
+//! compares [`driven`] with [`planned`].
 
 pub(crate) mod driven;
 pub(crate) mod exploring;
 pub(crate) mod interrupt;
 pub(crate) mod outcome;
 pub(crate) mod pictures;
+pub(crate) mod planned;
 pub(crate) mod progress;
 pub(crate) mod python;
 pub(crate) mod script;

@@ -8,9 +8,10 @@ use pydslrep_picture::Route;
 use pydslrep_trace::Track;
 use serde::Serialize;
 
-use crate::commands::plan::{Planned, fixed, heading};
+use crate::report::numbers::{fixed, heading};
 use crate::report::output;
 use crate::run::driven::Driven;
+use crate::run::planned::Planned;
 
 /// A run that has ended.
 pub(crate) struct Outcome<'a> {

@@ -5,7 +5,8 @@ use std::time::Duration;
 
 use indicatif::{MultiProgress, ProgressBar, ProgressState, ProgressStyle};
 
-use crate::commands::plan::{Planned, fixed};
+use crate::report::numbers::fixed;
+use crate::run::planned::Planned;
 
 /// At most this many robots are shown one by one.
 const MAX_ROBOTS: usize = 12;

@@ -56,9 +56,9 @@ fn one_environment_can_be_chosen() {
     let done = place.run(&["build", "--stdout"]);
     assert_eq!((done.code, done.out.as_str()), (Some(2), ""));
     expect![[r#"
-        error: --stdout is for one script, but there are 2
+        error: --stdout prints one script, but there are 2
          |
-         = help: choose one by --environment NAME; there are `one`, `two`
+         = help: choose one with --environment NAME: `one`, `two`
     "#]]
     .assert_eq(&done.err);
     let done = place.run(&["build", "--stdout", "--environment", "two"]);
@@ -79,7 +79,7 @@ fn nothing_is_lost() {
     place.write("one.py", "print('mine')\n");
     let done = place.run(&["build"]);
     assert_eq!(done.code, Some(2));
-    assert!(done.err.contains("one.py exists and is no generated script"), "{}", done.err);
+    assert!(done.err.contains("one.py exists and is not a generated script"), "{}", done.err);
     assert_eq!(place.read("one.py"), "print('mine')\n");
     assert!(!place.path("two.py").exists());
 
@@ -95,7 +95,7 @@ fn nothing_is_lost() {
 fn standard_input_has_no_place() {
     let done = Place::new().run_with(&["build", "-"], TWO.replace('@', "m").as_bytes());
     assert_eq!(done.code, Some(2));
-    assert!(done.err.contains("choose one by -o DIR"), "{}", done.err);
+    assert!(done.err.contains("choose one with -o DIR"), "{}", done.err);
 }
 
 #[test]

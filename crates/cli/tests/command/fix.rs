@@ -181,7 +181,7 @@ fn a_file_that_cannot_be_written_does_not_keep_the_others() {
         Fixed 1 problem in 1 file.
         error: cannot write x.pyr: it is read-only
          |
-         = help: allow writing to it, or leave it out
+         = help: make it writable, or leave it out
     "#]]
     .assert_eq(&done.err);
 }

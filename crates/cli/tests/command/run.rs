@@ -117,7 +117,7 @@ fn a_speed_is_above_zero_and_the_simulators() {
     let run = |speed: &[&str]| run(&Place::new(), &[&[paper("table2_two_wheels").as_str()], speed].concat());
     let done = run(&["--speed", "0"]);
     assert_eq!(done.code, Some(2));
-    assert!(done.err.contains("a number above zero is expected"), "{}", done.err);
+    assert!(done.err.contains("expected a number above zero"), "{}", done.err);
     assert_eq!(run(&["--speed", "2", "--host", "127.0.0.1"]).code, Some(2));
 }
 

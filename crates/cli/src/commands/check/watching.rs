@@ -14,8 +14,7 @@ use crate::inputs::Inputs;
 use crate::inputs::paths::absolute;
 use crate::inputs::scenes;
 use crate::inputs::watch::{Scope, Watch};
-use crate::report::output;
-use crate::report::render;
+use crate::report::{output, render};
 use crate::run::interrupt::{self, Interrupts};
 
 /// Clears the terminal and its scrollback.
