@@ -21,12 +21,7 @@ GROUPS: dict[str, dict[str, list[str]]] = {
         "quick_fixes": ["textDocument/codeAction"],
         "fix_all": ["textDocument/codeAction"],
         "refactorings": ["textDocument/codeAction"],
-        "settings": [
-            "textDocument/completion",
-            "textDocument/hover",
-            "textDocument/codeAction",
-        ],
-        "scenes": [
+        "toml": [
             "textDocument/publishDiagnostics",
             "textDocument/completion",
             "textDocument/hover",

@@ -1,8 +1,7 @@
-//! The project's TOML files, settings and scenes: keys, values and names are completed, explained and fixed, also in a
-//! half-typed text.
+//! Settings and scene files: diagnostics, completion, hover and fixes for keys, values and the names of robots and sensors
+//! in a `pydslrep.toml` and in a `<environment>.scene.toml`, also while they are incomplete.
 //!
-//! A text, an offset in it and what kind of file it is in, plain structs out. Which keys there are is in the lists of
-//! `config` and `scene`.
+//! A text, an offset and the kind of file in, plain structs out. `config` and `scene` list the keys.
 
 mod completion;
 mod fixes;
