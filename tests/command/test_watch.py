@@ -54,7 +54,7 @@ class Watcher:
         while True:
             line = self._lines.get(timeout=LIMIT)
             summary = re.fullmatch(
-                r"\[\d\d:\d\d:\d\d\] (.*) Watching for changes; Ctrl\+C ends\.", line
+                r"\[\d\d:\d\d:\d\d\] (.*) Watching for changes; press Ctrl\+C to stop\.", line
             )
             if summary:
                 return "\n".join(problems), summary[1]

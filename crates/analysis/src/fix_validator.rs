@@ -106,13 +106,13 @@ impl FixValidator {
         for edit in edits {
             let removed = self.tried.slice(edit.file, edit.span);
             self.tried.edit(edit.file, edit.span, &edit.text);
-            let behind = edit.span.start + u32::try_from(edit.text.len()).unwrap_or_default();
-            let grown = i64::from(behind) - i64::from(edit.span.end);
+            let following = edit.span.start + u32::try_from(edit.text.len()).unwrap_or_default();
+            let grown = i64::from(following) - i64::from(edit.span.end);
             for later in back.iter_mut().filter(|later| later.file == edit.file) {
                 let moved = |offset: u32| u32::try_from(i64::from(offset) + grown).unwrap_or_default();
                 later.span = pydslrep_syntax::Span::new(moved(later.span.start), moved(later.span.end));
             }
-            let span = pydslrep_syntax::Span::new(edit.span.start, behind);
+            let span = pydslrep_syntax::Span::new(edit.span.start, following);
             back.push(Edit { file: edit.file, span, text: removed });
         }
         back

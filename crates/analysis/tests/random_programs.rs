@@ -33,7 +33,7 @@ fn meaning(text: &str) -> Option<Vec<String>> {
 fn without_spans(tree: &str) -> String {
     let mut parts = tree.split("Span { start: ");
     let first = parts.next().unwrap_or_default().to_owned();
-    let rest = parts.filter_map(|part| part.split_once(" }")).map(|(_, behind)| behind);
+    let rest = parts.filter_map(|part| part.split_once(" }")).map(|(_, following)| following);
     first + &rest.collect::<String>()
 }
 

@@ -99,7 +99,7 @@ mod tests {
 
     use super::*;
 
-    fn told(text: Option<&str>, problems: &[Problem]) -> String {
+    fn reported(text: Option<&str>, problems: &[Problem]) -> String {
         let mut out = String::new();
         for problem in problems {
             let place = match (text, problem.span) {
@@ -123,14 +123,14 @@ mod tests {
     #[track_caller]
     fn toml(text: &str, expected: &Expect) -> Config {
         let (config, problems) = Config::from_toml(text);
-        expected.assert_eq(&told(Some(text), &problems));
+        expected.assert_eq(&reported(Some(text), &problems));
         config
     }
 
     #[track_caller]
     fn json(value: &serde_json::Value, expected: &Expect) -> Config {
         let (config, problems) = Config::from_json(value);
-        expected.assert_eq(&told(None, &problems));
+        expected.assert_eq(&reported(None, &problems));
         config
     }
 

@@ -40,7 +40,7 @@ fn opened(text: &str) -> (Database, FileId) {
 }
 
 /// The end of a word in the middle of the program.
-fn behind(text: &str, word: &str) -> u32 {
+fn following(text: &str, word: &str) -> u32 {
     let middle = text.len() / 2;
     let at = text[middle..].find(word).map(|at| middle + at + word.len());
     at.and_then(|at| u32::try_from(at).ok()).unwrap_or_default()
@@ -68,7 +68,7 @@ fn opening(bencher: Bencher, lines: usize) {
 fn keystroke(bencher: Bencher, lines: usize, word: &str) {
     let text = program(lines);
     let (mut database, file) = opened(&text);
-    let at = behind(&text, word);
+    let at = following(&text, word);
     bencher.bench_local(|| {
         database.edit(file, Span::at(at), "x");
         let broken = database.diagnostics(file).len();
@@ -91,7 +91,7 @@ fn two_keystrokes_in_a_reference(bencher: Bencher, lines: usize) {
 fn completion(bencher: Bencher, lines: usize) {
     let text = program(lines);
     let (database, file) = opened(&text);
-    let position = ide::FilePosition { file, offset: behind(&text, " of ") };
+    let position = ide::FilePosition { file, offset: following(&text, " of ") };
     bencher.bench_local(|| ide::completions(&database, position, ide::CompletionTrigger::Invoked, 9.0));
 }
 
@@ -99,7 +99,7 @@ fn completion(bencher: Bencher, lines: usize) {
 fn hover(bencher: Bencher, lines: usize) {
     let text = program(lines);
     let (database, file) = opened(&text);
-    let position = ide::FilePosition { file, offset: behind(&text, "move 4") };
+    let position = ide::FilePosition { file, offset: following(&text, "move 4") };
     bencher.bench_local(|| ide::hover(&database, position));
 }
 
@@ -108,7 +108,7 @@ fn hover(bencher: Bencher, lines: usize) {
 fn quick_fixes(bencher: Bencher, lines: usize) {
     let text = program(lines);
     let (mut database, file) = opened(&text);
-    let at = behind(&text, "until { front");
+    let at = following(&text, "until { front");
     database.edit(file, Span::at(at), "x");
     bencher.bench_local(|| ide::quick_fixes(&database, file, Span::at(at)).len());
 }
@@ -117,7 +117,7 @@ fn quick_fixes(bencher: Bencher, lines: usize) {
 fn hints_of_a_screen(bencher: Bencher, lines: usize) {
     let text = program(lines);
     let (database, file) = opened(&text);
-    let at = behind(&text, "movement ");
+    let at = following(&text, "movement ");
     let places = ide::InlayHintPlaces { file, range: Span::new(at, at + 2_000), typed: &[] };
     let mut known = ide::KnownMovements::default();
     bencher.bench_local(|| {

@@ -216,7 +216,7 @@ fn current(parts: &[Part], typed: &[Token], expected: &[Expected]) -> Option<usi
         let place = parts[next..].iter().position(|part| part.is_word(word));
         match place {
             Some(place) => next += place + 1,
-            // A keyword of another form, unless it stands in for a name.
+            // A keyword of another form, unless it is used as a name.
             None if *token == TokenKind::Until => return None,
             None => {}
         }

@@ -111,7 +111,7 @@ fn targets_differ_in_the_contact_with_the_simulator_only() {
         assert!(coppeliasim.contains(word) && !vrep.contains(word), "{word}");
     }
     assert!(vrep.contains("simxStart") && !coppeliasim.contains("simx"));
-    // The contact stands between these two classes.
+    // The backend is between these two classes.
     let around = |script: &str| {
         let (before, rest) = script.split_once("class Mounting:").expect("Mounting");
         let (_, after) = rest.split_once("class Robot:").expect("Robot");

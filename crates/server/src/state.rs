@@ -40,25 +40,25 @@ pub(crate) struct State {
     pub(crate) closed: Vec<Uri>,
     /// How many answers have been given a number so far.
     pub(crate) answers: u64,
-    /// How many documents have been opened so far, each time counted.
+    /// How many times a document has been opened.
     openings: u64,
-    /// How many times progress was told so far; each time needs a name of its own.
+    /// How many progress reports have begun; each needs its own token.
     pub(crate) progresses: u64,
     /// Whether the client wants to know what changes cost.
     pub(crate) trace: TraceValue,
-    /// What the changes of the last message cost, one by one, if that is wanted.
+    /// The cost of each change of the last message, if the trace is verbose.
     pub(crate) costs: Vec<EditCounts>,
     /// Requests that are answered when any diagnostics change.
     pub(crate) waiting: Vec<oneshot::Sender<()>>,
-    /// What was told about scripts that are written on every save.
-    pub(crate) told: FxHashSet<String>,
+    /// Messages shown so far about scripts that are generated on save.
+    pub(crate) reported: FxHashSet<String>,
     /// Planned paths that the client has.
     pub(crate) watched: Vec<Watched>,
-    /// Where somebody is typing, if that is known.
+    /// Where the user is typing, if known.
     pub(crate) typing: Option<Typing>,
-    /// What the client has to ask for again, though it changed nothing there.
+    /// What the client must request again although it did not change it.
     pub(crate) outdated: Outdated,
-    /// How often the client was told so.
+    /// How many refreshes have been requested.
     refreshes: u64,
     /// Paths that were driven.
     pub(crate) driven: DrivenPaths,
@@ -86,7 +86,7 @@ impl Default for State {
             trace: TraceValue::default(),
             costs: Vec::new(),
             waiting: Vec::new(),
-            told: FxHashSet::default(),
+            reported: FxHashSet::default(),
             watched: Vec::new(),
             typing: None,
             outdated: Outdated::default(),

@@ -147,7 +147,7 @@ impl Quantity {
         }
     }
 
-    /// What stands for it in the shape of a statement.
+    /// Its placeholder in the form of a statement.
     pub fn placeholder(self) -> &'static str {
         match self {
             Self::Radius => "CENTIMETRES",

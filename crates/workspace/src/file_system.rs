@@ -1,4 +1,4 @@
-//! How files are read: the one door to a disk, or to whatever stands in for one.
+//! How files are read, from a disk or from memory.
 
 use std::fmt;
 use std::path::{Path, PathBuf};

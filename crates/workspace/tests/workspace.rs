@@ -1,5 +1,7 @@
 //! Workspaces in memory.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests are tests, too")]
+
 use std::sync::Arc;
 
 use pydslrep_config::Config;
@@ -65,8 +67,8 @@ impl Fixture {
         self.workspace.problems(&key(name)).into_iter().map(|problem| problem.message).collect()
     }
 
-    fn speed(&self, name: &str) -> f64 {
-        self.workspace.document(&key(name)).unwrap().settings.default_speed
+    fn speed(&self, name: &str) -> String {
+        self.workspace.document(&key(name)).unwrap().settings.default_speed.to_string()
     }
 
     fn known(&self) -> Vec<&str> {
@@ -225,23 +227,23 @@ fn the_nearest_settings_hold_and_follow_their_file() {
     let mut fixture = Fixture::new(&[("pydslrep.toml", "default-speed = 20"), ("a/pydslrep.toml", "")]);
     fixture.open("main.pyr", "");
     fixture.open("a/main.pyr", "");
-    assert_eq!(fixture.speed("main.pyr"), 20.0);
+    assert_eq!(fixture.speed("main.pyr"), "20");
     let default = fixture.speed("a/main.pyr");
     fixture.files.write(key("a/pydslrep.toml"), "default-speed = 30");
-    assert_eq!(fixture.speed("a/main.pyr"), default, "nobody said that it changed");
+    assert_eq!(fixture.speed("a/main.pyr"), default, "no change was reported");
     fixture.workspace.file_changed(&key("a/pydslrep.toml"));
-    assert_eq!(fixture.speed("a/main.pyr"), 30.0);
+    assert_eq!(fixture.speed("a/main.pyr"), "30");
     fixture.open("a/pydslrep.toml", "default-speed = 40");
-    assert_eq!(fixture.speed("a/main.pyr"), 40.0, "as it is in the editor");
+    assert_eq!(fixture.speed("a/main.pyr"), "40", "as it is in the editor");
     fixture.change("a/pydslrep.toml", "default-speed = 50");
-    assert_eq!(fixture.speed("a/main.pyr"), 50.0);
+    assert_eq!(fixture.speed("a/main.pyr"), "50");
     let (overrides, _) = Config::from_toml("default-speed = 60");
     fixture.workspace.set_overrides(overrides);
-    assert_eq!(fixture.speed("a/main.pyr"), 60.0, "the caller wins");
+    assert_eq!(fixture.speed("a/main.pyr"), "60", "the caller wins");
     assert!(fixture.workspace.close(&key("a/pydslrep.toml")));
     fixture.workspace.set_overrides(Config::default());
-    assert_eq!(fixture.speed("a/main.pyr"), 30.0);
-    assert_eq!(fixture.speed("main.pyr"), 20.0);
+    assert_eq!(fixture.speed("a/main.pyr"), "30");
+    assert_eq!(fixture.speed("main.pyr"), "20");
 }
 
 #[test]

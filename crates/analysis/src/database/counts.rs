@@ -86,8 +86,8 @@ fn an_entity_is_split_in_two() {
 fn a_comment_is_begun_and_taken_back() {
     for cells in [10, 1000] {
         let mut database = Database::new();
-        let behind: String = (6..cells).map(cell).collect();
-        let text = large(6) + "/* a comment */\n" + &behind;
+        let following: String = (6..cells).map(cell).collect();
+        let text = large(6) + "/* a comment */\n" + &following;
         let file = database.open("large.pyr", &text);
         let (plain, begun) = ("wheel r5 with radius 4\n", "wheel r5 /*with radius 4\n");
         assert_eq!(replace(&mut database, file, plain, begun), counts(60, 2, 2), "{cells} cells");

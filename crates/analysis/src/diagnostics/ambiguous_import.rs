@@ -22,9 +22,8 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "A name is used here, and two of the imported files both declare it.",
-    why: "The two may be quite different, and it would be mere chance which one your robot gets. Import only \
-        the file that you mean, give one of the two another name, or declare the name in this file: your own \
-        declaration always counts first.",
+    why: "They may differ, and which one your robot gets would be arbitrary. Import only the file that you mean, \
+        rename one of the two, or declare the name in this file: your own declaration takes precedence.",
     imports: &[
         ("rover.pyr", "wheel wheelL with radius 4.5\nwheel wheelR with radius 4.5"),
         ("truck.pyr", "wheel wheelL with radius 12"),

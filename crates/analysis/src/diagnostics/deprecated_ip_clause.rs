@@ -20,8 +20,8 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "An environment's ip is written after a comma: `environment yard, lab has …`.",
-    why: "This is an older spelling. It still works, but somebody who reads it has to guess what the second \
-        name is for. `with ip` says so.",
+    why: "This is an older spelling. It still works, but a reader has to guess what the second name is for. `with ip` \
+        is explicit.",
     imports: &[],
     example: "\
 ip lab 192.168.0.12

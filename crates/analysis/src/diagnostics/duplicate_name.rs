@@ -18,8 +18,8 @@ pub(super) static RULE: Rule = Rule {
 const PAGE: Page = Page {
     what: "Two things of the same kind have the same name in one file. (`wheel` and `wheelH` are one kind. A \
         wheel and a sensor may share a name.)",
-    why: "Whoever uses the name could mean either of them, and there is no telling which. Often the second is \
-        a copy of the first line whose name was not changed.",
+    why: "A reference to the name is ambiguous. Often the second line is a copy of the first whose name was not \
+        changed.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

@@ -20,8 +20,8 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "Two robots of one environment have the same port, and the scripts are made for V-REP.",
-    why: "V-REP's remote API serves one connection on each port, so the second robot would never be connected. \
-        (CoppeliaSim serves all robots on one port: with that target nothing is wrong.)",
+    why: "V-REP's remote API serves one connection per port, so the second robot could not connect. (CoppeliaSim \
+        serves all robots on one port, so this is no problem with that target.)",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

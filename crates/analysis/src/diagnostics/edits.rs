@@ -65,10 +65,10 @@ impl Context<'_> {
         let next = next.map_or(rest, |(_, other)| other.start);
         let gap = self.text(Span::new(comment.end, span.start));
         let last_line = gap.rfind(['\n', '\r']).map_or(0, |end| end + 1);
-        let behind = self.text(Span::new(span.end, next));
-        match behind.find(['\n', '\r']) {
+        let following = self.text(Span::new(span.end, next));
+        match following.find(['\n', '\r']) {
             Some(end) => {
-                let end = end + if behind[end..].starts_with("\r\n") { 2 } else { 1 };
+                let end = end + if following[end..].starts_with("\r\n") { 2 } else { 1 };
                 let length = |bytes: usize| u32::try_from(bytes).unwrap_or_default();
                 self.replace(Span::new(comment.end + length(last_line), span.end + length(end)), "")
             }
@@ -81,11 +81,11 @@ impl Context<'_> {
         let end = self.len().unwrap_or(span.end);
         let blank = |span: Span| [" ", "\t"].contains(&self.text(span).as_str());
         let before = span.start > 0 && blank(Span::new(span.start - 1, span.start));
-        let behind = self.text(Span::new(span.end, end.min(span.end + 1)));
-        if before && (behind.is_empty() || behind.starts_with(char::is_whitespace)) {
+        let following = self.text(Span::new(span.end, end.min(span.end + 1)));
+        if before && (following.is_empty() || following.starts_with(char::is_whitespace)) {
             return self.replace(Span::new(span.start - 1, span.end), "");
         }
-        let first = span.start == 0 && behind.starts_with(' ');
+        let first = span.start == 0 && following.starts_with(' ');
         if self.text(span).contains(WITHIN_WORDS) {
             return self.join(span, "");
         }
@@ -97,8 +97,8 @@ impl Context<'_> {
         let before = self.tokens.iter().rev().find(|(_, other)| other.end <= span.start);
         let start = before.map_or(0, |(_, other)| other.end);
         let first = self.text(Span::new(start, span.start)).contains(['\n', '\r']) || before.is_none();
-        let behind = self.tokens.iter().find(|(_, other)| other.start >= span.end);
-        match behind.map(|(_, other)| Span::new(span.end, other.start)) {
+        let following = self.tokens.iter().find(|(_, other)| other.start >= span.end);
+        match following.map(|(_, other)| Span::new(span.end, other.start)) {
             Some(gap) if first && !self.text(gap).contains(['\n', '\r']) => self.replace(span.to(gap), ""),
             _ => self.remove(span),
         }
@@ -108,9 +108,9 @@ impl Context<'_> {
     /// before it on its line can change with any edit there, and is looked at when the edit gets its place.
     pub(super) fn remove_line(&self, span: Span) -> ProblemEdit {
         let end = self.len().unwrap_or(span.end);
-        let behind = self.text(Span::new(span.end, end));
-        let blank = behind.len() - behind.trim_start_matches([' ', '\t']).len();
-        let line_end = ["\r\n", "\n", "\r"].into_iter().find(|end| behind[blank..].starts_with(end));
+        let following = self.text(Span::new(span.end, end));
+        let blank = following.len() - following.trim_start_matches([' ', '\t']).len();
+        let line_end = ["\r\n", "\n", "\r"].into_iter().find(|end| following[blank..].starts_with(end));
         let Some(line_end) = line_end else {
             let start = self.tokens.first().is_some_and(|(_, first)| first.start == span.start);
             let blank = u32::try_from(blank).unwrap_or_default();
@@ -128,13 +128,13 @@ impl Context<'_> {
     pub(super) fn remove_item(&self, item: Span) -> Vec<ProblemEdit> {
         let is_word = |(token, _): &&Token| !token.is_comment();
         let before = self.tokens.iter().rev().filter(is_word).find(|(_, span)| span.end <= item.start);
-        let behind = self.tokens.iter().filter(is_word).find(|(_, span)| span.start >= item.end);
+        let following = self.tokens.iter().filter(is_word).find(|(_, span)| span.start >= item.end);
         let is_comment_between = |comma: Span| {
             self.tokens.iter().any(|(token, span)| {
                 token.is_comment() && comma.start <= span.start && span.end <= item.start
             })
         };
-        match (before, behind) {
+        match (before, following) {
             (Some((TokenKind::Comma, comma)), _) if is_comment_between(*comma) => {
                 vec![self.replace(*comma, ""), self.remove(item)]
             }
@@ -150,8 +150,8 @@ impl Context<'_> {
     pub(super) fn whole(&self) -> Option<ProblemEdit> {
         let end = self.len()?;
         let is_word = |(token, _): &Token| !token.is_comment();
-        let behind = self.tokens.iter().rposition(is_word).map_or(0, |last| last + 1);
-        let end = self.tokens.get(behind).map_or(end, |(_, comment)| comment.start);
+        let following = self.tokens.iter().rposition(is_word).map_or(0, |last| last + 1);
+        let end = self.tokens.get(following).map_or(end, |(_, comment)| comment.start);
         Some(self.replace(Span::new(0, end), ""))
     }
 }
@@ -232,8 +232,8 @@ fn kept_apart(database: &Database, file: FileId, span: Span, text: &str) -> Stri
     let beside = |start: u32, end: u32| database.slice(file, Span::new(start, end));
     let before = (1..=4_u32.min(span.start)).map(|back| beside(span.start - back, span.start));
     let runs_in = before.into_iter().find(|text| !text.is_empty()).is_some_and(|text| last(&text));
-    let behind = (1..=4).map(|ahead| beside(span.end, span.end + ahead)).find(|text| !text.is_empty());
-    let runs_on = behind.is_some_and(|text| first(&text));
+    let following = (1..=4).map(|ahead| beside(span.end, span.end + ahead)).find(|text| !text.is_empty());
+    let runs_on = following.is_some_and(|text| first(&text));
     let replaced = database.slice(file, span);
     if text.is_empty() {
         return if runs_in && runs_on { " ".to_owned() } else { String::new() };

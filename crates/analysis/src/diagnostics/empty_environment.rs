@@ -19,8 +19,7 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "An environment lists no robots.",
-    why: "An environment becomes the script that drives its robots. Without any, the script would start and be \
-        done.",
+    why: "An environment becomes the script that drives its robots. Without robots the script would start and end.",
     imports: &[],
     example: "environment yard has { } robots",
     fixed: "\

@@ -19,7 +19,7 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "There is nothing between the braces of a movement.",
-    why: "The robot would stand still. Probably the actions are still to be written.",
+    why: "The robot would not move. Probably the actions are still missing.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

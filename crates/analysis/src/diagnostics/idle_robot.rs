@@ -21,9 +21,9 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "An environment lists a robot, but none of the movements that it lists belongs to that robot.",
-    why: "The script connects to the robot and then never moves it. That may be what you want, if the robot is \
-        only to stand in the way of others. If not, a movement is missing from the list.",
+    what: "An environment lists a robot, but none of its movements belongs to that robot.",
+    why: "The script connects to the robot and never moves it. That may be intended, if the robot is only an obstacle \
+        for others. If not, a movement is missing from the list.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

@@ -18,8 +18,8 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "A wheel's radius is more than 100 centimetres, so that the wheel would be taller than a person, or less \
-        than half a centimetre, so that it would be smaller than a pea.",
+    what: "A wheel's radius is more than 100 centimetres (taller than a person) or less than half a centimetre (smaller \
+        than a pea).",
     why: "A radius is written in centimetres, but many data sheets give millimetres, and the simulator metres. A \
         number copied from there makes the wheel ten times too large or a hundred times too small. The script \
         would then turn it at the wrong speed, and the robot would creep or race.",

@@ -20,9 +20,9 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "The angle of a turn is negative, zero, or more than 360 degrees.",
-    why: "`left` and `right` already say which way to turn; with a minus sign as well, a left turn becomes a \
-        right one, and whoever reads it stumbles. A turn by 0 degrees does nothing. And more than 360 is \
-        more than once around: the robot ends up as it would after a smaller angle, only later.",
+    why: "`left` and `right` already give the direction; a minus sign would reverse it, which is hard to read. A turn \
+        by 0 degrees does nothing. More than 360 degrees is more than a full turn: a smaller angle ends at the same \
+        heading sooner.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

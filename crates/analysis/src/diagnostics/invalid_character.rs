@@ -21,9 +21,8 @@ pub(super) static RULE: Rule = Rule {
 const PAGE: Page = Page {
     what: "A character that means nothing in the language, such as `;`, `=` or `ä`. Several in a row are \
         reported together. Inside a comment every character is fine.",
-    why: "Names consist of the letters a to z and A to Z, digits and `_`, and nothing has to mark the end of a \
-        line. A character from elsewhere often shows that a sentence was meant differently, so have a look \
-        before you remove it.",
+    why: "Names consist of the letters a to z and A to Z, digits and `_`, and statements need no end mark. A foreign \
+        character often means that the statement was meant differently, so check it before you remove it.",
     imports: &[],
     example: "wheel wheelL with radius 4.5;",
     fixed: "wheel wheelL with radius 4.5",
@@ -117,8 +116,8 @@ fn partner(context: &Context<'_>, error: &SyntaxError, written: &str) -> Option<
         "'" | "`" | "“" | "„" | "‘" | "«" => "'`”“’‘»",
         _ => return None,
     };
-    let behind = context.errors.iter().filter(|other| other.span.start >= error.span.end);
-    let mut other = behind.filter_map(|other| match &other.kind {
+    let following = context.errors.iter().filter(|other| other.span.start >= error.span.end);
+    let mut other = following.filter_map(|other| match &other.kind {
         SyntaxErrorKind::InvalidCharacter { written } => Some((other.span, written)),
         _ => None,
     });

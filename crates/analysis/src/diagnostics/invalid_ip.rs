@@ -19,9 +19,8 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "One of the four numbers of an ip address is larger than 255.",
-    why: "The address says on which computer the simulator runs. Each of its four numbers goes from 0 to 255, \
-        so no computer has this one, and the script would look for it in vain. The address of your own \
-        computer is always `127.0.0.1`.",
+    why: "The address is that of the computer on which the simulator runs. Each of its four numbers is between 0 and \
+        255, so no computer has this address. Your own computer is always `127.0.0.1`.",
     imports: &[],
     example: "ip lab 192.168.0.300",
     fixed: "ip lab 192.168.0.30",

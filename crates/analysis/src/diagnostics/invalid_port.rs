@@ -19,9 +19,8 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "A robot's port is not between 1 and 65535.",
-    why: "The port is the number under which the script finds the simulator on its computer. There are no \
-        ports but 1 to 65535, so the two would never meet. CoppeliaSim normally waits on port 23000, the \
-        older V-REP on 19999.",
+    why: "The script finds the simulator on its computer by the port. Ports are numbered from 1 to 65535. CoppeliaSim \
+        listens on port 23000, the older V-REP on 19999.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

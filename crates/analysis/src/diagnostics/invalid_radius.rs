@@ -19,8 +19,8 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "A wheel's radius is zero or negative.",
-    why: "The radius is how far it is from the middle of the wheel to its edge, in centimetres. The script \
-        divides by it to find out how fast the wheel has to turn, and a wheel without any size cannot roll.",
+    why: "The radius is the distance from the centre of the wheel to its edge, in centimetres. The script divides by \
+        it to compute how fast the wheel turns, and a wheel without size cannot roll.",
     imports: &[],
     example: "wheel wheelL with radius 0",
     fixed: "wheel wheelL with radius 4.5",

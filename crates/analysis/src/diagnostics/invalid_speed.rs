@@ -20,9 +20,8 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "The speed after `at` is zero or negative.",
-    why: "A robot with speed zero never arrives. And a speed only says how fast, not which way: to drive \
-        backwards, make the distance negative. If you leave `at` out, the robot drives at 9 centimetres per \
-        second.",
+    why: "A robot with speed zero never arrives. A speed has no direction: to drive backwards, make the distance \
+        negative. Without `at`, the robot drives at 9 centimetres per second.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

@@ -20,8 +20,8 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "A robot's type is written before its name: `robot type tw rover`.",
-    why: "This is an older spelling. It still works, but everything else in the language has its name right \
-        after its first word, and so should a robot: then names are easy to find.",
+    why: "This is an older spelling. It still works, but everywhere else the name follows the keyword, which makes \
+        names easy to find.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

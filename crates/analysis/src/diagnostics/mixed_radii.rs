@@ -21,10 +21,9 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "The wheels of one robot do not all have the same radius.",
-    why: "Most robots have wheels of one size, so it is probably a typing mistake. If the robot really is \
-        built like this, all is well: the script turns smaller wheels faster, so that every wheel covers the \
-        same ground. But with a wrong radius the robot pulls to one side, and the script has to correct it \
-        all the way.",
+    why: "Most robots have wheels of one size, so this is probably a typing mistake. If the robot is built like this, \
+        all is well: the script turns smaller wheels faster. But with a wrong radius the robot pulls to one side, \
+        and the script has to correct it all the way.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

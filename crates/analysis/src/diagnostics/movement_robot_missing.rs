@@ -22,7 +22,7 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "An environment lists a movement of a robot that is not among its robots.",
-    why: "The script only connects to the robots that the environment lists. It could not drive this one.",
+    why: "The script connects only to the robots that the environment lists, so it could not drive this one.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

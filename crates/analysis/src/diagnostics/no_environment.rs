@@ -19,8 +19,8 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "A file has robots and movements, but no environment, and no other file imports it.",
-    why: "Robots and movements only describe what could happen. An environment says which robots take part and \
-        which movements run, and a script is made for each environment. Without one there is nothing to run.",
+    why: "Robots and movements only describe what is possible. An environment lists the robots that take part and the \
+        movements that run, and each environment becomes a script. Without one there is nothing to run.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

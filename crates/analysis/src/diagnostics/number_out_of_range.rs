@@ -18,11 +18,10 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "A robot is to drive more than 1000 kilometres in one move, or a radius, a speed or an angle has \
-        hundreds of digits.",
-    why: "At the usual 9 centimetres per second, 1000 kilometres take more than four months. So it is nearly \
-        always a slip: some zeros too many, or `meters` where `centimeters` was meant. And with numbers of \
-        hundreds of digits a computer can no longer calculate.",
+    what: "A move is longer than 1000 kilometres, or a radius, a speed or an angle has hundreds of digits.",
+    why: "At the default 9 centimetres per second, 1000 kilometres take more than four months. Usually there are some \
+        zeros too many, or `meters` was written for `centimeters`. Numbers of hundreds of digits exceed what a \
+        computer calculates with.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

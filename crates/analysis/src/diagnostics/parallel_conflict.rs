@@ -20,8 +20,7 @@ pub(super) static RULE: Rule = Rule {
 const PAGE: Page = Page {
     what: "Two `parallel` movements of the same robot are next to each other in an environment's list, so they \
         would start at the same time.",
-    why: "A robot has one set of wheels and cannot drive ahead and turn around at once: the two movements \
-        would pull at the same wheels. Let it do one after the other.",
+    why: "A robot has one set of wheels and cannot drive ahead and turn at once. Let it do one after the other.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

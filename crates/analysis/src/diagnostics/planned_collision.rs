@@ -21,11 +21,12 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "An environment has a scene file, and on its planned path a robot runs into what stands there, or into another \
+    what: "An environment has a scene file, and the planned path of a robot hits an obstacle of the scene, or another \
         robot that is there at the same time.",
-    why: "Contact stops a robot: the action would fail after five seconds without progress, and everything behind it would \
-        not happen. For each robot the first obstacle on its way is told, and for each two robots the first time they \
-        meet. What only the world decides, `turn … until` and `slam`, is not foreseen, nor is what comes after it.",
+    why: "Contact stops a robot: the action would fail after five seconds without progress, and everything after it \
+        would not happen. The first obstacle on each robot's way is reported, and for each two robots the first time \
+        they meet. What depends on the world, `turn … until` and `slam`, is not predicted, nor is what comes after \
+        it.",
     imports: &[("yard.scene.toml", "[[box]]\nname = \"crate\"\nat = [1.5, 0]\nsize = [0.4, 0.4]")],
     example: "\
 wheel wheelL with radius 4.5

@@ -20,8 +20,8 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "An environment lists the same robot twice.",
-    why: "A robot is in an environment once, so the second mention adds nothing. Maybe you meant a different \
-        robot. (Movements may be repeated, and then run each time.)",
+    why: "A robot is in an environment once, so the second mention adds nothing. Maybe you meant a different robot. \
+        (Movements may be repeated; they then run each time.)",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

@@ -19,8 +19,8 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "A robot's list of wheels has the same wheel twice.",
-    why: "In the simulator each wheel of a robot hangs on a motor of its own, and the name says which. One \
-        name cannot stand for two motors. Declare a wheel for each place, even if they are of equal size.",
+    why: "In the simulator each wheel has its own motor, which the name identifies. Declare one wheel per motor, even \
+        if they are of equal size.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

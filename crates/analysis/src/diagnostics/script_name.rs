@@ -19,14 +19,13 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "The script of an environment is called like the environment: `yard` becomes `yard.py`. Here that would \
-        not do. The name belongs to a module of Python or to one that scripts need, Windows has no files of that \
-        name, or another environment has the same name but for small and capital letters. The script's name then \
-        gets `_env` added to it.",
-    why: "When a script says `import math`, Python looks for `math.py` next to the script first. A script of that \
-        name would find itself there, and stop. And where a computer takes `yard.py` and `Yard.py` for the same \
-        file, one script would overwrite the other. With `_env` everything works, but you might look for the \
-        script under the wrong name.",
+    what: "The script of an environment is named after it: `yard` becomes `yard.py`. This name cannot be used: it \
+        belongs to a module of Python or to one that scripts need, Windows has no files of that name, or another \
+        environment's name differs only in case. The script's name then gets the suffix `_env`.",
+    why: "When a script runs `import math`, Python looks for `math.py` next to the script first. A script of that name \
+        would import itself and stop. And where a computer treats `yard.py` and `Yard.py` as the same file, one \
+        script would overwrite the other. With `_env` everything works, but you might look for the script under the \
+        wrong name.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

@@ -20,9 +20,9 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "A movement says `turn … until` with a sensor that its robot does not have.",
-    why: "The robot turns until that sensor no longer sees anything in the way. A sensor that is not on the \
-        robot can tell it nothing.",
+    what: "`turn … until` names a sensor that the movement's robot does not have.",
+    why: "The robot turns until that sensor no longer detects anything. A sensor that is not on the robot detects \
+        nothing for it.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

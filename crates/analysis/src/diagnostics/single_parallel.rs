@@ -20,11 +20,10 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "A movement is called `parallel`, but in no environment is another `parallel` movement next to it. \
-",
-    why: "Only `parallel` movements that are next to each other in the list run at the same time. Alone, such \
-        a movement runs like any other. Perhaps the other movement should be `parallel`, too, or the order \
-        in the list is not what you had in mind.",
+    what: "A movement is `parallel`, but in no environment is another `parallel` movement next to it.",
+    why: "Only `parallel` movements that are next to each other in the list run at the same time. Alone, such a \
+        movement runs like any other. Perhaps the other movement should be `parallel`, too, or the order in the list \
+        is wrong.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

@@ -19,10 +19,9 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "A movement says `slam`, but its robot has four wheels.",
-    why: "With `slam` a robot explores a place on its own and draws a map of it. For the parts of the map to \
-        fit together, it has to turn exactly on the spot. A robot with two wheels can do that; with four, \
-        some of the wheels always slip.",
+    what: "A movement contains `slam`, but its robot has four wheels.",
+    why: "With `slam` a robot explores an area and maps it. For the parts of the map to fit together, it has to turn \
+        exactly on the spot. A robot with two wheels can do that; with four, some of the wheels always slip.",
     imports: &[],
     example: "\
 wheel frontL with radius 5

@@ -18,10 +18,10 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "A movement says `slam`, but its robot has fewer than five distance sensors. A sensor declared with \
-        `: bumper` does not count, since it sees nothing before it touches it.",
-    why: "With `slam` a robot explores a place on its own and draws a map of it. To find openings and corners \
-        it has to look in several directions at once, and that takes five sensors.",
+    what: "A movement contains `slam`, but its robot has fewer than five distance sensors. A `: bumper` does not count, \
+        since it detects nothing before contact.",
+    why: "With `slam` a robot explores an area and maps it. To find openings and corners it has to look in several \
+        directions at once, which takes five sensors.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

@@ -18,7 +18,7 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "The file that is imported is not there, cannot be read, or lies outside of the workspace.",
+    what: "The imported file does not exist, cannot be read, or is outside of the workspace.",
     why: "Nothing of that file can be used. The path counts from the folder of the program that imports it, not \
         from where a command is started, and its parts are separated by `/` on every system. To keep programs in \
         one piece, a path may not lead out of the workspace: the folders that are open in an editor or named on the \

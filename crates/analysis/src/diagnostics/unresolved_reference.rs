@@ -24,11 +24,10 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "A name is used, but nothing of that kind is declared under it: not in this file, and not in the \
-        files that it imports. Small and capital letters count as different.",
-    why: "The script would not know which wheel, sensor or robot is meant. Mostly it is a slip of the finger, \
-        and the message tells you the nearest name there is. Where to declare something is up to you: it may \
-        also come later in the file.",
+    what: "A name is used that no declaration of that kind has, neither in this file nor in the files that it imports. \
+        Names are case-sensitive.",
+    why: "The script would not know which wheel, sensor or robot is meant. Usually it is a typing mistake, and the \
+        message suggests the closest name. Declarations may also come later in the file.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

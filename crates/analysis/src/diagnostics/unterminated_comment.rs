@@ -18,10 +18,10 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "A comment begins with `/*`, and no `*/` ends it. (The first `*/` ends a comment, even if there were \
-        two `/*` before it. A comment that begins with `//` ends by itself where the line ends.)",
-    why: "Everything from `/*` to the end of the file is taken for a comment. You still see your robots and \
-        movements there, but the program does not have them.",
+    what: "A comment begins with `/*`, and no `*/` ends it. (The first `*/` ends a comment, even after two `/*`. A \
+        comment that begins with `//` ends with its line.)",
+    why: "Everything from `/*` to the end of the file is a comment. You still see your robots and movements there, but \
+        the program does not contain them.",
     imports: &[],
     example: "\
 /* The wheels of my first robot

@@ -19,8 +19,7 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "The path after `import` begins with a `\"`, but the line ends before a second `\"` closes it.",
-    why: "Only the second quote says where the path ends. Without it the other file is not read, and whatever \
-        it declares is missing here.",
+    why: "The second quote ends the path. Without it the file is not read, and its declarations are missing here.",
     imports: &[("wheels.pyr", "wheel wheelL with radius 4.5\nwheel wheelR with radius 4.5")],
     example: "\
 import \"wheels.pyr

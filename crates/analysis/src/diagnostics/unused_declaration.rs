@@ -19,9 +19,8 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "A wheel, sensor, ip, robot or movement is declared, but nothing uses it. Files without an \
-        environment are not asked, and neither are files that others import: their parts are there for \
-        somebody else.",
+    what: "A wheel, sensor, ip, robot or movement is declared, but nothing uses it. Files without an environment are \
+        not checked for this, and neither are files that others import, since their declarations may be used there.",
     why: "It does no harm, but it changes nothing either. Maybe you forgot to add it somewhere, such as a \
         sensor to its robot or a movement to the environment. Otherwise the program is easier to read \
         without it.",

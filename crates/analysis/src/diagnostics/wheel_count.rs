@@ -21,9 +21,9 @@ pub(super) static RULE: Rule = Rule {
 const PAGE: Page = Page {
     what: "A robot does not have as many wheels as its type needs: two for `tw`, four for `fw` and for `fwh`. A \
         robot without a type has two or four.",
-    why: "The script steers the left wheels and the right wheels separately and finds out from the list which \
-        is which. With one too few or too many that cannot be told. Two wheels are listed left, right; four \
-        are listed left front, left rear, right front, right rear.",
+    why: "The script steers the left and the right wheels separately and tells them apart by their order in the list: \
+        left, right for two wheels; left front, left rear, right front, right rear for four. That takes the right \
+        number.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

@@ -10,7 +10,7 @@ use crate::Severity;
 pub(super) static RULE: Rule = Rule {
     code: "wheel-order",
     severity: Severity::Hint,
-    summary: "a wheel named as a right one stands where the left one belongs",
+    summary: "a wheel named as a right one is where the left one belongs",
     tag: None,
     applicability: Applicability::Suggested,
     page: PAGE,
@@ -20,8 +20,8 @@ pub(super) static RULE: Rule = Rule {
 const PAGE: Page = Page {
     what: "Two wheels look swapped: their names differ in one letter only, and the one with R is listed before \
         the one with L, although left wheels come first.",
-    why: "The order in the list decides which wheel is left and which is right, whatever they are called. If \
-        two are swapped, the robot turns right where it should turn left.",
+    why: "The order in the list decides which wheel is left and which is right, whatever their names. If two are \
+        swapped, the robot turns right where it should turn left.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

@@ -18,9 +18,8 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "A robot is to move 0 meters or 0 centimeters.",
-    why: "It stays where it is, so the line could just as well not be there. Maybe a number was to be filled \
-        in later and then forgotten.",
+    what: "A robot moves 0 meters or 0 centimeters.",
+    why: "The robot stays where it is, so the line has no effect. Maybe a number was to be filled in later.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5

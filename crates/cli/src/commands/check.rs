@@ -112,7 +112,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         output::print(&report)?;
     }
     if let Some(fixed) = &fixed {
-        output::say(&told(fixed, &diagnostics));
+        output::say(&fix_summary(fixed, &diagnostics));
     }
     failures.iter().for_each(output::fail);
     Ok(ExitCode::from(if failures.is_empty() {
@@ -161,7 +161,7 @@ fn summary(inputs: &Inputs, diagnostics: &[Diagnostic], scene_problems: &[SceneP
 }
 
 /// What was fixed, in words.
-fn told(fixed: &Fixed, left: &[Diagnostic]) -> String {
+fn fix_summary(fixed: &Fixed, left: &[Diagnostic]) -> String {
     match (fixed.count(), left) {
         (0, []) => String::new(),
         (0, _) => "Nothing was fixed: each of these problems needs a decision.\n".to_owned(),

@@ -55,7 +55,7 @@ pub(crate) fn array(
 
 fn problem<'a>(inputs: &'a Inputs, diagnostic: &'a Diagnostic) -> Problem<'a> {
     let file = diagnostic.file;
-    // An edit has no file of its own here, so only fixes within the file can be told.
+    // An edit has no file of its own here, so only fixes within the file are listed.
     let fix = diagnostic.fixes.iter().find(|fix| fix.edits.iter().all(|edit| edit.file == file));
     Problem {
         file: inputs.shown(file),

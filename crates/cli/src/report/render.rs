@@ -10,7 +10,7 @@ use pydslrep_syntax::Span;
 use crate::inputs::Inputs;
 use crate::report::output::renderer;
 
-/// Problems as they are shown on a terminal, each with an empty line behind it.
+/// Problems as they are shown on a terminal, each with an empty line after it.
 pub(crate) fn diagnostics(inputs: &Inputs, diagnostics: &[Diagnostic]) -> String {
     let mut text = String::new();
     for diagnostic in diagnostics {
@@ -20,7 +20,7 @@ pub(crate) fn diagnostics(inputs: &Inputs, diagnostics: &[Diagnostic]) -> String
     text
 }
 
-/// A problem of a `pydslrep.toml` or a scene file with its line, with an empty line behind it.
+/// A problem of a `pydslrep.toml` or a scene file with its line, with an empty line after it.
 pub(crate) fn problem(path: &str, text: &str, problem: &Problem) -> String {
     let span = problem.span.unwrap_or_default();
     let text = with_one_line_ending(text.to_owned());

@@ -121,7 +121,7 @@ fn location(inputs: &Inputs, file: FileId, span: Span) -> Value {
     json!({ "artifactLocation": artifact(inputs, file), "region": region(inputs.database(), file, span) })
 }
 
-/// From the first character to right behind the last one, as everywhere here.
+/// From the first character to right after the last one, as everywhere here.
 fn region(database: &Database, file: FileId, span: Span) -> Value {
     region_of(place::range(database, file, span))
 }

@@ -18,9 +18,9 @@ fn a_page_for_people() {
 
         Why it matters
 
-        The radius is how far it is from the middle of the wheel to its edge, in
-        centimetres. The script divides by it to find out how fast the wheel has to
-        turn, and a wheel without any size cannot roll.
+        The radius is the distance from the centre of the wheel to its edge, in
+        centimetres. The script divides by it to compute how fast the wheel turns, and a
+        wheel without size cannot roll.
 
         Example
 

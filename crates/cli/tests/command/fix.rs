@@ -77,9 +77,9 @@ fn every_safe_fix_of_the_catalogue_is_applied() {
             place.write(name, text);
         }
         let done = place.run(&["check", "--fix", "x.pyr"]);
-        let told = (done.code, done.out.as_str(), done.err.as_str());
+        let reported = (done.code, done.out.as_str(), done.err.as_str());
         let expected = (Some(0), "No problems in 1 file.\n", "Fixed 1 problem in 1 file.\n");
-        assert_eq!(told, expected, "{}", rule.code);
+        assert_eq!(reported, expected, "{}", rule.code);
         count += 1;
     }
     assert!(count > 5);

@@ -18,7 +18,7 @@ fn fine(environment: &str) -> String {
 }
 
 /// Codes with severities, as `check` tells them.
-fn told(place: &Place, arguments: &[&str]) -> Vec<String> {
+fn reported(place: &Place, arguments: &[&str]) -> Vec<String> {
     let done = place.run(&[&["check", "--format", "json"], arguments].concat());
     let problems: Vec<Value> = serde_json::from_str(&done.out).unwrap_or_else(|_| panic!("{}", done.err));
     let word = |problem: &Value, key: &str| problem[key].as_str().unwrap().to_owned();
@@ -30,7 +30,7 @@ fn the_nearest_file_counts_and_options_win_over_it() {
     let place = Place::with("a/x.pyr", PROBLEMS);
     place.write("b/c/y.pyr", PROBLEMS);
     assert_eq!(
-        told(&place, &["a"]),
+        reported(&place, &["a"]),
         ["unused-declaration hint", "invalid-radius error", "zero-distance warning"]
     );
     place.write("pydslrep.toml", "[severity]\nzero-distance = \"error\"\n");
@@ -42,9 +42,12 @@ fn the_nearest_file_counts_and_options_win_over_it() {
         "invalid-radius hint",
         "zero-distance warning",
     ];
-    assert_eq!(told(&place, &[]), both, "each program has its own");
+    assert_eq!(reported(&place, &[]), both, "each program has its own");
     assert_eq!(
-        told(&place, &["--severity", "zero-distance=off", "--severity", "unused-declaration=warning", "b"]),
+        reported(
+            &place,
+            &["--severity", "zero-distance=off", "--severity", "unused-declaration=warning", "b"]
+        ),
         ["unused-declaration warning", "invalid-radius hint"]
     );
     assert_eq!(place.run(&["check", "b"]).code, Some(0));
@@ -163,7 +166,7 @@ fn a_missing_client_of_vrep_is_explained() {
 fn what_keeps_a_script_from_being_made_is_shown_as_an_error() {
     let place = Place::with("x.pyr", fine("yard").replace("{ l r } wheels", "{ l } wheels"));
     place.write("pydslrep.toml", "[severity]\nwheel-count = \"off\"\nunused-declaration = \"off\"\n");
-    assert_eq!(told(&place, &[]), Vec::<String>::new());
+    assert_eq!(reported(&place, &[]), Vec::<String>::new());
     let done = place.run(&["build"]);
     assert!(done.err.starts_with("error[wheel-count]"), "{}", done.err);
     assert!(done.err.contains("\n1 error in 1 file.\n"), "{}", done.err);
@@ -174,7 +177,7 @@ fn what_keeps_a_script_from_being_made_is_shown_as_an_error() {
 fn programs_without_one_are_as_ever() {
     let place = Place::new();
     let usual = ["wheel-kind-mismatch warning", "port-of-other-target hint"];
-    assert_eq!(told(&place, &[&paper("table4_holonomic")]), usual);
+    assert_eq!(reported(&place, &[&paper("table4_holonomic")]), usual);
 }
 
 #[test]
@@ -182,7 +185,7 @@ fn some_problems_are_those_of_a_target() {
     let program = fine("yard").replace("{ a }", "{ a b }")
         + "robot b with port 23000 has { l r } wheels\nmovement n of b { move 1 meters }\n";
     let place = Place::with("x.pyr", program.replace("{ m }", "{ m n }"));
-    assert_eq!(told(&place, &[]), Vec::<String>::new());
+    assert_eq!(reported(&place, &[]), Vec::<String>::new());
     place.write("pydslrep.toml", "target = \"vrep\"\n");
-    assert_eq!(told(&place, &[]), ["duplicate-port warning"]);
+    assert_eq!(reported(&place, &[]), ["duplicate-port warning"]);
 }

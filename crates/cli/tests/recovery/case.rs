@@ -3,8 +3,8 @@
 /// A file of cases.
 pub(crate) struct Group {
     parts: Vec<Part>,
-    /// What stands behind every program, so that only what a case is about is wrong.
-    behind: String,
+    /// What follows every program, so that only what a case is about is wrong.
+    following: String,
 }
 
 enum Part {
@@ -23,23 +23,23 @@ pub(crate) struct Case {
 
 const PROGRAM: &str = "```pyr";
 const ESCAPED: &str = "```pyr escaped";
-const BEHIND: &str = "```pyr behind";
+const FOLLOWING: &str = "```pyr following";
 const MESSAGE: &str = "```text";
 const END: &str = "```";
 
 impl Group {
     pub(crate) fn read(text: &str) -> Self {
-        let (mut parts, mut behind, mut title) = (Vec::new(), String::new(), String::new());
+        let (mut parts, mut following, mut title) = (Vec::new(), String::new(), String::new());
         let mut lines = text.lines();
         while let Some(line) = lines.next() {
             match line {
-                PROGRAM | ESCAPED | BEHIND => {
+                PROGRAM | ESCAPED | FOLLOWING => {
                     let written: Vec<&str> = lines.by_ref().take_while(|line| *line != END).collect();
                     let program = written.join("\n") + "\n";
                     let source = format!("{line}\n{program}{END}\n");
                     match line {
-                        BEHIND => {
-                            behind = program;
+                        FOLLOWING => {
+                            following = program;
                             parts.push(Part::Prose(source));
                         }
                         ESCAPED => {
@@ -58,7 +58,7 @@ impl Group {
                 }
             }
         }
-        Self { parts, behind }
+        Self { parts, following }
     }
 
     pub(crate) fn cases(&self) -> impl Iterator<Item = &Case> {
@@ -70,7 +70,7 @@ impl Group {
 
     /// The whole text of a case's file.
     pub(crate) fn program(&self, case: &Case) -> String {
-        format!("{}{}", case.program, self.behind)
+        format!("{}{}", case.program, self.following)
     }
 
     /// The file with these messages, one for each case.

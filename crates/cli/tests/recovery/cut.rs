@@ -1,5 +1,5 @@
-//! Half-typed statements: a program cut off behind each of its words and signs, at the end of the file and with all
-//! further entities behind it.
+//! Half-typed statements: a program cut off after each of its tokens, at the end of the file and with all
+//! later entities after it.
 
 use expect_test::expect_file;
 use pydslrep_syntax::{lex, parse};
@@ -32,11 +32,11 @@ fn cuts() -> Vec<Cut> {
     let mut cuts = Vec::new();
     for (span, _) in parse(PROGRAM) {
         let entity = span.text(PROGRAM);
-        let (before, behind) = (&PROGRAM[..span.start as usize], &PROGRAM[span.end as usize..]);
+        let (before, following) = (&PROGRAM[..span.start as usize], &PROGRAM[span.end as usize..]);
         for (_, token) in lex(entity) {
             let written = entity[..token.end as usize].to_owned();
             let last = format!("{before}{written}");
-            let amid = format!("{last}\n{behind}");
+            let amid = format!("{last}\n{following}");
             cuts.push(Cut { written, last, amid });
         }
     }

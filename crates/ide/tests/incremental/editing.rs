@@ -285,11 +285,11 @@ impl Model {
     }
 
     /// The position after an edit.
-    pub(crate) fn behind(&self, change: &Change) -> u32 {
+    pub(crate) fn following(&self, change: &Change) -> u32 {
         match change {
             Change::Edit { file, span, text } => {
-                let behind = span.start.saturating_add(u32::try_from(text.len()).unwrap());
-                fit(self.text(*file), Span::at(behind)).start
+                let following = span.start.saturating_add(u32::try_from(text.len()).unwrap());
+                fit(self.text(*file), Span::at(following)).start
             }
             _ => 0,
         }
@@ -507,7 +507,7 @@ impl Editing {
         change: &Change,
         snapshots: &[(Snapshot, usize)],
     ) -> Result<(), String> {
-        let focus = Focus { file: change.file(), offset: self.model.behind(change), turn: self.turn };
+        let focus = Focus { file: change.file(), offset: self.model.following(change), turn: self.turn };
         answers::compare(&self.database, fresh, self.files, &focus)?;
         for (snapshot, index) in snapshots {
             answers::compare_snapshot(snapshot, &self.last, self.files[*index])?;
@@ -542,8 +542,8 @@ fn span(text: &str, at: Anchor, len: Length) -> Span {
     match len {
         Length::Bytes(bytes) => Span::new(start, start + u32::from(bytes)),
         Length::Tokens(count) => {
-            let behind = tokens.iter().filter(|(_, span)| span.end > start).take(usize::from(count));
-            Span::new(start, behind.last().map_or(start, |(_, span)| span.end))
+            let following = tokens.iter().filter(|(_, span)| span.end > start).take(usize::from(count));
+            Span::new(start, following.last().map_or(start, |(_, span)| span.end))
         }
     }
 }

@@ -58,7 +58,7 @@ fn compare(before: &Model, change: &Change) -> Result<(), String> {
     after.apply(change);
     let fresh = after.fresh(1).0;
     for turn in 0..4 {
-        let focus = Focus { file: change.file(), offset: after.behind(change), turn };
+        let focus = Focus { file: change.file(), offset: after.following(change), turn };
         answers::compare(&database, &fresh, files, &focus)?;
     }
     let touched = database.take_touched();

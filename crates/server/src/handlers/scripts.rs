@@ -172,7 +172,7 @@ pub(crate) fn save(state: &mut State, program: &Uri, outbox: &Outbox) {
             Ok(()) => (MessageType::INFO, format!("Script written: {} (on every save)", script.file_name())),
             Err(reason) => (MessageType::WARNING, reason),
         };
-        if state.told.insert(message.clone()) {
+        if state.reported.insert(message.clone()) {
             tell(outbox, kind, message);
         }
     }

@@ -51,9 +51,9 @@ fn ip_clause<'s>() -> impl Parser<'s, Input<'s>, IpClause, Extra<'s>> + Clone {
 }
 
 fn robots<'s>() -> Rule<'s, References> {
-    let behind = ROBOTS.or(WITH).or(MOVES);
-    keyword(TokenKind::Has, OPEN, NAME.or(CLOSE).or(behind))
-        .ignore_then(references(EntityKind::Robot, true, behind))
+    let following = ROBOTS.or(WITH).or(MOVES);
+    keyword(TokenKind::Has, OPEN, NAME.or(CLOSE).or(following))
+        .ignore_then(references(EntityKind::Robot, true, following))
         .then_ignore(keyword(TokenKind::Robots, WITH, MOVES))
         .boxed()
 }

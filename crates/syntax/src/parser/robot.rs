@@ -52,8 +52,8 @@ fn head<'s>() -> Rule<'s, Head> {
     // Before the name, and after the name once more, a type is understood, but never expected.
     let before = drive(one_in(TYPE), NAME.or(WITH)).map(Some).then(name());
     let before = before.then(drive(one_in(TYPE), WITH.or(PORT)).or_not());
-    let behind = empty().to(None).then(name()).then(drive(just(TokenKind::Type), WITH.or(PORT)).or_not());
-    choice((before, behind)).boxed()
+    let following = empty().to(None).then(name()).then(drive(just(TokenKind::Type), WITH.or(PORT)).or_not());
+    choice((before, following)).boxed()
 }
 
 fn drive<'s>(
@@ -88,9 +88,9 @@ fn port<'s>() -> Rule<'s, Option<PortNumber>> {
 }
 
 fn wheels<'s>() -> Rule<'s, References> {
-    let behind = WHEELS.or(WITH).or(SENSORS);
-    keyword(TokenKind::Has, OPEN, NAME.or(CLOSE).or(behind))
-        .ignore_then(references(EntityKind::Wheel, true, behind))
+    let following = WHEELS.or(WITH).or(SENSORS);
+    keyword(TokenKind::Has, OPEN, NAME.or(CLOSE).or(following))
+        .ignore_then(references(EntityKind::Wheel, true, following))
         .then_ignore(keyword(TokenKind::Wheels, WITH, SENSORS))
         .boxed()
 }

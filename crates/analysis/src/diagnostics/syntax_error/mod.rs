@@ -29,10 +29,10 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "The text does not follow the patterns of the language: a word is missing, misspelt, written twice or \
-        in the wrong place. Each slip is reported once, and the rest of the file is checked all the same.",
-    why: "Where a pattern is broken, nobody can be sure what you want the robot to do, so no script is made \
-        from it. The message says what was expected there and shows the whole pattern.",
+    what: "The text does not follow the grammar: a word is missing, misspelt, written twice or in the wrong place. Each \
+        mistake is reported once, and the rest of the file is still checked.",
+    why: "A broken statement could mean several things, so no script is generated from it. The message names what was \
+        expected and shows the form of the statement.",
     imports: &[],
     example: "wheel wheelL radius 4.5",
     fixed: "wheel wheelL with radius 4.5",

@@ -179,7 +179,7 @@ pub(super) fn repair(
 
 /// Where a brace too many is closed.
 fn braces(context: &Context<'_>, span: Span, found: &str) -> Option<Span> {
-    let behind = context.tokens.iter().filter(|(_, other)| other.start >= span.end);
-    let mut close = behind.filter(|(token, _)| *token == TokenKind::CloseBrace).map(|(_, span)| *span);
+    let following = context.tokens.iter().filter(|(_, other)| other.start >= span.end);
+    let mut close = following.filter(|(token, _)| *token == TokenKind::CloseBrace).map(|(_, span)| *span);
     close.next().filter(|_| found == "{")
 }
