@@ -54,7 +54,8 @@ class Watcher:
         while True:
             line = self._lines.get(timeout=LIMIT)
             summary = re.fullmatch(
-                r"\[\d\d:\d\d:\d\d\] (.*) Watching for changes; press Ctrl\+C to stop\.", line
+                r"\[\d\d:\d\d:\d\d\] (.*) Watching for changes; press Ctrl\+C to stop\.",
+                line,
             )
             if summary:
                 return "\n".join(problems), summary[1]
@@ -215,7 +216,9 @@ def test_a_terminal_is_cleared_before_each_look(
 
     try:
         for _ in range(2):
-            assert read_until(b"press Ctrl+C to stop.\r\n").startswith(b"\x1b[2J\x1b[3J\x1b[H")
+            assert read_until(b"press Ctrl+C to stop.\r\n").startswith(
+                b"\x1b[2J\x1b[3J\x1b[H"
+            )
             program.write_text(program.read_text() + "\n")
     finally:
         process.send_signal(signal.SIGINT)
