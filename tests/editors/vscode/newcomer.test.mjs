@@ -8,7 +8,7 @@ import { after, afterEach, before, test } from "node:test";
 import { Stage, program, spaced, until } from "./stage.mjs";
 
 const SQUARE = program("examples/square.pyr");
-const NO_ENVIRONMENT = SQUARE.slice(0, SQUARE.indexOf("// The environment says"));
+const NO_ENVIRONMENT = SQUARE.slice(0, SQUARE.search(/^environment /mu));
 
 const cache = mkdtempSync(path.join(os.tmpdir(), "pyr-cache-"));
 
