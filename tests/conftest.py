@@ -1,10 +1,13 @@
-"""The path of the command under test."""
+"""The command under test, and a simulator to connect to."""
 
 from __future__ import annotations
 
 import os
 import pathlib
+import re
 import signal
+import subprocess
+from collections.abc import Iterator
 
 import pytest
 
@@ -19,3 +22,17 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 def command() -> str:
     """The path of `pydslrep`."""
     return os.environ.get("PYDSLREP", str(DEBUG / "pydslrep"))
+
+
+@pytest.fixture
+def port(command: str) -> Iterator[int]:
+    """The port of a simulator with an empty floor, which is started for the test."""
+    simulator = subprocess.Popen(
+        [command, "sim", "--empty", "--port", "0"], stdout=subprocess.PIPE, text=True
+    )
+    assert simulator.stdout is not None
+    ready = re.search(r":(\d+)", simulator.stdout.readline())
+    assert ready is not None
+    yield int(ready[1])
+    simulator.send_signal(signal.SIGINT)
+    simulator.communicate(timeout=60)

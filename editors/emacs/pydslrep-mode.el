@@ -15,6 +15,8 @@
 (require 'treesit)
 
 (defvar eglot-server-programs)
+(declare-function eglot-current-server "eglot")
+(declare-function jsonrpc-request "jsonrpc")
 
 (defgroup pydslrep nil
   "PyDSLRep programs."
@@ -126,6 +128,15 @@
 
 ;;;###autoload
 (add-to-list 'auto-mode-alist '("\\.pyr\\'" . pydslrep-mode))
+
+;;;###autoload
+(defun pydslrep-preview ()
+  "Open the planned path of the program in a browser.
+It follows the text and the cursor, and ends with the language server."
+  (interactive)
+  (let ((server (or (eglot-current-server) (user-error "Start the language server first: M-x eglot"))))
+    ;; Eglot shows the page, or the message with its address.
+    (jsonrpc-request server :workspace/executeCommand '(:command "pydslrep.openPreview" :arguments []))))
 
 (with-eval-after-load 'eglot
   (add-to-list 'eglot-server-programs `(pydslrep-mode . ,pydslrep-server)))

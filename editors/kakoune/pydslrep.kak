@@ -76,3 +76,7 @@ hook global WinSetOption filetype=pydslrep %{
     hook -group pydslrep-tokens window InsertIdle .* lsp-semantic-tokens
     hook -once -always window WinSetOption filetype=.* %{ remove-hooks window pydslrep-tokens }
 }
+
+define-command pydslrep-preview -docstring 'show the address of a page with the planned path, which follows the text' %{
+    lsp-execute-command pydslrep.openPreview '[]'
+}

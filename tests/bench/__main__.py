@@ -1,33 +1,77 @@
 """Benchmarks language servers side by side, over pipes, as an editor would drive them.
 
     python tests/bench [--sizes 100,1000,10000] [--samples 60] "SERVER --stdio" ["OTHER SERVER --stdio"]
+    python tests/bench --only open,keystroke --json figures.json --names ours "SERVER --stdio"
 
 All servers run in parallel and take turns for each figure, so that other load on the machine affects all of them equally.
 Times are medians in milliseconds; with two servers, the last column is the first one's time divided by the second one's.
+On a busy machine, `--processor` gives steadier figures: what the servers run for each step, whoever else runs in between.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
+import pathlib
 import shlex
 import statistics
 import time
+from typing import TYPE_CHECKING, NamedTuple
 
 from client import Client
 from figures import FIGURES, Bench, WrongAnswerError
 from program import program
 
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
 SECONDS_PER_FIGURE = 6.0
 FEWEST = 3
+COLD = "cold start"
+MEMORY = "peak memory, MiB"
+
+
+class Row(NamedTuple):
+    """A figure for programs of a size, in ms or MiB, of each server; None if it lacks the capability."""
+
+    figure: str
+    lines: int
+    values: list[float | None]
+
+    def text(self) -> str:
+        """As a line of the table."""
+        cells = [
+            "     n/a" if value is None else f"{value:8.2f}" for value in self.values
+        ]
+        ratio = ""
+        if len(self.values) == 2 and self.values[0] is not None and self.values[1]:
+            ratio = f"{self.values[0] / self.values[1]:8.1f}"
+        return f"{self.figure:24}{self.lines:>8} {' '.join(cells)} {ratio}".rstrip()
 
 
 def main() -> None:
     """Measures and prints all figures."""
     options = arguments()
     commands = [shlex.split(command) for command in options.servers]
-    print(row("cold start, 100 lines", "", [cold(command) for command in commands]))
+    rows: list[Row] = []
+    if COLD.startswith(options.only):
+        rows.append(Row(COLD, 100, [cold(command, options) for command in commands]))
+        print(rows[-1].text())
     for size in map(int, options.sizes.split(",")):
-        measure(commands, size, options.samples)
+        for row in measure(commands, size, options):
+            print(row.text(), flush=True)
+            rows.append(row)
+    if options.json:
+        names = options.names or options.servers
+        cells = [
+            {
+                "figure": row.figure,
+                "lines": row.lines,
+                "values": dict(zip(names, row.values, strict=True)),
+            }
+            for row in rows
+        ]
+        options.json.write_text(json.dumps(cells, indent=1) + "\n", encoding="utf-8")
 
 
 def arguments() -> argparse.Namespace:
@@ -45,62 +89,82 @@ def arguments() -> argparse.Namespace:
     parser.add_argument(
         "--samples", type=int, default=60, help="steps per figure, at most"
     )
+    parser.add_argument(
+        "--only",
+        type=lambda text: tuple(text.split(",")),
+        default=("",),
+        help="beginnings of the figures to take",
+    )
+    parser.add_argument(
+        "--processor",
+        action="store_true",
+        help="take the processor time of the servers, which other load changes less",
+    )
+    parser.add_argument("--json", type=pathlib.Path, help="also write the figures here")
+    parser.add_argument(
+        "--names",
+        type=lambda text: text.split(","),
+        help="the servers' names in that file",
+    )
     return parser.parse_args()
 
 
-def cold(command: list[str]) -> float:
-    """Seconds from the start of a process to the first diagnostics."""
+def cold(command: list[str], options: argparse.Namespace) -> float:
+    """Milliseconds from the start of a process to the first diagnostics."""
     samples = []
     for _ in range(FEWEST):
         with Client(command) as client:
             client.open(program(100).text)
             _, arrived = client.settled([])
-            samples.append(arrived - client.began)
-    return statistics.median(samples)
+            took = arrived - client.began
+            samples.append(client.processor_time() if options.processor else took)
+    return 1000 * statistics.median(samples)
 
 
-def measure(commands: list[list[str]], size: int, samples: int) -> None:
-    """Prints all figures for programs of one size."""
+def measure(
+    commands: list[list[str]], size: int, options: argparse.Namespace
+) -> Iterator[Row]:
+    """Takes the figures that are asked for, for programs of one size."""
     text = program(size)
     clients = [Client(command) for command in commands]
     benches = [Bench(client, text) for client in clients]
     for name in FIGURES:
-        print(row(name, size, [median(bench, name, samples) for bench in benches]))
-    if all(client.process.poll() is None for client in clients):
+        if name.startswith(options.only):
+            yield Row(name, size, [median(bench, name, options) for bench in benches])
+    if MEMORY.startswith(options.only) and all(
+        client.process.poll() is None for client in clients
+    ):
         peaks = [client.peak_memory() for client in clients]
-        print(row("peak memory, MiB", size, [peak / 1000 for peak in peaks]))
+        yield Row(MEMORY, size, [*peaks])
     for client in clients:
         client.stop()
 
 
-def median(bench: Bench, name: str, samples: int) -> float | None:
-    """The median in seconds; None if a server lacks the capability."""
+def median(bench: Bench, name: str, options: argparse.Namespace) -> float | None:
+    """The median in milliseconds; None if a server lacks the capability."""
     step, capability = FIGURES[name]
     if capability and not bench.client.has(capability):
         return None
     taken: list[float] = []
     began = time.perf_counter()
     # Every edit is undone by the next step, so the number of steps is even.
-    while len(taken) < max(samples, FEWEST + 1) or len(taken) % 2:
-        taken.append(step(bench))
+    while len(taken) < max(options.samples, FEWEST + 1) or len(taken) % 2:
+        taken.append(processor_time(bench, step) if options.processor else step(bench))
         if (
             time.perf_counter() - began > SECONDS_PER_FIGURE
             and len(taken) > FEWEST
             and not len(taken) % 2
         ):
             break
-    return statistics.median(taken)
+    bench.restore()
+    return 1000 * statistics.median(taken)
 
 
-def row(name: str, size: object, times: list[float | None]) -> str:
-    """One row of the table."""
-    cells = [
-        "     n/a" if seconds is None else f"{seconds * 1000:8.2f}" for seconds in times
-    ]
-    ratio = ""
-    if len(times) == 2 and times[0] is not None and times[1]:
-        ratio = f"{times[0] / times[1]:8.1f}"
-    return f"{name:24}{size!s:>8} {' '.join(cells)} {ratio}".rstrip()
+def processor_time(bench: Bench, step: Callable[[Bench], float]) -> float:
+    """Seconds that the server runs for a step."""
+    before = bench.client.processor_time()
+    step(bench)
+    return bench.client.processor_time() - before
 
 
 if __name__ == "__main__":

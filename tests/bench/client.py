@@ -39,7 +39,8 @@ LONGEST_WAIT = 120.0
 class Client:
     """A running server."""
 
-    def __init__(self, command: list[str]) -> None:
+    def __init__(self, command: list[str], longest_wait: float = LONGEST_WAIT) -> None:
+        self.longest_wait = longest_wait
         self.began = time.perf_counter()
         self.process = subprocess.Popen(
             command,
@@ -88,7 +89,7 @@ class Client:
     def answer(self, ident: int) -> tuple[Any, float]:
         """The response to a request, and the time when it was complete."""
         while True:
-            message, arrived = self._next()
+            message, arrived = self.receive()
             if message.get("id") == ident and "method" not in message:
                 if "error" in message:
                     raise RuntimeError(str(message["error"]))
@@ -97,6 +98,7 @@ class Client:
     def open(self, text: str) -> float:
         """Opens the document; returns the time before its first byte."""
         self.version += 1
+        self.published.clear()
         return self.tell(
             "textDocument/didOpen",
             {
@@ -150,15 +152,22 @@ class Client:
                 version = params.get("version")
                 if version == self.version or (version is None and found == lines):
                     return found, arrived
-            self._next()
+            self.receive()
+
+    def processor_time(self) -> float:
+        """Seconds that all threads of the server have run."""
+        tasks = pathlib.Path(f"/proc/{self.process.pid}/task").iterdir()
+        stats = ((task / "schedstat").read_text() for task in tasks)
+        return sum(int(stat.split()[0]) for stat in stats) / 1e9
 
     def peak_memory(self) -> float:
         """The peak memory in MiB."""
         status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text()
         return int(status.split("VmHWM:")[1].split()[0]) / 1024
 
-    def _next(self) -> tuple[dict[str, Any], float]:
-        arrived, body = self.arrived.get(timeout=LONGEST_WAIT)
+    def receive(self) -> tuple[dict[str, Any], float]:
+        """The next message, and the time when it was complete; requests are answered."""
+        arrived, body = self.arrived.get(timeout=self.longest_wait)
         if body is None:
             raise RuntimeError("the server exited")
         message: dict[str, Any] = json.loads(body)

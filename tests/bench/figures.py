@@ -33,7 +33,7 @@ class Bench:
     def __init__(self, client: Client, program: Program) -> None:
         self.client = client
         self.program = program
-        self.wrong = False
+        self.wrong = self.is_broken = False
         self.settled(client.open(program.text), [])
 
     def settled(self, started: float, lines: list[int]) -> float:
@@ -51,9 +51,24 @@ class Bench:
         return started, [line] if self.wrong else []
 
     def open(self) -> float:
-        """Reopens the document, until its diagnostics."""
+        """Reopens the document, until its diagnostics.
+
+        It has an error then, by which its diagnostics differ from those that a server may publish for a closed document.
+        """
+        line, column = self.program.unit
+        lines = list(self.program.lines)
+        lines[line] = f"{lines[line][:column]}x{lines[line][column:]}"
         self.client.close()
-        return self.settled(self.client.open(self.program.text), [])
+        started = self.client.open("\n".join(lines) + "\n")
+        self.is_broken = True
+        return self.settled(started, [line])
+
+    def restore(self) -> None:
+        """Removes the error that `open` leaves."""
+        if self.is_broken:
+            line, column = self.program.unit
+            self.settled(self.client.change(line, column, column + 1, ""), [])
+            self.is_broken = False
 
     def keystroke(self, site: Site) -> float:
         """A keystroke, until the diagnostics."""

@@ -19,7 +19,7 @@ movement out_{n} of robot_{n} {{
   turn right until {{ far_{n} }}
 }}
 
-parallel movement back_{n} of robot_{n} {{
+movement back_{n} of robot_{n} {{
   // the way home
   turn left 180.0
   move 2.5 meters

@@ -6,6 +6,8 @@ import pathlib
 import subprocess
 import sys
 
+from program import program
+
 
 def test_every_figure_can_be_taken(command: str) -> None:
     bench = pathlib.Path(__file__).parent
@@ -27,3 +29,13 @@ def test_every_figure_can_be_taken(command: str) -> None:
     rows = done.stdout.splitlines()
     assert len(rows) == 12, done.stdout
     assert not any("n/a" in row for row in rows), done.stdout
+
+
+def test_the_program_has_no_problems(command: str, tmp_path: pathlib.Path) -> None:
+    # Else every keystroke would also transfer what is found elsewhere.
+    path = tmp_path / "program.pyr"
+    path.write_text(program(100).text, encoding="utf-8")
+    done = subprocess.run(
+        [command, "check", path], capture_output=True, text=True, check=False
+    )
+    assert done.stdout == "No problems in 1 file.\n", done.stdout

@@ -7,13 +7,7 @@
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 
 need() { # program, its package
-  command -v "$1" >/dev/null && return
-  if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
-    apt-get update -qq && apt-get install -y -qq --no-install-recommends "$2" >/dev/null
-  else
-    echo "$1 is missing: install it (on Debian and Ubuntu: apt install $2) and run this again" >&2
-    exit 2
-  fi
+  command -v "$1" >/dev/null || "$repository/tests/install/apt.sh" "$2"
 }
 
 unpacked() { # suite, package; prints the folder
@@ -24,9 +18,13 @@ unpacked() { # suite, package; prints the folder
       exit 2
     }
     need patchelf patchelf >&2
-    rm -rf "$folder"
-    unpack "$1" "$folder" "$2" >&2
-    touch "$folder/complete"
+    source "$repository/tests/install/lock.sh"
+    wait_for_turn
+    if [ ! -e "$folder/complete" ]; then
+      rm -rf "$folder"
+      unpack "$1" "$folder" "$2" >&2
+      touch "$folder/complete"
+    fi
   fi
   echo "$folder"
 }

@@ -98,6 +98,10 @@ class Terminal:
         """Waits until a pattern disappears; returns whether it does."""
         return self._wait(lambda screen: re.search(pattern, screen) is None)
 
+    def until(self, is_reached: Callable[[], bool]) -> bool:
+        """Waits for something that is not on the screen; returns whether it happens."""
+        return self._wait(lambda _: is_reached())
+
     def _wait(
         self, is_reached: Callable[[str], bool], patience: float = PATIENCE
     ) -> bool:

@@ -5,7 +5,6 @@ All three answers are made comparable by `grammar/colours.json`, the one table o
 
 from __future__ import annotations
 
-import ctypes
 import json
 import os
 import re
@@ -155,32 +154,6 @@ def units(text: str, start: int) -> list[int]:
             break
         places.extend([index] * (2 if ord(character) > 0xFFFF else 1))
     return [*places, places[-1] + 1 if places else 0]
-
-
-def compiled_parser(folder: Path) -> tree_sitter.Language:
-    """Compiles the checked-in parser into a folder."""
-    library = folder / "pydslrep.so"
-    source = TREE_SITTER / "src"
-    subprocess.run(
-        [
-            "cc",
-            "-shared",
-            "-fPIC",
-            "-std=c11",
-            "-I",
-            source,
-            "-o",
-            library,
-            source / "parser.c",
-        ],
-        check=True,
-    )
-    function = ctypes.CDLL(str(library)).tree_sitter_pydslrep
-    function.restype = ctypes.c_void_p
-    capsule = ctypes.pythonapi.PyCapsule_New
-    capsule.restype = ctypes.py_object
-    capsule.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p]
-    return tree_sitter.Language(capsule(function(), b"tree_sitter.Language", None))
 
 
 class TreeSitter:

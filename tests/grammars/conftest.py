@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-from colours import LanguageServer, TextMate, TreeSitter, compiled_parser
+from colours import LanguageServer, TextMate, TreeSitter
+from compiled_parser import compiled_parser
 
 
 @pytest.fixture(scope="session")

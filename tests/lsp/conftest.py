@@ -7,7 +7,7 @@ from collections.abc import AsyncIterator
 
 import pytest
 import pytest_lsp
-from editor import capabilities
+from editor import capabilities, tell_actions_from_commands
 from lsprotocol import types
 from pytest_lsp import ClientServerConfig, LanguageClient
 from raw import SERVER
@@ -33,6 +33,7 @@ async def client(
     lsp_client: LanguageClient, request: pytest.FixtureRequest
 ) -> AsyncIterator[LanguageClient]:
     """A client in a session; tests may parametrise it by the name of an editor in `editor.py`."""
+    tell_actions_from_commands(lsp_client)
     wanted = capabilities(getattr(request, "param", "complete"))
     await lsp_client.initialize_session(types.InitializeParams(capabilities=wanted))
     yield lsp_client

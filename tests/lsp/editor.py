@@ -9,7 +9,7 @@ from __future__ import annotations
 import pathlib
 import re
 import subprocess
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Union
 from urllib.parse import unquote, urlsplit
 
 from lsprotocol import types
@@ -127,9 +127,23 @@ def apply_edits(text: str, edits: Sequence[types.TextEdit]) -> str:
     return text
 
 
+def tell_actions_from_commands(client: LanguageClient) -> None:
+    """The client's library takes every action that has a command for one."""
+
+    def structure(answer: Any, _: object) -> types.Command | types.CodeAction:
+        if isinstance(answer.get("command"), str):
+            return converter.structure(answer, types.Command)
+        return converter.structure(answer, types.CodeAction)
+
+    converter = client.protocol._converter
+    either = Union[types.Command, types.CodeAction]  # noqa: UP007 (as in the library)
+    converter.register_structure_hook(either, structure)
+
+
 def built(command: str, folder: pathlib.Path, text: str) -> str:
-    """The script of a program as the command builds it."""
-    program = folder / "built.pyr"
+    """The script of the program `table2.pyr` as the command builds it."""
+    program = folder / "built" / "table2.pyr"
+    program.parent.mkdir(exist_ok=True)
     program.write_text(text, encoding="utf-8")
     done = subprocess.run(
         [command, "build", "--stdout", program],

@@ -203,6 +203,7 @@ REQUESTS: dict[str, Callable[[Buffer], dict[str, Any]]] = {
     },
     "workspace/willRenameFiles": moving,
     "pydslrep/plannedPath": script,
+    "pydslrep/script": script,
     "pydslrep/plannedAt": lambda b: b.at("move 4"),
     "pydslrep/actionLocation": lambda b: {**script(b), "movement": "lap", "index": 0},
     "textDocument/diagnostic": of,

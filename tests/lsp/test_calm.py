@@ -137,11 +137,11 @@ def editor(server: str, tmp_path: pathlib.Path) -> Iterator[Editor]:
         yield Editor(raw, tmp_path)
 
 
-FIRST = {"  move 4.0 meters": "at 9.0 · 44.6 s → 4.00, 0.00, 0°"}
-SECOND = {"  turn right": "90 · 2.8 s → 4.00, 0.00, -90°"}
-THIRD = {"  move 2 meters": "at 9.0 · 22.4 s → 4.00, -2.00, -90°"}
-FOURTH = {"  turn left": "90 · 2.8 s → 4.00, -2.00, 0°"}
-OTHER = {"  move -1 meters": "at 9.0 · 11.3 s → -1.00, 0.00, 0°"}
+FIRST = {"  move 4.0 meters": "at 9.0 · 44.8 s → 4.00, 0.00, 0°"}
+SECOND = {"  turn right": "90 · 2.9 s → 4.00, 0.00, -90°"}
+THIRD = {"  move 2 meters": "at 9.0 · 22.6 s → 4.00, -2.00, -90°"}
+FOURTH = {"  turn left": "90 · 2.9 s → 4.00, -2.00, 0°"}
+OTHER = {"  move -1 meters": "at 9.0 · 11.4 s → -1.00, 0.00, 0°"}
 
 
 #### Hints ####
@@ -168,8 +168,8 @@ def test_a_new_line_removes_no_hints(editor: Editor) -> None:
         if after not in seen:
             seen.append(after)
     moved = {
-        "  move 2 meters": "at 9.0 · 22.4 s → 4.00, -3.00, -90°",
-        "  turn left": "90 · 2.8 s → 4.00, -3.00, 0°",
+        "  move 2 meters": "at 9.0 · 22.6 s → 4.00, -3.00, -90°",
+        "  turn left": "90 · 2.9 s → 4.00, -3.00, 0°",
     }
     assert seen == [THIRD | FOURTH, moved], "as before, until there is something new"
 
@@ -204,7 +204,7 @@ def test_hints_return_when_the_cursor_moves(editor: Editor) -> None:
     editor.talk.hear_until("workspace/inlayHint/refresh")
     editor.talk.hear_until("workspace/codeLens/refresh")
     assert editor.hinted() == shown | {
-        "  move 2 meters ": "at 9.0 · 22.4 s → 4.00, -2.00, -90°"
+        "  move 2 meters ": "at 9.0 · 22.6 s → 4.00, -2.00, -90°"
     }
     # The request for a light bulb also shows the cursor; requests on saving do not.
     list(editor.type("move 2 meters ", "\b".replace("\b", " ")))

@@ -33,6 +33,7 @@ WITHOUT_COLUMNS = {
     "codeAction/resolve",
     "workspace/executeCommand",
     "workspace/willRenameFiles",
+    "pydslrep/script",
     "pydslrep/plannedPath",
     "pydslrep/plannedAt",
 }

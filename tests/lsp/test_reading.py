@@ -109,7 +109,7 @@ async def test_actions_have_hints(
         types.InlayHintParams(identifier(uri), asked)
     )
     assert hints is not None
-    assert [hint.label for hint in hints] == ["90", "· 2.8 s → 4.00, 0.00, 90°"]
+    assert [hint.label for hint in hints] == ["90", "· 2.9 s → 4.00, 0.00, 90°"]
     assert {(hint.position.line, hint.position.character) for hint in hints} == {
         (line, position(text, end).character)
     }
@@ -175,4 +175,4 @@ async def test_settings_choose_the_hints(
         types.InlayHintParams(identifier(uri), asked)
     )
     assert hints is not None
-    assert [hint.label for hint in hints] == ["· 44.6 s", "· 2.8 s"]
+    assert [hint.label for hint in hints] == ["· 44.8 s", "· 2.9 s"]

@@ -90,7 +90,7 @@ async def test_a_script_replaces_any_older_script(
     editor = Editor(client, tmp_path)
     uri = editor.open("table2.pyr", table_2)
     script = editor.uri("area_1.py")
-    old = "an older script\nof two lines\n"
+    old = built(command, tmp_path, table_2.replace("4.0", "3.0"))
     if there not in ("nothing", "unsaved buffer"):
         (tmp_path / "area_1.py").write_text(old, encoding="utf-8")
     if there == "buffer over a file":

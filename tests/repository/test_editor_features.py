@@ -68,7 +68,8 @@ TOP = """\
 
 The features of the language server, with the messages of the Language Server Protocol that they use. In addition, errors
 appear as you type, each with a page in [diagnostics](diagnostics/README.md), and *Generate script* is a code action in
-every program. [protocol.md](protocol.md) lists the commands and the extensions of the protocol.
+every program. Commands run and preview programs, and build and check their scenes in CoppeliaSim;
+[protocol.md](protocol.md) lists them and the extensions of the protocol.
 """
 
 

@@ -35,13 +35,40 @@ def test_the_toolchain_has_what_the_checks_need() -> None:
     assert [*map(int, oldest)] <= [*map(int, str(toolchain()["channel"]).split("."))]
 
 
+def workflow(name: str) -> str:
+    return (ROOT / ".github" / "workflows" / f"{name}.yml").read_text(encoding="utf-8")
+
+
 def test_hosted_checks_run_the_test_command_and_nothing_else() -> None:
-    [workflow] = (ROOT / ".github" / "workflows").iterdir()
-    text = workflow.read_text(encoding="utf-8")
+    text = workflow("ci")
     assert re.findall(r"\brun: *(.*)", text) == [".ci/run"]
-    [action] = re.findall(r"\buses: *(.*)", text)
-    assert action.startswith("actions/checkout@")
     assert f"container: rust:{toolchain()['channel']}-" in text
+
+
+def test_a_release_is_what_its_script_builds() -> None:
+    text = workflow("release")
+    build, publish = re.findall(r"\brun: *(.*)", text)
+    assert build == ".ci/dist.sh"
+    assert publish.startswith("gh release create ")
+    assert 'tags: ["v*"]' in text
+
+
+def test_hosted_actions_are_pinned_and_may_do_little() -> None:
+    for path in (ROOT / ".github" / "workflows").iterdir():
+        text = path.read_text(encoding="utf-8")
+        for action in re.findall(r"\buses: *(.*)", text):
+            assert re.fullmatch(r"actions/[\w-]+@[0-9a-f]{40} # v[\d.]+", action), (
+                action
+            )
+        assert "\npermissions:\n  contents: read\n" in text
+
+
+def test_workflows_are_in_the_form_of_github() -> None:
+    form = ["--builtin-schema", "vendor.github-workflows"]
+    files = sorted((ROOT / ".github" / "workflows").iterdir())
+    subprocess.run(
+        [sys.executable, "-m", "check_jsonschema", *form, *files], check=True
+    )
 
 
 def test_hooks_are_local_and_complete() -> None:

@@ -16,7 +16,7 @@ TO_COPY = [
     *sorted((ROOT / "editors/vscode/snippets").glob("*.json")),
     *sorted((ROOT / "editors/vscode/walkthrough").glob("*.md")),
     *sorted((ROOT / "editors/neovim").rglob("*.md")),
-    *(path for path in sorted((ROOT / "docs").glob("*.md"))),
+    *(path for path in sorted((ROOT / "docs").glob("*.md")) if path.stem != "vrep"),
 ]
 
 
@@ -56,7 +56,7 @@ def configured(path: Path) -> list[str]:
 
 
 def test_the_script_names_the_same_ports() -> None:
-    part = ROOT / "crates/script/python/pydslrep_parts/coppeliasim.py"
+    part = ROOT / "python/pydslrep_runtime/coppeliasim.py"
     named = re.findall(
         r"^(?:DEFAULT|LEGACY)_PORT = (\d+)", part.read_text("utf-8"), re.M
     )

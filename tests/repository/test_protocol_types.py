@@ -1,6 +1,6 @@
-"""docs/protocol.md repeats the types that the extension reads: `UPDATE_EXPECT=1` copies them anew.
+"""docs/protocol.md repeats the types that editors read: `UPDATE_EXPECT=1` copies them anew.
 
-Samples that the server's own tests write hold these types against what is really sent (editors/vscode/tests).
+Samples that the server's own tests write hold these types against what is really sent (editors/preview/tests, editors/vscode/tests).
 """
 
 import os
@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-SOURCE = ROOT / "editors" / "vscode" / "src"
+EDITORS = ROOT / "editors"
 PAGE = ROOT / "docs" / "protocol.md"
 
 # A type with the comment above it, to the blank line that follows.
@@ -29,7 +29,7 @@ def declared(text: str) -> dict[str, str]:
 
 
 def types() -> dict[str, str]:
-    files = [SOURCE / "preview" / "protocol.ts", SOURCE / "figures.ts"]
+    files = [EDITORS / "preview/host/protocol.ts", EDITORS / "vscode/src/figures.ts"]
     text = "\n".join(file.read_text(encoding="utf-8") for file in files)
     # The Language Server Protocol has the others.
     return {
@@ -52,7 +52,7 @@ def page() -> str:
     return re.sub(r"(```typescript\n)(.*?)(```\n)", block, text, flags=re.DOTALL)
 
 
-def test_the_page_has_the_types_of_the_extension() -> None:
+def test_the_page_has_the_types_of_the_editors() -> None:
     renewed = page()
     if os.environ.get("UPDATE_EXPECT"):
         PAGE.write_text(renewed, encoding="utf-8")

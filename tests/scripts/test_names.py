@@ -1,7 +1,7 @@
 """Any name in a program gives a script that passes Python's tools and drives the robots.
 
 The tests use all names that could conflict with a script: Python's keywords and builtins, the script's own identifiers,
-and the keywords of the language.
+those of the runtime, and the keywords of the language.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import ast
 import builtins
 import itertools
 import keyword
+import os
 import pathlib
 import re
 import subprocess
@@ -43,6 +44,7 @@ parallel movement ^M3 of ^R0 { move 5 centimeters }
 
 environment ^E0 with ip ^I0 has { ^R0 ^R1 ^R2 } robots with { ^M0 ^M1 ^M2 ^M3 } moves
 """
+KINDS = ["robot", "movement", "environment"]
 PLACES = sorted(set(re.findall(r"\^([A-Z]\d)", PROGRAM)))
 
 # One name for everything that may share it: each kind of entity has its own namespace. The robot with that name is not
@@ -94,6 +96,13 @@ def keywords() -> set[str]:
     return set(re.findall(r'"([A-Za-z]+)"', grammar))
 
 
+def runtime() -> set[str]:
+    """The identifiers in the interface of the runtime, and its modules."""
+    folder = ROOT / "python" / "pydslrep_runtime"
+    modules = {path.stem for path in folder.rglob("*.py")}
+    return modules | identifiers((folder / "__init__.py").read_text(encoding="utf-8"))
+
+
 def all_names(script: str) -> list[str]:
     """Names that could conflict with a script, in an order that gives neighbours different roles."""
     own = {name for name in identifiers(script) if name not in PLACES}
@@ -101,8 +110,11 @@ def all_names(script: str) -> list[str]:
         set(keyword.kwlist) | set(keyword.softkwlist) | set(dir(builtins)) | own
     ) | keywords()
     names |= {"__main__", "__init__", "__name__", "__file__", "self", "_", "__"}
-    # Movements become `movement_NAME`, which must not conflict with existing identifiers.
-    names |= {name.removeprefix("movement_") for name in own}
+    # What a name becomes that is taken, and what ruff and mypy treat specially.
+    names |= {f"{name}_{kind}" for name in ["class", "run"] for kind in KINDS}
+    names |= {f"{kind}_{number}" for kind in KINDS for number in (1, 2)}
+    names |= {*KINDS, "l", "O", "I", "reveal_type", "reveal_locals", "TYPE_CHECKING"}
+    names |= runtime()
     return sorted(
         name for name in names if re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name)
     )
@@ -133,6 +145,8 @@ def pass_tools(scripts: Sequence[pathlib.Path], folder: pathlib.Path) -> None:
         done = subprocess.run(
             [sys.executable, "-m", *arguments],
             cwd=folder,
+            # mypy finds the runtime, as it would beside the scripts.
+            env=os.environ | {"MYPYPATH": str(ROOT / "python")},
             capture_output=True,
             encoding="utf-8",
             check=False,
@@ -143,7 +157,7 @@ def pass_tools(scripts: Sequence[pathlib.Path], folder: pathlib.Path) -> None:
 def test_any_name_is_only_a_name(command: str, tmp_path: pathlib.Path) -> None:
     plain = built(command, tmp_path / "plain", renamed(PROGRAM, {p: p for p in PLACES}))
     names = all_names(plain.read_text(encoding="utf-8"))
-    assert {"class", "None", "print", "robot", "math", "main", "self"} <= set(names)
+    assert {"class", "None", "print", "robot_1", "run", "movement", "l"} <= set(names)
     scripts = []
     for index, start in enumerate(range(0, len(names), len(PLACES))):
         # Fill up the last program with the first names.
@@ -157,7 +171,7 @@ def test_any_name_is_only_a_name(command: str, tmp_path: pathlib.Path) -> None:
 
 def test_one_name_for_everything(command: str, tmp_path: pathlib.Path) -> None:
     scripts = []
-    for name in ("x", "class", "robot", "movement_x", "main", "math"):
+    for name in ("x", "class", "run", "x_robot", "movement", "l", "math"):
         folder = tmp_path / name
         scripts.append(built(command, folder, renamed(ONE_NAME, {"X": name})))
         drive(command, folder / "program.pyr")

@@ -1,8 +1,7 @@
-"""The class in docs/physical-robot.md drives a robot when put into a generated script as the page says."""
+"""The classes in docs/physical-robot.md drive a robot as the page says, and so does its script by hand."""
 
 from __future__ import annotations
 
-import ast
 import json
 import math
 import os
@@ -12,6 +11,7 @@ import shutil
 import subprocess
 import sys
 import textwrap
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -30,35 +30,12 @@ environment yard has { rover } robots with { trip } moves
 
 
 def code_of_the_page() -> list[str]:
-    """The code blocks that its steps put into a script."""
+    """Its blocks of code: a robot, one that explores, and a script by hand."""
     page = (ROOT / "docs" / "physical-robot.md").read_text(encoding="utf-8")
     return [
         textwrap.dedent(code)
         for code in re.findall(r"^ *```python\n(.*?)^ *```$", page, re.M | re.S)
     ]
-
-
-def ported(script: str, *, explores: bool = False) -> str:
-    """The script with the page's replacements."""
-    imports, body, mounts, methods = code_of_the_page()
-    if explores:
-        body = f"{mounts}\n\n{body}\n{textwrap.indent(methods, '    ')}"
-    lines = script.splitlines(keepends=True)
-    places: dict[str, tuple[int, int]] = {}
-    for node in ast.parse(script).body:
-        # The only `try` at the top level imports the client.
-        is_client = isinstance(node, ast.Try)
-        name = "client" if is_client else str(getattr(node, "name", ""))
-        places[name] = (node.lineno - 1, node.end_lineno or 0)
-    replaced = {
-        "Body": body,
-        "TimeoutSocket": "",
-        "client": imports,
-    }
-    for name, code in sorted(replaced.items(), key=lambda item: -places[item[0]][0]):
-        first, last = places[name]
-        lines[first:last] = [code]
-    return "".join(lines)
 
 
 EXPLORING = """
@@ -75,49 +52,48 @@ environment yard has { rover } robots with { trip } moves
 """
 
 
-def build(
-    command: str, folder: pathlib.Path, text: str, *, explores: bool
-) -> pathlib.Path:
-    program = folder / "program.pyr"
-    program.write_text(text, encoding="utf-8")
-    subprocess.run([command, "build", str(program)], check=True, capture_output=True)
-    script = folder / "yard.py"
-    generated = script.read_text(encoding="utf-8")
-    script.write_text(ported(generated, explores=explores), encoding="utf-8")
-    shutil.copy(DRIVER, folder)
-    return script
+@pytest.fixture(name="build")
+def fixture_build(
+    command: str, tmp_path: pathlib.Path
+) -> Callable[[str], pathlib.Path]:
+    """Builds a program next to the page's module and its driver; returns the folder."""
 
+    def build(text: str) -> pathlib.Path:
+        program = tmp_path / "program.pyr"
+        program.write_text(text, encoding="utf-8")
+        subprocess.run([command, "build", program], check=True, capture_output=True)
+        robot, explorer, _ = code_of_the_page()
+        (tmp_path / "my_robot.py").write_text(f"{robot}\n{explorer}", encoding="utf-8")
+        shutil.copy(DRIVER, tmp_path)
+        return tmp_path
 
-@pytest.fixture(name="script")
-def fixture_script(command: str, tmp_path: pathlib.Path) -> pathlib.Path:
-    return build(command, tmp_path, PROGRAM, explores=False)
-
-
-@pytest.fixture(name="explorer")
-def fixture_explorer(command: str, tmp_path: pathlib.Path) -> pathlib.Path:
-    return build(command, tmp_path, EXPLORING, explores=True)
+    return build
 
 
 def drive(
-    script: pathlib.Path, code: int, trouble: str = "", *options: str
+    folder: pathlib.Path, code: int, trouble: str, *options: str
 ) -> tuple[Any, str]:
     """The robot's actual end pose, and the script's error output."""
     done = subprocess.run(
-        [sys.executable, str(script), *options],
-        cwd=script.parent,
+        [sys.executable, "yard.py", *options],
+        cwd=folder,
         env={**os.environ, "MOTOR_DRIVER": trouble},
         capture_output=True,
         text=True,
         check=False,
     )
     assert done.returncode == code, done.stderr
-    truth = json.loads((script.parent / "truth.json").read_text(encoding="utf-8"))
+    truth = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
     assert not any(truth["wanted"])
     return truth, done.stderr
 
 
-def test_the_robot_reaches_its_goal(script: pathlib.Path) -> None:
-    truth, _ = drive(script, 0)
+ROVER = "--robot=my_robot:Rover"
+EXPLORER = "--robot=rover=my_robot:Explorer"
+
+
+def test_the_robot_reaches_its_goal(build: Callable[[str], pathlib.Path]) -> None:
+    truth, _ = drive(build(PROGRAM), 0, "", ROVER)
     # It turns until the sensor is free, moves 20 cm, and turns by a right angle.
     free = truth["theta"] - math.pi / 2
     assert math.radians(30) < free < math.radians(40)
@@ -126,20 +102,23 @@ def test_the_robot_reaches_its_goal(script: pathlib.Path) -> None:
     assert truth["closed"]
 
 
-def test_a_blocked_wheel_is_reported(script: pathlib.Path) -> None:
-    _, err = drive(script, 1, "stuck")
+def test_a_blocked_wheel_is_reported(build: Callable[[str], pathlib.Path]) -> None:
+    _, err = drive(build(PROGRAM), 1, "stuck", ROVER)
     assert "a wheel may be blocked, or the motors have no power" in err
 
 
-def test_missing_motors_are_reported(script: pathlib.Path) -> None:
-    _, err = drive(script, 2, "missing")
+def test_missing_motors_are_reported(build: Callable[[str], pathlib.Path]) -> None:
+    _, err = drive(build(PROGRAM), 2, "missing", ROVER)
     assert err == "error: robot rover: no motor wheelL on the bus\n"
 
 
 @pytest.mark.parametrize("options", [[], ["--odometry"]])
-def test_a_robot_explores_its_room(explorer: pathlib.Path, options: list[str]) -> None:
-    truth, _ = drive(explorer, 0, "room", *options)
-    found = json.loads((explorer.parent / "yard_map.json").read_text(encoding="utf-8"))
+def test_a_robot_explores_its_room(
+    build: Callable[[str], pathlib.Path], options: list[str]
+) -> None:
+    folder = build(EXPLORING)
+    truth, _ = drive(folder, 0, "room", EXPLORER, *options)
+    found = json.loads((folder / "yard_map.json").read_text(encoding="utf-8"))
     nodes = [(node["x"], node["y"]) for node in found["nodes"]]
     # It starts at one end of a room of 2.2 m by 1 m.
     assert max(x for x, _ in nodes) > 0.7
@@ -148,26 +127,63 @@ def test_a_robot_explores_its_room(explorer: pathlib.Path, options: list[str]) -
     assert min(math.dist((truth["x"], truth["y"]), node) for node in nodes) < 0.05
 
 
-def test_a_sensor_that_breaks_ends_the_exploration(explorer: pathlib.Path) -> None:
-    _, err = drive(explorer, 1, "broken")
+def test_a_sensor_that_breaks_ends_the_exploration(
+    build: Callable[[str], pathlib.Path],
+) -> None:
+    _, err = drive(build(EXPLORING), 1, "broken", EXPLORER)
     assert "robot rover, movement trip, action 1: slam: no reply from sensor" in err
 
 
-@pytest.mark.parametrize("kind", ["script", "explorer"])
-def test_the_ported_script_passes_ruff_and_mypy(
-    kind: str, request: pytest.FixtureRequest
+@pytest.mark.parametrize(
+    ("choice", "message"),
+    [
+        ("nothing_here:Rover", "there is no Python module nothing_here; "),
+        ("my_robot:Nobody", "module my_robot has no class Nobody\n"),
+        ("math:sqrt", "must be real number"),
+        ("builtins:str", "builtins:str lacks clock, wheel_mounts, pose, "),
+        ("my_robot", "'my_robot' is not of the form MODULE:CLASS\n"),
+        ("other=my_robot:Rover", "no robot other; the robots are rover\n"),
+    ],
+)
+def test_a_wrong_class_is_reported(
+    build: Callable[[str], pathlib.Path], choice: str, message: str
 ) -> None:
-    script: pathlib.Path = request.getfixturevalue(kind)
+    done = subprocess.run(
+        [sys.executable, "yard.py", f"--robot={choice}"],
+        cwd=build(PROGRAM),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode != 0
+    assert message in done.stderr
+
+
+def test_the_module_passes_ruff_and_mypy(
+    build: Callable[[str], pathlib.Path],
+) -> None:
+    folder = build(PROGRAM)
     for arguments in (
-        # Unused imports are left to the reader.
-        ["ruff", "check", "--ignore=F401", "--isolated", "--no-cache", script.name],
-        ["mypy", "--strict", "--config-file=", "--follow-imports=silent", script.name],
+        # The second block of the page imports where it begins.
+        ["ruff", "check", "--ignore=E402", "--isolated", "--no-cache", "my_robot.py"],
+        ["mypy", "--strict", "--config-file=", "my_robot.py"],
     ):
         done = subprocess.run(
             [sys.executable, "-m", *arguments],
-            cwd=script.parent,
+            cwd=folder,
             capture_output=True,
             text=True,
             check=False,
         )
         assert done.returncode == 0, done.stdout
+
+
+def test_ten_lines_by_hand_drive_a_robot(
+    build: Callable[[str], pathlib.Path],
+) -> None:
+    folder = build(PROGRAM)
+    *_, by_hand = code_of_the_page()
+    (folder / "yard.py").write_text(by_hand, encoding="utf-8")
+    truth, _ = drive(folder, 0, "", ROVER)
+    assert math.hypot(truth["x"], truth["y"]) < 0.01
+    assert truth["theta"] == pytest.approx(math.tau, abs=0.02)

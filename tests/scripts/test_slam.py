@@ -1,6 +1,7 @@
 """Exploration of generated worlds ends, without collisions and with at least 95 % coverage.
 
-`PYDSLREP_SLAM_WORLDS` sets the number of worlds of 30 to 80 m²; `-s` prints the coverage of each.
+`PYDSLREP_SLAM_WORLDS` sets the number of worlds of 30 to 80 m²; `-s` prints the coverage of each. The article's area is in
+tests/article.
 """
 
 from __future__ import annotations
@@ -10,11 +11,10 @@ import math
 import os
 import pathlib
 import subprocess
-import tomllib
 from typing import Any
 
 import pytest
-from rooms import Position, Rooms, Wall, generate
+from rooms import Position, Rooms, generate
 
 ROOT = pathlib.Path(__file__).parents[2]
 COUNT = int(os.environ.get("PYDSLREP_SLAM_WORLDS", "2"))
@@ -88,25 +88,3 @@ def test_generated_worlds(command: str, tmp_path: pathlib.Path, seed: int) -> No
         f"{100 * covered:.2f} % covered"
     )
     assert covered >= 0.95
-
-
-def example_rooms() -> tuple[str, Rooms]:
-    """The scene of examples/rooms.pyr with table 7's robot, and its walls."""
-    text = (ROOT / "examples/rooms.scene.toml").read_text(encoding="utf-8")
-    scene = tomllib.loads(text)
-    width, height = scene["world"]["size"]
-    rooms = Rooms(width, height)
-    for wall in scene["wall"]:
-        rooms.walls.append(Wall(tuple(wall["from"]), tuple(wall["to"])))
-    x, y, _ = scene["robots"]["explorer"]["start"]
-    rooms.start = (x, y)
-    return text.replace("[robots.explorer]", "[robots.robot_1]"), rooms
-
-
-def test_table_7_in_the_article_s_area(command: str, tmp_path: pathlib.Path) -> None:
-    scene, rooms = example_rooms()
-    (tmp_path / "area_1.scene.toml").write_text(scene, encoding="utf-8")
-    found = explore(command, tmp_path, table_7(), rooms)
-    assert check_map(found, rooms) >= 0.95
-    # Its five rooms and corridors form loops.
-    assert len(found["edges"]) > len(found["nodes"])

@@ -112,6 +112,15 @@ def start(script: pathlib.Path, *options: str) -> subprocess.Popen[str]:
     )
 
 
+def note(script: subprocess.Popen[str], words: str) -> None:
+    """Waits until a script says something."""
+    assert script.stderr is not None
+    for line in script.stderr:
+        if words in line:
+            return
+    raise AssertionError(script.communicate())
+
+
 def finish(process: subprocess.Popen[str], code: int = 0) -> tuple[str, str]:
     """Waits for the end of a script, checks its exit code, and returns its output."""
     try:

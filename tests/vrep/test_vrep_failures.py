@@ -12,9 +12,12 @@ from stage import (
     CLIENT,
     PROGRAM,
     Stage,
+    assert_near,
+    ends,
     finish,
     free_ports,
     interrupt,
+    note,
     onlooker,
     start,
     wait_for_motion,
@@ -61,6 +64,21 @@ def test_missing_objects_are_listed_with_all_names(
     )
 
 
+def test_objects_with_other_names_are_found_by_their_paths(
+    command: str, stage: Stage, tmp_path: pathlib.Path
+) -> None:
+    text = stage.program.read_text(encoding="utf-8")
+    renamed = text.replace("rover", "rovers").replace("wheelL", "wheel_x")
+    script = Stage(command, tmp_path / "other", renamed).build("vrep")
+    objects = {"rovers": "rover", "wheel_x": "/rover/wheelL", "wheelR": "/rover/wheelR"}
+    page = script.read_text(encoding="utf-8")
+    page = page.replace('"rovers",', f'"rovers", objects={objects},', 1)
+    script.write_text(page, encoding="utf-8")
+    with stage.simulator():
+        out, _ = finish(start(script), 0)
+    assert "move 2 m" in out
+
+
 def test_ctrl_c_stops_everything(stage: Stage, ports: list[int]) -> None:
     script = stage.build("vrep")
     with stage.simulator(), onlooker(ports[1]) as eye:
@@ -94,7 +112,52 @@ def test_a_simulation_stopped_by_another_client(stage: Stage, ports: list[int]) 
         wait_for_motion(eye, process)
         sim.simxStopSimulation(eye, BLOCKING)
         _, err = finish(process, 1)
-    assert err.endswith("the simulation was stopped or paused\n"), err
+    assert err.endswith("the simulation was stopped\n"), err
+
+
+@pytest.mark.parametrize("options", [(), ("--realtime",)])
+def test_a_script_waits_while_the_simulation_is_paused(
+    stage: Stage, ports: list[int], options: tuple[str, ...]
+) -> None:
+    short = PROGRAM.format(*ports, actions="move 10 centimeters turn left")
+    stage.program.write_text(short, encoding="utf-8")
+    script, trace = stage.build("vrep"), stage.folder / "trace"
+    with stage.simulator(), onlooker(ports[1]) as eye:
+        process = start(script, "--trace", str(trace), *options)
+        wait_for_motion(eye, process)
+        assert sim.simxPauseSimulation(eye, BLOCKING) == 0
+        note(process, "paused")
+        assert sim.simxStartSimulation(eye, BLOCKING) == 0
+        _, err = finish(process)
+        assert "paused" not in err, "it says so once"
+    assert_near(ends(trace)["rover"], (0.1, 0.0, 90.0))
+
+
+def test_a_simulation_that_is_stopped_during_a_pause(
+    stage: Stage, ports: list[int]
+) -> None:
+    script = stage.build("vrep")
+    with stage.simulator(), onlooker(ports[1]) as eye:
+        process = start(script)
+        wait_for_motion(eye, process)
+        assert sim.simxPauseSimulation(eye, BLOCKING) == 0
+        note(process, "paused")
+        assert sim.simxStopSimulation(eye, BLOCKING) == 0
+        _, err = finish(process, 1)
+    assert err.endswith("the simulation was stopped\n"), err
+
+
+def test_ctrl_c_during_a_pause_stops_everything(stage: Stage, ports: list[int]) -> None:
+    script = stage.build("vrep")
+    with stage.simulator(), onlooker(ports[1]) as eye:
+        process = start(script)
+        left = wait_for_motion(eye, process)
+        assert sim.simxPauseSimulation(eye, BLOCKING) == 0
+        note(process, "paused")
+        interrupt(process)
+        finish(process, 130)
+        assert sim.simxStartSimulation(eye, BLOCKING) == 0
+        wait_for_rest(eye, left)
 
 
 def test_a_server_that_never_replies(stage: Stage, ports: list[int]) -> None:

@@ -1,5 +1,6 @@
 //! The database: files in, answers out. How it changes is in [`change`].
 
+mod absences;
 mod change;
 #[cfg(test)]
 mod counts;
@@ -7,8 +8,10 @@ mod imports;
 mod reads;
 mod references;
 mod scenes;
+mod scripts;
 
-pub use self::imports::Absence;
+pub use self::absences::Absence;
+use self::absences::Absences;
 pub use self::references::FileSpan;
 
 use std::collections::BTreeMap;
@@ -21,14 +24,15 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smallvec::SmallVec;
 use smol_str::SmolStr;
 
-use self::imports::Imports;
+use self::imports::{Imports, Postponed};
 use self::scenes::Scenes;
+use self::scripts::ScriptNames;
 use crate::diagnostics::{self, Problem};
 use crate::file::File;
 use crate::names::Names;
 use crate::reads::Reads;
 use crate::slots::EntitySlot;
-use crate::{Diagnostic, Target};
+use crate::{Diagnostic, Target, check_cancelled};
 
 /// A file of the database; the same for the same path, also after closing and opening it again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -101,13 +105,14 @@ pub struct Database {
     /// Who imports a path: the other way round.
     importers: FxHashMap<String, FxHashSet<FileId>>,
     /// Why what a file imports is not there, as far as this is known.
-    absences: FxHashMap<FileId, FxHashMap<String, Absence>>,
+    absences: Absences,
     /// What scripts are made for, where it is not the usual target. Kept while a file is closed.
     targets: FxHashMap<FileId, Target>,
     /// Scenes of environments by their names. Kept while a file is closed.
     scenes: BTreeMap<FileId, Scenes>,
     /// How many more declarations a name of an environment has than when this was last asked for; never none.
     changed_environments: FxHashMap<(FileId, SmolStr), i32>,
+    script_names: ScriptNames,
     /// Entities with problems.
     troubled: FxHashMap<FileId, FxHashSet<EntityId>>,
     /// Entities whose problems speak of all names of a kind ("did you mean …"), not only of those they use.
@@ -115,6 +120,8 @@ pub struct Database {
     last_edit: EditCounts,
     /// The files whose diagnostics may have changed since they were last asked for.
     touched: FxHashSet<FileId>,
+    /// What is asked again once all files that come together are there; `None` while each is for itself.
+    postponed: Option<Postponed>,
 }
 
 /// How much the latest edit cost.
@@ -185,6 +192,7 @@ impl Database {
                 Some((slot.entity, span))
             })
             .filter_map(|(id, span)| {
+                check_cancelled();
                 self.data(id).map(|data| EntityRef { id, file: data.file, span, parse: &data.parse })
             })
     }
@@ -199,6 +207,7 @@ impl Database {
             Some((slot.entity, span))
         });
         located.filter_map(|(id, span)| {
+            check_cancelled();
             self.data(id).map(|data| EntityRef { id, file: data.file, span, parse: &data.parse })
         })
     }
@@ -228,6 +237,7 @@ impl Database {
 
     /// An entity with its place.
     pub fn entity(&self, id: EntityId) -> Option<EntityRef<'_>> {
+        check_cancelled();
         let data = self.data(id)?;
         let open = self.get(data.file)?;
         let index = open.slots.partition_point(|slot| self.order(slot.entity) < data.order);
@@ -289,14 +299,6 @@ impl Database {
         self.names.used(&(file, kind, name.clone()))
     }
 
-    /// Every name of a kind that a file sees, sorted, each once.
-    pub fn visible_names(&self, file: FileId, kind: EntityKind) -> Vec<SmolStr> {
-        let mut names: Vec<SmolStr> = self.names_in_sight(file, kind).cloned().collect();
-        names.sort_unstable();
-        names.dedup();
-        names
-    }
-
     /// Every name of a kind that a file sees, in no order, some perhaps more than once.
     pub fn names_in_sight(&self, file: FileId, kind: EntityKind) -> impl Iterator<Item = &SmolStr> {
         let files = std::iter::once(file).chain(self.imported_files(file));
@@ -331,6 +333,16 @@ impl Database {
         let mut touched: Vec<FileId> = std::mem::take(&mut self.touched).into_iter().collect();
         touched.sort_unstable();
         touched
+    }
+
+    /// Whether [`Self::take_touched`] would return any file.
+    pub fn is_touched(&self) -> bool {
+        !self.touched.is_empty()
+    }
+
+    /// How many entities of a file have problems.
+    pub fn count_troubled(&self, file: FileId) -> usize {
+        self.troubled.get(&file).map_or(0, FxHashSet::len)
     }
 
     /// How many entities of a kind a file has.

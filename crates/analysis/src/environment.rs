@@ -3,7 +3,7 @@
 use std::net::Ipv4Addr;
 
 use pydslrep_kinematics::Drive;
-pub use pydslrep_scene::SensorKind;
+pub use pydslrep_scene::{Objects, SensorKind};
 
 /// One environment, ready to run. Indices refer to the vectors of this struct.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,6 +38,8 @@ pub struct Robot {
     pub wheels: Vec<Wheel>,
     /// In listed order, each once.
     pub sensors: Vec<Sensor>,
+    /// Where its scene file says that it and its parts are in the simulator's scene, if their objects have other names there.
+    pub objects: Objects,
     /// Where it is declared.
     pub source: Source,
 }

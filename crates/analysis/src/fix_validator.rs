@@ -2,10 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use crate::{Database, Diagnostic, Edit, FileId, Fix, Severity};
+use crate::{Database, Diagnostic, Edit, FileId, Fix, Severity, diagnostics};
+
+/// The most steps that trying suggestions may take, each about as long as looking at one problem: as a single suggestion
+/// takes longer the more problems a file has, all of them would take the square of their number. It is a second.
+const MOST_STEPS: usize = 4_000_000;
+
+/// Steps for each entity that is checked again.
+const STEPS_OF_A_CHECK: usize = 64;
 
 /// Which fixes are offered to people: safe ones, and suggestions that hold when they are tried. Trying takes its time, so
-/// that only so many suggestions are tried, and those beyond are not offered.
+/// that only so many suggestions are tried, in so many steps, and those beyond are not offered.
 #[derive(Debug)]
 pub struct Offers<'a> {
     database: &'a Database,
@@ -24,11 +31,12 @@ impl<'a> Offers<'a> {
         if fix.safe {
             return true;
         }
-        if self.left == 0 {
+        let validator = self.validator.get_or_insert_with(|| FixValidator::new(self.database));
+        if self.left == 0 || validator.steps >= MOST_STEPS {
             return false;
         }
         self.left -= 1;
-        self.validator.get_or_insert_with(|| FixValidator::new(self.database)).holds(problem, fix)
+        validator.holds(problem, fix)
     }
 
     /// Leaves of each problem only the fixes that are offered.
@@ -44,16 +52,26 @@ impl<'a> Offers<'a> {
 #[derive(Debug)]
 pub struct FixValidator {
     tried: Database,
+    /// How many problems were looked at so far, with [`STEPS_OF_A_CHECK`] for each entity that was checked again.
+    steps: usize,
 }
 
 /// How many problems there are in a file by code. Hints are left out: they say what could be nicer, which fixing
 /// something may well lead on to.
 type Counts = BTreeMap<(FileId, &'static str), usize>;
 
+/// What there is in some files.
+#[derive(Debug, Default)]
+struct Found {
+    counts: Counts,
+    /// How many mistakes there are in a text up to the one that a problem is about; none of other problems.
+    understood: usize,
+}
+
 impl FixValidator {
     /// Validates fixes for a database as it is now.
     pub fn new(database: &Database) -> Self {
-        Self { tried: database.clone() }
+        Self { tried: database.clone(), steps: 0 }
     }
 
     /// Whether a fix solves its problem and brings no other into the files it changes. What is said of the meaning of
@@ -64,38 +82,34 @@ impl FixValidator {
         files.push(problem.file);
         files.sort_unstable();
         files.dedup();
-        let before = (self.counts(&files, problem), self.understood(problem));
+        let before = self.look(&files, problem);
         let back = self.apply(&fix.edits);
-        let after = (self.counts(&files, problem), self.understood(problem));
+        let after = self.look(&files, problem);
         self.apply(&back);
         let count = |counts: &Counts, key: &(FileId, &'static str)| counts.get(key).copied().unwrap_or(0);
         let key = (problem.file, problem.code());
-        let is_brought = |key: &(FileId, &'static str)| count(&after.0, key) > count(&before.0, key);
-        let is_solved = count(&after.0, &key) < count(&before.0, &key) || after.1 < before.1;
-        is_solved && !after.0.keys().any(is_brought)
+        let is_brought =
+            |key: &(FileId, &'static str)| count(&after.counts, key) > count(&before.counts, key);
+        let is_solved =
+            count(&after.counts, &key) < count(&before.counts, &key) || after.understood < before.understood;
+        is_solved && !after.counts.keys().any(is_brought)
     }
 
-    /// How many mistakes there are in a text up to the one that a problem is about; none of other problems.
-    fn understood(&self, problem: &Diagnostic) -> usize {
-        if !problem.rule.is_of_text() {
-            return 0;
-        }
-        let problems = self.tried.diagnostics(problem.file);
-        let is_before =
-            |other: &&Diagnostic| other.span.start <= problem.span.start && other.rule.is_of_text();
-        problems.iter().filter(is_before).count()
-    }
-
-    fn counts(&self, files: &[FileId], problem: &Diagnostic) -> Counts {
+    fn look(&mut self, files: &[FileId], problem: &Diagnostic) -> Found {
         let of_text = problem.rule.is_of_text();
-        let mut counts = Counts::new();
-        for other in files.iter().flat_map(|file| self.tried.diagnostics(*file)) {
-            let is_like_it = other.rule == problem.rule;
-            if is_like_it || (other.severity > Severity::Hint && (!of_text || other.rule.is_of_text())) {
-                *counts.entry((other.file, other.code())).or_default() += 1;
-            }
+        let mut found = Found::default();
+        for file in files {
+            diagnostics::visit_in_file(&self.tried, *file, |rule, severity, start| {
+                self.steps += 1;
+                let is_like_it = rule == problem.rule;
+                if is_like_it || (severity > Severity::Hint && (!of_text || rule.is_of_text())) {
+                    *found.counts.entry((*file, rule.code)).or_default() += 1;
+                }
+                let is_before = of_text && *file == problem.file && start <= problem.span.start;
+                found.understood += usize::from(is_before && rule.is_of_text());
+            });
         }
-        counts
+        found
     }
 
     /// Makes edits that are apart from each other; returns those that take them back.
@@ -106,6 +120,7 @@ impl FixValidator {
         for edit in edits {
             let removed = self.tried.slice(edit.file, edit.span);
             self.tried.edit(edit.file, edit.span, &edit.text);
+            self.steps += self.tried.last_edit().revalidated * STEPS_OF_A_CHECK;
             let following = edit.span.start + u32::try_from(edit.text.len()).unwrap_or_default();
             let grown = i64::from(following) - i64::from(edit.span.end);
             for later in back.iter_mut().filter(|later| later.file == edit.file) {
@@ -134,6 +149,15 @@ mod tests {
             fixes.filter(|(problem, fix)| validator.holds(problem, fix)).map(|(_, fix)| fix.title.clone());
         let held = held.collect();
         assert_eq!(validator.tried.diagnostics(file), problems);
+        let mut visited = Vec::new();
+        diagnostics::visit_in_file(&database, file, |rule, severity, start| {
+            visited.push((start, rule.code, severity));
+        });
+        visited.sort_unstable();
+        let mut whole: Vec<_> =
+            problems.iter().map(|found| (found.span.start, found.code(), found.severity)).collect();
+        whole.sort_unstable();
+        assert_eq!(visited, whole);
         assert_eq!(validator.tried.text(file), database.text(file));
         held
     }
@@ -152,6 +176,19 @@ mod tests {
     fn what_was_hidden_may_come_to_light() {
         let program = format!("{PARTS}movement m off r {{ move 0 meters }}");
         assert_eq!(held(&program), ["change to `of`", "remove the move"]);
+    }
+
+    #[test]
+    fn trying_suggestions_comes_to_an_end() {
+        let mut database = Database::new();
+        let file = database.open("a.pyr", &"wheel a with radius 4\n".repeat(300));
+        let mut problems = database.diagnostics(file);
+        let mut offers = Offers::new(&database, usize::MAX);
+        offers.retain(&mut problems);
+        let offered = problems.iter().filter(|problem| !problem.fixes.is_empty()).count();
+        assert!((1..200).contains(&offered), "each renaming asks all 300 again: {offered}");
+        let steps = offers.validator.map_or(0, |validator| validator.steps);
+        assert!(steps < MOST_STEPS + MOST_STEPS / 10, "{steps}");
     }
 
     #[test]

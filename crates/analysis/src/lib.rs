@@ -7,6 +7,7 @@
 //! so an edit re-reads only the entities it touches, and answers again only for those and for the ones that use a name
 //! whose meaning changed. Whatever is asked of a database that was edited equals what a fresh one would answer.
 
+mod cancellation;
 mod database;
 mod diagnostic;
 pub mod diagnostics;
@@ -25,11 +26,12 @@ mod slots;
 mod snapshot;
 mod target;
 
+pub use cancellation::{CancellationToken, Cancelled, cancellable, check_cancelled};
 pub use database::{Absence, Database, EditCounts, EntityId, EntityRef, FileId, FileSpan, Resolution};
 pub use diagnostic::{Diagnostic, Edit, Fix, Related, Severity};
 pub use fix_validator::{FixValidator, Offers};
 pub use fixing::Fixing;
 pub use plan::{Driver, plan, plan_movement, scene};
 pub use resolve::{Blocked, Fingerprint};
-pub use snapshot::{CancellationToken, Snapshot};
+pub use snapshot::Snapshot;
 pub use target::Target;

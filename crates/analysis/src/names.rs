@@ -23,6 +23,8 @@ pub(crate) struct Names {
     /// be the same file on some computers.
     folded: FxHashMap<(FileId, SmolStr), Vec<SmolStr>>,
     skipped: FxHashMap<(FileId, SmolStr), u32>,
+    /// How many different names of a file are skipped; never none.
+    skipped_counts: FxHashMap<FileId, usize>,
 }
 
 /// Most names are declared once and used a few times; those need no memory of their own.
@@ -68,7 +70,7 @@ impl Names {
 
     /// Whether any name of the file is in skipped text.
     pub(crate) fn any_skipped(&self, file: FileId) -> bool {
-        self.skipped.keys().any(|(other, _)| *other == file)
+        self.skipped_counts.contains_key(&file)
     }
 
     /// The declared names of environments that are the same as `name` except for case, itself included, in no order.
@@ -140,7 +142,11 @@ impl Names {
 
     /// Adds a name in skipped text.
     pub(crate) fn skip(&mut self, file: FileId, name: SmolStr) {
-        *self.skipped.entry((file, name)).or_default() += 1;
+        let count = self.skipped.entry((file, name)).or_default();
+        *count += 1;
+        if *count == 1 {
+            *self.skipped_counts.entry(file).or_default() += 1;
+        }
     }
 
     /// Removes a name in skipped text.
@@ -150,6 +156,11 @@ impl Names {
             *count -= 1;
             if *count == 0 {
                 self.skipped.remove(&key);
+                let different = self.skipped_counts.entry(file).or_default();
+                *different -= 1;
+                if *different == 0 {
+                    self.skipped_counts.remove(&file);
+                }
             }
         }
     }

@@ -1,23 +1,27 @@
 //! From an environment's declaration to everything it runs, with every name resolved.
 
+use std::cell::OnceCell;
+use std::hash::Hash;
 use std::sync::Arc;
 
 use pydslrep_kinematics::{Drive, motion};
 use pydslrep_scene::{Scene, SensorKind};
 use pydslrep_syntax::ast::{self, ActionKind as Statement, DriveWord, Entity, Name, TurnExtent};
 use pydslrep_syntax::{EntityKind, Parse, Span, TokenKind};
+use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::environment::{Action, ActionKind, Environment, Movement, Robot, Sensor, Source, Wheel};
-use crate::script_name::script_names;
-use crate::{Database, Diagnostic, EntityId, EntityRef, FileId, Severity, diagnostics, plan};
+use crate::environment::{Action, ActionKind, Environment, Movement, Objects, Robot, Sensor, Source, Wheel};
+use crate::{
+    Database, Diagnostic, EntityId, EntityRef, FileId, Severity, check_cancelled, diagnostics, plan,
+};
 
 /// Why an environment cannot run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blocked {
     /// The environment's name.
     pub environment: String,
-    /// The errors in it and in everything it uses; never empty.
-    pub errors: Vec<Diagnostic>,
+    /// The errors in it and in everything it uses; never empty. Shared, as many environments may be blocked by the same.
+    pub errors: Arc<[Diagnostic]>,
 }
 
 impl Blocked {
@@ -67,22 +71,38 @@ impl Database {
     /// # Errors
     /// When it or anything it uses has errors.
     pub fn environment(&self, id: EntityId) -> Result<Environment, Blocked> {
+        self.environment_or(id, &OnceCell::new())
+    }
+
+    /// Several environments ready to run, in the order asked for; the error is as for [`Self::environment`].
+    pub fn ready_environments(
+        &self,
+        ids: impl IntoIterator<Item = EntityId>,
+    ) -> Vec<Result<Environment, Blocked>> {
+        let all_errors = OnceCell::new();
+        ids.into_iter().map(|id| self.environment_or(id, &all_errors)).collect()
+    }
+
+    /// `all_errors` keeps those of all files, once they are needed.
+    fn environment_or(
+        &self,
+        id: EntityId,
+        all_errors: &OnceCell<Arc<[Diagnostic]>>,
+    ) -> Result<Environment, Blocked> {
         let parts = Parts { database: self, file: self.file_of(id) };
         let name =
             self.tree(id).and_then(Entity::name).map_or_else(String::new, |name| name.text.to_string());
+        let is_error = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Error;
         let mut errors = diagnostics::of_entities(self, &parts.reached_from(id));
-        errors.retain(|diagnostic| diagnostic.severity == Severity::Error);
-        match parts.environment(id) {
-            Some(environment) if errors.is_empty() => Ok(environment),
-            _ => {
-                if errors.is_empty() {
-                    // A declaration it needs is hidden in text that was not understood; those errors are the cause.
-                    errors = self.files().flat_map(|file| self.diagnostics(file)).collect();
-                    errors.retain(|diagnostic| diagnostic.severity == Severity::Error);
-                }
-                Err(Blocked { environment: name, errors })
-            }
+        errors.retain(is_error);
+        if !errors.is_empty() {
+            return Err(Blocked { environment: name, errors: errors.into() });
         }
+        // Otherwise a declaration it needs is hidden in text that was not understood; those errors are the cause.
+        let hidden = || self.files().flat_map(|file| self.diagnostics(file)).filter(is_error).collect();
+        let environment = parts.environment(id).map(|environment| self.with_objects(id, environment));
+        environment
+            .ok_or_else(|| Blocked { environment: name, errors: Arc::clone(all_errors.get_or_init(hidden)) })
     }
 
     /// What an environment is made of now, to be compared with what it is made of later; `None` where it has errors.
@@ -128,7 +148,9 @@ impl Database {
         let parts = Parts { database: self, file: self.file_of(id) };
         let Entity::Movement(tree) = self.tree(id)? else { return None };
         let robot = parts.resolve(id, EntityKind::Robot, tree.robot.as_ref()?)?;
-        Some((parts.robot(robot)?, parts.movement(id, &[robot])?))
+        let robot = parts.robot(robot)?;
+        let movement = parts.movement(id, |_| Some((0, &robot)))?;
+        Some((robot, movement))
     }
 
     /// The same with the first `count` actions at most, and of those only the ones before the first that is broken: what
@@ -208,6 +230,7 @@ struct Parts<'a> {
 impl<'a> Parts<'a> {
     fn reached_from(&self, id: EntityId) -> Vec<EntityId> {
         let mut reached = vec![id];
+        let mut seen = FxHashSet::from_iter([id]);
         let mut next = 0;
         while let Some(&id) = reached.get(next) {
             next += 1;
@@ -216,7 +239,7 @@ impl<'a> Parts<'a> {
             };
             for (kind, name) in tree.references() {
                 if let Some(id) = self.database.resolve(file, kind, &name.text).entity()
-                    && !reached.contains(&id)
+                    && seen.insert(id)
                 {
                     reached.push(id);
                 }
@@ -237,14 +260,17 @@ impl<'a> Parts<'a> {
         let listed = tree.movements.as_ref().map_or(&[][..], |list| &list.names);
         let runs = self.resolve_all(id, EntityKind::Movement, listed)?;
         let movement_ids = without_repeats(&runs);
+        let robots = robot_ids.iter().map(|id| self.robot(*id)).collect::<Option<Vec<_>>>()?;
+        let places = indices_of(&robot_ids);
+        let robot = |id| places.get(&id).map(|&index| (index, &robots[index]));
         Some(Environment {
             name: name.text.to_string(),
-            script: self.script(name)?,
+            script: self.database.script_name(self.file?, &name.text)?.0.stem,
             host,
-            robots: robot_ids.iter().map(|id| self.robot(*id)).collect::<Option<_>>()?,
-            movements: movement_ids.iter().map(|id| self.movement(*id, &robot_ids)).collect::<Option<_>>()?,
-            schedule: self.schedule(&runs, &movement_ids),
+            movements: movement_ids.iter().map(|id| self.movement(*id, robot)).collect::<Option<_>>()?,
+            schedule: self.schedule(&runs, &indices_of(&movement_ids)),
             source: self.source(&self.database.entity(id)?, 0)?,
+            robots,
         })
     }
 
@@ -253,13 +279,6 @@ impl<'a> Parts<'a> {
         let Entity::Environment(tree) = self.database.tree(id)? else { return None };
         let listed = tree.movements.as_ref().map_or(&[][..], |list| &list.names);
         self.resolve_all(id, EntityKind::Movement, listed).map(|runs| without_repeats(&runs))
-    }
-
-    fn script(&self, environment: &Name) -> Option<String> {
-        let environments = self.database.environments(self.file?);
-        let names: Vec<&str> = environments.iter().map(|(_, name)| name.text.as_str()).collect();
-        let index = names.iter().position(|name| *name == environment.text)?;
-        script_names(&names).into_iter().nth(index).map(|script| script.stem)
     }
 
     fn host(&self, environment: EntityId, name: &Name) -> Option<std::net::Ipv4Addr> {
@@ -272,11 +291,10 @@ impl<'a> Parts<'a> {
     }
 
     /// Maximal runs of parallel movements, each a group; any other movement is a group by itself.
-    fn schedule(&self, runs: &[EntityId], movements: &[EntityId]) -> Vec<Vec<usize>> {
+    fn schedule(&self, runs: &[EntityId], movements: &FxHashMap<EntityId, usize>) -> Vec<Vec<usize>> {
         let parallel = |id: &EntityId| matches!(self.database.tree(*id), Some(Entity::Movement(movement)) if movement.parallel.is_some());
         let groups = runs.chunk_by(|before, after| parallel(before) && parallel(after));
-        let index = |id: &EntityId| movements.iter().position(|other| other == id);
-        groups.map(|group| group.iter().filter_map(index).collect()).collect()
+        groups.map(|group| group.iter().filter_map(|id| movements.get(id).copied()).collect()).collect()
     }
 
     fn robot(&self, id: EntityId) -> Option<Robot> {
@@ -292,6 +310,7 @@ impl<'a> Parts<'a> {
             port: tree.port.as_ref()?.value?,
             wheels: wheels.iter().map(|id| self.wheel(*id)).collect::<Option<_>>()?,
             sensors: sensors.iter().map(|id| self.sensor(*id)).collect::<Option<_>>()?,
+            objects: Objects::new(),
             source: self.source(&self.database.entity(id)?, 0)?,
         })
     }
@@ -311,11 +330,15 @@ impl<'a> Parts<'a> {
         Some(Sensor { name: sensor.name.as_ref()?.text.to_string(), kind })
     }
 
-    fn movement(&self, id: EntityId, robots: &[EntityId]) -> Option<Movement> {
+    /// A movement of a robot that is found by its id, with its index.
+    fn movement<'r>(
+        &self,
+        id: EntityId,
+        robot: impl Fn(EntityId) -> Option<(usize, &'r Robot)>,
+    ) -> Option<Movement> {
         let Entity::Movement(tree) = self.database.tree(id)? else { return None };
-        let robot_id = self.resolve(id, EntityKind::Robot, tree.robot.as_ref()?)?;
-        let robot = robots.iter().position(|other| *other == robot_id)?;
-        let sensors = self.robot(robot_id)?.sensors;
+        let (robot, Robot { sensors, .. }) =
+            robot(self.resolve(id, EntityKind::Robot, tree.robot.as_ref()?)?)?;
         let entity = self.database.entity(id)?;
         Some(Movement {
             name: tree.name.as_ref()?.text.to_string(),
@@ -323,13 +346,14 @@ impl<'a> Parts<'a> {
             actions: tree
                 .actions
                 .iter()
-                .map(|action| self.action(&entity, action, &sensors))
+                .map(|action| self.action(&entity, action, sensors))
                 .collect::<Option<_>>()?,
             source: self.source(&entity, 0)?,
         })
     }
 
     fn action(&self, entity: &EntityRef<'_>, action: &ast::Action, sensors: &[Sensor]) -> Option<Action> {
+        check_cancelled();
         Some(Action {
             kind: action_kind(&action.kind, sensors)?,
             text: self.folded_text(entity, action.span),
@@ -412,14 +436,14 @@ fn indices(names: &[Name], sensors: &[Sensor]) -> Option<Vec<usize>> {
     Some(without_repeats(&all))
 }
 
-fn without_repeats<T: Copy + PartialEq>(all: &[T]) -> Vec<T> {
-    let mut kept: Vec<T> = Vec::with_capacity(all.len());
-    for item in all {
-        if !kept.contains(item) {
-            kept.push(*item);
-        }
-    }
-    kept
+fn without_repeats<T: Copy + Eq + Hash>(all: &[T]) -> Vec<T> {
+    let mut seen = FxHashSet::default();
+    all.iter().copied().filter(|item| seen.insert(*item)).collect()
+}
+
+/// Where each entity of a list without repeats is in it.
+fn indices_of(ids: &[EntityId]) -> FxHashMap<EntityId, usize> {
+    ids.iter().enumerate().map(|(index, id)| (*id, index)).collect()
 }
 
 #[cfg(test)]

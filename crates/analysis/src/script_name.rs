@@ -2,26 +2,33 @@
 
 use std::sync::LazyLock;
 
-use rustc_hash::FxHashSet;
+use pydslrep_text::file_names::is_reserved_on_windows;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Modules of Python 3.11 to 3.14.
 static STANDARD_MODULES: LazyLock<FxHashSet<&str>> =
     LazyLock::new(|| include_str!("standard_modules.txt").lines().collect());
 
-/// Modules that the clients of scripts import, or look for, beside the standard ones. Those of all targets count: a
-/// script would hide them from others in its folder, too.
-const CLIENT_MODULES: [&str; 10] = [
+/// Modules that scripts and the clients of simulators import, or look for, beside the standard ones. Those of all targets
+/// count: a script would hide them from others in its folder, too.
+const CLIENT_MODULES: [&str; 13] = [
     "cbor",
     "cbor2",
     "cffi",
     "coppeliasim_zmqremoteapi_client",
+    "matplotlib",
     "numpy",
+    "pydslrep_runtime",
+    "scipy",
     "sim",
     "simConst",
     "vrep",
     "vrepConst",
     "zmq",
 ];
+
+/// Modules that Python imports by itself when it starts, if it finds them.
+const START_MODULES: [&str; 2] = ["sitecustomize", "usercustomize"];
 
 /// What a script is called.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -39,6 +46,8 @@ pub(crate) enum Obstacle {
     StandardModule,
     /// Python would import the script in place of a module that scripts need.
     ClientModule,
+    /// Python would run the script whenever it starts in its folder.
+    StartModule,
     /// Windows has no files of that name.
     ReservedOnWindows,
     /// Another environment's name, at this index, differs by case only, as some file systems do not tell apart.
@@ -48,28 +57,29 @@ pub(crate) enum Obstacle {
 /// The names of the scripts of all environments of a file, in the order of the environments. An environment that is
 /// declared a second time has the script of the first.
 pub(crate) fn script_names(environments: &[&str]) -> Vec<ScriptName> {
-    let first = |name: &str| environments.iter().position(|other| *other == name);
-    let mut taken: Vec<(String, usize)> = Vec::new();
+    let mut first: FxHashMap<&str, usize> = FxHashMap::default();
+    let mut taken: FxHashMap<String, usize> = FxHashMap::default();
     let mut names: Vec<ScriptName> = Vec::with_capacity(environments.len());
     for (index, name) in environments.iter().enumerate() {
+        first.entry(name).or_insert(index);
         let folded = name.to_ascii_lowercase();
-        let other = taken.iter().find(|(other, _)| *other == folded).map(|(_, other)| *other);
+        let other = taken.get(&folded).copied();
         let obstacle = obstacle(name)
             .or(other.filter(|other| environments[*other] != *name).map(Obstacle::SameButForCase));
         if obstacle.is_none() && other.is_none() {
-            taken.push((folded, index));
+            taken.insert(folded, index);
         }
         names.push(ScriptName { stem: (*name).to_owned(), obstacle });
     }
     for (index, name) in environments.iter().enumerate() {
-        match first(name) {
-            Some(first) if first < index => {
+        match first.get(name) {
+            Some(&first) if first < index => {
                 let stem = names[first].stem.clone();
                 names[index].stem = stem;
             }
             _ if names[index].obstacle.is_some() => {
                 names[index].stem = free(name, &taken);
-                taken.push((names[index].stem.to_ascii_lowercase(), index));
+                taken.insert(names[index].stem.to_ascii_lowercase(), index);
             }
             _ => {}
         }
@@ -77,9 +87,9 @@ pub(crate) fn script_names(environments: &[&str]) -> Vec<ScriptName> {
     names
 }
 
-fn free(name: &str, taken: &[(String, usize)]) -> String {
+fn free(name: &str, taken: &FxHashMap<String, usize>) -> String {
     let mut stem = format!("{name}_env");
-    while taken.iter().any(|(other, _)| stem.eq_ignore_ascii_case(other)) {
+    while taken.contains_key(&stem.to_ascii_lowercase()) {
         stem += "_env";
     }
     stem
@@ -91,19 +101,13 @@ pub(crate) fn obstacle(name: &str) -> Option<Obstacle> {
         Some(Obstacle::StandardModule)
     } else if CLIENT_MODULES.contains(&name) {
         Some(Obstacle::ClientModule)
+    } else if START_MODULES.contains(&name) {
+        Some(Obstacle::StartModule)
     } else if is_reserved_on_windows(name) {
         Some(Obstacle::ReservedOnWindows)
     } else {
         None
     }
-}
-
-fn is_reserved_on_windows(name: &str) -> bool {
-    let name = name.to_ascii_lowercase();
-    let is_port = |prefix| {
-        name.strip_prefix(prefix).is_some_and(|n| matches!(n.as_bytes(), [digit] if digit.is_ascii_digit()))
-    };
-    ["con", "prn", "aux", "nul"].contains(&name.as_str()) || is_port("com") || is_port("lpt")
 }
 
 #[cfg(test)]
@@ -129,6 +133,9 @@ mod tests {
             ("cbor2", Obstacle::ClientModule),
             ("sim", Obstacle::ClientModule),
             ("vrep", Obstacle::ClientModule),
+            ("pydslrep_runtime", Obstacle::ClientModule),
+            ("sitecustomize", Obstacle::StartModule),
+            ("usercustomize", Obstacle::StartModule),
             ("con", Obstacle::ReservedOnWindows),
             ("NUL", Obstacle::ReservedOnWindows),
             ("Com7", Obstacle::ReservedOnWindows),

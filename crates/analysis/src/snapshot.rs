@@ -1,28 +1,11 @@
 //! A file as it was at one moment, to be worked on while the database goes on.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use pydslrep_syntax::{Parse, Span};
 use ropey::Rope;
 
-use crate::{Database, EntityId, EntityRef, FileId};
-
-/// Tells work that nobody wants its result any more. Clones share the signal.
-#[derive(Debug, Clone, Default)]
-pub struct CancellationToken(Arc<AtomicBool>);
-
-impl CancellationToken {
-    /// Stops the work at its next opportunity.
-    pub fn cancel(&self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-
-    /// Whether the work should stop.
-    pub fn is_cancelled(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
-    }
-}
+use crate::{CancellationToken, Database, EntityId, EntityRef, FileId};
 
 /// A file, or a part of it, as it was. It shares text and trees with the database, so it costs little to take and to
 /// keep.

@@ -7,7 +7,10 @@ use clap::error::{ContextKind, ContextValue};
 use clap::{Parser, Subcommand, ValueEnum};
 use pydslrep_workspace::DocumentKind;
 
-use crate::commands::{build, check, completions, explain, fmt, lsp, new, plan, run, sim, stats};
+use crate::commands::{
+    build, check, completions, doctor, explain, fmt, lsp, new, own, plan, preview, run, scene, share, sim,
+    stats,
+};
 use crate::failure::Failure;
 
 /// Cargo's own colours.
@@ -53,13 +56,20 @@ pub(crate) enum Command {
     Build(build::Arguments),
     Run(run::Arguments),
     Sim(sim::Arguments),
+    Scene(scene::Arguments),
     Plan(plan::Arguments),
+    Preview(preview::Arguments),
+    Doctor(doctor::Arguments),
     Fmt(fmt::Arguments),
     Explain(explain::Arguments),
     Stats(stats::Arguments),
     New(new::Arguments),
     Lsp(lsp::Arguments),
     Completions(completions::Arguments),
+    #[command(hide = true)]
+    Share(share::Arguments),
+    #[command(name = "self")]
+    Own(own::Arguments),
 }
 
 /// When to use colours.

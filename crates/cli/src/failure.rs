@@ -3,6 +3,7 @@
 use std::fmt::Display;
 
 use pydslrep_config::UnknownWord;
+use pydslrep_output::{Kind, WriteError};
 
 /// Wrong use or an outside failure: a file, a port, a missing Python.
 #[derive(Debug)]
@@ -13,6 +14,8 @@ pub(crate) enum Failure {
         message: String,
         /// What to do about it.
         help: Option<String>,
+        /// What programs tell it by, where they can do something about it.
+        reason: Option<String>,
     },
     /// Rendered already: problems in a file that is not a program, with its lines.
     Rendered(String),
@@ -26,13 +29,23 @@ impl Failure {
 
     /// A failure with its message.
     pub(crate) fn new(message: impl Into<String>) -> Self {
-        Self::Message { message: message.into(), help: None }
+        Self::Message { message: message.into(), help: None, reason: None }
     }
 
     /// Adds what to do about it.
     pub(crate) fn help(self, help: impl Into<String>) -> Self {
         match self {
-            Self::Message { message, .. } => Self::Message { message, help: Some(help.into()) },
+            Self::Message { message, reason, .. } => {
+                Self::Message { message, help: Some(help.into()), reason }
+            }
+            other => other,
+        }
+    }
+
+    /// Adds what programs tell it by.
+    pub(crate) fn reason(self, known_as: Option<String>) -> Self {
+        match self {
+            Self::Message { message, help, .. } => Self::Message { message, help, reason: known_as },
             other => other,
         }
     }
@@ -40,6 +53,23 @@ impl Failure {
     /// A file that could not be written.
     pub(crate) fn unwritten(path: &std::path::Path, error: &dyn Display) -> Self {
         Self::new(format!("cannot write {}: {error}", path.display()))
+    }
+}
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Self {
+        let failure = Self::new(error.to_string());
+        match (&error, error.help()) {
+            // One of the two that are for an editor's users, too.
+            (WriteError::Changed(_), _) => {
+                failure.help("keep your changes in a copy; `--force` replaces the script")
+            }
+            (WriteError::Foreign(_, Kind::Script), _) => {
+                failure.help("move it away, or choose another folder with -o DIR")
+            }
+            (_, Some(help)) => failure.help(help),
+            (_, None) => failure,
+        }
     }
 }
 

@@ -44,13 +44,18 @@ fn main() -> ExitCode {
         Command::Build(arguments) => commands::build::run(&arguments),
         Command::Run(arguments) => commands::run::run(&arguments),
         Command::Sim(arguments) => commands::sim::run(&arguments),
+        Command::Scene(arguments) => commands::scene::run(&arguments),
         Command::Plan(arguments) => commands::plan::run(&arguments),
+        Command::Preview(arguments) => commands::preview::run(&arguments),
+        Command::Doctor(arguments) => commands::doctor::run(&arguments),
         Command::Fmt(arguments) => commands::fmt::run(&arguments),
         Command::Explain(arguments) => commands::explain::run(&arguments),
         Command::Stats(arguments) => commands::stats::run(&arguments),
         Command::New(arguments) => commands::new::run(&arguments),
         Command::Lsp(arguments) => commands::lsp::run(&arguments),
         Command::Completions(arguments) => commands::completions::run(&arguments, Arguments::command()),
+        Command::Share(arguments) => commands::share::run(&arguments, Arguments::command()),
+        Command::Own(arguments) => commands::own::run(&arguments),
     };
     outcome.unwrap_or_else(|failure| {
         output::fail(&failure);

@@ -1,7 +1,9 @@
 //! Options that several commands have.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use pydslrep_analysis::environment::{Environment, Robot};
 use pydslrep_config::{Level, Severities, Target, find_rule};
+use pydslrep_simulator::Engine;
 
 use crate::failure::Failure;
 
@@ -12,10 +14,60 @@ pub(crate) fn target_parser() -> impl TypedValueParser<Value = Target> {
         .try_map(|word| Target::from_word(&word).ok_or("no target"))
 }
 
+/// Parses an engine by its name.
+pub(crate) fn engine_parser() -> impl TypedValueParser<Value = Engine> {
+    let word = |engine: Engine| PossibleValue::new(engine.word()).help(engine.summary());
+    PossibleValuesParser::new(Engine::ALL.map(word))
+        .try_map(|word| Engine::from_word(&word).ok_or("no engine"))
+}
+
 /// Parses a number above zero.
 pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
     let speed = text.parse().ok().filter(|speed: &f64| speed.is_finite() && *speed > 0.0);
     speed.ok_or_else(|| "expected a number above zero, such as 1 or 2.5".to_owned())
+}
+
+/// The value of `--port`: a port, for one robot or for all.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Port {
+    robot: Option<String>,
+    number: u16,
+}
+
+impl Port {
+    /// Parses `[ROBOT=]PORT`.
+    pub(crate) fn parse(text: &str) -> Result<Self, String> {
+        let (robot, number) =
+            text.rsplit_once('=').map_or((None, text), |(robot, number)| (Some(robot.to_owned()), number));
+        let number = number.parse().ok().filter(|number| *number > 0);
+        number
+            .map(|number| Self { robot, number })
+            .ok_or_else(|| "expected a port from 1 to 65535".to_owned())
+    }
+
+    /// The port of each robot of an environment; a choice for one robot comes before one for all.
+    ///
+    /// # Errors
+    /// If a robot is named that the environment does not have.
+    pub(crate) fn of_robots(choices: &[Self], environment: &Environment) -> Result<Vec<u16>, Failure> {
+        let robots = &environment.robots;
+        let named = choices.iter().filter_map(|choice| choice.robot.as_deref());
+        if let Some(unknown) = named.into_iter().find(|name| robots.iter().all(|robot| robot.name != *name)) {
+            return Err(no_robot(unknown, environment));
+        }
+        let chosen = |robot: Option<&str>| {
+            choices.iter().rev().find(|choice| choice.robot.as_deref() == robot).map(|choice| choice.number)
+        };
+        let port = |robot: &Robot| chosen(Some(&robot.name)).or(chosen(None)).unwrap_or(robot.port);
+        Ok(robots.iter().map(port).collect())
+    }
+}
+
+/// The failure for a name that no robot of an environment has.
+pub(crate) fn no_robot(name: &str, environment: &Environment) -> Failure {
+    let names: Vec<String> = environment.robots.iter().map(|robot| format!("`{}`", robot.name)).collect();
+    Failure::new(format!("there is no robot `{name}` in `{}`", environment.name))
+        .help(format!("its robots: {}", names.join(", ")))
 }
 
 /// Parses `CODE=LEVEL` options; the last one for a code wins.

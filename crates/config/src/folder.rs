@@ -2,6 +2,8 @@
 
 use pydslrep_schema::{Refusal, Values};
 
+use crate::keys::Settings;
+
 /// A relative folder.
 pub(crate) const FOLDER: Values = Values::Text("a folder", r"\S", read);
 
@@ -36,9 +38,25 @@ fn read(path: &str) -> Result<String, Refusal> {
     Ok(if parts.is_empty() { ".".to_owned() } else { parts.join("/") })
 }
 
+impl Settings {
+    /// How many folders the path to scripts has; 0 where they go beside programs.
+    pub fn output_depth(&self) -> usize {
+        self.output.iter().flat_map(|path| path.split('/')).filter(|part| *part != ".").count()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn folders_are_counted() {
+        for (path, depth) in [("scripts", 1), ("a/b/../c", 2), (".", 0)] {
+            let settings = Settings { output: read(path).ok(), ..Settings::default() };
+            assert_eq!(settings.output_depth(), depth, "{path}");
+        }
+        assert_eq!(Settings::default().output_depth(), 0);
+    }
 
     #[test]
     fn folders_stay_inside() {

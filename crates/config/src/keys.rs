@@ -2,10 +2,10 @@
 
 use std::sync::LazyLock;
 
-use pydslrep_schema::{Key, Schema, Table, TableKind, Value, Values, Word, key};
+use pydslrep_schema::{Key, Range, Schema, Table, TableKind, Value, Values, Word, key};
 
 use crate::severities::{CODES, Severities};
-use crate::{Config, Target, folder};
+use crate::{Config, Target, folder, host};
 
 /// All settings.
 pub static SCHEMA: Schema = Schema {
@@ -13,6 +13,13 @@ pub static SCHEMA: Schema = Schema {
     tables: &[
         Table { name: Settings::TABLE, kind: TableKind::Once, summary: "", keys: Settings::KEYS },
         CODES,
+        Table {
+            name: SimulatorAddress::TABLE,
+            kind: TableKind::Once,
+            summary: "Where CoppeliaSim runs: for `pydslrep scene`, and for the commands of an editor that build and check \
+                      scenes.",
+            keys: SimulatorAddress::KEYS,
+        },
         Table {
             name: InlayHints::TABLE,
             kind: TableKind::Once,
@@ -73,15 +80,30 @@ settings! {
         output: Option<String> = key("output", folder::FOLDER, "").default("beside each program").example("\"scripts\""),
         /// Whether an editor writes the scripts of a program whenever it is saved without errors.
         generate_on_save: bool = flag("generate-on-save", false),
+        /// Whether the Python package that scripts import, `pydslrep_runtime`, is written next to them if it is not
+        /// installed.
+        write_runtime: bool = flag("write-runtime", true),
         /// The speed in snippets that an editor inserts, in centimetres per second.
         default_speed: f64 = key("default-speed", Values::ABOVE_ZERO, "").default("`9.0`").example("12.5"),
     }
     /// The severities of diagnostics that differ from the catalogue.
     severities: Severities,
+    /// Where CoppeliaSim runs.
+    coppeliasim: SimulatorAddress,
     /// What an editor shows between the words of a program.
     inlay_hints: InlayHints,
     /// What an editor shows above declarations.
     code_lens: CodeLens,
+}
+
+settings! {
+    /// The address of a running `CoppeliaSim`.
+    struct SimulatorAddress in "coppeliasim" {
+        /// The name or address of the machine that CoppeliaSim runs on.
+        host: String = key("host", host::HOST, "").default("`\"127.0.0.1\"`").example("\"192.168.0.7\""),
+        /// The port of CoppeliaSim's ZeroMQ remote API.
+        port: u16 = key("port", PORT, "").default("`23000`").example("23010"),
+    }
 }
 
 settings! {
@@ -134,6 +156,11 @@ const TARGETS: [Word; Target::ALL.len()] = {
     ]
 };
 
+const PORT: Values = Values::Number(
+    "a whole number from 1 to 65535",
+    Range { min: 1.0, max: 65535.0, is_whole: true, ..Range::ANY },
+);
+
 const fn flag(name: &'static str, default: bool) -> Key {
     let (default, example) = if default { ("`true`", "false") } else { ("`false`", "true") };
     key(name, Values::Flag, "").default(default).example(example)
@@ -154,6 +181,20 @@ impl Setting for bool {
 impl Setting for f64 {
     fn read(value: Option<&Value>) -> Self {
         value.and_then(Value::number).unwrap_or_default()
+    }
+}
+
+impl Setting for u16 {
+    // The reader lets whole numbers of this size pass.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    fn read(value: Option<&Value>) -> Self {
+        value.and_then(Value::number).unwrap_or_default() as Self
+    }
+}
+
+impl Setting for String {
+    fn read(value: Option<&Value>) -> Self {
+        value.and_then(Value::text).unwrap_or_default().to_owned()
     }
 }
 
@@ -221,7 +262,7 @@ mod tests {
     #[test]
     fn every_table_is_in_the_list_once() {
         let names: Vec<&str> = SCHEMA.tables.iter().map(|table| table.name).collect();
-        assert_eq!(names, ["", "severity", "inlay-hints", "code-lens"]);
+        assert_eq!(names, ["", "severity", "coppeliasim", "inlay-hints", "code-lens"]);
         assert!(!names.contains(&NAME));
     }
 }

@@ -9,11 +9,12 @@
 
 mod config;
 mod folder;
+mod host;
 mod keys;
 mod severities;
 
 pub use config::Config;
-pub use keys::{CodeLens, InlayHints, SCHEMA, Settings};
+pub use keys::{CodeLens, InlayHints, SCHEMA, Settings, SimulatorAddress};
 pub use pydslrep_analysis::Target;
 pub use pydslrep_schema::{Problem, ProblemKind};
 pub use pydslrep_text::file_names::SETTINGS_FILE as FILE_NAME;

@@ -5,12 +5,14 @@
 
 mod list;
 mod read;
+mod regular;
 
 use std::path::Path;
 
 use pydslrep_workspace::{FileSystem, Listing, ReadError};
 
 pub use read::{decode, read};
+pub use regular::{open, read_bytes, read_start};
 
 /// The files of this machine.
 #[derive(Debug, Clone, Copy, Default)]

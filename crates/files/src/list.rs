@@ -1,14 +1,18 @@
 //! All programs and scenes of a folder.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use ignore::WalkBuilder;
+use ignore::{DirEntry, WalkBuilder};
 use pydslrep_workspace::{DocumentKind, Listing};
 
 /// All programs and scenes in a folder and below it, except what is hidden or what a `.gitignore` excludes. Links to
 /// folders are not followed: they may form cycles.
 pub(crate) fn list(folder: &Path, max_entries: usize) -> Listing {
     let mut listing = Listing::default();
+    if let Some(file) = folder.ancestors().find_map(unreadable_rules) {
+        listing.errors.push(format!("{}: {} is not a regular file", folder.display(), file.display()));
+        return listing;
+    }
     for (count, entry) in walk(folder).build().enumerate() {
         if count >= max_entries {
             listing.is_truncated = true;
@@ -36,22 +40,40 @@ pub(crate) fn lists(folder: &Path, file: &Path) -> bool {
     if !matches!(kind, Some(DocumentKind::Program | DocumentKind::Scene)) || !file.starts_with(folder) {
         return false;
     }
+    // Looking for a file is cheaper than reading all that may exclude it.
+    if file.symlink_metadata().is_err() {
+        return false;
+    }
+    if folder.ancestors().any(|folder| unreadable_rules(folder).is_some()) {
+        return false;
+    }
     let wanted = file.to_owned();
     let mut on_the_way = walk(folder);
-    on_the_way.filter_entry(move |entry| wanted.starts_with(entry.path()));
+    on_the_way.filter_entry(move |entry| wanted.starts_with(entry.path()) && is_searchable(entry));
     on_the_way.build().any(|entry| entry.is_ok_and(|entry| entry.path() == file))
 }
 
 fn walk(folder: &Path) -> WalkBuilder {
     let mut walk = WalkBuilder::new(folder);
     walk.require_git(false).git_global(false).sort_by_file_name(Ord::cmp);
+    walk.filter_entry(is_searchable);
     walk
+}
+
+/// Whether the search of a folder comes to an end.
+fn is_searchable(entry: &DirEntry) -> bool {
+    !entry.file_type().is_some_and(|kind| kind.is_dir()) || unreadable_rules(entry.path()).is_none()
+}
+
+/// The file in a folder that says what is ignored there, if it is a pipe or a device: the search would wait for it.
+fn unreadable_rules(folder: &Path) -> Option<PathBuf> {
+    let files = [".ignore", ".gitignore", ".git/info/exclude"].into_iter().map(|name| folder.join(name));
+    files.into_iter().find(|file| file.metadata().is_ok_and(|found| !found.is_file() && !found.is_dir()))
 }
 
 #[cfg(test)]
 mod tests {
     use std::fs;
-    use std::path::PathBuf;
 
     use super::*;
 
@@ -105,6 +127,17 @@ mod tests {
         std::os::unix::fs::symlink(folder.path(), folder.path().join("again")).unwrap();
         std::os::unix::fs::symlink(folder.path().join("a.pyr"), folder.path().join("b.pyr")).unwrap();
         assert_eq!(names(&folder, 100).0, ["a.pyr", "b.pyr"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_search_waits_for_nobody() {
+        let folder = folder(&["a.pyr", "in/b.pyr", "in/deep/c.pyr"]);
+        std::os::unix::fs::symlink("/dev/zero", folder.path().join("in/.gitignore")).unwrap();
+        assert_eq!(names(&folder, 100).0, ["a.pyr"]);
+        let inside = folder.path().join("in/deep");
+        assert_eq!(list(&inside, 100).errors.len(), 1);
+        assert!(!super::lists(&inside, &inside.join("c.pyr")));
     }
 
     #[test]

@@ -1,46 +1,35 @@
 //! The text of a file.
 
-use std::fs::File;
-use std::io::{self, Read};
+use std::io::Read;
 use std::path::Path;
 
 use pydslrep_workspace::{MAX_BYTES, ReadError};
 
+use crate::regular::{open, take};
+
 /// The text of a file, including a byte order mark.
 ///
 /// # Errors
-/// When the file does not exist, cannot be read, or is not text.
+/// When the file does not exist, cannot be read, is not a regular file, is too large, or is not text.
 pub fn read(path: &Path) -> Result<String, ReadError> {
-    File::open(path).map_err(|error| read_error(&error)).and_then(decode)
+    decode(open(path)?)
 }
 
 /// The text of a stream.
 ///
 /// # Errors
-/// When it cannot be read, or is not text.
+/// When it cannot be read, is too large, or is not text.
 pub fn decode(stream: impl Read) -> Result<String, ReadError> {
-    let mut bytes = Vec::new();
-    stream.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|error| read_error(&error))?;
-    if bytes.len() as u64 > MAX_BYTES {
-        return Err(ReadError::TooLarge);
-    }
-    String::from_utf8(bytes).map_err(|error| {
+    String::from_utf8(take(stream, MAX_BYTES)?).map_err(|error| {
         let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         ReadError::NotText { line: before.split(|byte| *byte == b'\n').count() }
     })
 }
 
-fn read_error(error: &io::Error) -> ReadError {
-    match error.kind() {
-        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => ReadError::Missing,
-        io::ErrorKind::IsADirectory => ReadError::Folder,
-        io::ErrorKind::PermissionDenied => ReadError::PermissionDenied,
-        _ => ReadError::Other(error.to_string()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use std::io;
+
     use super::*;
 
     #[test]
@@ -53,6 +42,6 @@ mod tests {
         std::fs::write(&file, b"a\nb\xff").unwrap();
         assert_eq!(error(&file), "not valid UTF-8 in line 2");
         assert_eq!(error(&file.join("y.pyr")), "file not found");
-        assert_eq!(decode(io::repeat(b' ')).unwrap_err().to_string(), "larger than 64 MiB");
+        assert_eq!(decode(io::repeat(b' ')).unwrap_err().to_string(), "larger than 16 MiB");
     }
 }

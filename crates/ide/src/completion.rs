@@ -514,6 +514,15 @@ mod tests {
     }
 
     #[test]
+    fn clauses_are_offered_for_their_first_word_only() {
+        let robot = |typed: &str| {
+            format!("{PARTS}robot r type tw with port 1 has {{ wheelL wheelR }} wheels\n{typed}$0")
+        };
+        assert_eq!(opens(&robot("w")), ["wheel …", "wheelH …", "wheel", "wheelH", "with sensors { … }"]);
+        assert_eq!(opens(&robot("s")), ["sensor …", "sensor"]);
+    }
+
+    #[test]
     fn nothing_is_offered_for_names_and_in_comments() {
         check("wheel $0", &expect![]);
         check("// a$0", &expect![]);

@@ -4,14 +4,16 @@ use pydslrep_analysis::{Database, Diagnostic, Edit, FileId, Fixing};
 
 /// The codes among the `shown` diagnostics that occur at least twice in the file with a safe fix.
 pub fn codes_to_fix_all(database: &Database, file: FileId, shown: &[Diagnostic]) -> Vec<&'static str> {
-    let all = database.diagnostics(file);
     let mut codes: Vec<&'static str> = Vec::new();
     for code in shown.iter().map(Diagnostic::code) {
-        let fixable = all.iter().filter(|other| other.code() == code && has_safe_fix(other));
-        if !codes.contains(&code) && fixable.count() >= 2 {
+        if !codes.contains(&code) {
             codes.push(code);
         }
     }
+    let all = database.diagnostics(file);
+    let fixable =
+        |code: &&str| all.iter().filter(|other| other.code() == *code && has_safe_fix(other)).count() >= 2;
+    codes.retain(fixable);
     codes
 }
 

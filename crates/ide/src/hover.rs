@@ -221,7 +221,7 @@ mod tests {
             ```pydslrep
             turn left 90
             ```
-            Takes 2.8 s. From (1 m, 0 m, 0°) to (1 m, 0 m, 90°), relative to the start of the movement.
+            Takes 2.9 s. From (1 m, 0 m, 0°) to (1 m, 0 m, 90°), relative to the start of the movement.
 
             Wheel rates: `wheelL` -2 rad/s, `wheelR` 2 rad/s.
         "#]],
@@ -273,7 +273,7 @@ mod tests {
             ```pydslrep
             movement n of rover { move -50 centimeters }
             ```
-            A movement of `rover`: drives 0.5 m and turns 0° in 5.7 s. It ends at (-0.5 m, 0 m, 0°) relative to its start.
+            A movement of `rover`: drives 0.5 m and turns 0° in 5.9 s. It ends at (-0.5 m, 0 m, 0°) relative to its start.
 
             Used by `e`.
         "#]],
@@ -294,8 +294,8 @@ mod tests {
 
                 | from | to | robot | movement |
                 |---|---|---|---|
-                | 0.0 s | 5.7 s | `rover` | `n` |
-                | 5.7 s | ? | `rover` | `m` |
+                | 0.0 s | 5.9 s | `rover` | `n` |
+                | 5.9 s | ? | `rover` | `m` |
 
                 In `m`, `turn right until { front }` ends when the way is clear. Later poses of `rover` and start times of later movements are unknown.
 

@@ -277,9 +277,9 @@ mod tests {
             MOVES,
             &expect![[r#"
                 movement m of rover {
-                  move 1 meters«at 9.0»«· 11.3 s → 1.00, 0.00, 0°»
-                  turn left«90»«· 2.8 s → 1.00, 0.00, 90°» // far
-                  move -50 centimeters at 10«· 5.2 s → 1.00, -0.50, 90°»
+                  move 1 meters«at 9.0»«· 11.4 s → 1.00, 0.00, 0°»
+                  turn left«90»«· 2.9 s → 1.00, 0.00, 90°» // far
+                  move -50 centimeters at 10«· 5.4 s → 1.00, -0.50, 90°»
                 }
             "#]],
         );
@@ -299,9 +299,9 @@ mod tests {
         .assert_eq(&shown(MOVES, InlayHintOptions { pose: true, ..none }));
         expect![[r#"
             movement m of rover {
-              move 1 meters«· 11.3 s»
-              turn left«· 2.8 s» // far
-              move -50 centimeters at 10«· 5.2 s»
+              move 1 meters«· 11.4 s»
+              turn left«· 2.9 s» // far
+              move -50 centimeters at 10«· 5.4 s»
             }
         "#]]
         .assert_eq(&shown(MOVES, InlayHintOptions { duration: true, ..none }));
@@ -321,9 +321,9 @@ mod tests {
             "movement m of rover {\n  move 1 meters at 9\n  turn left until { front }\n  move 1 meters at 9\n  slam\n}\n",
             &expect![[r#"
                 movement m of rover {
-                  move 1 meters at 9«· 11.3 s → 1.00, 0.00, 0°»
+                  move 1 meters at 9«· 11.4 s → 1.00, 0.00, 0°»
                   turn left until { front }«· pose unknown»
-                  move 1 meters at 9«· 11.3 s»
+                  move 1 meters at 9«· 11.4 s»
                   slam
                 }
             "#]],
@@ -336,7 +336,7 @@ mod tests {
         expect![[r#"
             Poses from here on cannot be planned: `turn left until { front }` ends when the way is clear.
             ---
-            Takes 11.3 s. The start pose cannot be planned: `turn left until { front }` ends when the way is clear.
+            Takes 11.4 s. The start pose cannot be planned: `turn left until { front }` ends when the way is clear.
 
             Wheel rates: `wheelL` 2 rad/s, `wheelR` 2 rad/s."#]].assert_eq(&tooltips.join("\n---\n"));
     }
@@ -347,10 +347,10 @@ mod tests {
             "movement m of rover {\n  turn right\n  move 1 meters at 0\n  move\n  turn left 45\n  move 1 meters\n",
             &expect![[r#"
                 movement m of rover {
-                  turn right«90»«· 2.8 s → 0.00, 0.00, -90°»
+                  turn right«90»«· 2.9 s → 0.00, 0.00, -90°»
                   move 1 meters at 0
                   move
-                  turn left 45«· 1.5 s»
+                  turn left 45«· 1.6 s»
                   move 1 meters
             "#]],
         );
@@ -442,40 +442,40 @@ mod tests {
     fn the_edited_line_has_no_hints_and_the_others_stay() {
         let mut editor = Editor::new(SQUARE);
         expect![[r#"
-              move 4.0 meters«at 9.0»«· 44.6 s → 4.00, 0.00, 0°»
-              turn right«90»«· 2.8 s → 4.00, 0.00, -90°»
-              turn left«90»«· 2.8 s → 4.00, -2.00, 0°»
+            move 4.0 meters«at 9.0»«· 44.8 s → 4.00, 0.00, 0°»
+            turn right«90»«· 2.9 s → 4.00, 0.00, -90°»
+            turn left«90»«· 2.9 s → 4.00, -2.00, 0°»
         "#]]
         .assert_eq(&editor.types("move 2 meters", " at 12"));
         let mut editor = Editor::new(SQUARE);
         expect![[r#"
-            move 4.0 meters«at 9.0»«· 44.6 s → 4.00, 0.00, 0°»
-            turn right«90»«· 2.8 s → 4.00, 0.00, -90°»
-            move 2 meters«at 9.0»«· 22.4 s → 4.00, -2.00, -90°»
-            turn left«90»«· 2.8 s → 4.00, -2.00, 0°»
+            move 4.0 meters«at 9.0»«· 44.8 s → 4.00, 0.00, 0°»
+            turn right«90»«· 2.9 s → 4.00, 0.00, -90°»
+            move 2 meters«at 9.0»«· 22.6 s → 4.00, -2.00, -90°»
+            turn left«90»«· 2.9 s → 4.00, -2.00, 0°»
             ---
-            move 4.0 meters«at 9.0»«· 44.6 s → 4.00, 0.00, 0°»
-            turn right«90»«· 2.8 s → 4.00, 0.00, -90°»
-            move 2 meters«at 9.0»«· 22.4 s → 4.00, -3.00, -90°»
-            turn left«90»«· 2.8 s → 4.00, -3.00, 0°»
+            move 4.0 meters«at 9.0»«· 44.8 s → 4.00, 0.00, 0°»
+            turn right«90»«· 2.9 s → 4.00, 0.00, -90°»
+            move 2 meters«at 9.0»«· 22.6 s → 4.00, -3.00, -90°»
+            turn left«90»«· 2.9 s → 4.00, -3.00, 0°»
         "#]]
         .assert_eq(&editor.types("turn right", "\n  move 100 centimeters"));
         let mut editor = Editor::new(SQUARE);
         expect![[r#"
-            move 4.0 meters«at 9.0»«· 44.6 s → 4.00, 0.00, 0°»
-            turn right«90»«· 2.8 s → 4.00, 0.00, -90°»
-            move 2 meters«at 9.0»«· 22.4 s → 4.00, -2.00, -90°»
-            turn left«90»«· 2.8 s → 4.00, -2.00, 0°»
+            move 4.0 meters«at 9.0»«· 44.8 s → 4.00, 0.00, 0°»
+            turn right«90»«· 2.9 s → 4.00, 0.00, -90°»
+            move 2 meters«at 9.0»«· 22.6 s → 4.00, -2.00, -90°»
+            turn left«90»«· 2.9 s → 4.00, -2.00, 0°»
             ---
-            move 4.0 meters«at 9.0»«· 44.6 s → 4.00, 0.00, 0°»
-            turn right«90»«· 2.8 s → 4.00, 0.00, -90°»
-            move 2 meters«at 9.0»«· 22.4 s → 6.00, 0.00, 0°»
-            turn left«90»«· 2.8 s → 6.00, 0.00, 90°»
+            move 4.0 meters«at 9.0»«· 44.8 s → 4.00, 0.00, 0°»
+            turn right«90»«· 2.9 s → 4.00, 0.00, -90°»
+            move 2 meters«at 9.0»«· 22.6 s → 6.00, 0.00, 0°»
+            turn left«90»«· 2.9 s → 6.00, 0.00, 90°»
             ---
-            move 4.0 meters«at 9.0»«· 44.6 s → 4.00, 0.00, 0°»
-            turn right«90»«· 2.8 s → 4.00, 0.00, -90°»
-            move 2 meters«at 9.0»«· 22.4 s»
-            turn left«90»«· 2.8 s»
+            move 4.0 meters«at 9.0»«· 44.8 s → 4.00, 0.00, 0°»
+            turn right«90»«· 2.9 s → 4.00, 0.00, -90°»
+            move 2 meters«at 9.0»«· 22.6 s»
+            turn left«90»«· 2.9 s»
         "#]]
         .assert_eq(&editor.types("turn right", "\n  turn left until { front }"));
     }
@@ -487,22 +487,22 @@ mod tests {
         expect![[r#"
             movement m of rover {
               mov 4.0 meters
-              turn right«90»«· 2.8 s → 4.00, 0.00, -90°»
-              move 2 meters«at 9.0»«· 22.4 s → 4.00, -2.00, -90°»
-              turn left«90»«· 2.8 s → 4.00, -2.00, 0°»
+              turn right«90»«· 2.9 s → 4.00, 0.00, -90°»
+              move 2 meters«at 9.0»«· 22.6 s → 4.00, -2.00, -90°»
+              turn left«90»«· 2.9 s → 4.00, -2.00, 0°»
             }
         "#]]
         .assert_eq(&editor.shown());
         // Another line is edited while this one still has an error.
         expect![[r#"
-            turn right«90»«· 2.8 s → 4.00, 0.00, -90°»
-            move 2 meters«at 9.0»«· 22.4 s → 4.00, -2.00, -90°»
-            turn left«90»«· 2.8 s → 4.00, -2.00, 0°»
+            turn right«90»«· 2.9 s → 4.00, 0.00, -90°»
+            move 2 meters«at 9.0»«· 22.6 s → 4.00, -2.00, -90°»
+            turn left«90»«· 2.9 s → 4.00, -2.00, 0°»
             ---
-            turn right«90»«· 2.8 s → 4.00, 0.00, -90°»
-            move 2 meters«at 9.0»«· 22.4 s → 4.00, -2.00, -90°»
-            turn left«90»«· 2.8 s → 4.00, -2.00, 0°»
-            move 1 meters«at 9.0»«· 11.3 s → 5.00, -2.00, 0°»
+            turn right«90»«· 2.9 s → 4.00, 0.00, -90°»
+            move 2 meters«at 9.0»«· 22.6 s → 4.00, -2.00, -90°»
+            turn left«90»«· 2.9 s → 4.00, -2.00, 0°»
+            move 1 meters«at 9.0»«· 11.4 s → 5.00, -2.00, 0°»
         "#]]
         .assert_eq(&editor.types("turn left", "\n  move 1 meters\n"));
         let old = editor
@@ -511,17 +511,17 @@ mod tests {
             .map(|hint| hint.tooltip.clone())
             .find(|tooltip| tooltip.contains("last version"));
         expect![[r#"
-            Takes 2.8 s. From (4 m, 0 m, 0°) to (4 m, 0 m, -90°), relative to the start of the movement. Based on the last version without errors.
+            Takes 2.9 s. From (4 m, 0 m, 0°) to (4 m, 0 m, -90°), relative to the start of the movement. Based on the last version without errors.
 
             Wheel rates: `wheelL` 2 rad/s, `wheelR` -2 rad/s."#]].assert_eq(&old.unwrap());
         editor.replace("mov 4.0 meters", "move 3.0 meters");
         expect![[r#"
             movement m of rover {
               move 3.0 meters
-              turn right«90»«· 2.8 s → 3.00, 0.00, -90°»
-              move 2 meters«at 9.0»«· 22.4 s → 3.00, -2.00, -90°»
-              turn left«90»«· 2.8 s → 3.00, -2.00, 0°»
-              move 1 meters«at 9.0»«· 11.3 s → 4.00, -2.00, 0°»
+              turn right«90»«· 2.9 s → 3.00, 0.00, -90°»
+              move 2 meters«at 9.0»«· 22.6 s → 3.00, -2.00, -90°»
+              turn left«90»«· 2.9 s → 3.00, -2.00, 0°»
+              move 1 meters«at 9.0»«· 11.4 s → 4.00, -2.00, 0°»
 
             }
         "#]]
@@ -536,11 +536,11 @@ mod tests {
         editor.replace("  turn rig\n", "  turn rig\n  move 1 meters\n");
         expect![[r#"
             movement m of rover {
-              move 4.0 meters«at 9.0»«· 44.6 s → 4.00, 0.00, 0°»
+              move 4.0 meters«at 9.0»«· 44.8 s → 4.00, 0.00, 0°»
               turn rig
-              move 1 meters«at 9.0»«· 11.3 s → 4.00, -1.00, -90°»
+              move 1 meters«at 9.0»«· 11.4 s → 4.00, -1.00, -90°»
               move 2 meters
-              turn left«90»«· 2.8 s → 4.00, -3.00, 0°»
+              turn left«90»«· 2.9 s → 4.00, -3.00, 0°»
             }
         "#]]
         .assert_eq(&editor.shown());
@@ -573,7 +573,7 @@ mod tests {
             movement m of rover {
               turn left until { front }«· pose unknown»
               move 1 met
-              turn left«90»«· 2.8 s»
+              turn left«90»«· 2.9 s»
             }
         "#]]
         .assert_eq(&editor.shown());
@@ -582,7 +582,7 @@ mod tests {
             movement m of rover {
               turn left until { fro }
               move 1 met
-              turn left«90»«· 2.8 s»
+              turn left«90»«· 2.9 s»
             }
         "#]]
         .assert_eq(&editor.shown());
@@ -676,8 +676,9 @@ mod tests {
     fn the_programs_of_the_paper_fit_60_columns() {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/paper");
         let mut longest = String::new();
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+        let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+        for file in files.filter(|file| file.extension().is_some_and(|ending| ending == "pyr")) {
+            let text = std::fs::read_to_string(file).unwrap();
             let mut shown = text.clone();
             for hint in hints(&text, Span::of(&text), InlayHintOptions::default()).iter().rev() {
                 shown.insert_str(hint.offset as usize, &format!(" «{}", hint.label));
@@ -688,7 +689,7 @@ mod tests {
                 }
             }
         }
-        expect!["  move 400.0 centimeters at 9.0 · 44.6 s → 0.00, -4.00, 180°"].assert_eq(&longest);
+        expect!["  move 400.0 centimeters at 9.0 · 44.8 s → 0.00, -4.00, 180°"].assert_eq(&longest);
         assert!(longest.chars().count() <= 60, "{longest}");
     }
 
@@ -699,7 +700,7 @@ mod tests {
         let range = Span::new(u32::try_from(line).unwrap(), u32::try_from(line + 11).unwrap());
         let labels: Vec<String> =
             hints(&text, range, InlayHintOptions::default()).into_iter().map(|hint| hint.label).collect();
-        assert_eq!(labels, ["90", "· 2.8 s → 1.00, 0.00, 90°"]);
+        assert_eq!(labels, ["90", "· 2.9 s → 1.00, 0.00, 90°"]);
     }
 
     #[test]

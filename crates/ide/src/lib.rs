@@ -61,7 +61,7 @@ pub use planned_path::{
 };
 pub use quick_fixes::{QuickFix, quick_fixes};
 pub use refactorings::{Refactoring, RefactoringKind, refactorings};
-pub use references::references;
+pub use references::{count_mentions, references};
 pub use rename::{RenameError, RenameTarget, prepare_rename, rename};
 pub use selection::selection_ranges;
 pub use semantic_tokens::{HighlightKind, Modifier, SemanticToken, entity_tokens, semantic_tokens};

@@ -1,10 +1,10 @@
 //! Planned paths: the timed poses of each robot of an environment, for a preview next to the program.
 //!
-//! These structs are what clients receive, field by field: `editors/vscode/src/preview/protocol.ts` has the same shape in
+//! These structs are what clients receive, field by field: `editors/preview/host/protocol.ts` has the same shape in
 //! TypeScript, and a test below holds it there.
 
 use pydslrep_analysis::environment::Environment;
-use pydslrep_analysis::{Blocked, Database, EntityId, plan};
+use pydslrep_analysis::{Blocked, Database, EntityId, check_cancelled, plan};
 use pydslrep_kinematics::{ActionIndex, Leg, Plan, Pose, RobotPath};
 use pydslrep_scene::{self as scenery, Collision, ENDING, Mount, Robot, Scene, Shape, Thing};
 use pydslrep_schema::Problem;
@@ -234,6 +234,7 @@ fn poses(environment: &Environment, path: &RobotPath) -> Vec<PlannedPose> {
 }
 
 fn on_leg(environment: &Environment, leg: &Leg) -> Vec<PlannedPose> {
+    check_cancelled();
     let action = action(environment, leg.index);
     let at = |number: u32| {
         let seconds = leg.duration * f64::from(number) / f64::from(POSES_PER_ACTION);
@@ -349,9 +350,9 @@ mod tests {
             [[box]]\nname = \"crate\"\nat = [3, 3]\nsize = [1, 1]";
         database.set_scene(file, "e", Some(scene));
         let path = serde_json::to_string_pretty(&planned_path(&database, id).unwrap()).unwrap();
-        expect_file!["../../../editors/vscode/tests/preview/planned_path.sample.ts"].assert_eq(&format!(
+        expect_file!["../../../editors/preview/tests/planned_path.sample.ts"].assert_eq(&format!(
             "// Written by a test of crates/ide/src/planned_path.rs.\n\
-             import type {{ PlannedPath }} from \"../../src/preview/protocol\";\n\n\
+             import type {{ PlannedPath }} from \"../host/protocol\";\n\n\
              export const path: PlannedPath = {path};\n"
         ));
     }

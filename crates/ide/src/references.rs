@@ -22,6 +22,15 @@ pub fn references(
     Some(places)
 }
 
+/// How many entities declare or use the name at a position, or one of the same name in a file that imports it; found
+/// without looking at them.
+pub fn count_mentions(database: &Database, position: FilePosition) -> usize {
+    let Some(Referent { home, kind, name, .. }) = referent_at(database, position) else { return 0 };
+    let users = |file| database.users(file, kind, &name).len();
+    let importing = database.importing(home).into_iter();
+    database.definitions(home, kind, &name).len() + users(home) + importing.map(users).sum::<usize>()
+}
+
 /// The declarations of a referent.
 pub(crate) fn declarations(database: &Database, referent: &Referent) -> Vec<FileSpan> {
     let Referent { home, kind, name, .. } = referent;

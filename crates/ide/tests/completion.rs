@@ -18,6 +18,7 @@ fn paper_programs() -> Vec<String> {
     for folder in ["paper", "programs"] {
         let mut files: Vec<_> =
             std::fs::read_dir(tests.join(folder)).unwrap().map(|entry| entry.unwrap().path()).collect();
+        files.retain(|file| file.extension().is_some_and(|ending| ending == "pyr"));
         files.sort();
         programs.extend(files.into_iter().map(|file| std::fs::read_to_string(file).unwrap()));
     }

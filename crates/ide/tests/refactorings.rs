@@ -131,7 +131,8 @@ fn random_programs() -> impl Iterator<Item = String> {
 fn paper_programs() -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/paper");
     let paths = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let texts: Vec<String> = paths.map(|path| std::fs::read_to_string(path).unwrap()).collect();
+    let programs = paths.filter(|path| path.extension().is_some_and(|ending| ending == "pyr"));
+    let texts: Vec<String> = programs.map(|path| std::fs::read_to_string(path).unwrap()).collect();
     assert!(texts.len() > 5);
     texts
 }

@@ -1,5 +1,6 @@
 //! Planned paths: where and when robots will be after each action, without a simulator.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use crate::{Model, Pose, SpeedProfile, Twist, motion};
@@ -63,7 +64,7 @@ pub struct Leg {
     pub to: Pose,
     /// When it starts, seconds; `None` when some earlier action takes an unknown time.
     pub start: Option<f64>,
-    /// How long it takes, seconds, ramps included.
+    /// How long it takes, seconds, with ramps and [`motion::REST`].
     pub duration: f64,
     /// Wheel rates at the highest speed it reaches, rad/s, in the order of the robot's wheels.
     pub rates: Vec<f64>,
@@ -191,15 +192,18 @@ pub fn plan(robots: &[RobotPlan], schedule: &[Vec<Run>]) -> Result<Plan, PlanErr
         .collect();
     let mut clock = Some(0.0);
     for (group, runs) in schedule.iter().enumerate() {
-        let mut free_at = vec![clock; robots.len()];
+        let mut free_at: BTreeMap<usize, Option<f64>> = BTreeMap::new();
         for (run, Run { robot, actions }) in runs.iter().enumerate() {
             let (Some(path), Some(plan)) = (paths.get_mut(*robot), robots.get(*robot)) else {
                 return Err(PlanError::NoSuchRobot { robot: *robot });
             };
             let index = ActionIndex { group, run, action: 0 };
-            free_at[*robot] = drive(path, &plan.model, actions, index, free_at[*robot]);
+            let free = free_at.entry(*robot).or_insert(clock);
+            *free = drive(path, &plan.model, actions, index, *free);
         }
-        clock = free_at.into_iter().try_fold(0.0, |latest: f64, time| Some(latest.max(time?)));
+        let all_free =
+            |from: f64| free_at.into_values().try_fold(from, |latest, time| Some(latest.max(time?)));
+        clock = clock.and_then(all_free);
     }
     Ok(Plan { robots: paths, duration: clock })
 }
@@ -243,12 +247,13 @@ fn leg(model: &Model, action: Action, index: ActionIndex, from: Pose, start: Opt
     let twist_per_rim = Twist { vx: unit.vx / rim_per_unit, vy: 0.0, omega: unit.omega / rim_per_unit };
     let peak =
         Twist { vx: twist_per_rim.vx * profile.peak(), vy: 0.0, omega: twist_per_rim.omega * profile.peak() };
+    let rest = if amount == 0.0 { 0.0 } else { motion::REST };
     Some(Leg {
         index,
         from,
         to: from.advance(unit, amount.abs()),
         start,
-        duration: profile.duration(),
+        duration: profile.duration() + rest,
         rates: model.inverse(peak),
         profile,
         twist_per_rim,
@@ -271,8 +276,8 @@ mod tests {
         Action::Move { distance, speed: 0.09 }
     }
 
-    const METRE: f64 = 1.0 / 0.09 + 0.18;
-    const QUARTER: f64 = FRAC_PI_2 * 0.15 / 0.09 + 0.18;
+    const METRE: f64 = 1.0 / 0.09 + 0.18 + motion::REST;
+    const QUARTER: f64 = FRAC_PI_2 * 0.15 / 0.09 + 0.18 + motion::REST;
 
     fn close(a: Option<f64>, b: f64) -> bool {
         a.is_some_and(|a| (a - b).abs() < 1e-9)
@@ -304,7 +309,7 @@ mod tests {
         let robots = [robot(Pose::default()), robot(Pose::new(0.0, -1.0, 0.0))];
         let run = |robot, distance| Run { robot, actions: vec![forward(distance)] };
         let plan = plan(&robots, &[vec![run(0, 1.0), run(1, 2.0)], vec![run(0, 1.0)]]).unwrap();
-        let slow = 2.0 / 0.09 + 0.18;
+        let slow = 2.0 / 0.09 + 0.18 + motion::REST;
         assert!(close(plan.robots[0].legs[1].start, slow));
         assert!(close(plan.duration, slow + METRE));
         assert_eq!(plan.robots[0].legs[1].index, ActionIndex { group: 1, run: 0, action: 0 });
@@ -345,7 +350,9 @@ mod tests {
         assert_eq!(poses.len(), 201);
         assert_eq!(poses.first(), Some(&TimedPose { time: Some(0.0), pose: Pose::default() }));
         assert_eq!(poses.last(), Some(&TimedPose { time: path.legs[1].end(), pose: path.end() }));
-        assert!((path.legs[1].pose_at(path.legs[1].duration / 2.0).theta - FRAC_PI_2).abs() < 1e-12);
+        let driving = path.legs[1].duration - motion::REST;
+        assert!((path.legs[1].pose_at(driving / 2.0).theta - FRAC_PI_2).abs() < 1e-12);
+        assert_eq!(path.legs[1].pose_at(driving), path.legs[1].to, "then it rests");
     }
 
     #[test]

@@ -20,5 +20,9 @@ mod testing;
 mod time_marks;
 mod view;
 
+/// What every picture says of itself, in a comment of an SVG and in the text of a PNG: programs tell their pictures from
+/// other ones by it.
+pub const MARK: &str = "Drawn by PyDSLRep";
+
 pub use raster::{RenderError, png};
 pub use route::{Picture, Route};

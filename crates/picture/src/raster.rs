@@ -3,8 +3,11 @@
 use std::fmt;
 use std::sync::Arc;
 
+use png::{BitDepth, ColorType, Encoder, EncodingError};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb};
+
+use crate::MARK;
 
 /// Image pixels per picture pixel: text stays sharp on high-density screens.
 const DENSITY: f32 = 2.0;
@@ -34,7 +37,21 @@ pub fn png(svg: &str) -> Result<Vec<u8>, RenderError> {
     let size = tree.size().to_int_size().scale_by(DENSITY).ok_or_else(|| failed(&"it has no size"))?;
     let mut pixels = Pixmap::new(size.width(), size.height()).ok_or_else(|| failed(&"it is too large"))?;
     resvg::render(&tree, Transform::from_scale(DENSITY, DENSITY), &mut pixels.as_mut());
-    pixels.encode_png().map_err(|error| failed(&error))
+    encode(pixels).map_err(|error| failed(&error))
+}
+
+/// A PNG with the mark of our pictures.
+fn encode(pixels: Pixmap) -> Result<Vec<u8>, EncodingError> {
+    let (width, height) = (pixels.width(), pixels.height());
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, width, height);
+    encoder.set_color(ColorType::Rgba);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.add_text_chunk("Comment".to_owned(), MARK.to_owned())?;
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&pixels.take_demultiplied())?;
+    writer.finish()?;
+    Ok(bytes)
 }
 
 fn options() -> Options<'static> {
@@ -61,6 +78,7 @@ mod tests {
         let pixels = Pixmap::decode_png(&painted).unwrap();
         assert_eq!((pixels.width(), pixels.height()), (120, 40));
         assert!(pixels.pixels().iter().any(|pixel| pixel.alpha() > 200), "there is text");
+        assert!(painted.windows(MARK.len()).any(|window| window == MARK.as_bytes()));
         let empty = Pixmap::decode_png(&png(&svg("")).unwrap()).unwrap();
         assert!(empty.pixels().iter().all(|pixel| pixel.alpha() == 0));
     }

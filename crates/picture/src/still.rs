@@ -1,13 +1,14 @@
 //! Still pictures.
 
 use svg::Document;
+use svg::node::Comment;
 use svg::node::element::{Group, Rectangle};
 
 use crate::legend::Key;
 use crate::route::{Picture, Route};
 use crate::style::{FONT, PAPER, colour, pixels, shorten, text};
 use crate::view::View;
-use crate::{floor, legend, robots, time_marks};
+use crate::{MARK, floor, legend, robots, time_marks};
 
 /// The margins around the floor for title, tick labels and legend, pixels.
 const LEFT: f64 = 62.0;
@@ -48,6 +49,7 @@ impl Picture<'_> {
             .set("width", pixels(width))
             .set("height", pixels(height))
             .set("font-family", FONT)
+            .add(Comment::new(MARK))
             .add(paper)
             .add(text(&title, LEFT, 32.0, 18).set("font-weight", "bold"))
             .add(floor::grid(&view))

@@ -168,7 +168,7 @@ impl Moment<'_> {
 mod tests {
     use std::f64::consts::FRAC_PI_2;
 
-    use pydslrep_kinematics::{Action, Drive, RobotPlan, Run, plan};
+    use pydslrep_kinematics::{Action, Drive, RobotPlan, Run, motion, plan};
 
     use super::*;
     use crate::{Obstacle, Robot, Wheel};
@@ -214,7 +214,7 @@ mod tests {
         assert_eq!((met.robot, met.with), (0, Thing::Obstacle(0)));
         assert_eq!(met.action, ActionIndex { group: 1, run: 0, action: 0 });
         assert!((met.pose.y - 1.05).abs() < 0.001 && (met.pose.x - 2.0).abs() < 1e-9, "{met:?}");
-        let before = 2.0 / 0.1 + 0.2 + FRAC_PI_2 * 0.15 / 0.09 + 0.18;
+        let before = 2.0 / 0.1 + 0.2 + FRAC_PI_2 * 0.15 / 0.09 + 0.18 + 2.0 * motion::REST;
         let after = 1.05 / 0.1 + 0.1;
         assert!(met.time.is_some_and(|time| (time - before - after).abs() < 0.02), "{met:?}");
     }

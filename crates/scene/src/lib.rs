@@ -18,8 +18,8 @@ pub use collision::{Collision, collisions};
 pub use file::{ENDING, SCHEMA, json_schema, manual, problems, read};
 pub use mount::{Mount, mounts_by_name};
 pub use obstacle::{Obstacle, Shape};
-pub use robot::{Body, Robot, Sensor, SensorKind, Wheel};
-pub use space::{Near, Sighting, Space, Thing, distance_between};
+pub use robot::{Body, Frame, Objects, Robot, Sensor, SensorKind, Wheel};
+pub use space::{Near, Sighting, Space, Thing, distance_between, triangulate};
 
 /// A world: robots on a floor with obstacles.
 #[derive(Debug, Clone, PartialEq)]

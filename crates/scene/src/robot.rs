@@ -1,5 +1,7 @@
 //! A robot of a scene.
 
+use std::collections::BTreeMap;
+
 use pydslrep_kinematics::{Drive, Geometry, Model, ModelError, Pose, Traction, scrub_factor};
 
 use crate::{Mount, defaults, mounts_by_name};
@@ -28,6 +30,50 @@ pub struct Robot {
     pub motor_acceleration: f64,
     /// The greatest speed of the wheels' rims, metres per second; infinite for no limit.
     pub motor_speed: f64,
+    /// How clients of the remote API see the object that has its name.
+    pub frame: Frame,
+    /// Where it and its parts are in `CoppeliaSim`'s scene, if their objects have other names there.
+    pub objects: Objects,
+}
+
+/// The paths of a robot and its parts in a simulator's scene, by name. Parts of different kinds may share one.
+pub type Objects = BTreeMap<String, Vec<String>>;
+
+/// The frame of the object that has a robot's name. Scripts can drive the first kind only.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Frame {
+    /// x ahead, y to the left, z up.
+    #[default]
+    Ahead,
+    /// x up, y to the left, z behind.
+    XUp,
+    /// x to the left, y behind, z up.
+    XLeft,
+    /// x down, y to the left, z ahead.
+    ZAhead,
+    /// The object stays at the robot's start; what moves is below it.
+    Static,
+}
+
+impl Frame {
+    /// All kinds.
+    pub const ALL: [Self; 5] = [Self::Ahead, Self::XUp, Self::XLeft, Self::ZAhead, Self::Static];
+
+    /// Its name in scene files.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Ahead => "ahead",
+            Self::XUp => "x-up",
+            Self::XLeft => "x-left",
+            Self::ZAhead => "z-ahead",
+            Self::Static => "static",
+        }
+    }
+
+    /// The frame of this name.
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|frame| frame.word() == word)
+    }
 }
 
 /// A driven wheel.
@@ -112,6 +158,8 @@ impl Robot {
             lateral_friction: defaults::lateral_friction(drive),
             motor_acceleration: defaults::MOTOR_ACCELERATION,
             motor_speed: f64::INFINITY,
+            frame: Frame::default(),
+            objects: Objects::new(),
         }
     }
 

@@ -135,6 +135,15 @@ fn parts_of(owner: usize, obstacle: &Obstacle) -> Vec<ConvexPart> {
     }
 }
 
+/// A polygon as triangles, each by its corners; none if it has fewer than three corners or crosses itself.
+pub fn triangulate(corners: &[(f64, f64)]) -> Vec<[(f64, f64); 3]> {
+    let corner = |corner: Vector| (corner.x, corner.y);
+    triangles(corners)
+        .iter()
+        .map(|triangle| [corner(triangle.a), corner(triangle.b), corner(triangle.c)])
+        .collect()
+}
+
 /// A polygon as triangles; none if it has fewer than three corners or crosses itself.
 pub(crate) fn triangles(corners: &[(f64, f64)]) -> Vec<Triangle> {
     let mut corners: Vec<Vector> = corners.iter().map(|&(x, y)| Vector::new(x, y)).collect();

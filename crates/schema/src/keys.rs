@@ -190,15 +190,23 @@ pub(crate) fn dotted(outer: &str, part: &str) -> String {
     if outer.is_empty() { part.to_owned() } else { format!("{outer}.{part}") }
 }
 
-/// The names that tables can have, each with those inside of it: robots with their sensors.
+/// The names that tables can have, each with those inside of it: robots with `sensors` and `wheels`, and these with theirs.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Names(pub Vec<(String, Names)>);
 
 impl Names {
-    /// The names inside of others.
-    pub(crate) fn inside(&self, outer: &[String]) -> Option<&Self> {
-        outer.iter().try_fold(self, |names, wanted| {
-            names.0.iter().find(|(name, _)| name == wanted).map(|(_, inner)| inner)
+    /// The names inside of a table from the list; `outer` is in place of its placeholders.
+    pub(crate) fn inside(&self, table: &str, outer: &[String]) -> Option<&Self> {
+        let mut outer = outer.iter();
+        let mut parts = table.split('.').skip_while(|part| *part != NAME);
+        parts.try_fold(self, |names, part| {
+            let part = if part == NAME { outer.next()?.as_str() } else { part };
+            names.get(part)
         })
+    }
+
+    /// The names inside of a name.
+    pub fn get(&self, name: &str) -> Option<&Self> {
+        self.0.iter().find(|(known, _)| known == name).map(|(_, inner)| inner)
     }
 }

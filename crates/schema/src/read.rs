@@ -241,7 +241,7 @@ impl Reader<'_> {
         let placeholder = dotted(&at.name, NAME);
         let mut names = at.names.clone();
         let name = if self.schema.has(&placeholder) {
-            if let Some(known) = self.names.and_then(|names| names.inside(&at.names))
+            if let Some(known) = self.names.and_then(|names| names.inside(&at.name, &at.names))
                 && !known.0.iter().any(|(known, _)| *known == entry.key)
             {
                 self.unknown_name(at, &placeholder, entry, known);

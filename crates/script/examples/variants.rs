@@ -9,7 +9,7 @@ use common::{
     area_1, environment, four_robots, move_at, move_by, movement, robot, sensors, slam, turn, turn_until,
     with_sensors,
 };
-use pydslrep_analysis::environment::{Action, Environment, Source};
+use pydslrep_analysis::environment::{Action, Environment, SensorKind, Source};
 use pydslrep_kinematics::Drive;
 use pydslrep_script::{Target, file_name, generate};
 
@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = env::args().nth(1).ok_or("usage: variants FOLDER")?;
     for environment in variants() {
         for target in Target::ALL {
-            let script = generate(&environment, target)?;
+            let script = generate(&environment, target, &format!("{}.pyr", environment.name))?;
             // Both are in one folder, where each needs a name of its own.
             let name = format!("{}_{}", target.word(), file_name(&environment));
             fs::write(Path::new(&folder).join(name), script)?;
@@ -52,6 +52,7 @@ fn variants() -> Vec<Environment> {
         imported(),
     ];
     variants.extend((1..=200).map(names_of));
+    variants.extend((1..=30).map(many));
     variants
 }
 
@@ -99,7 +100,24 @@ fn imported() -> Environment {
     )
 }
 
-/// Names of a given length for wheels, sensors, robots and movements.
+/// So many robots that drive in parallel, each with as many sensors.
+fn many(count: usize) -> Environment {
+    let names: Vec<String> = (1..=count).map(|number| format!("s{number}")).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let drives = [Drive::TwoWheel, Drive::FourWheel, Drive::FourMecanum].into_iter().cycle();
+    let robots = drives.zip(1..=count).map(|(drive, number)| {
+        let mut robot = with_sensors(robot(&format!("r{number}"), drive, 23000), &names);
+        robot.sensors.iter_mut().step_by(2).for_each(|sensor| sensor.kind = SensorKind::Bumper);
+        robot
+    });
+    let all: Vec<usize> = (0..count).collect();
+    let action = || vec![turn_until(&all, &names.join(", "), 9)];
+    let movements = (0..count).map(|index| movement(&format!("m{index}"), index, action()));
+    let schedule = vec![all.clone(), vec![0]];
+    environment(&format!("many_{count}"), robots.collect(), movements.collect(), schedule)
+}
+
+/// Names of a given length for the environment, wheels, sensors, robots and movements.
 fn names_of(length: usize) -> Environment {
     // The last letter differs.
     let name = |last: &str| "n".repeat(length - 1) + last;
@@ -118,5 +136,6 @@ fn names_of(length: usize) -> Environment {
         movement(&long, 0, vec![move_by(1.0, 8), until(&[0]), until(&[0, 1])]),
         movement(&other, 1, vec![turn(45.0, 8)]),
     ];
-    environment(&format!("names_{length}"), robots, movements, vec![vec![0], vec![0, 1]])
+    let script = format!("names_{length}");
+    Environment { script, ..environment(&long, robots, movements, vec![vec![0], vec![0, 1]]) }
 }

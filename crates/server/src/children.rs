@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 use futures::channel::mpsc::{UnboundedReceiver, UnboundedSender, unbounded};
-use tempfile::TempDir;
+use pydslrep_output::TemporaryFolder;
 use tower_lsp::ls_types::ProgressToken;
 
 /// The child processes of a session.
@@ -22,7 +22,7 @@ pub(crate) struct Children {
     /// How many were started.
     count: u64,
     /// Where they draw; deleted with the session.
-    pictures: Option<TempDir>,
+    pictures: Option<TemporaryFolder>,
 }
 
 impl Children {
@@ -30,7 +30,7 @@ impl Children {
     pub(crate) fn picture(&mut self, name: &str) -> io::Result<PathBuf> {
         let folder = match self.pictures.take() {
             Some(folder) => folder,
-            None => tempfile::Builder::new().prefix("pydslrep-pictures-").tempdir()?,
+            None => TemporaryFolder::new("pictures-")?,
         };
         let path = folder.path().join(format!("{name}-{}.svg", self.count + 1));
         self.pictures = Some(folder);
@@ -41,7 +41,7 @@ impl Children {
     pub(crate) fn start(
         &mut self,
         command: &mut Command,
-        folder: TempDir,
+        folder: TemporaryFolder,
     ) -> io::Result<(Running, UnboundedReceiver<ChildEvent>)> {
         let started = Running::start(command, folder)?;
         self.count += 1;
@@ -114,7 +114,10 @@ impl Drop for KillOnDrop {
 }
 
 impl Running {
-    fn start(command: &mut Command, folder: TempDir) -> io::Result<(Self, UnboundedReceiver<ChildEvent>)> {
+    fn start(
+        command: &mut Command,
+        folder: TemporaryFolder,
+    ) -> io::Result<(Self, UnboundedReceiver<ChildEvent>)> {
         // Its input stays empty; the end of it means that the server has ended, for whatever reason.
         let piped = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = piped.spawn()?;
@@ -195,7 +198,8 @@ fn interrupt(child: &mut Child) {
     let _ = rustix::process::kill_process(pid, rustix::process::Signal::INT);
 }
 
+/// The end of its input interrupts it, too.
 #[cfg(not(unix))]
 fn interrupt(child: &mut Child) {
-    let _ = child.kill();
+    child.stdin = None;
 }

@@ -5,6 +5,8 @@ use pydslrep_ide::PlannedPath;
 use serde::{Deserialize, Serialize};
 use tower_lsp::ls_types::Uri;
 
+use crate::page::Audience;
+
 /// An environment: the data of an action until it is chosen, and the argument of commands.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct ChosenEnvironment {
@@ -14,13 +16,33 @@ pub(crate) struct ChosenEnvironment {
     pub(crate) environment: String,
 }
 
-/// A planned path that the client has.
+/// A planned path that the client or a page has.
 #[derive(Debug)]
 pub(crate) struct Watched {
+    /// Who has it.
+    pub(crate) audience: Audience,
     /// Whose path.
     pub(crate) which: ChosenEnvironment,
     /// What the environment was made of, where it was without errors.
     pub(crate) fingerprint: Option<Fingerprint>,
-    /// The path as it was sent; `None` where there was none.
-    pub(crate) path: Option<PlannedPath>,
+    /// What was sent.
+    pub(crate) sent: Sent,
+}
+
+impl Watched {
+    /// Whether it is the path of an environment that somebody has.
+    pub(crate) fn is(&self, which: &ChosenEnvironment, audience: Audience) -> bool {
+        self.audience == audience && self.which == *which
+    }
+}
+
+/// What its audience has of a path.
+#[derive(Debug)]
+pub(crate) enum Sent {
+    /// This one.
+    Path(PlannedPath),
+    /// There was none.
+    Nothing,
+    /// One that is too long to be compared, or that is still being planned.
+    Long,
 }

@@ -123,15 +123,52 @@ impl Table {
             }
             answer_later(server, &id, |token| {
                 let id = id.clone();
+                let room = server.outbox.room();
                 async move {
+                    // Room is asked for in turn, not when the request comes.
                     yield_now().await;
-                    let Work { snapshot, outdated, run } = work;
-                    let snapshot = snapshot.cancelled_by(outdated.clone()).cancelled_by(token);
+                    room.await;
+                    let Work { snapshot, outdated: is_outdated, run } = work;
+                    let snapshot = snapshot.cancelled_by(is_outdated.clone()).cancelled_by(token);
                     let body = encode_answer(&id, &run(snapshot));
-                    if outdated.is_cancelled() {
-                        return Err(error(CONTENT_MODIFIED, "the text has changed"));
+                    if is_outdated.is_cancelled() {
+                        return Err(outdated());
                     }
                     Ok(body)
+                }
+            })
+        });
+    }
+
+    /// A request that may read a lot: where `is_long` says so, beside the loop. `note` is what happens at once in either
+    /// case. A change to the workspace stops it, since an answer must not be about a later text.
+    pub(crate) fn read_long<R, A>(
+        &mut self,
+        is_long: fn(&State, &R::Params) -> Option<String>,
+        note: fn(&mut State, &R::Params),
+        handler: fn(&mut State, &R::Params) -> A,
+        announce: Announce,
+    ) where
+        R: request::Request,
+        R::Params: Send,
+        A: Answer<R::Result> + 'static,
+    {
+        self.request::<R>(announce, move |server, id, params| {
+            let mut state = server.state();
+            note(&mut state, &params);
+            let Some(key) = is_long(&state, &params) else {
+                return answer_now(&id, handler(&mut state, &params).into_result());
+            };
+            let version = state.prepare_to_lend();
+            drop(state);
+            answer_later(server, &id, |token| {
+                let (id, server) = (id.clone(), server.clone());
+                async move {
+                    yield_now().await;
+                    server.outbox.room().await;
+                    let answer = server.read_beside(&key, version, token, |state| handler(state, &params));
+                    let answer = answer.ok_or_else(outdated)?.into_result()?;
+                    Ok(encode_answer(&id, &answer))
                 }
             })
         });
@@ -293,6 +330,10 @@ impl Table {
 
 fn error(code: ErrorCode, message: &'static str) -> Error {
     Error { code, message: message.into(), data: None }
+}
+
+fn outdated() -> Error {
+    error(CONTENT_MODIFIED, "the text has changed")
 }
 
 fn read_params<P: DeserializeOwned>(params: Option<Value>) -> Result<P> {
@@ -510,6 +551,62 @@ mod tests {
         assert_eq!(held.answers(), [(json!(2), None)]);
         held.work();
         assert_eq!(held.answers(), [(json!(1), None)]);
+    }
+
+    /// Requests about all of a document that keep something for the next one, or note something at once.
+    const LONG: [&str; 7] = [
+        "textDocument/codeLens",
+        "textDocument/inlayHint",
+        "textDocument/codeAction",
+        "textDocument/semanticTokens/range",
+        "textDocument/references",
+        "textDocument/documentHighlight",
+        "textDocument/rename",
+    ];
+
+    fn whole() -> Value {
+        let end = json!({ "line": 999_999, "character": 0 });
+        let range = json!({ "start": { "line": 0, "character": 0 }, "end": end });
+        let document = json!({ "uri": "file:///a.pyr" });
+        json!({
+            "textDocument": document,
+            "range": range,
+            "context": { "diagnostics": [], "includeDeclaration": true },
+            "position": { "line": 0, "character": 6 },
+            "newName": "b",
+        })
+    }
+
+    #[test]
+    fn long_reads_do_not_keep_others_waiting() {
+        let mut held = Held::new();
+        for method in LONG {
+            held.request(1, method, &whole());
+            let params = json!({ "textDocument": { "uri": "file:///a.pyr" }, "position": { "line": 0, "character": 1 } });
+            held.request(2, "textDocument/hover", &params);
+            assert_eq!(held.answers(), [(json!(2), None)], "{method}");
+            held.work();
+            assert_eq!(held.answers(), [(json!(1), None)], "{method}");
+        }
+    }
+
+    #[test]
+    fn long_reads_are_about_the_text_of_their_request() {
+        let mut held = Held::new();
+        for (number, method) in LONG.into_iter().enumerate() {
+            held.request(1, method, &whole());
+            held.session.flush_diagnostics();
+            held.cancel(1);
+            held.work();
+            assert_eq!(held.answers(), [(json!(1), Some(-32800))], "{method}");
+            held.request(2, method, &whole());
+            held.change(&format!("wheel a{number} with radius 4\n").repeat(SHORT / 10));
+            held.request(3, method, &whole());
+            // What was published in between has changed nothing.
+            held.session.flush_diagnostics();
+            held.work();
+            assert_eq!(held.answers(), [(json!(2), Some(-32801)), (json!(3), None)], "{method}");
+        }
     }
 
     #[test]

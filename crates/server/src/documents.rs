@@ -1,16 +1,25 @@
 //! Documents as the client knows them: their addresses, and what the client has of each.
 
+use std::str::FromStr;
 use std::sync::{Arc, OnceLock};
 
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use pydslrep_analysis::{CancellationToken, FileId, Snapshot};
 use pydslrep_config::Settings;
 use pydslrep_ide::{KnownMovements, ShownLenses};
 use pydslrep_text::Span;
-use pydslrep_workspace::{DocumentKind, TextChange};
+use pydslrep_workspace::{DocumentKind, TextChange, path_of};
 use ropey::Rope;
 use tower_lsp::ls_types::{Diagnostic, InitializeParams, TextDocumentContentChangeEvent, Uri};
 
 use crate::positions::{self, Encoding};
+
+/// Whether files are on a disk, and only those are files.
+const HAS_DISK: bool = cfg!(feature = "process");
+
+/// What a path in an address is written with.
+const UNRESERVED: &AsciiSet =
+    &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~').remove(b'/');
 
 /// A document of the workspace, and what the client has of it.
 #[derive(Debug, Clone, Copy)]
@@ -87,6 +96,18 @@ pub(crate) struct ClientDocument {
 }
 
 impl ClientDocument {
+    /// The same without what is remembered for later requests.
+    pub(crate) fn without_memory(&self) -> Self {
+        let Self { uri, version, opening, .. } = self;
+        Self { uri: uri.clone(), version: *version, opening: *opening, ..Self::default() }
+    }
+
+    /// Exchanges what is remembered for later requests.
+    pub(crate) fn exchange_memory(&mut self, other: &mut Self) {
+        std::mem::swap(&mut self.movements, &mut other.movements);
+        std::mem::swap(&mut self.lenses, &mut other.lenses);
+    }
+
     /// Stops work on the text as it was.
     pub(crate) fn set_outdated(&mut self) {
         std::mem::take(&mut self.outdated).cancel();
@@ -109,7 +130,7 @@ pub(crate) type TokenCounts = Arc<OnceLock<Vec<usize>>>;
 
 /// The address of a document, as the client writes it or, if it was never opened there, that of its path.
 pub(crate) fn address(key: &str, client: Option<&ClientDocument>) -> Option<Uri> {
-    client.and_then(|client| client.uri.clone()).or_else(|| Uri::from_file_path(key))
+    client.and_then(|client| client.uri.clone()).or_else(|| uri_of(key))
 }
 
 /// What the changes of one message make of a text, one after the other.
@@ -138,10 +159,12 @@ fn replace(text: &mut Rope, span: Span, new: &str) {
 }
 
 /// The key of a document in the workspace, one for all spellings of its address: a file's path, decoded, with the
-/// letter of a drive in upper case; the address itself for what is not a file.
+/// letter of a drive in upper case; the address itself for what is not a file. Without a disk, any address with a path is
+/// that of a file.
 pub(crate) fn key(uri: &Uri) -> String {
     if !uri.scheme().as_str().eq_ignore_ascii_case("file") {
-        return uri.as_str().to_owned();
+        let of_virtual = if HAS_DISK { None } else { virtual_key(uri) };
+        return of_virtual.unwrap_or_else(|| uri.as_str().to_owned());
     }
     let mut path = uri.path().decode().to_string_lossy().into_owned();
     if let [b'/', drive, b':', ..] = path.as_bytes()
@@ -154,6 +177,34 @@ pub(crate) fn key(uri: &Uri) -> String {
         None | Some("" | "localhost") => path,
         Some(host) => format!("//{host}{path}"),
     }
+}
+
+/// The address of the file with a key; [`key`] leads back.
+pub(crate) fn uri_of(key: &str) -> Option<Uri> {
+    if HAS_DISK {
+        return Uri::from_file_path(path_of(key));
+    }
+    Uri::from_str(&virtual_address(key)?).ok()
+}
+
+/// The key of a file that is on no disk: an absolute path that begins with the scheme. `None` for a buffer without a file.
+fn virtual_key(uri: &Uri) -> Option<String> {
+    let path = uri.path().decode().to_string_lossy();
+    let authority = uri.authority().map_or("", |authority| authority.as_str());
+    path.starts_with('/').then(|| format!("/{}:{authority}{path}", uri.scheme()))
+}
+
+/// The address of a file that is on no disk.
+fn virtual_address(key: &str) -> Option<String> {
+    let path = key.strip_prefix('/')?;
+    let (first, _) = path.split_once('/').unwrap_or((path, ""));
+    // The letter of a drive is no scheme.
+    let Some((scheme, authority)) = first.split_once(':').filter(|(scheme, _)| scheme.len() > 1) else {
+        return Some(format!("file://{}", utf8_percent_encode(key, UNRESERVED)));
+    };
+    let path = utf8_percent_encode(&path[first.len()..], UNRESERVED);
+    let slashes = if authority.is_empty() { "" } else { "//" };
+    Some(format!("{scheme}:{slashes}{authority}{path}"))
 }
 
 /// Folders that a client has open, as prefixes of keys.
@@ -187,6 +238,22 @@ mod tests {
         assert_eq!(key("file://localhost/home/%C3%A9.pyr"), "/home/é.pyr");
         assert_eq!(key("file://server/share/x.pyr"), "//server/share/x.pyr");
         assert_eq!(key("untitled:Untitled-1"), "untitled:Untitled-1");
+    }
+
+    #[test]
+    fn without_a_disk_addresses_with_a_path_are_files() {
+        for (address, key) in [
+            ("vscode-vfs://github/o/r/a%20b.pyr", Some("/vscode-vfs:github/o/r/a b.pyr")),
+            ("memfs:/sample/%C3%A9.pyr", Some("/memfs:/sample/é.pyr")),
+            ("untitled:Untitled-1", None),
+        ] {
+            assert_eq!(virtual_key(&Uri::from_str(address).unwrap()).as_deref(), key);
+            if let Some(key) = key {
+                assert_eq!(virtual_address(key).as_deref(), Some(address));
+            }
+        }
+        assert_eq!(virtual_address("/C:/a b.pyr").as_deref(), Some("file:///C%3A/a%20b.pyr"));
+        assert_eq!(virtual_address("/a/b.pyr").as_deref(), Some("file:///a/b.pyr"));
     }
 
     /// The offset of a position by the protocol's words, one character at a time.

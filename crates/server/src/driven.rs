@@ -113,9 +113,9 @@ mod tests {
         )
         .unwrap();
         let robots = serde_json::to_string_pretty(&read(&trace, &map).unwrap()).unwrap();
-        expect_file!["../../../editors/vscode/tests/preview/driven_path.sample.ts"].assert_eq(&format!(
+        expect_file!["../../../editors/preview/tests/driven_path.sample.ts"].assert_eq(&format!(
             "// Written by a test of crates/server/src/driven.rs.\n\
-             import type {{ DrivenRobot }} from \"../../src/preview/protocol\";\n\n\
+             import type {{ DrivenRobot }} from \"../host/protocol\";\n\n\
              export const robots: DrivenRobot[] = {robots};\n"
         ));
     }

@@ -9,6 +9,7 @@
 //! * [`Session`] calls that service. Its one guarantee: every handler runs, in arrival order, up to its first `.await`,
 //!   before the next message is handled. The state is a plain mutex that is never held across an `.await`.
 //! * `message_loop` feeds a session from a stream; `process` finds the stream.
+//! * `web` serves the page of the path preview, `page` has what the page is told, `handlers::preview` connects them.
 //! * `positions` is the only place where lines and columns meet byte offsets.
 //!
 //! With the feature `process` off there is no runtime, no stdio and no socket: a browser feeds a session itself.
@@ -24,13 +25,17 @@ mod documents;
 #[cfg(feature = "process")]
 mod driven;
 #[cfg(feature = "process")]
+mod file_preview;
+#[cfg(feature = "process")]
 mod frame;
 mod handlers;
 mod life_cycle;
+mod load;
 mod log;
 mod message;
 #[cfg(feature = "process")]
 mod message_loop;
+mod page;
 #[cfg(target_os = "linux")]
 #[cfg(feature = "process")]
 mod parent;
@@ -39,13 +44,19 @@ mod positions;
 #[cfg(feature = "process")]
 mod process;
 mod reader;
+mod runtimes;
 mod server;
 mod session;
+mod shared;
 mod state;
 mod typing;
+#[cfg(feature = "process")]
+mod web;
 mod work;
 
 #[cfg(feature = "process")]
 pub use arguments::{Arguments, Unreachable};
+#[cfg(feature = "process")]
+pub use file_preview::FilePreview;
 pub use message::Outbox;
 pub use session::{Ending, Session};

@@ -23,7 +23,9 @@ pub(crate) struct LifeCycle {
 impl LanguageServer for LifeCycle {
     async fn initialize(&self, params: InitializeParams) -> Result<InitializeResult> {
         let server = &self.server;
-        let features = ClientFeatures::new(&params.capabilities);
+        let mut features = ClientFeatures::new(&params.capabilities);
+        // Helix shows documents without announcing it.
+        features.show_document |= params.client_info.as_ref().is_some_and(|client| client.name == "helix");
         let capabilities = self.table.capabilities(&features);
         let mut state = server.state();
         state.client = features;

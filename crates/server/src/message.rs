@@ -9,6 +9,8 @@ use tower_lsp::jsonrpc::{Error, ErrorCode, Id, Request, Response};
 use tower_lsp::ls_types::notification::Notification;
 use tower_lsp::ls_types::request::{self, Request as _};
 
+use crate::load::Load;
+
 /// Begins the ids of requests whose answers are ignored.
 pub(crate) const IGNORED: &str = "pydslrep: ignored ";
 
@@ -157,6 +159,7 @@ pub(crate) fn encode_error(id: Id, error: Error) -> Body {
 #[derive(Debug, Clone)]
 pub struct Outbox {
     sender: Sender<Option<Body>>,
+    load: Load,
     /// Set by [`Self::only_answer`], and locked while anything else is sent, so that nothing is sent after it.
     only_answers: Arc<Mutex<bool>>,
 }
@@ -164,11 +167,23 @@ pub struct Outbox {
 impl Outbox {
     /// An outbox whose messages, encoded but not framed, come out of `sender`'s receiver; `None` is the last.
     pub fn new(sender: Sender<Option<Body>>) -> Self {
-        Self { sender, only_answers: Arc::default() }
+        Self { sender, load: Load::default(), only_answers: Arc::default() }
+    }
+
+    /// One whose receiver reports to the load what it has passed on.
+    #[cfg(feature = "process")]
+    pub(crate) fn with_load(sender: Sender<Option<Body>>, load: Load) -> Self {
+        Self { sender, load, only_answers: Arc::default() }
+    }
+
+    /// Resolves once there is room for another answer.
+    pub(crate) fn room(&self) -> impl Future<Output = ()> + use<> {
+        self.load.room()
     }
 
     /// Sends an answer.
     pub(crate) fn send_answer(&self, body: Body) {
+        self.load.add(body.len());
         // Without a receiver the client is gone.
         let _ = self.sender.send(Some(body));
     }

@@ -6,6 +6,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 use futures::channel::oneshot;
+use pydslrep_analysis::{CancellationToken, cancellable};
+#[cfg(feature = "process")]
+use tower_lsp::ls_types::Uri;
 use tower_lsp::ls_types::{
     ProgressToken, WorkDoneProgressCancelParams, WorkDoneProgressCreateParams, request,
 };
@@ -18,6 +21,8 @@ use crate::log::log;
 use crate::message::Outbox;
 use crate::pending::PendingRequests;
 use crate::state::State;
+#[cfg(feature = "process")]
+use crate::web::WebServer;
 
 /// How far a session is, which decides which messages it takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,19 +51,24 @@ pub(crate) struct Server {
     /// The child processes; not in the state, so that they can be stopped at any moment.
     #[cfg(feature = "process")]
     children: Arc<Mutex<Children>>,
+    /// Serves the pages of the path preview.
+    #[cfg(feature = "process")]
+    web: Arc<Mutex<Option<WebServer>>>,
 }
 
 impl Server {
     /// A session that talks to `client`; notifications of ours go to `outbox`, in order with the answers.
-    pub(crate) fn new(client: Client, outbox: Outbox) -> Self {
+    pub(crate) fn new(client: Client, outbox: Outbox, state: Arc<Mutex<State>>) -> Self {
         Self {
             stage: Arc::new(Mutex::new(Stage::Starting)),
-            state: Arc::default(),
+            state,
             client,
             outbox,
             pending: PendingRequests::default(),
             #[cfg(feature = "process")]
             children: Arc::default(),
+            #[cfg(feature = "process")]
+            web: Arc::default(),
         }
     }
 
@@ -76,6 +86,47 @@ impl Server {
     pub(crate) fn state(&self) -> MutexGuard<'_, State> {
         // After a panic `recover` has repaired what the handler may have left half changed.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Reads the state of `version` beside the message loop; `None` if it has changed since or does so meanwhile, or if
+    /// `token` is cancelled.
+    pub(crate) fn read_beside<A>(
+        &self,
+        key: &str,
+        version: u64,
+        token: CancellationToken,
+        read: impl FnOnce(&mut State) -> A,
+    ) -> Option<A> {
+        let mut state = self.state();
+        if state.workspace.version() != version {
+            return None;
+        }
+        let (mut lent, outdated) = state.lend(key);
+        drop(state);
+        let answer = cancellable(&[outdated, token], || read(&mut lent)).ok();
+        lent.workspace.give_back();
+        self.state().take_back(key, lent);
+        answer
+    }
+
+    /// Reads the state for somebody who is not the client: again whenever it changes meanwhile.
+    #[cfg(feature = "process")]
+    pub(crate) fn read_latest<A>(&self, uri: &Uri, read: impl Fn(&mut State) -> A) -> A {
+        loop {
+            let mut state = self.state();
+            let Some(key) = state.if_long(uri) else { return read(&mut state) };
+            let version = state.prepare_to_lend();
+            drop(state);
+            if let Some(answer) = self.read_beside(&key, version, CancellationToken::default(), &read) {
+                return answer;
+            }
+        }
+    }
+
+    /// The server of the path preview's pages, if it was started.
+    #[cfg(feature = "process")]
+    pub(crate) fn web(&self) -> MutexGuard<'_, Option<WebServer>> {
+        self.web.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The child processes, for as long as one of them is looked at.
@@ -106,6 +157,11 @@ impl Server {
     pub(crate) async fn index(&self, folders: Vec<String>) {
         if folders.is_empty() {
             return;
+        }
+        if self.state().provided.is_some() {
+            // It is in memory, and there may be no threads.
+            indexing::index(self, &folders);
+            return self.refresh().await;
         }
         let progress = self.begin("Looking for programs").await;
         let (done, found) = oneshot::channel();
@@ -176,7 +232,10 @@ impl Server {
     #[cfg_attr(not(feature = "process"), expect(clippy::unused_self, reason = "nothing is started there"))]
     pub(crate) fn leave(&self) {
         #[cfg(feature = "process")]
-        self.children().leave();
+        {
+            self.children().leave();
+            *self.web() = None;
+        }
     }
 
     /// Rebuilds the analysis from the documents: a handler that panicked may have left it half changed.

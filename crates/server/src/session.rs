@@ -7,7 +7,7 @@
 use std::any::Any;
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::task::{Context, Poll, Waker};
 
 use futures::future::BoxFuture;
@@ -22,7 +22,10 @@ use crate::handlers;
 use crate::life_cycle::LifeCycle;
 use crate::log::log;
 use crate::message::{IGNORED, Incoming, Outbox, encode, parse, refuse};
+#[cfg(feature = "process")]
+use crate::pending::PendingRequests;
 use crate::server::{Server, Stage};
+use crate::state::State;
 
 /// How a session ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,11 +60,21 @@ impl Session {
         Self::with_table(handlers::table(), outbox, Box::new(spawn))
     }
 
+    /// A session without a disk: of the files that are not open, it knows those that the client provides
+    /// (`pydslrep/files`).
+    pub fn in_memory(outbox: Outbox, spawn: impl Fn(BoxFuture<'static, ()>) + 'static) -> Self {
+        Self::with_state(handlers::table(), State::in_memory(), outbox, Box::new(spawn))
+    }
+
     /// A session that handles the messages of a table.
     pub(crate) fn with_table(table: Table, outbox: Outbox, spawn: Spawn) -> Self {
-        let table = Arc::new(table);
+        Self::with_state(table, State::default(), outbox, spawn)
+    }
+
+    fn with_state(table: Table, state: State, outbox: Outbox, spawn: Spawn) -> Self {
+        let (table, state) = (Arc::new(table), Arc::new(Mutex::new(state)));
         let (service, socket) = LspService::new(|client| LifeCycle {
-            server: Server::new(client, outbox.clone()),
+            server: Server::new(client, outbox.clone(), Arc::clone(&state)),
             table: Arc::clone(&table),
         });
         let server = service.inner().server.clone();
@@ -85,6 +98,12 @@ impl Session {
         self.server.children().command = command;
     }
 
+    /// What the session's handlers share.
+    #[cfg(feature = "process")]
+    pub(crate) fn server(&self) -> &Server {
+        &self.server
+    }
+
     /// Handles one message, the bytes of a frame; returns how the session ended, if it did.
     pub fn handle(&mut self, body: &[u8]) -> Option<Ending> {
         match parse(body) {
@@ -98,6 +117,12 @@ impl Session {
             Poll::Ready(Err(_)) => Some(Ending::Abrupt),
             Poll::Ready(Ok(())) | Poll::Pending => None,
         }
+    }
+
+    /// The requests that are not answered yet.
+    #[cfg(feature = "process")]
+    pub(crate) fn pending(&self) -> PendingRequests {
+        self.server.pending.clone()
     }
 
     /// Answers input that is not a message.

@@ -3,12 +3,14 @@
 use std::sync::Arc;
 
 use futures::channel::oneshot;
-use pydslrep_analysis::{Database, EditCounts, FileId, Snapshot};
+use pydslrep_analysis::{CancellationToken, Database, EditCounts, FileId, Snapshot};
 use pydslrep_config::{Config, Problem};
 use pydslrep_files::Disk;
 use pydslrep_ide::{FilePosition, TomlFile};
 use pydslrep_text::Span;
-use pydslrep_workspace::{DocumentKind, TextChange, Workspace};
+use pydslrep_workspace::{
+    Changes, DocumentKind, FileSystem, MAX_BYTES, MemoryFiles, ReadError, TextChange, Workspace, path_of,
+};
 use ropey::Rope;
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde_json::Value;
@@ -23,9 +25,12 @@ use crate::client::ClientFeatures;
 use crate::documents::{ClientDocument, Document, key, text_changes};
 use crate::handlers::driven_path::DrivenPaths;
 use crate::message::Outbox;
-use crate::positions::{Encoding, to_offset, to_range, to_span};
+use crate::page::Pages;
+use crate::positions::{Encoding, to_offset, to_position, to_range, to_span};
+use crate::runtimes::Runtimes;
+use crate::shared::SharedWorkspace;
 use crate::typing::{Typing, replacements};
-use crate::work::Work;
+use crate::work::{SHORT, Work};
 
 /// Documents, their analysis, and what the client can do.
 #[derive(Debug)]
@@ -33,9 +38,13 @@ pub(crate) struct State {
     /// What the client can do.
     pub(crate) client: ClientFeatures,
     /// The documents that are open in the client, the files around them, and their analysis.
-    pub(crate) workspace: Workspace,
+    pub(crate) workspace: SharedWorkspace,
+    /// The files that the client provides, where there is no disk.
+    pub(crate) provided: Option<Arc<MemoryFiles>>,
     /// What the client has of documents, by their keys.
     pub(crate) clients: FxHashMap<String, ClientDocument>,
+    /// What has changed since diagnostics were last published, as far as the workspace was asked already.
+    changes: Changes,
     /// Documents that were closed since diagnostics were last published.
     pub(crate) closed: Vec<Uri>,
     /// How many answers have been given a number so far.
@@ -52,6 +61,8 @@ pub(crate) struct State {
     pub(crate) waiting: Vec<oneshot::Sender<()>>,
     /// Messages shown so far about scripts that are generated on save.
     pub(crate) reported: FxHashSet<String>,
+    /// Writes what scripts import.
+    pub(crate) runtimes: Runtimes,
     /// Planned paths that the client has.
     pub(crate) watched: Vec<Watched>,
     /// Where the user is typing, if known.
@@ -62,6 +73,8 @@ pub(crate) struct State {
     refreshes: u64,
     /// Paths that were driven.
     pub(crate) driven: DrivenPaths,
+    /// The pages of the path preview.
+    pub(crate) pages: Pages,
 }
 
 /// What the client shows that is no longer so.
@@ -76,8 +89,10 @@ pub(crate) struct Outdated {
 impl Default for State {
     fn default() -> Self {
         Self {
-            workspace: Workspace::new(Arc::new(Disk)),
+            workspace: SharedWorkspace::new(Workspace::new(Arc::new(Disk))),
             client: ClientFeatures::default(),
+            provided: None,
+            changes: Changes::default(),
             clients: FxHashMap::default(),
             closed: Vec::new(),
             answers: 0,
@@ -87,16 +102,26 @@ impl Default for State {
             costs: Vec::new(),
             waiting: Vec::new(),
             reported: FxHashSet::default(),
+            runtimes: Runtimes::default(),
             watched: Vec::new(),
             typing: None,
             outdated: Outdated::default(),
             refreshes: 0,
             driven: DrivenPaths::default(),
+            pages: Pages::default(),
         }
     }
 }
 
 impl State {
+    /// Without a disk.
+    pub(crate) fn in_memory() -> Self {
+        let provided = Arc::new(MemoryFiles::default());
+        let files: Arc<dyn FileSystem> = Arc::<MemoryFiles>::clone(&provided);
+        let workspace = SharedWorkspace::new(Workspace::new(files));
+        Self { workspace, provided: Some(provided), ..Self::default() }
+    }
+
     /// Opens a document, or gives one that is open a new text.
     pub(crate) fn open(&mut self, opened: &TextDocumentItem) {
         let key = key(&opened.uri);
@@ -125,6 +150,8 @@ impl State {
         let changes = text_changes(&before, &params.content_changes, self.client.encoding);
         if is_program {
             self.note_typing(&key, &params.content_changes, &changes, &before);
+            let position = end_of_edit(&params.content_changes, &changes, self.client.encoding);
+            self.pages.edited_at(&params.text_document.uri, position);
         }
         let costs = self.workspace.change(&key, changes);
         if self.trace == TraceValue::Verbose {
@@ -151,8 +178,76 @@ impl State {
         }
     }
 
+    /// What has changed in the workspace since this was last asked.
+    pub(crate) fn take_changes(&mut self) -> Changes {
+        self.note_changes();
+        std::mem::take(&mut self.changes)
+    }
+
+    /// Has the workspace say what has changed, which stops those who read it: it is asked before they begin.
+    fn note_changes(&mut self) {
+        if self.workspace.has_changes() {
+            let Changes { all, documents } = self.workspace.note().take_changes();
+            self.changes.all |= all;
+            self.changes.documents.extend(documents);
+        }
+    }
+
+    /// Prepares for [`Self::lend`] after this message.
+    pub(crate) fn prepare_to_lend(&mut self) -> u64 {
+        self.note_changes();
+        self.workspace.version()
+    }
+
+    /// The state as it is now for a request about a document that goes on beside the message loop, and the token that
+    /// tells it that the workspace has changed. It has what is kept for such requests, which [`Self::take_back`] returns.
+    pub(crate) fn lend(&mut self, key: &str) -> (Self, CancellationToken) {
+        let (workspace, token) = self.workspace.lend();
+        let mut clients: FxHashMap<String, ClientDocument> =
+            self.clients.iter().map(|(key, client)| (key.clone(), client.without_memory())).collect();
+        if let (Some(own), Some(lent)) = (self.clients.get_mut(key), clients.get_mut(key)) {
+            lent.exchange_memory(own);
+        }
+        let (client, provided) = (self.client.clone(), self.provided.clone());
+        let typing = self.typing.clone();
+        let lent = Self { client, workspace, provided, clients, typing, ..Self::default() };
+        (lent, token)
+    }
+
+    /// Takes back what a request was lent, with what it has noted.
+    pub(crate) fn take_back(&mut self, key: &str, mut lent: Self) {
+        if let (Some(own), Some(lent)) = (self.clients.get_mut(key), lent.clients.get_mut(key))
+            && own.opening == lent.opening
+        {
+            own.exchange_memory(lent);
+        }
+        for watched in lent.watched.drain(..) {
+            self.watched.retain(|other| !other.is(&watched.which, watched.audience));
+            self.watched.push(watched);
+        }
+    }
+
+    /// The key of a document of which a request about all of it takes longer than handing it to another thread.
+    pub(crate) fn if_long(&self, uri: &Uri) -> Option<String> {
+        let document = self.document(uri)?;
+        let database = self.database();
+        let length = |file: FileId| database.text(file).map_or(0, Rope::len_bytes);
+        let imported = document.file.into_iter().flat_map(|file| database.imported_files(file));
+        let all = document.text.len_bytes() + imported.map(length).sum::<usize>();
+        (all >= SHORT).then(|| document.key.to_owned())
+    }
+
+    /// Tells pages where the cursor is, or the pointer.
+    pub(crate) fn note_cursor(&mut self, at: &TextDocumentPositionParams) {
+        let uri = &at.text_document.uri;
+        if self.is_program(uri) {
+            self.pages.cursor_is_at(uri, at.position);
+        }
+    }
+
     /// Notes that the cursor is at a place.
     pub(crate) fn cursor_is(&mut self, at: &TextDocumentPositionParams) {
+        self.note_cursor(at);
         self.cursor_is_at(&at.text_document.uri, Range::new(at.position, at.position));
     }
 
@@ -203,6 +298,21 @@ impl State {
         self.workspace.file_changed(&key(uri));
     }
 
+    /// The client provides a file, or takes one away; false where files come from a disk.
+    pub(crate) fn provide(&mut self, uri: &Uri, text: Option<&str>) -> bool {
+        let Some(files) = &self.provided else { return false };
+        let key = key(uri);
+        match text {
+            Some(text) if text.len() as u64 > MAX_BYTES => {
+                files.write_unreadable(&*path_of(&key), ReadError::TooLarge);
+            }
+            Some(text) => files.write(&*path_of(&key), text),
+            None => files.remove(path_of(&key)),
+        }
+        self.workspace.file_changed(&key);
+        true
+    }
+
     /// Applies the client's settings; returns what is wrong with them.
     pub(crate) fn set_client_settings(&mut self, value: &Value) -> Vec<Problem> {
         let (config, problems) = Config::from_json(value);
@@ -223,6 +333,11 @@ impl State {
     /// The document at an address.
     pub(crate) fn document(&self, uri: &Uri) -> Option<Document<'_>> {
         self.document_at(&key(uri))
+    }
+
+    /// Whether a program is at an address.
+    pub(crate) fn is_program(&self, uri: &Uri) -> bool {
+        self.document(uri).is_some_and(|document| document.kind == DocumentKind::Program)
     }
 
     /// The document at an address, if it could be analysed.
@@ -289,6 +404,17 @@ impl State {
         let document = self.document_of(file)?;
         Some(Location::new(document.uri()?, self.range(document, span)))
     }
+}
+
+/// Where the last change of a message ends; `None` if it replaces the whole text.
+fn end_of_edit(
+    events: &[TextDocumentContentChangeEvent],
+    changes: &[TextChange],
+    encoding: Encoding,
+) -> Option<Position> {
+    let (event, change) = (events.last()?, changes.last()?);
+    let length = u32::try_from(event.text.len()).ok()?;
+    Some(to_position(&change.after, change.span?.start + length, encoding))
 }
 
 /// A place in a document.

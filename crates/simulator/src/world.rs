@@ -9,8 +9,10 @@ use pydslrep_kinematics::{ModelError, Pose, Traction, Twist, motion};
 use pydslrep_scene::{Body, Scene, SensorKind, Sighting, Space};
 
 use contact::Surroundings;
-use noise::{Slip, reading_error};
+use noise::{Slip, body_error, reading_error};
 use pydslrep_trace::TraceRecord;
+
+use crate::engine::{Engine, Physics};
 
 /// The number of integration steps per simulation step, as in CoppeliaSim (5 ms in a step of 50 ms).
 const SUBSTEPS: u32 = 10;
@@ -24,6 +26,7 @@ pub struct World {
     robots: Vec<RobotState>,
     step: f64,
     steps: u64,
+    physics: Option<Physics>,
 }
 
 #[derive(Debug, Clone)]
@@ -32,7 +35,11 @@ struct RobotState {
     traction: Traction,
     body: Body,
     pose: Pose,
+    /// How far contacts have moved it from that pose in the latest step.
+    jitter: [f64; 3],
     twist: Twist,
+    /// Metres to the left per radian that it turns.
+    drift: f64,
     joints: Vec<Joint>,
 }
 
@@ -103,7 +110,30 @@ impl World {
         }
         let robots =
             (0..scene.robots.len()).map(|robot| robot_at_rest(&scene, robot)).collect::<Result<_, _>>()?;
-        Ok(Self { space: Space::of(&scene), scene, robots, step, steps: 0 })
+        Ok(Self { space: Space::of(&scene), scene, robots, step, steps: 0, physics: None })
+    }
+
+    /// From now on steps take `step` seconds. What an engine does depends on it: see [`World::use_engine`].
+    ///
+    /// # Errors
+    /// If the step is not positive.
+    pub fn set_step_length(&mut self, step: f64) -> Result<(), WorldError> {
+        if !(step.is_finite() && step > 0.0) {
+            return Err(WorldError::Step { step });
+        }
+        self.step = step;
+        Ok(())
+    }
+
+    /// From now on an engine does to the robots what real ones do; the scene's seed decides how.
+    pub fn use_engine(&mut self, engine: Engine) {
+        self.physics = engine.physics(self.step);
+        let Some(physics) = self.physics else { return };
+        for (robot, state) in self.robots.iter_mut().enumerate() {
+            // Not from the readings after any step.
+            let [side, amount, _] = body_error(self.scene.seed, robot, u64::MAX);
+            state.drift = physics.drift * side.signum() * (1.0 - 0.2 * amount.abs());
+        }
     }
 
     /// The simulated scene.
@@ -143,6 +173,7 @@ impl World {
     pub fn park(&mut self) {
         for (state, robot) in self.robots.iter_mut().zip(&self.scene.robots) {
             state.pose = robot.start;
+            state.jitter = [0.0; 3];
             state.twist = Twist::default();
             for joint in &mut state.joints {
                 (joint.target, joint.rate, joint.angle) = (0.0, 0.0, 0.0);
@@ -152,7 +183,7 @@ impl World {
 
     /// The pose of a robot; the origin if there is no such robot.
     pub fn pose(&self, robot: usize) -> Pose {
-        self.robots.get(robot).map_or_else(Pose::default, |robot| robot.pose)
+        self.robots.get(robot).map_or_else(Pose::default, RobotState::seen_pose)
     }
 
     /// The twist of a robot in its own frame; zero if there is no such robot.
@@ -206,6 +237,13 @@ impl World {
             }
         }
         self.steps += 1;
+        if let Some(physics) = self.physics {
+            for (robot, state) in self.robots.iter_mut().enumerate() {
+                // The difference of two such errors is as large as the jitter.
+                let error = body_error(self.scene.seed, robot, self.steps);
+                state.jitter = error.map(|error| error * physics.jitter / 2.0);
+            }
+        }
     }
 
     /// The measurement of a sensor; `None` if it detects nothing.
@@ -239,7 +277,7 @@ impl World {
         let (Some(state), Some(parts)) = (self.robots.get_mut(robot), self.scene.robots.get(robot)) else {
             return;
         };
-        let twist = state.drive(parts.motor_acceleration, parts.motor_speed, seconds);
+        let twist = state.drive(parts.motor_acceleration, parts.motor_speed, self.physics, seconds);
         if !self.scene.collisions {
             state.pose = state.pose.advance(twist, seconds);
             return;
@@ -255,15 +293,10 @@ impl World {
     /// The current trace records of all robots.
     pub fn records(&self) -> impl Iterator<Item = TraceRecord> {
         let t = self.time();
-        self.robots.iter().zip(&self.scene.robots).map(move |(state, robot)| TraceRecord {
-            t,
-            robot: robot.name.clone(),
-            x: state.pose.x,
-            y: state.pose.y,
-            theta: state.pose.theta,
-            wheels: state.joints.iter().map(|joint| joint.rate).collect(),
-            movement: None,
-            action: None,
+        self.robots.iter().zip(&self.scene.robots).map(move |(state, robot)| {
+            let Pose { x, y, theta } = state.seen_pose();
+            let wheels = state.joints.iter().map(|joint| joint.rate).collect();
+            TraceRecord { t, robot: robot.name.clone(), x, y, theta, wheels, movement: None, action: None }
         })
     }
 
@@ -296,30 +329,53 @@ fn robot_at_rest(scene: &Scene, index: usize) -> Result<RobotState, WorldError> 
         traction: robot.traction(),
         body: robot.body,
         pose: robot.start,
+        jitter: [0.0; 3],
         twist: Twist::default(),
+        drift: 0.0,
         joints,
     })
 }
 
 impl RobotState {
+    /// The pose as clients see it.
+    fn seen_pose(&self) -> Pose {
+        let [x, y, theta] = self.jitter;
+        Pose { x: self.pose.x + x, y: self.pose.y + y, theta: self.pose.theta + theta }
+    }
+
     /// Runs the motors and returns the mean twist that the wheels give the body, ignoring contacts.
-    fn drive(&mut self, rim_acceleration: f64, rim_speed: f64, seconds: f64) -> Twist {
+    fn drive(
+        &mut self,
+        rim_acceleration: f64,
+        rim_speed: f64,
+        physics: Option<Physics>,
+        seconds: f64,
+    ) -> Twist {
+        let (creep, least_speed) = physics.map_or((0.0, 0.0), |physics| (physics.creep, physics.least_speed));
         let (mut rims, mut mean_rims) = (Vec::new(), Vec::new());
         for (joint, radius) in self.joints.iter_mut().zip(&self.radii) {
-            let mean = joint.advance(rim_acceleration / radius, rim_speed / radius, seconds);
-            let on_floor = radius * (1.0 + joint.slip.value);
+            let mean =
+                joint.advance(rim_acceleration / radius, rim_speed / radius, least_speed / radius, seconds);
+            let on_floor = radius * (1.0 + joint.slip.value - creep);
             rims.push(joint.rate * on_floor);
             mean_rims.push(mean * on_floor);
         }
-        self.twist = self.traction.twist(&rims);
-        self.traction.twist(&mean_rims)
+        self.twist = self.drifting(self.traction.twist(&rims));
+        self.drifting(self.traction.twist(&mean_rims))
+    }
+
+    /// A twist and the drift that it causes.
+    fn drifting(&self, twist: Twist) -> Twist {
+        Twist { vy: twist.vy + self.drift * twist.omega, ..twist }
     }
 }
 
 impl Joint {
-    /// Runs the motor towards its target at `acceleration` rad/s², up to `max` rad/s, and returns the mean rate.
-    fn advance(&mut self, acceleration: f64, max: f64, seconds: f64) -> f64 {
-        let target = if self.released { 0.0 } else { self.target.clamp(-max, max) };
+    /// Runs the motor towards its target at `acceleration` rad/s², up to `max` rad/s, and returns the mean rate. Targets
+    /// below `least` stand for rest.
+    fn advance(&mut self, acceleration: f64, max: f64, least: f64, seconds: f64) -> f64 {
+        let stands = self.released || self.target.abs() < least;
+        let target = if stands { 0.0 } else { self.target.clamp(-max, max) };
         let before = self.rate;
         let ramp = ((target - before).abs() / acceleration).min(seconds);
         self.rate = if ramp < seconds {
@@ -377,6 +433,55 @@ mod tests {
             pose.distance(&Pose::default()) < 1e-12 && (pose.theta - rim / 0.15).abs() < 1e-12,
             "{pose:?}"
         );
+    }
+
+    /// A robot in an engine, after driving its wheels at some rates for some steps.
+    fn driven(engine: Engine, rates: [f64; 2], steps: u32) -> World {
+        let mut world = world(Drive::TwoWheel);
+        world.use_engine(engine);
+        for (wheel, rate) in rates.into_iter().enumerate() {
+            world.set_target(0, wheel, rate);
+        }
+        for _ in 0..steps {
+            world.step();
+        }
+        world
+    }
+
+    #[test]
+    fn bodies_creep_drift_and_tremble_in_an_engine() {
+        let [ideal, real] =
+            [Engine::Ideal, Engine::CoppeliaSim46].map(|engine| driven(engine, [2.0; 2], 200));
+        assert!((real.pose(0).x / ideal.pose(0).x - 0.89).abs() < 1e-3, "{:?}", real.pose(0));
+        let [ideal, real] =
+            [Engine::Ideal, Engine::CoppeliaSim46].map(|engine| driven(engine, [-2.0, 2.0], 50));
+        assert!(ideal.pose(0).distance(&Pose::default()) < 1e-12);
+        let drift = real.pose(0).distance(&Pose::default());
+        assert!((0.02..0.04).contains(&drift), "{drift}");
+        let mut rest = driven(Engine::CoppeliaSim46, [0.01; 2], 1);
+        let steps: Vec<f64> = (0..100)
+            .map(|_| {
+                let before = rest.pose(0);
+                rest.step();
+                before.distance(&rest.pose(0))
+            })
+            .collect();
+        assert!(steps.iter().all(|&step| step > 0.0 && step < 1.5e-4), "{steps:?}");
+        assert!(rest.pose(0).distance(&Pose::default()) < 1e-4, "slower than its wheels start to turn");
+    }
+
+    #[test]
+    fn engines_repeat_by_seed() {
+        let end = |seed| {
+            let mut world = world(Drive::TwoWheel);
+            world.scene.seed = seed;
+            world.use_engine(Engine::CoppeliaSim47);
+            world.set_target(0, 0, 1.0);
+            (0..20).for_each(|_| world.step());
+            world.pose(0)
+        };
+        assert_eq!(end(3), end(3));
+        assert_ne!(end(3), end(4));
     }
 
     #[test]

@@ -169,6 +169,39 @@ async fn strangers_and_garbage_disturb_nobody() {
 }
 
 #[tokio::test]
+async fn connections_without_a_client_give_way() {
+    /// As many as the simulator serves at once.
+    const ALL: usize = 256;
+    let simulator = start(1);
+    let port = simulator.ports()[0];
+    let mut friend = Client::connect(port, "friend").await;
+    friend.call("sim.setStepping", cbor!([true]).unwrap()).await;
+    let silent = |number: usize| {
+        let mut stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
+        stream.set_read_timeout(Some(LIMIT)).unwrap();
+        // Half of them do not even finish the handshake.
+        let bytes = introduction();
+        stream.write_all(if number.is_multiple_of(2) { &bytes } else { &bytes[..9] }).unwrap();
+        // It is admitted once it is answered.
+        stream.read_exact(&mut [0; 64]).unwrap();
+        stream
+    };
+    let mut silent: Vec<TcpStream> = (1..ALL).map(silent).collect();
+    let mut newcomer = Client::connect(port, "newcomer").await;
+    newcomer.time().await;
+    let is_closed = |stream: &mut TcpStream| {
+        let mut rest = Vec::new();
+        stream
+            .read_to_end(&mut rest)
+            .map_or_else(|error| error.kind() == ErrorKind::ConnectionReset, |_| true)
+    };
+    assert!(is_closed(&mut silent[0]), "the oldest gave way");
+    friend.call("sim.startSimulation", Value::Array(vec![])).await;
+    friend.call("sim.step", Value::Array(vec![])).await;
+    assert!((friend.time().await - 0.05).abs() < 1e-9, "one with a client stays");
+}
+
+#[tokio::test]
 async fn without_stepping_time_passes_by_itself() {
     let options = Options { speed: 100.0, ..Options::default() };
     let simulator = Simulator::start(scene(1), &options).unwrap();

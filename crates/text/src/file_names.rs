@@ -8,3 +8,12 @@ pub const SCENE_SUFFIX: &str = ".scene.toml";
 
 /// The name of the settings file.
 pub const SETTINGS_FILE: &str = "pydslrep.toml";
+
+/// Whether a name without its extension means a device on Windows, whatever its extension.
+pub fn is_reserved_on_windows(stem: &str) -> bool {
+    let name = stem.to_ascii_lowercase();
+    let is_port = |prefix| {
+        name.strip_prefix(prefix).is_some_and(|n| matches!(n.as_bytes(), [digit] if digit.is_ascii_digit()))
+    };
+    ["con", "prn", "aux", "nul"].contains(&name.as_str()) || is_port("com") || is_port("lpt")
+}

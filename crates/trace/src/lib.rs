@@ -11,5 +11,5 @@ mod record;
 mod track;
 
 pub use map::{Map, MapFile};
-pub use record::TraceRecord;
+pub use record::{TraceRecord, lines};
 pub use track::Track;

@@ -34,6 +34,17 @@ impl TraceRecord {
     }
 }
 
+/// Records as the lines of a `--trace` file.
+pub fn lines(records: &[TraceRecord]) -> Vec<u8> {
+    let mut lines = Vec::new();
+    for record in records {
+        // Writing plain numbers and names into memory cannot fail.
+        let _ = serde_json::to_writer(&mut lines, record);
+        lines.push(b'\n');
+    }
+    lines
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

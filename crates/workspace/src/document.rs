@@ -10,7 +10,7 @@ use ropey::Rope;
 use crate::DocumentKind;
 
 /// A document that a caller has open, or a file that matters.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Document {
     /// The name it is known by.
     pub key: String,
@@ -29,14 +29,14 @@ pub struct Document {
 }
 
 impl Document {
-    pub(crate) fn new(key: &str, text: Rope, is_open: bool) -> Self {
+    pub(crate) fn new(key: &str, text: Rope, is_open: bool, settings: Arc<Settings>) -> Self {
         Self {
             key: key.to_owned(),
             kind: DocumentKind::of_document(key),
             text,
             is_open,
             file: None,
-            settings: Arc::default(),
+            settings,
             imports: Vec::new(),
         }
     }

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// Larger files are not read.
-pub const MAX_BYTES: u64 = 64 << 20;
+pub const MAX_BYTES: u64 = 16 << 20;
 
 /// Where files come from.
 pub trait FileSystem: fmt::Debug + Send + Sync {
@@ -45,6 +45,8 @@ pub enum ReadError {
     Missing,
     /// It is a folder.
     Folder,
+    /// It is a pipe or a device.
+    NotRegular,
     /// The user may not read it.
     PermissionDenied,
     /// It has more than [`MAX_BYTES`].
@@ -64,6 +66,7 @@ impl fmt::Display for ReadError {
         match self {
             Self::Missing => f.write_str("file not found"),
             Self::Folder => f.write_str("is a folder"),
+            Self::NotRegular => f.write_str("not a regular file"),
             Self::PermissionDenied => f.write_str("permission denied"),
             Self::TooLarge => write!(f, "larger than {} MiB", MAX_BYTES >> 20),
             Self::NotText { line } => write!(f, "not valid UTF-8 in line {line}"),

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use pydslrep_analysis::{Absence, FileId};
 
+use crate::keys::path_of;
 use crate::{Document, DocumentKind, ReadError, Workspace};
 
 impl Workspace {
@@ -18,8 +19,10 @@ impl Workspace {
         let Some(document) = self.documents.get(key) else { return };
         let imports = document.file.map_or(&[][..], |file| self.database.imports(file));
         if imports != document.imports {
-            self.follow_imports(key);
-            self.forget_unneeded();
+            self.together(|this| {
+                this.follow_imports(key);
+                this.forget_unneeded();
+            });
         }
     }
 
@@ -79,7 +82,7 @@ impl Workspace {
         if self.documents.contains_key(path) {
             return Ok(());
         }
-        match self.files.read(Path::new(path)) {
+        match self.files.read(&path_of(path)) {
             Ok(text) => {
                 self.insert_file(path, &text);
                 Ok(())

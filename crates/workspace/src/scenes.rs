@@ -1,18 +1,17 @@
 //! Scenes: the files `<environment>.scene.toml` beside programs.
 
-use std::collections::BTreeSet;
-use std::path::Path;
-
 use pydslrep_analysis::{EntityId, FileId};
 use pydslrep_syntax::EntityKind;
 use pydslrep_text::file_names::SCENE_SUFFIX;
 use rustc_hash::FxHashMap;
+use std::collections::BTreeSet;
 
+use crate::keys::path_of;
 use crate::settings::folder;
 use crate::{ReadError, Workspace};
 
 /// Which programs have the environment of a scene.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct SceneUsers {
     /// By the keys of scenes, whether or not there are such files.
     programs: FxHashMap<String, BTreeSet<FileId>>,
@@ -55,6 +54,11 @@ impl Workspace {
         let path = self.database.path(program);
         let environments = self.database.environments(program).into_iter();
         environments.filter_map(|(id, name)| Some((id, scene_key(path, &name.text)?))).collect()
+    }
+
+    /// The key of the scene of an environment of a program, whether or not there is such a file.
+    pub fn scene_key(&self, program: FileId, environment: &str) -> Option<String> {
+        scene_key(self.database.path(program), environment)
     }
 
     /// Reads a scene that was found in a folder, unless it is there already.
@@ -129,7 +133,7 @@ impl Workspace {
     }
 
     fn read_scene(&mut self, scene: &str) {
-        match self.files.read(Path::new(scene)) {
+        match self.files.read(&path_of(scene)) {
             Ok(text) => self.insert_file(scene, &text),
             Err(ReadError::Missing) => {}
             Err(error) => drop(self.unreadable.insert(scene.to_owned(), error)),

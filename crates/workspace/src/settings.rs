@@ -3,21 +3,31 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use pydslrep_config::Config;
+use pydslrep_config::{Config, Settings};
 use pydslrep_text::file_names::SETTINGS_FILE;
 use rustc_hash::FxHashMap;
 
+use crate::keys::path_of;
 use crate::{DocumentKind, Workspace};
 
 /// What is set, and where.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct SettingsStore {
     /// What the caller says: an editor, or the options of a command. It wins over any file.
     overrides: Config,
-    /// What the files say, by key.
-    files: FxHashMap<String, Config>,
+    /// What applies where no file says anything.
+    pub(crate) without_file: Arc<Settings>,
+    /// What applies where a file does, by its key.
+    files: FxHashMap<String, Arc<Settings>>,
     /// The key of the settings file that holds for a folder.
     nearest: FxHashMap<String, Option<String>>,
+}
+
+impl SettingsStore {
+    fn new(overrides: Config) -> Self {
+        let without_file = Arc::new(overrides.clone().settings());
+        Self { overrides, without_file, ..Self::default() }
+    }
 }
 
 impl Workspace {
@@ -51,7 +61,7 @@ impl Workspace {
     /// Reads all settings files again and applies what they say.
     pub(crate) fn reload_settings(&mut self) {
         let overrides = std::mem::take(&mut self.settings.overrides);
-        self.settings = SettingsStore { overrides, ..SettingsStore::default() };
+        self.settings = SettingsStore::new(overrides);
         let is_settings = |key: &str| DocumentKind::of_document(key) == DocumentKind::Settings;
         let read = self.documents.iter().filter(|(key, document)| is_settings(key) && !document.is_open);
         let read: Vec<String> = read.map(|(key, _)| key.clone()).collect();
@@ -80,14 +90,12 @@ impl Workspace {
             return;
         }
         let file = self.find_settings(key);
-        let config = file.and_then(|file| self.settings.files.get(&file).cloned()).unwrap_or_default();
-        let settings = self.settings.overrides.clone().merged_over(config).settings();
+        let SettingsStore { without_file, files, .. } = &self.settings;
+        let settings = file.and_then(|file| files.get(&file)).unwrap_or(without_file);
         let Some(document) = self.documents.get_mut(key) else { return };
+        document.settings = Arc::clone(settings);
         if let Some(file) = document.file {
             self.database.set_target(file, settings.target);
-        }
-        if *document.settings != settings {
-            document.settings = Arc::new(settings);
         }
     }
 
@@ -105,7 +113,7 @@ impl Workspace {
         }
         let candidates = Path::new(folder).ancestors().map(|folder| key_in(folder, SETTINGS_FILE));
         let file = { candidates }
-            .find(|file| self.documents.contains_key(file) || self.files.is_file(Path::new(file)));
+            .find(|file| self.documents.contains_key(file) || self.files.is_file(&path_of(file)));
         self.settings.nearest.insert(folder.to_owned(), file.clone());
         if let Some(file) = &file {
             self.read_settings(file);
@@ -118,7 +126,7 @@ impl Workspace {
             return;
         }
         if !self.documents.contains_key(key) {
-            match self.files.read(Path::new(key)) {
+            match self.files.read(&path_of(key)) {
                 Ok(text) => self.insert_file(key, &text),
                 Err(error) => {
                     self.unreadable.insert(key.to_owned(), error);
@@ -128,7 +136,8 @@ impl Workspace {
         }
         if let Some(document) = self.documents.get(key) {
             let (config, _) = Config::from_toml(&document.text.to_string());
-            self.settings.files.insert(key.to_owned(), config);
+            let settings = self.settings.overrides.clone().merged_over(config).settings();
+            self.settings.files.insert(key.to_owned(), Arc::new(settings));
         }
     }
 }

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
 use std::sync::Arc;
 
 use pydslrep_analysis::{Database, EditCounts, FileId};
@@ -10,12 +9,13 @@ use pydslrep_config::{Config, Problem};
 use ropey::Rope;
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use crate::keys::path_of;
 use crate::scenes::SceneUsers;
 use crate::settings::SettingsStore;
 use crate::{Document, DocumentKind, FileSystem, ReadError, TextChange, without_byte_order_mark};
 
-/// All documents, their analysis and their settings.
-#[derive(Debug)]
+/// All documents, their analysis and their settings. A clone shares texts and trees.
+#[derive(Debug, Clone)]
 pub struct Workspace {
     pub(crate) files: Arc<dyn FileSystem>,
     pub(crate) database: Database,
@@ -116,20 +116,33 @@ impl Workspace {
 
     /// Opens documents that belong together: none is read from a file because another imports it.
     pub fn open_all(&mut self, documents: impl IntoIterator<Item = (String, Rope)>) {
-        let mut keys = Vec::new();
-        for (key, text) in documents {
-            self.insert(&key, text, true);
-            keys.push(key);
-        }
-        for key in &keys {
-            match DocumentKind::of_document(key) {
-                DocumentKind::Settings => self.settings_files_changed(),
-                DocumentKind::Scene => self.share_scene(key),
-                DocumentKind::Program => self.follow_imports(key),
+        self.together(|this| {
+            let mut keys = Vec::new();
+            for (key, text) in documents {
+                this.insert(&key, text, true);
+                keys.push(key);
             }
-        }
-        self.forget_unneeded();
+            for key in &keys {
+                match DocumentKind::of_document(key) {
+                    DocumentKind::Settings => this.settings_files_changed(),
+                    DocumentKind::Scene => this.share_scene(key),
+                    DocumentKind::Program => this.follow_imports(key),
+                }
+            }
+            this.forget_unneeded();
+        });
         self.follow_scenes();
+    }
+
+    /// Changes documents of which one may lead to the next: their problems are looked for once, at the end.
+    pub(crate) fn together<R>(&mut self, change: impl FnOnce(&mut Self) -> R) -> R {
+        if self.database.is_together() {
+            return change(self);
+        }
+        self.database.begin_together();
+        let result = change(self);
+        self.database.end_together();
+        result
     }
 
     /// Makes changes to an open document, one after the other; returns what each of them cost.
@@ -179,8 +192,10 @@ impl Workspace {
     /// Adds a file that was found on the disk, unless it is there already.
     pub fn add(&mut self, key: &str, text: &str) {
         if !self.documents.contains_key(key) {
-            self.insert_file(key, text);
-            self.follow_imports(key);
+            self.together(|this| {
+                this.insert_file(key, text);
+                this.follow_imports(key);
+            });
             self.follow_scenes();
         }
     }
@@ -194,16 +209,18 @@ impl Workspace {
             DocumentKind::Scene => return self.scene_file_changed(key),
             DocumentKind::Program => {}
         }
-        if !is_open {
-            self.remove(key);
-            if self.is_listed(key)
-                && let Ok(text) = self.files.read(Path::new(key))
-            {
-                self.insert_file(key, &text);
-                self.follow_imports(key);
+        self.together(|this| {
+            if !is_open {
+                this.remove(key);
+                if this.is_listed(key)
+                    && let Ok(text) = this.files.read(&path_of(key))
+                {
+                    this.insert_file(key, &text);
+                    this.follow_imports(key);
+                }
             }
-        }
-        self.follow_importers(key);
+            this.follow_importers(key);
+        });
         self.follow_scenes();
     }
 
@@ -227,7 +244,7 @@ impl Workspace {
     /// Whether a listing of the workspace's folders would find a file.
     pub fn is_listed(&self, key: &str) -> bool {
         let mut folders = self.folders.iter().filter(|folder| key.starts_with(folder.as_str()));
-        folders.any(|folder| self.files.lists(Path::new(folder), Path::new(key)))
+        folders.any(|folder| self.files.lists(&path_of(folder), &path_of(key)))
     }
 
     /// Changes programs in the database, and follows what they import then.
@@ -243,6 +260,11 @@ impl Workspace {
         }
         self.follow_scenes();
         result
+    }
+
+    /// Whether [`Self::take_changes`] would return anything.
+    pub fn has_changes(&self) -> bool {
+        !self.changes.is_empty() || self.database.is_touched()
     }
 
     /// What may have changed since this was last asked.
@@ -267,9 +289,11 @@ impl Workspace {
             left_out.insert(failed);
         }
         self.reload_settings();
-        for key in self.programs() {
-            self.follow_imports(&key);
-        }
+        self.together(|this| {
+            for key in this.programs() {
+                this.follow_imports(&key);
+            }
+        });
         self.follow_scenes();
     }
 
@@ -304,7 +328,8 @@ impl Workspace {
 
     /// Takes in a document; what it imports is not followed yet.
     fn insert(&mut self, key: &str, text: Rope, is_open: bool) {
-        let mut document = Document::new(key, text, is_open);
+        let settings = Arc::clone(&self.settings.without_file);
+        let mut document = Document::new(key, text, is_open, settings);
         if document.is_program() {
             document.file = Some(self.database.open_rope(key, document.text.clone()));
         }

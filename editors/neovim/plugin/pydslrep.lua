@@ -14,6 +14,16 @@ end, {
   end,
 })
 
+vim.api.nvim_create_user_command('PydslrepPreview', function(call)
+  require('pydslrep').live(call.fargs[1])
+end, {
+  nargs = '?',
+  desc = 'PyDSLRep: the planned path in a browser, live',
+  complete = function(typed)
+    return require('pydslrep.command').environments(typed)
+  end,
+})
+
 local group = vim.api.nvim_create_augroup('pydslrep', {})
 
 ---@param event string

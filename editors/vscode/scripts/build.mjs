@@ -1,10 +1,13 @@
 // Builds dist/: the extension, the preview's page, and copies of files from elsewhere in the repository. `--watch` rebuilds
-// after every change, `--production` minifies for the package.
+// after every change, `--production` minifies for
+// the package, `--web` adds the language server as WebAssembly.
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { copyFile, mkdir, rm } from "node:fs/promises";
 import path from "node:path";
 
 import esbuild from "esbuild";
+
+import { forGallery } from "./addresses.mjs";
 
 const root = path.resolve(import.meta.dirname, "..");
 const repository = path.resolve(root, "../..");
@@ -13,10 +16,13 @@ const production = process.argv.includes("--production");
 /** Files from elsewhere in the repository that the extension ships. */
 const copies = [
   ["grammar/textmate/pydslrep.tmLanguage.json", "dist/pydslrep.tmLanguage.json"],
-  ["editors/vscode/webview/preview/style.css", "dist/preview.css"],
+  ["editors/preview/page/style.css", "dist/preview.css"],
   ["docs/images/square.svg", "dist/square.svg"],
   ["LICENSE", "LICENSE"],
 ];
+
+/** The language server for VS Code for the Web, which editors/web builds. */
+const server = ["worker.js", "pydslrep_bg.wasm"].map((name) => [`editors/web/dist/${name}`, `dist/${name}`]);
 
 const common = {
   absWorkingDir: root,
@@ -37,7 +43,15 @@ const bundles = [
     external: ["vscode"],
   },
   {
-    entryPoints: { preview: "webview/preview/main.ts" },
+    entryPoints: { web: "web/extension.ts" },
+    outdir: "dist",
+    platform: "browser",
+    target: "es2022",
+    format: "cjs",
+    external: ["vscode"],
+  },
+  {
+    entryPoints: { preview: "webview/preview.ts" },
     outdir: "dist",
     platform: "browser",
     target: "es2022",
@@ -47,7 +61,7 @@ const bundles = [
 
 await rm(path.join(root, "dist"), { recursive: true, force: true });
 await mkdir(path.join(root, "dist"), { recursive: true });
-for (const [from, to] of copies) {
+for (const [from, to] of process.argv.includes("--web") ? [...copies, ...server] : copies) {
   await copyFile(path.join(repository, from), path.join(root, to));
 }
 const inputs = new Set();
@@ -61,6 +75,8 @@ for (const bundle of bundles) {
   }
 }
 writeFileSync(path.join(root, "dist", "LICENSES.txt"), licences(inputs));
+const [readme, cargo] = [path.join(root, "README.md"), path.join(repository, "Cargo.toml")].map((file) => readFileSync(file, "utf8"));
+writeFileSync(path.join(root, "dist", "README.md"), forGallery(readme, cargo));
 
 /** The licences of the packages in a bundle. */
 function licences(inputs) {

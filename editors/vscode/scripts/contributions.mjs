@@ -13,7 +13,7 @@ function settings(schema) {
   const flat = (properties, prefix) =>
     Object.entries(properties).flatMap(([key, value]) => {
       const name = prefix + key.replace(/-([a-z])/g, (_, letter) => letter.toUpperCase());
-      const isTable = value.type === "object" && Object.values(value.properties).every((inner) => inner.type === "boolean");
+      const isTable = value.type === "object" && Object.values(value.properties).every((inner) => inner.type !== undefined);
       return isTable ? flat(value.properties, `${name}.`) : [[name, setting(value)]];
     });
   return Object.fromEntries(flat(schema.properties, "pydslrep."));

@@ -3,7 +3,7 @@ import { execFile } from "node:child_process";
 
 import { findCommand } from "./executables";
 import { showError } from "./notifications";
-import { sentence } from "./sentence";
+import { sentence } from "../../preview/host/sentence";
 import type { Session } from "./session";
 
 /** The path of the command; undefined, with a message, if it is not installed. */

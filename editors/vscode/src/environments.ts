@@ -1,16 +1,25 @@
 // Determines the environment of a program that a command applies to.
 import * as vscode from "vscode";
-import type { LanguageClient } from "vscode-languageclient/node";
+import type { BaseLanguageClient } from "vscode-languageclient";
 
+import type { Connection } from "./execute";
 import { codeOf } from "./explain";
 import { showInformation, showWarning } from "./notifications";
-import { PLANNED_AT, type EnvironmentId, type PlannedAt } from "./preview/protocol";
+import { PLANNED_AT, type EnvironmentId, type PlannedAt } from "../../preview/host/protocol";
 
 export const OPEN_A_PROGRAM = "Open a program (a .pyr file) first.";
 
+/** A command on the environment at the cursor of a program. */
+export function onEnvironment(connection: Connection, command: string): (uri?: vscode.Uri) => Promise<unknown> {
+  return async (uri) => {
+    const environment = await chooseEnvironment(connection.client, uri);
+    return environment && vscode.commands.executeCommand(command, environment);
+  };
+}
+
 /** The environment at the cursor; if there are several, the one that the user picks. */
 export async function chooseEnvironment(
-  client: LanguageClient | undefined,
+  client: BaseLanguageClient | undefined,
   document: vscode.Uri | undefined,
 ): Promise<EnvironmentId | undefined> {
   const program = await openProgram(document);

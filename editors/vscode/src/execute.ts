@@ -1,14 +1,21 @@
 // Executes the server's commands on an environment and reports failures once, each with a button that helps.
 import * as vscode from "vscode";
-import { ExecuteCommandRequest, type LanguageClient, WorkDoneProgress } from "vscode-languageclient/node";
+import {
+  type BaseLanguageClient,
+  ExecuteCommandRequest,
+  WorkDoneProgress,
+  type WorkDoneProgressBegin,
+  type WorkDoneProgressEnd,
+  type WorkDoneProgressReport,
+} from "vscode-languageclient";
 
 import { failureOf } from "./failure";
 import { showError, showWarning } from "./notifications";
-import type { EnvironmentId, Location } from "./preview/protocol";
+import type { EnvironmentId, Location } from "../../preview/host/protocol";
 
 /** The connection to the server and the channel for details. */
 export interface Connection {
-  client: LanguageClient | undefined;
+  client: BaseLanguageClient | undefined;
   output: vscode.LogOutputChannel;
 }
 
@@ -30,10 +37,11 @@ export async function executeWithProgress(
   command: string,
   environment: EnvironmentId,
   cancellation: vscode.CancellationTokenSource,
+  title = `Running ${environment.environment}`,
 ): Promise<unknown> {
-  const progress = new ProgressNotification(`Running ${environment.environment}`, cancellation);
+  const progress = new ProgressNotification(title, cancellation);
   try {
-    return await request(connection.client, command, environment, (message) => progress.report(message), cancellation.token);
+    return await request(connection.client, command, environment, (value) => progress.follow(value), cancellation.token);
   } catch (error) {
     progress.end();
     reportFailure(connection, command, environment, error);
@@ -53,12 +61,17 @@ class ProgressNotification {
     private readonly cancellation: vscode.CancellationTokenSource,
   ) {}
 
-  report(message: string | undefined): void {
+  follow(value: WorkDoneProgressBegin | WorkDoneProgressReport | WorkDoneProgressEnd): void {
+    if (value.kind === "end") {
+      // The server may still have a question.
+      this.end();
+      return;
+    }
     if (this.progress === undefined) {
       this.begin();
     }
-    if (message !== undefined) {
-      this.progress?.report({ message });
+    if (value.message !== undefined) {
+      this.progress?.report({ message: value.message });
     }
   }
 
@@ -77,10 +90,10 @@ class ProgressNotification {
 }
 
 async function request(
-  client: LanguageClient | undefined,
+  client: BaseLanguageClient | undefined,
   command: string,
   environment: EnvironmentId,
-  report?: (message: string | undefined) => void,
+  report?: (value: WorkDoneProgressBegin | WorkDoneProgressReport | WorkDoneProgressEnd) => void,
   token?: vscode.CancellationToken,
 ): Promise<unknown> {
   if (client === undefined) {
@@ -91,11 +104,7 @@ async function request(
     return client.sendRequest(ExecuteCommandRequest.type, params);
   }
   const workDoneToken = `pydslrep command ${++requests}`;
-  const listener = client.onProgress(WorkDoneProgress.type, workDoneToken, (value) => {
-    if (value.kind !== "end") {
-      report(value.message);
-    }
-  });
+  const listener = client.onProgress(WorkDoneProgress.type, workDoneToken, report);
   try {
     return await client.sendRequest(ExecuteCommandRequest.type, { ...params, workDoneToken }, token);
   } finally {

@@ -1,6 +1,6 @@
 // Opens the page of a diagnostic code: from the code's link, from the light bulb and by a command.
 import * as vscode from "vscode";
-import type { LanguageClient } from "vscode-languageclient/node";
+import type { BaseLanguageClient } from "vscode-languageclient";
 
 import manifest from "../package.json";
 import { showInformation } from "./notifications";
@@ -18,7 +18,7 @@ const CODES = new Set(
   ),
 );
 
-export function registerExplanations(client: () => LanguageClient | undefined): vscode.Disposable {
+export function registerExplanations(client: () => BaseLanguageClient | undefined): vscode.Disposable {
   return vscode.Disposable.from(
     vscode.workspace.registerTextDocumentContentProvider(PAGE_SCHEME, {
       provideTextDocumentContent: async ({ path }) => {

@@ -7,6 +7,7 @@ import { registerGhostText } from "./ghost";
 import { registerIndentation } from "./indentation";
 import { registerMilestones } from "./milestones";
 import { registerPreview } from "./preview";
+import { registerProcessCommands } from "./process_commands";
 import { Session } from "./session";
 import { registerStatus } from "./status";
 import { registerTasks } from "./tasks";
@@ -16,6 +17,7 @@ export function activate(context: vscode.ExtensionContext): void {
   context.subscriptions.push(
     session,
     registerCommands(session),
+    registerProcessCommands(session),
     registerIndentation(),
     registerGhostText(),
     registerMilestones(),

@@ -1,6 +1,6 @@
 // Classifies the errors of requests by what the user can do about them. Does not depend on VS Code.
-import type { Location } from "./preview/protocol";
-import { sentence } from "./sentence";
+import type { Location } from "../../preview/host/protocol";
+import { sentence } from "../../preview/host/sentence";
 
 export type Failure =
   | { kind: "cancelled" }

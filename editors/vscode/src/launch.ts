@@ -1,13 +1,7 @@
-// Spawns the server's process and decides whether to restart it after a crash. Does not depend on VS Code.
+// Spawns the server's process. Does not depend on VS Code.
 import { type ChildProcessWithoutNullStreams, spawn } from "node:child_process";
 
 import type { Executable } from "./executables";
-
-/** A server that crashes this many times within `WINDOW` is not restarted. */
-const MAX_CRASHES = 5;
-
-/** Milliseconds. */
-const WINDOW = 3 * 60_000;
 
 /** Spawns an executable; rejects if the system cannot start it. */
 export function launch({ command, args }: Executable, folder: string | undefined): Promise<ChildProcessWithoutNullStreams> {
@@ -18,15 +12,4 @@ export function launch({ command, args }: Executable, folder: string | undefined
     // host.
     child.on("error", reject);
   });
-}
-
-/** Counts the recent crashes of a server. */
-export class CrashCounter {
-  private times: number[] = [];
-
-  /** Records a crash; returns whether to restart the server. */
-  add(now: number): boolean {
-    this.times = [...this.times.filter((time) => now - time < WINDOW), now];
-    return this.times.length < MAX_CRASHES;
-  }
 }

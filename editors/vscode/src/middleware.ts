@@ -1,13 +1,14 @@
 // Intercepts the language client: which settings the server gets, and how its commands and documents are shown.
 import * as vscode from "vscode";
-import type { Middleware } from "vscode-languageclient/node";
+import type { Middleware } from "vscode-languageclient";
 
 import manifest from "../package.json";
 import { execute, type Connection } from "./execute";
 import { explainActions } from "./explain";
 import { reached } from "./milestones";
-import type { EnvironmentId } from "./preview/protocol";
+import type { EnvironmentId } from "../../preview/host/protocol";
 import type { Runs } from "./run";
+import { isOnScene, onScene } from "./scenes";
 import { explicitSettings } from "./settings";
 
 /** The commands of this extension that the server may use in a lens. */
@@ -21,7 +22,7 @@ const KEYS = manifest.contributes.configuration
   .flatMap(({ properties }) => Object.keys(properties))
   .map((key) => key.slice(SECTION.length + 1));
 
-export function middleware(connection: Connection, runs: Runs): Middleware {
+export function middleware(connection: Connection, runs: Runs | undefined): Middleware {
   return {
     workspace: {
       configuration: async (params, token, next) => {
@@ -38,7 +39,7 @@ export function middleware(connection: Connection, runs: Runs): Middleware {
       const [environment] = args as [EnvironmentId];
       switch (command) {
         case "pydslrep.run":
-          return runs.run(environment);
+          return runs?.run(environment);
         case "pydslrep.previewPath":
           return vscode.commands.executeCommand("pydslrep.showPreview", vscode.Uri.parse(environment.uri), environment.environment);
         case "pydslrep.generateScript": {
@@ -49,8 +50,12 @@ export function middleware(connection: Connection, runs: Runs): Middleware {
           return answer;
         }
         default:
-          return next(command, args) as unknown;
+          return isOnScene(command) ? onScene(connection, command, environment) : (next(command, args) as unknown);
       }
+    },
+    provideCompletionItem: async (document, position, context, token, next) => {
+      const found = await next(document, position, context, token);
+      return found && filteredHere(found);
     },
     provideCodeActions: async (document, range, context, token, next) => {
       const actions = (await next(document, range, context, token)) ?? [];
@@ -63,4 +68,21 @@ export function middleware(connection: Connection, runs: Runs): Middleware {
         params.external === true && params.uri.endsWith(".svg") ? { success: true } : next(params, token),
     },
   };
+}
+
+/**
+ * Items that the editor filters itself, so that an answer that is late changes nothing: while the editor waits for one, Enter
+ * would accept an item of the list before. An item disappears with the last letter of its first word, and Enter ends the line.
+ */
+function filteredHere(found: vscode.CompletionItem[] | vscode.CompletionList): vscode.CompletionList {
+  const items = Array.isArray(found) ? found : found.items;
+  for (const item of items) {
+    const label = typeof item.label === "string" ? item.label : item.label.label;
+    const text = item.filterText ?? label;
+    // The names of files may have blanks; in other labels, what follows the first word is not typed as part of it.
+    const word = item.kind === vscode.CompletionItemKind.File ? text : (text.split(" ", 1)[0] ?? "");
+    // An empty text would count as none.
+    item.filterText = word.slice(0, -1) || " ";
+  }
+  return new vscode.CompletionList(items, false);
 }

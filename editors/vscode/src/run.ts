@@ -5,7 +5,7 @@ import { type Connection, executeWithProgress } from "./execute";
 import { type Figures, summary } from "./figures";
 import { reached } from "./milestones";
 import { showInformation, showWarning } from "./notifications";
-import { type EnvironmentId, keyOf } from "./preview/protocol";
+import { type EnvironmentId, keyOf } from "../../preview/host/protocol";
 
 /** The server's answer to `pydslrep.run`. */
 interface RunResult {
@@ -86,7 +86,7 @@ export class Runs implements vscode.Disposable {
   }
 }
 
-function askForTrust(): void {
+export function askForTrust(): void {
   const manage = { label: "Manage Workspace Trust", press: () => vscode.commands.executeCommand("workbench.trust.manage") };
   showWarning("Programs run only in workspaces that you trust.", manage);
 }

@@ -9,28 +9,17 @@ import {
   type CloseHandlerResult,
   ErrorAction,
   LanguageClient,
-  type LanguageClientOptions,
-  RevealOutputChannelOn,
   State,
 } from "vscode-languageclient/node";
 
+import { CrashCounter } from "./crash_counter";
 import { type Executable, findServer, type SearchPaths } from "./executables";
-import { PAGE_SCHEME } from "./explain";
-import { CrashCounter, launch } from "./launch";
-import { CLIENT_COMMANDS, middleware } from "./middleware";
+import { announceExtensions, clientOptions, type LanguageServer, serverState, type ServerState } from "./language_server";
+import { launch } from "./launch";
 import { showError } from "./notifications";
 import { Runs } from "./run";
 
-export type ServerState = "starting" | "running" | "stopped" | "missing";
-
-/** Programs, settings and scenes. */
-export const DOCUMENTS = [
-  { language: "pydslrep" },
-  { pattern: "**/pydslrep.toml" },
-  { pattern: "**/*.scene.toml" },
-] as const satisfies vscode.DocumentSelector;
-
-export class Session implements vscode.Disposable {
+export class Session implements LanguageServer, vscode.Disposable {
   /** The connection to the server; undefined if no server was found. */
   client: LanguageClient | undefined;
   /** The server that was found. */
@@ -105,18 +94,11 @@ export class Session implements vscode.Disposable {
       return process;
     };
     const client = new LanguageClient("pydslrep", "PyDSLRep", start, {
-      ...this.clientOptions(),
+      ...clientOptions(this),
       // Writing to a dead server fails before its exit is noticed; `closed` handles the exit.
       errorHandler: { error: () => ({ action: ErrorAction.Continue, handled: true }), closed },
     });
-    client.registerFeature({
-      fillClientCapabilities: (capabilities) => {
-        capabilities.experimental = { commands: { commands: CLIENT_COMMANDS }, pages: PAGE_SCHEME };
-      },
-      initialize: () => undefined,
-      getState: () => ({ kind: "static" }),
-      clear: () => undefined,
-    });
+    announceExtensions(client);
     client.onDidChangeState(({ newState }) => {
       // A client that was replaced may still change.
       if (this.client === client) {
@@ -167,17 +149,6 @@ export class Session implements vscode.Disposable {
     this.output.dispose();
   }
 
-  private clientOptions(): LanguageClientOptions {
-    return {
-      documentSelector: [...DOCUMENTS],
-      outputChannel: this.output,
-      middleware: middleware(this, this.runs),
-      // Failures are shown by the code that can explain them.
-      revealOutputChannelOn: RevealOutputChannelOn.Never,
-      diagnosticPullOptions: { onChange: true, onSave: true },
-    };
-  }
-
   private setState(state: ServerState): void {
     this.state = state;
     if (state !== "running") {
@@ -193,16 +164,5 @@ export class Session implements vscode.Disposable {
       press: () => vscode.commands.executeCommand("workbench.action.openSettings", "pydslrep.server.path"),
     };
     showError(reason, change, { label: "Show Output", press: () => this.output.show() });
-  }
-}
-
-function serverState(state: State): ServerState {
-  switch (state) {
-    case State.Running:
-      return "running";
-    case State.Starting:
-      return "starting";
-    default:
-      return "stopped";
   }
 }

@@ -20,6 +20,8 @@ interface Lines {
 interface Statistics {
   environments: ({ environment: string } & Lines)[];
   total: Lines;
+  /** Lines of the package that scripts import. */
+  runtime: number;
 }
 
 /** Counts the text in the editor, saved or not. */
@@ -40,11 +42,12 @@ export async function showStatistics(session: Session): Promise<void> {
   }
 }
 
-function summary({ environments, total }: Statistics): string {
+function summary({ environments, total, runtime }: Statistics): string {
   const [only, ...others] = environments;
   if (only === undefined) {
     return "Every environment of this program has errors, so there is no script to compare with.";
   }
   const name = others.length === 0 ? only.environment : `${environments.length} environments`;
-  return `${name}: ${total.program} lines of program generate ${total.python} lines of Python (${total.saved.toFixed(0)} % fewer).`;
+  const fewer = total.saved > 0 ? ` (${total.saved.toFixed(0)} % fewer)` : "";
+  return `${name}: ${total.program} lines of program generate ${total.python} lines of Python${fewer}, which import a package of ${runtime}.`;
 }

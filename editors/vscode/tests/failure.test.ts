@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { failureOf } from "../src/failure";
-import { sentence } from "../src/sentence";
+import { sentence } from "../../preview/host/sentence";
 
 const answered = (code: number, message: string, data?: unknown) => Object.assign(new Error(message), { code, data });
 const location = { uri: "file:///a.pyr", range: { start: { line: 3, character: 2 }, end: { line: 3, character: 8 } } };

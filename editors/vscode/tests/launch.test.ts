@@ -1,7 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { CrashCounter, launch } from "../src/launch";
+import { CrashCounter } from "../src/crash_counter";
+import { launch } from "../src/launch";
 
 test("a server that crashes too often is not restarted", () => {
   const rare = new CrashCounter();

@@ -29,7 +29,7 @@ test("every file that the manifest names exists after a build", () => {
 test("no command of the extension has the name of a server command", () => {
   const protocol = readFileSync(path.resolve(EXTENSION_FOLDER, "../../docs/protocol.md"), "utf8");
   const servers = [...protocol.matchAll(/^\| `(pydslrep\.\w+)`/gm)].map(([, name]) => name);
-  assert.equal(servers.length, 4);
+  assert.equal(servers.length, 9);
   const ours = manifest.contributes.commands.map(({ command: name }) => name);
   assert.deepEqual(ours.filter((name) => servers.includes(name)), []);
 });
@@ -64,6 +64,29 @@ test("the manifest has the project's URLs if there are any, and says that nothin
   });
   assert.deepEqual(run('license = "MIT"\n'), {});
   assert.match(manifest.description, /Collects nothing\.$/);
+});
+
+test("the readme's pictures have addresses in galleries, or are left out", () => {
+  const readme = "Words.\n\n![A path](../../docs/images/path.png)\n\nMore.\n";
+  const script = `import(process.argv[1]).then(({ forGallery }) => process.stdout.write(forGallery(...process.argv.slice(2))))`;
+  const run = (cargo: string): string =>
+    spawnSync(process.execPath, ["-e", script, at("scripts/addresses.mjs"), readme, cargo], { encoding: "utf8" }).stdout;
+  const address = "https://example.org/pydslrep";
+  assert.equal(run(`repository = "${address}"\n`), readme.replace("../..", `${address}/raw/HEAD`));
+  assert.equal(run('license = "MIT"\n'), "Words.\n\nMore.\n");
+  assert.match(readFileSync(at("README.md"), "utf8"), /^!\[.*\]\(\.\.\/\.\.\/docs\/images\/editors\/vscode-preview\.png\)$/m);
+  assert.doesNotMatch(readFileSync(at("dist/README.md"), "utf8"), /\]\(\.\.\//);
+});
+
+test("the manifest has what galleries show", () => {
+  const { galleryBanner, qna, categories, icon, license } = manifest;
+  assert.match(galleryBanner.color, /^#[0-9a-f]{6}$/);
+  assert.ok(readFileSync(at("images/icon.svg"), "utf8").includes(galleryBanner.color), "the icon's own background");
+  assert.deepEqual([galleryBanner.theme, qna, icon, license], ["dark", "marketplace", "images/icon.png", "MIT"]);
+  assert.ok(categories.includes("Programming Languages"));
+  for (const file of ["README.md", "CHANGELOG.md"]) {
+    assert.ok(existsSync(at(file)), file);
+  }
 });
 
 test("F5 and Ctrl+F5 run without a launch.json", () => {

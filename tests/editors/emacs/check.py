@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from live_preview import LivePreview
 from session import FIX, FIXED, MESSAGE, PICTURES, PROGRAM, ROOT, Session, open_session
 from terminal import Terminal
 
@@ -16,7 +17,7 @@ EMACS = [os.environ["EMACS"], *os.environ.get("EMACS_OPTIONS", "").split()]
 # Not in the readme: suppresses questions and files elsewhere, and hides everything but the program.
 QUIET = """
 (setq native-comp-jit-compilation nil inhibit-startup-screen t make-backup-files nil auto-save-default nil
-      create-lockfiles nil eglot-sync-connect 10 eglot-confirm-server-edits nil custom-file "/dev/null")
+      create-lockfiles nil browse-url-browser-function #'browse-url-xdg-open eglot-sync-connect 10 eglot-confirm-server-edits nil custom-file "/dev/null")
 (menu-bar-mode -1)
 (load-theme 'modus-vivendi t)
 """
@@ -77,6 +78,21 @@ def edit(session: Session, terminal: Terminal, picture: Path | None) -> None:
     session.check("completion", terminal.wait("movement n of rover"), terminal.screen())
 
 
+def preview(session: Session, terminal: Terminal) -> None:
+    live = LivePreview(session)
+    terminal.press("M-<")
+    command(terminal, "pydslrep-preview")
+    session.check("live preview", live.opened(terminal), terminal.screen())
+    session.check("at the cursor", live.follows(0), terminal.screen())
+    terminal.press("C-n", "C-n")
+    session.check("follows the cursor", live.follows(2), terminal.screen())
+    terminal.press("M->")
+    terminal.type("// x")
+    session.check("and the text", live.follows(17), terminal.screen())
+    live.click(8)
+    session.check("a click moves the cursor", terminal.wait(r" L9 "), terminal.screen())
+
+
 def compiles(folder: Path) -> bool:
     mode = folder / "pydslrep-mode.el"
     mode.write_text((ROOT / "editors" / "emacs" / mode.name).read_text())
@@ -99,6 +115,10 @@ def run(session: Session, takes_pictures: bool) -> None:
     start = [*EMACS, "-nw", str(session.program)]
     with Terminal(start, session.program.parent, session.environment()) as terminal:
         edit(session, terminal, PICTURES / "emacs.png" if takes_pictures else None)
+    session.program.write_text(PROGRAM)
+    with Terminal(start, session.program.parent, session.environment()) as terminal:
+        session.check("attached", terminal.wait(r"\[eglot:"), terminal.screen())
+        preview(session, terminal)
 
 
 def main() -> None:

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from live_preview import LivePreview
 from session import FIX, FIXED, MESSAGE, PICTURES, Session, open_session
 from terminal import Terminal
 
@@ -91,10 +92,27 @@ def edit(session: Session, terminal: Terminal, takes_pictures: bool) -> None:
     session.check(
         "text objects", terminal.wait_without("movement patrol of"), terminal.screen()
     )
+    # Helix draws hints where they were until it has new ones.
     session.check(
-        "with the right range",
-        "movement home of" in terminal.screen(),
-        terminal.screen(),
+        "with the right range", terminal.wait("movement home of"), terminal.screen()
+    )
+    terminal.type(":q!")
+    terminal.press("Enter")
+
+
+def preview(session: Session, terminal: Terminal) -> None:
+    live = LivePreview(session)
+    session.check("diagnostics", terminal.wait(MESSAGE), terminal.screen())
+    terminal.type(":lsp-workspace-command pydslrep.openPreview")
+    terminal.press("Enter")
+    session.check("live preview", live.opened(terminal), terminal.screen())
+    terminal.type("geO")
+    terminal.type("// x")
+    session.check("it follows the text", live.follows(16), terminal.screen())
+    normal(terminal)
+    live.click(8)
+    session.check(
+        "a click moves the cursor", terminal.wait(r" 9:[35]\b"), terminal.screen()
     )
     terminal.type(":q!")
     terminal.press("Enter")
@@ -109,6 +127,10 @@ def main() -> None:
             [HX, str(session.program)], session.program.parent, session.environment()
         ) as terminal:
             edit(session, terminal, "--pictures" in sys.argv)
+        with Terminal(
+            [HX, str(session.program)], session.program.parent, session.environment()
+        ) as terminal:
+            preview(session, terminal)
 
 
 main()

@@ -125,7 +125,9 @@ end
 
 local function command()
   local function offered(line) return vim.fn.getcompletion(line, 'cmdline') end
-  local words = { 'generate', 'health', 'log', 'parser', 'preview', 'restart', 'run', 'stop' }
+  local words = {
+    'check', 'generate', 'health', 'log', 'parser', 'preview', 'push', 'remove', 'restart', 'run', 'stop',
+  }
   check('the command completes subcommands', vim.deep_equal(offered('Pydslrep '), words), offered('Pydslrep '))
   open_program('two.pyr', TWO)
   check('and environments', vim.deep_equal(offered('Pydslrep run '), { 'area_1', 'area_2' }), offered('Pydslrep run '))
@@ -194,6 +196,43 @@ local function preview()
   check('its poses are listed', table_of_poses:find('robot_1', 1, true), table_of_poses)
   check('and the file of the picture', picture and table_of_poses:find(picture, 1, true), table_of_poses)
   check('the cursor stays in the program', vim.fn.expand('%:t') == 'square.pyr')
+end
+
+local function live_preview()
+  open_program('square.pyr', PROGRAM)
+  go_to('robot_1')
+  local open_outside, address = vim.ui.open, nil
+  vim.ui.open = function(path)
+    address = path
+    return {}
+  end
+  vim.cmd('PydslrepPreview area_1')
+  wait(function() return address end)
+  vim.ui.open = open_outside
+  check('the live preview is opened', address and address:find('^http://127%.0%.0%.1:%d+/%x+/$'), address)
+  local received = ''
+  local listening = vim.system({ 'curl', '-sN', address .. 'events' }, {
+    stdout = function(_, data) received = received .. (data or '') end,
+  })
+  local function cursor()
+    local _, _, line = received:find('.*"line":(%d+)')
+    return tonumber(line)
+  end
+  becomes('its page has the cursor', vim.fn.line('.') - 1, cursor)
+  check('and the chosen environment', received:find('"environment":"area_1"', 1, true), received)
+  vim.api.nvim_input('gg3j')
+  becomes('and follows it', 3, cursor)
+  vim.api.nvim_input('ox<Esc>')
+  becomes('also while typing', true, function() return received:find('"isEdit":true', 1, true) ~= nil end)
+  vim.cmd('silent undo')
+  local location = { uri = vim.uri_from_bufnr(0), range = { start = { line = 6, character = 2 } } }
+  location.range['end'] = { line = 6, character = 17 }
+  local reveal = { jsonrpc = '2.0', id = 1, method = 'pydslrep/reveal', params = location }
+  local origin = address:match('^http://[^/]+')
+  vim.system({ 'curl', '-s', '-H', 'Origin: ' .. origin, '-H', 'Content-Type: application/json',
+    '-d', vim.json.encode(reveal), address .. 'messages' })
+  becomes('a click in it moves the cursor', 7, function() return vim.fn.line('.') end)
+  listening:kill('sigterm')
 end
 
 --- The messages so far.
@@ -317,5 +356,6 @@ local function help()
 end
 
 harness.run({
-  before_the_server, file_type, indentation, command, options, generate, preview, run, stop, lenses, help, life,
+  before_the_server, file_type, indentation, command, options, generate, preview, live_preview, run, stop, lenses, help,
+  life,
 })

@@ -36,9 +36,11 @@ ln -s "$command" "$scratch/bin/pydslrep"
 export PATH="$scratch/bin:$PATH" TESTS="$tests" REPOSITORY="$repository"
 export PROGRAM="$repository/tests/paper/table2_two_wheels.pyr"
 
-lua_block() { # prints the n-th Lua block of the readme, with the real folder
-  awk -v wanted="$1" '/^```/ { inside = $0 == "```lua" && ++block == wanted; next } inside' "$plugin/README.md" |
-    sed "s|/path/to/pydslrep|$repository|"
+lua_block() { # call, address; prints the readme's first block of Lua with this call, with the address (default: this folder)
+  awk -v call="$1" '
+    /^```/ { if (inside && index(block, call)) { printf "%s", block; exit } inside = $0 == "```lua"; block = ""; next }
+    inside { block = block $0 "\n" }
+  ' "$plugin/README.md" | sed "s|/path/to/pydslrep|${2:-$repository}|"
 }
 
 alive() { # zombies do not count
@@ -85,14 +87,22 @@ lint() {
 }
 
 failed=0
-for name in ${*:-lint folder pasted package colours older}; do
+for name in ${*:-lint folder pasted package cloned colours older}; do
   case $name in
     lint) [ -z "$lints" ] || lint ;;
-    folder) lua_block 1 | session folder "$current" session.lua ;;
-    pasted) lua_block 2 | session pasted "$current" session.lua ;;
+    folder) lua_block vim.opt.runtimepath:append | session folder "$current" session.lua ;;
+    pasted) lua_block vim.lsp.config | session pasted "$current" session.lua ;;
     package) session package "$current" package.lua < "$tests/init.lua" ;;
-    colours) session colours "$current" colours.lua < <(echo "vim.g.pydslrep = { enable = false }"; lua_block 1) ;;
-    older) [ -z "$older" ] || session older "$older" older.lua < <(lua_block 1) ;;
+    cloned)
+      # Neovim 0.12 has a plugin manager. It would ask before it clones.
+      "$current" --headless -u NONE -c 'lua os.exit(vim.pack and 0 or 1)' || continue
+      # It asks the repository for its branch, which one that is on no branch lacks.
+      git -c init.defaultBranch=main -c advice.detachedHead=false clone --quiet "$repository" "$scratch/pydslrep"
+      git -C "$scratch/pydslrep" checkout --quiet -B main
+      lua_block vim.pack.add "$scratch/pydslrep" | sed 's/^})$/  confirm = false,\n})/' | session cloned "$current" session.lua
+      ;;
+    colours) session colours "$current" colours.lua < <(echo "vim.g.pydslrep = { enable = false }"; lua_block vim.opt.runtimepath:append) ;;
+    older) [ -z "$older" ] || session older "$older" older.lua < <(lua_block vim.opt.runtimepath:append) ;;
     pictures)
       need tmux tmux
       need chromium chromium

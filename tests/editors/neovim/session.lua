@@ -18,7 +18,6 @@ local act = harness.act
 
 local FIXED = read(vim.env.PROGRAM)
 local TYPO = FIXED:gsub('{ wheelL wheelR }', '{ wheelL whelR }')
-local BUILT = vim.system({ 'pydslrep', 'build', '--stdout', vim.env.PROGRAM }):wait().stdout
 
 --- The error in `TYPO`, shifted right by `shift` bytes.
 local function unknown(shift)
@@ -271,30 +270,34 @@ local function quick_fix()
 end
 
 local function script()
+  local built = vim.system({ 'pydslrep', 'build', '--stdout', 'typo.pyr' }):wait().stdout
   local function shown()
     local buffer = vim.fn.bufnr('area_1.py')
     return buffer > 0 and text(buffer) or nil
   end
   local titles = act('Generate script')
   check('Generate script is offered', vim.deep_equal(titles, { 'Generate script area_1.py' }), titles)
-  becomes('the script is generated', BUILT, shown)
+  becomes('the script is generated', built, shown)
   vim.cmd.wall()
-  check('it is identical to what the command builds', read('area_1.py') == BUILT)
+  check('it is identical to what the command builds', read('area_1.py') == built)
 
   vim.cmd.bwipeout('area_1.py')
-  write('area_1.py', 'print("mine")\n')
+  write('older.txt', (FIXED:gsub('4%.0', '3.0')))
+  local older = vim.system({ 'sh', '-c', 'pydslrep build --stdout - < older.txt' }):wait().stdout
+  check('an older script is another one', older:find('move%(3.0%)') and older ~= built, older)
+  write('area_1.py', older)
   act('Generate script')
-  becomes('a script on the disk is replaced', BUILT, shown)
-  check('only in its buffer until it is saved', read('area_1.py') == 'print("mine")\n')
+  becomes('a script on the disk is replaced', built, shown)
+  check('only in its buffer until it is saved', read('area_1.py') == older)
   vim.cmd.sbuffer('area_1.py')
   vim.api.nvim_input('u')
-  becomes('undo restores it', 'print("mine")\n', shown)
+  becomes('undo restores it', older, shown)
 
-  vim.api.nvim_input('ccunsaved<Esc>')
+  vim.api.nvim_input('ggdGiunsaved<Esc>')
   becomes('it can be edited', 'unsaved\n', shown)
   vim.cmd.wincmd('p')
   act('Generate script')
-  becomes('a script open with unsaved text is replaced', BUILT, shown)
+  becomes('a script open with unsaved text is replaced', built, shown)
   vim.cmd.wincmd('p')
   vim.api.nvim_input('u')
   becomes('undo restores that text', 'unsaved\n', shown)

@@ -13,10 +13,10 @@ const ORIGIN = "http://preview.test";
 
 const esbuild = createRequire(path.join(EXTENSION, "package.json"))("esbuild");
 
-/** A module of the extension, bundled for Node. */
-export async function extensionModule(file) {
+/** A module of an editor's folder, bundled for Node. */
+export async function moduleOf(file) {
   const { outputFiles } = await esbuild.build({
-    entryPoints: [path.join(EXTENSION, "src", "preview", file)],
+    entryPoints: [path.join(ROOT, "editors", file)],
     bundle: true,
     write: false,
     platform: "node",
@@ -25,7 +25,7 @@ export async function extensionModule(file) {
   return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`);
 }
 
-const { page: html } = await extensionModule("page.ts");
+const { page: html } = await moduleOf("vscode/src/preview/page.ts");
 
 export function launch() {
   return chromium.launch({ executablePath: process.env.CHROMIUM, args: ["--no-sandbox"] });

@@ -5,14 +5,14 @@ import path from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 
-import { extensionModule, launch, Panel, ROOT } from "./panel.mjs";
+import { launch, moduleOf, Panel, ROOT } from "./panel.mjs";
 import { rangeOf, Server } from "./server.mjs";
 
 const EXAMPLES = path.join(ROOT, "examples");
 const OUT = path.join(import.meta.dirname, "out");
 const PICTURES = process.env.UPDATE_EXPECT ? path.join(ROOT, "docs", "images", "editors") : OUT;
 
-const { Follower } = await extensionModule("follower.ts");
+const { Follower } = await moduleOf("preview/host/follower.ts");
 
 let browser;
 let server;

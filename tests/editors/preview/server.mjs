@@ -5,15 +5,15 @@ import { pathToFileURL } from "node:url";
 import { createMessageConnection, StreamMessageReader, StreamMessageWriter } from "vscode-jsonrpc/node";
 
 export class Server {
-  /** Starts the server in a folder. */
-  static async start(folder) {
+  /** Starts the server in a folder, for a client with these capabilities. */
+  static async start(folder, capabilities = {}) {
     const server = new Server();
     server.child = spawn(process.env.PYDSLREP_LSP, ["--stdio"], { stdio: ["pipe", "pipe", "ignore"] });
     const { stdout, stdin } = server.child;
     server.connection = createMessageConnection(new StreamMessageReader(stdout), new StreamMessageWriter(stdin));
     server.connection.listen();
     const workspaceFolders = [{ uri: pathToFileURL(folder).href, name: "examples" }];
-    await server.connection.sendRequest("initialize", { processId: process.pid, rootUri: null, workspaceFolders, capabilities: {} });
+    await server.connection.sendRequest("initialize", { processId: process.pid, rootUri: null, workspaceFolders, capabilities });
     await server.connection.sendNotification("initialized", {});
     return server;
   }

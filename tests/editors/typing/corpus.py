@@ -15,7 +15,7 @@ GENERATED = 50
 # The approximate number of entities and actions of a generated program.
 SIZE = 8
 # The programs for continuous integration: table 2, an example, generated ones.
-FEW = ("table2_two_wheels", "mecanum", "generated_05", "generated_12")
+FEW = ("table2_two_wheels", "mecanum", "comments", "generated_05", "generated_12")
 
 
 @dataclass(frozen=True)

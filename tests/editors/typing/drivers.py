@@ -149,8 +149,6 @@ class Neovim(Modal):
 
     def set_up(self) -> None:
         """Writes the readme's settings without a plugin manager, and the plugin's or else the readme's optional ones."""
-        readme = (ROOT / "editors" / "neovim" / "README.md").read_text()
-        blocks = re.findall(r"^```lua\n(.*?)^```", readme, re.M | re.S)
         packages = self.session.home / ".local/share/nvim/site/pack/person/start"
         packages.mkdir(parents=True)
         for variable in self.needs:
@@ -161,10 +159,19 @@ class Neovim(Modal):
         settings = self.session.home / ".config" / "nvim" / "init.lua"
         settings.parent.mkdir()
         if self.plugin:
-            blocks[2] = f"vim.g.typing_variant = '{self.variant}'\n"
-            blocks[2] += (HERE / "neovim" / f"{self.plugin}.lua").read_text()
-        text = blocks[0] + blocks[2]
+            options = f"vim.g.typing_variant = '{self.variant}'\n"
+            options += (HERE / "neovim" / f"{self.plugin}.lua").read_text()
+        else:
+            options = self._block("vim.lsp.completion.enable")
+        text = self._block("vim.opt.runtimepath:append") + options
         settings.write_text(text.replace("/path/to/pydslrep", str(ROOT)))
+
+    @staticmethod
+    def _block(call: str) -> str:
+        """The readme's first block of Lua with this call."""
+        readme = (ROOT / "editors" / "neovim" / "README.md").read_text()
+        blocks: list[str] = re.findall(r"^```lua\n(.*?)^```", readme, re.M | re.S)
+        return next(block for block in blocks if call in block)
 
     def command(self) -> list[str]:
         return [os.environ["NVIM"]]

@@ -15,9 +15,12 @@ done
 [ ${#editors[@]} -gt 0 ] || editors=(vscode neovim)
 
 # The generator of programs is not part of the product.
-(cd "$repository" && cargo build --quiet --locked --bin random-programs --bin pydslrep --bin pydslrep-lsp)
+if [ -z "${PYDSLREP:-}" ] || [ -z "${PYDSLREP_LSP:-}" ] || [ -z "${RANDOM_PROGRAMS:-}" ]; then
+  (cd "$repository" && cargo build --quiet --locked --bin random-programs --bin pydslrep --bin pydslrep-lsp)
+fi
 built=$(realpath "${CARGO_TARGET_DIR:-$repository/target}/debug")
-export PYDSLREP=${PYDSLREP:-$built/pydslrep} PYDSLREP_LSP=${PYDSLREP_LSP:-$built/pydslrep-lsp} RANDOM_PROGRAMS=$built/random-programs
+export PYDSLREP=${PYDSLREP:-$built/pydslrep} PYDSLREP_LSP=${PYDSLREP_LSP:-$built/pydslrep-lsp}
+export RANDOM_PROGRAMS=${RANDOM_PROGRAMS:-$built/random-programs}
 
 type_into() { # editor
   local editor=$1 package

@@ -71,6 +71,9 @@ function watch() {
     fixes: ".action-widget",
     rename: ".rename-box",
   };
+  // At the end of the window the editor itself puts its lists above the line, in every language.
+  const STATUS_BAR = 30;
+  const hasRoomBelow = (cursor, box) => cursor.bottom + box.height + STATUS_BAR < globalThis.innerHeight;
   globalThis.covered = {};
   const check = () => {
     const cursor = document.querySelector(".monaco-editor.focused .cursors-layer .cursor")?.getBoundingClientRect();
@@ -81,7 +84,9 @@ function watch() {
         const isOver = (top, bottom) => box.width > 0 && box.top < bottom - 2 && box.bottom > top + 2;
         const where = isOver(cursor.top, cursor.bottom)
           ? "the line being typed"
-          : isOver(cursor.top - cursor.height, cursor.top) && "the line above the one being typed";
+          : isOver(cursor.top - cursor.height, cursor.top) &&
+            hasRoomBelow(cursor, box) &&
+            "the line above the one being typed";
         if (where) {
           const lines = [...document.querySelectorAll(".monaco-editor.focused .view-line")];
           const line = lines.find((one) => Math.abs(one.getBoundingClientRect().top - cursor.top) < 3)?.textContent;

@@ -63,18 +63,30 @@ test("semantic tokens change the colour of no character of the article's program
       await stage.page.locator(`.monaco-workbench[class*="${cssClass}"]`).waitFor();
       for (const name of names) {
         await stage.openFile(name);
-        const colouringOnce = (what, check) =>
-          until(`${what} in all of ${name} in ${theme}`, async () => {
+        const colouringOnce = (what, check, patience) => {
+          const isSo = async () => {
             const seen = await colours(stage.page);
             const whole = seen.map((one) => one[0]).join("") === files[name].replace(/\s/g, "");
             return whole && check(seen) && seen;
-          });
-        stage.set(marked("class"));
-        const robots = await colouringOnce("robots are marked", (seen) => isExact(seen, "class", files[name]));
+          };
+          return until(`${what} in all of ${name} in ${theme}`, isSo, patience);
+        };
+        const withRobots = async () => {
+          stage.set(marked("class"));
+          return colouringOnce("robots are marked", (seen) => isExact(seen, "class", files[name]));
+        };
+        const withoutTokens = async (patience) => {
+          stage.set(marked("function", false));
+          return colouringOnce("no marks", (seen) => !has(seen, "class") && !has(seen, "function"), patience);
+        };
+        const robots = await withRobots();
         stage.set(marked("function"));
         const movements = await colouringOnce("movements are marked", (seen) => isExact(seen, "function", files[name]));
-        stage.set(marked("function", false));
-        const textMate = await colouringOnce("no marks", (seen) => !has(seen, "class") && !has(seen, "function"));
+        // On a busy machine the editor now and then does not notice that tokens are turned off; it notices the next time.
+        const textMate = await withoutTokens(10_000).catch(async () => {
+          await withRobots();
+          return withoutTokens();
+        });
 
         const semantic = movements.map((one, at) => (has([one], "function") ? robots[at] : one));
         assert.deepEqual(textMate, semantic, `${name} in ${theme}`);

@@ -7,8 +7,8 @@ import path from "node:path";
 
 import { chromium } from "playwright-core";
 
-const { VSIX, CHROMIUM, CODE_SERVER, PICTURES } = process.env;
-for (const [name, value] of Object.entries({ VSIX, CHROMIUM, CODE_SERVER })) {
+const { VSIX, VSIX_WEB, CHROMIUM, CODE_SERVER, PICTURES } = process.env;
+for (const [name, value] of Object.entries({ VSIX, VSIX_WEB, CHROMIUM, CODE_SERVER })) {
   if (!value) {
     throw new Error(`${name} is not set: start the tests with tests/editors/run.sh vscode`);
   }
@@ -19,6 +19,9 @@ export const repository = path.resolve(import.meta.dirname, "../../..");
 
 /** The extension that changes settings for tests. */
 const TEST_EXTENSION = path.join(import.meta.dirname, "api");
+
+/** The extension with a workspace in memory, for VS Code for the Web. */
+const VIRTUAL_FILES = path.join(import.meta.dirname, "virtual");
 
 /** The timeout of all waits, milliseconds. */
 const PATIENCE = Number(process.env.PATIENCE ?? 90_000);
@@ -45,7 +48,7 @@ const SETTINGS = {
 
 /** An editor with a workspace. */
 export class Stage {
-  /** @param {{files: Record<string, string>, settings?: object, trusted?: boolean, env?: object, open?: string, testsPath?: string, prepare?: (page) => Promise<void>, size?: {width: number, height: number}}} options */
+  /** @param {{files: Record<string, string>, settings?: object, trusted?: boolean, env?: object, open?: string, virtual?: string, testsPath?: string, prepare?: (page) => Promise<void>, size?: {width: number, height: number}}} options */
   static async open(options) {
     const stage = new Stage();
     try {
@@ -77,7 +80,7 @@ export class Stage {
     console.log(`screenshot: ${file}`);
   }
 
-  async #start({ files, settings = {}, trusted = true, env = {}, open, testsPath, prepare, size }) {
+  async #start({ files, settings = {}, trusted = true, env = {}, open, virtual, testsPath, prepare, size }) {
     this.scratch = mkdtempSync(path.join(os.tmpdir(), "pyr-"));
     this.folder = path.join(this.scratch, "ws");
     mkdirSync(path.join(this.scratch, "data/User"), { recursive: true });
@@ -103,8 +106,12 @@ export class Stage {
     const base = ["--config", "config.yaml", "--user-data-dir", "data", "--extensions-dir", "extensions"];
     const inScratch = { env: this.env, cwd: this.scratch };
     // Folders that exist when the first extension is installed count as installed.
-    cpSync(TEST_EXTENSION, path.join(this.scratch, "extensions/api-tests"), { recursive: true });
-    execFileSync(process.execPath, [entry, ...base, "--install-extension", VSIX], { ...inScratch, stdio: "ignore" });
+    if (virtual) {
+      this.#addWebExtensions(virtual);
+    } else {
+      cpSync(TEST_EXTENSION, path.join(this.scratch, "extensions/api-tests"), { recursive: true });
+      execFileSync(process.execPath, [entry, ...base, "--install-extension", VSIX], { ...inScratch, stdio: "ignore" });
+    }
     const port = await freePort();
     this.address = `127.0.0.1:${port}`;
     const trust = trusted ? ["--disable-workspace-trust"] : [];
@@ -128,7 +135,8 @@ export class Stage {
       payload.push(["extensionDevelopmentPath", this.inEditor(TEST_EXTENSION)], ["extensionTestsPath", this.inEditor(testsPath)]);
     }
     await prepare?.(this.page);
-    const search = new URLSearchParams({ folder: this.folder, payload: JSON.stringify(payload) });
+    const place = virtual ? { workspace: path.join(this.folder, "virtual.code-workspace") } : { folder: this.folder };
+    const search = new URLSearchParams({ ...place, payload: JSON.stringify(payload) });
     await this.page.goto(`http://${this.address}/?${search}`);
     await this.page.locator(".monaco-workbench").waitFor();
     if (open) {
@@ -138,6 +146,22 @@ export class Stage {
       await this.page.keyboard.press("Control+B");
       await this.page.locator(".part.sidebar").waitFor({ state: "hidden" });
     }
+  }
+
+  /**
+   * Installs the package for the web, and a workspace in memory. An editor with a server would run the extension there, so
+   * that its entry for computers is removed.
+   */
+  #addWebExtensions(virtual) {
+    const extensions = path.join(this.scratch, "extensions");
+    const unpacked = path.join(this.scratch, "web");
+    execFileSync("python3", ["-m", "zipfile", "-e", VSIX_WEB, unpacked]);
+    const { main: _, ...manifest } = JSON.parse(readFileSync(path.join(unpacked, "extension/package.json"), "utf8"));
+    writeFileSync(path.join(unpacked, "extension/package.json"), JSON.stringify(manifest));
+    cpSync(path.join(unpacked, "extension"), path.join(extensions, "pydslrep"), { recursive: true });
+    cpSync(VIRTUAL_FILES, path.join(extensions, "virtual-files"), { recursive: true });
+    mkdirSync(this.folder, { recursive: true });
+    writeFileSync(path.join(this.folder, "virtual.code-workspace"), JSON.stringify({ folders: [{ uri: virtual }] }));
   }
 
   /** Changes user settings through the test extension. */
@@ -160,7 +184,7 @@ export class Stage {
 
   /** The URI of a file in the browser. It needs the authority, or else decorations are not drawn. */
   inEditor(file) {
-    return `vscode-remote://${this.address}${path.resolve(this.folder, file)}`;
+    return file.includes(":/") ? file : `vscode-remote://${this.address}${path.resolve(this.folder, file)}`;
   }
 
   /** The visible lines that contain a text. */
@@ -188,14 +212,38 @@ export class Stage {
     return readFileSync(path.join(this.folder, file), "utf8");
   }
 
-  /** Runs a command of the palette by its title. */
+  /** Runs a command of the palette by its title. A palette that opens too early does not list the extension's commands. */
   async call(title) {
-    await this.page.keyboard.press("F1");
     const input = this.page.locator(".quick-input-widget input").first();
-    await input.waitFor();
-    await input.fill(`>${title}`);
-    await this.page.locator(".quick-input-widget .monaco-list-row", { hasText: title.split(": ").at(-1) }).first().waitFor();
+    const row = this.page.locator(".quick-input-widget .monaco-list-row", { hasText: title.split(": ").at(-1) }).first();
+    await until(`the palette lists ${title}`, async () => {
+      await this.page.keyboard.press("F1");
+      await input.waitFor();
+      await input.fill(`>${title}`);
+      const isListed = await row.waitFor({ timeout: 10_000 }).then(() => true, () => false);
+      if (!isListed) {
+        await this.page.keyboard.press("Escape");
+      }
+      return isListed;
+    });
     await this.page.keyboard.press("Enter");
+  }
+
+  /** Accepts the path that the open file dialog proposes, or another one. */
+  async acceptFile(proposed, chosen = proposed) {
+    const input = this.page.locator(".quick-input-widget input").first();
+    const holds = (file) => async () => (await input.inputValue({ timeout: 1000 }).catch(() => "")).endsWith(file);
+    // The dialog writes its proposal once it has read the folder, over whatever was typed before.
+    await until(`the file dialog proposes ${proposed}`, holds(proposed));
+    if (chosen !== proposed) {
+      await input.fill(chosen);
+      await until(`the file dialog has ${chosen}`, holds(chosen));
+    }
+    // Enter does nothing while the dialog reads the folder of a changed path.
+    await until("the file dialog is closed", async () => {
+      await this.page.keyboard.press("Enter");
+      return input.waitFor({ state: "hidden", timeout: 3000 }).then(() => true, () => false);
+    });
   }
 
   /** Presses keys until a widget is open: a busy editor may close it at once. */
@@ -220,13 +268,16 @@ export class Stage {
     return this.page.locator(".notification-toast");
   }
 
-  /** Waits for a notification, which must be the only one, and presses its button or closes it. */
-  async toast(text, button) {
+  /** Waits for a notification, which must be the only one but those `beside` it, and presses its button or closes it. */
+  async toast(text, button, { beside } = {}) {
     const message = this.toasts.filter({ hasText: text });
     await message.first().waitFor();
+    // A command that has ended may still show its progress; what is above moves when that is gone.
+    const inProgress = this.page.locator(".monaco-progress-container.active");
+    await this.toasts.filter({ has: inProgress }).first().waitFor({ state: "detached" });
     // A notification stays while the pointer is over it.
     await message.first().hover();
-    const all = await this.toasts.allInnerTexts();
+    const all = await this.toasts.filter({ hasNotText: beside }).allInnerTexts();
     if (all.length !== 1) {
       throw new Error(`expected one notification, found ${all.length}: ${spaced(all.join(" | "))}`);
     }

@@ -112,6 +112,39 @@ test("completion offers what can come next", async () => {
   await stage.page.locator(".squiggly-error").first().waitFor({ state: "detached" });
 });
 
+const LATE = [
+  { before: "move 4 ", letter: "m", offered: "meters", after: "eters" },
+  { before: "", letter: "t", offered: "turn left", after: "urn left" },
+];
+for (const { before, letter, offered, after } of LATE) {
+  test(`while the server is late, Enter ends the line behind ${before}${letter}${after}`, async () => {
+    await stage.line("turn").first().click();
+    await stage.page.keyboard.press("End");
+    await stage.page.keyboard.press("Enter");
+    await stage.type(before);
+    const item = stage.page.locator(".suggest-widget.visible .monaco-list-row", { hasText: offered }).first();
+    // The editor asks for nothing while it waits for what follows the blank.
+    await until(`${offered} is offered`, async () => {
+      await stage.type(letter);
+      const isOffered = await item.waitFor({ timeout: 2000 }).then(() => true, () => false);
+      if (!isOffered) await stage.page.keyboard.press("Backspace");
+      return isOffered;
+    });
+    const [server] = stage.servers();
+    process.kill(server, "SIGSTOP");
+    try {
+      await stage.type(after);
+      await stage.page.keyboard.press("Enter");
+      await stage.type("turn left 9");
+    } finally {
+      process.kill(server, "SIGCONT");
+    }
+    await stage.page.keyboard.press("Escape");
+    await stage.page.keyboard.press("Control+S");
+    await until("it is saved", () => stage.read("yard.pyr").includes(`\n  ${before}${letter}${after}\n  turn left 9\n`));
+  });
+}
+
 test("hovering over a robot shows its equations", async () => {
   await stage.line("robot rover").first().locator("span span", { hasText: "rover" }).first().hover();
   const hover = stage.page.locator(".monaco-hover .hover-contents, .monaco-resizable-hover .hover-contents");

@@ -49,7 +49,7 @@ impl Database {
         self.set_pieces(file, slots);
         self.touch(file);
         self.update_imports(file);
-        self.forget_absence(path);
+        self.absences.remove_path(path);
         self.validate_with_importers(path);
         self.validate_imported(file, &before);
         file
@@ -63,7 +63,7 @@ impl Database {
         self.forget(file);
         let before = self.forget_imports(file);
         self.touch(file);
-        self.absences.remove(&file);
+        self.absences.remove_importer(file);
         if let Some(closed) = self.files[file.0 as usize].take() {
             self.validate_with_importers(&closed.path);
         }
@@ -294,6 +294,7 @@ impl Database {
         let order = |id: EntityId| entities[id.0 as usize].as_ref().map_or(0, |data| data.order);
         if let Some(key) = defined_key(file, &data.parse) {
             count_environment(&mut self.changed_environments, &key, 1);
+            self.script_names.forget(&key);
             self.names.define(key, id, order);
         }
         for key in used_keys(file, &data.parse) {
@@ -313,6 +314,7 @@ impl Database {
         }
         if let Some(key) = defined_key(file, &data.parse) {
             count_environment(&mut self.changed_environments, &key, -1);
+            self.script_names.forget(&key);
             self.names.undefine(&key, id);
         }
         for key in used_keys(file, &data.parse) {
@@ -332,6 +334,10 @@ impl Database {
     }
 
     pub(super) fn validate_file(&mut self, file: FileId) {
+        if let Some(postponed) = &mut self.postponed {
+            postponed.alone.insert(file);
+            return;
+        }
         for index in 0..self.slots(file).len() {
             self.validate(self.slots(file)[index].entity);
         }

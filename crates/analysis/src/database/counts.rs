@@ -116,6 +116,28 @@ fn an_edit_in_an_imported_file_asks_who_uses_the_name() {
 
 /// An import that comes too late goes to the top: an edit there makes it another place, though it keeps its words.
 #[test]
+fn files_that_come_together_are_asked_once() {
+    let open_chain = |database: &mut Database, length: usize| {
+        let mut asked = 0;
+        for number in 0..length {
+            let text = format!("import \"{}.pyr\"\nwheel w{number} with radius 4", number + 1);
+            database.open(&format!("{number}.pyr"), &text);
+            asked += database.last_edit().revalidated;
+        }
+        asked
+    };
+    let (mut one_by_one, mut together) = (Database::new(), Database::new());
+    open_chain(&mut one_by_one, 20);
+    together.begin_together();
+    assert_eq!(open_chain(&mut together, 20), 0);
+    together.end_together();
+    assert_eq!(together.last_edit().revalidated, 20 * 2, "each entity once");
+    for file in one_by_one.files() {
+        assert_eq!(together.diagnostics(file), one_by_one.diagnostics(file));
+    }
+}
+
+#[test]
 fn a_late_import_is_asked_when_the_top_of_its_file_changes() {
     let mut database = Database::new();
     let file = database.open("main.pyr", "movement\nimport \"lib.pyr\"\n");

@@ -1,21 +1,11 @@
-//! What files import, and why some of it is not there.
+//! What files import.
 
 use pydslrep_syntax::ast::Entity;
 use rustc_hash::FxHashSet;
 
+use super::absences::Absence;
 use super::{Database, EntityId, FileId};
 use crate::path;
-
-/// Why a file that is imported cannot be used. The database sees no disk: whoever reads files for it says so.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Absence {
-    /// There is no such file.
-    Missing,
-    /// The path leads to where imports may not lead.
-    Outside,
-    /// The file is there and cannot be read; in words that go after "because".
-    Unreadable(String),
-}
 
 /// The imports of a file, in order.
 #[derive(Debug, Clone, Default)]
@@ -25,7 +15,38 @@ pub(super) struct Imports {
     pub(super) paths: Vec<String>,
 }
 
+/// Files whose problems are to be asked again.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Postponed {
+    /// These with all that import them, near or far.
+    with_importers: FxHashSet<FileId>,
+    /// Only these.
+    pub(super) alone: FxHashSet<FileId>,
+}
+
 impl Database {
+    /// Makes changes to files that belong together, such as a program and all that it imports: whose problems they
+    /// invalidate is asked again once, at the end, however long the chains of imports are. Until then the answers about
+    /// problems are those from before.
+    pub fn begin_together(&mut self) {
+        self.postponed.get_or_insert_default();
+    }
+
+    /// Whether [`Self::begin_together`] was called and [`Self::end_together`] is still to come.
+    pub fn is_together(&self) -> bool {
+        self.postponed.is_some()
+    }
+
+    /// Ends what [`Self::begin_together`] began.
+    pub fn end_together(&mut self) {
+        let Some(Postponed { with_importers, alone }) = self.postponed.take() else { return };
+        let mut files = self.with_importers(with_importers);
+        files.extend(alone);
+        for file in files {
+            self.validate_file(file);
+        }
+    }
+
     /// The paths a file imports, whether or not there is such a file.
     pub fn imports(&self, file: FileId) -> &[String] {
         self.imports.get(&file).map_or(&[], |imports| &imports.paths)
@@ -39,7 +60,7 @@ impl Database {
 
     /// Why a path that a file imports leads nowhere, where this is known.
     pub fn absence(&self, importer: FileId, path: &str) -> Option<&Absence> {
-        self.absences.get(&importer)?.get(path)
+        self.absences.get(importer, path)
     }
 
     /// Says why a path that a file imports leads nowhere, or (`None`) that nothing is known against it. It is kept
@@ -49,11 +70,10 @@ impl Database {
         if self.absence(importer, path) == absence.as_ref() || self.get(importer).is_none() {
             return;
         }
-        let absences = self.absences.entry(importer).or_default();
         match absence {
-            Some(absence) => absences.insert(path.to_owned(), absence),
-            None => absences.remove(path),
-        };
+            Some(absence) => self.absences.insert(importer, path, absence),
+            None => self.absences.remove(importer, path),
+        }
         let importer = self.path(importer).to_owned();
         self.validate_with_importers(&importer);
         if let Some(imported) = self.file(path) {
@@ -159,30 +179,29 @@ impl Database {
         self.touched.extend(importers);
     }
 
-    /// A file of this path is there: nothing but the bounds of imports can be said against it.
-    pub(super) fn forget_absence(&mut self, path: &str) {
-        for absences in self.absences.values_mut() {
-            if absences.get(path).is_some_and(|absence| *absence != Absence::Outside) {
-                absences.remove(path);
-            }
-        }
-    }
-
     /// Asks again a file and all that import it, near or far: a movement may have come with an import, and its robot
     /// with the import of that.
     pub(super) fn validate_with_importers(&mut self, path: &str) {
-        let mut reached = vec![path.to_owned()];
-        let mut seen: FxHashSet<FileId> = self.file(path).into_iter().collect();
-        while let Some(path) = reached.pop() {
-            for importer in self.importers(&path) {
-                if seen.insert(importer) {
-                    reached.push(self.path(importer).to_owned());
-                }
-            }
+        if let Some(postponed) = &mut self.postponed {
+            // Those that import these follow at the end, once for all.
+            postponed.with_importers.extend(self.by_path.get(path));
+            postponed.with_importers.extend(self.importers.get(path).into_iter().flatten());
+            return;
         }
-        for file in seen {
+        let direct = self.file(path).into_iter().chain(self.importers(path)).collect();
+        for file in self.with_importers(direct) {
             self.validate_file(file);
         }
+    }
+
+    /// Some files and all that import one of them, near or far.
+    fn with_importers(&self, files: FxHashSet<FileId>) -> FxHashSet<FileId> {
+        let mut reached: Vec<FileId> = files.iter().copied().collect();
+        let mut seen = files;
+        while let Some(file) = reached.pop() {
+            reached.extend(self.importers(self.path(file)).filter(|importer| seen.insert(*importer)));
+        }
+        seen
     }
 
     /// Files that a file imports, or did before, may use what nothing in them does.

@@ -12,7 +12,7 @@ use smol_str::SmolStr;
 
 use super::{Database, EntityId, FileId};
 use crate::diagnostics::PlannedRun;
-use crate::environment::Environment;
+use crate::environment::{Environment, Robot};
 use crate::names::Key;
 use crate::{Fingerprint, scene};
 
@@ -69,6 +69,18 @@ impl Database {
         let Some(text) = self.scene_text(id) else { return Ok(floor) };
         let (scene, problems) = pydslrep_scene::read(text, floor);
         if problems.is_empty() { Ok(scene) } else { Err(problems) }
+    }
+
+    /// An environment with what its scene file says of its robots' objects, as far as that is right.
+    pub(crate) fn with_objects(&self, id: EntityId, environment: Environment) -> Environment {
+        // Most files say nothing of them and are not read.
+        let Some(text) = self.scene_text(id).filter(|text| text.contains("object")) else {
+            return environment;
+        };
+        let robots = pydslrep_scene::read(text, scene(&environment)).0.robots;
+        let placed = environment.robots.into_iter().zip(robots);
+        let placed = placed.map(|(robot, placed)| Robot { objects: placed.objects, ..robot });
+        Environment { robots: placed.collect(), ..environment }
     }
 
     /// What is wrong with the text of a scene file, in the order of the text. Without an environment, or where a robot of
@@ -197,6 +209,28 @@ mod tests {
 
     fn changed(database: &mut Database) -> Vec<String> {
         database.take_changed_environments().into_iter().map(|(_, name)| name.to_string()).collect()
+    }
+
+    #[test]
+    fn an_environment_has_the_objects_that_its_scene_names() {
+        let mut database = Database::new();
+        let file = database.open("a.pyr", PROGRAM);
+        let (id, _) = database.environments(file)[0].clone();
+        let paths = |database: &Database| {
+            let objects = database.environment(id).unwrap().robots.remove(0).objects;
+            objects
+                .into_iter()
+                .map(|(part, paths)| format!("{part}: {}", paths.join(" ")))
+                .collect::<Vec<_>>()
+        };
+        assert!(paths(&database).is_empty());
+        let scene = "[robots.r]\nobject = '/P3DX'\nstart = 1\n[robots.r.wheels.a]\nobject = '/P3DX/left'";
+        database.set_scene(file, "e", Some(scene));
+        assert_eq!(
+            paths(&database),
+            ["a: /P3DX/left", "r: /P3DX"],
+            "what is wrong with others does not matter"
+        );
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Problems that nobody has to hear of, because the one they follow from is reported.
 
 use pydslrep_syntax::EntityKind;
+use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
 use super::problem::Problem;
@@ -12,11 +13,11 @@ pub(super) struct Consequences<'a> {
     /// Text that may declare or use anything is hidden in a comment.
     hidden: bool,
     /// What references are slips for: it is no wonder that nothing uses it.
-    meant: Vec<&'a (EntityKind, SmolStr)>,
+    meant: FxHashSet<&'a (EntityKind, SmolStr)>,
     /// The kinds of entities that did not read well: they may use anything of the kinds below them.
     broken: Vec<EntityKind>,
     /// The names nobody declares, where as many declarations of their kind lack a name.
-    nameless: Vec<&'a (EntityKind, SmolStr)>,
+    nameless: FxHashSet<&'a (EntityKind, SmolStr)>,
 }
 
 impl<'a> Consequences<'a> {
@@ -34,7 +35,7 @@ impl<'a> Consequences<'a> {
             hidden: has_hidden_text(database, file),
             meant: slips.collect(),
             broken: Vec::new(),
-            nameless: Vec::new(),
+            nameless: FxHashSet::default(),
         };
         if problems.iter().any(|(_, problem)| problem.rule == &syntax_error::RULE) {
             consequences.look_at_broken(database, troubled, problems);
@@ -56,7 +57,9 @@ impl<'a> Consequences<'a> {
             let Some((tree, kind)) = parse.entity.as_ref().and_then(|tree| Some((tree, tree.kind()?))) else {
                 continue;
             };
-            self.broken.push(kind);
+            if !self.broken.contains(&kind) {
+                self.broken.push(kind);
+            }
             if tree.name().is_none() {
                 nameless.push(kind);
             }
@@ -76,11 +79,11 @@ impl<'a> Consequences<'a> {
 
     pub(super) fn include(&self, problem: &Problem) -> bool {
         if problem.rule == &unused_declaration::RULE {
-            let named = problem.about.as_ref().is_some_and(|meant| self.meant.contains(&meant));
+            let named = problem.about.as_ref().is_some_and(|meant| self.meant.contains(meant));
             return self.hidden || named || problem.users.iter().any(|kind| self.broken.contains(kind));
         }
         if problem.rule == &unresolved_reference::RULE {
-            let named = problem.sought.as_ref().is_some_and(|sought| self.nameless.contains(&sought));
+            let named = problem.sought.as_ref().is_some_and(|sought| self.nameless.contains(sought));
             return self.hidden || named;
         }
         false

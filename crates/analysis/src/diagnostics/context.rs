@@ -11,6 +11,7 @@ use smol_str::SmolStr;
 use super::syntax_error::{self, Rewrite};
 use crate::reads::Reads;
 use crate::resolve::drive;
+use crate::script_name::ScriptName;
 use crate::signature::{MovementSignature, Signature};
 use crate::{Absence, Database, EntityId, FileId, Resolution, Target};
 
@@ -72,6 +73,13 @@ impl<'a> Context<'a> {
         let end = span.end.min(entity.span.len());
         let own = Span::new(span.start.min(end), end);
         self.database.slice(self.file, own.shifted(entity.span.start))
+    }
+
+    /// The text of a number for a message: not all of hundreds of digits.
+    pub(super) fn short_text(&self, span: Span) -> String {
+        const MOST: usize = 20;
+        let text = self.text(span);
+        if text.chars().count() <= MOST { text } else { text.chars().take(MOST).chain(['…']).collect() }
     }
 
     /// How long its text is.
@@ -179,11 +187,10 @@ impl<'a> Context<'a> {
         self.database.environments_but_for_case(self.file, &environment.text).len() > 1
     }
 
-    /// The environments of the file with their names, in the order of the text.
-    pub(super) fn environments(&self) -> Vec<(EntityId, SmolStr)> {
+    /// What the script of an environment of the file is called, and the other environment that is why.
+    pub(super) fn script_name(&self, environment: &Name) -> Option<(ScriptName, Option<EntityId>)> {
         self.reads.borrow_mut().add_kind(EntityKind::Environment);
-        let environments = self.database.environments(self.file).into_iter();
-        environments.map(|(id, name)| (id, name.text)).collect()
+        self.database.script_name(self.file, &environment.text)
     }
 
     fn note_name(&self, file: FileId, kind: EntityKind, name: &Name) {

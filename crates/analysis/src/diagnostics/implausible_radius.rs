@@ -3,6 +3,7 @@
 use pydslrep_syntax::ast::{Entity, Number};
 
 use super::context::Context;
+use super::invalid_radius::is_possible;
 use super::problem::Problem;
 use super::{Applicability, Page, Rule};
 use crate::Severity;
@@ -35,7 +36,7 @@ const LARGEST: f64 = 100.0;
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Wheel(wheel)) = context.tree else { return };
     let Some(radius) = &wheel.radius else { return };
-    let Some(value) = radius.value.filter(|value| value.is_finite()) else { return };
+    let Some(value) = radius.value.filter(|value| is_possible(*value)) else { return };
     if value > LARGEST {
         let problem = RULE
             .problem(radius.span, format!("with a radius of {value} cm this wheel is taller than a person"));

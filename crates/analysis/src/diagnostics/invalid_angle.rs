@@ -11,7 +11,7 @@ use crate::Severity;
 pub(super) static RULE: Rule = Rule {
     code: "invalid-angle",
     severity: Severity::Warning,
-    summary: "an angle is negative, zero or more than a full turn",
+    summary: "an angle is negative, zero or more than a full turn; an error beyond 100 turns",
     tag: None,
     applicability: Applicability::Safe,
     page: PAGE,
@@ -22,7 +22,8 @@ const PAGE: Page = Page {
     what: "The angle of a turn is negative, zero, or more than 360 degrees.",
     why: "`left` and `right` already give the direction; a minus sign would reverse it, which is hard to read. A turn \
         by 0 degrees does nothing. More than 360 degrees is more than a full turn: a smaller angle ends at the same \
-        heading sooner.",
+        heading sooner. Beyond 36000 degrees, which are 100 turns, it is an error: no robot is meant to turn for so \
+        long.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5
@@ -44,6 +45,7 @@ environment yard has { rover } robots with { trip } moves",
 
 /// Degrees.
 const FULL_TURN: f64 = 360.0;
+const FARTHEST: f64 = 100.0 * FULL_TURN;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
@@ -51,12 +53,20 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         let ActionKind::Turn(turn) = &action.kind else { continue };
         let Some(TurnExtent::Angle(angle)) = &turn.extent else { continue };
         match angle.value.filter(|value| value.is_finite()) {
+            Some(value) if value.abs() > FARTHEST => problems.push(beyond(context, angle)),
             Some(value) if value < 0.0 => problems.push(backwards(context, turn, angle)),
             Some(0.0) => problems.push(nothing(context, action, angle)),
             Some(value) if value > FULL_TURN => problems.push(too_far(context, action, angle, value)),
             _ => {}
         }
     }
+}
+
+fn beyond(context: &Context<'_>, angle: &Number) -> Problem {
+    let written = context.short_text(angle.span);
+    RULE.problem(angle.span, format!("an angle is at most {FARTHEST} degrees (100 turns), not {written}"))
+        .severity(Severity::Error)
+        .help("write how far to turn, up to 360")
 }
 
 fn nothing(context: &Context<'_>, action: &Action, angle: &Number) -> Problem {
@@ -137,5 +147,18 @@ mod tests {
             "#]],
         );
         check_clean(&program("turn right 360 turn left 0.5"));
+    }
+
+    #[test]
+    fn nobody_turns_for_hours() {
+        check(
+            &program(&format!("turn left 1{} turn right -36000.1", "0".repeat(300))),
+            &expect![[r#"
+            error[invalid-angle] 4:43 "1000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000" an angle is at most 36000 degrees (100 turns), not 10000000000000000000…
+              help: write how far to turn, up to 360
+            error[invalid-angle] 4:356 "-36000.1" an angle is at most 36000 degrees (100 turns), not -36000.1
+              help: write how far to turn, up to 360
+        "#]],
+        );
     }
 }

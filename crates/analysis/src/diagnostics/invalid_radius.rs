@@ -1,4 +1,4 @@
-//! `invalid-radius`: a wheel without size.
+//! `invalid-radius`: a wheel without size, or beyond every robot.
 
 use pydslrep_syntax::ast::Entity;
 
@@ -10,7 +10,7 @@ use crate::Severity;
 pub(super) static RULE: Rule = Rule {
     code: "invalid-radius",
     severity: Severity::Error,
-    summary: "a wheel's radius is zero or negative",
+    summary: "a wheel's radius is zero or negative, or one that no wheel has",
     tag: None,
     applicability: Applicability::Never,
     page: PAGE,
@@ -18,7 +18,7 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "A wheel's radius is zero or negative.",
+    what: "A wheel's radius is zero or negative, below 0.001 centimetres, or above 100000 (a kilometre).",
     why: "The radius is the distance from the centre of the wheel to its edge, in centimetres. The script divides by \
         it to compute how fast the wheel turns, and a wheel without size cannot roll.",
     imports: &[],
@@ -26,17 +26,29 @@ const PAGE: Page = Page {
     fixed: "wheel wheelL with radius 4.5",
 };
 
+/// Centimetres.
+const SMALLEST: f64 = 0.001;
+const LARGEST: f64 = 100_000.0;
+
+/// Whether any wheel could have this radius, in centimetres.
+pub(super) fn is_possible(radius: f64) -> bool {
+    (SMALLEST..=LARGEST).contains(&radius)
+}
+
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Wheel(wheel)) = context.tree else { return };
-    if let Some(radius) =
-        wheel.radius.as_ref().filter(|radius| radius.value.is_some_and(|value| value <= 0.0))
-    {
-        let written = context.text(radius.span);
-        problems.push(
-            RULE.problem(radius.span, format!("a wheel's radius must be above zero, not {written} cm"))
-                .help("write the radius in centimetres, such as `4.5`"),
-        );
-    }
+    let Some(radius) = &wheel.radius else { return };
+    let Some(value) = radius.value.filter(|value| !value.is_infinite() && !is_possible(*value)) else {
+        return;
+    };
+    let written = context.short_text(radius.span);
+    let message = if value <= 0.0 {
+        format!("a wheel's radius must be above zero, not {written} cm")
+    } else {
+        format!("a wheel's radius is from {SMALLEST} to {LARGEST} cm, not {written}")
+    };
+    let problem = RULE.problem(radius.span, message);
+    problems.push(problem.help("write the radius in centimetres, such as `4.5`"));
 }
 
 #[cfg(test)]
@@ -57,5 +69,18 @@ mod tests {
         "#]],
         );
         check_clean("wheel a with radius 0.5");
+    }
+
+    #[test]
+    fn a_radius_is_one_that_wheels_have() {
+        check(
+            &format!("wheel a with radius 0.{}1\nwheel b with radius 1{}", "0".repeat(299), "0".repeat(300)),
+            &expect![[r#"
+                error[invalid-radius] 1:21 "0.000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000001" a wheel's radius is from 0.001 to 100000 cm, not 0.000000000000000000…
+                  help: write the radius in centimetres, such as `4.5`
+                error[invalid-radius] 2:21 "1000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000" a wheel's radius is from 0.001 to 100000 cm, not 10000000000000000000…
+                  help: write the radius in centimetres, such as `4.5`
+            "#]],
+        );
     }
 }

@@ -1,4 +1,4 @@
-//! `invalid-speed`: a speed of nothing, or backwards.
+//! `invalid-speed`: a speed of nothing, backwards, or beyond every robot.
 
 use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{ActionKind, Entity, Move, Number};
@@ -11,7 +11,7 @@ use crate::Severity;
 pub(super) static RULE: Rule = Rule {
     code: "invalid-speed",
     severity: Severity::Error,
-    summary: "a speed is zero or negative",
+    summary: "a speed is zero or negative, or one that no robot has",
     tag: None,
     applicability: Applicability::Suggested,
     page: PAGE,
@@ -19,9 +19,10 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "The speed after `at` is zero or negative.",
-    why: "A robot with speed zero never arrives. A speed has no direction: to drive backwards, make the distance \
-        negative. Without `at`, the robot drives at 9 centimetres per second.",
+    what: "The speed after `at` is zero or negative, below 0.001 centimetres per second, or above 10000.",
+    why: "A robot with speed zero never arrives, and one at 0.001 centimetres per second takes more than a day for a \
+        metre. 10000 centimetres per second are 360 kilometres per hour. A speed has no direction: to drive \
+        backwards, make the distance negative. Without `at`, the robot drives at 9 centimetres per second.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5
@@ -41,19 +42,32 @@ movement trip of rover { move -1 meters at 12 }
 environment yard has { rover } robots with { trip } moves",
 };
 
+/// Centimetres per second.
+const SLOWEST: f64 = 0.001;
+const FASTEST: f64 = 10_000.0;
+
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
     for action in &movement.actions {
         let ActionKind::Move(step) = &action.kind else { continue };
         let speed = step.speed.as_ref().and_then(|clause| clause.value.as_ref());
-        if let Some(speed) = speed.filter(|speed| speed.value.is_some_and(|value| value <= 0.0)) {
-            problems.push(problem(context, step, speed));
+        let Some(speed) = speed else { continue };
+        match speed.value.filter(|value| value.is_finite()) {
+            Some(value) if value <= 0.0 => problems.push(problem(context, step, speed)),
+            Some(value) if !(SLOWEST..=FASTEST).contains(&value) => problems.push(beyond(context, speed)),
+            _ => {}
         }
     }
 }
 
+fn beyond(context: &Context<'_>, speed: &Number) -> Problem {
+    let written = context.short_text(speed.span);
+    RULE.problem(speed.span, format!("a speed is from {SLOWEST} to {FASTEST} cm/s, not {written}"))
+        .help("write how fast to drive, or leave out `at` and drive at 9.0 cm/s")
+}
+
 fn problem(context: &Context<'_>, step: &Move, speed: &Number) -> Problem {
-    let written = context.text(speed.span);
+    let written = context.short_text(speed.span);
     let problem = RULE.problem(speed.span, format!("a speed must be above zero, not {written} cm/s"));
     let negative = speed.value.is_some_and(|value| value < 0.0);
     let problem = problem.help(if negative {
@@ -119,5 +133,24 @@ mod tests {
             "#]],
         );
         check_clean(&program("move 4 meters at 0.1"));
+    }
+
+    #[test]
+    fn a_speed_is_one_that_robots_have() {
+        check(
+            &program(&format!("move 4 meters at 0.{}1", "0".repeat(299))),
+            &expect![[r#"
+            error[invalid-speed] 4:36 "0.000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000001" a speed is from 0.001 to 10000 cm/s, not 0.000000000000000000…
+              help: write how fast to drive, or leave out `at` and drive at 9.0 cm/s
+        "#]],
+        );
+        check(
+            &program("move 4 meters at 10000.1"),
+            &expect![[r#"
+            error[invalid-speed] 4:36 "10000.1" a speed is from 0.001 to 10000 cm/s, not 10000.1
+              help: write how fast to drive, or leave out `at` and drive at 9.0 cm/s
+        "#]],
+        );
+        check_clean(&program("move 4 meters at 0.001 move 1 meters at 10000"));
     }
 }

@@ -166,8 +166,49 @@ pub(crate) fn in_entity(database: &Database, id: EntityId) -> (Vec<Problem>, Rea
     (problems, context.into_reads())
 }
 
+/// A problem of a file that is reported.
+struct Reported<'a> {
+    /// Where its entity starts.
+    start: u32,
+    problem: &'a Problem,
+    /// Whether it is an open brace that is closed after declarations that do not belong within it.
+    is_nested: bool,
+}
+
 /// The problems of a file with absolute places.
 pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
+    let located = reported(database, file).into_iter().map(|Reported { start, problem, is_nested }| {
+        let mut diagnostic = located(database, file, start, problem);
+        if is_nested {
+            syntax_error::nested(&mut diagnostic);
+        }
+        diagnostic
+    });
+    let mut diagnostics: Vec<Diagnostic> = located.collect();
+    diagnostics.extend(no_environment::in_file(database, file));
+    diagnostics.extend(planned_collision::in_file(database, file));
+    diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);
+    diagnostics
+}
+
+/// Calls `visit` with the rule, the severity and the start of all that [`in_file`] returns, in no order; their places and
+/// fixes, which take much longer, are not looked for.
+pub(crate) fn visit_in_file(
+    database: &Database,
+    file: FileId,
+    mut visit: impl FnMut(&'static Rule, Severity, u32),
+) {
+    for Reported { start, problem, .. } in reported(database, file) {
+        visit(problem.rule, problem.severity, problem.span.shifted(start).start);
+    }
+    let of_whole = no_environment::in_file(database, file).into_iter();
+    for diagnostic in of_whole.chain(planned_collision::in_file(database, file)) {
+        visit(diagnostic.rule, diagnostic.severity, diagnostic.span.start);
+    }
+}
+
+/// The problems of a file's entities without those that only follow from others, in the order of the text.
+fn reported(database: &Database, file: FileId) -> Vec<Reported<'_>> {
     let troubled = database.troubled(file);
     let ids: Vec<EntityId> = troubled.iter().map(|entity| entity.id).collect();
     let problems: Vec<(u32, &Problem)> = troubled
@@ -177,24 +218,21 @@ pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
         })
         .collect();
     let consequences = Consequences::new(database, file, &ids, &problems);
-    let mut diagnostics: Vec<Diagnostic> = Vec::new();
+    let mut reported: Vec<Reported<'_>> = Vec::with_capacity(problems.len());
     let mut open = None;
     for (start, problem) in problems.into_iter().filter(|(_, problem)| !consequences.include(problem)) {
         match problem.brace {
-            Some(Brace::Unclosed) => open = Some(diagnostics.len()),
+            Some(Brace::Unclosed) => open = Some(reported.len()),
             // It closes what was left open before the declarations in between.
             Some(Brace::Stray) if let Some(unclosed) = open.take() => {
-                syntax_error::nested(&mut diagnostics[unclosed]);
+                reported[unclosed].is_nested = true;
                 continue;
             }
             _ => {}
         }
-        diagnostics.push(located(database, file, start, problem));
+        reported.push(Reported { start, problem, is_nested: false });
     }
-    diagnostics.extend(no_environment::in_file(database, file));
-    diagnostics.extend(planned_collision::in_file(database, file));
-    diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);
-    diagnostics
+    reported
 }
 
 /// The problems of some entities, wherever they are, with absolute places.

@@ -60,15 +60,15 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 }
 
 fn infinite(number: &Number) -> Option<Problem> {
-    let problem = RULE.problem(number.span, "this number is too large to compute with");
-    (!number.value?.is_finite()).then(|| problem.help("write fewer digits"))
+    let problem = || RULE.problem(number.span, "this number is too large to compute with");
+    (!number.value?.is_finite()).then(|| problem().help("write fewer digits"))
 }
 
 fn too_far(step: &Move) -> Option<Problem> {
     let distance = step.distance.as_ref()?;
     let metres = distance.value?.abs() * step.unit.map_or(1.0, |(unit, _)| unit.in_metres());
-    let problem = RULE.problem(distance.span, "a move can be at most 1000 km (1000000 meters) long");
-    (metres.is_finite() && metres > FARTHEST).then(|| problem.help("write a shorter distance"))
+    let problem = || RULE.problem(distance.span, "a move can be at most 1000 km (1000000 meters) long");
+    (metres.is_finite() && metres > FARTHEST).then(|| problem().help("write a shorter distance"))
 }
 
 #[cfg(test)]

@@ -186,7 +186,7 @@ mod tests {
             program,
             CRATE,
             &expect![[r#"
-            move 2 meters at 30: `r` runs into `crate` here after 6.5 s, at x 0.65 m, y 0 m
+            move 2 meters at 30: `r` runs into `crate` here after 6.7 s, at x 0.65 m, y 0 m
         "#]],
         );
         check(program, "[[box]]\nat = [1, 2]\nsize = [0.4, 0.4]", &expect![[""]]);
@@ -201,7 +201,7 @@ mod tests {
             program,
             "[robots.q]\nstart = [0.5, -0.4, 0]",
             &expect![[r#"
-            move 2 meters: `r` runs into `q` here after 4.0 s, at x 0.35 m, y 0 m
+            move 2 meters: `r` runs into `q` here after 4.1 s, at x 0.36 m, y 0 m
               move 2 meters: what `q` does then
         "#]],
         );

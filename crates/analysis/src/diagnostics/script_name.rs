@@ -5,7 +5,7 @@ use pydslrep_syntax::ast::{Entity, Name};
 use super::context::Context;
 use super::problem::Problem;
 use super::{Applicability, Page, Rule};
-use crate::script_name::{Obstacle, obstacle, script_names};
+use crate::script_name::{Obstacle, obstacle};
 use crate::{EntityId, Severity};
 
 pub(super) static RULE: Rule = Rule {
@@ -20,8 +20,8 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "The script of an environment is named after it: `yard` becomes `yard.py`. This name cannot be used: it \
-        belongs to a module of Python or to one that scripts need, Windows has no files of that name, or another \
-        environment's name differs only in case. The script's name then gets the suffix `_env`.",
+        belongs to a module of Python or to one that scripts need, Python runs a file of that name when it starts, \
+        Windows has no files of that name, or another environment's name differs only in case. The script's name then gets the suffix `_env`.",
     why: "When a script runs `import math`, Python looks for `math.py` next to the script first. A script of that name \
         would import itself and stop. And where a computer treats `yard.py` and `Yard.py` as the same file, one \
         script would overwrite the other. With `_env` everything works, but you might look for the script under the \
@@ -51,15 +51,8 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     if obstacle(&name.text).is_none() && !context.has_twin(name) {
         return;
     }
-    let environments = context.environments();
-    let names: Vec<&str> = environments.iter().map(|(_, name)| name.as_str()).collect();
-    let Some(index) = environments.iter().position(|(id, _)| *id == context.id) else { return };
-    let Some(script) = script_names(&names).into_iter().nth(index) else { return };
+    let Some((script, other)) = context.script_name(name) else { return };
     let Some(obstacle) = script.obstacle else { return };
-    let other = match obstacle {
-        Obstacle::SameButForCase(other) => environments.get(other).map(|(id, _)| *id),
-        _ => None,
-    };
     problems.push(problem(context, name, &script.stem, obstacle, other));
 }
 
@@ -77,6 +70,7 @@ fn problem(
         Obstacle::ClientModule => {
             format!("a script `{text}.py` would hide the module `{text}`, which scripts need")
         }
+        Obstacle::StartModule => format!("Python would run a script `{text}.py` whenever it starts"),
         Obstacle::ReservedOnWindows => format!("Windows has no files called `{text}.py`"),
         Obstacle::SameButForCase(_) => {
             let other = other.map_or("", |(_, other)| other.text.as_str());
@@ -118,6 +112,14 @@ mod tests {
             warning[script-name] 4:13 "math" a script `math.py` would hide Python's own module `math`, so the script is called `math_env.py`
               help: give the environment another name
               suggestion: rename the environment to `math_env` -> environment math_env has { r } robots
+        "#]],
+        );
+        check(
+            &program(&["sitecustomize"]),
+            &expect![[r#"
+            warning[script-name] 4:13 "sitecustomize" Python would run a script `sitecustomize.py` whenever it starts, so the script is called `sitecustomize_env.py`
+              help: give the environment another name
+              suggestion: rename the environment to `sitecustomize_env` -> environment sitecustomize_env has { r } robots
         "#]],
         );
         check(

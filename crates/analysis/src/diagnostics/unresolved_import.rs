@@ -114,6 +114,17 @@ mod tests {
     }
 
     #[test]
+    fn a_file_that_comes_is_not_missing_for_those_that_import_it_again() {
+        let mut database = Database::new();
+        let file = database.open("main.pyr", PROGRAM);
+        database.set_absence(file, "parts/x.pyr", Some(Absence::Missing));
+        database.open("main.pyr", "");
+        database.open("parts/x.pyr", "wheel a with radius 4");
+        database.open("main.pyr", PROGRAM);
+        assert_eq!(said(&database), "");
+    }
+
+    #[test]
     fn a_file_outside_stays_there_when_it_is_open() {
         let mut database = Database::new();
         let file = database.open("main.pyr", PROGRAM);

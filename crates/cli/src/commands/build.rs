@@ -1,13 +1,17 @@
 //! `pydslrep build`: one Python script per environment.
 
-use std::fs;
+use std::cell::LazyCell;
+use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
 use pydslrep_analysis::FileId;
 use pydslrep_config::{Config, Target};
-use pydslrep_script::{file_name, generate, may_replace};
+use pydslrep_output::{
+    Changed, RuntimeFolder, check_inside, check_script, has_runtime, write_runtime, write_script,
+};
+use pydslrep_script::{file_name, generate};
 
 use crate::failure::Failure;
 use crate::inputs::Inputs;
@@ -21,10 +25,15 @@ Examples:
   pydslrep build rooms/ -o scripts              all programs of a folder
   pydslrep build patrol.pyr --environment hall --stdout | less
   pydslrep build patrol.pyr --target vrep       for V-REP's legacy remote API
+  pydslrep build patrol.pyr --force             also replaces scripts that you changed
 
-The nearest pydslrep.toml above a program sets the default folder and target:
+Scripts import the Python package pydslrep_runtime, whose folder is written next to them unless it
+is installed in your Python. It is replaced when its version differs, and kept if you change it.
+
+The nearest pydslrep.toml above a program sets the defaults:
   output = \"scripts\"
-  target = \"coppeliasim\"";
+  target = \"coppeliasim\"
+  write-runtime = false";
 
 /// Write a Python script for each environment of programs
 #[derive(Debug, Args)]
@@ -45,6 +54,12 @@ pub(crate) struct Arguments {
     /// Print the script instead of writing a file
     #[arg(long, conflicts_with = "output")]
     stdout: bool,
+    /// Replace scripts that were changed since they were generated
+    #[arg(long, conflicts_with = "stdout")]
+    force: bool,
+    /// Do not write the folder `pydslrep_runtime`, which scripts import
+    #[arg(long)]
+    no_runtime: bool,
 }
 
 /// A script and its destination.
@@ -53,6 +68,8 @@ struct Script {
     environment: String,
     lines_in: usize,
     text: String,
+    /// Whether the package that it imports goes next to it.
+    needs_runtime: bool,
 }
 
 /// Runs the command.
@@ -77,8 +94,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         if ids.is_empty() {
             output::say(&format!("{} has no environment: nothing to generate\n", inputs.shown(file)));
         }
+        let settings = inputs.settings(file);
+        let lines_in = LazyCell::new(|| lines::of_program(inputs.database(), file));
         for environment in &prepared.environments {
-            let text = match generate(environment, inputs.settings(file).target) {
+            let text = match generate(environment, settings.target, &inputs.file_name(file)) {
                 Ok(text) => text,
                 Err(error) => {
                     output::error(&error.to_string(), None);
@@ -87,8 +106,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
                 }
             };
             let path = folder(&inputs, file, arguments)?.join(file_name(environment));
-            let lines_in = lines::of_program(inputs.database(), file);
-            scripts.push(Script { path, environment: environment.name.clone(), lines_in, text });
+            let needs_runtime = settings.write_runtime && !arguments.no_runtime;
+            let environment = environment.name.clone();
+            scripts.push(Script { path, environment, lines_in: *lines_in, text, needs_runtime });
         }
     }
     failures.iter().for_each(output::fail);
@@ -98,14 +118,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     if arguments.stdout {
         print(&scripts)?;
     } else {
-        write(&scripts)?;
+        write(&scripts, if arguments.force { Changed::Replace } else { Changed::Keep })?;
     }
     Ok(ExitCode::from(if failures.is_empty() { u8::from(has_errors) } else { Failure::EXIT_CODE }))
 }
 
 fn folder(inputs: &Inputs, file: FileId, arguments: &Arguments) -> Result<PathBuf, Failure> {
-    match arguments.output.clone().or_else(|| inputs.script_folder(file)) {
-        Some(folder) => Ok(folder),
+    if let Some(folder) = &arguments.output {
+        return Ok(folder.clone());
+    }
+    match inputs.script_folder(file) {
+        Some(folder) => {
+            check_inside(&folder, inputs.settings(file).output_depth())?;
+            Ok(folder)
+        }
         None if arguments.stdout => Ok(PathBuf::new()),
         None => Err(Failure::new("no folder for the script of a program from standard input")
             .help("choose one with -o DIR, or use --stdout")),
@@ -126,39 +152,41 @@ fn print(scripts: &[Script]) -> Result<(), Failure> {
 }
 
 /// Writes all scripts; or none, if one of them cannot be written where it belongs.
-fn write(scripts: &[Script]) -> Result<(), Failure> {
-    for (index, script) in scripts.iter().enumerate() {
-        if scripts[..index].iter().any(|other| other.path == script.path) {
+fn write(scripts: &[Script], changed: Changed) -> Result<(), Failure> {
+    let mut paths = HashSet::new();
+    for script in scripts {
+        if !paths.insert(&script.path) {
             return Err(Failure::new(format!("{} would be written twice", script.path.display())).help(
                 "two programs have an environment of the same name: build them into different folders",
             ));
         }
-        if is_foreign(&script.path) {
-            return Err(Failure::new(format!(
-                "{} exists and is not a generated script",
-                script.path.display()
-            ))
-            .help("move it away, or choose another folder with -o DIR"));
-        }
+        check_script(&script.path, changed)?;
     }
     for script in scripts {
-        if let Some(folder) = script.path.parent() {
-            fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, &error))?;
+        write_script(&script.path, &script.text, changed)?;
+    }
+    let runtimes = write_runtimes(scripts)?;
+    if scripts.is_empty() {
+        return Ok(());
+    }
+    output::print(&report(scripts, &runtimes))?;
+    for runtime in &runtimes {
+        if let RuntimeFolder::Kept(kept) = runtime {
+            output::warning(&kept.to_string(), Some(&kept.help()));
         }
-        fs::write(&script.path, &script.text).map_err(|error| Failure::unwritten(&script.path, &error))?;
     }
-    if scripts.is_empty() { Ok(()) } else { output::print(&report(scripts)) }
+    Ok(())
 }
 
-/// Whether the path holds anything that this command did not write.
-fn is_foreign(path: &Path) -> bool {
-    match fs::read(path) {
-        Ok(bytes) => !may_replace(&bytes),
-        Err(_) => path.exists(),
-    }
+/// Writes the package that scripts import, once for each folder.
+fn write_runtimes(scripts: &[Script]) -> Result<Vec<RuntimeFolder>, Failure> {
+    let needing = scripts.iter().filter(|script| script.needs_runtime);
+    let folders: BTreeSet<&Path> = needing.filter_map(|script| script.path.parent()).collect();
+    let is_installed = LazyCell::new(has_runtime);
+    folders.into_iter().map(|folder| Ok(write_runtime(folder, || *is_installed)?)).collect()
 }
 
-fn report(scripts: &[Script]) -> String {
+fn report(scripts: &[Script], runtimes: &[RuntimeFolder]) -> String {
     let mut table = output::table(["environment", "script", "lines of program", "lines of Python"]);
     for script in scripts {
         table.add_row([
@@ -169,5 +197,10 @@ fn report(scripts: &[Script]) -> String {
         ]);
     }
     output::align_right(&mut table, &[2, 3]);
-    format!("{}\n", table.trim_fmt())
+    let is_news =
+        |runtime: &&RuntimeFolder| !matches!(runtime, RuntimeFolder::Current(_) | RuntimeFolder::Kept(_));
+    let news: BTreeSet<String> = runtimes.iter().filter(is_news).map(RuntimeFolder::to_string).collect();
+    let news: String = news.iter().map(|line| output::wrapped(line) + "\n").collect();
+    let gap = if news.is_empty() { "" } else { "\n" };
+    format!("{}\n{gap}{news}", table.trim_fmt())
 }

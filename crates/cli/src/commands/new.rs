@@ -1,6 +1,5 @@
 //! `pydslrep new`: a starter program with its scene.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -8,8 +7,9 @@ use clap::Args;
 
 use crate::failure::Failure;
 use crate::report::output;
+use pydslrep_output::write_new_folder;
 use pydslrep_scene::ENDING;
-use pydslrep_text::file_names::PROGRAM_EXTENSION as EXTENSION;
+use pydslrep_text::file_names::{PROGRAM_EXTENSION as EXTENSION, is_reserved_on_windows};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -35,20 +35,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             Failure::new(format!("`{}` cannot be a name in a program", folder.display()))
                 .help("use letters, digits and `_`; don't start with a digit: `pydslrep new patrol_1`")
         })?;
+    if is_reserved_on_windows(name) {
+        return Err(Failure::new(format!("Windows has no files called `{name}`")).help("choose another name"));
+    }
     if folder.exists() {
         return Err(Failure::new(format!("{} already exists", folder.display())).help("choose another name"));
     }
-    let program = folder.join(format!("{name}.{EXTENSION}"));
-    fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, &error))?;
-    let scene = folder.join(format!("{name}_area{ENDING}"));
-    for (path, text) in [(&program, text(name)), (&scene, scene_text())] {
-        fs::write(path, text).map_err(|error| Failure::unwritten(path, &error))?;
-    }
+    let files = [(format!("{name}.{EXTENSION}"), text(name)), (format!("{name}_area{ENDING}"), scene_text())];
+    let files = files.each_ref().map(|(name, text)| (name.as_str(), text.as_str()));
+    write_new_folder(folder, &files).map_err(|error| Failure::unwritten(folder, &error))?;
+    let [program, scene] = files.map(|(name, _)| folder.join(name));
     output::print(&next_steps(&program, &scene))?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn is_name(name: &str) -> bool {
+/// Whether a text can be a name in a program.
+pub(crate) fn is_name(name: &str) -> bool {
     name.chars().all(|c| c == '_' || c.is_ascii_alphanumeric())
         && !name.starts_with(|c: char| c.is_ascii_digit())
 }

@@ -8,6 +8,7 @@ use comfy_table::{ColumnConstraint, ContentArrangement};
 use pydslrep_analysis::environment::Environment;
 use pydslrep_config::Config;
 use pydslrep_kinematics::{ActionIndex, Leg, Pose, RobotPath};
+use pydslrep_output::check_outputs;
 use pydslrep_scene::{Collision, Scene, Thing, collisions};
 use serde::Serialize;
 
@@ -59,6 +60,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     if let (Some(scene), [id, ..]) = (&arguments.scene, ids.as_slice()) {
         inputs.use_scene(file, *id, scene)?;
     }
+    check_outputs(&arguments.pictures.outputs().collect::<Vec<_>>(), &inputs.read_paths())?;
     let prepared = program::prepare(&inputs, file, &ids);
     let planned = |environment: Environment| {
         let scene = inputs.scene(file, &environment)?;

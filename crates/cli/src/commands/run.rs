@@ -2,31 +2,33 @@
 
 use std::ffi::OsString;
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Args;
+use pydslrep_analysis::environment::Robot;
 use pydslrep_config::{Config, Target};
+use pydslrep_output::{Kind, TemporaryFolder, check_outputs, provide_runtime, write_output};
+use pydslrep_scene::Scene;
 use pydslrep_script::{file_name, generate};
-use pydslrep_simulator::{Options, Simulator};
+use pydslrep_simulator::{Engine, Options, Simulator};
 use pydslrep_trace::Map;
-use tempfile::TempDir;
 
 use crate::failure::Failure;
-use crate::inputs::Inputs;
-use crate::inputs::program;
-use crate::options::{above_zero, target_parser};
+use crate::inputs::{Inputs, paths, program};
+use crate::options::{above_zero, engine_parser, target_parser};
 use crate::report::output;
 use crate::run::driven::Driven;
 use crate::run::interrupt::{self, Interrupts};
 use crate::run::outcome::Outcome;
+use crate::run::own_robots::{self, OwnRobot};
 use crate::run::pictures::Pictures;
 use crate::run::planned::Planned;
 use crate::run::progress::Progress;
+use crate::run::python::{self, Packages};
 use crate::run::script::{Ending, Script, drive};
-use crate::run::{exploring, python, vrep_client};
+use crate::run::{exploring, vrep_client};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -37,11 +39,15 @@ Examples:
   pydslrep run patrol.pyr --host 127.0.0.1 --port 23000
                                                    in a CoppeliaSim that is running there
   pydslrep run patrol.pyr --target vrep            with V-REP's legacy remote API
+  pydslrep run patrol.pyr --robot my_robot:Rover   with a robot of your own: the class Rover in
+                                                   my_robot.py, next to the program
 
 The first run creates a Python virtual environment in your cache folder and installs the
 CoppeliaSim client library into it, which needs Python 3.11 or later and network access.
+The first run with --odometry does the same with NumPy and SciPy.
 With --target vrep, your own Python runs the script with V-REP's client (sim.py or vrep.py and
-its library) from the program's folder or from Python's path.";
+its library) from the program's folder or from Python's path. If all robots are your own, your
+own Python runs the script without a simulator.";
 
 /// Run a program: check it, generate its script, and run that in the embedded simulator
 #[derive(Debug, Args)]
@@ -55,9 +61,12 @@ pub(crate) struct Arguments {
     /// The scene to run in [default: ENVIRONMENT.scene.toml next to the program, if it exists]
     #[arg(long, value_name = "FILE", conflicts_with = "host")]
     scene: Option<PathBuf>,
-    /// The seed of the scene's noise: the same seed gives the same run
+    /// The seed of the scene's noise and the engine's: the same seed gives the same run
     #[arg(long, value_name = "N", conflicts_with = "host")]
     seed: Option<u64>,
+    /// The engine to imitate: what a physics engine does to robots, and its server to scripts
+    #[arg(long, value_name = "ENGINE", default_value = "ideal", value_parser = engine_parser(), conflicts_with = "host")]
+    engine: Engine,
     /// The simulator that the script is for [default: that of pydslrep.toml, else coppeliasim]
     #[arg(long, value_name = "TARGET", value_parser = target_parser())]
     target: Option<Target>,
@@ -84,6 +93,9 @@ pub(crate) struct Arguments {
     /// Hide progress
     #[arg(long)]
     no_progress: bool,
+    /// Drive with a class of your own instead of a simulator, all robots or one; may be repeated
+    #[arg(long, value_name = "[ROBOT=]MODULE:CLASS", value_parser = OwnRobot::parse)]
+    robot: Vec<OwnRobot>,
     /// Use the CoppeliaSim on this machine instead of the embedded simulator
     #[arg(long, value_name = "ADDRESS")]
     host: Option<String>,
@@ -96,6 +108,19 @@ pub(crate) struct Arguments {
     /// The Python to run the script with [default: python3]
     #[arg(long, value_name = "PATH")]
     python: Option<PathBuf>,
+}
+
+impl Arguments {
+    /// The files to write.
+    fn outputs<'a>(&'a self, map: Option<&'a Path>) -> Vec<(&'a Path, Kind)> {
+        let others = [
+            (self.trace.as_deref(), Kind::Trace),
+            (map, Kind::Map),
+            (self.figures.as_deref(), Kind::Figures),
+        ];
+        let others = others.into_iter().filter_map(|(path, kind)| Some((path?, kind)));
+        self.pictures.outputs().chain(others).collect()
+    }
 }
 
 /// Runs the command.
@@ -113,7 +138,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         return Ok(ExitCode::FAILURE);
     };
     let name = file_name(&environment);
-    let text = match generate(&environment, target) {
+    let text = match generate(&environment, target, &inputs.file_name(file)) {
         Ok(text) => text,
         Err(error) => {
             output::error(&error.to_string(), None);
@@ -122,8 +147,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     };
     let mut scene = inputs.scene(file, &environment)?;
     scene.seed = arguments.seed.unwrap_or(scene.seed);
-    let home = inputs.place(file).and_then(Path::parent).unwrap_or(Path::new("")).to_owned();
-    let run = Run { arguments, target, home, planned: Planned::new(environment, scene)? };
+    let map =
+        exploring::explores(&environment).then(|| exploring::file(arguments.map.as_deref(), &environment));
+    let outputs = arguments.outputs(map.as_deref());
+    check_outputs(&outputs, &inputs.read_paths())?;
+    let home = inputs.place(file).and_then(Path::parent).unwrap_or(Path::new(".")).to_owned();
+    let simulated = own_robots::simulated(&arguments.robot, &environment)?;
+    let run = Run { arguments, target, home, simulated, map, planned: Planned::new(environment, scene)? };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let code = runtime.map_err(|error| unstarted(&error))?.block_on(run.drive(&name, &text))?;
     Ok(ExitCode::from(code))
@@ -133,11 +163,21 @@ fn unstarted(error: &dyn std::fmt::Display) -> Failure {
     Failure::new(format!("cannot start a run: {error}"))
 }
 
+/// What tells the clients of this run from others: the name of its folder is unique.
+fn token(folder: &Path) -> String {
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    format!("{}-{name}", std::process::id())
+}
+
 struct Run<'a> {
     arguments: &'a Arguments,
     target: Target,
     /// The program's folder.
     home: PathBuf,
+    /// The indices of the robots that a simulator drives.
+    simulated: Vec<usize>,
+    /// The destination of the map, if a robot explores.
+    map: Option<PathBuf>,
     planned: Planned,
 }
 
@@ -151,29 +191,46 @@ impl Run<'_> {
             python = self.python() => python?,
             () = interrupts.next() => return Ok(interrupt::EXIT_CODE),
         };
-        let folder =
-            tempfile::Builder::new().prefix("pydslrep-").tempdir().map_err(|error| unstarted(&error))?;
-        if self.target == Target::VRep {
+        let folder = TemporaryFolder::new("run-").map_err(|error| unstarted(&error))?;
+        if self.target == Target::VRep && self.needs_simulator() {
             vrep_client::prepare(&python, &self.home, folder.path()).await?;
         }
-        let simulator = if self.arguments.host.is_none() { Some(self.simulator()?) } else { None };
+        let runtime = python::cache().and_then(|cache| Ok(provide_runtime(&cache)?));
+        // Without a cache, the package is written for this run only.
+        let runtime = runtime.or_else(|_| provide_runtime(folder.path()))?;
+        let is_embedded = self.arguments.host.is_none() && self.needs_simulator();
+        let token = token(folder.path());
+        let simulator = if is_embedded { Some(self.simulator(&token)?) } else { None };
         let path = folder.path().join(name);
         fs::write(&path, text).map_err(|error| Failure::unwritten(&path, &error))?;
-        let trace = self.trace(&folder)?;
+        let trace = self.trace(folder.path());
         let map = folder.path().join("map.json");
         let script = Script {
             python,
-            isolated: self.target == Target::CoppeliaSim,
+            isolated: self.target == Target::CoppeliaSim && !self.has_own_robots(),
+            runtime,
+            modules: if self.has_own_robots() { Some(paths::absolute(&self.home)?) } else { None },
+            token: is_embedded.then_some(token),
             arguments: self.script_arguments(&path, &map, trace.as_deref(), simulator.as_ref()),
         };
-        let mut driven = Driven::new(self.planned.environment.robots.iter().map(|robot| robot.name.as_str()));
+        let robots = self.planned.environment.robots.iter().map(|robot| robot.name.as_str());
+        let in_scene = if is_embedded { self.simulated.clone() } else { Vec::new() };
+        let mut driven = Driven::new(robots, in_scene);
         let mut progress = Progress::new(&self.planned, self.arguments.no_progress);
         let begin = Instant::now();
         let ending = drive(&script, simulator.as_ref(), &mut driven, &mut progress, &mut interrupts).await;
         let wall = begin.elapsed();
         progress.clear();
+        let strangers = simulator.as_ref().map_or(0, Simulator::strangers);
+        if strangers > 0 {
+            let others = output::count(strangers, "connection");
+            output::warning(
+                &format!("{others} of other programs to the simulator of this run refused"),
+                None,
+            );
+        }
         drop(simulator);
-        if let (Some(trace), true) = (&trace, self.arguments.host.is_some()) {
+        if let (Some(trace), true) = (&trace, self.needs_trace()) {
             // Without a trace, nothing was driven.
             let _ = driven.read(trace);
             self.planned.start_from(&driven)?;
@@ -182,48 +239,67 @@ impl Run<'_> {
         self.report(ending?, &driven, wall)
     }
 
+    /// Whether any robot is not the user's own.
+    fn needs_simulator(&self) -> bool {
+        !self.simulated.is_empty()
+    }
+
+    fn has_own_robots(&self) -> bool {
+        !self.arguments.robot.is_empty()
+    }
+
+    /// Whether the script alone knows some of the paths.
+    fn needs_trace(&self) -> bool {
+        self.arguments.host.is_some() || self.has_own_robots()
+    }
+
     async fn python(&self) -> Result<PathBuf, Failure> {
         let chosen = self.arguments.python.as_deref();
-        match self.target {
-            Target::CoppeliaSim => python::prepare(chosen, self.arguments.no_progress).await,
-            Target::VRep => python::interpreter(chosen).await,
+        if self.target == Target::CoppeliaSim && self.needs_simulator() {
+            python::prepare(chosen, self.packages(), self.arguments.no_progress).await
+        } else {
+            python::interpreter(chosen).await
         }
     }
 
-    /// The port of each robot. V-REP needs a different one for each: a robot with the port of an earlier one gets a free one.
-    fn ports(&self) -> Vec<u16> {
-        let robots = &self.planned.environment.robots;
-        let is_taken = |index: usize, port| robots[..index].iter().any(|robot| robot.port == port);
-        let ports = robots.iter().enumerate().map(|(index, robot)| match self.target {
-            Target::VRep if is_taken(index, robot.port) => 0,
-            _ => robot.port,
-        });
-        ports.collect()
+    fn packages(&self) -> Packages {
+        if self.arguments.odometry && exploring::explores(&self.planned.environment) {
+            Packages::ClientAndOdometry
+        } else {
+            Packages::Client
+        }
     }
 
-    fn simulator(&self) -> Result<Simulator, Failure> {
+    /// The robots that a simulator drives.
+    fn simulated_robots(&self) -> impl Iterator<Item = &Robot> {
+        self.simulated.iter().map(|index| &self.planned.environment.robots[*index])
+    }
+
+    /// The scene with the robots that a simulator drives: of others it does not know where they are.
+    fn simulated_scene(&self) -> Scene {
+        let scene = &self.planned.scene;
+        let robots = self.simulated.iter().map(|index| scene.robots[*index].clone()).collect();
+        Scene { robots, ..scene.clone() }
+    }
+
+    /// A simulator for this run alone, on ports of its own: a script of an earlier run may still look for its simulator, and
+    /// other programs may know the ports of the program.
+    fn simulator(&self, token: &str) -> Result<Simulator, Failure> {
         let options = Options {
-            ports: self.ports(),
-            any_port_if_taken: true,
+            ports: self.simulated_robots().map(|_| 0).collect(),
+            token: Some(token.to_owned()),
+            engine: self.arguments.engine,
             speed: self.arguments.speed.unwrap_or(1.0),
             paced: self.arguments.speed.is_some(),
             ..Options::default()
         };
-        Simulator::start(self.planned.scene.clone(), &options)
-            .map_err(|error| Failure::new(error.to_string()))
+        Simulator::start(self.simulated_scene(), &options).map_err(|error| Failure::new(error.to_string()))
     }
 
     /// Where the script writes its trace: where the user wants it, or a temporary file if the path is known from nothing else.
-    fn trace(&self, folder: &TempDir) -> Result<Option<PathBuf>, Failure> {
-        match (&self.arguments.trace, &self.arguments.host) {
-            (Some(path), _) => {
-                // The script would report it too, but only after the simulator has started.
-                fs::File::create(path).map_err(|error| Failure::unwritten(path, &error))?;
-                Ok(Some(path.clone()))
-            }
-            (None, Some(_)) => Ok(Some(folder.path().join("trace.jsonl"))),
-            (None, None) => Ok(None),
-        }
+    fn trace(&self, folder: &Path) -> Option<PathBuf> {
+        let temporary = || self.needs_trace().then(|| folder.join("trace.jsonl"));
+        self.arguments.trace.clone().or_else(temporary)
     }
 
     fn script_arguments(
@@ -236,10 +312,10 @@ impl Run<'_> {
         let mut all: Vec<OsString> = vec![path.into()];
         let host = self.arguments.host.as_deref().unwrap_or("127.0.0.1");
         all.extend(["--host".into(), host.into()]);
-        let robots = &self.planned.environment.robots;
+        all.extend(own_robots::arguments(&self.arguments.robot));
         let ports: Vec<String> = match simulator {
-            Some(simulator) => robots
-                .iter()
+            Some(simulator) => self
+                .simulated_robots()
                 .zip(simulator.ports())
                 .map(|(robot, port)| format!("{}={port}", robot.name))
                 .collect(),
@@ -258,29 +334,26 @@ impl Run<'_> {
                 all.extend(["--extent".into(), extent.to_string().into()]);
             }
             if simulator.is_some() {
-                all.extend(exploring::arguments(&self.planned.scene));
+                all.extend(exploring::arguments(&self.simulated_scene()));
             }
         }
         all
     }
 
-    /// The destination of the map of robots that explore.
-    fn map_file(&self) -> PathBuf {
-        let default = || exploring::default_file(&self.planned.environment);
-        self.arguments.map.clone().unwrap_or_else(default)
-    }
-
     /// Copies the script's map, if there is one, to its destination, and reads it.
     fn keep_map(&self, map: &Path) -> Result<Vec<Map>, Failure> {
-        if !map.exists() {
-            return Ok(Vec::new());
-        }
-        let file = self.map_file();
-        fs::copy(map, &file).map_err(|error| Failure::unwritten(&file, &error))?;
+        let Some(file) = self.map.as_deref().filter(|_| map.exists()) else { return Ok(Vec::new()) };
+        let copy = |from: &Path, to: &Path, kind| -> Result<(), Failure> {
+            let content = fs::read(from).map_err(|error| Failure::unwritten(to, &error))?;
+            Ok(write_output(to, kind, &content)?)
+        };
+        copy(map, file, Kind::Map)?;
         let picture = map.with_extension("png");
         if picture.exists() {
-            let file = file.with_extension("png");
-            fs::copy(&picture, &file).map_err(|error| Failure::unwritten(&file, &error))?;
+            // The map is what counts.
+            if let Err(error) = copy(&picture, &file.with_extension("png"), Kind::Picture) {
+                output::fail(&error);
+            }
         }
         let robots = &self.planned.environment.robots;
         robots.iter().map(|robot| exploring::read(map, &robot.name)).collect()
@@ -307,14 +380,14 @@ impl Run<'_> {
         let figures = outcome.figures();
         output::print(&figures.table())?;
         if let Some(path) = &self.arguments.figures {
-            let json = serde_json::to_vec(&figures).map_err(io::Error::from);
-            json.and_then(|json| fs::write(path, json)).map_err(|error| Failure::unwritten(path, &error))?;
+            let json = serde_json::to_vec(&figures).map_err(|error| Failure::unwritten(path, &error))?;
+            write_output(path, Kind::Figures, &json)?;
         }
         self.planned.draw(&self.arguments.pictures, "planned and driven path", &outcome.routes())?;
         self.arguments.pictures.report();
-        let map = (!driven.maps.is_empty()).then(|| self.map_file());
-        let written = [("trace", &self.arguments.trace), ("map", &map), ("figures", &self.arguments.figures)];
-        for (what, path) in written {
+        let map = self.map.as_ref().filter(|_| !driven.maps.is_empty());
+        let (trace, figures) = (self.arguments.trace.as_ref(), self.arguments.figures.as_ref());
+        for (what, path) in [("trace", trace), ("map", map), ("figures", figures)] {
             if let Some(path) = path {
                 output::say(&format!("{what}: {}\n", path.display()));
             }

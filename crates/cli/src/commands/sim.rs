@@ -1,7 +1,5 @@
 //! `pydslrep sim`: the embedded simulator alone, for scripts that you start yourself.
 
-use std::fs::File;
-use std::io::{BufWriter, Write as _};
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -10,15 +8,17 @@ use std::time::Duration;
 use clap::Args;
 use pydslrep_analysis::environment::Environment;
 use pydslrep_config::Config;
+use pydslrep_output::{GrowingFile, Kind, check_outputs};
+use pydslrep_scene::{Scene, defaults};
 use pydslrep_script::file_name;
-use pydslrep_simulator::{Options, Simulator};
-use pydslrep_trace::TraceRecord;
+use pydslrep_simulator::{Engine, Options, Simulator};
+use pydslrep_trace::lines;
 use tokio::time::{MissedTickBehavior, interval};
 
 use crate::failure::Failure;
 use crate::inputs::Inputs;
 use crate::inputs::program;
-use crate::options::above_zero;
+use crate::options::{above_zero, engine_parser};
 use crate::report::output;
 use crate::run::interrupt::{self, Interrupts};
 
@@ -27,6 +27,7 @@ Examples:
   pydslrep sim patrol.pyr                          serves the port of each robot, until Ctrl+C
   python3 yard.py                                  in another terminal: the script of the program
   pydslrep sim patrol.pyr --trace driven.jsonl     also write the poses of the robots
+  pydslrep sim --empty                             as CoppeliaSim starts: for `pydslrep scene push`
 
 Scripts of both targets can connect at the same time: the first message of a client tells which
 remote API it uses. Scripts step the simulation; while none does, it runs by itself. The wheels of
@@ -40,23 +41,33 @@ const WRITE_PERIOD: Duration = Duration::from_millis(50);
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
     /// A program, or `-` for standard input
-    program: PathBuf,
+    #[arg(required_unless_present = "empty")]
+    program: Option<PathBuf>,
+    /// Start with an empty floor instead of a program; clients such as `pydslrep scene push` create robots and obstacles
+    #[arg(long, conflicts_with_all = ["program", "environment", "scene"])]
+    empty: bool,
+    /// The port of an empty floor; 0 is any free one
+    #[arg(long, value_name = "PORT", default_value_t = 23000, requires = "empty")]
+    port: u16,
     /// The environment to simulate; required if there are several
     #[arg(long, value_name = "NAME")]
     environment: Option<String>,
     /// The scene to simulate [default: ENVIRONMENT.scene.toml next to the program, if it exists]
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
-    /// The seed of the scene's noise: the same seed gives the same run
+    /// The seed of the scene's noise and the engine's: the same seed gives the same run
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
+    /// The engine to imitate: what a physics engine does to robots, and its server to scripts
+    #[arg(long, value_name = "ENGINE", default_value = "ideal", value_parser = engine_parser())]
+    engine: Engine,
     /// The address to listen on; the default accepts connections from this machine only
     #[arg(long, value_name = "ADDRESS", default_value_t = Ipv4Addr::LOCALHOST.into())]
     listen: IpAddr,
     /// Simulated seconds per second while no script steps the simulation
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = above_zero)]
     speed: f64,
-    /// Write every step to a file, as JSON lines
+    /// Write every step to a file, as JSON lines; it is called FILE.partial until the simulator stops
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
 }
@@ -66,7 +77,30 @@ pub(crate) struct Arguments {
 /// # Errors
 /// If anything outside of the program fails.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let (mut inputs, file) = Inputs::open_one(&arguments.program, &Config::default())?;
+    match &arguments.program {
+        Some(program) => simulate(arguments, program),
+        None => simulate_empty_floor(arguments),
+    }
+}
+
+/// Serves a floor that clients build something on.
+fn simulate_empty_floor(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let trace = match &arguments.trace {
+        Some(path) => {
+            check_outputs(&[(path, Kind::Trace)], &[] as &[&Path])?;
+            Some(GrowingFile::begin(path, Kind::Trace)?)
+        }
+        None => None,
+    };
+    let scene = Scene { seed: arguments.seed.unwrap_or(defaults::SEED), ..Scene::default() };
+    serve(arguments, scene, vec![arguments.port], trace, |ports| {
+        let port = ports.first().copied().unwrap_or(arguments.port);
+        format!("Ready at {}:{port}. Press Ctrl+C to stop.\n", arguments.listen)
+    })
+}
+
+fn simulate(arguments: &Arguments, program: &Path) -> Result<ExitCode, Failure> {
+    let (mut inputs, file) = Inputs::open_one(program, &Config::default())?;
     let id = program::environment(&inputs, file, arguments.environment.as_deref())?;
     if let Some(scene) = &arguments.scene {
         inputs.use_scene(file, id, scene)?;
@@ -77,42 +111,70 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let script = inputs.script_folder(file).map(|folder| folder.join(file_name(&environment)));
     let mut scene = inputs.scene(file, &environment)?;
     scene.seed = arguments.seed.unwrap_or(scene.seed);
-    let mut trace = arguments.trace.as_deref().map(Trace::create).transpose()?;
+    let trace = match &arguments.trace {
+        Some(path) => {
+            check_outputs(&[(path, Kind::Trace)], &inputs.read_paths())?;
+            Some(GrowingFile::begin(path, Kind::Trace)?)
+        }
+        None => None,
+    };
+    let ports = environment.robots.iter().map(|robot| robot.port).collect();
+    serve(arguments, scene, ports, trace, |_| {
+        let mut places = output::table(["robot", "address", "port"]);
+        for robot in &environment.robots {
+            places.add_row([robot.name.clone(), arguments.listen.to_string(), robot.port.to_string()]);
+        }
+        let next = next_steps(arguments, program, &environment, script.as_deref());
+        format!("{}\n\n{next}", places.trim_fmt())
+    })
+}
+
+/// Runs the simulator until an interrupt; `greeting` gets its ports.
+fn serve(
+    arguments: &Arguments,
+    scene: Scene,
+    ports: Vec<u16>,
+    mut trace: Option<GrowingFile>,
+    greeting: impl FnOnce(&[u16]) -> String,
+) -> Result<ExitCode, Failure> {
     let options = Options {
         address: arguments.listen,
-        ports: environment.robots.iter().map(|robot| robot.port).collect(),
+        ports,
         speed: arguments.speed,
         trace: trace.is_some(),
+        engine: arguments.engine,
         ..Options::default()
     };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     runtime.map_err(|error| unstarted(&error))?.block_on(async {
         let mut interrupts = Interrupts::listen().map_err(|error| unstarted(&error))?;
         let simulator = Simulator::start(scene, &options).map_err(|error| Failure::new(error.to_string()))?;
-        let mut places = output::table(["robot", "address", "port"]);
-        for robot in &environment.robots {
-            places.add_row([robot.name.clone(), arguments.listen.to_string(), robot.port.to_string()]);
-        }
-        let next = next_steps(arguments, &environment, script.as_deref());
-        output::print(&format!("{}\n\n{next}", places.trim_fmt()))?;
+        output::print(&greeting(simulator.ports()))?;
         let mut writes = interval(WRITE_PERIOD);
         writes.set_missed_tick_behavior(MissedTickBehavior::Delay);
         loop {
             tokio::select! {
                 () = interrupts.next() => break,
                 _ = writes.tick(), if trace.is_some() => if let Some(trace) = &mut trace {
-                    trace.write(&simulator.take_trace())?;
+                    trace.add(&lines(&simulator.take_trace()))?;
                 },
             }
         }
         let rest = simulator.stop();
-        trace.map_or(Ok(()), |mut trace| trace.write(&rest))
+        let Some(mut trace) = trace else { return Ok(()) };
+        trace.add(&lines(&rest))?;
+        Ok::<(), Failure>(trace.finish()?)
     })?;
     Ok(ExitCode::from(interrupt::EXIT_CODE))
 }
 
 /// How to stop the simulator, and how to run the script: `script` is where `build` writes it.
-fn next_steps(arguments: &Arguments, environment: &Environment, script: Option<&Path>) -> String {
+fn next_steps(
+    arguments: &Arguments,
+    program: &Path,
+    environment: &Environment,
+    script: Option<&Path>,
+) -> String {
     let ready = "Ready. Press Ctrl+C to stop.\n";
     let Some(script) = script else { return ready.to_owned() };
     let at = match arguments.listen {
@@ -124,7 +186,7 @@ fn next_steps(arguments: &Arguments, environment: &Environment, script: Option<&
     let host = if at == usual { String::new() } else { format!(" --host {at}") };
     format!(
         "{ready}To drive in it, run this in another terminal:\n\n    pydslrep build {}\n    python3 {}{host}\n",
-        quoted(&arguments.program),
+        quoted(program),
         quoted(script),
     )
 }
@@ -137,26 +199,4 @@ fn quoted(path: &Path) -> String {
 
 fn unstarted(error: &dyn std::fmt::Display) -> Failure {
     Failure::new(format!("cannot start the simulator: {error}"))
-}
-
-struct Trace<'a> {
-    path: &'a Path,
-    file: BufWriter<File>,
-}
-
-impl<'a> Trace<'a> {
-    fn create(path: &'a Path) -> Result<Self, Failure> {
-        let file = File::create(path).map_err(|error| Failure::unwritten(path, &error))?;
-        Ok(Self { path, file: BufWriter::new(file) })
-    }
-
-    fn write(&mut self, records: &[TraceRecord]) -> Result<(), Failure> {
-        for record in records {
-            let written = serde_json::to_writer(&mut self.file, record).map_err(std::io::Error::from);
-            written
-                .and_then(|()| self.file.write_all(b"\n"))
-                .map_err(|error| Failure::unwritten(self.path, &error))?;
-        }
-        self.file.flush().map_err(|error| Failure::unwritten(self.path, &error))
-    }
 }

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use pydslrep_config::Config;
-use pydslrep_script::{Target, generate};
+use pydslrep_script::{Target, generate, runtime};
 use serde::Serialize;
 
 use crate::failure::Failure;
@@ -20,7 +20,8 @@ Examples:
 
 /// Count the lines of a program and those of its scripts
 ///
-/// Lines that are blank or hold nothing but comments do not count; what the program imports does.
+/// Lines that are blank or hold nothing but comments do not count; what the program imports does. The package that scripts
+/// import is counted apart.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
@@ -64,6 +65,8 @@ struct Stats {
     environments: Vec<Script>,
     /// The program once against all of its scripts.
     total: Lines,
+    /// Lines of the package that every script imports.
+    runtime: usize,
 }
 
 /// Runs the command.
@@ -82,7 +85,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let in_program = lines::of_program(inputs.database(), file);
     let mut environments = Vec::new();
     for environment in &prepared.environments {
-        match generate(environment, Target::CoppeliaSim) {
+        match generate(environment, Target::CoppeliaSim, &inputs.file_name(file)) {
             Ok(script) => environments.push(Script {
                 environment: environment.name.clone(),
                 lines: Lines::new(in_program, lines::of_python(&script)),
@@ -94,7 +97,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         }
     }
     let in_python = environments.iter().map(|script| script.lines.python).sum();
-    let stats = Stats { environments, total: Lines::new(in_program, in_python) };
+    let runtime = lines_of_runtime();
+    let stats = Stats { environments, total: Lines::new(in_program, in_python), runtime };
     if arguments.json {
         let text = serde_json::to_string_pretty(&stats);
         output::print(&(text.map_err(|error| Failure::new(format!("cannot write JSON: {error}")))? + "\n"))?;
@@ -102,6 +106,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         output::print(&table(&stats))?;
     }
     Ok(ExitCode::from(u8::from(has_errors)))
+}
+
+fn lines_of_runtime() -> usize {
+    let files = runtime::files().into_iter();
+    files.map(|file| lines::of_python(&String::from_utf8_lossy(&file.content))).sum()
 }
 
 fn table(stats: &Stats) -> String {
@@ -117,5 +126,7 @@ fn table(stats: &Stats) -> String {
         add("total", &stats.total);
     }
     output::align_right(&mut table, &[1, 2, 3]);
-    format!("{}\n", table.trim_fmt())
+    let runtime =
+        format!("{}, which scripts import, has {} more lines of Python", runtime::NAME, stats.runtime);
+    format!("{}\n\n{}\n", table.trim_fmt(), output::wrapped(&runtime))
 }

@@ -1,22 +1,20 @@
 //! Lines of programs and scripts as the article counts them: without blank lines and comments.
 
+use std::collections::HashSet;
+
 use pydslrep_analysis::{Database, FileId};
 use pydslrep_syntax::lex;
 
-/// The quotes of docstrings; scripts use them for nothing else.
-const DOCSTRING: &str = "\"\"\"";
+/// The quotes of docstrings and other texts of several lines.
+const QUOTES: &str = "\"\"\"";
+const RAW_QUOTES: &str = "r\"\"\"";
 
 /// Lines of a program and of all its imports.
 pub(crate) fn of_program(database: &Database, program: FileId) -> usize {
-    let mut files = vec![program];
-    let mut next = 0;
-    while let Some(file) = files.get(next).copied() {
-        for imported in database.imported_files(file) {
-            if !files.contains(&imported) {
-                files.push(imported);
-            }
-        }
-        next += 1;
+    let mut files = HashSet::from([program]);
+    let mut waiting = vec![program];
+    while let Some(file) = waiting.pop() {
+        waiting.extend(database.imported_files(file).filter(|imported| files.insert(*imported)));
     }
     files.into_iter().map(|file| of_file(database, file)).sum()
 }
@@ -30,17 +28,19 @@ fn of_file(database: &Database, file: FileId) -> usize {
     lines.len()
 }
 
-/// Lines of a generated script; a docstring is a comment.
-pub(crate) fn of_python(script: &str) -> usize {
-    let (mut count, mut in_docstring) = (0, false);
-    for line in script.lines().map(str::trim) {
-        if in_docstring {
-            in_docstring = !line.ends_with(DOCSTRING);
-        } else if let Some(begun) = line.strip_prefix(DOCSTRING) {
-            in_docstring = !begun.ends_with(DOCSTRING);
-        } else if !line.is_empty() && !line.starts_with('#') {
+/// Lines of Python; a docstring is a comment, any other text of several lines is not.
+pub(crate) fn of_python(code: &str) -> usize {
+    let (mut count, mut inside) = (0, None);
+    for line in code.lines().map(str::trim).filter(|line| !line.is_empty()) {
+        let is_docstring = match inside {
+            Some(is_docstring) => is_docstring,
+            None => line.starts_with(QUOTES) || line.starts_with(RAW_QUOTES),
+        };
+        if !is_docstring && (inside.is_some() || !line.starts_with('#')) {
             count += 1;
         }
+        let is_inside = inside.is_some() != (line.matches(QUOTES).count() % 2 == 1);
+        inside = is_inside.then_some(is_docstring);
     }
     count
 }
@@ -54,6 +54,8 @@ mod tests {
         assert_eq!(of_python("# a\n\nx = 1\n  # b\nif x:\n    y = 2  # c\n"), 3);
         let script = "\"\"\"One.\n\nMore\n\"\"\"\nimport math\ndef f():\n    \"\"\"Two.\"\"\"\n    return '#'\n\"\"\"\na\n\"\"\"\n";
         assert_eq!(of_python(script), 3);
+        let text = "x = \"\"\"\n# a\n\nb\"\"\"\ny = 1\nz = \"\"\"c\"\"\"\nr\"\"\"\nd\n\"\"\"\n";
+        assert_eq!(of_python(text), 5, "what is not a docstring counts");
     }
 
     #[test]

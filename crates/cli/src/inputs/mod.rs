@@ -8,6 +8,7 @@ pub(crate) mod rewrite;
 pub(crate) mod scenes;
 pub(crate) mod watch;
 
+use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,14 +17,28 @@ use pydslrep_analysis::{Database, Diagnostic, FileId, Offers};
 use pydslrep_config::{Config, Settings};
 use pydslrep_files::Disk;
 use pydslrep_text::file_names::PROGRAM_EXTENSION;
-use pydslrep_workspace::{Workspace, without_byte_order_mark};
+use pydslrep_workspace::{Workspace, key_of, path_of, without_byte_order_mark};
 use ropey::Rope;
 
-use self::paths::{absolute, key, near, shown};
+use self::paths::{absolute, near, shown};
 use self::read::{Found, STDIN_SHOWN, read_failure, read_programs};
 use crate::failure::Failure;
 use crate::report::output::count;
 use crate::report::render;
+
+/// The settings of the current folder, for a command without a program.
+///
+/// # Errors
+/// As [`Inputs::check_settings`].
+pub(crate) fn settings_here() -> Result<Settings, Failure> {
+    let mut inputs = Inputs::default();
+    let key = key_of(&absolute(Path::new(STDIN_SHOWN))?);
+    inputs.workspace.open_all(vec![(key.clone(), Rope::new())]);
+    inputs.files.extend(inputs.database().file(&key));
+    inputs.name_documents();
+    inputs.check_settings()?;
+    Ok(inputs.files.first().map_or_else(Settings::default, |file| inputs.settings(*file)))
+}
 
 /// The programs that were named, and the workspace around them.
 #[derive(Debug)]
@@ -37,6 +52,8 @@ pub(crate) struct Inputs {
     names: HashMap<String, String>,
     /// Where each named program is on the disk; standard input is nowhere.
     places: HashMap<FileId, PathBuf>,
+    /// A scene that was read in place of the one next to a program.
+    other_scene: Option<PathBuf>,
 }
 
 impl Default for Inputs {
@@ -47,6 +64,7 @@ impl Default for Inputs {
             scenes: BTreeSet::new(),
             names: HashMap::new(),
             places: HashMap::new(),
+            other_scene: None,
         }
     }
 }
@@ -57,14 +75,14 @@ impl Inputs {
     pub(crate) fn open(paths: &[PathBuf], options: &Config) -> (Self, Vec<Failure>) {
         let Found { programs, scenes, folders, failures } = read_programs(paths);
         let mut inputs = Self::default();
-        let folders = folders.iter().map(|folder| format!("{}/", key(folder).trim_end_matches('/')));
+        let folders = folders.iter().map(|folder| format!("{}/", key_of(folder).trim_end_matches('/')));
         inputs.workspace.set_folders(folders.collect());
         inputs.workspace.set_overrides(options.clone());
         let mut documents = Vec::new();
         let mut places = Vec::new();
         for program in programs {
             let path = program.place.clone().or_else(|| absolute(Path::new(STDIN_SHOWN)).ok());
-            let Some(key) = path.map(|path| key(&path)) else { continue };
+            let Some(key) = path.map(|path| key_of(&path)) else { continue };
             documents.push((key.clone(), Rope::from_str(without_byte_order_mark(&program.text))));
             places.push((key.clone(), program.place));
             inputs.names.insert(key, program.shown);
@@ -78,7 +96,7 @@ impl Inputs {
         inputs
             .files
             .sort_by(|a, b| inputs.workspace.database().path(*a).cmp(inputs.workspace.database().path(*b)));
-        for (key, shown) in scenes.iter().map(|path| (key(path), shown(&near(path)))) {
+        for (key, shown) in scenes.iter().map(|path| (key_of(path), shown(&near(path)))) {
             inputs.workspace.load_scene(&key);
             inputs.names.insert(key.clone(), shown);
             inputs.scenes.insert(key);
@@ -144,6 +162,12 @@ impl Inputs {
         self.places.get(&file).map(PathBuf::as_path)
     }
 
+    /// The name of a program's file; empty for standard input.
+    pub(crate) fn file_name(&self, file: FileId) -> String {
+        let name = self.place(file).and_then(Path::file_name);
+        name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+    }
+
     /// The settings of a program.
     pub(crate) fn settings(&self, file: FileId) -> Settings {
         self.workspace
@@ -159,7 +183,7 @@ impl Inputs {
             self.place(file)?;
             Some(Path::new(self.shown(file)).parent().unwrap_or(Path::new("")).to_owned())
         };
-        named.map(|folder| near(Path::new(&folder))).or_else(beside)
+        named.map(|folder| near(&path_of(&folder))).or_else(beside)
     }
 
     /// What is wrong with all named programs, with the severities that are set for each.
@@ -187,12 +211,20 @@ impl Inputs {
     pub(crate) fn paths(&self) -> BTreeSet<PathBuf> {
         let mut paths: BTreeSet<PathBuf> = self.places.values().cloned().collect();
         for document in self.workspace.documents() {
-            paths.insert(document.key.as_str().into());
+            paths.insert(path_of(&document.key).into_owned());
             let Some(file) = document.file else { continue };
-            paths.extend(self.database().imports(file).iter().map(PathBuf::from));
-            paths.extend(self.workspace.scene_keys(file).into_iter().map(|(_, scene)| scene.into()));
+            let imported = self.database().imports(file).iter();
+            paths.extend(imported.map(|key| path_of(key).into_owned()));
+            let scenes = self.workspace.scene_keys(file).into_iter();
+            paths.extend(scenes.map(|(_, key)| path_of(&key).into_owned()));
         }
         paths
+    }
+
+    /// The files that were read, which no output may replace.
+    pub(crate) fn read_paths(&self) -> Vec<Cow<'_, Path>> {
+        let named = self.places.values().chain(&self.other_scene).map(|path| Cow::Borrowed(path.as_path()));
+        named.chain(self.workspace.documents().map(|document| path_of(&document.key))).collect()
     }
 
     /// The text of everything that was read, in the order of the keys.
@@ -206,13 +238,13 @@ impl Inputs {
 
     /// What a document is called in output, by its key.
     fn name(&self, key: &str) -> String {
-        self.names.get(key).cloned().unwrap_or_else(|| shown(&near(Path::new(key))))
+        self.names.get(key).cloned().unwrap_or_else(|| shown(&near(&path_of(key))))
     }
 
     /// Names the documents that were read besides the named ones.
     fn name_documents(&mut self) {
         for document in self.workspace.documents() {
-            let name = || shown(&near(Path::new(&document.key)));
+            let name = || shown(&near(&path_of(&document.key)));
             self.names.entry(document.key.clone()).or_insert_with(name);
         }
     }

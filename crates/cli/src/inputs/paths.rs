@@ -21,12 +21,6 @@ pub(crate) fn absolute(path: &Path) -> Result<PathBuf, Failure> {
     Ok(clean)
 }
 
-/// The path as the workspace knows it.
-pub(crate) fn key(absolute: &Path) -> String {
-    let key = absolute.to_string_lossy();
-    if cfg!(windows) { key.replace('\\', "/") } else { key.into_owned() }
-}
-
 /// The path relative to the current folder, if it is inside it.
 pub(crate) fn near(path: &Path) -> PathBuf {
     let here = std::env::current_dir().unwrap_or_default();
@@ -39,4 +33,9 @@ pub(crate) fn near(path: &Path) -> PathBuf {
 /// The path as it is printed.
 pub(crate) fn shown(path: &Path) -> String {
     path.strip_prefix(".").unwrap_or(path).display().to_string()
+}
+
+/// A path with `/` between its parts, as other tools want it on every system.
+pub(crate) fn with_slashes(shown: &str) -> String {
+    if cfg!(windows) { shown.replace('\\', "/") } else { shown.to_owned() }
 }

@@ -1,7 +1,11 @@
 //! One program and the environments in it.
 
+use std::collections::HashSet;
+use std::sync::Arc;
+
 use pydslrep_analysis::environment::Environment;
 use pydslrep_analysis::{Diagnostic, EntityId, FileId, Severity};
+use pydslrep_workspace::NoEnvironment;
 
 use crate::failure::Failure;
 use crate::inputs::Inputs;
@@ -21,15 +25,16 @@ pub(crate) fn environments(inputs: &Inputs, file: FileId, name: Option<&str>) ->
 /// If there is none, or several and none was chosen.
 pub(crate) fn environment(inputs: &Inputs, file: FileId, name: Option<&str>) -> Result<EntityId, Failure> {
     let shown = inputs.shown(file);
-    match (environments(inputs, file, name).as_slice(), name) {
-        ([one], _) => Ok(*one),
-        // Of several with the same name, the first one counts, as everywhere.
-        ([first, ..], Some(_)) => Ok(*first),
-        ([], None) => Err(Failure::new(format!("{shown} has no environment")).help(known(inputs, &[file]))),
-        (several, None) => Err(Failure::new(format!("{shown} has {}", count(several.len(), "environment")))
-            .help(format!("choose one with --environment NAME; {}", known(inputs, &[file])))),
-        ([], Some(name)) => Err(no_environment(inputs, &[file], name)),
-    }
+    inputs.choose_environment(file, name).map_err(|error| match error {
+        NoEnvironment::None => {
+            Failure::new(format!("{shown} has no environment")).help(known(inputs, &[file]))
+        }
+        NoEnvironment::Several(several) => {
+            Failure::new(format!("{shown} has {}", count(several, "environment")))
+                .help(format!("choose one with --environment NAME; {}", known(inputs, &[file])))
+        }
+        NoEnvironment::Unknown(name) => no_environment(inputs, &[file], &name),
+    })
 }
 
 /// The failure for a name that no environment has.
@@ -61,17 +66,22 @@ pub(crate) struct Prepared {
 /// Resolves environments of a program. Prints the program's problems, except hints, and the errors in other files that
 /// block an environment.
 pub(crate) fn prepare(inputs: &Inputs, file: FileId, ids: &[EntityId]) -> Prepared {
-    let (mut prepared, mut stuck) = (Vec::new(), Vec::new());
-    let mut errors = Vec::new();
-    for id in ids {
-        match inputs.database().environment(*id) {
+    let (mut prepared, mut stuck, mut reasons) = (Vec::new(), Vec::new(), Vec::new());
+    let mut known = HashSet::new();
+    for environment in inputs.database().ready_environments(ids.iter().copied()) {
+        match environment {
             Ok(environment) => prepared.push(environment),
             Err(blocked) => {
-                add(&mut errors, &blocked.errors);
+                // Those of many environments may be the same ones.
+                if known.insert(Arc::as_ptr(&blocked.errors)) {
+                    reasons.push(blocked.errors);
+                }
                 stuck.push(blocked.environment);
             }
         }
     }
+    let mut errors = Vec::new();
+    add(&mut errors, reasons.iter().flat_map(|errors| errors.iter()));
     let mut problems = problems(inputs, file, &errors);
     problems.retain(|problem| problem.severity > Severity::Hint);
     show(inputs, &problems);
@@ -86,8 +96,9 @@ pub(crate) fn prepare(inputs: &Inputs, file: FileId, ids: &[EntityId]) -> Prepar
 /// an error, whatever its severity is set to.
 fn problems(inputs: &Inputs, file: FileId, errors: &[Diagnostic]) -> Vec<Diagnostic> {
     let severities = inputs.settings(file).severities;
+    let blocking: HashSet<Place<'_>> = errors.iter().map(place).collect();
     let as_shown = |problem: Diagnostic| {
-        if errors.contains(&problem) {
+        if blocking.contains(&place(&problem)) {
             return Some(problem);
         }
         let severity = severities.severity(problem.code(), problem.severity)?;
@@ -99,12 +110,21 @@ fn problems(inputs: &Inputs, file: FileId, errors: &[Diagnostic]) -> Vec<Diagnos
     problems
 }
 
-fn add(problems: &mut Vec<Diagnostic>, more: &[Diagnostic]) {
-    for problem in more {
-        if !problems.contains(problem) {
-            problems.push(problem.clone());
-        }
-    }
+/// What tells problems apart.
+type Place<'a> = (FileId, u32, u32, &'static str, &'a str);
+
+fn place(problem: &Diagnostic) -> Place<'_> {
+    let Diagnostic { file, span, message, .. } = problem;
+    (*file, span.start, span.end, problem.code(), message)
+}
+
+/// Adds those that are not there yet.
+fn add<'a>(problems: &mut Vec<Diagnostic>, more: impl IntoIterator<Item = &'a Diagnostic>) {
+    let missing: Vec<Diagnostic> = {
+        let mut known: HashSet<Place<'_>> = problems.iter().map(place).collect();
+        more.into_iter().filter(|problem| known.insert(place(problem))).cloned().collect()
+    };
+    problems.extend(missing);
 }
 
 fn show(inputs: &Inputs, problems: &[Diagnostic]) {

@@ -108,6 +108,7 @@ pub(crate) fn read_failure(shown: &str, error: &ReadError) -> Failure {
     match error {
         ReadError::Missing => Failure::new(format!("{shown} does not exist")),
         ReadError::TooLarge => failure.help("is this a program?"),
+        ReadError::NotRegular => failure.help("`-` reads a program from standard input"),
         ReadError::NotText { .. } => failure.help("save it in the encoding UTF-8"),
         ReadError::Folder | ReadError::PermissionDenied | ReadError::Other(_) => failure,
     }

@@ -1,11 +1,11 @@
 //! Replaces the text of a file atomically.
 
 use std::fs;
-use std::io::Write;
 use std::path::Path;
 
+use pydslrep_files::read;
+use pydslrep_output::write_file;
 use pydslrep_workspace::without_byte_order_mark as without_mark;
-use tempfile::Builder;
 
 use crate::failure::Failure;
 
@@ -17,27 +17,16 @@ use crate::failure::Failure;
 pub(crate) fn replace(path: &Path, before: &str, after: &str) -> Result<(), Failure> {
     let unwritten = |error: &dyn std::fmt::Display| Failure::unwritten(path, error);
     let target = fs::canonicalize(path).map_err(|error| unwritten(&error))?;
-    let bytes = fs::read(&target).map_err(|error| unwritten(&error))?;
-    let found = std::str::from_utf8(&bytes).ok().filter(|text| without_mark(text) == without_mark(before));
-    let Some(found) = found else {
+    let found = read(&target).map_err(|error| unwritten(&error))?;
+    if without_mark(&found) != without_mark(before) {
         return Err(unwritten(&"it has changed in the meantime").help("run the command again"));
-    };
-    let permissions = fs::metadata(&target).map_err(|error| unwritten(&error))?.permissions();
-    if permissions.readonly() {
+    }
+    if fs::metadata(&target).is_ok_and(|found| found.permissions().readonly()) {
         return Err(unwritten(&"it is read-only").help("make it writable, or leave it out"));
     }
-    let mark = &found[..found.len() - without_mark(found).len()];
-    let folder = target.parent().unwrap_or(Path::new("."));
-    let write = || {
-        // A rename within a folder is atomic.
-        let mut whole = Builder::new().prefix(".pydslrep-").tempfile_in(folder)?;
-        whole.write_all(mark.as_bytes())?;
-        whole.write_all(without_mark(after).as_bytes())?;
-        whole.as_file().set_permissions(permissions)?;
-        whole.as_file().sync_all()?;
-        whole.persist(&target).map_err(|error| error.error)
-    };
-    write().map(drop).map_err(|error| unwritten(&error))
+    let mark = &found[..found.len() - without_mark(&found).len()];
+    let text = format!("{mark}{}", without_mark(after));
+    write_file(&target, text.as_bytes()).map_err(|error| unwritten(&error))
 }
 
 #[cfg(test)]

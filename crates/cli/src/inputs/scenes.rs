@@ -7,8 +7,7 @@ use pydslrep_analysis::environment::Environment;
 use pydslrep_analysis::{EntityId, FileId};
 use pydslrep_config::Problem;
 use pydslrep_scene::Scene;
-use pydslrep_syntax::EntityKind;
-use pydslrep_workspace::without_byte_order_mark;
+use pydslrep_workspace::{NoEnvironment, SceneError, without_byte_order_mark};
 use ropey::Rope;
 
 use super::Inputs;
@@ -51,6 +50,7 @@ impl Inputs {
         path: &Path,
     ) -> Result<(), Failure> {
         let text = read_file(path)?;
+        self.other_scene = Some(path.to_owned());
         let keys = self.workspace.scene_keys(file);
         if let Some((_, key)) = keys.into_iter().find(|(id, _)| *id == environment) {
             self.workspace.open(&key, Rope::from_str(without_byte_order_mark(&text)));
@@ -59,23 +59,27 @@ impl Inputs {
         Ok(())
     }
 
+    /// The environment of a program with this name, or its only one.
+    ///
+    /// # Errors
+    /// If there is none, or several and none is named.
+    pub(crate) fn choose_environment(
+        &self,
+        file: FileId,
+        name: Option<&str>,
+    ) -> Result<EntityId, NoEnvironment> {
+        self.workspace.choose_environment(file, name)
+    }
+
     /// The scene that an environment of a program is driven in: an empty floor if there is no scene file.
     ///
     /// # Errors
-    /// When the file cannot be read, and with everything that is wrong in it: robots could meet something else than
-    /// what was meant.
+    /// When the file cannot be read, and with everything that is wrong in it.
     pub(crate) fn scene(&self, file: FileId, environment: &Environment) -> Result<Scene, Failure> {
-        let name = environment.name.as_str().into();
-        let id = self.database().definitions(file, EntityKind::Environment, &name).first().copied();
-        let keys = self.workspace.scene_keys(file);
-        let Some((id, key)) = keys.into_iter().find(|(other, _)| Some(*other) == id) else {
-            return Ok(pydslrep_analysis::scene(environment));
-        };
-        if let Some(error) = self.workspace.read_error(&key) {
-            return Err(read_failure(&self.name(&key), error));
-        }
-        let scene = self.database().scene(id, environment);
-        scene.map_err(|problems| Failure::Rendered(self.render_problems(&key, &problems)))
+        self.workspace.scene(file, environment).map_err(|error| match error {
+            SceneError::Unreadable { key, error } => read_failure(&self.name(&key), &error),
+            SceneError::Invalid { key, problems } => Failure::Rendered(self.render_problems(&key, &problems)),
+        })
     }
 
     /// What is wrong with the scenes of the programs and of the folders that were named, and why some could not be

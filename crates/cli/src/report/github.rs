@@ -3,6 +3,7 @@
 use pydslrep_analysis::{Diagnostic, Severity};
 
 use crate::inputs::Inputs;
+use crate::inputs::paths::with_slashes;
 use crate::inputs::scenes::{self, SceneProblem};
 use crate::report::place::{self, PlaceRange};
 
@@ -41,7 +42,7 @@ fn command(severity: Severity, file: &str, range: PlaceRange, code: &str, messag
     format!(
         "::{} file={},line={},col={},endLine={},endColumn={},title={}::{}\n",
         command_name(severity),
-        property(file),
+        property(&with_slashes(file)),
         range.start.line,
         range.start.column,
         range.end.line,

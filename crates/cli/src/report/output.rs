@@ -27,8 +27,11 @@ pub(crate) fn print_raw(text: &str) -> Result<(), Failure> {
 }
 
 fn unprinted(error: &io::Error) -> Failure {
+    /// What Windows says of a pipe that its reader has closed (`ERROR_PIPE_NOT_CONNECTED`).
+    const NOT_CONNECTED: i32 = 233;
     match error.kind() {
         io::ErrorKind::BrokenPipe => Failure::NoReader,
+        _ if cfg!(windows) && error.raw_os_error() == Some(NOT_CONNECTED) => Failure::NoReader,
         _ => Failure::new(format!("cannot write to standard output: {error}")),
     }
 }
@@ -41,7 +44,7 @@ pub(crate) fn say(text: &str) {
 /// Reports a failure.
 pub(crate) fn fail(failure: &Failure) {
     match failure {
-        Failure::Message { message, help } => error(message, help.as_deref()),
+        Failure::Message { message, help, .. } => error(message, help.as_deref()),
         Failure::Rendered(text) => say(text),
         Failure::NoReader => {}
     }
@@ -49,7 +52,16 @@ pub(crate) fn fail(failure: &Failure) {
 
 /// Reports an error and what to do about it.
 pub(crate) fn error(message: &str, help: Option<&str>) {
-    let mut group = Group::with_title(Level::ERROR.primary_title(message));
+    report(&Level::ERROR, message, help);
+}
+
+/// Reports what did not keep a command from being carried out, and what to do about it.
+pub(crate) fn warning(message: &str, help: Option<&str>) {
+    report(&Level::WARNING, message, help);
+}
+
+fn report(level: &Level<'_>, message: &str, help: Option<&str>) {
+    let mut group = Group::with_title(level.clone().primary_title(message));
     if let Some(help) = help {
         group = group.element(Level::HELP.message(help));
     }

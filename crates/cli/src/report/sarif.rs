@@ -7,6 +7,7 @@ use pydslrep_syntax::Span;
 use serde_json::{Value, json};
 
 use crate::inputs::Inputs;
+use crate::inputs::paths::with_slashes;
 use crate::inputs::scenes::{self, SceneProblem};
 use crate::report::place::{self, PlaceRange};
 
@@ -141,7 +142,7 @@ fn artifact(inputs: &Inputs, file: FileId) -> Value {
 
 /// A path as it is printed, as a URI: relative to the current folder where the path is.
 fn uri(shown: &str) -> String {
-    let slashes = if cfg!(windows) { shown.replace('\\', "/") } else { shown.to_owned() };
+    let slashes = with_slashes(shown);
     let encoded = utf8_percent_encode(&slashes, RESERVED).to_string();
     match (slashes.starts_with('/'), slashes.as_bytes()) {
         (true, _) => format!("file://{encoded}"),

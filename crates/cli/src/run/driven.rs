@@ -18,17 +18,21 @@ pub(crate) struct Driven {
     /// Simulation time of the last record, seconds.
     pub(crate) time: f64,
     /// What sensors saw in the embedded simulator.
-    pub(crate) seen: Sightings,
+    pub(crate) sightings: Sightings,
+    /// The robots in the embedded simulator.
+    simulated: Vec<usize>,
     /// The map of each robot; empty if none explores.
     pub(crate) maps: Vec<Map>,
 }
 
 impl Driven {
     /// Empty paths for these robots.
-    pub(crate) fn new<'a>(robots: impl Iterator<Item = &'a str>) -> Self {
+    ///
+    /// `simulated` are the indices of those in the embedded simulator.
+    pub(crate) fn new<'a>(robots: impl Iterator<Item = &'a str>, simulated: Vec<usize>) -> Self {
         let robots: Vec<String> = robots.map(str::to_owned).collect();
         let tracks = vec![Track::new(FINENESS); robots.len()];
-        Self { robots, tracks, time: 0.0, seen: Sightings::default(), maps: Vec::new() }
+        Self { robots, tracks, time: 0.0, sightings: Sightings::default(), simulated, maps: Vec::new() }
     }
 
     /// Adds what the simulator recorded.
@@ -38,13 +42,16 @@ impl Driven {
         }
     }
 
-    /// Adds the trace that a script wrote.
+    /// Adds the trace that a script wrote, of all robots but those that the simulator recorded.
     ///
     /// # Errors
     /// If the file cannot be read or is not a trace.
     pub(crate) fn read(&mut self, file: &Path) -> io::Result<()> {
         for line in BufReader::new(File::open(file)?).lines() {
-            self.add(&serde_json::from_str(&line?)?);
+            let record: TraceRecord = serde_json::from_str(&line?)?;
+            if !self.simulated.iter().any(|index| self.robots[*index] == record.robot) {
+                self.add(&record);
+            }
         }
         Ok(())
     }
@@ -52,6 +59,12 @@ impl Driven {
     /// The paths in the order of the robots.
     pub(crate) fn tracks(&self) -> &[Track] {
         &self.tracks
+    }
+
+    /// The points that the sensors of a robot saw, metres.
+    pub(crate) fn seen(&self, robot: usize) -> Vec<(f64, f64)> {
+        let in_scene = self.simulated.iter().position(|index| *index == robot);
+        in_scene.map(|index| self.sightings.of(index)).unwrap_or_default()
     }
 
     fn add(&mut self, record: &TraceRecord) {
@@ -69,7 +82,7 @@ mod tests {
 
     #[test]
     fn unknown_robots_are_ignored() {
-        let mut driven = Driven::new(["a", "b"].into_iter());
+        let mut driven = Driven::new(["a", "b"].into_iter(), vec![0, 1]);
         let record = |t, robot: &str| TraceRecord {
             t,
             robot: robot.to_owned(),

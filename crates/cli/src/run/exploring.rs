@@ -16,9 +16,9 @@ pub(crate) fn explores(environment: &Environment) -> bool {
     actions.into_iter().any(|action| action.kind == ActionKind::Slam)
 }
 
-/// The default name of an environment's map.
-pub(crate) fn default_file(environment: &Environment) -> PathBuf {
-    format!("{}_map.json", environment.name).into()
+/// The file for an environment's map: the one that was asked for, or one of the environment's name.
+pub(crate) fn file(asked: Option<&Path>, environment: &Environment) -> PathBuf {
+    asked.map_or_else(|| format!("{}_map.json", environment.name).into(), Path::to_owned)
 }
 
 /// Arguments for what not every simulator can tell a script: the size of robots and the field of view of sensors.

@@ -1,4 +1,4 @@
-//! Interrupts: Ctrl-C, a closed terminal, SIGTERM.
+//! Interrupts: Ctrl-C, a closed terminal, SIGTERM, on Windows Ctrl-Break.
 
 use std::io;
 use std::thread;
@@ -9,6 +9,13 @@ use tokio::sync::oneshot;
 pub(crate) struct Interrupts {
     #[cfg(unix)]
     signals: [tokio::signal::unix::Signal; 3],
+    #[cfg(windows)]
+    ctrl_c: tokio::signal::windows::CtrlC,
+    #[cfg(windows)]
+    ctrl_break: tokio::signal::windows::CtrlBreak,
+    /// The window of the terminal is closed; the system ends this process some seconds later.
+    #[cfg(windows)]
+    ctrl_close: tokio::signal::windows::CtrlClose,
     /// Resolves at the end of standard input, if that counts as an interrupt.
     end_of_input: Option<oneshot::Receiver<()>>,
 }
@@ -41,26 +48,28 @@ impl Interrupts {
     }
 }
 
-#[cfg(not(unix))]
+#[cfg(windows)]
 impl Interrupts {
     /// Starts to listen.
     ///
     /// # Errors
-    /// Never on this system.
-    #[allow(clippy::unnecessary_wraps)] // as on others
+    /// If the system does not allow it.
     pub(crate) fn listen() -> io::Result<Self> {
-        Ok(Self { end_of_input: None })
+        use tokio::signal::windows;
+        Ok(Self {
+            ctrl_c: windows::ctrl_c()?,
+            ctrl_break: windows::ctrl_break()?,
+            ctrl_close: windows::ctrl_close()?,
+            end_of_input: None,
+        })
     }
 
     /// Waits for the next interrupt.
     pub(crate) async fn next(&mut self) {
-        let interrupt = async {
-            if tokio::signal::ctrl_c().await.is_err() {
-                std::future::pending::<()>().await;
-            }
-        };
         tokio::select! {
-            () = interrupt => {}
+            _ = self.ctrl_c.recv() => {}
+            _ = self.ctrl_break.recv() => {}
+            _ = self.ctrl_close.recv() => {}
             () = ended(&mut self.end_of_input) => {}
         }
     }
@@ -90,4 +99,18 @@ async fn ended(input: &mut Option<oneshot::Receiver<()>>) {
         }
         None => std::future::pending().await,
     }
+}
+
+/// Interrupts another process by its id, where the system can do so.
+pub(crate) fn interrupt_process(id: Option<u32>) {
+    #[cfg(unix)]
+    {
+        use rustix::process::{Pid, Signal, kill_process};
+        if let Some(id) = id.and_then(|id| i32::try_from(id).ok()).and_then(Pid::from_raw) {
+            // An error means that it has ended already.
+            let _ = kill_process(id, Signal::INT);
+        }
+    }
+    #[cfg(not(unix))]
+    let _ = id;
 }

@@ -1,15 +1,18 @@
 //! Runs: from a Python interpreter to the result.
 //!
 //! [`python`] and [`vrep_client`] prepare what a script needs, [`script`] runs it, [`progress`] shows it, and [`outcome`]
-//! compares [`driven`] with [`planned`].
+//! compares [`driven`] with [`planned`]. [`scene_tasks`] reads and changes the scene of a simulator that runs elsewhere.
 
 pub(crate) mod driven;
 pub(crate) mod exploring;
 pub(crate) mod interrupt;
 pub(crate) mod outcome;
+pub(crate) mod own_robots;
 pub(crate) mod pictures;
 pub(crate) mod planned;
 pub(crate) mod progress;
 pub(crate) mod python;
+pub(crate) mod scene_description;
+pub(crate) mod scene_tasks;
 pub(crate) mod script;
 pub(crate) mod vrep_client;

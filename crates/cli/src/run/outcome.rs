@@ -102,7 +102,7 @@ impl Outcome<'_> {
     pub(crate) fn routes(&self) -> Vec<Route> {
         let routes = self.planned.routes().into_iter().zip(self.driven.tracks()).enumerate();
         let route = |(index, (route, path)): (usize, (Route, &Track))| {
-            let seen = self.driven.seen.of(index);
+            let seen = self.driven.seen(index);
             let map = self.driven.maps.get(index).cloned().unwrap_or_default();
             Route { driven: path.poses(), seen, map, ..route }
         };

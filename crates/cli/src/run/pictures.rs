@@ -1,8 +1,8 @@
 //! Writes pictures of paths.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
+use pydslrep_output::{Kind, write_output};
 use pydslrep_picture::{Picture, png};
 
 use crate::failure::Failure;
@@ -23,6 +23,11 @@ impl Pictures {
     /// Whether any picture is wanted.
     pub(crate) fn are_wanted(&self) -> bool {
         self.picture.is_some() || self.replay.is_some()
+    }
+
+    /// The files to write.
+    pub(crate) fn outputs(&self) -> impl Iterator<Item = (&Path, Kind)> {
+        [&self.picture, &self.replay].into_iter().flatten().map(|path| (path.as_path(), Kind::Picture))
     }
 
     /// Draws the pictures that are wanted.
@@ -53,7 +58,7 @@ impl Pictures {
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    fs::write(path, bytes).map_err(|error| Failure::unwritten(path, &error))
+    Ok(write_output(path, Kind::Picture, bytes)?)
 }
 
 fn has_ending(path: &Path, ending: &str) -> bool {

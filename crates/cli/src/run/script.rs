@@ -1,13 +1,14 @@
 //! Runs a script as a child process: reads its output, stops it, and never leaves it running.
 
+use std::ffi::OsString;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 use pydslrep_simulator::Simulator;
 use tokio::io::{AsyncBufReadExt, AsyncReadExt, BufReader, Lines};
-use tokio::process::{Child, ChildStdout, Command};
+use tokio::process::{Child, ChildStdin, ChildStdout, Command};
 use tokio::task::JoinHandle;
 use tokio::time::{MissedTickBehavior, interval, timeout};
 
@@ -15,6 +16,12 @@ use crate::failure::Failure;
 use crate::run::driven::Driven;
 use crate::run::interrupt::Interrupts;
 use crate::run::progress::Progress;
+
+/// Starts a script: adds folders to those that Python imports from, also where it is isolated.
+const BOOT: &str = include_str!("../../python/boot.py");
+
+/// The environment variable with a run's token (`python/pydslrep_runtime/remote_api.py`).
+const TOKEN: &str = "PYDSLREP_RUN";
 
 /// How often the simulator is polled.
 const POLL_PERIOD: Duration = Duration::from_millis(50);
@@ -24,6 +31,10 @@ const STOP_LIMIT: Duration = Duration::from_secs(5);
 
 /// Scripts limit every wait themselves. One in which simulation time stands still for this long is broken.
 const STANDSTILL_LIMIT: Duration = Duration::from_secs(60);
+
+/// Keeps Ctrl-C from a process (`CREATE_NEW_PROCESS_GROUP`).
+#[cfg(windows)]
+const NEW_PROCESS_GROUP: u32 = 0x200;
 
 /// At most this much of a script's standard error is kept, bytes.
 const MAX_STDERR: u64 = 1 << 20;
@@ -45,8 +56,14 @@ pub(crate) struct Script {
     pub(crate) python: PathBuf,
     /// Whether Python ignores modules beside the script and in the environment.
     pub(crate) isolated: bool,
+    /// The folder of the package that it imports.
+    pub(crate) runtime: PathBuf,
+    /// A folder with modules that it imports if nothing else has them.
+    pub(crate) modules: Option<PathBuf>,
+    /// What the simulator of the run knows the script by.
+    pub(crate) token: Option<String>,
     /// The script and its arguments.
-    pub(crate) arguments: Vec<std::ffi::OsString>,
+    pub(crate) arguments: Vec<OsString>,
 }
 
 /// Runs a script to its end. What the embedded simulator records, if the script uses it, goes to `driven`.
@@ -95,7 +112,7 @@ pub(crate) async fn drive(
     };
     if let Some(simulator) = simulator {
         driven.extend(&simulator.take_trace());
-        driven.seen = simulator.sightings();
+        driven.sightings = simulator.sightings();
     }
     Ok(ending)
 }
@@ -146,6 +163,9 @@ struct Running {
     /// Whether standard output is still open.
     has_output: bool,
     stderr: JoinHandle<String>,
+    /// The script's input, which stays empty; where there are no signals, its end interrupts the script.
+    #[cfg_attr(unix, expect(dead_code, reason = "it is there to be closed with this process"))]
+    lifeline: Option<ChildStdin>,
 }
 
 impl Running {
@@ -157,13 +177,22 @@ impl Running {
             // No file beside the script can replace a module.
             command.arg("-I");
         }
-        command.args(["-X", "utf8"]).args(&script.arguments);
-        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).kill_on_drop(true);
+        command.args(["-X", "utf8", "-c", BOOT]).arg(&script.runtime);
+        command.arg(script.modules.as_deref().unwrap_or(Path::new(""))).args(&script.arguments);
+        if let Some(token) = &script.token {
+            command.env(TOKEN, token);
+        }
+        // The end of its input tells it that this process is gone.
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).kill_on_drop(true);
         // Ctrl-C reaches the script once: from this process.
         #[cfg(unix)]
         command.process_group(0);
+        #[cfg(windows)]
+        command.creation_flags(NEW_PROCESS_GROUP);
         let mut child = command.spawn().map_err(|error| failure(&error.to_string()))?;
-        let (Some(stdout), Some(stderr)) = (child.stdout.take(), child.stderr.take()) else {
+        let (Some(stdout), Some(stderr), Some(lifeline)) =
+            (child.stdout.take(), child.stderr.take(), child.stdin.take())
+        else {
             return Err(failure("its output cannot be read"));
         };
         let stderr = tokio::spawn(async move {
@@ -174,7 +203,13 @@ impl Running {
             let _ = tokio::io::copy(&mut all.into_inner(), &mut tokio::io::sink()).await;
             String::from_utf8_lossy(&bytes).trim_end().to_owned()
         });
-        Ok(Self { child, lines: BufReader::new(stdout).lines(), has_output: true, stderr })
+        Ok(Self {
+            child,
+            lines: BufReader::new(stdout).lines(),
+            has_output: true,
+            stderr,
+            lifeline: Some(lifeline),
+        })
     }
 
     async fn ending(self, status: ExitStatus) -> Ending {
@@ -200,9 +235,8 @@ impl Running {
         // An error means that it has ended already.
         let _ = self.child.kill().await;
     }
-
     #[cfg(unix)]
-    fn interrupt(&self) {
+    fn interrupt(&mut self) {
         use rustix::process::{Pid, Signal, kill_process};
         let pid = self.child.id().and_then(|id| i32::try_from(id).ok()).and_then(Pid::from_raw);
         if let Some(pid) = pid {
@@ -212,5 +246,7 @@ impl Running {
     }
 
     #[cfg(not(unix))]
-    fn interrupt(&self) {}
+    fn interrupt(&mut self) {
+        self.lifeline = None;
+    }
 }

@@ -266,7 +266,7 @@ fn files_that_are_no_programs_do_not_hide_the_others() {
     let place = Place::with("bad.pyr", b"wheel a\nwith \xff\xfe");
     place.write("good.pyr", "wheel");
     let large = std::fs::File::create(place.path("large.pyr")).unwrap();
-    large.set_len((64 << 20) + 1).unwrap();
+    large.set_len((16 << 20) + 1).unwrap();
     let done = place.run(&["check", ".", "missing.pyr"]);
     assert_eq!(done.code, Some(2));
     assert!(done.out.contains("good.pyr:1:6") && done.out.ends_with("1 error in 1 file.\n"), "{}", done.out);
@@ -274,7 +274,7 @@ fn files_that_are_no_programs_do_not_hide_the_others() {
         error: cannot read bad.pyr: not valid UTF-8 in line 2
          |
          = help: save it in the encoding UTF-8
-        error: cannot read large.pyr: larger than 64 MiB
+        error: cannot read large.pyr: larger than 16 MiB
          |
          = help: is this a program?
         error: missing.pyr does not exist

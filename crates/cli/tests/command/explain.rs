@@ -14,7 +14,8 @@ fn a_page_for_people() {
 
         Error · quick fix: no
 
-        A wheel's radius is zero or negative.
+        A wheel's radius is zero or negative, below 0.001 centimetres, or above 100000
+        (a kilometre).
 
         Why it matters
 

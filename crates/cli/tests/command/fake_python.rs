@@ -73,6 +73,36 @@ fn what_a_first_run_installs_is_told_once() {
 }
 
 #[test]
+fn odometry_installs_more_when_it_is_first_asked_for() {
+    let place = place("");
+    let explore = |arguments: &[&str]| -> Done {
+        let python = place.path("python");
+        let program = paper("table7_slam");
+        let mut command = place.command(&["run", &program, "--python", python.to_str().unwrap()]);
+        command.args(arguments).env("XDG_CACHE_HOME", place.path("cache"));
+        command.env("BEHAVIOUR", place.path("behaviour")).env("INDEX", "/dev/null");
+        command.output().unwrap().into()
+    };
+    assert!(explore(&[]).err.starts_with(PREPARING));
+    assert!(explore(&["--odometry"]).err.starts_with(
+        "\
+preparing Python for the first run with --odometry: creating a virtual environment
+preparing Python for the first run with --odometry: installing the CoppeliaSim client library, NumPy and SciPy
+"
+    ));
+    for again in [&["--odometry"][..], &[]] {
+        assert!(!explore(again).err.contains("preparing"));
+    }
+}
+
+#[test]
+fn odometry_is_for_those_who_explore() {
+    let place = place("");
+    let done: Done = command(&place).arg("--odometry").output().unwrap().into();
+    assert!(done.err.starts_with(PREPARING), "{}", done.err);
+}
+
+#[test]
 fn a_script_that_breaks_is_an_outside_failure() {
     let done = run("echo 'Traceback (most recent call last)' >&2; echo 'OSError: disk' >&2; exit 1");
     assert_eq!(done.code, Some(2));
@@ -97,7 +127,13 @@ fn what_cannot_be_installed_is_explained() {
     assert_eq!(done.code, Some(2));
     assert!(done.err.contains("cannot install the CoppeliaSim client library"), "{}", done.err);
     assert!(done.err.contains("needs network access to PyPI"), "{}", done.err);
-    assert_eq!(fs::read_dir(place.path("cache/pydslrep")).unwrap().count(), 0, "nothing half made is left");
+    assert_eq!(cached(&place), ["lock"], "nothing half made is left");
+}
+
+/// The names in the cache folder.
+fn cached(place: &Place) -> Vec<String> {
+    let entries = fs::read_dir(place.path("cache/pydslrep")).unwrap();
+    entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
 }
 
 /// A first run where the package index behaves like this.
@@ -117,7 +153,7 @@ fn without_network_nothing_is_begun() {
          |
          = help: the first run needs network access to PyPI; behind a proxy or with a mirror, set HTTPS_PROXY or PIP_INDEX_URL
     "#]].assert_eq(&done.err);
-    assert_eq!(fs::read_dir(place.path("cache/pydslrep")).unwrap().count(), 0);
+    assert_eq!(cached(&place), ["lock"]);
 }
 
 #[test]

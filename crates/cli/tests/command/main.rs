@@ -12,10 +12,12 @@ mod fix;
 mod fmt;
 mod new;
 mod newcomer;
+mod own;
 mod plan;
 mod process;
 mod project;
 mod run;
+mod runtime;
 #[cfg(unix)]
 mod sim;
 mod stats;

@@ -29,6 +29,13 @@ fn nothing_is_overwritten() {
 }
 
 #[test]
+fn names_are_files_on_every_system() {
+    let done = Place::new().run(&["new", "Con"]);
+    assert_eq!(done.code, Some(2));
+    assert!(done.err.contains("Windows has no files called `Con`"), "{}", done.err);
+}
+
+#[test]
 fn names_fit_the_language() {
     for name in ["2nd", "my-robot", "a b", "..", "é"] {
         let done = Place::new().run(&["new", name]);

@@ -68,7 +68,7 @@ movement a_movement_with_a_long_name of a_robot_with_a_long_name { move -1.25 me
 environment e has { a_robot_with_a_long_name } robots with { a_movement_with_a_long_name } moves";
     let done = Place::with("x.pyr", program).run(&["plan", "x.pyr"]);
     expect![[r#"
-        e: 12.86 s
+        e: 13.16 s
 
         action                  at s     x m    y m  heading °  wheels rad/s
         ────────────────────────────────────────────────────────────────────────────────
@@ -76,9 +76,9 @@ environment e has { a_robot_with_a_long_name } robots with { a_movement_with_a_l
           _name
           a_movement_with_a
             _long_name
-            move -1.25 meters  10.25  -1.250  0.000        0.0  -2.78 -2.78 -2.78 -2.78
+            move -1.25 meters  10.40  -1.250  0.000        0.0  -2.78 -2.78 -2.78 -2.78
               at 12.5
-            turn left 45.5     12.86  -1.250  0.000       45.5  -2.00 -2.00  2.00  2.00
+            turn left 45.5     13.16  -1.250  0.000       45.5  -2.00 -2.00  2.00  2.00
 
     "#]]
     .assert_eq(&done.out);
@@ -93,20 +93,20 @@ movement m of r { move 90 centimeters } movement n of q { turn left }
 environment e has { r q } robots with { m n m } moves";
     let done = Place::with("x.pyr", program).run(&["plan", "x.pyr"]);
     expect![[r#"
-        e: 23.16 s
+        e: 23.61 s
 
         action                    at s    x m     y m  heading °  wheels rad/s
         ───────────────────────────────────────────────────────────────────────
         r                         0.00  0.000   0.000        0.0
           m
-            move 90 centimeters  10.18  0.900   0.000        0.0   2.00  2.00
-          (waits for others)     12.98  0.900   0.000        0.0
+            move 90 centimeters  10.33  0.900   0.000        0.0   2.00  2.00
+          (waits for others)     13.28  0.900   0.000        0.0
           m
-            move 90 centimeters  23.16  1.800   0.000        0.0   2.00  2.00
+            move 90 centimeters  23.61  1.800   0.000        0.0   2.00  2.00
         q                         0.00  0.000  -1.000        0.0
-          (waits for others)     10.18  0.000  -1.000        0.0
+          (waits for others)     10.33  0.000  -1.000        0.0
           n
-            turn left            12.98  0.000  -1.000       90.0  -2.00  2.00
+            turn left            13.28  0.000  -1.000       90.0  -2.00  2.00
 
     "#]]
     .assert_eq(&done.out);

@@ -21,8 +21,8 @@ fn the_articles_path_as_json() {
     let poses = robot["poses"].as_array().unwrap();
     assert_eq!(poses.len(), 5);
     assert_eq!(poses[4]["t"], plan["duration"]);
-    // 12 m at 9 cm/s, two quarter turns of 0.15 m at 9 cm/s, five ramps of 0.09 / 0.5 s.
-    let seconds = 12.0 / 0.09 + 2.0 * 0.15 * std::f64::consts::FRAC_PI_2 / 0.09 + 5.0 * 0.18;
+    // 12 m at 9 cm/s, two quarter turns of 0.15 m at 9 cm/s, five ramps of 0.09 / 0.5 s and rests.
+    let seconds = 12.0 / 0.09 + 2.0 * 0.15 * std::f64::consts::FRAC_PI_2 / 0.09 + 5.0 * (0.18 + 0.15);
     assert!((plan["duration"].as_f64().unwrap() - seconds).abs() < 1e-6);
     let last = &poses[4];
     assert_eq!((&last["movement"], &last["run"], &last["action"]), (&json!("mov_1"), &json!(1), &json!(5)));
@@ -49,14 +49,14 @@ movement m of r { move 90 centimeters turn left 45 }
 environment e has { r } robots with { m } moves";
     let done = Place::with("x.pyr", program).run(&["plan", "x.pyr"]);
     expect![[r#"
-        e: 11.67 s
+        e: 11.97 s
 
         action                    at s    x m    y m  heading °  wheels rad/s
         ──────────────────────────────────────────────────────────────────────
         r                         0.00  0.000  0.000        0.0
           m
-            move 90 centimeters  10.18  0.900  0.000        0.0   2.00  1.00
-            turn left 45         11.67  0.900  0.000       45.0  -2.00  1.00
+            move 90 centimeters  10.33  0.900  0.000        0.0   2.00  1.00
+            turn left 45         11.97  0.900  0.000       45.0  -2.00  1.00
 
     "#]]
     .assert_eq(&done.out);
@@ -136,23 +136,23 @@ fn what_is_in_the_way_is_told() {
     );
     let done = place.run(&["plan", "x.pyr"]);
     expect![[r#"
-        hall: 14.09 s
+        hall: 14.39 s
 
         action                 at s    x m     y m  heading °  wheels rad/s
         ────────────────────────────────────────────────────────────────────
         first                  0.00  0.000   0.000        0.0
           m
-            move 1 meters     11.29  1.000   0.000        0.0   2.00  2.00
+            move 1 meters     11.44  1.000   0.000        0.0   2.00  2.00
         second                 0.00  1.100  -0.360       30.0
-          (waits for others)  11.29  1.100  -0.360       30.0
+          (waits for others)  11.44  1.100  -0.360       30.0
           n
-            turn left         14.09  1.100  -0.360      120.0  -2.00  2.00
+            turn left         14.39  1.100  -0.360      120.0  -2.00  2.00
 
         first runs into `crate` after 5.08 s: `move 1 meters` of `m`, at x 0.450 m, y
           0.000 m
-        second runs into `first` after 11.53 s: `turn left` of `n`, at x 1.100 m, y
+        second runs into `first` after 11.68 s: `turn left` of `n`, at x 1.100 m, y
           -0.360 m
-        second runs into `crate` after 12.51 s: `turn left` of `n`, at x 1.100 m, y
+        second runs into `crate` after 12.66 s: `turn left` of `n`, at x 1.100 m, y
           -0.360 m
 
     "#]]

@@ -135,7 +135,7 @@ fn scripts_are_for_the_target_that_it_says() {
     let place = Place::with("x.pyr", fine("yard"));
     let is_for_vrep = |options: &[&str]| {
         assert_eq!(place.run(&[&["build"], options].concat()).code, Some(0));
-        place.read("yard.py").contains("in V-REP.")
+        place.read("yard.py").contains("in V-REP;")
     };
     assert!(!is_for_vrep(&[]) && is_for_vrep(&["--target", "vrep"]));
     place.write("pydslrep.toml", "target = \"vrep\"\n");

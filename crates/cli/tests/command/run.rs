@@ -152,8 +152,7 @@ fn a_blocked_robot_fails_its_action() {
     place.write("wall.scene.toml", "[[wall]]\nfrom = [1, -1]\nto = [1, 1]\n");
     let done = run(&place, &["x.pyr", "--environment", "wall", "--no-progress"]);
     assert_eq!(done.code, Some(1), "{}", done.err);
-    let message =
-        "action 1: move 2 m: no progress for 5 s, 1.201 m from the goal; an obstacle may be in the way";
+    let message = "action 1: move 2 m: no progress for 5 s, 1.201 m from the goal; its wheels turn, but the body does not move: an obstacle may be in the way";
     assert!(done.err.contains(message), "{}", done.err);
     assert!(done.out.contains("stopped  0.799  0.000"), "{}", done.out);
 }
@@ -180,4 +179,83 @@ fn the_same_seed_is_the_same_run() {
     let first = trace("1");
     assert_eq!(first, trace("1"));
     assert_ne!(first, trace("2"));
+}
+
+/// A robot that moves as its wheels turn, in a time of its own.
+const MY_ROBOT: &str = r#"
+import math
+from pydslrep_runtime import Backend, Pose, RobotSpec
+
+class Clock:
+    time, time_step = 0.0, 0.05
+    def advance(self) -> None:
+        self.time += self.time_step
+
+class Rover(Backend):
+    def __init__(self, spec: RobotSpec) -> None:
+        self.clock, self._radii = Clock(), list(spec.wheels.values())
+        self._rates, self._at, self._pose = [0.0, 0.0], 0.0, Pose(5.0, 0.0, 0.0)
+    def wheel_mounts(self):
+        return [(0.0, 0.15), (0.0, -0.15)]
+    def set_wheel_rates(self, rates):
+        self.pose()
+        self._rates = list(rates)
+    def pose(self) -> Pose:
+        passed, self._at = self.clock.time - self._at, self.clock.time
+        left, right = (rate * radius * passed for rate, radius in zip(self._rates, self._radii))
+        half = (right - left) / 0.6
+        self._pose = self._pose.turned(half).ahead((left + right) / 2).turned(half)
+        return self._pose
+"#;
+
+#[test]
+fn robots_of_ones_own_need_no_simulator() {
+    let place = Place::with("p/x.pyr", std::fs::read_to_string(paper("table2_two_wheels")).unwrap());
+    place.write("p/my_robot.py", MY_ROBOT);
+    // What lies there cannot replace a module that the runtime imports.
+    place.write("p/asyncio.py", "raise SystemExit('replaced')");
+    let own = ["run", "p/x.pyr", "--robot", "my_robot:Rover", "--picture", "x.svg", "--figures", "x.json"];
+    let done: Done = place.command(&own).env("XDG_CACHE_HOME", place.path("cache")).output().unwrap().into();
+    assert_eq!((done.code, done.err.contains("preparing")), (Some(0), false), "{}", done.err);
+    let figures: Value = serde_json::from_str(&place.read("x.json")).unwrap();
+    let robot = &figures["robots"][0];
+    assert!((robot["driven"]["x"].as_f64().unwrap() - 5.0).abs() < NEAR, "it started elsewhere: {robot}");
+    assert!(robot["off"]["distance"].as_f64().unwrap() < NEAR, "{robot}");
+    assert!(place.read("x.svg").contains("driven"));
+}
+
+#[test]
+fn a_robot_of_ones_own_drives_beside_a_simulated_one() {
+    let program = "\
+wheel a with radius 4 wheel b with radius 4
+robot scout with port 47321 has { a b } wheels robot guard with port 47322 has { a b } wheels
+parallel movement m of scout { move 30 centimeters } parallel movement n of guard { move 40 centimeters }
+environment yard has { scout guard } robots with { m n } moves";
+    let place = Place::with("x.pyr", program);
+    place.write("my_robot.py", MY_ROBOT);
+    let done = run(&place, &["x.pyr", "--robot", "scout=my_robot:Rover", "--figures", "x.json"]);
+    assert_eq!(done.code, Some(0), "{}", done.err);
+    let figures: Value = serde_json::from_str(&place.read("x.json")).unwrap();
+    let ends: Vec<f64> = figures["robots"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|robot| robot["driven"]["x"].as_f64().unwrap())
+        .collect();
+    assert!((ends[0] - 5.3).abs() < NEAR && (ends[1] - 0.4).abs() < NEAR, "{figures}");
+}
+
+#[test]
+fn mistakes_with_robots_of_ones_own_are_explained() {
+    let program = paper("table2_two_wheels");
+    let done = run(&Place::new(), &[&program, "--robot", "scout=my_robot:Rover"]);
+    assert_eq!(done.code, Some(2));
+    assert!(done.err.contains("there is no robot `scout` in `area_1`"), "{}", done.err);
+    assert!(done.err.contains("its robots: `robot_1`"), "{}", done.err);
+    let done = run(&Place::new(), &[&program, "--robot", "Rover"]);
+    assert_eq!(done.code, Some(2));
+    assert!(done.err.contains("such as my_robot:Rover"), "{}", done.err);
+    let done = run(&Place::new(), &[&program, "--robot", "my_robot:Rover"]);
+    assert_eq!(done.code, Some(2));
+    assert!(done.err.contains("there is no Python module my_robot"), "{}", done.err);
 }

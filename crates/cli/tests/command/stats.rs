@@ -32,7 +32,11 @@ fn the_articles_program_in_a_table() {
     let [name, "11", python, saved, "%"] = rows[2][..] else { panic!("{}", done.out) };
     let python: f64 = python.parse().unwrap();
     assert_eq!((name, saved), ("area_1", format!("{:.1}", 100.0 - 1100.0 / python).as_str()));
-    assert_eq!(rows.len(), 3, "a total of one would say the same again");
+    assert_eq!((rows.len(), rows[3].len()), (5, 0), "a total of one would say the same again");
+    let [_, "which", "scripts", "import,", "has", runtime, "more", ..] = rows[4][..] else {
+        panic!("{}", done.out)
+    };
+    assert!(runtime.parse::<f64>().unwrap() > 20.0 * python, "the package is counted apart: {}", done.out);
 }
 
 #[test]
@@ -48,7 +52,8 @@ fn every_environment_and_their_total() {
     let python: u64 = environments.iter().map(|script| script["python"].as_u64().unwrap()).sum();
     assert_eq!((&stats["total"]["program"], &stats["total"]["python"]), (&json!(7), &json!(python)));
     let table = place.run(&["stats", "x.pyr"]).out;
-    let total: Vec<&str> = table.lines().last().unwrap().split_whitespace().collect();
+    let total: Vec<&str> = table.lines().nth(4).unwrap().split_whitespace().collect();
+    assert!(table.contains(&format!("has {} more lines of Python", stats["runtime"])), "{table}");
     assert_eq!(total[..3], ["total", "7", &python.to_string()]);
 }
 

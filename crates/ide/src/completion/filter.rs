@@ -3,7 +3,7 @@
 use pydslrep_schema::{CursorContext, Slot};
 use pydslrep_syntax::Span;
 
-use super::{Completion, CompletionTrigger};
+use super::{Completion, CompletionKind, CompletionTrigger};
 
 /// Items that save no more letters than this are not offered. Otherwise the list would still be open when the user
 /// presses Enter right after the word, until the response to the last letter arrives.
@@ -53,14 +53,14 @@ pub(crate) fn filter(items: Vec<Completion>, word: Word<'_>) -> Vec<Completion> 
     found.into_iter().map(|(_, item)| item).collect()
 }
 
-/// Whether the typed letters, in lower case, begin the label (`true`) or one of its subwords (`false`).
+/// Whether the typed letters, in lower case, begin the label (`true`) or fit one of its subwords (`false`).
 fn fit(item: &Completion, typed: &str) -> Option<bool> {
     let label = bare(&item.label);
     if starts_with(label, typed) {
         return Some(true);
     }
-    if label.starts_with(['{', '}']) {
-        // A letter typed in a list begins a name.
+    if matches!(item.kind, CompletionKind::Keyword | CompletionKind::Snippet) {
+        // Whoever types a clause or a statement begins with its first word; other letters begin a name or another statement.
         return None;
     }
     subwords(label).any(|word| has_letters(word, typed)).then_some(false)

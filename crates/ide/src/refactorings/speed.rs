@@ -14,61 +14,30 @@ pub(super) fn refactorings(selection: &Selection<'_>) -> Vec<Refactoring> {
     let name = movement.name.as_ref().map_or("", |name| name.text.as_str());
     let selected = selection.selected_moves();
     let all: Vec<&Move> = moves(&movement.actions).collect();
-    let mut offers = Vec::new();
-    offers.extend(omit_default(selection, name, &selected, &all));
-    offers.extend(make_explicit(selection, name, &selected, &all));
-    offers.extend(share(selection, name, &selected, &all));
-    offers
+    let offers = |title: &str, kind, edits: fn(&Selection<'_>, &[&Move]) -> Vec<Edit>| {
+        let (here, everywhere) = (edits(selection, &selected), edits(selection, &all));
+        let others = everywhere.len() > here.len();
+        let in_all = format!("{title} in all moves of `{name}`");
+        let here = (!here.is_empty()).then(|| Refactoring::new(title, kind, here));
+        here.into_iter().chain(others.then(|| Refactoring::new(in_all, kind, everywhere)))
+    };
+    let omit = format!("omit the default speed of {} cm/s", default_speed());
+    let omitted = offers(&omit, RefactoringKind::Inline, omit_default);
+    let explicit = offers("make the default speed explicit", RefactoringKind::Rewrite, make_explicit);
+    omitted.chain(explicit).chain(share(selection, name, &selected, &all)).collect()
 }
 
 /// Omits the default speed.
-fn omit_default(
-    selection: &Selection<'_>,
-    name: &str,
-    selected: &[&Move],
-    all: &[&Move],
-) -> Vec<Refactoring> {
-    let edits = |moves: &[&Move]| -> Vec<Edit> {
-        let defaults = moves.iter().filter(|step| speed(step).is_some_and(is_default));
-        defaults.filter_map(|step| without_speed(selection, step)).collect()
-    };
-    let (here, everywhere) = (edits(selected), edits(all));
-    let inline = |title, edits| Refactoring::new(title, RefactoringKind::Inline, edits);
-    let default = default_speed();
-    let mut offers = Vec::new();
-    if !here.is_empty() {
-        offers.push(inline(format!("omit the default speed of {default} cm/s"), here.clone()));
-    }
-    if everywhere.len() > here.len() {
-        let title = format!("omit the default speed of {default} cm/s in all moves of `{name}`");
-        offers.push(inline(title, everywhere));
-    }
-    offers
+fn omit_default(selection: &Selection<'_>, moves: &[&Move]) -> Vec<Edit> {
+    let defaults = moves.iter().filter(|step| speed(step).is_some_and(is_default));
+    defaults.filter_map(|step| without_speed(selection, step)).collect()
 }
 
 /// Adds the default speed to moves without one.
-fn make_explicit(
-    selection: &Selection<'_>,
-    name: &str,
-    selected: &[&Move],
-    all: &[&Move],
-) -> Vec<Refactoring> {
-    let default = default_speed();
-    let edits = |moves: &[&Move]| -> Vec<Edit> {
-        let silent = moves.iter().filter(|step| step.speed.is_none());
-        let edit = |step: &&Move| Some(selection.edit(Span::at(step.unit?.1.end), format!(" at {default}")));
-        silent.filter_map(edit).collect()
-    };
-    let (here, everywhere) = (edits(selected), edits(all));
-    let rewrite = |title, edits| Refactoring::new(title, RefactoringKind::Rewrite, edits);
-    let mut offers = Vec::new();
-    if !here.is_empty() {
-        offers.push(rewrite("make the default speed explicit".to_owned(), here.clone()));
-    }
-    if everywhere.len() > here.len() {
-        offers.push(rewrite(format!("make the default speed explicit in all moves of `{name}`"), everywhere));
-    }
-    offers
+fn make_explicit(selection: &Selection<'_>, moves: &[&Move]) -> Vec<Edit> {
+    let silent = moves.iter().filter(|step| step.speed.is_none());
+    let at_default = format!(" at {}", default_speed());
+    silent.filter_map(|step| Some(selection.edit(Span::at(step.unit?.1.end), at_default.clone()))).collect()
 }
 
 /// Uses the speed of the selected move for all others. This changes the duration of the movement.

@@ -44,19 +44,25 @@ struct Header {
 
 /// All tables, with the names of the program in place of placeholders.
 fn headers(schema: &Schema, names: &Names) -> Vec<Header> {
-    fn expand(parts: &[&str], names: &Names) -> Vec<Vec<String>> {
+    fn expand(parts: &[&str], names: &Names, is_named: bool) -> Vec<Vec<String>> {
         let Some((first, rest)) = parts.split_first() else { return vec![Vec::new()] };
         let before = |first: &str, rest: Vec<Vec<String>>| -> Vec<Vec<String>> {
             rest.into_iter().map(|rest| [vec![first.to_owned()], rest].concat()).collect()
         };
         match *first {
-            NAME => names.0.iter().flat_map(|(name, inner)| before(name, expand(rest, inner))).collect(),
-            part => before(part, expand(rest, names)),
+            NAME => {
+                names.0.iter().flat_map(|(name, inner)| before(name, expand(rest, inner, true))).collect()
+            }
+            part if is_named => {
+                names.get(part).map_or_else(Vec::new, |inner| before(part, expand(rest, inner, true)))
+            }
+            part => before(part, expand(rest, names, false)),
         }
     }
     let tables = schema.tables.iter().filter(|table| !table.name.is_empty());
-    let headers =
-        |table| expand(&Table::parts(table), names).into_iter().map(move |parts| Header { table, parts });
+    let headers = |table| {
+        expand(&Table::parts(table), names, false).into_iter().map(move |parts| Header { table, parts })
+    };
     tables.flat_map(headers).collect()
 }
 
@@ -240,8 +246,10 @@ mod tests {
             &expect![[r#"
                 target | default: "coppeliasim" | "target = \"$0\""
                 generate-on-save | default: false | "generate-on-save = $0"
+                write-runtime | default: true | "write-runtime = $0"
                 default-speed | default: 9.0 | "default-speed = $0"
                 [severity] | a table | "[severity]\n$0"
+                [coppeliasim] | a table | "[coppeliasim]\n$0"
                 [code-lens] | a table | "[code-lens]\n$0"
             "#]],
         );
@@ -256,6 +264,7 @@ mod tests {
             &expect![[r#"
                 duration | default: true | "duration = $0"
                 defaults | default: true | "defaults = $0"
+                [coppeliasim] | a table | "[coppeliasim]\n$0"
                 [code-lens] | a table | "[code-lens]\n$0"
             "#]],
         );
@@ -277,6 +286,7 @@ mod tests {
             "[$0",
             &expect![[r#"
                 severity | a table | "severity]"
+                coppeliasim | a table | "coppeliasim]"
                 inlay-hints | a table | "inlay-hints]"
                 code-lens | a table | "code-lens]"
             "#]],
@@ -413,30 +423,38 @@ mod tests {
         check_scene(
             "$0",
             &expect![[r#"
-            [world] | a table | "[world]\n$0"
-            [noise] | a table | "[noise]\n$0"
-            [[wall]] | a table | "[[wall]]\n$0"
-            [[box]] | a table | "[[box]]\n$0"
-            [[cylinder]] | a table | "[[cylinder]]\n$0"
-            [[polygon]] | a table | "[[polygon]]\n$0"
-            [robots.rover] | a table | "[robots.rover]\n$0"
-            [robots."größe"] | a table | "[robots.\"größe\"]\n$0"
-            [robots.rover.sensors.front] | a table | "[robots.rover.sensors.front]\n$0"
-            [robots.rover.sensors.back] | a table | "[robots.rover.sensors.back]\n$0"
-        "#]],
+                [world] | a table | "[world]\n$0"
+                [noise] | a table | "[noise]\n$0"
+                [[wall]] | a table | "[[wall]]\n$0"
+                [[box]] | a table | "[[box]]\n$0"
+                [[cylinder]] | a table | "[[cylinder]]\n$0"
+                [[polygon]] | a table | "[[polygon]]\n$0"
+                [robots.rover] | a table | "[robots.rover]\n$0"
+                [robots."größe"] | a table | "[robots.\"größe\"]\n$0"
+                [robots.rover.wheels.a] | a table | "[robots.rover.wheels.a]\n$0"
+                [robots.rover.wheels.b] | a table | "[robots.rover.wheels.b]\n$0"
+                [robots."größe".wheels.a] | a table | "[robots.\"größe\".wheels.a]\n$0"
+                [robots."größe".wheels.b] | a table | "[robots.\"größe\".wheels.b]\n$0"
+                [robots.rover.sensors.front] | a table | "[robots.rover.sensors.front]\n$0"
+                [robots.rover.sensors.back] | a table | "[robots.rover.sensors.back]\n$0"
+            "#]],
         );
         check_scene(
             "[$0\n[world]\n[robots.rover.sensors.back]",
             &expect![[r#"
-            noise | a table | "noise]"
-            wall | a table | "[wall]]"
-            box | a table | "[box]]"
-            cylinder | a table | "[cylinder]]"
-            polygon | a table | "[polygon]]"
-            robots.rover | a table | "robots.rover]"
-            robots."größe" | a table | "robots.\"größe\"]"
-            robots.rover.sensors.front | a table | "robots.rover.sensors.front]"
-        "#]],
+                noise | a table | "noise]"
+                wall | a table | "[wall]]"
+                box | a table | "[box]]"
+                cylinder | a table | "[cylinder]]"
+                polygon | a table | "[polygon]]"
+                robots.rover | a table | "robots.rover]"
+                robots."größe" | a table | "robots.\"größe\"]"
+                robots.rover.wheels.a | a table | "robots.rover.wheels.a]"
+                robots.rover.wheels.b | a table | "robots.rover.wheels.b]"
+                robots."größe".wheels.a | a table | "robots.\"größe\".wheels.a]"
+                robots."größe".wheels.b | a table | "robots.\"größe\".wheels.b]"
+                robots.rover.sensors.front | a table | "robots.rover.sensors.front]"
+            "#]],
         );
         check_scene(
             "[box$0]",
@@ -456,10 +474,14 @@ mod tests {
         check_scene(
             "[robots.$0\n[robots.rover]",
             &expect![[r#"
-            "größe" | a table | "\"größe\"]"
-            rover.sensors.front | a table | "rover.sensors.front]"
-            rover.sensors.back | a table | "rover.sensors.back]"
-        "#]],
+                "größe" | a table | "\"größe\"]"
+                rover.wheels.a | a table | "rover.wheels.a]"
+                rover.wheels.b | a table | "rover.wheels.b]"
+                "größe".wheels.a | a table | "\"größe\".wheels.a]"
+                "größe".wheels.b | a table | "\"größe\".wheels.b]"
+                rover.sensors.front | a table | "rover.sensors.front]"
+                rover.sensors.back | a table | "rover.sensors.back]"
+            "#]],
         );
         check_scene(
             "[robots.rover.sensors.$0]",
@@ -499,6 +521,10 @@ mod tests {
                 [[polygon]] | a table | "[[polygon]]\n$0"
                 [robots.rover] | a table | "[robots.rover]\n$0"
                 [robots."größe"] | a table | "[robots.\"größe\"]\n$0"
+                [robots.rover.wheels.a] | a table | "[robots.rover.wheels.a]\n$0"
+                [robots.rover.wheels.b] | a table | "[robots.rover.wheels.b]\n$0"
+                [robots."größe".wheels.a] | a table | "[robots.\"größe\".wheels.a]\n$0"
+                [robots."größe".wheels.b] | a table | "[robots.\"größe\".wheels.b]\n$0"
                 [robots.rover.sensors.front] | a table | "[robots.rover.sensors.front]\n$0"
                 [robots.rover.sensors.back] | a table | "[robots.rover.sensors.back]\n$0"
             "#]],
@@ -559,7 +585,7 @@ mod tests {
             toml_completions(TomlFile::Scene(&database, environment), text, end, CompletionTrigger::Invoked)
         };
         let tables = at_end("");
-        assert_eq!(tables.len(), 6 + 2 + 2);
+        assert_eq!(tables.len(), 6 + 2 + 4 + 2);
         for table in tables {
             let header = table.insert.replace("$0", "");
             for key in at_end(&header).into_iter().filter(|key| !key.label.starts_with('[')) {

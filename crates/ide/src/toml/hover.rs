@@ -196,6 +196,7 @@ mod tests {
                 * `bearing`: The direction it faces: 0 is ahead, 90 left.
                 * `range`: The greatest distance it measures.
                 * `cone`: The opening angle of its cone.
+                * `object`: Where the sensor is in CoppeliaSim's scene, if that has a name of its own.
             "#]],
         );
         hover(

@@ -42,7 +42,7 @@ impl TomlFile<'_> {
         }
     }
 
-    /// The names of robots with those of their sensors, as far as they are declared.
+    /// The names of robots with those of their parts, as far as they are declared.
     fn names(self) -> Names {
         let Self::Scene(database, Some(environment)) = self else { return Names::default() };
         let tree = database.file_of(environment).zip(database.tree(environment));
@@ -50,7 +50,11 @@ impl TomlFile<'_> {
         distinct(tree.robots.as_ref(), |robot| {
             let id = database.resolve(file, EntityKind::Robot, &robot.text).entity();
             match id.and_then(|id| database.tree(id)) {
-                Some(Entity::Robot(tree)) => distinct(tree.sensors.as_ref(), |_| Names::default()),
+                Some(Entity::Robot(tree)) => {
+                    let parts = |list: Option<&References>| distinct(list, |_| Names::default());
+                    let (sensors, wheels) = (parts(tree.sensors.as_ref()), parts(tree.wheels.as_ref()));
+                    Names(vec![("sensors".to_owned(), sensors), ("wheels".to_owned(), wheels)])
+                }
                 _ => Names::default(),
             }
         })

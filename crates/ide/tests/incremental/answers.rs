@@ -4,6 +4,7 @@
 //! environments. The features of `ide`, and planned paths, are compared for the edited file, at the edit and at one of
 //! its names, and after every second edit for one other file.
 
+use std::collections::BTreeSet;
 use std::fmt::Debug;
 
 use pydslrep_analysis::{Database, Diagnostic, EntityId, EntityRef, FileId, Snapshot, plan_movement};
@@ -126,7 +127,9 @@ fn names(pair: &Pair<'_>) -> Result<(), String> {
         statements.map(|(entity, path)| (entity.span, path)).collect::<Vec<_>>()
     })?;
     for kind in EntityKind::ALL {
-        pair.same("visible names", |database| database.visible_names(file, kind))?;
+        pair.same("names in sight", |database| {
+            database.names_in_sight(file, kind).cloned().collect::<BTreeSet<_>>()
+        })?;
         pair.same("the number of entities", |database| database.count(file, kind))?;
     }
     let mut used: Vec<(EntityKind, SmolStr)> = pair

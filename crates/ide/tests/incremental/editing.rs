@@ -318,8 +318,7 @@ pub(crate) struct Editing {
     database: Database,
     files: [FileId; 4],
     model: Model,
-    /// A fresh database with the last checked texts, and the diagnostics of its files.
-    last: Database,
+    /// The diagnostics that an editor has.
     reported: [Vec<Diagnostic>; 4],
     /// The inverses of the last edits.
     undo: Vec<Change>,
@@ -330,10 +329,12 @@ pub(crate) struct Editing {
     kept: Vec<(Snapshot, usize)>,
     beginning: Database,
     turn: usize,
+    /// The number of edits between two comparisons.
+    every: usize,
 }
 
 impl Editing {
-    pub(crate) fn new(start: &Start) -> Self {
+    pub(crate) fn new(start: &Start, every: usize) -> Self {
         let mut model = Model::default();
         let mut closed: [String; 4] = std::array::from_fn(|_| String::new());
         for (file, text) in start.texts().into_iter().enumerate() {
@@ -356,7 +357,6 @@ impl Editing {
             .filter_map(|(index, file)| Some((database.snapshot(*file, None)?, index)));
         Self {
             kept: kept.collect(),
-            last: model.fresh(1).0,
             beginning: model.fresh(2).0,
             database,
             files,
@@ -366,10 +366,11 @@ impl Editing {
             redo: Vec::new(),
             closed,
             turn: 0,
+            every,
         }
     }
 
-    /// Makes the edits of a step, compares after each of them, and returns their number.
+    /// Makes the edits of a step, compares when it is time, and returns their number.
     pub(crate) fn take(&mut self, step: &Step) -> Result<u64, Box<Failure>> {
         let mut count = 0;
         match step {
@@ -484,45 +485,59 @@ impl Editing {
         if let Change::Close { file } = change {
             self.model.text(*file).clone_into(&mut self.closed[*file]);
         }
+        self.turn += 1;
+        self.model.apply(change);
+        let outcome = if self.turn.is_multiple_of(self.every) {
+            self.change_and_compare(change, &before)
+        } else {
+            without_panic(|| {
+                change.tell(&mut self.database, self.files);
+                let touched = self.database.take_touched();
+                self.report(&touched);
+                Ok(())
+            })
+        };
+        outcome.map_err(|difference| Box::new(Failure::new(before, change.clone(), difference)))
+    }
+
+    fn change_and_compare(&mut self, change: &Change, before: &Model) -> Result<(), String> {
         let snapshots: Vec<(Snapshot, usize)> = self
             .files
             .iter()
             .enumerate()
             .filter_map(|(index, file)| Some((self.database.snapshot(*file, None)?, index)))
             .collect();
-        self.turn += 1;
-        self.model.apply(change);
         let (fresh, _) = self.model.fresh(self.turn);
-        let outcome = without_panic(|| {
+        let (last, _) = before.fresh(self.turn - 1);
+        without_panic(|| {
             change.tell(&mut self.database, self.files);
-            self.compare(&fresh, change, &snapshots)
-        });
-        self.last = fresh;
-        outcome.map_err(|difference| Box::new(Failure::new(before, change.clone(), difference)))
+            self.compare(&fresh, change)?;
+            for (snapshot, index) in &snapshots {
+                answers::compare_snapshot(snapshot, &last, self.files[*index])?;
+            }
+            let touched = self.database.take_touched();
+            answers::unreported(&self.database, self.files, &touched, &self.reported)?;
+            self.report(&touched);
+            Ok(())
+        })
     }
 
-    fn compare(
-        &mut self,
-        fresh: &Database,
-        change: &Change,
-        snapshots: &[(Snapshot, usize)],
-    ) -> Result<(), String> {
+    fn compare(&self, fresh: &Database, change: &Change) -> Result<(), String> {
         let focus = Focus { file: change.file(), offset: self.model.following(change), turn: self.turn };
         answers::compare(&self.database, fresh, self.files, &focus)?;
-        for (snapshot, index) in snapshots {
-            answers::compare_snapshot(snapshot, &self.last, self.files[*index])?;
-        }
         if let Some((snapshot, index)) = self.kept.get(self.turn % PATHS.len()) {
             answers::compare_snapshot(snapshot, &self.beginning, self.files[*index])?;
         }
-        let touched = self.database.take_touched();
-        answers::unreported(&self.database, self.files, &touched, &self.reported)?;
+        Ok(())
+    }
+
+    /// Reports the diagnostics of the files that an edit has touched, as a server does.
+    fn report(&mut self, touched: &[FileId]) {
         for (index, file) in self.files.into_iter().enumerate() {
             if touched.contains(&file) {
                 self.reported[index] = self.database.diagnostics(file);
             }
         }
-        Ok(())
     }
 }
 

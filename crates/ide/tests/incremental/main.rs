@@ -1,9 +1,10 @@
 //! The acceptance test of the incremental database: after any edit, the answers to all requests of an editor equal those
 //! of a fresh database with the same texts.
 //!
-//! `cargo test` makes twenty thousand random edits; `PYDSLREP_EDITS=10000000 cargo test --release -p pydslrep-ide --test
-//! incremental` makes ten million. Failures shrink: first the edits before, then the initial programs, then the texts
-//! right before the failing edit.
+//! `cargo test` makes twenty thousand random edits and compares after each of them; `PYDSLREP_EDITS=10000000
+//! PYDSLREP_COMPARE_EVERY=25 cargo test --release -p pydslrep-ide --test incremental` makes ten million and compares after
+//! every 25th: the edits between ask for diagnostics only, as an editor does between two keys. Failures shrink: first the
+//! edits before, then the initial programs, then the texts right before the failing edit.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests are tests, too")]
 
@@ -34,12 +35,14 @@ const TELL_EVERY: u64 = 100_000;
 fn an_edited_database_answers_as_a_fresh_one() {
     let wanted = std::env::var("PYDSLREP_EDITS").ok();
     let edits = wanted.as_deref().map_or(EDITS, |number| number.parse().expect("PYDSLREP_EDITS is a number"));
+    let every = std::env::var("PYDSLREP_COMPARE_EVERY").ok();
+    let every = every.map_or(1, |number| number.parse().expect("PYDSLREP_COMPARE_EVERY is a number"));
     let cases = edits.div_ceil(u32::try_from(IN_A_ROW).unwrap());
     let config = Config { cases, max_shrink_iters: 20_000, failure_persistence: None, ..Config::default() };
     let done = Cell::new(0_u64);
     let silence = Silence::new();
     let outcome = TestRunner::new(config).run(&editing::strategy(IN_A_ROW), |(start, steps)| {
-        let mut editing = Editing::new(&start);
+        let mut editing = Editing::new(&start, every);
         for step in &steps {
             let edits = editing.take(step).map_err(|failure| TestCaseError::fail(failure.difference))?;
             let before = done.replace(done.get() + edits);
@@ -51,7 +54,7 @@ fn an_edited_database_answers_as_a_fresh_one() {
     });
     let failure = match outcome {
         Ok(()) => None,
-        Err(TestError::Fail(_, (start, steps))) => Some(explain(&start, &steps)),
+        Err(TestError::Fail(_, (start, steps))) => Some(explain(&start, &steps, every)),
         Err(TestError::Abort(reason)) => Some(reason.to_string()),
     };
     drop(silence);
@@ -64,8 +67,8 @@ fn an_edited_database_answers_as_a_fresh_one() {
 }
 
 /// The first failure, shrunk.
-fn explain(start: &Start, steps: &[Step]) -> String {
-    let mut editing = Editing::new(start);
+fn explain(start: &Start, steps: &[Step], every: usize) -> String {
+    let mut editing = Editing::new(start, every);
     let failure = steps.iter().find_map(|step| editing.take(step).err());
     failure.map_or_else(|| "it fails no more".to_owned(), |failure| failure.smallest().to_string())
 }

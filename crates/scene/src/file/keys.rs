@@ -1,6 +1,8 @@
 //! The list of what a scene file can contain.
 
-use pydslrep_schema::{Key, Range, Refusal, Schema, Table, TableKind, Values, key};
+use pydslrep_schema::{Key, Range, Refusal, Schema, Table, TableKind, Values, Word, key};
+
+use crate::Frame;
 
 /// Everything that a scene file can contain.
 pub static SCHEMA: Schema = Schema {
@@ -11,7 +13,7 @@ pub static SCHEMA: Schema = Schema {
     too_large: "is beyond 1000 km, or not finite",
 };
 
-const TABLES: [Table; 8] = [
+const TABLES: [Table; 9] = [
     Table {
         name: "world",
         kind: TableKind::Once,
@@ -134,7 +136,35 @@ const TABLES: [Table; 8] = [
             )
             .default("`1.0`")
             .example("0.7"),
+            key(
+                "frame",
+                Values::Words(&FRAMES),
+                "How scripts see the object that has the robot's name. With any other than the default they cannot drive: \
+                 to try what they say about such a model.",
+            )
+            .default("`\"ahead\"`")
+            .example("\"x-up\""),
+            key(
+                "object",
+                PATH,
+                "Where its body is in CoppeliaSim's scene, if that has a name of its own: scripts and `doctor` look \
+                 for it there.",
+            )
+            .default("by its name")
+            .example("\"/PioneerP3DX\""),
         ],
+    },
+    Table {
+        name: "robots.NAME.wheels.NAME",
+        kind: TableKind::Named { owner: "robot", noun: "wheel" },
+        summary: "A wheel of a robot.",
+        keys: &[key(
+            "object",
+            PATH,
+            "Where the joint of the wheel is in CoppeliaSim's scene, if that has a name of its own.",
+        )
+        .default("by its name")
+        .example("\"/PioneerP3DX/leftMotor\"")],
     },
     Table {
         name: "robots.NAME.sensors.NAME",
@@ -152,6 +182,13 @@ const TABLES: [Table; 8] = [
                 .default("`1.0`, for a bumper `0.05`")
                 .example("2.5"),
             key("cone", OPENING, "The opening angle of its cone.").default("`20`").example("30"),
+            key(
+                "object",
+                PATH,
+                "Where the sensor is in CoppeliaSim's scene, if that has a name of its own.",
+            )
+            .default("by its name")
+            .example("\"/PioneerP3DX/ultrasonicSensor[4]\""),
         ],
     },
 ];
@@ -164,6 +201,14 @@ const AT: Key = key("at", POINT, "Its middle.").required().example("[1.0, 0.5]")
 
 const HEADING: Key =
     key("heading", ANGLE, "Its rotation about its middle, counter-clockwise.").default("`0`").example("30");
+
+const FRAMES: [Word; 5] = [
+    Word { word: Frame::Ahead.word(), summary: "x ahead, y to the left, z up" },
+    Word { word: Frame::XUp.word(), summary: "x up, y to the left, z behind" },
+    Word { word: Frame::XLeft.word(), summary: "x to the left, y behind, z up" },
+    Word { word: Frame::ZAhead.word(), summary: "x down, y to the left, z ahead" },
+    Word { word: Frame::Static.word(), summary: "stays at the start; what moves is below it" },
+];
 
 const COUNT: Values = Values::Number(
     "a whole number from 0",
@@ -178,7 +223,17 @@ const POINT: Values = Values::Numbers("a point `[x, y]`", Range::ANY, (2, 2));
 const SIZE: Values = Values::Numbers("a size `[length, width]`, both above zero", Range::ABOVE_ZERO, (2, 2));
 const POSE: Values = Values::Numbers("a pose `[x, y, heading]`", Range::ANY, (2, 3));
 const POINTS: Values = Values::Points("a list of at least three points `[x, y]`", 3);
+const PATH: Values = Values::Text("the path of an object", r"^(/[^/]*[^/\s][^/]*)+$", path);
 const TEXT: Values = Values::Text("a string", r"^[^/]*\S[^/]*$", name);
+
+/// A path from the top of the scene, as in CoppeliaSim: `/PioneerP3DX/leftMotor`.
+fn path(text: &str) -> Result<String, Refusal> {
+    let is_name = |name: &str| !name.trim().is_empty() && !name.contains(char::is_control);
+    match text.strip_prefix('/') {
+        Some(names) if names.split('/').all(is_name) => Ok(text.to_owned()),
+        _ => Err("must be a path of names, each after a `/`".to_owned().into()),
+    }
+}
 
 /// Clients of the remote API address objects by paths with `/`.
 fn name(text: &str) -> Result<String, Refusal> {

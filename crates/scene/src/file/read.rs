@@ -4,7 +4,7 @@ use pydslrep_kinematics::Pose;
 use pydslrep_schema::{Contents, Names, Problem, ProblemKind, Section, Span};
 
 use super::keys::SCHEMA;
-use crate::{Body, Noise, Obstacle, Robot, Scene, Shape, Thing, defaults, mounts_by_name, space};
+use crate::{Body, Frame, Noise, Obstacle, Robot, Scene, Shape, Thing, defaults, mounts_by_name, space};
 
 /// Reads a scene file for robots on an empty floor. What is wrong is left out; if the text is not TOML, everything.
 /// Problems are in the order of the text. In a scene, robots are stopped by what they touch.
@@ -31,8 +31,13 @@ pub fn problems(text: &str) -> Vec<Problem> {
 
 fn names(scene: &Scene) -> Names {
     let robot = |robot: &Robot| {
-        let sensors = robot.sensors.iter().map(|sensor| (sensor.name.clone(), Names::default()));
-        (robot.name.clone(), Names(sensors.collect()))
+        let names = |names: Vec<&String>| {
+            Names(names.into_iter().map(|name| (name.clone(), Names::default())).collect())
+        };
+        let sensors = names(robot.sensors.iter().map(|sensor| &sensor.name).collect());
+        let wheels = names(robot.wheels.iter().map(|wheel| &wheel.name).collect());
+        let parts = vec![("sensors".to_owned(), sensors), ("wheels".to_owned(), wheels)];
+        (robot.name.clone(), Names(parts))
     };
     Names(scene.robots.iter().map(robot).collect())
 }
@@ -67,7 +72,8 @@ impl Reader {
             ("noise", _) => self.noise(section),
             ("robots.NAME", Some(robot)) => self.robot(robot, section),
             ("robots.NAME.sensors.NAME", Some(robot)) => self.sensor(robot, section),
-            ("robots.NAME" | "robots.NAME.sensors.NAME", None) => {}
+            ("robots.NAME.wheels.NAME", Some(robot)) => self.object(robot, section),
+            ("robots.NAME" | "robots.NAME.sensors.NAME" | "robots.NAME.wheels.NAME", None) => {}
             _ => self.obstacle(section),
         }
     }
@@ -112,6 +118,7 @@ impl Reader {
     }
 
     fn robot(&mut self, index: usize, section: &Section) {
+        self.object(index, section);
         self.starts.push((index, section.span("start").or(section.name_span)));
         let robot = &mut self.scene.robots[index];
         match section.numbers("start").as_deref() {
@@ -124,13 +131,23 @@ impl Reader {
         robot.lateral_friction = section.number("grip").unwrap_or(robot.lateral_friction);
         robot.motor_speed = section.number("rim-speed").unwrap_or(robot.motor_speed);
         robot.motor_acceleration = section.number("rim-acceleration").unwrap_or(robot.motor_acceleration);
+        robot.frame = section.text("frame").and_then(Frame::from_word).unwrap_or(robot.frame);
         if let Some(body) = body(section, "body") {
             robot.body = body;
             mount_by_name(robot);
         }
     }
 
+    /// Where the object of a robot or of a part of it is.
+    fn object(&mut self, robot: usize, section: &Section) {
+        if let Some((path, name)) = section.text("object").zip(section.names.last()) {
+            let paths = self.scene.robots[robot].objects.entry(name.clone()).or_default();
+            paths.push(path.to_owned());
+        }
+    }
+
     fn sensor(&mut self, robot: usize, section: &Section) {
+        self.object(robot, section);
         let name = section.names.last();
         let sensors = &mut self.scene.robots[robot].sensors;
         let Some(sensor) = sensors.iter_mut().find(|sensor| Some(&sensor.name) == name) else { return };
@@ -270,6 +287,30 @@ mod tests {
     }
 
     #[test]
+    fn objects_are_by_the_name_of_their_part() {
+        let scene = check(
+            "[robots.robot_1]\nobject = \"/P3DX\"\n[robots.robot_1.wheels]\nl.object = \"/P3DX/leftMotor\"\n\
+             fSensor.object = \"/a\"\nr.object = \"P3DX\"\n[robots.robot_2.wheels.r]\nobject = \"/P3DX/\"\n\
+             [robots.robot_1.sensors]\nfSensor.object = \"/P3DX/sonar[4]\"\nl.object = \"/a\"\n",
+            &expect![[r#"
+                unknown-name `fSensor`: robot `robot_1` has no wheel `fSensor`
+                  help: its wheels are l, r
+                invalid-value `"P3DX"`: `robots.robot_1.wheels.r.object` must be a path of names, each after a `/`
+                  help: write, for example, `"/PioneerP3DX/leftMotor"`
+                invalid-value `"/P3DX/"`: `robots.robot_2.wheels.r.object` must be a path of names, each after a `/`
+                  help: write, for example, `"/PioneerP3DX/leftMotor"`
+                unknown-name `l`: robot `robot_1` has no sensor `l`
+                  help: its sensors are fSensor, lSensor
+            "#]],
+        );
+        let objects: Vec<(&str, &[String])> =
+            scene.robots[0].objects.iter().map(|(part, paths)| (part.as_str(), paths.as_slice())).collect();
+        let [sonar, motor, body] =
+            ["/P3DX/sonar[4]", "/P3DX/leftMotor", "/P3DX"].map(|path| [path.to_owned()]);
+        assert_eq!(objects, [("fSensor", &sonar[..]), ("l", &motor[..]), ("robot_1", &body[..])]);
+    }
+
+    #[test]
     fn misspelt_words_are_told_with_what_was_meant() {
         let scene = check(
             "[wrld]\n[[boxs]]\nat = [0, 0]\n[world]\nsise = [1, 2]\nx = 1\nseed = 3\n[robots.robt_1]\n[robots.x]\n\
@@ -393,7 +434,8 @@ mod tests {
     #[test]
     fn every_key_does_something_and_its_default_is_true() {
         for table in SCHEMA.tables {
-            let name = table.name.replacen("NAME", "robot_1", 1).replacen("NAME", "fSensor", 1);
+            let part = if table.name.contains("wheels") { "l" } else { "fSensor" };
+            let name = table.name.replacen("NAME", "robot_1", 1).replacen("NAME", part, 1);
             let header = table.header(&name);
             let with = |key: &Key, value: &str| {
                 let others = table.keys.iter().filter(|other| {

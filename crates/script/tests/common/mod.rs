@@ -1,7 +1,7 @@
 //! Environments to generate scripts from.
 
 use pydslrep_analysis::environment::{
-    Action, ActionKind, Environment, Movement, Robot, Sensor, SensorKind, Source, Wheel,
+    Action, ActionKind, Environment, Movement, Objects, Robot, Sensor, SensorKind, Source, Wheel,
 };
 use pydslrep_kinematics::Drive;
 
@@ -20,6 +20,7 @@ pub(crate) fn robot(name: &str, drive: Drive, port: u16) -> Robot {
         name: name.to_owned(),
         drive,
         port,
+        objects: Objects::new(),
         wheels: wheels.into_iter().map(|name| Wheel { name: name.to_owned(), radius: 0.045 }).collect(),
         sensors: Vec::new(),
         source: line(4),

@@ -4,15 +4,16 @@
 mod rewriting;
 
 use pydslrep_analysis as analysis;
-use pydslrep_analysis::{EntityId, FileId};
+use pydslrep_analysis::FileId;
 use pydslrep_ide as ide;
+use pydslrep_output::WriteError;
 use rustc_hash::FxHashMap;
 use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::{
     CodeAction, CodeActionDisabled, CodeActionKind, CodeActionOptions, CodeActionOrCommand, CodeActionParams,
     CodeActionResponse, CodeActionTriggerKind, Command, Diagnostic, DocumentChanges, OneOf,
-    OptionalVersionedTextDocumentIdentifier, ServerCapabilities, TextDocumentEdit, TextEdit, Uri,
-    WorkspaceEdit,
+    OptionalVersionedTextDocumentIdentifier, ServerCapabilities, TextDocumentEdit,
+    TextDocumentPositionParams, TextEdit, Uri, WorkspaceEdit,
 };
 
 use self::rewriting::FixAllOf;
@@ -20,7 +21,7 @@ use crate::chosen::ChosenEnvironment;
 use crate::client::ClientFeatures;
 use crate::documents::Document;
 use crate::handlers::diagnostics;
-use crate::handlers::scripts;
+use crate::handlers::scripts::{self, Script};
 use crate::state::State;
 
 /// The kind of the action that generates a script; editors may run it on save.
@@ -28,6 +29,9 @@ pub(crate) const GENERATE_SCRIPT_KIND: CodeActionKind = CodeActionKind::new("sou
 
 /// Its command, where the client cannot create files.
 pub(crate) const GENERATE_SCRIPT: &str = "pydslrep.generateScript";
+
+/// The command that writes what a script imports, where the client has created the script.
+pub(crate) const WRITE_RUNTIME: &str = "pydslrep.writeRuntime";
 
 pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures) {
     let kinds = vec![
@@ -46,16 +50,18 @@ pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures)
     server.code_action_provider = Some(options.into());
 }
 
-/// `textDocument/codeAction`.
-pub(crate) fn code_actions(state: &mut State, params: &CodeActionParams) -> Option<CodeActionResponse> {
-    // What the editor asks for by itself is about the line of the cursor.
+/// What the editor asks for by itself is about the line of the cursor.
+pub(crate) fn note_cursor(state: &mut State, params: &CodeActionParams) {
+    let cursor = TextDocumentPositionParams::new(params.text_document.clone(), params.range.end);
+    state.note_cursor(&cursor);
     if params.context.trigger_kind == Some(CodeActionTriggerKind::AUTOMATIC) {
         state.cursor_is_at(&params.text_document.uri, params.range);
     }
-    actions(state, params)
 }
 
-fn actions(state: &State, params: &CodeActionParams) -> Option<CodeActionResponse> {
+/// `textDocument/codeAction`.
+pub(crate) fn code_actions(state: &mut State, params: &CodeActionParams) -> Option<CodeActionResponse> {
+    let state = &*state;
     let wanted = |kind: &CodeActionKind| {
         params.context.only.as_ref().is_none_or(|only| only.iter().any(|wish| covers(wish, kind)))
     };
@@ -181,11 +187,18 @@ fn edit_of_documents<'a>(
 fn script_actions(state: &State, document: Document<'_>, file: FileId) -> Vec<CodeActionOrCommand> {
     let Some(uri) = document.uri() else { return Vec::new() };
     let environments = state.database().environments(file);
-    environments.iter().filter_map(|(id, name)| script_action(state, &uri, *id, &name.text)).collect()
+    let scripts = scripts::of_environments(state, &uri, environments.iter().map(|(id, _)| *id));
+    let named = environments.iter().zip(scripts);
+    named.filter_map(|((_, name), script)| script_action(state, &uri, &name.text, script)).collect()
 }
 
-fn script_action(state: &State, uri: &Uri, id: EntityId, name: &str) -> Option<CodeActionOrCommand> {
-    let script = match scripts::of_environment(state, uri, id) {
+fn script_action(
+    state: &State,
+    uri: &Uri,
+    name: &str,
+    script: Result<Script>,
+) -> Option<CodeActionOrCommand> {
+    let script = match script {
         Ok(script) => script,
         Err(error) => return disabled(state, name, error.message.into_owned()),
     };
@@ -196,11 +209,24 @@ fn script_action(state: &State, uri: &Uri, id: EntityId, name: &str) -> Option<C
     if !client.action_literals {
         return Some(Command::new(title, GENERATE_SCRIPT.to_owned(), Some(vec![argument])).into());
     }
+    let obstacle = script.obstacle();
+    // The command asks; an edit would just replace it.
+    let must_ask = matches!(obstacle, Some(WriteError::Changed(_)));
+    if let (Some(error), false) = (&obstacle, must_ask) {
+        return disabled(state, name, scripts::reason(error));
+    }
     let mut action = script_code_action(title);
-    if !client.create_files {
+    if must_ask || !client.create_files {
         let title = action.title.clone();
         action.command = Some(Command::new(title, GENERATE_SCRIPT.to_owned(), Some(vec![argument])));
-    } else if client.resolve_edits {
+        return Some(action.into());
+    }
+    if script.runtime_folder().is_some() {
+        // Clients execute it after the edit.
+        let title = "Write the package that scripts import".to_owned();
+        action.command = Some(Command::new(title, WRITE_RUNTIME.to_owned(), Some(vec![argument.clone()])));
+    }
+    if client.resolve_edits {
         action.data = Some(argument);
     } else {
         action.edit = Some(scripts::edit(&script));
@@ -220,8 +246,15 @@ fn disabled(state: &State, name: &str, reason: String) -> Option<CodeActionOrCom
     })
 }
 
+/// The key of the program of an action, where finding its edit may take long.
+pub(crate) fn is_long(state: &State, action: &CodeAction) -> Option<String> {
+    let uri = action.data.as_ref()?.get("uri")?.as_str()?;
+    state.if_long(&uri.parse().ok()?)
+}
+
 /// `codeAction/resolve`: finds the edit of an action that was chosen.
-pub(crate) fn resolve(state: &State, action: &CodeAction) -> Result<CodeAction> {
+pub(crate) fn resolve(state: &mut State, action: &CodeAction) -> Result<CodeAction> {
+    let state = &*state;
     let action = action.clone();
     let Some(data) = &action.data else { return Ok(action) };
     if let Ok(which) = serde_json::from_value::<FixAllOf>(data.clone()) {
@@ -231,6 +264,9 @@ pub(crate) fn resolve(state: &State, action: &CodeAction) -> Result<CodeAction> 
     let which: ChosenEnvironment = serde_json::from_value(data.clone())
         .map_err(|error| Error::invalid_params(format!("not an action of this server: {error}")))?;
     let script = scripts::generate(state, &which)?;
+    if let Some(error) = script.obstacle() {
+        return Err(scripts::failure(scripts::reason(&error)));
+    }
     Ok(CodeAction { edit: Some(scripts::edit(&script)), ..action })
 }
 

@@ -1,15 +1,22 @@
 //! `workspace/executeCommand`: everything that can be executed. `docs/protocol.md` has its table from here.
 
 use futures::FutureExt;
+use futures::channel::oneshot;
 use futures::future::{BoxFuture, ready};
+use pydslrep_output::Changed;
 use serde::de::DeserializeOwned;
 use tower_lsp::jsonrpc::{Error, Result};
+use tower_lsp::ls_types::request::ShowMessageRequest;
 use tower_lsp::ls_types::{ExecuteCommandOptions, ExecuteCommandParams, LSPAny, ServerCapabilities};
 
+use crate::chosen::ChosenEnvironment;
 use crate::client::ClientFeatures;
-#[cfg(feature = "process")]
-use crate::handlers::runs;
 use crate::handlers::{code_actions, hover, scripts};
+#[cfg(feature = "process")]
+use crate::handlers::{
+    preview,
+    runs::{self, scenes},
+};
 use crate::server::Server;
 
 /// A command, which takes one argument.
@@ -28,9 +35,17 @@ const COMMANDS: &[Command] = &[
     Command {
         name: code_actions::GENERATE_SCRIPT,
         argument: "{uri, environment}",
-        does: "writes the script next to the program, and shows it",
+        does: "writes the script next to the program and the package that it imports, and shows the script; asks before \
+               it replaces a script that was changed",
         returns: "nothing",
         run: |server, params| generate_script(server, params).boxed(),
+    },
+    Command {
+        name: code_actions::WRITE_RUNTIME,
+        argument: "{uri, environment}",
+        does: "writes the package that the script imports next to it, unless it is installed",
+        returns: "nothing",
+        run: |server, params| write_runtime(server, params).boxed(),
     },
     #[cfg(feature = "process")]
     Command {
@@ -47,6 +62,38 @@ const COMMANDS: &[Command] = &[
         does: "draws the planned path",
         returns: "`{picture, replay, output}`",
         run: |server, params| run(server, params).boxed(),
+    },
+    #[cfg(feature = "process")]
+    Command {
+        name: preview::OPEN_PREVIEW,
+        argument: "{uri?, environment?}",
+        does: "starts the live preview and opens it in a browser, or says where it is",
+        returns: "`{address}`",
+        run: |server, params| open_preview(server, params).boxed(),
+    },
+    #[cfg(feature = "process")]
+    Command {
+        name: scenes::PUSH,
+        argument: "{uri, environment, replace?}",
+        does: "builds the environment's scene in a running CoppeliaSim; asks before it replaces what it built before",
+        returns: "`{robots, obstacles, notes}`",
+        run: |server, params| push_scene(server, params).boxed(),
+    },
+    #[cfg(feature = "process")]
+    Command {
+        name: scenes::CHECK,
+        argument: "{uri, environment}",
+        does: "checks the scene of a running CoppeliaSim against the environment, shows what is wrong and what to do",
+        returns: "`{findings}`",
+        run: |server, params| check_scene(server, params).boxed(),
+    },
+    #[cfg(feature = "process")]
+    Command {
+        name: scenes::REMOVE,
+        argument: "{uri, environment}",
+        does: "removes what was built for the environment from a running CoppeliaSim",
+        returns: "`{removed, main_script}`",
+        run: |server, params| remove_scene(server, params).boxed(),
     },
     Command {
         name: hover::SHOW_KINEMATICS,
@@ -80,7 +127,24 @@ pub(crate) async fn execute(server: Server, params: ExecuteCommandParams) -> Res
 }
 
 async fn generate_script(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
-    let written = scripts::write_script(&server.state(), &argument(&params)?, &server.outbox)?;
+    let which: ChosenEnvironment = argument(&params)?;
+    let question = scripts::question(&server.state(), &which)?;
+    let changed = match question {
+        None => Changed::Keep,
+        Some(question) => {
+            // A client that cannot ask has not said yes.
+            let answer = server.client.send_request::<ShowMessageRequest>(question).await.ok().flatten();
+            if !scripts::allows(answer.as_ref()) {
+                return Err(scripts::kept());
+            }
+            Changed::Replace
+        }
+    };
+    if server.state().provided.is_some() {
+        return apply_script(&server, &which).await;
+    }
+    let (written, runtime) = scripts::write_script(&server.state(), &which, changed, &server.outbox)?;
+    finish(runtime).await;
     let shows_documents = server.state().client.show_document;
     if shows_documents {
         // The script exists, whether or not the client shows it.
@@ -89,10 +153,60 @@ async fn generate_script(server: Server, params: ExecuteCommandParams) -> Result
     Ok(None)
 }
 
+/// Has the client create the script: there is no disk.
+async fn apply_script(server: &Server, which: &ChosenEnvironment) -> Result<Option<LSPAny>> {
+    let edit = scripts::edit(&scripts::generate(&server.state(), which)?);
+    let applied = server.client.apply_edit(edit).await?;
+    if applied.applied {
+        return Ok(None);
+    }
+    let reason = applied.failure_reason.unwrap_or_else(|| "the editor did not create the script".to_owned());
+    Err(scripts::failure(reason))
+}
+
+async fn write_runtime(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
+    let runtime = scripts::write_runtime(&server.state(), &argument(&params)?, &server.outbox)?;
+    finish(runtime).await;
+    Ok(None)
+}
+
+/// Waits for a package that is being written.
+async fn finish(runtime: Option<oneshot::Receiver<()>>) {
+    if let Some(written) = runtime {
+        // It may not have been begun, which is in the log.
+        let _ = written.await;
+    }
+}
+
 #[cfg(feature = "process")]
 async fn run(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
     let which = argument(&params)?;
     runs::run(server, params, which).await
+}
+
+/// The argument may be missing: not all editors can send one.
+#[cfg(feature = "process")]
+async fn open_preview(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
+    let shown = if params.arguments.is_empty() { preview::Shown::default() } else { argument(&params)? };
+    preview::open(server, shown).await
+}
+
+#[cfg(feature = "process")]
+async fn push_scene(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
+    let push = argument(&params)?;
+    scenes::push(server, params, push).await
+}
+
+#[cfg(feature = "process")]
+async fn check_scene(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
+    let which = argument(&params)?;
+    scenes::check(server, params, which).await
+}
+
+#[cfg(feature = "process")]
+async fn remove_scene(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
+    let which = argument(&params)?;
+    scenes::remove(server, params, which).await
 }
 
 fn show_kinematics(server: &Server, params: &ExecuteCommandParams) -> Result<Option<LSPAny>> {

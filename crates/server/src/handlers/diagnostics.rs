@@ -30,7 +30,7 @@ const SOURCE: &str = "pydslrep";
 /// Pushes what has changed since the last time, once per document, however many changes there were. Returns whether
 /// anything has changed.
 pub(crate) fn publish(state: &mut State, outbox: &Outbox) -> bool {
-    let changes = state.workspace.take_changes();
+    let changes = state.take_changes();
     let closed = std::mem::take(&mut state.closed);
     let is_changed = !changes.is_empty() || !closed.is_empty();
     if changes.all {
@@ -98,13 +98,22 @@ pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures)
     });
 }
 
+/// The key of a document with so many problems that converting them takes longer than handing it to another thread.
+pub(crate) fn has_many(state: &State, params: &DocumentDiagnosticParams) -> Option<String> {
+    /// Entities with problems; one takes a few microseconds.
+    const MANY: usize = 500;
+    let document = state.document(&params.text_document.uri)?;
+    (state.database().count_troubled(document.file?) > MANY).then(|| document.key.to_owned())
+}
+
 /// `textDocument/diagnostic`. The result's id depends on the diagnostics and on when the document was opened, not on its
 /// version, which may start again from the beginning.
 #[expect(clippy::unnecessary_wraps, reason = "what answers without a null look like")]
 pub(crate) fn pull(
-    state: &State,
+    state: &mut State,
     params: &DocumentDiagnosticParams,
 ) -> Result<DocumentDiagnosticReportResult> {
+    let state = &*state;
     let document = state.document(&params.text_document.uri);
     let items = document.map(|document| of_document(state, document)).unwrap_or_default();
     let result_id = result_id(&items, document.map_or(0, Document::opening));

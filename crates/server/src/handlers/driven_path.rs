@@ -13,6 +13,9 @@ use crate::documents::key;
 use crate::driven;
 #[cfg(feature = "process")]
 use crate::message::Outbox;
+use crate::page::Audience;
+#[cfg(feature = "process")]
+use crate::page::Pages;
 
 /// The request.
 pub(crate) enum DrivenPath {}
@@ -38,16 +41,17 @@ impl Notification for DrivenPathChanged {
 pub(crate) struct DrivenPaths {
     /// By the program's key and the environment's name.
     paths: FxHashMap<(String, String), Value>,
-    /// What the client has, and is notified of when it changes.
-    watched: Vec<ChosenEnvironment>,
+    /// Who has what, and is notified when it changes.
+    watched: Vec<(Audience, ChosenEnvironment)>,
 }
 
 impl DrivenPaths {
-    /// The path of the latest run of an environment; `None` where there was none. From now on the client is notified of
-    /// another.
-    pub(crate) fn watch(&mut self, which: &ChosenEnvironment) -> Option<Value> {
-        if !self.watched.contains(which) {
-            self.watched.push(which.clone());
+    /// The path of the latest run of an environment; `None` where there was none. From now on its audience is
+    /// notified of another.
+    pub(crate) fn watch(&mut self, which: &ChosenEnvironment, audience: Audience) -> Option<Value> {
+        let watched = (audience, which.clone());
+        if !self.watched.contains(&watched) {
+            self.watched.push(watched);
         }
         self.paths.get(&place(which)).cloned()
     }
@@ -60,6 +64,7 @@ impl DrivenPaths {
         trace: &std::path::Path,
         map: &std::path::Path,
         outbox: &Outbox,
+        pages: &Pages,
     ) {
         let Ok(robots) = driven::read(trace, map) else { return };
         if robots.is_empty() {
@@ -67,10 +72,12 @@ impl DrivenPaths {
         }
         let path = serde_json::json!({ "environment": which.environment, "robots": robots });
         self.paths.insert(place(which), path);
-        self.watched.retain(|watched| {
+        self.watched.retain(|(audience, watched)| {
             let is_other = place(watched) != place(which);
-            if !is_other {
-                outbox.send_notification::<DrivenPathChanged>(watched);
+            match audience {
+                _ if is_other => {}
+                Audience::Client => outbox.send_notification::<DrivenPathChanged>(watched),
+                Audience::Page => pages.notify::<DrivenPathChanged>(watched),
             }
             is_other
         });

@@ -3,13 +3,13 @@
 //!
 //! A client that also watches files reports the same twice, which does no harm.
 
-use std::path::Path;
 use std::str::FromStr;
 
 use pydslrep_config::FILE_NAME;
 use pydslrep_ide as ide;
 use pydslrep_scene::ENDING;
 use pydslrep_text::file_names::PROGRAM_EXTENSION as EXTENSION;
+use pydslrep_workspace::path_of;
 use tower_lsp::ls_types::{
     CreateFilesParams, DeleteFilesParams, FileOperationFilter, FileOperationPattern,
     FileOperationPatternKind, FileOperationRegistrationOptions, RenameFilesParams, ServerCapabilities, Uri,
@@ -99,7 +99,7 @@ fn remove<'a>(state: &mut State, addresses: impl Iterator<Item = &'a str>) {
 fn add<'a>(state: &mut State, addresses: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut new = Vec::new();
     for uri in addresses.filter_map(|address| Uri::from_str(address).ok()) {
-        if !Path::new(&key(&uri)).is_dir() {
+        if !path_of(&key(&uri)).is_dir() {
             state.file_changed(&uri);
             continue;
         }

@@ -22,6 +22,9 @@ pub(crate) mod inlay_hints;
 pub(crate) mod navigation;
 pub(crate) mod planned_action;
 pub(crate) mod planned_path;
+#[cfg(feature = "process")]
+pub(crate) mod preview;
+pub(crate) mod provided_files;
 pub(crate) mod references;
 pub(crate) mod rename;
 #[cfg(feature = "process")]
@@ -60,8 +63,12 @@ use self::driven_path::DrivenPath;
 use self::explain::Explain;
 use self::planned_action::{ActionLocation, PlannedAt};
 use self::planned_path::PlannedPath;
+use self::provided_files::ProvidedFiles;
+use self::scripts::GeneratedScript;
 use crate::dispatch::{Announce, Table};
+use crate::page::Audience;
 use crate::server::{Server, Stage};
+use crate::state::State;
 
 /// For methods without a capability of their own: clients send them anyway, or with the row above.
 const NOTHING: Announce = |_, _| {};
@@ -102,6 +109,7 @@ fn workspaces(table: &mut Table) {
     table.follow::<DidChangeWorkspaceFolders, _>(workspace::folders_changed, workspace::announce);
     // These two are registered where the client takes registrations.
     table.follow::<DidChangeWatchedFiles, _>(workspace::files_changed, NOTHING);
+    table.follow::<ProvidedFiles, _>(provided_files::provide, NOTHING);
     table.follow::<DidChangeConfiguration, _>(workspace::settings_changed, NOTHING);
     table.read::<WillRenameFiles, _>(file_operations::will_rename, file_operations::announce);
     table.follow::<DidRenameFiles, _>(file_operations::did_rename, NOTHING);
@@ -110,18 +118,39 @@ fn workspaces(table: &mut Table) {
 }
 
 fn problems_and_actions(table: &mut Table) {
-    table.read::<DocumentDiagnosticRequest, _>(diagnostics::pull, diagnostics::announce);
+    table.read_long::<DocumentDiagnosticRequest, _>(
+        diagnostics::has_many,
+        |_, _| {},
+        diagnostics::pull,
+        diagnostics::announce,
+    );
     table.read_workspace::<WorkspaceDiagnosticRequest, _>(workspace_diagnostics::pull_workspace, NOTHING);
     table.read::<Explain, _>(explain::explain, NOTHING);
-    table.read_and_note::<CodeActionRequest, _>(code_actions::code_actions, code_actions::announce);
-    table.read::<CodeActionResolveRequest, _>(code_actions::resolve, NOTHING);
+    table.read_long::<CodeActionRequest, _>(
+        |state, params| state.if_long(&params.text_document.uri),
+        code_actions::note_cursor,
+        code_actions::code_actions,
+        code_actions::announce,
+    );
+    table.read_long::<CodeActionResolveRequest, _>(
+        code_actions::is_long,
+        |_, _| {},
+        code_actions::resolve,
+        NOTHING,
+    );
     table.run::<ExecuteCommand, _>(commands::execute, commands::announce);
 }
 
 fn typing(table: &mut Table) {
     table.read::<Completion, _>(completion::completion, completion::announce);
     table.read::<ResolveCompletionItem, _>(completion::resolve, NOTHING);
-    table.read::<SignatureHelpRequest, _>(signature::signature_help, signature::announce);
+    table.read_and_note::<SignatureHelpRequest, _>(
+        |state, params| {
+            state.note_cursor(&params.text_document_position_params);
+            signature::signature_help(state, params)
+        },
+        signature::announce,
+    );
     table.read::<OnTypeFormatting, _>(formatting::on_type, formatting::announce_on_type);
     table.read::<LinkedEditingRange, _>(rename::linked_editing_ranges, |server, _| {
         server.linked_editing_range_provider = Some(LinkedEditingRangeServerCapabilities::Simple(true));
@@ -129,17 +158,34 @@ fn typing(table: &mut Table) {
 }
 
 fn reading(table: &mut Table) {
-    table.read::<HoverRequest, _>(hover::hover, |server, _| server.hover_provider = Some(true.into()));
-    table.read_and_note::<InlayHintRequest, _>(inlay_hints::inlay_hints, |server, _| {
-        server.inlay_hint_provider = Some(OneOf::Left(true));
-    });
-    table.read_and_note::<CodeLensRequest, _>(code_lenses::code_lenses, |server, _| {
-        server.code_lens_provider = Some(CodeLensOptions { resolve_provider: Some(true) });
-    });
+    table.read_and_note::<HoverRequest, _>(
+        |state, params| {
+            state.note_cursor(&params.text_document_position_params);
+            hover::hover(state, params)
+        },
+        |server, _| server.hover_provider = Some(true.into()),
+    );
+    table.read_long::<InlayHintRequest, _>(
+        |state, params| state.if_long(&params.text_document.uri),
+        |_, _| {},
+        inlay_hints::inlay_hints,
+        |server, _| server.inlay_hint_provider = Some(OneOf::Left(true)),
+    );
+    table.read_long::<CodeLensRequest, _>(
+        |state, params| state.if_long(&params.text_document.uri),
+        |_, _| {},
+        code_lenses::code_lenses,
+        |server, _| server.code_lens_provider = Some(CodeLensOptions { resolve_provider: Some(true) }),
+    );
     table.read::<CodeLensResolve, _>(code_lenses::resolve, NOTHING);
     table.read_file::<SemanticTokensFullRequest, _>(semantic_tokens::full, semantic_tokens::announce);
     table.read_file::<SemanticTokensFullDeltaRequest, _>(semantic_tokens::delta, NOTHING);
-    table.read::<SemanticTokensRangeRequest, _>(semantic_tokens::range, NOTHING);
+    table.read_long::<SemanticTokensRangeRequest, _>(
+        |state, params| state.if_long(&params.text_document.uri),
+        |_, _| {},
+        semantic_tokens::range,
+        NOTHING,
+    );
     table.read_file::<DocumentSymbolRequest, _>(document_symbols::document_symbols, |server, _| {
         server.document_symbol_provider = Some(OneOf::Left(true));
     });
@@ -161,12 +207,18 @@ fn navigation(table: &mut Table) {
     table.read::<GotoTypeDefinition, _>(navigation::type_definition, |server, _| {
         server.type_definition_provider = Some(true.into());
     });
-    table.read::<References, _>(references::references, |server, _| {
-        server.references_provider = Some(OneOf::Left(true));
-    });
-    table.read_and_note::<DocumentHighlightRequest, _>(references::highlights, |server, _| {
-        server.document_highlight_provider = Some(OneOf::Left(true));
-    });
+    table.read_long::<References, _>(
+        |state, params| references::has_many(state, &params.text_document_position),
+        |_, _| {},
+        references::references,
+        |server, _| server.references_provider = Some(OneOf::Left(true)),
+    );
+    table.read_long::<DocumentHighlightRequest, _>(
+        |state, params| references::has_many(state, &params.text_document_position_params),
+        |state, params| state.cursor_is(&params.text_document_position_params),
+        references::highlights,
+        |server, _| server.document_highlight_provider = Some(OneOf::Left(true)),
+    );
     table.read_workspace::<WorkspaceSymbolRequest, _>(workspace_symbols::workspace_symbols, |server, _| {
         server.workspace_symbol_provider = Some(OneOf::Left(true));
     });
@@ -185,7 +237,12 @@ fn navigation(table: &mut Table) {
 
 fn editing(table: &mut Table) {
     table.read::<PrepareRenameRequest, _>(rename::prepare, rename::announce);
-    table.read::<Rename, _>(rename::rename, NOTHING);
+    table.read_long::<Rename, _>(
+        |state, params| references::has_many(state, &params.text_document_position),
+        |_, _| {},
+        rename::rename,
+        NOTHING,
+    );
     table.read_file::<Formatting, _>(formatting::document, |server, _| {
         server.document_formatting_provider = Some(OneOf::Left(true));
     });
@@ -196,8 +253,19 @@ fn editing(table: &mut Table) {
 
 /// What `docs/protocol.md` adds to the protocol, for previews.
 fn paths(table: &mut Table) {
-    table.read_and_note::<PlannedPath, _>(planned_path::planned_path, NOTHING);
-    table.read_and_note::<DrivenPath, _>(|state, which| state.driven.watch(which), NOTHING);
-    table.read_and_note::<PlannedAt, _>(planned_action::planned_at, NOTHING);
+    table.read_long::<PlannedPath, _>(
+        |state, which| state.if_long(&which.uri),
+        |state, which| planned_path::watch(state, which, Audience::Client),
+        |state, which| planned_path::planned_path(state, which, Audience::Client),
+        NOTHING,
+    );
+    table.read_and_note::<DrivenPath, _>(|state, which| state.driven.watch(which, Audience::Client), NOTHING);
+    table.read_long::<PlannedAt, _>(
+        |state, at| state.if_long(&at.text_document.uri),
+        State::cursor_is,
+        planned_action::planned_at,
+        NOTHING,
+    );
+    table.read::<GeneratedScript, _>(scripts::script, NOTHING);
     table.read::<ActionLocation, _>(planned_action::action_location, NOTHING);
 }

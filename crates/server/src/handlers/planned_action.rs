@@ -41,7 +41,7 @@ pub(crate) struct ActionOf {
 
 /// What a position has to do with planned paths; `None` where the document is not open or not a program.
 pub(crate) fn planned_at(state: &mut State, at: &TextDocumentPositionParams) -> Option<ide::PlannedAt> {
-    state.cursor_is(at);
+    let state = &*state;
     let place = state.place(at)?;
     Some(ide::planned_at(state.database(), place.position()))
 }

@@ -45,7 +45,8 @@ pub(crate) fn prepare(
 /// # Errors
 ///
 /// If it is refused; the message is the reason.
-pub(crate) fn rename(state: &State, params: &RenameParams) -> Result<Option<WorkspaceEdit>> {
+pub(crate) fn rename(state: &mut State, params: &RenameParams) -> Result<Option<WorkspaceEdit>> {
+    let state = &*state;
     let Some(place) = state.place(&params.text_document_position) else { return Ok(None) };
     let edits = ide::rename(state.database(), place.position(), &params.new_name).map_err(refused)?;
     Ok(Some(code_actions::workspace_edit(state, &edits)))

@@ -1,10 +1,12 @@
-//! The commands `pydslrep.run` and `pydslrep.previewPath`: `pydslrep` as a child process, which runs or plans what the
-//! editor shows, saved or not, and draws a picture of it.
+//! The commands that start `pydslrep` as a child process, on what the editor shows, saved or not. Those of this file are
+//! `pydslrep.run` and `pydslrep.previewPath`, which run or plan it and draw a picture of it.
 //!
 //! The program and its imports are written to a temporary folder, as they are in the editor. The user's own files are
 //! not changed.
 
+mod child;
 mod command;
+pub(crate) mod scenes;
 
 pub(crate) use self::command::run;
 
@@ -16,9 +18,10 @@ use std::process::Command;
 use futures::channel::mpsc::UnboundedReceiver;
 use pydslrep_analysis::{FileId, Target};
 use pydslrep_config::FILE_NAME;
+use pydslrep_output::TemporaryFolder;
 use pydslrep_scene::ENDING;
 use pydslrep_script::{VREP_CLIENT_PARTS, VREP_CLIENTS};
-use tempfile::TempDir;
+use pydslrep_workspace::path_of;
 use tower_lsp::jsonrpc::{Error, ErrorCode, Result};
 
 use crate::children::{ChildEvent, Children, Running};
@@ -32,16 +35,35 @@ pub(crate) const RUN: &str = "pydslrep.run";
 /// Plots an environment's planned path.
 pub(crate) const PREVIEW_PATH: &str = "pydslrep.previewPath";
 
+/// A program and its imports as they are in the editor.
+#[derive(Debug)]
+struct ProgramCopy {
+    /// Deleted with the child that reads it.
+    folder: TemporaryFolder,
+    program: PathBuf,
+}
+
+/// The exit code of a child that was interrupted.
+const INTERRUPTED: i32 = 130;
+
 /// What to start.
 #[derive(Debug)]
 pub(crate) struct Job {
-    /// The program and its imports; deleted with the job.
-    folder: TempDir,
-    program: PathBuf,
+    copy: ProgramCopy,
     environment: String,
     subcommand: &'static str,
     /// What is drawn, as part of the picture's name.
     what: &'static str,
+}
+
+/// Prepares a run or a plan.
+///
+/// # Errors
+///
+/// As [`copy`].
+pub(crate) fn prepare(state: &State, which: &ChosenEnvironment, command: &str) -> Result<Job> {
+    let (subcommand, what) = if command == RUN { ("run", "driven") } else { ("plan", "planned") };
+    Ok(Job { copy: copy(state, which)?, environment: which.environment.clone(), subcommand, what })
 }
 
 /// Writes the program and its imports.
@@ -49,14 +71,13 @@ pub(crate) struct Job {
 /// # Errors
 ///
 /// If the environment does not exist or has errors, or the files cannot be written.
-pub(crate) fn prepare(state: &State, which: &ChosenEnvironment, command: &str) -> Result<Job> {
+fn copy(state: &State, which: &ChosenEnvironment) -> Result<ProgramCopy> {
     let id = environment(state, which)?;
     state.database().environment(id).map_err(|errors| blocked(state, &errors))?;
-    let (subcommand, what) = if command == RUN { ("run", "driven") } else { ("plan", "planned") };
     let unwritten = |error: io::Error| failure(format!("cannot write the program to run: {error}"));
-    let folder = tempfile::Builder::new().prefix("pydslrep-").tempdir().map_err(unwritten)?;
+    let folder = TemporaryFolder::new("job-").map_err(unwritten)?;
     let program = write_programs(state, which, folder.path())?;
-    Ok(Job { folder, program, environment: which.environment.clone(), subcommand, what })
+    Ok(ProgramCopy { folder, program })
 }
 
 /// The open program and its imports, with the same relative paths.
@@ -100,7 +121,7 @@ fn write_programs(state: &State, which: &ChosenEnvironment, folder: &Path) -> Re
     write(&folder.join(FILE_NAME), &format!("target = \"{}\"\n", target.word()))?;
     let program = place(own);
     if target == Target::VRep && own.starts_with('/') {
-        copy_client(Path::new(own), &program)?;
+        copy_client(&path_of(own), &program)?;
     }
     Ok(program)
 }
@@ -143,23 +164,33 @@ impl Job {
         let picture = children
             .picture(&format!("{}-{}", self.environment, self.what))
             .map_err(|error| failure(format!("cannot create a folder for pictures: {error}")))?;
-        let program = children.command.clone();
-        let mut command = Command::new(&program);
-        command.arg(self.subcommand).arg(&self.program);
+        let mut command = Command::new(&children.command);
+        command.arg(self.subcommand).arg(&self.copy.program);
         command.args(["--environment", &self.environment, "--picture"]).arg(&picture);
         command.arg("--replay").arg(replay(&picture));
         if self.subcommand == "run" {
             command.arg("--trace").arg(trace(&picture)).arg("--map").arg(map(&picture));
             command.arg("--figures").arg(figures(&picture)).arg("--until-input-ends");
         }
-        let (running, events) = children.start(&mut command, self.folder).map_err(|error| {
-            let name = program.display();
-            failure(format!(
-                "cannot start {name}: {error}; put `pydslrep` next to `pydslrep-lsp` or on the PATH"
-            ))
-        })?;
+        let (running, events) = start(children, &mut command, self.copy.folder)?;
         Ok((running, events, picture))
     }
+}
+
+/// Starts a child.
+///
+/// # Errors
+///
+/// If there is no program `pydslrep`.
+fn start(
+    children: &mut Children,
+    command: &mut Command,
+    folder: TemporaryFolder,
+) -> Result<(Running, UnboundedReceiver<ChildEvent>)> {
+    children.start(command, folder).map_err(|error| {
+        let name = children.command.display();
+        failure(format!("cannot start {name}: {error}; put `pydslrep` next to `pydslrep-lsp` or on the PATH"))
+    })
 }
 
 /// The animated picture's path, next to the other.
@@ -184,12 +215,8 @@ pub(crate) fn figures(picture: &Path) -> PathBuf {
 
 /// The error for a run that failed or was interrupted.
 pub(crate) fn ended_badly(code: Option<i32>, said: &[String]) -> Error {
-    if code == Some(130) {
-        return Error {
-            code: ErrorCode::RequestCancelled,
-            message: "the run was cancelled".into(),
-            data: None,
-        };
+    if code == Some(INTERRUPTED) {
+        return cancelled("the run was cancelled");
     }
     // The paths of its output and what it began with are not reasons.
     let others = ["picture: ", "replay: ", "trace: ", "map: ", "figures: ", "preparing Python "];
@@ -199,6 +226,11 @@ pub(crate) fn ended_badly(code: Option<i32>, said: &[String]) -> Error {
         return failure("pydslrep exited without output".to_owned());
     }
     failure(words.join("\n"))
+}
+
+/// The error for a request that the user does not want any more.
+fn cancelled(message: &'static str) -> Error {
+    Error { code: ErrorCode::RequestCancelled, message: message.into(), data: None }
 }
 
 #[cfg(test)]

@@ -1,22 +1,32 @@
 //! The script of an environment: its path, and how it is written with each client.
 
-use std::fs;
+use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use std::sync::Arc;
 
+use futures::channel::oneshot;
+use pydslrep_analysis::environment::Environment;
 use pydslrep_analysis::{Blocked, EntityId};
+use pydslrep_output::{
+    Changed, Kind, WriteError, check_inside, check_script, write_script as write_script_file,
+};
+use pydslrep_script::{Origin, origin};
 use pydslrep_syntax::EntityKind;
-use serde::Serialize;
+use pydslrep_workspace::{FileSystem, MemoryFiles, ReadError};
+use serde::{Deserialize, Serialize};
 use tower_lsp::jsonrpc::{self, Error, ErrorCode};
 use tower_lsp::ls_types::notification::ShowMessage;
+use tower_lsp::ls_types::request::Request;
 use tower_lsp::ls_types::{
-    CreateFile, CreateFileOptions, DocumentChangeOperation, DocumentChanges, Location, MessageType, OneOf,
-    OptionalVersionedTextDocumentIdentifier, Position, Range, ResourceOp, ShowDocumentParams,
-    ShowMessageParams, TextDocumentEdit, TextEdit, Uri, WorkspaceEdit,
+    CreateFile, CreateFileOptions, DocumentChangeOperation, DocumentChanges, Location, MessageActionItem,
+    MessageType, OneOf, OptionalVersionedTextDocumentIdentifier, Position, Range, ResourceOp,
+    ShowDocumentParams, ShowMessageParams, ShowMessageRequestParams, TextDocumentEdit, TextEdit, Uri,
+    WorkspaceEdit,
 };
 
 use crate::chosen::ChosenEnvironment;
-use crate::documents::{Document, key};
+use crate::documents::{Document, key, uri_of};
 use crate::message::Outbox;
 use crate::state::State;
 
@@ -29,6 +39,12 @@ pub(crate) struct Script {
     pub(crate) uri: Uri,
     /// Its text.
     pub(crate) text: String,
+    /// How many of the last folders of its path the settings name.
+    depth: usize,
+    /// Whether the settings want the package that it imports next to it.
+    needs_runtime: bool,
+    /// The files that the client provides, where there is no disk.
+    provided: Option<Arc<MemoryFiles>>,
 }
 
 impl Script {
@@ -36,6 +52,70 @@ impl Script {
     pub(crate) fn file_name(&self) -> &str {
         self.uri.as_str().rsplit('/').next().unwrap_or_default()
     }
+
+    /// Why it may not be written; `None` if it may.
+    pub(crate) fn obstacle(&self) -> Option<WriteError> {
+        if let Some(files) = &self.provided {
+            return obstacle_in_memory(files, Path::new(&key(&self.uri)));
+        }
+        self.check(&path(&self.uri)?, Changed::Keep).err()
+    }
+
+    fn check(&self, path: &Path, changed: Changed) -> Result<(), WriteError> {
+        check_inside(path.parent().unwrap_or(path), self.depth)?;
+        check_script(path, changed).map(drop)
+    }
+
+    /// Writes it, but never over a file that is not a generated script; the error is the reason.
+    fn write(&self, path: &Path, changed: Changed) -> Result<(), String> {
+        let written = self.check(path, changed).and_then(|()| write_script_file(path, &self.text, changed));
+        written.map_err(|error| reason(&error))
+    }
+
+    /// The folder that needs the package; `None` if none does, or it is not on this disk.
+    pub(crate) fn runtime_folder(&self) -> Option<PathBuf> {
+        let path = path(&self.uri).filter(|_| self.needs_runtime && self.provided.is_none())?;
+        path.parent().map(Path::to_owned)
+    }
+
+    /// Whether there is a file in its place, as far as is known.
+    fn exists(&self) -> bool {
+        match &self.provided {
+            Some(files) => files.is_file(Path::new(&key(&self.uri))),
+            None => path(&self.uri).is_some_and(|path| path.exists()),
+        }
+    }
+}
+
+/// As [`Script::obstacle`], among files in memory.
+fn obstacle_in_memory(files: &MemoryFiles, path: &Path) -> Option<WriteError> {
+    match files.read(path).as_deref().map(|text| origin(text.as_bytes())) {
+        Ok(Origin::Generated) | Err(ReadError::Missing) => None,
+        Ok(Origin::Changed) => Some(WriteError::Changed(path.to_owned())),
+        Ok(Origin::Foreign) | Err(_) => Some(WriteError::Foreign(path.to_owned(), Kind::Script)),
+    }
+}
+
+/// `pydslrep/script`: the script of an environment as a text, for clients that put it elsewhere than into a file.
+pub(crate) enum GeneratedScript {}
+
+impl Request for GeneratedScript {
+    type Params = ChosenEnvironment;
+    type Result = ScriptText;
+    const METHOD: &'static str = "pydslrep/script";
+}
+
+/// A script.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct ScriptText {
+    /// The file that it would be written to.
+    uri: Uri,
+    text: String,
+}
+
+/// `pydslrep/script`.
+pub(crate) fn script(state: &State, which: &ChosenEnvironment) -> jsonrpc::Result<ScriptText> {
+    generate(state, which).map(|script| ScriptText { uri: script.uri, text: script.text })
 }
 
 /// Generates a script.
@@ -70,16 +150,43 @@ pub(crate) fn environment(state: &State, which: &ChosenEnvironment) -> jsonrpc::
 ///
 /// If it has errors, or its program was never saved.
 pub(crate) fn of_environment(state: &State, program: &Uri, id: EntityId) -> jsonrpc::Result<Script> {
-    let environment = state.database().environment(id).map_err(|errors| blocked(state, &errors))?;
-    let target = state.document(program).map(|document| document.settings.target).unwrap_or_default();
+    of_resolved(state, program, state.database().environment(id))
+}
+
+/// As [`of_environment`], of several environments of a program.
+pub(crate) fn of_environments(
+    state: &State,
+    program: &Uri,
+    ids: impl IntoIterator<Item = EntityId>,
+) -> impl Iterator<Item = jsonrpc::Result<Script>> {
+    let environments = state.database().ready_environments(ids).into_iter();
+    environments.map(move |environment| of_resolved(state, program, environment))
+}
+
+fn of_resolved(
+    state: &State,
+    program: &Uri,
+    environment: Result<Environment, Blocked>,
+) -> jsonrpc::Result<Script> {
+    let environment = environment.map_err(|errors| blocked(state, &errors))?;
+    let settings = state.document(program).map(|document| document.settings.clone()).unwrap_or_default();
     let file_name = pydslrep_script::file_name(&environment);
     let uri = match state.workspace.output_folder(&key(program)) {
-        Some(folder) => Uri::from_file_path(Path::new(&folder).join(file_name)),
+        Some(folder) => uri_of(&format!("{folder}/{file_name}")),
         None => address(program, &file_name),
     };
     let uri = uri.ok_or_else(unsaved)?;
-    let text = pydslrep_script::generate(&environment, target).map_err(|error| failure(error.to_string()))?;
-    Ok(Script { uri, text })
+    let text = pydslrep_script::generate(&environment, settings.target, &program_name(program))
+        .map_err(|error| failure(error.to_string()))?;
+    let provided = state.provided.clone();
+    let (depth, needs_runtime) = (settings.output_depth(), settings.write_runtime);
+    Ok(Script { uri, text, depth, needs_runtime, provided })
+}
+
+/// The name of a program's file.
+fn program_name(program: &Uri) -> String {
+    let path = program.path().decode().to_string_lossy();
+    path.rsplit('/').next().unwrap_or_default().to_owned()
 }
 
 /// What a client can do about a failure, in the `data` of the error.
@@ -129,8 +236,10 @@ pub(crate) fn edit(script: &Script) -> WorkspaceEdit {
     let text_document = OptionalVersionedTextDocumentIdentifier { uri: script.uri.clone(), version: None };
     let edit = TextDocumentEdit { text_document, edits: vec![OneOf::Left(replace)] };
     let mut operations = vec![DocumentChangeOperation::Edit(edit)];
-    if !path(&script.uri).is_some_and(|path| path.exists()) {
-        let options = CreateFileOptions { overwrite: Some(true), ignore_if_exists: None };
+    if !script.exists() {
+        // Where there is no disk, a file may be there that the client has not provided.
+        let overwrite = script.provided.is_none().then_some(true);
+        let options = CreateFileOptions { overwrite, ignore_if_exists: None };
         let create = CreateFile { uri: script.uri.clone(), options: Some(options), annotation_id: None };
         operations.insert(0, DocumentChangeOperation::Op(ResourceOp::Create(create)));
     }
@@ -138,7 +247,8 @@ pub(crate) fn edit(script: &Script) -> WorkspaceEdit {
     WorkspaceEdit { document_changes, ..WorkspaceEdit::default() }
 }
 
-/// The command `pydslrep.generateScript`, for clients that cannot create files: writes the script; returns its URI.
+/// The command `pydslrep.generateScript`, for clients that cannot create files: writes the script and begins to write the
+/// package that it imports; returns the script's URI and the end of that.
 ///
 /// # Errors
 ///
@@ -146,29 +256,49 @@ pub(crate) fn edit(script: &Script) -> WorkspaceEdit {
 pub(crate) fn write_script(
     state: &State,
     which: &ChosenEnvironment,
+    changed: Changed,
     outbox: &Outbox,
-) -> jsonrpc::Result<Uri> {
+) -> jsonrpc::Result<(Uri, Option<oneshot::Receiver<()>>)> {
     let script = generate(state, which)?;
     let path = path(&script.uri).ok_or_else(unsaved)?;
-    write(&path, &script.text).map_err(failure)?;
+    script.write(&path, changed).map_err(failure)?;
     tell(outbox, MessageType::INFO, format!("Script written: {}", script.file_name()));
-    Ok(script.uri)
+    let runtime = script.runtime_folder().map(|folder| state.runtimes.write(folder, outbox));
+    Ok((script.uri, runtime))
+}
+
+/// The command `pydslrep.writeRuntime`, for clients that create the script: begins to write the package that it imports.
+///
+/// It is not part of the edit that creates the script: an editor would open all its files, and ask about each of those
+/// that exist already. And nothing about it is to be undone.
+///
+/// # Errors
+///
+/// As [`generate`].
+pub(crate) fn write_runtime(
+    state: &State,
+    which: &ChosenEnvironment,
+    outbox: &Outbox,
+) -> jsonrpc::Result<Option<oneshot::Receiver<()>>> {
+    let folder = generate(state, which)?.runtime_folder();
+    Ok(folder.map(|folder| state.runtimes.write(folder, outbox)))
 }
 
 /// Writes the scripts of all environments without errors, if that is set. Each script is reported once, and so is each
 /// that cannot be written: on every save would be too often.
 pub(crate) fn save(state: &mut State, program: &Uri, outbox: &Outbox) {
     let Some((document, file)) = state.analysed(program) else { return };
-    if !document.settings.generate_on_save {
+    if !document.settings.generate_on_save || state.provided.is_some() {
         return;
     }
     let uri = document.uri().unwrap_or_else(|| program.clone());
     let environments = state.database().environments(file);
-    let generated = environments.iter().filter_map(|(id, _)| of_environment(state, &uri, *id).ok());
-    let scripts: Vec<Script> = generated.collect();
+    let ids = environments.into_iter().map(|(id, _)| id);
+    let scripts: Vec<Script> = of_environments(state, &uri, ids).flatten().collect();
+    let folders: BTreeSet<PathBuf> = scripts.iter().filter_map(Script::runtime_folder).collect();
     for script in scripts {
         let Some(path) = path(&script.uri) else { continue };
-        let (kind, message) = match write(&path, &script.text) {
+        let (kind, message) = match script.write(&path, Changed::Keep) {
             Ok(()) => (MessageType::INFO, format!("Script written: {} (on every save)", script.file_name())),
             Err(reason) => (MessageType::WARNING, reason),
         };
@@ -176,26 +306,57 @@ pub(crate) fn save(state: &mut State, program: &Uri, outbox: &Outbox) {
             tell(outbox, kind, message);
         }
     }
+    for folder in folders {
+        // The next message need not wait for it.
+        drop(state.runtimes.write(folder, outbox));
+    }
 }
 
-/// Writes a script, but never over a file that is not a generated script; the error is the reason.
-fn write(path: &Path, text: &str) -> Result<(), String> {
-    let before = fs::read(path);
-    // This cannot be undone in the editor.
-    if before.as_ref().is_ok_and(|content| !pydslrep_script::may_replace(content)) {
-        let reason = "already exists and is not a generated script; move it, or rename the environment";
-        return Err(format!("{} {reason}", path.display()));
+/// Why a script is not written, and what to do about it.
+pub(crate) fn reason(error: &WriteError) -> String {
+    match (error, error.help()) {
+        (WriteError::Foreign(..), _) => format!("{error}; move it, or rename the environment"),
+        (WriteError::Changed(_), _) => format!("{error}, so it is kept; Generate Script can replace it"),
+        (_, Some(help)) => format!("{error}; {help}"),
+        (_, None) => error.to_string(),
     }
-    if before.is_ok_and(|content| content == text.as_bytes()) {
-        return Ok(());
-    }
-    let folder = path.parent().map_or(Ok(()), fs::create_dir_all);
-    folder
-        .and_then(|()| fs::write(path, text))
-        .map_err(|error| format!("cannot write {}: {error}", path.display()))
 }
 
-fn tell(outbox: &Outbox, typ: MessageType, message: String) {
+/// The answers to [`question`].
+const REPLACE: &str = "Replace It";
+const KEEP: &str = "Keep It";
+
+/// What to ask the user before a script is written; `None` if there is nothing to ask.
+///
+/// # Errors
+///
+/// As [`generate`].
+pub(crate) fn question(
+    state: &State,
+    which: &ChosenEnvironment,
+) -> jsonrpc::Result<Option<ShowMessageRequestParams>> {
+    let script = generate(state, which)?;
+    let is_changed = matches!(script.obstacle(), Some(WriteError::Changed(_)));
+    let answer = |title: &str| MessageActionItem { title: title.to_owned(), properties: HashMap::new() };
+    Ok(is_changed.then(|| ShowMessageRequestParams {
+        typ: MessageType::WARNING,
+        message: format!("{} was changed since it was generated. Replace your changes?", script.file_name()),
+        actions: Some(vec![answer(REPLACE), answer(KEEP)]),
+    }))
+}
+
+/// Whether an answer to [`question`] allows it.
+pub(crate) fn allows(answer: Option<&MessageActionItem>) -> bool {
+    answer.is_some_and(|answer| answer.title == REPLACE)
+}
+
+/// The error for a script that the user keeps.
+pub(crate) fn kept() -> Error {
+    Error { code: ErrorCode::RequestCancelled, message: "the script is kept as it is".into(), data: None }
+}
+
+/// Shows a message.
+pub(crate) fn tell(outbox: &Outbox, typ: MessageType, message: String) {
     outbox.send_notification::<ShowMessage>(&ShowMessageParams { typ, message });
 }
 

@@ -140,7 +140,11 @@ fn numbers(tokens: usize) -> u32 {
 }
 
 /// The tokens that touch a range: the visible part of the document.
-pub(crate) fn range(state: &State, params: &SemanticTokensRangeParams) -> Option<SemanticTokensRangeResult> {
+pub(crate) fn range(
+    state: &mut State,
+    params: &SemanticTokensRangeParams,
+) -> Option<SemanticTokensRangeResult> {
+    let state = &*state;
     let (document, file) = state.analysed(&params.text_document.uri)?;
     let span = state.span(document, params.range);
     let snapshot = state.database().snapshot(file, Some(span))?;

@@ -2,7 +2,7 @@
 
 use std::io::{Cursor, PipeReader, PipeWriter, pipe};
 use std::str::FromStr;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Condvar, Mutex};
 
 use pydslrep_analysis::Database;
 use serde_json::{Value, json};
@@ -88,11 +88,93 @@ fn table() -> Table {
     table
 }
 
-fn serve_in_test(input: impl Read, output: impl Write + Send + 'static) -> Ending {
+fn serve_in_test(input: impl Read + Send + 'static, output: impl Write + Send + 'static) -> Ending {
     let start = |outbox: Outbox, runtime: runtime::Handle| {
         Session::with_table(table(), outbox, Box::new(move |unfinished| drop(runtime.spawn(unfinished))))
     };
     serve_with(input, output, start).unwrap()
+}
+
+/// A client that writes all of its requests before it reads any answer.
+#[derive(Default)]
+struct Hurried {
+    has_written: bool,
+    answers: usize,
+}
+
+type SharedHurried = Arc<(Mutex<Hurried>, Condvar)>;
+
+/// What it writes: its requests and, once they are answered, the end.
+struct Requests(SharedHurried, Cursor<Vec<u8>>, usize, Cursor<Vec<u8>>);
+
+impl Read for Requests {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let length = self.1.read(buffer)?;
+        if length > 0 {
+            return Ok(length);
+        }
+        let (client, changed) = &*self.0;
+        let mut client = client.lock().unwrap();
+        client.has_written = true;
+        changed.notify_all();
+        drop(changed.wait_while(client, |client| client.answers < self.2).unwrap());
+        self.3.read(buffer)
+    }
+}
+
+/// How answers to outlines begin; others are no lists.
+const LIST: &[u8] = b"\"result\":[";
+
+/// What it reads.
+struct Answers(SharedHurried, Vec<u8>);
+
+impl Write for Answers {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let (client, changed) = &*self.0;
+        let mut client = changed.wait_while(client.lock().unwrap(), |client| !client.has_written).unwrap();
+        self.1.extend(bytes);
+        while let Some(start) = self.1.windows(LIST.len()).position(|part| part == LIST) {
+            client.answers += 1;
+            self.1.drain(..start + LIST.len());
+        }
+        changed.notify_all();
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_client_that_does_not_read_costs_a_bounded_amount_of_memory() {
+    // Answered on the loop, and beside it.
+    for wheels in [300, 3_000] {
+        check_hurried_client(wheels);
+    }
+}
+
+fn check_hurried_client(wheels: usize) {
+    const REQUESTS: usize = 40;
+    const LIMIT: usize = 200_000;
+    let wheel = |number: usize| format!("wheel w{number} with radius 4\n");
+    let mut requests = [initialize(), open(&(0..wheels).map(wheel).collect::<String>())].concat();
+    for id in 1..=REQUESTS {
+        let params = json!({"textDocument": {"uri": DOCUMENT}});
+        requests.extend(request(i64::try_from(id).unwrap(), "textDocument/documentSymbol", params));
+    }
+    let client = SharedHurried::default();
+    let input = Requests(Arc::clone(&client), Cursor::new(requests), REQUESTS, Cursor::new(goodbye()));
+    let load = Load::new(LIMIT);
+    let output = Answers(Arc::clone(&client), Vec::new());
+    let ending = serve_with_load(input, output, &load, |outbox, runtime| {
+        Session::with_table(table(), outbox, Box::new(move |unfinished| drop(runtime.spawn(unfinished))))
+    });
+    assert_eq!(ending.unwrap(), Ending::Orderly);
+    assert_eq!(client.0.lock().unwrap().answers, REQUESTS, "all are answered in the end");
+    // And the answer that was being written when it became full.
+    let most = LIMIT + wheels * 300;
+    assert!((LIMIT..most).contains(&load.most_bytes()), "{}", load.most_bytes());
 }
 
 fn frame(body: impl AsRef<[u8]>) -> Vec<u8> {

@@ -1,12 +1,8 @@
 //! Reads the programs and scenes of folders.
 
-use std::path::Path;
-
-use pydslrep_workspace::DocumentKind;
-use tower_lsp::ls_types::Uri;
+use pydslrep_workspace::{DocumentKind, key_of, path_of};
 
 use super::Server;
-use crate::documents::key;
 use crate::log::log;
 
 /// More programs than these are read only when they are opened.
@@ -15,13 +11,13 @@ const MAX_PROGRAMS: usize = 5_000;
 /// No more files and folders than these are visited in search of programs: somebody may have opened a whole disk.
 const MAX_ENTRIES: usize = 100_000;
 
-/// Adds all programs and scenes of folders to the workspace; returns a summary. To be run on a thread of its own: each
-/// file is read without holding the state, and messages are handled in between.
+/// Adds all programs and scenes of folders to the workspace; returns a summary. To be run on a thread of its own
+/// where there is a disk: each file is read without holding the state, and messages are handled in between.
 pub(super) fn index(server: &Server, folders: &[String]) -> String {
     let files = server.state().workspace.files();
     let (mut programs, mut is_incomplete) = (0, false);
     for folder in folders {
-        let listing = files.list(Path::new(folder), MAX_ENTRIES);
+        let listing = files.list(&path_of(folder), MAX_ENTRIES);
         is_incomplete |= listing.is_truncated;
         for error in listing.errors {
             log(format_args!("cannot read the folder {error}"));
@@ -30,7 +26,7 @@ pub(super) fn index(server: &Server, folders: &[String]) -> String {
         let is_open = server.state().workspace.folders().contains(folder);
         // Programs first: in a large workspace, scenes without one wait until they are opened.
         for path in listing.programs.into_iter().chain(listing.scenes) {
-            let Some(key) = Uri::from_file_path(&path).map(|uri| key(&uri)) else { continue };
+            let key = key_of(&path);
             if !is_open && !server.state().workspace.is_listed(&key) {
                 continue;
             }

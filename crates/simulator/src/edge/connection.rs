@@ -8,13 +8,13 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::Mutex;
 use tokio::sync::mpsc::UnboundedReceiver;
-use tokio::time::{sleep, timeout};
+use tokio::time::{Instant, sleep, timeout, timeout_at};
 
 use super::shared_session::SharedSession;
 use super::{ProtocolError, packet, zmtp};
 
-/// The time limit for the handshake and for accepting a reply: a client that exceeds it would block its slot, or the
-/// other clients' steps, forever. Clients of the legacy remote API send a message every few milliseconds, and V-REP
+/// The time limit for everything up to the first message, and for accepting a reply: a client that exceeds it would block
+/// its slot, or the other clients' steps, forever. Clients of the legacy remote API send a message every few milliseconds, and V-REP
 /// drops them after ten seconds of silence, too.
 const TIMEOUT: Duration = Duration::from_secs(10);
 
@@ -33,12 +33,13 @@ pub(super) async fn listen(listener: TcpListener, session: Arc<SharedSession>) {
         match listener.accept().await {
             Ok((stream, _)) => {
                 if let Some((connection, replies)) = session.admit() {
-                    let (session, turn) = (Arc::clone(&session), Arc::clone(&turn));
-                    tokio::spawn(async move {
-                        let guard = ConnectionGuard { session: &session, connection };
+                    let (shared, turn) = (Arc::clone(&session), Arc::clone(&turn));
+                    let task = tokio::spawn(async move {
+                        let guard = ConnectionGuard { session: &shared, connection };
                         // After an error the connection is closed, so there is nobody to report it to.
                         let _ = serve(stream, &guard, replies, &turn).await;
                     });
+                    session.set_task(connection, task.abort_handle());
                 }
             }
             Err(_) => sleep(ACCEPT_RETRY_DELAY).await,
@@ -67,10 +68,11 @@ async fn serve(
     stream.set_nodelay(true)?;
     let mut line = Line { stream, buffer: vec![0; 16 * 1024] };
     // In both protocols the client sends first, and its first byte identifies the protocol.
-    let first = timeout(TIMEOUT, line.read()).await??.to_vec();
+    let deadline = Instant::now() + TIMEOUT;
+    let first = timeout_at(deadline, line.read()).await??.to_vec();
     match first.first() {
-        Some(&zmtp::MARK) => serve_zmtp(line, guard, replies, &first).await,
-        _ => serve_legacy(line, guard, turn, &first).await,
+        Some(&zmtp::MARK) => serve_zmtp(line, guard, replies, &first, deadline).await,
+        _ => serve_legacy(line, guard, turn, &first, deadline).await,
     }
 }
 
@@ -79,13 +81,14 @@ async fn serve_zmtp(
     guard: &ConnectionGuard<'_>,
     mut replies: UnboundedReceiver<Vec<u8>>,
     first: &[u8],
+    deadline: Instant,
 ) -> io::Result<()> {
     line.write(&zmtp::opening()).await?;
     let mut receiver = zmtp::Receiver::default();
     let mut messages = Vec::new();
     receiver.receive(first, &mut messages)?;
     while !receiver.is_open() {
-        receiver.receive(timeout(TIMEOUT, line.read()).await??, &mut messages)?;
+        receiver.receive(timeout_at(deadline, line.read()).await??, &mut messages)?;
     }
     loop {
         for message in messages.drain(..) {
@@ -106,10 +109,14 @@ async fn serve_legacy(
     guard: &ConnectionGuard<'_>,
     turn: &Mutex<()>,
     first: &[u8],
+    deadline: Instant,
 ) -> io::Result<()> {
     let mut receiver = packet::Receiver::default();
     let mut messages = Vec::new();
     receiver.receive(first, &mut messages)?;
+    while messages.is_empty() {
+        receiver.receive(timeout_at(deadline, line.read()).await??, &mut messages)?;
+    }
     let lock = turn.lock();
     tokio::pin!(lock);
     let _turn = loop {

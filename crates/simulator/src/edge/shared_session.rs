@@ -1,15 +1,16 @@
 //! The session shared by all connections: assigns tickets to requests and routes answers back.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
+use tokio::task::AbortHandle;
 
 use super::zmtp::{self, Message};
 use crate::{Answer, Malformed, Session};
 
-/// The maximum number of simultaneous connections.
+/// The maximum number of simultaneous connections; beyond it the oldest without a client gives way to a new one.
 const MAX_CONNECTIONS: usize = 256;
 
 /// The session and the reply channels of its connections. Shared by all tasks of a simulator and its owner.
@@ -20,10 +21,16 @@ pub(super) struct SharedSession {
 
 struct Inner {
     session: Session,
-    connections: HashMap<u64, UnboundedSender<Vec<u8>>>,
+    connections: BTreeMap<u64, Connection>,
     open: HashMap<u64, Origin>,
     last_connection: u64,
     last_ticket: u64,
+}
+
+struct Connection {
+    replies: UnboundedSender<Vec<u8>>,
+    /// Ends its task, once there is one.
+    task: Option<AbortHandle>,
 }
 
 struct Origin {
@@ -35,7 +42,7 @@ impl SharedSession {
     pub(super) fn new(session: Session) -> Self {
         let inner = Inner {
             session,
-            connections: HashMap::new(),
+            connections: BTreeMap::new(),
             open: HashMap::new(),
             last_connection: 0,
             last_ticket: 0,
@@ -43,16 +50,24 @@ impl SharedSession {
         Self { inner: Mutex::new(inner), begin: Instant::now() }
     }
 
-    /// Admits a connection and returns its number and the channel of its replies; `None` if there are too many.
+    /// Admits a connection and returns its number and the channel of its replies; `None` if there are too many that are
+    /// in use.
     pub(super) fn admit(&self) -> Option<(u64, UnboundedReceiver<Vec<u8>>)> {
         let mut inner = self.lock();
         if inner.connections.len() >= MAX_CONNECTIONS {
-            return None;
+            inner.close_oldest_idle()?;
         }
         inner.last_connection += 1;
-        let (connection, (sender, receiver)) = (inner.last_connection, unbounded_channel());
-        inner.connections.insert(connection, sender);
+        let (connection, (replies, receiver)) = (inner.last_connection, unbounded_channel());
+        inner.connections.insert(connection, Connection { replies, task: None });
         Some((connection, receiver))
+    }
+
+    /// Notes the task that serves a connection, to end it if the connection must give way.
+    pub(super) fn set_task(&self, connection: u64, task: AbortHandle) {
+        if let Some(connection) = self.lock().connections.get_mut(&connection) {
+            connection.task = Some(task);
+        }
     }
 
     /// Handles a message; its reply arrives on the connection's channel, now or later.
@@ -116,12 +131,22 @@ impl SharedSession {
 }
 
 impl Inner {
+    /// Makes room for another connection; `None` if every one has a client.
+    fn close_oldest_idle(&mut self) -> Option<()> {
+        let busy = self.session.busy_connections();
+        let oldest = *self.connections.keys().find(|connection| !busy.contains(connection))?;
+        if let Some(task) = self.connections.remove(&oldest)?.task {
+            task.abort();
+        }
+        Some(())
+    }
+
     fn deliver(&mut self, answers: Vec<Answer>) {
         for Answer { ticket, bytes } in answers {
             let Some(origin) = self.open.remove(&ticket) else { continue };
             if let Some(connection) = self.connections.get(&origin.connection) {
                 // A closed channel belongs to a connection that is about to be removed.
-                let _ = connection.send(zmtp::encode(&origin.envelope, &bytes));
+                let _ = connection.replies.send(zmtp::encode(&origin.envelope, &bytes));
             }
         }
     }

@@ -16,7 +16,7 @@ use super::connection::listen;
 use super::shared_session::SharedSession;
 use pydslrep_trace::TraceRecord;
 
-use crate::{Session, Sightings, World, WorldError};
+use crate::{Engine, Session, Sightings, World, WorldError};
 
 /// The period of the clock while it runs in real time, and while it does not.
 const CLOCK_PERIOD: Duration = Duration::from_millis(2);
@@ -45,6 +45,10 @@ pub struct Options {
     pub paced: bool,
     /// Record a trace. It stays in memory until it is taken.
     pub trace: bool,
+    /// Serve only clients whose id begins with this. Clients of the legacy remote API have none.
+    pub token: Option<String>,
+    /// The engine to imitate.
+    pub engine: Engine,
 }
 
 impl Default for Options {
@@ -58,6 +62,8 @@ impl Default for Options {
             speed: 1.0,
             paced: false,
             trace: true,
+            token: None,
+            engine: Engine::Ideal,
         }
     }
 }
@@ -124,11 +130,15 @@ impl Simulator {
         }
         let world = World::with_step(scene, options.step).map_err(StartError::World)?;
         let mut session = Session::new(world);
+        session.use_engine(options.engine);
         if options.trace {
             session.record();
         }
         if options.paced {
             session.pace();
+        }
+        if let Some(token) = &options.token {
+            session.serve_only(token);
         }
         let (listeners, ports) = bind(options)?;
         let session = Arc::new(SharedSession::new(session));
@@ -168,6 +178,11 @@ impl Simulator {
     /// Simulation time, seconds.
     pub fn time(&self) -> f64 {
         self.session.with(|session| session.world().time())
+    }
+
+    /// How many connections were refused because their client's id does not begin with [`Options::token`].
+    pub fn strangers(&self) -> usize {
+        self.session.with(|session| session.strangers())
     }
 
     /// The poses of the robots in the scene's order.

@@ -89,6 +89,11 @@ pub(super) fn integer(value: &Value) -> Option<i64> {
     }
 }
 
+/// A finite number.
+pub(super) fn finite_number(value: &Value) -> Option<f64> {
+    number(value).filter(|value| value.is_finite())
+}
+
 fn number(value: &Value) -> Option<f64> {
     match value {
         Value::Float(float) => Some(*float),

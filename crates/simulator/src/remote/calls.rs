@@ -7,16 +7,19 @@ use nalgebra::{Isometry3, Point3, Vector3};
 use pydslrep_scene::Mount;
 
 use super::arguments::{self, Arguments, Outcome};
+use super::building;
 use super::info;
-use super::objects::{Handle, Kind, Objects};
+use super::objects::{Handle, Kind, Object, Objects};
 use crate::{Sightings, World};
 
 /// The state that calls read and change.
 pub(super) struct CallContext<'a> {
     pub(super) world: &'a mut World,
-    pub(super) objects: &'a Objects,
+    pub(super) objects: &'a mut Objects,
     /// Whether the simulation is started, running or paused.
     pub(super) started: bool,
+    /// The text of the main script, if there is one.
+    pub(super) main_script: &'a mut Option<String>,
     pub(super) drivers: &'a mut Drivers,
     /// The calling connection.
     pub(super) connection: u64,
@@ -49,6 +52,9 @@ pub(super) struct Detected {
 
 /// Handles a call by its name without `sim.`; `None` if there is no such function.
 pub(super) fn call(context: &mut CallContext, function: &str, arguments: &Arguments) -> Option<Outcome> {
+    if let Some(outcome) = building::call_of_made(context, function, arguments) {
+        return Some(outcome);
+    }
     Some(match function {
         "getObject" => context.get_object(arguments),
         "getObjectAlias" => context.get_object_alias(arguments),
@@ -85,7 +91,7 @@ pub(super) fn call(context: &mut CallContext, function: &str, arguments: &Argume
         // The pace of the clock is an option of the simulator, and there is no log window.
         "setBoolParam" => arguments.integer(0).and_then(|_| arguments.truth(1)).map(|_| vec![]),
         "addLog" => arguments.integer(0).map(|_| vec![]),
-        _ => return None,
+        _ => return building::call(context, function, arguments),
     })
 }
 
@@ -95,15 +101,6 @@ fn parameter(arguments: &Arguments, known: i64, value: Value) -> Outcome {
         return Ok(vec![value]);
     }
     Err(arguments.failure(316, "invalid parameter."))
-}
-
-/// The number of an object's type.
-pub(super) fn type_of(kind: Kind) -> i64 {
-    match kind {
-        Kind::Robot(_) | Kind::Obstacle(_) => info::TYPE_SHAPE,
-        Kind::Wheel { .. } => info::TYPE_JOINT,
-        Kind::Sensor { .. } => info::TYPE_SENSOR,
-    }
 }
 
 impl CallContext<'_> {
@@ -121,7 +118,7 @@ impl CallContext<'_> {
     }
 
     /// The object named by the first argument.
-    fn object(&self, arguments: &Arguments) -> Result<(Handle, Kind), arguments::Failure> {
+    pub(super) fn object(&self, arguments: &Arguments) -> Result<(Handle, Kind), arguments::Failure> {
         let handle = arguments.integer(0)?;
         match self.objects.get(handle) {
             Some(object) => Ok((handle, object.kind)),
@@ -153,8 +150,9 @@ impl CallContext<'_> {
     }
 
     fn get_object_type(&self, arguments: &Arguments) -> Outcome {
-        let (_, kind) = self.object(arguments)?;
-        Ok(vec![type_of(kind).into()])
+        let (handle, _) = self.object(arguments)?;
+        let number = self.objects.get(handle).map_or(-1, Object::type_number);
+        Ok(vec![number.into()])
     }
 
     fn is_handle(&self, arguments: &Arguments) -> Outcome {
@@ -187,7 +185,7 @@ impl CallContext<'_> {
         let (_, kind) = self.object(arguments)?;
         let velocity = match kind {
             Kind::Robot(robot) => self.velocity_of(robot),
-            Kind::Obstacle(_) => [Vector3::zeros(); 2],
+            Kind::Obstacle(_) | Kind::Made => [Vector3::zeros(); 2],
             _ => return Err(arguments.failure(316, "object is not a shape.")),
         };
         Ok(velocity.map(arguments::vector).into())
@@ -200,7 +198,7 @@ impl CallContext<'_> {
         [linear, Vector3::new(0.0, 0.0, twist.omega)]
     }
 
-    fn joint(&self, arguments: &Arguments) -> Result<Joint, arguments::Failure> {
+    pub(super) fn joint(&self, arguments: &Arguments) -> Result<Joint, arguments::Failure> {
         let (handle, _) = self.object(arguments)?;
         self.joint_of(handle).ok_or_else(|| arguments.failure(316, "object is not a joint."))
     }

@@ -5,7 +5,7 @@ use ciborium::Value;
 /// The constants that scripts use, with the engine's values.
 const CONSTANTS: &[(&str, i64)] = &[
     ("handle_world", HANDLE_WORLD),
-    ("handle_all", -2),
+    ("handle_all", HANDLE_ALL),
     ("handle_parent", HANDLE_PARENT),
     ("handle_scene", HANDLE_SCENE),
     ("simulation_stopped", 0),
@@ -26,17 +26,64 @@ const CONSTANTS: &[(&str, i64)] = &[
     ("intparam_program_version", PARAM_PROGRAM_VERSION),
     ("floatparam_simulation_time_step", PARAM_TIME_STEP),
     ("boolparam_realtime_simulation", PARAM_REAL_TIME),
-    ("proximitysensor_ray_subtype", 34),
+    ("proximitysensor_ray_subtype", SENSOR_RAY),
     ("proximitysensor_cone_subtype", 33),
-    ("scripttype_mainscript", 0),
+    ("scripttype_mainscript", MAIN_SCRIPT_TYPE),
+    ("scriptstringparam_text", SCRIPT_TEXT),
+    ("object_dummy_type", TYPE_DUMMY),
+    ("object_forcesensor_type", TYPE_FORCE_SENSOR),
+    ("joint_revolute_subtype", JOINT_REVOLUTE),
+    ("joint_prismatic_subtype", 11),
+    ("joint_spherical_subtype", 12),
+    ("jointmode_kinematic", 0),
+    ("jointmode_dependent", 4),
+    ("jointdynctrl_force", 1),
+    ("jointdynctrl_spring", 12),
+    ("jointdynctrl_callback", 16),
+    ("primitiveshape_plane", 1),
+    ("primitiveshape_disc", 2),
+    ("primitiveshape_cuboid", PRIMITIVE_CUBOID),
+    ("primitiveshape_spheroid", PRIMITIVE_SPHERE),
+    ("primitiveshape_cylinder", PRIMITIVE_CYLINDER),
+    ("primitiveshape_cone", 6),
+    ("shapeintparam_static", PARAM_STATIC),
+    ("shapeintparam_respondable", PARAM_RESPONDABLE),
+    ("shapeintparam_respondable_mask", PARAM_RESPONDABLE_MASK),
+    ("shapefloatparam_mass", PARAM_MASS),
+    ("objfloatparam_objbbox_min_x", 15),
+    ("objfloatparam_objbbox_min_y", 16),
+    ("objfloatparam_objbbox_min_z", 17),
+    ("objfloatparam_objbbox_max_x", 18),
+    ("objfloatparam_objbbox_max_y", 19),
+    ("objfloatparam_objbbox_max_z", 20),
+    ("objectspecialproperty_collidable", 1),
+    ("objectspecialproperty_measurable", 2),
+    ("objectspecialproperty_detectable", 0x1f0),
+    ("bullet_body_friction", BULLET_FRICTION),
 ];
 
+pub(super) const HANDLE_ALL: i64 = -2;
 pub(super) const HANDLE_WORLD: i64 = -1;
 pub(super) const HANDLE_PARENT: i64 = -11;
 pub(super) const HANDLE_SCENE: i64 = -12;
 pub(super) const TYPE_SHAPE: i64 = 0;
 pub(super) const TYPE_JOINT: i64 = 1;
 pub(super) const TYPE_SENSOR: i64 = 5;
+pub(super) const TYPE_DUMMY: i64 = 4;
+pub(super) const TYPE_FORCE_SENSOR: i64 = 12;
+pub(super) const JOINT_REVOLUTE: i64 = 10;
+pub(super) const SENSOR_RAY: i64 = 34;
+pub(super) const PRIMITIVE_CUBOID: i64 = 3;
+pub(super) const PRIMITIVE_SPHERE: i64 = 4;
+pub(super) const PRIMITIVE_CYLINDER: i64 = 5;
+pub(super) const PARAM_STATIC: i64 = 3003;
+pub(super) const PARAM_RESPONDABLE: i64 = 3004;
+pub(super) const PARAM_MASS: i64 = 3005;
+pub(super) const PARAM_RESPONDABLE_MASK: i64 = 3019;
+/// Collidable, measurable, detectable.
+pub(super) const SPECIAL_ALL: i64 = 0x1f3;
+pub(super) const MAIN_SCRIPT_TYPE: i64 = 0;
+const BULLET_FRICTION: i64 = 6003;
 pub(super) const JOINT_MODE_DYNAMIC: i64 = 5;
 pub(super) const PARAM_CONTROL_MODE: i64 = 2039;
 pub(super) const CONTROL_FREE: i64 = 0;
@@ -44,6 +91,7 @@ pub(super) const CONTROL_VELOCITY: i64 = 4;
 pub(super) const PARAM_VELOCITY: i64 = 2012;
 pub(super) const PARAM_PROGRAM_VERSION: i64 = 1;
 pub(super) const PARAM_TIME_STEP: i64 = 1;
+pub(super) const SCRIPT_TEXT: i64 = 2;
 pub(super) const PARAM_REAL_TIME: i64 = 25;
 
 /// The emulated engine version (4.6.0), in the format of `sim.intparam_program_version`.
@@ -52,6 +100,13 @@ pub(super) const PROGRAM_VERSION: i64 = 40600;
 /// The supported functions of `sim`.
 pub(super) const FUNCTIONS: &[&str] = &[
     "addLog",
+    "addScript",
+    "createDummy",
+    "createForceSensor",
+    "createJoint",
+    "createPrimitiveShape",
+    "createProximitySensor",
+    "createShape",
     "getBoolParam",
     "getFloatArrayProperty",
     "getFloatParam",
@@ -59,7 +114,9 @@ pub(super) const FUNCTIONS: &[&str] = &[
     "getInt32Param",
     "getJointMode",
     "getJointPosition",
+    "getJointTargetForce",
     "getJointTargetVelocity",
+    "getJointType",
     "getJointVelocity",
     "getObject",
     "getObjectAlias",
@@ -71,22 +128,45 @@ pub(super) const FUNCTIONS: &[&str] = &[
     "getObjectParent",
     "getObjectPose",
     "getObjectPosition",
+    "getObjectSpecialProperty",
     "getObjectType",
     "getObjectVelocity",
+    "getObjectsInTree",
+    "getScript",
+    "getScriptStringParam",
+    "getShapeGeomInfo",
+    "getShapeMass",
     "getSimulationState",
     "getSimulationTime",
     "getSimulationTimeStep",
     "handleProximitySensor",
     "isHandle",
     "pauseSimulation",
+    "readCustomDataBlock",
     "readProximitySensor",
+    "removeObjects",
+    "removeScript",
     "setBoolParam",
+    "setEngineFloatParam",
+    "setFloatParam",
+    "setJointMode",
+    "setJointTargetForce",
     "setJointTargetVelocity",
+    "setObjectAlias",
+    "setObjectFloatParam",
     "setObjectInt32Param",
+    "setObjectMatrix",
+    "setObjectParent",
+    "setObjectPose",
+    "setObjectPosition",
+    "setObjectSpecialProperty",
+    "setScriptStringParam",
+    "setShapeMass",
     "setStepping",
     "startSimulation",
     "step",
     "stopSimulation",
+    "writeCustomDataBlock",
 ];
 
 /// The info map: name → `{"func": {}}` or `{"const": value}`.

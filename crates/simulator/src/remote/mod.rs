@@ -2,11 +2,14 @@
 //! `legacy` that of V-REP. Clients of both share one world and may step it together.
 
 mod arguments;
+mod building;
 mod calls;
 mod info;
 mod legacy;
 mod message;
 mod objects;
+mod parts;
+mod recognition;
 mod session;
 
 pub use legacy::{LegacyResponse, Malformed};

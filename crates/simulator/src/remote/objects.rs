@@ -1,13 +1,23 @@
 //! The scene as clients see it: a tree of named objects with handles.
 
+use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 use std::iter;
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use pydslrep_kinematics::Pose;
-use pydslrep_scene::{Scene, Thing};
+use pydslrep_scene::{Frame, Scene, Thing};
 
+use super::info;
+use super::parts::{Part, PartKind};
+use super::recognition::{Recognized, recognize};
 use crate::World;
+
+/// The maximum number of objects that clients create.
+const MAX_MADE: usize = 5000;
+
+/// The maximum number of objects above a created one.
+const MAX_DEPTH: usize = 50;
 
 /// The identifier of an object in calls.
 pub(super) type Handle = i64;
@@ -16,9 +26,17 @@ pub(super) type Handle = i64;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Robot(usize),
-    Wheel { robot: usize, wheel: usize },
-    Sensor { robot: usize, sensor: usize },
+    Wheel {
+        robot: usize,
+        wheel: usize,
+    },
+    Sensor {
+        robot: usize,
+        sensor: usize,
+    },
     Obstacle(usize),
+    /// Created by a client, and no part of the simulated world.
+    Made,
 }
 
 /// An object of the scene.
@@ -27,23 +45,61 @@ pub(super) struct Object {
     pub(super) alias: String,
     pub(super) parent: Option<Handle>,
     pub(super) kind: Kind,
+    /// What it is made of, if a client has created it.
+    part: Option<Box<Part>>,
 }
 
-/// All objects: each robot with its wheels and its sensors, then the obstacles.
+impl Object {
+    /// The number of its type.
+    pub(super) fn type_number(&self) -> i64 {
+        match (&self.part, self.kind) {
+            (Some(part), _) => part.kind.type_number(),
+            (None, Kind::Wheel { .. }) => info::TYPE_JOINT,
+            (None, Kind::Sensor { .. }) => info::TYPE_SENSOR,
+            (None, _) => info::TYPE_SHAPE,
+        }
+    }
+}
+
+/// All objects: those of the program, each robot with its wheels and its sensors, then the obstacles, and those that clients
+/// have created. The latter are simulated from the next start on, as robots and obstacles.
 #[derive(Debug, Clone)]
-pub(super) struct Objects(Vec<Object>);
+pub(super) struct Objects {
+    all: BTreeMap<Handle, Object>,
+    /// The handle of the latest object; none is used twice.
+    last: Handle,
+    program: Scene,
+    /// Whether clients have changed what is simulated since the latest start.
+    has_changed: bool,
+    /// For created robots, their place relative to the simulated robot; empty while they are not simulated.
+    offsets: BTreeMap<Handle, Isometry3<f64>>,
+    /// The objects of created obstacles, by their indices in the scene.
+    obstacles: BTreeMap<usize, Handle>,
+    /// Paths of the user's own, beside those by names.
+    paths: BTreeMap<String, Vec<Handle>>,
+}
 
 impl Objects {
     pub(super) fn of(scene: &Scene) -> Self {
-        let mut objects = Self(Vec::new());
+        let mut objects = Self {
+            all: BTreeMap::new(),
+            last: 0,
+            program: scene.clone(),
+            has_changed: false,
+            offsets: BTreeMap::new(),
+            obstacles: BTreeMap::new(),
+            paths: BTreeMap::new(),
+        };
         for (index, robot) in scene.robots.iter().enumerate() {
-            let parent = Some(objects.add(&robot.name, None, Kind::Robot(index)));
+            let first = objects.add(&robot.name, None, Kind::Robot(index));
+            let parent = Some(first);
             for (wheel, part) in robot.wheels.iter().enumerate() {
                 objects.add(&part.name, parent, Kind::Wheel { robot: index, wheel });
             }
             for (sensor, part) in robot.sensors.iter().enumerate() {
                 objects.add(&part.name, parent, Kind::Sensor { robot: index, sensor });
             }
+            objects.add_paths(first, &robot.objects);
         }
         for (index, obstacle) in scene.obstacles.iter().enumerate() {
             objects.add(&obstacle.name, None, Kind::Obstacle(index));
@@ -51,8 +107,24 @@ impl Objects {
         objects
     }
 
+    /// Adds the paths of a robot and its parts, whose handles begin with a first one.
+    fn add_paths(&mut self, first: Handle, objects: &pydslrep_scene::Objects) {
+        for (part, paths) in objects {
+            let of_name = self.iter().filter(|(handle, object)| *handle >= first && object.alias == *part);
+            let handles: Vec<Handle> = of_name.map(|(handle, _)| handle).collect();
+            for path in paths {
+                self.paths.entry(path.clone()).or_default().extend(&handles);
+            }
+        }
+    }
+
     /// The handle of a detected object.
     pub(super) fn handle_of(&self, thing: Thing) -> Option<Handle> {
+        if let Thing::Obstacle(obstacle) = thing
+            && let Some(handle) = self.obstacles.get(&obstacle)
+        {
+            return Some(*handle);
+        }
         let kind = match thing {
             Thing::Robot(robot) => Kind::Robot(robot),
             Thing::Obstacle(obstacle) => Kind::Obstacle(obstacle),
@@ -61,23 +133,152 @@ impl Objects {
     }
 
     fn add(&mut self, alias: &str, parent: Option<Handle>, kind: Kind) -> Handle {
-        self.0.push(Object { alias: alias.to_owned(), parent, kind });
-        i64::try_from(self.0.len()).unwrap_or(i64::MAX)
+        self.last += 1;
+        self.all.insert(self.last, Object { alias: alias.to_owned(), parent, kind, part: None });
+        self.last
     }
 
     pub(super) fn get(&self, handle: Handle) -> Option<&Object> {
-        self.0.get(usize::try_from(handle.checked_sub(1)?).ok()?)
+        self.all.get(&handle)
     }
 
     /// All objects with their handles, which count from 1.
     pub(super) fn iter(&self) -> impl Iterator<Item = (Handle, &Object)> {
-        (1..).zip(&self.0)
+        self.all.iter().map(|(handle, object)| (*handle, object))
+    }
+
+    /// Adds an object without parent that a client creates; `None` if there are too many.
+    pub(super) fn create(&mut self, kind: PartKind) -> Option<Handle> {
+        if self.made().count() >= MAX_MADE {
+            return None;
+        }
+        let handle = self.add(kind.alias(), None, Kind::Made);
+        let local = Isometry3::identity();
+        let part = Part { kind, local, data: BTreeMap::new(), special: info::SPECIAL_ALL };
+        if let Some(object) = self.all.get_mut(&handle) {
+            object.part = Some(Box::new(part));
+        }
+        self.has_changed = true;
+        Some(handle)
+    }
+
+    /// Removes a created object; those below it lose their parent and stay where they are.
+    pub(super) fn remove(&mut self, handle: Handle) {
+        let children: Vec<Handle> =
+            self.iter().filter(|(_, object)| object.parent == Some(handle)).map(|(child, _)| child).collect();
+        for child in children {
+            let frame = self.rest_frame(child);
+            if let (Some(frame), Some(object)) = (frame, self.all.get_mut(&child)) {
+                object.parent = None;
+                if let Some(part) = &mut object.part {
+                    part.local = frame;
+                }
+            }
+        }
+        self.all.remove(&handle);
+        self.offsets.remove(&handle);
+        self.has_changed = true;
+    }
+
+    /// The handles of the objects that clients have created.
+    pub(super) fn made(&self) -> impl Iterator<Item = Handle> {
+        self.iter().filter(|(_, object)| object.part.is_some()).map(|(handle, _)| handle)
+    }
+
+    /// What a created object is made of.
+    pub(super) fn part(&self, handle: Handle) -> Option<&Part> {
+        self.get(handle)?.part.as_deref()
+    }
+
+    /// What a created object is made of, to change it.
+    pub(super) fn part_mut(&mut self, handle: Handle) -> Option<&mut Part> {
+        let part = self.all.get_mut(&handle)?.part.as_deref_mut()?;
+        self.has_changed = true;
+        Some(part)
+    }
+
+    pub(super) fn rename(&mut self, handle: Handle, alias: String) {
+        if let Some(object) = self.all.get_mut(&handle) {
+            object.alias = alias;
+            self.has_changed = true;
+        }
+    }
+
+    /// Puts a created object below another one, where it keeps its relative or its absolute place; false if it is below
+    /// itself then, or too deep.
+    pub(super) fn set_parent(&mut self, handle: Handle, parent: Option<Handle>, stays: bool) -> bool {
+        let above = parent.map(|parent| self.ancestors(parent)).unwrap_or_default();
+        if parent == Some(handle) || above.contains(&handle) || above.len() >= MAX_DEPTH {
+            return false;
+        }
+        let (own, base) = (self.rest_frame(handle), parent.and_then(|parent| self.rest_frame(parent)));
+        let Some(object) = self.all.get_mut(&handle) else { return false };
+        object.parent = parent;
+        if let (Some(part), Some(own), true) = (&mut object.part, own, stays) {
+            part.local = base.map_or(own, |base| base.inv_mul(&own));
+        }
+        self.has_changed = true;
+        true
+    }
+
+    /// The objects above another one, the nearest first.
+    pub(super) fn ancestors(&self, handle: Handle) -> Vec<Handle> {
+        let parent = |&handle: &Handle| self.get(handle).and_then(|object| object.parent);
+        iter::successors(parent(&handle), parent).collect()
+    }
+
+    /// All objects below another one.
+    pub(super) fn below(&self, handle: Handle) -> Vec<Handle> {
+        let all = self.iter().map(|(other, _)| other);
+        all.filter(|&other| self.is_below(other, Some(handle))).collect()
+    }
+
+    /// What a created object stands for in the simulated world, if anything.
+    pub(super) fn role(&self, handle: Handle) -> Option<Kind> {
+        self.get(handle).map(|object| object.kind).filter(|kind| *kind != Kind::Made)
+    }
+
+    /// The world to simulate from now on, if clients have changed it since the last time.
+    pub(super) fn take_changes(&mut self) -> Option<Scene> {
+        if !std::mem::take(&mut self.has_changed) {
+            return None;
+        }
+        self.release();
+        let Recognized { scene, roles, offsets } = recognize(self, &self.program);
+        for (handle, kind) in roles {
+            if let Kind::Obstacle(obstacle) = kind {
+                self.obstacles.insert(obstacle, handle);
+            }
+            if let Some(object) = self.all.get_mut(&handle) {
+                object.kind = kind;
+            }
+        }
+        self.offsets = offsets.into_iter().collect();
+        Some(scene)
+    }
+
+    /// While the simulation is stopped, created objects that have changed are where clients have put them.
+    pub(super) fn settle(&mut self) {
+        if self.has_changed && !self.offsets.is_empty() {
+            self.release();
+        }
+    }
+
+    fn release(&mut self) {
+        for object in self.all.values_mut().filter(|object| object.part.is_some()) {
+            object.kind = Kind::Made;
+        }
+        self.offsets.clear();
+        self.obstacles.clear();
     }
 
     /// The `index`-th match of a path. `/a/b` searches the whole scene for an `a` with a `b` anywhere below it, `./b`
     /// searches below `proxy`. A name may have an index among the objects of that name below the same parent, as in
     /// `/a[1]/b`. Matches are sorted by depth: a robot `a` comes before a wheel `a` of any robot.
     pub(super) fn find(&self, path: &str, proxy: Option<Handle>, index: usize) -> Option<Handle> {
+        if let Some(handles) = self.paths.get(path) {
+            return handles.get(index).copied();
+        }
         let mut parts = path.split('/');
         let mut candidates: Vec<Option<Handle>> = match parts.next()? {
             "" => vec![None],
@@ -90,7 +291,10 @@ impl Objects {
             let mut below: Vec<Handle> = self
                 .iter()
                 .filter(|(_, object)| object.alias == alias)
-                .filter(|&(handle, _)| candidates.iter().any(|&root| self.is_below(handle, root)))
+                .filter(|&(handle, _)| {
+                    candidates.contains(&None)
+                        || self.ancestors(handle).iter().any(|&above| candidates.contains(&Some(above)))
+                })
                 .filter(|&(handle, _)| nth.is_none_or(|nth| self.namesakes(handle).nth(nth) == Some(handle)))
                 .map(|(handle, _)| handle)
                 .collect();
@@ -115,14 +319,7 @@ impl Objects {
     }
 
     fn is_below(&self, handle: Handle, root: Option<Handle>) -> bool {
-        let mut parent = self.get(handle).and_then(|object| object.parent);
-        if root.is_none() {
-            return true;
-        }
-        while parent.is_some() && parent != root {
-            parent = parent.and_then(|parent| self.get(parent)).and_then(|object| object.parent);
-        }
-        parent.is_some()
+        root.is_none_or(|root| self.ancestors(handle).contains(&root))
     }
 
     /// The full path of an object, such as `/robot_1/wheelL`; objects of the same name and parent have an index.
@@ -142,11 +339,30 @@ impl Objects {
         if unique { Some(format!("/{}", object.alias)) } else { self.path(handle) }
     }
 
+    /// The frame of a created object in the world while the simulation is stopped.
+    pub(super) fn rest_frame(&self, handle: Handle) -> Option<Isometry3<f64>> {
+        let mut frame = self.part(handle)?.local;
+        for above in self.ancestors(handle) {
+            // The parts of a program's robot do not carry created objects.
+            frame = self.part(above)?.local * frame;
+        }
+        Some(frame)
+    }
+
     /// An object's frame in the world. As in CoppeliaSim, a joint's z axis is its axis of rotation and a sensor's z axis its
     /// direction.
     pub(super) fn frame(&self, handle: Handle, world: &World) -> Option<Isometry3<f64>> {
-        let kind = self.get(handle)?.kind;
+        let object = self.get(handle)?;
+        if let Some(part) = &object.part {
+            return match (self.offsets.get(&handle), object.kind, object.parent) {
+                (Some(offset), Kind::Robot(robot), _) => Some(planar(world.pose(robot), 0.0) * offset),
+                (_, _, Some(parent)) => Some(self.frame(parent, world)? * part.local),
+                _ => Some(part.local),
+            };
+        }
+        let kind = object.kind;
         let robot = match kind {
+            Kind::Made => return None,
             Kind::Obstacle(obstacle) => {
                 return Some(planar(world.scene().obstacles.get(obstacle)?.pose, 0.0));
             }
@@ -156,7 +372,8 @@ impl Objects {
         let height = scene.wheels.iter().map(|wheel| wheel.radius).fold(0.0, f64::max);
         let body = planar(world.pose(robot), height);
         Some(match kind {
-            Kind::Robot(_) | Kind::Obstacle(_) => body,
+            Kind::Robot(_) if scene.frame == Frame::Static => planar(scene.start, height),
+            Kind::Robot(_) | Kind::Obstacle(_) | Kind::Made => body * rotation_of(scene.frame),
             Kind::Wheel { wheel, .. } => {
                 let &(x, y) = scene.geometry.wheel_positions(scene.drive).get(wheel)?;
                 let wheel = scene.wheels.get(wheel)?;
@@ -172,6 +389,16 @@ impl Objects {
     }
 }
 
+/// The rotation of a robot's named object in the robot's frame.
+fn rotation_of(frame: Frame) -> UnitQuaternion<f64> {
+    match frame {
+        Frame::Ahead | Frame::Static => UnitQuaternion::identity(),
+        Frame::XUp => UnitQuaternion::from_axis_angle(&Vector3::y_axis(), -FRAC_PI_2),
+        Frame::XLeft => UnitQuaternion::from_axis_angle(&Vector3::z_axis(), FRAC_PI_2),
+        Frame::ZAhead => UnitQuaternion::from_axis_angle(&Vector3::y_axis(), FRAC_PI_2),
+    }
+}
+
 /// A name and its index, as in `wheel[1]`; `None` if malformed.
 fn split_index(part: &str) -> Option<(&str, Option<usize>)> {
     match part.strip_suffix(']').and_then(|part| part.split_once('[')) {
@@ -181,7 +408,7 @@ fn split_index(part: &str) -> Option<(&str, Option<usize>)> {
     }
 }
 
-fn planar(pose: Pose, height: f64) -> Isometry3<f64> {
+pub(super) fn planar(pose: Pose, height: f64) -> Isometry3<f64> {
     Isometry3::from_parts(
         Translation3::new(pose.x, pose.y, height),
         UnitQuaternion::from_axis_angle(&Vector3::z_axis(), pose.theta),
@@ -244,6 +471,19 @@ mod tests {
     }
 
     #[test]
+    fn objects_are_also_found_by_paths_of_the_users_own() {
+        let mut scene = world().scene().clone();
+        let path = |part: &str, path: &str| (part.to_owned(), vec![path.to_owned()]);
+        scene.robots[1].objects = [path("b", "/P3DX"), path("l", "/P3DX/left")].into();
+        let objects = Objects::of(&scene);
+        assert_eq!((objects.find("/P3DX", None, 0), objects.find("/P3DX", None, 1)), (Some(6), None));
+        // A wheel and a sensor share the name.
+        let found: Vec<_> = (0..3).map(|index| objects.find("/P3DX/left", None, index)).collect();
+        assert_eq!(found, [Some(7), Some(10), None]);
+        assert_eq!(objects.find("/b", None, 0), Some(6));
+    }
+
+    #[test]
     fn a_robot_comes_before_parts_of_the_same_name() {
         let robot = |name: &str| {
             let wheels = vec![Wheel::new("x", 0.05), Wheel::new("r", 0.05)];
@@ -268,6 +508,29 @@ mod tests {
         assert!((axis(2) - Vector3::y()).norm() < 1e-12 && (axis(8) + Vector3::y()).norm() < 1e-12);
         let right = objects.frame(8, &world).unwrap().translation.vector;
         assert!((right - Vector3::new(1.15, 2.0, 0.04)).norm() < 1e-12, "{right}");
+    }
+
+    #[test]
+    fn named_objects_have_the_frame_of_the_scene() {
+        let axes = |frame| {
+            let mut scene = world().scene().clone();
+            scene.robots[0].frame = frame;
+            let mut world = World::new(scene).unwrap();
+            world.set_target(0, 1, 5.0);
+            (0..20).for_each(|_| world.step());
+            let ahead = planar(world.pose(0), 0.0).rotation;
+            let object = Objects::of(world.scene()).frame(1, &world).unwrap().rotation;
+            [Vector3::x(), Vector3::z()].map(|axis| {
+                let axis = ahead.inverse() * (object * axis);
+                [axis.x, axis.y, axis.z].map(|part| (part * 1e9).round() / 1e9 + 0.0)
+            })
+        };
+        let (ahead, left, up) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+        assert_eq!(axes(Frame::Ahead), [ahead, up]);
+        assert_eq!(axes(Frame::XUp), [up, [-1.0, 0.0, 0.0]]);
+        assert_eq!(axes(Frame::XLeft), [left, up]);
+        assert_eq!(axes(Frame::ZAhead), [[0.0, 0.0, -1.0], ahead]);
+        assert_ne!(axes(Frame::Static), [ahead, up], "it has not turned");
     }
 
     #[test]

@@ -1,24 +1,30 @@
 //! Sessions: clients, their requests, and the coordination of simulation steps.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
 use ciborium::Value;
+use pydslrep_scene::Scene;
 use pydslrep_trace::TraceRecord;
 
 use super::arguments::{Arguments, Failure, Outcome};
+use super::building;
 use super::calls::{self, CallContext, Drivers};
 use super::info;
 use super::legacy::client::Client as LegacyClient;
 use super::message::{Request, encode, outcome_map};
 use super::objects::Objects;
-use crate::{Sightings, World};
+use super::recognition;
+use crate::{Engine, Sightings, World, WorldError};
 
 /// The maximum number of clients per connection; real connections have one.
 const MAX_CLIENTS_PER_CONNECTION: usize = 16;
 
 /// A client that waits longer than this for a step gets a keep-alive reply.
 const KEEP_ALIVE_PERIOD: Duration = Duration::from_secs(1);
+
+/// The maximum number of requests that wait for the end of a pause.
+const MAX_HELD_REQUESTS: usize = 4096;
 
 /// The default timeout after which a silent client is expired.
 const DEFAULT_TIMEOUT: Duration = Duration::from_secs(600);
@@ -49,6 +55,23 @@ pub struct Session {
     seen: Sightings,
     /// The number of steps that clients may still take; `None` is unlimited.
     allowance: Option<u32>,
+    /// What the id of every client must begin with.
+    token: Option<String>,
+    /// The connections of clients that were refused.
+    strangers: BTreeSet<u64>,
+    engine: Engine,
+    /// The text of the main script, if there is one.
+    main_script: Option<String>,
+    /// The requests that wait for the end of a pause.
+    held: Vec<HeldRequest>,
+}
+
+/// A request during a pause in which the server is silent.
+#[derive(Debug, Clone)]
+struct HeldRequest {
+    connection: u64,
+    ticket: u64,
+    bytes: Vec<u8>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -100,12 +123,44 @@ impl Session {
             trace: None,
             seen: Sightings::default(),
             allowance: None,
+            token: None,
+            strangers: BTreeSet::new(),
+            engine: Engine::Ideal,
+            main_script: Some(building::DEFAULT_MAIN_SCRIPT.to_owned()),
+            held: Vec::new(),
         }
+    }
+
+    /// A session in a scene, with the usual step and an engine.
+    ///
+    /// # Errors
+    /// If the scene cannot be simulated.
+    pub fn of_scene(scene: Scene, engine: Engine) -> Result<Self, WorldError> {
+        let mut session = Self::new(World::new(scene)?);
+        session.use_engine(engine);
+        Ok(session)
+    }
+
+    /// From now on robots and clients are treated as by a real engine.
+    pub fn use_engine(&mut self, engine: Engine) {
+        self.engine = engine;
+        self.world.use_engine(engine);
     }
 
     /// Starts recording all robots at the start of the simulation and after every step.
     pub fn record(&mut self) {
         self.trace.get_or_insert_default();
+    }
+
+    /// From now on only clients are served whose id begins with this: those of one run. Clients of the legacy remote API have
+    /// no id.
+    pub fn serve_only(&mut self, token: &str) {
+        self.token = Some(token.to_owned());
+    }
+
+    /// How many connections had clients that were refused.
+    pub fn strangers(&self) -> usize {
+        self.strangers.len()
     }
 
     /// From now on clients can only take steps that [`Session::allow`] permits.
@@ -158,6 +213,14 @@ impl Session {
     /// The answer repeats `ticket`; `connection` is the origin of the request and `now` the time since any fixed moment. The
     /// answers may belong to this request, to earlier ones, or both.
     pub fn request(&mut self, connection: u64, ticket: u64, now: Duration, bytes: &[u8]) -> Vec<Answer> {
+        if self.is_silent() {
+            if self.held.len() < MAX_HELD_REQUESTS {
+                self.held.push(HeldRequest { connection, ticket, bytes: bytes.to_vec() });
+                return Vec::new();
+            }
+            let failure = Err(Failure("too many requests while the simulation is paused".to_owned()));
+            return vec![Answer { ticket, bytes: encode(outcome_map(failure)) }];
+        }
         let reply = match Request::decode(bytes) {
             Ok(request) => self.answer(connection, ticket, now, &request),
             Err(complaint) => {
@@ -178,8 +241,42 @@ impl Session {
         answers
     }
 
-    /// Removes a connection and its clients: nobody waits for them any more, and the wheels that they drove stop.
+    /// Whether the server answers nothing at the moment.
+    fn is_silent(&self) -> bool {
+        self.state == State::Paused && self.engine.is_silent_while_paused()
+    }
+
+    /// After a pause, handles the requests that have waited for its end.
+    pub(super) fn answer_held_requests(&mut self, now: Duration) -> Vec<Answer> {
+        if self.held.is_empty() || self.is_silent() {
+            return Vec::new();
+        }
+        // Clients expire first, as in the real server.
+        let mut answers = self.expire_clients(now);
+        for held in std::mem::take(&mut self.held) {
+            answers.extend(self.request(held.connection, held.ticket, now, &held.bytes));
+        }
+        answers
+    }
+
+    /// The connections that have a client.
+    pub fn busy_connections(&self) -> BTreeSet<u64> {
+        let clients = self.clients.values().map(|client| client.connection);
+        clients.chain(self.legacy.keys().copied()).collect()
+    }
+
+    /// Removes a connection and its clients: nobody waits for them any more, and the wheels that they drove stop. Real
+    /// servers do not notice, and keep the clients until their timeout.
     pub fn disconnect(&mut self, connection: u64) -> Vec<Answer> {
+        if self.engine.keeps_lost_clients() {
+            for client in self.clients.values_mut().filter(|client| client.connection == connection) {
+                if let Some(step_request) = &mut client.step_request {
+                    step_request.open = None;
+                }
+            }
+            self.legacy.remove(&connection);
+            return self.step_if_ready();
+        }
         self.clients.retain(|_, client| client.connection != connection);
         self.legacy.remove(&connection);
         self.drivers.retain(|&(robot, wheel), driver| {
@@ -195,6 +292,9 @@ impl Session {
     /// Expires clients that were silent for longer than their timeout, and sends keep-alive replies to those that wait for a
     /// step. To be called periodically.
     pub fn expire_clients(&mut self, now: Duration) -> Vec<Answer> {
+        if self.is_silent() {
+            return Vec::new();
+        }
         self.clients.retain(|_, client| {
             let waits = client.step_request.as_ref().is_some_and(|step_request| step_request.open.is_some());
             waits || now.saturating_sub(client.last_seen) <= client.timeout
@@ -223,6 +323,11 @@ impl Session {
     }
 
     fn answer(&mut self, connection: u64, ticket: u64, now: Duration, request: &Request) -> Reply {
+        if self.token.as_ref().is_some_and(|token| !request.uuid.starts_with(token)) {
+            self.strangers.insert(connection);
+            let refusal = "this simulator belongs to another run; start one of your own with `pydslrep sim`";
+            return Reply::Now(Err(Failure(refusal.to_owned())));
+        }
         if request.function == "_*end*_" {
             self.clients.remove(&request.uuid);
             return Reply::Map(vec![]);
@@ -249,8 +354,12 @@ impl Session {
                 self.pause();
                 Ok(vec![])
             }
+            "sim.setFloatParam" => self.set_step_length(&arguments),
             "sim.getSimulationState" => Ok(vec![self.state_number().into()]),
             function => {
+                if self.state == State::Stopped {
+                    self.objects.settle();
+                }
                 let mut context = self.context(connection);
                 let name = function.strip_prefix("sim.").unwrap_or_default();
                 calls::call(&mut context, name, &arguments)
@@ -264,8 +373,9 @@ impl Session {
     pub(super) fn context(&mut self, connection: u64) -> CallContext<'_> {
         CallContext {
             world: &mut self.world,
-            objects: &self.objects,
+            objects: &mut self.objects,
             started: self.state != State::Stopped,
+            main_script: &mut self.main_script,
             drivers: &mut self.drivers,
             connection,
             seen: &mut self.seen,
@@ -325,12 +435,36 @@ impl Session {
         Ok(vec![before.into()])
     }
 
+    /// `sim.setFloatParam`, of which the length of a step is the only parameter here.
+    fn set_step_length(&mut self, arguments: &Arguments) -> Outcome {
+        let step = arguments.number(1)?;
+        if arguments.integer(0)? != info::PARAM_TIME_STEP || self.state != State::Stopped {
+            return Err(arguments.failure(316, "invalid parameter, or the simulation is not stopped."));
+        }
+        self.world.set_step_length(step).map_err(|error| arguments.failure(316, &format!("{error}.")))?;
+        self.world.use_engine(self.engine);
+        Ok(vec![])
+    }
+
     pub(super) fn start(&mut self) {
         if self.state == State::Stopped {
+            self.rebuild();
             self.world.reset();
             self.record_step();
         }
         self.state = State::Running;
+    }
+
+    /// Simulates what clients have created since the latest start.
+    fn rebuild(&mut self) {
+        let Some(scene) = self.objects.take_changes() else { return };
+        // A world that cannot be simulated has no place here: its robots have wheels of a size.
+        if let Ok(mut world) = World::with_step(scene, self.world.step_length()) {
+            world.use_engine(self.engine);
+            recognition::set_motors(&self.objects, &mut world);
+            self.world = world;
+            self.drivers.clear();
+        }
     }
 
     pub(super) fn stop(&mut self) {
@@ -378,10 +512,13 @@ impl Session {
             self.take_step();
         }
         let (steps, running) = (self.world.steps(), self.state == State::Running);
+        let real = self.engine != Engine::Ideal;
         let mut answers = Vec::new();
         for client in self.clients.values_mut() {
             let Some(step_request) = &client.step_request else { continue };
-            let done = step_request.steps <= steps || !running;
+            // Real servers finish a step that was requested before a pause after it.
+            let cancelled = if real { self.state == State::Stopped } else { !running };
+            let done = step_request.steps <= steps || cancelled;
             if let Some((ticket, since)) = step_request.open.filter(|_| done) {
                 client.last_seen = client.last_seen.max(since);
                 client.step_request = None;

@@ -8,7 +8,7 @@ use pydslrep_kinematics::Drive;
 use pydslrep_scene::{Obstacle, Robot, Scene, SensorKind, Wheel};
 
 use super::*;
-use crate::World;
+use crate::{Engine, World};
 
 const SECOND: Duration = Duration::from_secs(1);
 
@@ -595,4 +595,92 @@ proptest! {
         prop_assert!((lab.time() - 0.05).abs() < 1e-12);
         prop_assert!(lab.session.world().pose(0).x.is_finite());
     }
+}
+
+/// A session as a real engine's, with the simulation running.
+fn engine_lab(engine: Engine) -> Lab {
+    let mut lab = Lab::new(1);
+    lab.session.use_engine(engine);
+    lab.start();
+    lab
+}
+
+#[test]
+fn a_paused_4_6_answers_nothing_until_it_goes_on() {
+    let mut lab = engine_lab(Engine::CoppeliaSim46);
+    lab.join("a");
+    let left = lab.object("/robot_1/wheelL");
+    lab.call("b", "sim.pauseSimulation", none());
+    let set = lab.ask("a", "sim.setJointTargetVelocity", cbor!([left, 2.0]).unwrap());
+    let step = lab.ask("a", "sim.step", none());
+    lab.now += 3 * SECOND;
+    let answers = lab.session.expire_clients(lab.now);
+    lab.take(answers);
+    assert_eq!((lab.answered(set), lab.answered(step)), (None, None));
+    lab.session.start();
+    let answers = lab.session.answer_held_requests(lab.now);
+    lab.take(answers);
+    assert!(lab.answered(set).is_some() && lab.answered(step).is_some());
+    assert!((lab.time() - 0.05).abs() < 1e-12);
+}
+
+#[test]
+fn requests_during_a_pause_are_bounded() {
+    let mut lab = engine_lab(Engine::CoppeliaSim46);
+    lab.call("b", "sim.pauseSimulation", none());
+    let answered = (0..5000).filter(|_| {
+        let ticket = lab.ask("a", "sim.getSimulationTime", none());
+        lab.answered(ticket).is_some()
+    });
+    assert_eq!(answered.count(), 5000 - 4096);
+}
+
+#[test]
+fn a_pause_outlives_clients_with_a_short_timeout() {
+    let mut lab = engine_lab(Engine::CoppeliaSim46);
+    let hello = cbor!({ "func" => "sim.setStepping", "args" => [true], "uuid" => "a", "timeout" => 5 });
+    lab.send("a", &hello.unwrap());
+    lab.call("b", "sim.pauseSimulation", none());
+    let again = lab.ask("a", "sim.setStepping", cbor!([true]).unwrap());
+    lab.now += 60 * SECOND;
+    lab.session.start();
+    let answers = lab.session.answer_held_requests(lab.now);
+    lab.take(answers);
+    assert_eq!(lab.answered(again), Some(cbor!({ "ret" => [0] }).unwrap()), "it has been forgotten");
+}
+
+#[test]
+fn a_step_of_a_paused_4_7_takes_no_time() {
+    let mut lab = engine_lab(Engine::CoppeliaSim47);
+    lab.join("a");
+    lab.join("c");
+    let before = lab.ask("a", "sim.step", none());
+    lab.call("b", "sim.pauseSimulation", none());
+    assert!(lab.call("c", "sim.step", none()).is_empty());
+    assert!(lab.answered(before).is_none(), "it was requested before the pause");
+    assert_eq!((lab.time(), lab.number("b", "sim.getSimulationState", none())), (0.0, 8.0));
+    lab.start();
+    let after = lab.ask("c", "sim.step", none());
+    assert!(lab.answered(before).is_some() && lab.answered(after).is_some());
+}
+
+#[test]
+fn a_lost_client_holds_the_time_until_its_timeout() {
+    let mut lab = engine_lab(Engine::CoppeliaSim46);
+    let left = lab.object("/robot_1/wheelL");
+    let hello = cbor!({ "func" => "sim.setStepping", "args" => [true], "uuid" => "b", "timeout" => 5 });
+    lab.send("b", &hello.unwrap());
+    lab.call("b", "sim.setJointTargetVelocity", cbor!([left, 2.0]).unwrap());
+    lab.ask("b", "sim.step", none());
+    let answers = lab.session.disconnect(u64::from(b'b'));
+    lab.take(answers);
+    lab.join("a");
+    let step = lab.ask("a", "sim.step", none());
+    assert_eq!(lab.answered(step), None);
+    assert!(lab.number("a", "sim.getJointTargetVelocity", cbor!([left]).unwrap()) > 1.9);
+    lab.now += 6 * SECOND;
+    let answers = lab.session.expire_clients(lab.now);
+    lab.take(answers);
+    let step = lab.answered(step).expect("a keep-alive reply or the step");
+    assert!(get(&step, "ret").is_some(), "{step:?}");
 }

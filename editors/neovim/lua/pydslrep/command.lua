@@ -14,6 +14,9 @@ local subcommands = {
   generate = { argument = 'environment', execute = pydslrep.generate },
   run = { argument = 'environment', execute = pydslrep.run },
   preview = { argument = 'environment', execute = pydslrep.preview },
+  push = { argument = 'environment', execute = pydslrep.push },
+  check = { argument = 'environment', execute = pydslrep.check },
+  remove = { argument = 'environment', execute = pydslrep.remove },
   parser = { argument = 'dir', execute = pydslrep.parser },
   stop = { execute = pydslrep.stop },
   restart = { execute = pydslrep.restart },
@@ -28,16 +31,24 @@ local function names()
   return all
 end
 
---- The names of the environments of the current buffer.
+---@param words string[]
+---@param typed string
 ---@return string[]
-local function environments()
+local function matching(words, typed)
+  return vim.tbl_filter(function(word) return vim.startswith(word, typed) end, words)
+end
+
+--- The names of the environments of the current buffer that begin like this.
+---@param typed string
+---@return string[]
+function M.environments(typed)
   local found = {}
   for _, line in ipairs(vim.api.nvim_buf_get_lines(0, 0, -1, false)) do
     for name in line:gmatch('%f[%w_]environment%s+%^?([%a_][%w_]*)') do
       table.insert(found, name)
     end
   end
-  return found
+  return matching(found, typed)
 end
 
 ---@param typed string
@@ -53,9 +64,9 @@ function M.complete(typed, line)
     if kind == 'dir' then
       return vim.fn.getcompletion(typed, 'dir')
     end
-    offered = kind == 'environment' and environments() or {}
+    return kind == 'environment' and M.environments(typed) or {}
   end
-  return vim.tbl_filter(function(word) return vim.startswith(word, typed) end, offered)
+  return matching(offered, typed)
 end
 
 ---@param arguments string[]

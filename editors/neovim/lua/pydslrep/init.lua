@@ -31,6 +31,30 @@ function M.preview(environment)
   require('pydslrep.runs').start('pydslrep.previewPath', environment)
 end
 
+--- Builds an environment's scene in a running CoppeliaSim; asks before it replaces what it built before.
+---@param environment? string
+function M.push(environment)
+  require('pydslrep.runs').start('pydslrep.pushScene', environment)
+end
+
+--- Checks the scene of a running CoppeliaSim against an environment.
+---@param environment? string
+function M.check(environment)
+  require('pydslrep.runs').start('pydslrep.checkScene', environment)
+end
+
+--- Removes what `push` has built for an environment.
+---@param environment? string
+function M.remove(environment)
+  require('pydslrep.runs').start('pydslrep.removeScene', environment)
+end
+
+--- Opens the live preview in a browser: the planned path, which follows the text and the cursor.
+---@param environment? string
+function M.live(environment)
+  require('pydslrep.live').open(environment)
+end
+
 --- Stops the run.
 function M.stop()
   require('pydslrep.runs').stop()

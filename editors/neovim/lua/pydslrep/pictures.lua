@@ -1,15 +1,16 @@
---- Opens pictures that the server has drawn.
+--- Opens what the server shows outside Neovim: pictures, and the page of the live preview.
 
 local config = require('pydslrep.config')
 local notify = require('pydslrep.notify')
 
 local M = {}
 
---- Opens a picture outside Neovim; if that fails, a warning names its file.
----@param path string
+--- Opens something outside Neovim; if that fails, a warning names it.
+---@param what string
+---@param path string A file or an address.
+---@param custom? fun(path: string) Opens it instead of the system.
 ---@return boolean
-local function open(path)
-  local custom = config.get().open
+local function open(what, path, custom)
   local started, why
   if custom then
     started, why = pcall(custom, path)
@@ -17,7 +18,7 @@ local function open(path)
     started, why = vim.ui.open(path)
   end
   if not started then
-    notify.warning(('cannot open the picture (%s): %s'):format(why, path))
+    notify.warning(('cannot open %s (%s): %s'):format(what, why, path))
     return false
   end
   return true
@@ -29,7 +30,9 @@ end
 ---@param context lsp.HandlerContext
 function M.show_document(problem, params, context, ...)
   if params.external and vim.startswith(params.uri, 'file:') then
-    return { success = open(vim.uri_to_fname(params.uri)) }
+    return { success = open('the picture', vim.uri_to_fname(params.uri), config.get().open) }
+  elseif params.external then
+    return { success = open('the preview', params.uri) }
   end
   return vim.lsp.handlers['window/showDocument'](problem, params, context, ...)
 end

@@ -130,10 +130,11 @@ function M.start(command, environment)
     ---@type pydslrep.EnvironmentId[]
     local found = {}
     for _, lens in ipairs(lenses or {}) do
-      if lens.command and lens.command.command == command then
-        table.insert(found, lens.command.arguments[1])
+      local id = (lens.command and lens.command.arguments or {})[1]
+      if type(id) == 'table' and id.environment and not vim.deep_equal(id, found[#found]) then
+        table.insert(found, id)
         if lens.range.start.line == line then
-          found = { lens.command.arguments[1] }
+          found = { id }
           break
         end
       end

@@ -1,17 +1,18 @@
 // Exports a path: as PNG from the page, or as still or animated SVG drawn by the server.
-import * as path from "node:path";
-
 import * as vscode from "vscode";
 
 import { showError, showInformation } from "../notifications";
-import { PNG_PREFIX } from "./messages";
-import type { EnvironmentId } from "./protocol";
+import { PNG_PREFIX } from "../../../preview/host/messages";
+import type { EnvironmentId } from "../../../preview/host/protocol";
 
 /** URIs of the files that the server has drawn. */
 export interface Drawings {
   picture?: string | null;
   replay?: string | null;
 }
+
+/** Draws the paths of an environment. */
+export type Draw = (environment: EnvironmentId) => Promise<Drawings | undefined>;
 
 interface Format extends vscode.QuickPickItem {
   form: "svg" | "png" | "replay";
@@ -23,11 +24,12 @@ const FORMATS: Format[] = [
   { form: "replay", label: "Replay", detail: "An animated SVG, for any browser" },
 ];
 
-/** Asks for a format and a file, and writes the file. */
-export async function exportPath(environment: EnvironmentId, draw: () => Promise<Drawings | undefined>, capture: () => Promise<string>): Promise<void> {
-  const format = await vscode.window.showQuickPick(FORMATS, { title: `Export the path of ${environment.environment}`, placeHolder: "Which format?" });
+/** Asks for a format and a file, and writes the file. Without `draw` there is only the picture of the page. */
+export async function exportPath(environment: EnvironmentId, draw: Draw | undefined, capture: () => Promise<string>): Promise<void> {
+  const formats = draw ? FORMATS : FORMATS.filter(({ form }) => form === "png");
+  const format = await vscode.window.showQuickPick(formats, { title: `Export the path of ${environment.environment}`, placeHolder: "Which format?" });
   if (format === undefined) return;
-  const content = format.form === "png" ? decodePng(await capture()) : await readDrawing(format.form, await draw());
+  const content = format.form === "png" ? decodePng(await capture()) : await readDrawing(format.form, await draw?.(environment));
   if (content === undefined) return;
   const extension = format.form === "png" ? "png" : "svg";
   const name = format.form === "replay" ? `${environment.environment}-replay.${extension}` : `${environment.environment}.${extension}`;
@@ -41,11 +43,11 @@ export async function exportPath(environment: EnvironmentId, draw: () => Promise
   }
   // VS Code shows an SVG as text.
   const open = () => (extension === "svg" ? vscode.env.openExternal(file) : vscode.commands.executeCommand("vscode.open", file));
-  showInformation(`Path exported: ${path.basename(file.path)}`, { label: "Open", press: open });
+  showInformation(`Path exported: ${file.path.slice(file.path.lastIndexOf("/") + 1)}`, { label: "Open", press: open });
 }
 
 function decodePng(dataUri: string): Uint8Array {
-  return Buffer.from(dataUri.slice(PNG_PREFIX.length), "base64");
+  return Uint8Array.from(atob(dataUri.slice(PNG_PREFIX.length)), (character) => character.charCodeAt(0));
 }
 
 async function readDrawing(form: "svg" | "replay", drawings: Drawings | undefined): Promise<Uint8Array | undefined> {

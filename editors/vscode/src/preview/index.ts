@@ -1,22 +1,22 @@
 // The preview's command, the panel that VS Code restores, and the connection to the server.
 import * as vscode from "vscode";
-import type { LanguageClient } from "vscode-languageclient/node";
+import type { BaseLanguageClient } from "vscode-languageclient";
 
 import { chooseEnvironment, OPEN_A_PROGRAM } from "../environments";
 import { execute } from "../execute";
 import { showInformation } from "../notifications";
-import type { Session } from "../session";
-import type { Drawings } from "./export";
-import type { Request } from "./follower";
-import { pageState } from "./messages";
+import type { LanguageServer } from "../language_server";
+import type { Draw, Drawings } from "./export";
+import type { Request } from "../../../preview/host/follower";
+import { pageState } from "../../../preview/host/messages";
 import { isProgram, PANEL_TYPE, PreviewPanel } from "./panel";
-import { DRIVEN_PATH_CHANGED, type EnvironmentId, PLANNED_PATH_CHANGED } from "./protocol";
+import { DRIVEN_PATH_CHANGED, type EnvironmentId, PLANNED_PATH_CHANGED } from "../../../preview/host/protocol";
 
 /**
  * Registers the preview. Both arguments of `pydslrep.showPreview` are optional: the program's URI, which the button in the
  * title bar passes, and the name of the environment, which lenses pass as well.
  */
-export function registerPreview(context: vscode.ExtensionContext, session: Session): vscode.Disposable {
+export function registerPreview(context: vscode.ExtensionContext, session: LanguageServer): vscode.Disposable {
   const preview = new Preview(context.extensionUri, session);
   return vscode.Disposable.from(
     // A restarted server does not know which paths are shown.
@@ -34,11 +34,11 @@ export function registerPreview(context: vscode.ExtensionContext, session: Sessi
 class Preview implements vscode.WebviewPanelSerializer {
   private panel: PreviewPanel | undefined;
   /** The clients whose notifications are handled; each restart may create another. */
-  private readonly connected = new WeakSet<LanguageClient>();
+  private readonly connected = new WeakSet<BaseLanguageClient>();
 
   constructor(
     private readonly extension: vscode.Uri,
-    private readonly session: Session,
+    private readonly session: LanguageServer,
   ) {}
 
   async open(uri: unknown, environment: unknown): Promise<void> {
@@ -79,7 +79,7 @@ class Preview implements vscode.WebviewPanelSerializer {
   }
 
   private attach(panel: vscode.WebviewPanel): PreviewPanel {
-    const attached = new PreviewPanel(panel, this.extension, this.request, this.draw);
+    const attached = new PreviewPanel(panel, this.extension, this.request, this.draw());
     this.panel = attached;
     panel.onDidDispose(() => {
       if (this.panel === attached) this.panel = undefined;
@@ -87,11 +87,14 @@ class Preview implements vscode.WebviewPanelSerializer {
     return attached;
   }
 
-  /** The files drawn by the latest run; if there was none, the server draws the planned path. */
-  private readonly draw = async (environment: EnvironmentId): Promise<Drawings | undefined> => {
-    const driven = this.session.runs.picturesOf(environment);
-    return driven ?? ((await execute(this.session, "pydslrep.previewPath", environment)) as Drawings | undefined);
-  };
+  /** The files drawn by the latest run; if there was none, the server draws the planned path, where it can. */
+  private draw(): Draw | undefined {
+    const { runs } = this.session;
+    return runs && (async (environment) => {
+      const driven = runs.picturesOf(environment);
+      return driven ?? ((await execute(this.session, "pydslrep.previewPath", environment)) as Drawings | undefined);
+    });
+  }
 
   private readonly request: Request = async (method, params, signal) => {
     const { client } = this.session;
@@ -106,10 +109,11 @@ class Preview implements vscode.WebviewPanelSerializer {
     }
   };
 
-  private connect(client: LanguageClient): void {
+  private connect(client: BaseLanguageClient): void {
     if (this.connected.has(client)) return;
     this.connected.add(client);
-    client.onNotification(PLANNED_PATH_CHANGED, (id: EnvironmentId) => void this.panel?.pathChanged(id));
-    client.onNotification(DRIVEN_PATH_CHANGED, (id: EnvironmentId) => void this.panel?.drivenChanged(id));
+    for (const method of [PLANNED_PATH_CHANGED, DRIVEN_PATH_CHANGED]) {
+      client.onNotification(method, (id: EnvironmentId) => void this.panel?.notified(method, id));
+    }
   }
 }

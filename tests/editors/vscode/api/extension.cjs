@@ -5,17 +5,26 @@ const { readFileSync } = require("node:fs");
 const vscode = require("vscode");
 
 exports.activate = (context) => {
-  let last = "{}";
-  const applySettings = () => {
+  let applied = "{}";
+  let isApplying = false;
+  const applySettings = async () => {
     const wanted = readFileSync(process.env.WANTED_SETTINGS, "utf8");
-    if (wanted === last) {
+    if (wanted === applied || isApplying) {
       return;
     }
-    last = wanted;
-    for (const [name, value] of Object.entries(JSON.parse(wanted))) {
-      void vscode.workspace.getConfiguration().update(name, value, vscode.ConfigurationTarget.Global);
+    // One after the other, and again where the editor refuses: it does while it has not read its own last change.
+    isApplying = true;
+    try {
+      for (const [name, value] of Object.entries(JSON.parse(wanted))) {
+        await vscode.workspace.getConfiguration().update(name, value, vscode.ConfigurationTarget.Global);
+      }
+      applied = wanted;
+    } catch (error) {
+      console.error(`settings are applied again: ${error}`);
+    } finally {
+      isApplying = false;
     }
   };
-  const timer = setInterval(applySettings, 50);
+  const timer = setInterval(() => void applySettings(), 50);
   context.subscriptions.push({ dispose: () => clearInterval(timer) });
 };

@@ -98,7 +98,8 @@ fn single_parallel(program: &Program, findings: &mut Vec<Finding>) {
     }
 }
 
-/// The script's file would shadow a Python standard or client module, is reserved on Windows, or differs from another
+/// The script's file would shadow a Python standard or client module or the runtime, is run by Python at start, is
+/// reserved on Windows, or differs from another
 /// script's only in case; the first environment with a valid name keeps it.
 fn script_name(program: &Program, entity: &Entity, findings: &mut Vec<Finding>) {
     let name = entity.name.text.as_str();
@@ -110,11 +111,13 @@ fn script_name(program: &Program, entity: &Entity, findings: &mut Vec<Finding>) 
     }
 }
 
-/// The modules of Python 3.11 and of the clients of both remote APIs.
+/// The modules of Python 3.11, of the clients of both remote APIs, the runtime, and what Python runs at start.
 fn is_module(name: &str) -> bool {
     const CLIENT: [&str; 8] =
         ["coppeliasim_zmqremoteapi_client", "zmq", "cbor", "cbor2", "sim", "simConst", "vrep", "vrepConst"];
-    include_str!("../../standard_modules.txt").split_whitespace().chain(CLIENT).any(|module| module == name)
+    const OTHERS: [&str; 3] = ["pydslrep_runtime", "sitecustomize", "usercustomize"];
+    let standard = include_str!("../../standard_modules.txt").split_whitespace();
+    standard.chain(CLIENT).chain(OTHERS).any(|module| module == name)
 }
 
 /// Device names on Windows, ignoring case.

@@ -38,9 +38,9 @@ fn judge(number: &Number, code: impl Fn(f64) -> Option<&'static str>) -> Option<
 /// Centimetres.
 fn radius(number: &Number) -> Option<Finding> {
     judge(number, |centimetres| match centimetres {
-        ..=0.0 => Some("invalid-radius"),
         0.5..=100.0 => None,
-        _ => Some("implausible-radius"),
+        0.001..=100_000.0 => Some("implausible-radius"),
+        _ => Some("invalid-radius"),
     })
 }
 
@@ -73,9 +73,9 @@ fn distance(number: &Number, meters: bool) -> Option<Finding> {
     })
 }
 
-/// Centimetres per second.
+/// Centimetres per second; robots have at most 10 000.
 fn speed(number: &Number) -> Option<Finding> {
-    judge(number, |speed| (speed <= 0.0).then_some("invalid-speed"))
+    judge(number, |speed| (!(0.001..=10_000.0).contains(&speed)).then_some("invalid-speed"))
 }
 
 /// Degrees: zero, negative, or more than a full turn.

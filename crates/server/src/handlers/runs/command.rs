@@ -1,21 +1,13 @@
-//! Runs, from their start to their picture: progress, cancellation, and the answer.
+//! Runs, from their start to their picture and the answer.
 
-use std::collections::VecDeque;
-
-use futures::StreamExt;
 use tower_lsp::jsonrpc::Result;
-use tower_lsp::ls_types::{
-    ExecuteCommandParams, LSPAny, ProgressToken, ShowDocumentParams, Uri, WorkDoneProgressCreateParams,
-    request,
-};
+use tower_lsp::ls_types::{ExecuteCommandParams, LSPAny, ShowDocumentParams, Uri};
 
-use crate::children::{ChildEvent, KillOnDrop};
+use super::child::{Ended, follow};
 use crate::chosen::ChosenEnvironment;
 use crate::handlers::runs;
 use crate::server::Server;
-
-/// How many lines of a failed run's output are part of the error.
-const MOST_LINES: usize = 50;
+use crate::state::State;
 
 /// Runs or plans an environment in a child process; answers with the picture's URI, the result in numbers
 /// and what was printed.
@@ -25,54 +17,24 @@ pub(crate) async fn run(
     which: ChosenEnvironment,
 ) -> Result<Option<LSPAny>> {
     let job = runs::prepare(&server.state(), &which, &params.command)?;
-    let (running, mut events, picture) = job.start(&mut server.children())?;
-    let _kill = KillOnDrop(running.clone());
-    let token = run_token(&server, params.work_done_progress_params.work_done_token).await;
-    let progress = match &token {
-        Some(token) => {
-            server.children().name(&running, token);
-            let title = format!(
-                "{} {}",
-                if params.command == runs::RUN { "Running" } else { "Planning" },
-                which.environment
-            );
-            Some(server.client.progress(token.clone(), title).with_cancel_button().begin().await)
-        }
-        None => None,
-    };
-    let mut said = VecDeque::new();
-    let mut ended = (None, String::new());
-    while let Some(event) = events.next().await {
-        match event {
-            ChildEvent::Ended(code, printed) => ended = (code, printed),
-            ChildEvent::Line(line) => {
-                if let Some(progress) = &progress {
-                    progress.report_with_message(line.clone(), None).await;
-                }
-                said.push_back(line);
-                if said.len() > MOST_LINES {
-                    said.pop_front();
-                }
-            }
-        }
-    }
-    server.children().remove(&running);
-    if params.command == runs::RUN {
+    let (running, events, picture) = job.start(&mut server.children())?;
+    let is_run = params.command == runs::RUN;
+    let title = format!("{} {}", if is_run { "Running" } else { "Planning" }, which.environment);
+    let token = params.work_done_progress_params.work_done_token;
+    let Ended { code, printed, said } = follow(&server, token, title, (running, events)).await;
+    if is_run {
         // The path up to a failure is worth showing too.
-        server.state().driven.add(&which, &runs::trace(&picture), &runs::map(&picture), &server.outbox);
+        let State { driven, pages, .. } = &mut *server.state();
+        driven.add(&which, &runs::trace(&picture), &runs::map(&picture), &server.outbox, pages);
     }
-    if let Some(progress) = progress {
-        progress.finish().await;
-    }
-    let (code, printed) = ended;
     // The plan of one environment is drawn even if others have errors; the exit code reports those.
     let is_drawn = || std::fs::metadata(&picture).is_ok_and(|file| file.len() > 0);
-    let is_done = code == Some(0) || params.command == runs::PREVIEW_PATH && is_drawn();
+    let is_done = code == Some(0) || !is_run && is_drawn();
     if !is_done {
         // Nothing was drawn.
         let _ = std::fs::remove_file(&picture);
         let _ = std::fs::remove_file(runs::replay(&picture));
-        return Err(runs::ended_badly(code, said.make_contiguous()));
+        return Err(runs::ended_badly(code, &said));
     }
     let figures = std::fs::read(runs::figures(&picture)).unwrap_or_default();
     // A plan has none.
@@ -93,15 +55,4 @@ pub(crate) async fn run(
     let result =
         serde_json::json!({ "picture": picture, "replay": replay, "output": printed, "figures": figures });
     Ok(Some(result))
-}
-
-/// The token of a run's progress: the client's, otherwise one of ours; `None` where the client shows none.
-async fn run_token(server: &Server, asked: Option<ProgressToken>) -> Option<ProgressToken> {
-    if asked.is_some() || !server.state().client.progress {
-        return asked;
-    }
-    let token = ProgressToken::String(format!("pydslrep run {}", server.children().count()));
-    let params = WorkDoneProgressCreateParams { token: token.clone() };
-    server.client.send_request::<request::WorkDoneProgressCreate>(params).await.ok()?;
-    Some(token)
 }

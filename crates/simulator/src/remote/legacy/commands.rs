@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::super::arguments::angles;
-use super::super::calls::{CallContext, type_of};
+use super::super::calls::CallContext;
 use super::super::info;
 use super::super::objects::{Handle, Kind};
 use super::message::{Name, Outcome, fraction, number};
@@ -95,7 +95,7 @@ fn vector(vector: Vector3<f64>) -> Vec<u8> {
 }
 
 fn objects_of_type(context: &CallContext, kind: i64) -> Outcome {
-    let of_type = context.objects.iter().filter(|(_, object)| type_of(object.kind) == kind);
+    let of_type = context.objects.iter().filter(|(_, object)| object.type_number() == kind);
     let handles: Vec<i32> = of_type.map(|(handle, _)| to_handle(handle)).collect();
     let count = i32::try_from(handles.len()).unwrap_or(i32::MAX);
     let payload = std::iter::once(count).chain(handles).flat_map(i32::to_le_bytes).collect();

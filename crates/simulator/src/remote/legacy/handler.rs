@@ -56,7 +56,9 @@ impl Session {
         let reply = reply.finish(message.id, self.legacy_state());
         self.legacy.insert(connection, client);
         // The reply to a trigger precedes the step, as from the real server.
-        Ok(LegacyResponse { reply, is_last, answers: self.step_if_ready() })
+        let mut answers = self.answer_held_requests(now);
+        answers.extend(self.step_if_ready());
+        Ok(LegacyResponse { reply, is_last, answers })
     }
 
     fn command(&mut self, client: &mut Client, connection: u64, now: Duration, command: &Command) -> Outcome {

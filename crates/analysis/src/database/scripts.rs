@@ -1,0 +1,76 @@
+//! What the scripts of environments are called, kept until an environment of the file comes, goes or is renamed.
+
+use std::sync::{Arc, OnceLock};
+
+use pydslrep_syntax::EntityKind;
+use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
+
+use super::{Database, EntityId, FileId};
+use crate::names::Key;
+use crate::script_name::{Obstacle, ScriptName, obstacle, script_names};
+
+/// By files; of one that has environments there is an entry, filled once it is needed.
+#[derive(Debug, Clone, Default)]
+pub(super) struct ScriptNames(FxHashMap<FileId, OnceLock<Arc<NamesOfFile>>>);
+
+#[derive(Debug)]
+struct NamesOfFile {
+    environments: Vec<EntityId>,
+    by_name: FxHashMap<SmolStr, ScriptName>,
+}
+
+impl ScriptNames {
+    /// A declaration comes or goes.
+    pub(super) fn forget(&mut self, key: &Key) {
+        if key.1 == EntityKind::Environment {
+            self.0.insert(key.0, OnceLock::new());
+        }
+    }
+}
+
+impl Database {
+    /// What the script of an environment is called, and the environment whose name leaves no room for its own, if that is
+    /// why. Most names are free, which is known without looking at the others.
+    pub(crate) fn script_name(&self, file: FileId, name: &SmolStr) -> Option<(ScriptName, Option<EntityId>)> {
+        if obstacle(name).is_none() && self.environments_but_for_case(file, name).len() < 2 {
+            return Some((ScriptName { stem: name.to_string(), obstacle: None }, None));
+        }
+        let of_file = self.script_names.0.get(&file)?.get_or_init(|| Arc::new(self.names_of_file(file)));
+        let found = of_file.by_name.get(name)?.clone();
+        let other = match found.obstacle {
+            Some(Obstacle::SameButForCase(other)) => of_file.environments.get(other).copied(),
+            _ => None,
+        };
+        Some((found, other))
+    }
+
+    fn names_of_file(&self, file: FileId) -> NamesOfFile {
+        let (environments, names): (Vec<_>, Vec<_>) =
+            self.environments(file).into_iter().map(|(id, name)| (id, name.text)).unzip();
+        let scripts = script_names(&names.iter().map(SmolStr::as_str).collect::<Vec<_>>());
+        // All environments of a name have the same script.
+        NamesOfFile { environments, by_name: names.into_iter().zip(scripts).collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pydslrep_syntax::Span;
+
+    #[test]
+    fn names_follow_the_environments() {
+        let mut database = Database::new();
+        let file = database.open("a.pyr", "environment Yard environment yard environment math");
+        let stem = |database: &Database, name: &str| {
+            database.script_name(file, &name.into()).map(|(script, _)| script.stem)
+        };
+        assert_eq!(stem(&database, "yard").as_deref(), Some("yard_env"));
+        assert_eq!(stem(&database, "math").as_deref(), Some("math_env"));
+        database.edit(file, Span::new(12, 16), "yard_env");
+        assert_eq!(stem(&database, "yard").as_deref(), Some("yard"), "it has the name to itself now");
+        database.edit(file, Span::at(0), "environment math_env ");
+        assert_eq!(stem(&database, "math").as_deref(), Some("math_env_env"));
+    }
+}

@@ -1,0 +1,118 @@
+//! `pydslrep preview`: the planned path of a saved program, as a page in a browser.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Args;
+use pydslrep_analysis::FileId;
+use pydslrep_config::Config;
+use pydslrep_server::FilePreview;
+
+use crate::failure::Failure;
+use crate::inputs::Inputs;
+use crate::inputs::paths::absolute;
+use crate::inputs::watch::{Scope, Watch};
+use crate::report::output;
+use crate::run::interrupt::{self, Interrupts};
+
+const EXAMPLES: &str = "\
+Examples:
+  pydslrep preview patrol.pyr             opens the page in a browser
+  pydslrep preview patrol.pyr --no-open   prints its address only
+
+The page follows the saved program, its imports, its scenes and its settings until Ctrl+C. It is
+served to this machine only, under an address with a random secret.";
+
+/// Show the planned path in a browser, and follow the saved program
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Arguments {
+    /// A program
+    program: PathBuf,
+    /// Print the page's address without opening a browser
+    #[arg(long)]
+    no_open: bool,
+    /// The port of this machine to serve the page on; 0 is any free one
+    #[arg(long, value_name = "PORT", default_value_t = 0)]
+    port: u16,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If the program cannot be read, the page not be served, or changes not be watched.
+pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    if arguments.program == Path::new("-") {
+        return Err(Failure::new("standard input cannot be followed").help("name a file"));
+    }
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let runtime = runtime.map_err(|error| unstarted(&error))?;
+    // The preview has a runtime of its own, which must not be dropped inside of this one.
+    let mut preview = start(arguments)?;
+    // Before anything is printed: whoever reads how to stop it may do so at once.
+    let interrupts = {
+        let _context = runtime.enter();
+        Interrupts::listen().map_err(|error| unstarted(&error))?
+    };
+    output::print(&format!("Path preview: {}\nPress Ctrl+C to stop.\n", preview.address()))?;
+    if !arguments.no_open
+        && let Err(error) = opener::open_browser(preview.address())
+    {
+        output::say(&format!("cannot open a browser: {error}\n"));
+    }
+    runtime.block_on(follow(arguments, &mut preview, interrupts))
+}
+
+fn unstarted(error: &dyn std::fmt::Display) -> Failure {
+    Failure::new(format!("cannot start the preview: {error}"))
+}
+
+fn start(arguments: &Arguments) -> Result<FilePreview, Failure> {
+    let (inputs, file) = Inputs::open_one(&arguments.program, &Config::default())?;
+    let program = absolute(&arguments.program)?;
+    FilePreview::start(&program, text(&inputs, file), arguments.port).map_err(|error| {
+        Failure::new(error.to_string()).help("choose another port, or leave out --port for any free one")
+    })
+}
+
+/// Shows the program as it is saved until an interrupt.
+async fn follow(
+    arguments: &Arguments,
+    preview: &mut FilePreview,
+    mut interrupts: Interrupts,
+) -> Result<ExitCode, Failure> {
+    let mut watch = Watch::new();
+    watch.look_at(scope(&arguments.program, &Inputs::default())?)?;
+    loop {
+        let scope = match Inputs::open_one(&arguments.program, &Config::default()) {
+            Ok((inputs, file)) => {
+                let scope = scope(&arguments.program, &inputs)?;
+                preview.changed(text(&inputs, file), scope.files.iter().map(PathBuf::as_path));
+                scope
+            }
+            // The program is being replaced, or its settings are wrong: the last path stays.
+            Err(_) => watch.scope().clone(),
+        };
+        if *watch.scope() != scope {
+            // A file that is watched only from now on may have changed before.
+            watch.look_at(scope)?;
+            continue;
+        }
+        tokio::select! {
+            () = watch.change() => {}
+            () = interrupts.next() => return Ok(ExitCode::from(interrupt::EXIT_CODE)),
+        }
+        watch.look_at(scope)?;
+    }
+}
+
+fn text(inputs: &Inputs, file: FileId) -> String {
+    inputs.database().text(file).map(ToString::to_string).unwrap_or_default()
+}
+
+/// The files that the program depends on.
+fn scope(program: &Path, inputs: &Inputs) -> Result<Scope, Failure> {
+    let mut files = inputs.paths();
+    files.insert(absolute(program)?);
+    Ok(Scope { files, ..Scope::default() })
+}

@@ -1,0 +1,140 @@
+//! The Python that runs scripts: the user's own if it has what they require, else a private virtual environment with
+//! that, created on first use.
+
+mod environment;
+mod index;
+mod interpreter;
+mod manifest;
+mod subprocess;
+
+use std::env;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use pydslrep_script::{REQUIREMENTS, REQUIREMENTS_SLAM};
+
+use self::environment::Environment;
+use crate::failure::Failure;
+
+/// What is installed for a script.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Packages {
+    /// What talks to `CoppeliaSim`.
+    Client,
+    /// And what slam by odometry computes with.
+    ClientAndOdometry,
+}
+
+impl Packages {
+    /// A requirements file for pip.
+    fn requirements(self) -> String {
+        match self {
+            Self::Client => REQUIREMENTS.to_owned(),
+            Self::ClientAndOdometry => format!("{REQUIREMENTS}{REQUIREMENTS_SLAM}"),
+        }
+    }
+
+    /// The modules that scripts import from them.
+    fn modules(self) -> &'static [&'static str] {
+        match self {
+            Self::Client => &["coppeliasim_zmqremoteapi_client"],
+            Self::ClientAndOdometry => &["coppeliasim_zmqremoteapi_client", "numpy", "scipy"],
+        }
+    }
+
+    fn names(self) -> &'static str {
+        match self {
+            Self::Client => "the CoppeliaSim client library",
+            Self::ClientAndOdometry => "the CoppeliaSim client library, NumPy and SciPy",
+        }
+    }
+
+    /// The run that installs them.
+    fn first_run(self) -> &'static str {
+        match self {
+            Self::Client => "the first run",
+            Self::ClientAndOdometry => "the first run with --odometry",
+        }
+    }
+}
+
+/// An interpreter with these packages: the user's own if it has them, else that of a private environment. The first call
+/// creates it, and a later one replaces it if it is damaged; of concurrent calls, one does. `quiet` hides progress.
+///
+/// # Errors
+/// If there is no suitable Python or the environment cannot be created.
+pub(crate) async fn prepare(
+    chosen: Option<&Path>,
+    packages: Packages,
+    quiet: bool,
+) -> Result<PathBuf, Failure> {
+    let base = interpreter::find(chosen, packages.modules()).await?;
+    if base.modules.len() == packages.modules().len() {
+        return Ok(base.path);
+    }
+    Environment::new(base, packages, cache()?).prepare(quiet).await
+}
+
+/// The interpreter itself, for scripts without requirements.
+///
+/// # Errors
+/// If there is no suitable one.
+pub(crate) async fn interpreter(chosen: Option<&Path>) -> Result<PathBuf, Failure> {
+    Ok(interpreter::find(chosen, &[]).await?.path)
+}
+
+/// The Python that runs scripts, for people.
+pub(crate) struct Description {
+    /// Version and path of the interpreter.
+    pub(crate) interpreter: String,
+    /// Where the client is that talks to `CoppeliaSim`.
+    pub(crate) client: String,
+    /// Where the packages are that slam by odometry computes with.
+    pub(crate) odometry: String,
+}
+
+/// What scripts run with; changes nothing.
+///
+/// # Errors
+/// If there is no suitable Python.
+pub(crate) async fn describe(chosen: Option<&Path>) -> Result<Description, Failure> {
+    let all = Packages::ClientAndOdometry;
+    let base = interpreter::find(chosen, all.modules()).await?;
+    let place = |packages: Packages| -> Result<String, Failure> {
+        let has = |module: &&str| base.modules.iter().any(|found| found == module);
+        if packages.modules().iter().all(has) {
+            return Ok("in this Python".to_owned());
+        }
+        Ok(Environment::new(base.clone(), packages, cache()?).describe())
+    };
+    Ok(Description {
+        interpreter: format!("{} ({})", base.version, base.path.display()),
+        client: place(Packages::Client)?,
+        odometry: place(all)?,
+    })
+}
+
+/// The cache folder, created if it is missing.
+///
+/// # Errors
+/// If there is none or it cannot be created.
+pub(crate) fn cache() -> Result<PathBuf, Failure> {
+    let folder = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let cache = folder("XDG_CACHE_HOME")
+        .or_else(|| folder("LOCALAPPDATA").filter(|_| cfg!(windows)))
+        .or_else(|| Some(folder("HOME")?.join(".cache")));
+    let cache = cache.ok_or_else(|| {
+        Failure::new("no cache folder for the Python environment that runs scripts")
+            .help("set HOME or XDG_CACHE_HOME")
+    })?;
+    let cache = cache.join("pydslrep");
+    fs::create_dir_all(&cache).map_err(|error| uncached(&cache, &error))?;
+    Ok(cache)
+}
+
+fn uncached(path: &Path, error: &io::Error) -> Failure {
+    Failure::unwritten(path, error).help(
+        "the Python environment that runs scripts goes there; set XDG_CACHE_HOME to choose another folder",
+    )
+}

@@ -1,0 +1,124 @@
+//! Tasks on the scene of a running simulator, which `pydslrep_runtime.scene` carries out: a request as JSON in, its answer
+//! as JSON out.
+
+use std::io;
+use std::path::Path;
+use std::process::{ExitStatus, Output, Stdio};
+use std::time::Duration;
+
+use pydslrep_output::{TemporaryFolder, provide_runtime};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use tokio::io::AsyncWriteExt;
+use tokio::process::Command;
+use tokio::time::timeout;
+
+use crate::failure::Failure;
+use crate::run::interrupt::{Interrupts, interrupt_process};
+use crate::run::python::{self, Packages};
+
+/// Starts the module: the argument is the folder of its package.
+const BOOT: &str = "import runpy, sys; sys.path.insert(0, sys.argv.pop(1)); runpy.run_module('pydslrep_runtime.scene', None, '__main__')";
+
+/// A task that is interrupted undoes what it has begun within this time.
+const STOP_LIMIT: Duration = Duration::from_secs(5);
+
+/// The Python that carries out tasks; it gets the `CoppeliaSim` client library.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Interpreter<'a> {
+    /// The user's choice.
+    pub(crate) chosen: Option<&'a Path>,
+    /// Whether to hide progress.
+    pub(crate) quiet: bool,
+}
+
+/// An answer: a result, or why there is none.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+enum Answer<T> {
+    Refusal { error: String, help: Option<String>, reason: Option<String> },
+    Result(T),
+}
+
+/// Carries out a task; `None` if the user interrupts it.
+///
+/// # Errors
+/// If Python cannot be prepared, or the task is refused.
+pub(crate) fn carry_out<T: DeserializeOwned>(
+    interpreter: Interpreter<'_>,
+    request: &impl Serialize,
+) -> Result<Option<T>, Failure> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let request = serde_json::to_vec(request).map_err(|error| unstarted(&error))?;
+    runtime.map_err(|error| unstarted(&error))?.block_on(async {
+        let mut interrupts = Interrupts::listen().map_err(|error| unstarted(&error))?;
+        let python = tokio::select! {
+            python = python::prepare(interpreter.chosen, Packages::Client, interpreter.quiet) => python?,
+            () = interrupts.next() => return Ok(None),
+        };
+        result(&python, &request, &mut interrupts).await
+    })
+}
+
+async fn result<T: DeserializeOwned>(
+    python: &Path,
+    request: &[u8],
+    interrupts: &mut Interrupts,
+) -> Result<Option<T>, Failure> {
+    let folder = TemporaryFolder::new("run-").map_err(|error| unstarted(&error))?;
+    let runtime = python::cache().and_then(|cache| Ok(provide_runtime(&cache)?));
+    // Without a cache, the package is written for this task only.
+    let runtime = runtime.or_else(|_| provide_runtime(folder.path()))?;
+    let mut command = Command::new(python);
+    command.args(["-I", "-X", "utf8", "-c", BOOT]).arg(&runtime);
+    let output = exchange(&mut command, request, interrupts).await.map_err(|error| unstarted(&error))?;
+    let Some(output) = output else { return Ok(None) };
+    match serde_json::from_slice(&output.stdout) {
+        Ok(Answer::Result(result)) => Ok(Some(result)),
+        Ok(Answer::Refusal { error, help, reason }) => {
+            let failure = Failure::new(error).reason(reason);
+            Err(if let Some(help) = help { failure.help(help) } else { failure })
+        }
+        Err(_) => Err(unanswered(&output.stderr, output.status)),
+    }
+}
+
+/// Sends a request to a new process; `None` if the user interrupts it. It then undoes what it has begun, and ends.
+async fn exchange(
+    command: &mut Command,
+    request: &[u8],
+    interrupts: &mut Interrupts,
+) -> io::Result<Option<Output>> {
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).kill_on_drop(true);
+    // Ctrl-C reaches it once: from this process.
+    #[cfg(unix)]
+    command.process_group(0);
+    let mut child = command.spawn()?;
+    let id = child.id();
+    if let Some(mut stdin) = child.stdin.take() {
+        // A child that has ended already says why.
+        let _ = stdin.write_all(request).await;
+    }
+    let output = child.wait_with_output();
+    tokio::pin!(output);
+    tokio::select! {
+        output = &mut output => return output.map(Some),
+        () = interrupts.next() => interrupt_process(id),
+    }
+    tokio::select! {
+        _ = timeout(STOP_LIMIT, output) => {}
+        () = interrupts.next() => {}
+    }
+    Ok(None)
+}
+
+fn unanswered(stderr: &[u8], status: ExitStatus) -> Failure {
+    match String::from_utf8_lossy(stderr).trim() {
+        "" => Failure::new(format!("Python ended with {status} and no answer")),
+        message => Failure::new(message.strip_prefix("error: ").unwrap_or(message)),
+    }
+}
+
+fn unstarted(error: &dyn std::fmt::Display) -> Failure {
+    Failure::new(format!("cannot start Python: {error}"))
+}

@@ -1,0 +1,60 @@
+//! What robots, movements and the environment are called in a script: by their names where these are free identifiers.
+
+use std::collections::HashSet;
+
+use pydslrep_analysis::environment::Environment;
+
+/// Everything that a script may import from the runtime.
+pub(crate) const IMPORTS: [&str; 6] =
+    ["FourWheelRobot", "MecanumRobot", "TwoWheelRobot", "movement", "parallel", "run"];
+
+/// Python's keywords and builtins, one per line; tests/repository compares them with Python's own.
+const PYTHON: &str = include_str!("python_names.txt");
+
+/// Too like a digit, says ruff.
+const AMBIGUOUS: [&str; 3] = ["I", "O", "l"];
+
+/// Longer names would exceed the line length.
+const LONGEST: usize = 40;
+
+/// The identifiers of a script, all different.
+#[derive(Debug)]
+pub(crate) struct Identifiers {
+    pub(crate) robots: Vec<String>,
+    pub(crate) movements: Vec<String>,
+    pub(crate) environment: String,
+}
+
+impl Identifiers {
+    /// Chooses them in the order of the script.
+    pub(crate) fn new(environment: &Environment) -> Self {
+        let mut taken: HashSet<String> =
+            PYTHON.lines().chain(IMPORTS).chain(AMBIGUOUS).map(str::to_owned).collect();
+        let mut choose = |name: &str, kind: &str, number| {
+            let found = choose(name, kind, number, &taken);
+            taken.insert(found.clone());
+            found
+        };
+        let robots = environment.robots.iter().zip(1..);
+        let robots = robots.map(|(robot, number)| choose(&robot.name, "robot", number)).collect();
+        let movements = environment.movements.iter().zip(1..);
+        let movements =
+            movements.map(|(movement, number)| choose(&movement.name, "movement", number)).collect();
+        Self { robots, movements, environment: choose(&environment.name, "environment", 1) }
+    }
+}
+
+/// The name itself, the name with its kind, or the kind with the first free number from `number` on.
+fn choose(name: &str, kind: &str, number: usize, taken: &HashSet<String>) -> String {
+    let named = [name.to_owned(), format!("{name}_{kind}")];
+    let numbered = (number..).map(|number| format!("{kind}_{number}"));
+    let mut candidates = named.into_iter().filter(|name| is_plain(name)).chain(numbered);
+    candidates.find(|name| !taken.contains(name)).unwrap_or_default()
+}
+
+/// Whether a name is a short identifier that means nothing special to Python by its form.
+fn is_plain(name: &str) -> bool {
+    name.len() <= LONGEST
+        && name.starts_with(|c: char| c.is_ascii_alphabetic())
+        && name.chars().all(|c| c == '_' || c.is_ascii_alphanumeric())
+}

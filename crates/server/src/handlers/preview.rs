@@ -1,0 +1,198 @@
+//! The live preview: a page in a browser, for editors that cannot draw, with the planned path of the program in the
+//! editor. `docs/protocol.md` describes its messages, which are those of the protocol and a few more.
+
+use pydslrep_workspace::Document;
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+use tower_lsp::jsonrpc::{Error, Id, Result};
+use tower_lsp::ls_types::notification::ShowMessage;
+use tower_lsp::ls_types::request::{Request, ShowDocument};
+use tower_lsp::ls_types::{
+    LSPAny, Location, MessageType, Position, ShowDocumentParams, ShowMessageParams, TextDocumentIdentifier,
+    TextDocumentPositionParams, Uri,
+};
+
+use crate::chosen::ChosenEnvironment;
+use crate::documents::key;
+use crate::handlers::driven_path::DrivenPath;
+use crate::handlers::planned_action::{self, ActionLocation, PlannedAt};
+use crate::handlers::planned_path::{self, PlannedPath};
+use crate::handlers::scripts::failure;
+use crate::log::log;
+use crate::message::{Body, Incoming, encode, encode_answer, encode_error, parse};
+use crate::page::{Audience, Cursor, CursorMoved, notification};
+use crate::server::Server;
+use crate::state::State;
+use crate::web::{File, Site, WebServer};
+
+/// Opens the live preview.
+pub(crate) const OPEN_PREVIEW: &str = "pydslrep.openPreview";
+
+/// The page, as `editors/preview/scripts/bundle.mjs` builds it.
+const FILES: &[File] = &[
+    File { name: "", media_type: "text/html; charset=utf-8", content: include_bytes!("preview/page.html") },
+    File {
+        name: "page.js",
+        media_type: "text/javascript; charset=utf-8",
+        content: include_bytes!("preview/page.js"),
+    },
+    File {
+        name: "page.css",
+        media_type: "text/css; charset=utf-8",
+        content: include_bytes!("preview/page.css"),
+    },
+];
+
+/// What to show.
+#[derive(Debug, Default, Deserialize)]
+pub(crate) struct Shown {
+    /// The program; else that of the latest cursor, or the one that was opened last.
+    uri: Option<Uri>,
+    /// The environment in it; else the one that the cursor is about.
+    environment: Option<String>,
+}
+
+/// The request of a page to show an action in the editor.
+enum Reveal {}
+
+impl Request for Reveal {
+    type Params = Location;
+    type Result = bool;
+    const METHOD: &'static str = "pydslrep/reveal";
+}
+
+/// The command [`OPEN_PREVIEW`]: opens the page in a browser, or says where it is.
+pub(crate) async fn open(server: Server, shown: Shown) -> Result<Option<LSPAny>> {
+    let address = start(&server, shown, 0)?;
+    let can_show = server.state().client.show_document;
+    let is_shown = match address.parse() {
+        Ok(uri) if can_show => {
+            let params = ShowDocumentParams { uri, external: Some(true), take_focus: None, selection: None };
+            server.client.show_document(params).await.unwrap_or_default()
+        }
+        _ => false,
+    };
+    if !is_shown {
+        let message = format!("Path preview: {address}");
+        server
+            .outbox
+            .send_notification::<ShowMessage>(&ShowMessageParams { typ: MessageType::INFO, message });
+    }
+    Ok(Some(json!({ "address": address })))
+}
+
+/// Starts the web server on a port, unless it runs already, and has its pages show a program; returns their address.
+///
+/// # Errors
+///
+/// If there is no program, or the server cannot be started.
+pub(crate) fn start(server: &Server, shown: Shown, port: u16) -> Result<String> {
+    let cursor = cursor(&server.state(), shown)?;
+    let mut web = server.web();
+    let web = match &mut *web {
+        Some(web) => web,
+        none => {
+            let site = site(server.clone());
+            let started = WebServer::start(port, site)
+                .map_err(|error| failure(format!("cannot start the preview: {error}")))?;
+            let events = started.events();
+            server.state().pages.connect(Box::new(move |event| events.send(event)));
+            none.insert(started)
+        }
+    };
+    server.state().pages.cursor_is(cursor);
+    Ok(web.address().to_owned())
+}
+
+/// The cursor to begin with.
+fn cursor(state: &State, shown: Shown) -> Result<Cursor> {
+    let latest = state.pages.cursor();
+    let uri = shown.uri.or_else(|| latest.map(|cursor| cursor.at.text_document.uri.clone()));
+    let uri = uri.or_else(|| last_opened(state));
+    let uri = uri.ok_or_else(|| failure("open a program (a .pyr file) first".to_owned()))?;
+    let known = latest.filter(|cursor| key(&cursor.at.text_document.uri) == key(&uri));
+    let position = known.map_or(Position::default(), |cursor| cursor.at.position);
+    let at = TextDocumentPositionParams { text_document: TextDocumentIdentifier { uri }, position };
+    Ok(Cursor { at, environment: shown.environment, is_edit: false })
+}
+
+/// The program that the client has opened last.
+fn last_opened(state: &State) -> Option<Uri> {
+    let open = state.clients.iter().filter(|(_, client)| client.version.is_some());
+    let programs = open.filter(|(key, _)| state.workspace.document(key).is_some_and(Document::is_program));
+    programs.max_by_key(|(_, client)| client.opening).and_then(|(_, client)| client.uri.clone())
+}
+
+fn site(server: Server) -> Site {
+    let greeter = server.clone();
+    Site {
+        files: FILES,
+        greet: Box::new(move || notification::<CursorMoved>(&greeter.state().pages.cursor().cloned())),
+        answer: Box::new(move |message| answer(&server, message)),
+    }
+}
+
+/// Answers a message of a page.
+fn answer(server: &Server, message: &[u8]) -> Body {
+    let (method, id, params) = match parse(message) {
+        Ok(Incoming::Request(request)) => request.into_parts(),
+        Ok(Incoming::Response(response)) => {
+            return encode_error(response.id().clone(), Error::invalid_request());
+        }
+        Err(refusal) => return encode(&refusal),
+    };
+    let id = id.unwrap_or_default();
+    let params = params.unwrap_or_default();
+    let answered = match &*method {
+        PlannedPath::METHOD => planned_path(server, &id, params),
+        PlannedAt::METHOD => planned_at(server, &id, params),
+        DrivenPath::METHOD => read(params).map(|which: ChosenEnvironment| {
+            encode_answer(&id, &server.state().driven.watch(&which, Audience::Page))
+        }),
+        ActionLocation::METHOD => read(params).and_then(|of| {
+            let location = planned_action::action_location(&server.state(), &of)?;
+            Ok(encode_answer(&id, &location))
+        }),
+        Reveal::METHOD => read(params).map(|location| encode_answer(&id, &reveal(server, location))),
+        _ => Err(Error::method_not_found()),
+    };
+    answered.unwrap_or_else(|error| encode_error(id, error))
+}
+
+fn planned_path(server: &Server, id: &Id, params: Value) -> Result<Body> {
+    let which: ChosenEnvironment = read(params)?;
+    planned_path::watch(&mut server.state(), &which, Audience::Page);
+    let path =
+        server.read_latest(&which.uri, |state| planned_path::planned_path(state, &which, Audience::Page))?;
+    Ok(encode_answer(id, &path))
+}
+
+fn planned_at(server: &Server, id: &Id, params: Value) -> Result<Body> {
+    let at: TextDocumentPositionParams = read(params)?;
+    let found = server.read_latest(&at.text_document.uri, |state| planned_action::planned_at(state, &at));
+    Ok(encode_answer(id, &found))
+}
+
+/// Has the editor select a location in a program; false if it cannot.
+fn reveal(server: &Server, Location { uri, range }: Location) -> bool {
+    let can_show = |state: &State| state.client.show_document && state.is_program(&uri);
+    if !can_show(&server.state()) {
+        return false;
+    }
+    let client = server.client.clone();
+    let params = ShowDocumentParams { uri, external: None, take_focus: Some(true), selection: Some(range) };
+    tokio::spawn(async move {
+        if let Err(error) = client.send_request::<ShowDocument>(params).await {
+            log(format_args!("the client did not show an action: {error}"));
+        }
+    });
+    true
+}
+
+/// # Errors
+///
+/// If they are not the parameters of the method.
+fn read<T: DeserializeOwned>(params: Value) -> Result<T> {
+    serde_json::from_value(params).map_err(|error| Error::invalid_params(error.to_string()))
+}

@@ -1,0 +1,73 @@
+//! A child process from its start to its end: progress and cancellation.
+
+use std::collections::VecDeque;
+
+use futures::StreamExt;
+use futures::channel::mpsc::UnboundedReceiver;
+use tower_lsp::ls_types::{ProgressToken, WorkDoneProgressCreateParams, request};
+
+use crate::children::{ChildEvent, KillOnDrop, Running};
+use crate::server::Server;
+
+/// How many lines of a failed child's output are part of the error.
+const MOST_LINES: usize = 50;
+
+/// A child that has ended.
+#[derive(Debug, Default)]
+pub(super) struct Ended {
+    /// Its exit code, if it has one.
+    pub(super) code: Option<i32>,
+    /// Its whole standard output.
+    pub(super) printed: String,
+    /// The end of what it said on standard error, in lines.
+    pub(super) said: Vec<String>,
+}
+
+/// Waits for the end of a child, and reports its progress under a title. The child ends with the request.
+pub(super) async fn follow(
+    server: &Server,
+    asked: Option<ProgressToken>,
+    title: String,
+    (running, mut events): (Running, UnboundedReceiver<ChildEvent>),
+) -> Ended {
+    let _kill = KillOnDrop(running.clone());
+    let progress = match progress_token(server, asked).await {
+        Some(token) => {
+            server.children().name(&running, &token);
+            Some(server.client.progress(token, title).with_cancel_button().begin().await)
+        }
+        None => None,
+    };
+    let mut said = VecDeque::new();
+    let mut ended = Ended::default();
+    while let Some(event) = events.next().await {
+        match event {
+            ChildEvent::Ended(code, printed) => ended = Ended { code, printed, said: Vec::new() },
+            ChildEvent::Line(line) => {
+                if let Some(progress) = &progress {
+                    progress.report_with_message(line.clone(), None).await;
+                }
+                said.push_back(line);
+                if said.len() > MOST_LINES {
+                    said.pop_front();
+                }
+            }
+        }
+    }
+    server.children().remove(&running);
+    if let Some(progress) = progress {
+        progress.finish().await;
+    }
+    Ended { said: said.into(), ..ended }
+}
+
+/// The token of a child's progress: the client's, otherwise one of ours; `None` where the client shows none.
+async fn progress_token(server: &Server, asked: Option<ProgressToken>) -> Option<ProgressToken> {
+    if asked.is_some() || !server.state().client.progress {
+        return asked;
+    }
+    let token = ProgressToken::String(format!("pydslrep run {}", server.children().count()));
+    let params = WorkDoneProgressCreateParams { token: token.clone() };
+    server.client.send_request::<request::WorkDoneProgressCreate>(params).await.ok()?;
+    Some(token)
+}

@@ -1,0 +1,120 @@
+//! How many bytes of messages wait to be written, so that a client that does not read costs a bounded amount of memory.
+
+use std::future::{Future, poll_fn};
+#[cfg(feature = "process")]
+use std::sync::Condvar;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::task::{Poll, Waker};
+
+/// What waits to be written; clones share it. The default has no limit: it is for whoever takes messages at once.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Load(Option<Arc<Shared>>);
+
+#[derive(Debug)]
+struct Shared {
+    /// So many bytes are enough; what is being answered then is added nevertheless.
+    limit: usize,
+    state: Mutex<State>,
+    #[cfg(feature = "process")]
+    has_room: Condvar,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    waiting_bytes: usize,
+    /// The most there ever were.
+    most_bytes: usize,
+    /// Requests that go on when there is room.
+    wakers: Vec<Waker>,
+    /// Nobody reads any more, or the session is about to end: nothing waits for room.
+    is_over: bool,
+}
+
+impl Load {
+    fn lock(&self) -> Option<(&Shared, MutexGuard<'_, State>)> {
+        let shared = self.0.as_deref()?;
+        Some((shared, shared.state.lock().unwrap_or_else(PoisonError::into_inner)))
+    }
+
+    /// A message waits.
+    pub(crate) fn add(&self, bytes: usize) {
+        if let Some((_, mut state)) = self.lock() {
+            state.waiting_bytes += bytes;
+            state.most_bytes = state.most_bytes.max(state.waiting_bytes);
+        }
+    }
+
+    /// Resolves once there is room for another answer.
+    pub(crate) fn room(&self) -> impl Future<Output = ()> + use<> {
+        let load = self.clone();
+        poll_fn(move |context| match load.lock() {
+            Some((shared, mut state)) if shared.is_full(&state) => {
+                state.wakers.push(context.waker().clone());
+                Poll::Pending
+            }
+            _ => Poll::Ready(()),
+        })
+    }
+}
+
+#[cfg(feature = "process")]
+impl Load {
+    /// A load of about so many bytes.
+    pub(crate) fn new(limit: usize) -> Self {
+        let shared = Shared { limit, state: Mutex::default(), has_room: Condvar::new() };
+        Self(Some(Arc::new(shared)))
+    }
+
+    /// Whether there is no room for another answer.
+    pub(crate) fn is_full(&self) -> bool {
+        self.lock().is_some_and(|(shared, state)| shared.is_full(&state))
+    }
+
+    /// Whether nobody reads any more.
+    pub(crate) fn is_over(&self) -> bool {
+        self.lock().is_some_and(|(_, state)| state.is_over)
+    }
+
+    /// Waits until there is room; false if the session ends instead.
+    pub(crate) fn wait_for_room(&self) -> bool {
+        let Some((shared, mut state)) = self.lock() else { return true };
+        while shared.is_full(&state) {
+            state = shared.has_room.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+        !state.is_over || state.waiting_bytes < shared.limit
+    }
+
+    /// A message was written.
+    pub(crate) fn remove(&self, bytes: usize) {
+        self.change(|state| state.waiting_bytes = state.waiting_bytes.saturating_sub(bytes));
+    }
+
+    /// From now on nothing waits for room.
+    pub(crate) fn end(&self) {
+        self.change(|state| state.is_over = true);
+    }
+
+    fn change(&self, change: impl FnOnce(&mut State)) {
+        let Some((shared, mut state)) = self.lock() else { return };
+        change(&mut state);
+        if shared.is_full(&state) {
+            return;
+        }
+        let wakers = std::mem::take(&mut state.wakers);
+        drop(state);
+        shared.has_room.notify_all();
+        wakers.into_iter().for_each(Waker::wake);
+    }
+
+    /// The most bytes that ever waited.
+    #[cfg(test)]
+    pub(crate) fn most_bytes(&self) -> usize {
+        self.lock().map_or(0, |(_, state)| state.most_bytes)
+    }
+}
+
+impl Shared {
+    fn is_full(&self, state: &State) -> bool {
+        state.waiting_bytes >= self.limit && !state.is_over
+    }
+}

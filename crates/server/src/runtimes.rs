@@ -1,0 +1,53 @@
+//! The package that scripts import, written next to them.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::thread;
+
+use futures::channel::oneshot;
+use pydslrep_output::{RuntimeFolder, has_runtime, write_runtime};
+use rustc_hash::FxHashSet;
+use tower_lsp::ls_types::notification::ShowMessage;
+use tower_lsp::ls_types::{MessageType, ShowMessageParams};
+
+use crate::log::log;
+use crate::message::Outbox;
+
+/// Writes packages, and remembers what the user knows already; clones share it.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Runtimes {
+    /// Whether the user's Python has the package, once it was asked.
+    is_installed: Arc<OnceLock<bool>>,
+    reported: Arc<Mutex<FxHashSet<String>>>,
+}
+
+impl Runtimes {
+    /// Writes the package into a folder, unless it is there or installed. Whoever awaits the receiver knows that it is
+    /// done. On a thread of its own: the user's Python may take its time to answer.
+    pub(crate) fn write(&self, folder: PathBuf, outbox: &Outbox) -> oneshot::Receiver<()> {
+        let (done, receiver) = oneshot::channel();
+        let (own, outbox) = (self.clone(), outbox.clone());
+        let work = move || {
+            own.write_now(&folder, &outbox);
+            // Nobody has to wait for it.
+            let _ = done.send(());
+        };
+        if let Err(error) = thread::Builder::new().name("runtime".to_owned()).spawn(work) {
+            log(format_args!("the runtime of scripts is not written: {error}"));
+        }
+        receiver
+    }
+
+    fn write_now(&self, folder: &std::path::Path, outbox: &Outbox) {
+        let (typ, message) = match write_runtime(folder, || *self.is_installed.get_or_init(has_runtime)) {
+            Ok(RuntimeFolder::Current(_) | RuntimeFolder::Installed) => return,
+            Ok(RuntimeFolder::Kept(kept)) => (MessageType::WARNING, format!("{kept}; {}", kept.help())),
+            Ok(written) => (MessageType::INFO, format!("Runtime of scripts: {written}")),
+            Err(error) => (MessageType::WARNING, error.to_string()),
+        };
+        let is_new = self.reported.lock().unwrap_or_else(PoisonError::into_inner).insert(message.clone());
+        if is_new {
+            outbox.send_notification::<ShowMessage>(&ShowMessageParams { typ, message });
+        }
+    }
+}

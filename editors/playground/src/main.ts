@@ -1,0 +1,129 @@
+// The playground's page: connects the editors, the preview, the outline and runs.
+import { groups, imported } from "virtual:examples";
+import type { WorkspaceEdit } from "vscode-languageserver-protocol";
+
+import { Connection } from "./connection";
+import { FOLDER, type Project } from "./documents";
+import { Editors, NAMES, type Name } from "./editors";
+import { byId, element } from "./elements";
+import { Outline } from "./outline";
+import { fragmentOf, projectIn } from "./permalink";
+import { Preview } from "./preview";
+import { RunPanel } from "./run/panel";
+import { Tabs } from "./tabs";
+import { followTheme } from "./theme";
+
+const fallback = groups[0]?.projects[0] ?? { name: "program", program: "", settings: "", scenes: {} };
+
+const server = new Worker("server.js", { name: "language server" });
+server.postMessage({ wasm: new URL("pydslrep.wasm", location.href).href });
+const connection = new Connection(server, (method, params) => {
+  switch (method) {
+    case "workspace/applyEdit":
+      editors.apply((params as { edit: WorkspaceEdit }).edit);
+      return { applied: true };
+    case "client/registerCapability":
+    case "window/workDoneProgress/create":
+      return null;
+    case "workspace/configuration":
+      return (params as { items: unknown[] }).items.map(() => null);
+    default:
+      return undefined;
+  }
+});
+connection.on("pydslrep/crashed", ({ message }: { message: string }) => announce(`${message}. Reload the page to go on.`));
+const importedFiles = Object.fromEntries(Object.entries(imported).map(([path, text]) => [FOLDER + path, text]));
+
+const editors = new Editors(byId("editor"), connection, (await projectIn(location.hash)) ?? fallback, importedFiles, {
+  changed: (name, isNew) => {
+    if (isNew && name === "program") outline.update(editors.programUri);
+    if (isNew) runs.textChanged();
+    if (name === "program") {
+      if (isNew) editors.sync();
+      void preview.update(editors.cursor, isNew);
+    }
+  },
+  counted: (name, errors, warnings) => tabs.mark(name, errors, warnings),
+});
+
+const preview = new Preview(byId("preview"), connection, {
+  reveal: ({ uri, range }) => {
+    if (uri !== editors.programUri) return;
+    tabs.choose("program");
+    editors.reveal(range);
+  },
+  addEnvironment: () => editors.focus("program"),
+  shown: (id) => {
+    editors.setEnvironment(id?.environment, preview.environments);
+    runs.setEnvironment(id);
+  },
+});
+
+const runs = new RunPanel({ connection, editors, preview, imported: importedFiles });
+
+const outline = new Outline(byId("outline"), connection, (line, character) => {
+  const position = { line, character };
+  tabs.choose("program");
+  editors.reveal({ start: position, end: position });
+  editors.focus("program");
+});
+
+const tabs = new Tabs(byId("tabs"), (name) => {
+  byId("editor").setAttribute("aria-labelledby", `tab-${name}`);
+  editors.show(name as Name);
+  if (name === "script") void runs.showScript();
+});
+
+function open(project: Project): void {
+  runs.stop();
+  editors.open(project);
+  tabs.choose("program");
+  start();
+}
+
+function start(): void {
+  void preview.follow(editors.programUri, editors.cursor);
+  outline.update(editors.programUri);
+}
+
+async function share(): Promise<void> {
+  history.replaceState(null, "", await fragmentOf(editors.project));
+  try {
+    await navigator.clipboard.writeText(location.href);
+    announce("The address has been copied. It contains the program.");
+  } catch {
+    announce("The address in the address bar now contains the program.");
+  }
+}
+
+function announce(text: string): void {
+  byId("announcement").textContent = text;
+}
+
+const examples = byId<HTMLSelectElement>("examples");
+for (const { label, projects } of groups) {
+  examples.append(element("optgroup", { label }, ...projects.map(({ name }) => element("option", { value: name }, name))));
+}
+examples.addEventListener("change", () => {
+  const project = groups.flatMap(({ projects }) => projects).find(({ name }) => name === examples.value);
+  if (project) open(project);
+  examples.value = "";
+});
+
+byId("share").addEventListener("click", () => void share());
+byId("format").addEventListener("click", () => editors.format(tabs.shown as Name));
+window.addEventListener("hashchange", () => {
+  void projectIn(location.hash).then((project) => project && open(project));
+});
+window.addEventListener("keydown", (event) => {
+  // As in VS Code; Alt+1 to Alt+4 lead to the editors.
+  const digit = event.altKey && !event.ctrlKey ? NAMES[Number(event.key) - 1] : undefined;
+  if (event.key === "F5" && !event.ctrlKey) runs.toggle();
+  else if (digit) {
+    tabs.choose(digit);
+    editors.focus(digit);
+  } else return;
+  event.preventDefault();
+});
+followTheme(byId("theme"), (theme) => preview.setTheme(theme));
+start();

@@ -1,0 +1,88 @@
+// The messages between the preview's page and its host.
+import type { DrivenPath, NumberedAction, PlannedPath } from "./protocol";
+
+/** To the page. */
+export type ToPage =
+  | { type: "path"; uri: string; path: PlannedPath }
+  /** The program has no path now, and why. The page keeps its last path. */
+  | { type: "problem"; uri: string | null; message: string; suggestion?: Suggestion }
+  | { type: "environments"; uri: string; names: string[]; shown: string | null }
+  | { type: "cursor"; action: NumberedAction | null }
+  /** The latest run, if there was one, and whether it has just ended. */
+  | { type: "driven"; uri: string; environment: string; driven: DrivenPath | null; isNew: boolean }
+  /** Requests the picture as PNG. */
+  | { type: "capture" };
+
+/** What the user can do about a problem. */
+export type Suggestion = "addEnvironment";
+
+/** From the page. */
+export type FromPage =
+  /** The page is loaded. */
+  | { type: "ready" }
+  | { type: "select"; environment: string }
+  | { type: "reveal"; action: NumberedAction }
+  | { type: "accept"; suggestion: Suggestion }
+  | { type: "export" }
+  /** The picture as a data URI. */
+  | { type: "captured"; png: string };
+
+/** What the page keeps when the window is reloaded. */
+export interface PageState {
+  uri?: string;
+  environment?: string;
+  hidden?: string[];
+  speed?: number;
+  time?: number;
+}
+
+/** Parses a message from the page; undefined if it is invalid. */
+export function fromPage(message: unknown): FromPage | undefined {
+  if (!isRecord(message)) return undefined;
+  switch (message.type) {
+    case "ready":
+      return { type: "ready" };
+    case "select":
+      return typeof message.environment === "string"
+        ? { type: "select", environment: message.environment }
+        : undefined;
+    case "reveal":
+      return isNumberedAction(message.action) ? { type: "reveal", action: message.action } : undefined;
+    case "accept":
+      return message.suggestion === "addEnvironment" ? { type: "accept", suggestion: message.suggestion } : undefined;
+    case "export":
+      return { type: "export" };
+    case "captured":
+      return typeof message.png === "string" && message.png.startsWith(PNG_PREFIX) ? { type: "captured", png: message.png } : undefined;
+    default:
+      return undefined;
+  }
+}
+
+/** The start of a data URI that contains a PNG. */
+export const PNG_PREFIX = "data:image/png;base64,";
+
+/** Parses the page's state; invalid parts are dropped. */
+export function pageState(state: unknown): PageState {
+  if (!isRecord(state)) return {};
+  const { uri, environment, hidden, speed, time } = state;
+  return {
+    ...(typeof uri === "string" ? { uri } : {}),
+    ...(typeof environment === "string" ? { environment } : {}),
+    ...(Array.isArray(hidden) ? { hidden: hidden.filter((name) => typeof name === "string") } : {}),
+    ...(isPositive(speed) ? { speed } : {}),
+    ...(isPositive(time) ? { time } : {}),
+  };
+}
+
+function isPositive(value: unknown): value is number {
+  return typeof value === "number" && Number.isFinite(value) && value > 0;
+}
+
+function isNumberedAction(value: unknown): value is NumberedAction {
+  return isRecord(value) && typeof value.movement === "string" && Number.isInteger(value.index);
+}
+
+function isRecord(value: unknown): value is Record<string, unknown> {
+  return typeof value === "object" && value !== null;
+}

@@ -1,0 +1,137 @@
+// The server's messages about paths. docs/protocol.md repeats these types, and samples from the server's own tests hold
+// them (tests). Lengths are in metres, angles in radians counter-clockwise, times in seconds from the start.
+
+export const PLANNED_PATH = "pydslrep/plannedPath";
+export const PLANNED_PATH_CHANGED = "pydslrep/plannedPathChanged";
+export const PLANNED_AT = "pydslrep/plannedAt";
+export const ACTION_LOCATION = "pydslrep/actionLocation";
+export const DRIVEN_PATH = "pydslrep/drivenPath";
+export const DRIVEN_PATH_CHANGED = "pydslrep/drivenPathChanged";
+
+export interface Position {
+  line: number;
+  character: number;
+}
+
+export interface Location {
+  uri: string;
+  range: { start: Position; end: Position };
+}
+
+/** An environment of a program: the argument of the server's commands. */
+export interface EnvironmentId {
+  uri: string;
+  environment: string;
+}
+
+/** The environment as a key of a map. */
+export function keyOf({ uri, environment }: EnvironmentId): string {
+  return `${environment} ${uri}`;
+}
+
+export interface PlannedPath {
+  environment: string;
+  /** When the last movement ends; null if that is unknown. */
+  duration: number | null;
+  robots: PlannedRobot[];
+  obstacles: Obstacle[];
+  /** Planned collisions, earliest first; paths continue as if there were none. */
+  collisions: PlannedCollision[];
+}
+
+export interface PlannedRobot {
+  name: string;
+  /** Along and across its heading. */
+  body: { length: number; width: number };
+  sensors: SensorCone[];
+  /** The start pose, then several for each action. */
+  poses: PlannedPose[];
+  /** The actions it performs, in order: a movement may be listed twice, which poses do not show. */
+  legs: PlannedLeg[];
+  /** The action after which the poses are unknown. */
+  unknownAfter: PlannedAction | null;
+}
+
+/** A sensor's pose on its robot and its field of view: how far it sees, and how wide. */
+export interface SensorCone {
+  name: string;
+  x: number;
+  y: number;
+  theta: number;
+  range: number;
+  cone: number;
+}
+
+export interface PlannedPose {
+  /** Null after an action of unknown duration. */
+  t: number | null;
+  /** Absolute. */
+  x: number;
+  y: number;
+  theta: number;
+  /** The action that leads to it; null for the start. */
+  action: PlannedAction | null;
+}
+
+/** The part of a path that one action drives. */
+export interface PlannedLeg {
+  action: PlannedAction;
+  /** Null after an action of unknown duration. */
+  start: number | null;
+  duration: number;
+  /** The index of its last pose in `poses`; its first is the last of the leg before. */
+  last: number;
+}
+
+/** An action by its index in its movement. */
+export interface NumberedAction {
+  movement: string;
+  /** From 0. */
+  index: number;
+}
+
+export interface PlannedAction extends NumberedAction {
+  /** As the program writes it, on one line. */
+  text: string;
+}
+
+export type Obstacle =
+  | { name: string; centre: [number, number]; radius: number }
+  | { name: string; corners: [number, number][] };
+
+export interface PlannedCollision {
+  robot: string;
+  /** What it is doing. */
+  action: PlannedAction | null;
+  /** When, and where it is then. */
+  t: number | null;
+  x: number;
+  y: number;
+  theta: number;
+  /** What it meets, by its name. */
+  with: { obstacle: string } | { robot: string };
+}
+
+/** What a position in a program refers to. */
+export interface PlannedAt {
+  /** The program's environments, in order. */
+  environments: string[];
+  /** Those that are declared there or use, directly or through others, the declaration at the position. */
+  using: string[];
+  /** The action there; it includes the space beside it on its line. */
+  action: NumberedAction | null;
+}
+
+/** The path of the latest run. */
+export interface DrivenPath {
+  environment: string;
+  robots: DrivenRobot[];
+}
+
+export interface DrivenRobot {
+  name: string;
+  /** Those at least 5 mm or 5 mrad from the one before, the ends of rests, and the last. */
+  poses: { t: number; x: number; y: number; theta: number }[];
+  /** The map that the robot built with `slam`. */
+  map: { nodes: [number, number][]; edges: [[number, number], [number, number]][] };
+}

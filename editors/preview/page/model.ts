@@ -1,0 +1,202 @@
+// Paths prepared for drawing, once per path: lines, legs for hit tests, and tracks to look up poses by time.
+import type { DrivenPath, NumberedAction, PlannedAction, PlannedPath, SensorCone } from "../host/protocol";
+import { endOf, trackOf, turnBetween, type Pose, type TimedPose, type Track } from "./time";
+
+export interface Leg {
+  action: PlannedAction;
+  /** Null after an action of unknown duration. */
+  start: number | null;
+  duration: number;
+  /** Indices of its first and last pose in the robot's line. */
+  first: number;
+  last: number;
+  from: Pose;
+  to: Pose;
+  /** Whether the robot turns on the spot. */
+  isTurn: boolean;
+}
+
+export interface Robot {
+  name: string;
+  /** The index of its colour. */
+  colour: number;
+  body: { length: number; width: number };
+  sensors: SensorCone[];
+  /** x and y of its poses, alternating. */
+  line: Float64Array;
+  start: Pose;
+  end: Pose;
+  legs: Leg[];
+  track: Track;
+  unknownAfter: PlannedAction | null;
+}
+
+export type ObstacleShape = { name: string; x: number; y: number; radius: number } | { name: string; points: [number, number][] };
+
+export interface Collision extends Pose {
+  robot: Robot;
+  t: number | null;
+  /** The robot or obstacle that it hits. */
+  other: string;
+  action: PlannedAction | null;
+}
+
+export interface Model {
+  environment: string;
+  robots: Robot[];
+  obstacles: ObstacleShape[];
+  collisions: Collision[];
+  /** The last known time, seconds. */
+  duration: number;
+  /** Whether the duration of the whole path is known. */
+  isComplete: boolean;
+}
+
+/** A run. */
+export interface Driven {
+  /** By their names. */
+  robots: Map<string, DrivenRobot>;
+  duration: number;
+}
+
+export interface DrivenRobot {
+  line: Float64Array;
+  track: Track;
+  end: Pose | undefined;
+  nodes: [number, number][];
+  edges: [[number, number], [number, number]][];
+}
+
+export function modelOf(path: PlannedPath): Model {
+  const robots = path.robots.map(robotOf);
+  const collisions = path.collisions.flatMap((collision): Collision[] => {
+    const robot = robots.find(({ name }) => name === collision.robot);
+    if (!robot) return [];
+    const { x, y, theta, t, action } = collision;
+    const other = "robot" in collision.with ? collision.with.robot : collision.with.obstacle;
+    return [{ robot, x, y, theta, t, action, other }];
+  });
+  return {
+    environment: path.environment,
+    robots,
+    obstacles: path.obstacles.map(shapeOf),
+    collisions,
+    duration: Math.max(0, ...robots.map(({ track }) => endOf(track))),
+    isComplete: path.duration !== null,
+  };
+}
+
+export function drivenOf(path: DrivenPath): Driven {
+  const robots = path.robots.map(({ name, poses, map }): [string, DrivenRobot] => [
+    name,
+    { line: lineOf(poses), track: trackOf(poses), end: poses.at(-1), nodes: map.nodes, edges: map.edges },
+  ]);
+  return {
+    robots: new Map(robots),
+    duration: Math.max(0, ...robots.map(([, { track }]) => endOf(track))),
+  };
+}
+
+function robotOf(robot: PlannedPath["robots"][number], colour: number): Robot {
+  const { name, body, sensors, poses, unknownAfter } = robot;
+  const start: Pose = poses[0] ?? { x: 0, y: 0, theta: 0 };
+  const legs = robot.legs.map((leg, index): Leg => {
+    const first = robot.legs[index - 1]?.last ?? 0;
+    const from = poses[first] ?? start;
+    const to = poses[leg.last] ?? from;
+    return { ...leg, first, from, to, isTurn: Math.hypot(to.x - from.x, to.y - from.y) < 1e-9 };
+  });
+  return {
+    name,
+    colour,
+    body,
+    sensors,
+    line: lineOf(poses),
+    start,
+    end: poses.at(-1) ?? start,
+    legs,
+    track: trackOf(timedPoses(poses, legs)),
+    unknownAfter,
+  };
+}
+
+/** The poses whose time is known, and those where the robot waits for its next leg. */
+function timedPoses(poses: PlannedPath["robots"][number]["poses"], legs: Leg[]): TimedPose[] {
+  const timed: TimedPose[] = [];
+  const add = (pose: Pose, t: number): void => {
+    timed.push({ t, x: pose.x, y: pose.y, theta: pose.theta });
+  };
+  const start = poses[0];
+  if (start) add(start, 0);
+  for (const leg of legs) {
+    if (leg.start === null) break;
+    if (leg.start > (timed.at(-1)?.t ?? 0)) add(leg.from, leg.start);
+    for (const pose of poses.slice(leg.first + 1, leg.last + 1)) {
+      if (pose.t !== null) add(pose, pose.t);
+    }
+  }
+  return timed;
+}
+
+function lineOf(poses: readonly { x: number; y: number }[]): Float64Array {
+  const line = new Float64Array(2 * poses.length);
+  poses.forEach(({ x, y }, index) => {
+    line[2 * index] = x;
+    line[2 * index + 1] = y;
+  });
+  return line;
+}
+
+function shapeOf(obstacle: PlannedPath["obstacles"][number]): ObstacleShape {
+  return "corners" in obstacle
+    ? { name: obstacle.name, points: obstacle.corners }
+    : { name: obstacle.name, x: obstacle.centre[0], y: obstacle.centre[1], radius: obstacle.radius };
+}
+
+/** Whether a leg belongs to an action; a movement may run more than once. */
+export function isLegOf(leg: Leg, action: NumberedAction | null): boolean {
+  return action !== null && leg.action.index === action.index && leg.action.movement === action.movement;
+}
+
+/** How far the driven end is off the planned one: metres and radians. */
+export function deviation(planned: Pose, driven: Pose): { distance: number; angle: number } {
+  return {
+    distance: Math.hypot(driven.x - planned.x, driven.y - planned.y),
+    angle: Math.abs(turnBetween(planned.theta, driven.theta)),
+  };
+}
+
+/** A rectangle on the floor, metres. */
+export interface Bounds {
+  left: number;
+  bottom: number;
+  right: number;
+  top: number;
+}
+
+/** The bounds of all paths, robots and obstacles. */
+export function boundsOf(model: Model, driven: Driven | undefined): Bounds {
+  const bounds = { left: Infinity, bottom: Infinity, right: -Infinity, top: -Infinity };
+  const include = (x: number, y: number, margin: number): void => {
+    if (!Number.isFinite(x) || !Number.isFinite(y)) return;
+    bounds.left = Math.min(bounds.left, x - margin);
+    bounds.right = Math.max(bounds.right, x + margin);
+    bounds.bottom = Math.min(bounds.bottom, y - margin);
+    bounds.top = Math.max(bounds.top, y + margin);
+  };
+  const includeLine = (line: Float64Array, margin: number): void => {
+    for (let index = 0; index + 1 < line.length; index += 2) include(line[index] ?? 0, line[index + 1] ?? 0, margin);
+  };
+  for (const { name, line, body } of model.robots) {
+    const margin = Math.hypot(body.length, body.width) / 2;
+    includeLine(line, margin);
+    const run = driven?.robots.get(name);
+    if (run) includeLine(run.line, margin);
+  }
+  for (const obstacle of model.obstacles) {
+    if ("points" in obstacle) for (const [x, y] of obstacle.points) include(x, y, 0);
+    else include(obstacle.x, obstacle.y, obstacle.radius);
+  }
+  if (bounds.left > bounds.right) return { left: -1, bottom: -1, right: 1, top: 1 };
+  return bounds;
+}

@@ -1,0 +1,60 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { boundsOf, deviation, drivenOf, isLegOf, modelOf } from "../page/model";
+import { poseAt } from "../page/time";
+import { plan } from "./plans";
+
+test("a robot waits until its next action begins", () => {
+  const [rover] = modelOf(plan()).robots;
+  assert.ok(rover);
+  assert.deepEqual(poseAt(rover.track, 2.9), { x: 2, y: 0, theta: 0 });
+  assert.equal(poseAt(rover.track, 3.25)?.theta, Math.PI / 8);
+});
+
+test("legs have a first and a last pose, and may be turns", () => {
+  const [rover] = modelOf(plan()).robots;
+  assert.deepEqual(rover?.legs.map(({ first, last, isTurn }) => [first, last, isTurn]), [
+    [0, 2, false],
+    [2, 4, true],
+    [4, 6, false],
+  ]);
+  assert.deepEqual(rover.legs.map((leg) => isLegOf(leg, { movement: "go", index: 1 })), [false, true, false]);
+  assert.ok(!rover.legs.some((leg) => isLegOf(leg, { movement: "stay", index: 1 }) || isLegOf(leg, null)));
+});
+
+test("after an action of unknown duration there is a line without times", () => {
+  const path = plan();
+  path.duration = null;
+  const [rover] = path.robots;
+  assert.ok(rover);
+  for (const pose of rover.poses.slice(3)) pose.t = null;
+  for (const leg of rover.legs.slice(1)) leg.start = null;
+  const model = modelOf(path);
+  assert.equal(model.duration, 2);
+  assert.equal(model.isComplete, false);
+  assert.equal(model.robots[0]?.line.length, 14);
+  assert.deepEqual(poseAt(model.robots[0].track, 100), { x: 2, y: 0, theta: 0 });
+});
+
+test("collisions of unknown robots are dropped", () => {
+  const { collisions } = modelOf(plan());
+  assert.deepEqual(collisions.map(({ robot, other, t }) => [robot.name, other, t]), [["rover", "pole", 1]]);
+});
+
+test("the bounds include robots, obstacles and driven paths", () => {
+  const model = modelOf(plan());
+  const { left, bottom, right, top } = boundsOf(model, undefined);
+  assert.deepEqual([left, bottom, right, top], [-1, -2, 4.5, 1.5]);
+  const poses = [{ t: 0, x: -7, y: 0, theta: 0 }];
+  const driven = drivenOf({ environment: "yard", robots: [{ name: "rover", poses, map: { nodes: [], edges: [] } }] });
+  assert.equal(boundsOf(model, driven).left, -7.25);
+  const empty = modelOf({ ...plan(), robots: [], obstacles: [] });
+  assert.deepEqual(boundsOf(empty, undefined), { left: -1, bottom: -1, right: 1, top: 1 });
+});
+
+test("the deviation of a driven end is a distance and the shorter angle", () => {
+  const off = deviation({ x: 0, y: 0, theta: 3.1 }, { x: 3, y: 4, theta: -3.1 });
+  assert.equal(off.distance, 5);
+  assert.ok(Math.abs(off.angle - (2 * Math.PI - 6.2)) < 1e-9);
+});

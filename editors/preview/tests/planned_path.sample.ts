@@ -1,0 +1,188 @@
+// Written by a test of crates/ide/src/planned_path.rs.
+import type { PlannedPath } from "../host/protocol";
+
+export const path: PlannedPath = {
+  "environment": "e",
+  "duration": null,
+  "robots": [
+    {
+      "name": "rover",
+      "body": {
+        "length": 0.3,
+        "width": 0.3
+      },
+      "sensors": [
+        {
+          "name": "front",
+          "x": 0.15,
+          "y": 0.0,
+          "theta": 0.0,
+          "range": 1.0,
+          "cone": 0.3490658503988659
+        }
+      ],
+      "poses": [
+        {
+          "t": 0.0,
+          "x": 0.0,
+          "y": 0.0,
+          "theta": 0.0,
+          "action": null
+        },
+        {
+          "t": 1.4301388888888888,
+          "x": 0.12061249999999998,
+          "y": 0.0,
+          "theta": 0.0,
+          "action": {
+            "movement": "m",
+            "index": 0,
+            "text": "move 1 meters"
+          }
+        },
+        {
+          "t": 2.8602777777777777,
+          "x": 0.249325,
+          "y": 0.0,
+          "theta": 0.0,
+          "action": {
+            "movement": "m",
+            "index": 0,
+            "text": "move 1 meters"
+          }
+        },
+        {
+          "t": 4.290416666666666,
+          "x": 0.37803749999999997,
+          "y": 0.0,
+          "theta": 0.0,
+          "action": {
+            "movement": "m",
+            "index": 0,
+            "text": "move 1 meters"
+          }
+        },
+        {
+          "t": 5.720555555555555,
+          "x": 0.50675,
+          "y": 0.0,
+          "theta": 0.0,
+          "action": {
+            "movement": "m",
+            "index": 0,
+            "text": "move 1 meters"
+          }
+        },
+        {
+          "t": 7.1506944444444445,
+          "x": 0.6354625,
+          "y": 0.0,
+          "theta": 0.0,
+          "action": {
+            "movement": "m",
+            "index": 0,
+            "text": "move 1 meters"
+          }
+        },
+        {
+          "t": 8.580833333333333,
+          "x": 0.7641749999999999,
+          "y": 0.0,
+          "theta": 0.0,
+          "action": {
+            "movement": "m",
+            "index": 0,
+            "text": "move 1 meters"
+          }
+        },
+        {
+          "t": 10.010972222222222,
+          "x": 0.8928875,
+          "y": 0.0,
+          "theta": 0.0,
+          "action": {
+            "movement": "m",
+            "index": 0,
+            "text": "move 1 meters"
+          }
+        },
+        {
+          "t": 11.44111111111111,
+          "x": 1.0,
+          "y": 0.0,
+          "theta": 0.0,
+          "action": {
+            "movement": "m",
+            "index": 0,
+            "text": "move 1 meters"
+          }
+        }
+      ],
+      "legs": [
+        {
+          "action": {
+            "movement": "m",
+            "index": 0,
+            "text": "move 1 meters"
+          },
+          "start": 0.0,
+          "duration": 11.44111111111111,
+          "last": 8
+        }
+      ],
+      "unknownAfter": {
+        "movement": "m",
+        "index": 1,
+        "text": "turn left until { front }"
+      }
+    }
+  ],
+  "obstacles": [
+    {
+      "name": "pole",
+      "centre": [
+        0.5,
+        0.0
+      ],
+      "radius": 0.1
+    },
+    {
+      "name": "crate",
+      "corners": [
+        [
+          3.5,
+          3.5
+        ],
+        [
+          2.5,
+          3.5
+        ],
+        [
+          2.5,
+          2.5
+        ],
+        [
+          3.5,
+          2.5
+        ]
+      ]
+    }
+  ],
+  "collisions": [
+    {
+      "robot": "rover",
+      "action": {
+        "movement": "m",
+        "index": 0,
+        "text": "move 1 meters"
+      },
+      "t": 2.862222222222222,
+      "x": 0.24949999999999997,
+      "y": 0.0,
+      "theta": 0.0,
+      "with": {
+        "obstacle": "pole"
+      }
+    }
+  ]
+};

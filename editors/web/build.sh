@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# Builds dist/: the language server and the simulator as WebAssembly (pydslrep_bg.wasm), the JavaScript module around it
+# (pydslrep.js), and the worker of the language server (worker.js). Prints what a browser loads, compressed.
+# CARGO_PROFILE: the profile (default: wasm; `dev` builds quicker).
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+target=$(mkdir -p "${CARGO_TARGET_DIR:-$root/target}" && cd "${CARGO_TARGET_DIR:-$root/target}" && pwd)
+profile=${CARGO_PROFILE:-wasm}
+folder=${profile/#dev/debug}
+
+cd "$root"
+cargo build --quiet --locked --package pydslrep-browser --target wasm32-unknown-unknown --profile "$profile"
+cargo build --quiet --locked --manifest-path "$here/bindgen/Cargo.toml" --target-dir "$target/bindgen"
+rm -rf "$here/dist"
+"$target/bindgen/debug/pydslrep-bindgen" "$target/wasm32-unknown-unknown/$folder/pydslrep_browser.wasm" "$here/dist"
+
+"$root/tests/install/npm.sh" "$here"
+PATH=$("$root/tests/install/node.sh"):$PATH
+"$here/node_modules/.bin/esbuild" "$here/src/worker.ts" --bundle --minify --format=iife --platform=browser --target=es2022 \
+  --log-level=warning --outfile="$here/dist/worker.js"
+
+for file in pydslrep_bg.wasm worker.js; do
+  printf '%s: %d kB, %d kB with gzip\n' "$file" \
+    $(($(wc -c <"$here/dist/$file") / 1000)) $(($(gzip -9 -c "$here/dist/$file" | wc -c) / 1000))
+done

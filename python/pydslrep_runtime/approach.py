@@ -1,0 +1,81 @@
+"""Speed ramps, arrival and standstill."""
+
+import math
+
+from .settings import (
+    ARRIVAL_TOLERANCE,
+    CLOSE_TOLERANCE,
+    RIM_ACCELERATION,
+    STALL_TIME,
+)
+
+# Near the goal, a robot that does not get to this share of its distance within so many steps has arrived: the motion is
+# below the tremor of its contacts, or its motors do not turn that slowly.
+CLOSE_PROGRESS = 0.9
+CLOSE_STEPS = 4
+CLOSE_TIME = 1.0  # s that a slow action has for it, at most
+
+
+class Approach:
+    """Controls the speed of one action, and detects its arrival or a stall.
+
+    Distances are in metres at the wheels' rims, for moves and turns alike.
+    """
+
+    def __init__(self, top_speed: float, time_step: float) -> None:
+        self.time_step = time_step
+        self.top_speed = top_speed
+        self.speed = 0.0
+        # Near the goal the speed is proportional to the distance (1/s): at most half of it
+        # per step, so that wheels with a delay do not oscillate.
+        self._closing_rate = min(10.0, 0.5 / time_step)
+        # An action may be as slow as that by itself.
+        slow_steps = (
+            2.0 * (1.0 - CLOSE_PROGRESS) * CLOSE_TOLERANCE / (top_speed * time_step)
+        )
+        self._close_limit = max(CLOSE_STEPS, min(slow_steps, CLOSE_TIME / time_step))
+        self._close_steps = 0
+        self._closest = math.inf
+        self._nearest = math.inf
+        self._progress_time = math.nan
+
+    def next_speed(self, remaining: float) -> float:
+        """The signed rim speed for the next step, with `remaining` metres to go."""
+        gain = self.speed + math.copysign(RIM_ACCELERATION * self.time_step, remaining)
+        braking = self._braking_speed(abs(remaining))
+        wanted = math.copysign(min(self.top_speed, braking), remaining)
+        self.speed = min(gain, wanted) if remaining > 0.0 else max(gain, wanted)
+        return self.speed
+
+    def _braking_speed(self, distance: float) -> float:
+        """The speed from which braking ends at the goal: a root, then a line."""
+        # A speed holds for a whole step while the braking curve falls, so brake early.
+        deceleration = 0.75 * RIM_ACCELERATION
+        linear = deceleration / self._closing_rate**2
+        if distance < linear:
+            return self._closing_rate * distance
+        return math.sqrt(2.0 * deceleration * (distance - linear / 2.0))
+
+    def decelerate(self) -> float:
+        """The rim speed for the next step while braking to a stop."""
+        change = RIM_ACCELERATION * self.time_step
+        self.speed = math.copysign(max(0.0, abs(self.speed) - change), self.speed)
+        return self.speed
+
+    def arrived(self, remaining: float) -> bool:
+        """Whether the robot is at the goal, or near it and comes no nearer."""
+        distance = abs(remaining)
+        if distance > CLOSE_TOLERANCE:
+            self._close_steps, self._closest = 0, math.inf
+        elif distance < CLOSE_PROGRESS * self._closest:
+            self._close_steps, self._closest = 0, distance
+        else:
+            self._close_steps += 1
+        return distance <= ARRIVAL_TOLERANCE or self._close_steps >= self._close_limit
+
+    def stalled(self, remaining: float, time: float) -> bool:
+        """Whether the robot has made no progress for STALL_TIME, at a simulation time in seconds."""
+        least = min(0.001, 0.25 * self.top_speed * STALL_TIME)
+        if abs(remaining) < self._nearest - least:
+            self._nearest, self._progress_time = abs(remaining), time
+        return time - self._progress_time > STALL_TIME - self.time_step / 2.0

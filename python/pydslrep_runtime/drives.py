@@ -1,0 +1,199 @@
+"""Kinematics: how the wheels of each type of robot move it.
+
+Wheel mounts are positions on the robot's body: x ahead and y to the left, in metres. Rates are in rad/s, forward if
+positive.
+"""
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import Protocol
+
+from .errors import SetupError
+from .pose import Pose
+from .steering import arc_speed, return_speed, steer
+
+
+class Drive(Protocol):
+    """What motion control needs to know about the wheels of a robot."""
+
+    turning_radius: float  # m from the centre to the rims, in a turn in place
+    radii: tuple[float, ...]  # of the wheels, in metres
+    scrubs: bool  # whether wheels slide sideways in turns, which then take longer
+
+    def follow_line(self, speed: float, offset: Pose, remaining: float) -> list[float]:
+        """Wheel rates that drive along a line; `offset` is the pose relative to it."""
+
+    def turn_in_place(
+        self, rim_speed: float, offset: Pose, turn: float | None, drift: float
+    ) -> list[float]:
+        """Wheel rates that turn on a spot; `offset` is the pose relative to it.
+
+        `turn` is the angle to go, None if unknown; `drift` how far the robot slides to its left per radian, in metres.
+        """
+
+
+class DriveType(Protocol):
+    """A class of drives."""
+
+    def __call__(
+        self, mounts: Sequence[tuple[float, float]], radii: Sequence[float]
+    ) -> Drive:
+        """Raises SetupError if the wheels are not where the drive has them."""
+
+
+class SteeredDrive(ABC):
+    """A drive that cannot move sideways: it steers back to its line, and drives an arc back to its spot."""
+
+    turning_radius: float  # m
+    scrubs = False
+
+    @abstractmethod
+    def wheel_rates(self, speed: float, turn_rate: float) -> list[float]:
+        """Inverse kinematics: wheel rates in rad/s for the body's m/s and rad/s."""
+
+    def follow_line(self, speed: float, offset: Pose, remaining: float) -> list[float]:
+        """Wheel rates that drive along a line; `offset` is the pose relative to it."""
+        return self.wheel_rates(speed, steer(speed, offset, remaining))
+
+    def turn_in_place(
+        self, rim_speed: float, offset: Pose, turn: float | None, drift: float
+    ) -> list[float]:
+        """Wheel rates that turn on a spot; `offset` is the pose relative to it."""
+        turn_rate = rim_speed / self.turning_radius
+        ahead = (
+            return_speed(offset)
+            if turn is None
+            else arc_speed(offset, turn, drift, turn_rate)
+        )
+        return self.wheel_rates(ahead, turn_rate)
+
+
+class TwoWheelDrive(SteeredDrive):
+    """Differential drive with two wheels: left, right."""
+
+    def __init__(
+        self, mounts: Sequence[tuple[float, float]], radii: Sequence[float]
+    ) -> None:
+        """`mounts` are the wheels' x (forward) and y (left) in the body, in metres."""
+        (_, left), (_, right) = mounts
+        self.track = left - right
+        if self.track <= 0.0:
+            raise SetupError("the left wheel is not to the left of the right wheel")
+        self.radii = tuple(radii)
+        self.turning_radius = self.track / 2.0
+
+    def wheel_rates(self, speed: float, turn_rate: float) -> list[float]:
+        """Inverse kinematics: wheel rates in rad/s for the body's m/s and rad/s."""
+        left = speed - turn_rate * self.track / 2.0
+        right = speed + turn_rate * self.track / 2.0
+        return [left / self.radii[0], right / self.radii[1]]
+
+
+class FourWheelDrive(SteeredDrive):
+    """Four standard wheels: left-front, left-rear, right-front, right-rear.
+
+    Both wheels on a side have the same rim speed, as in a differential drive.
+    """
+
+    # Wheels scrub sideways in a turn, so the robot turns less than they roll. Set this
+    # factor if you have measured it; closed-loop control corrects the rest.
+    TRACK_FACTOR = 1.0
+    scrubs = True
+
+    def __init__(
+        self, mounts: Sequence[tuple[float, float]], radii: Sequence[float]
+    ) -> None:
+        """`mounts` are the wheels' x (forward) and y (left) in the body, in metres."""
+        left_front, left_rear, right_front, right_rear = (y for _, y in mounts)
+        track = (left_front + left_rear - right_front - right_rear) / 2.0
+        if track <= 0.0:
+            raise SetupError("the left wheels are not to the left of the right wheels")
+        self.track = track * self.TRACK_FACTOR
+        self.radii = tuple(radii)
+        self.turning_radius = self.track / 2.0
+
+    def wheel_rates(self, speed: float, turn_rate: float) -> list[float]:
+        """Inverse kinematics: wheel rates in rad/s for the body's m/s and rad/s."""
+        left = speed - turn_rate * self.track / 2.0
+        right = speed + turn_rate * self.track / 2.0
+        rims = (left, left, right, right)
+        return [rim / radius for rim, radius in zip(rims, self.radii, strict=True)]
+
+
+class FourMecanumDrive:
+    """Four mecanum wheels: left-front, left-rear, right-front, right-rear.
+
+    Seen from above their rollers form an X, so the robot can also move sideways.
+    """
+
+    # Position errors are corrected at this rate (1/s), up to CORRECTION_SPEED (m/s).
+    CORRECTION_RATE = 2.0
+    CORRECTION_SPEED = 0.05
+    scrubs = False
+
+    def __init__(
+        self, mounts: Sequence[tuple[float, float]], radii: Sequence[float]
+    ) -> None:
+        """`mounts` are the wheels' x (forward) and y (left) in the body, in metres."""
+        left_front, left_rear, right_front, right_rear = mounts
+        track = (left_front[1] + left_rear[1] - right_front[1] - right_rear[1]) / 2.0
+        wheelbase = (
+            left_front[0] + right_front[0] - left_rear[0] - right_rear[0]
+        ) / 2.0
+        if track <= 0.0:
+            raise SetupError("the left wheels are not to the left of the right wheels")
+        if wheelbase <= 0.0:
+            raise SetupError("the front wheels are not ahead of the rear wheels")
+        self.track = track
+        self.wheelbase = wheelbase
+        self.radii = tuple(radii)
+        self.turning_radius = (wheelbase + track) / 2.0
+
+    def wheel_rates(
+        self, forward: float, sideways: float, turn_rate: float
+    ) -> list[float]:
+        """Inverse kinematics: wheel rates in rad/s for m/s (ahead, left) and rad/s."""
+        turn = self.turning_radius * turn_rate
+        rims = (
+            forward - sideways - turn,
+            forward + sideways - turn,
+            forward + sideways + turn,
+            forward - sideways + turn,
+        )
+        return [rim / radius for rim, radius in zip(rims, self.radii, strict=True)]
+
+    def follow_line(
+        self,
+        speed: float,
+        offset: Pose,
+        remaining: float,  # noqa: ARG002
+    ) -> list[float]:
+        """Wheel rates that drive along a line; `offset` is the pose relative to it."""
+        turn_rate = -self.CORRECTION_RATE * offset.theta
+        return self._along(offset.theta, speed, self._correction(offset.y), turn_rate)
+
+    def turn_in_place(
+        self,
+        rim_speed: float,
+        offset: Pose,
+        turn: float | None,  # noqa: ARG002
+        drift: float,  # noqa: ARG002
+    ) -> list[float]:
+        """Wheel rates that turn on a spot; `offset` is the pose relative to it."""
+        turn_rate = rim_speed / self.turning_radius
+        ahead, sideways = self._correction(offset.x), self._correction(offset.y)
+        return self._along(offset.theta, ahead, sideways, turn_rate)
+
+    def _along(
+        self, theta: float, ahead: float, sideways: float, turn_rate: float
+    ) -> list[float]:
+        """Wheel rates for velocities in a frame; `theta` is the robot's heading in it."""
+        cos, sin = math.cos(theta), math.sin(theta)
+        return self.wheel_rates(
+            cos * ahead + sin * sideways, cos * sideways - sin * ahead, turn_rate
+        )
+
+    def _correction(self, error: float) -> float:
+        wanted = -self.CORRECTION_RATE * error
+        return max(-self.CORRECTION_SPEED, min(self.CORRECTION_SPEED, wanted))

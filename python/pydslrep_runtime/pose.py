@@ -1,0 +1,52 @@
+"""Positions and headings."""
+
+import math
+from dataclasses import dataclass
+
+
+def wrap_angle(angle: float) -> float:
+    """Wraps an angle to the range from -pi to pi."""
+    return math.remainder(angle, math.tau)
+
+
+@dataclass(frozen=True)
+class Pose:
+    """A position and a heading: x forward and y left in metres, theta in radians.
+
+    Angles are counter-clockwise, seen from above.
+    """
+
+    x: float
+    y: float
+    theta: float
+
+    def ahead(self, distance: float) -> "Pose":
+        """The pose after driving straight, backwards if negative."""
+        return Pose(
+            self.x + distance * math.cos(self.theta),
+            self.y + distance * math.sin(self.theta),
+            self.theta,
+        )
+
+    def turned(self, angle: float) -> "Pose":
+        """The pose after turning in place, to the left if positive."""
+        return Pose(self.x, self.y, wrap_angle(self.theta + angle))
+
+    def transformed_by(self, origin: "Pose") -> "Pose":
+        """Transforms a pose relative to `origin` into the frame that `origin` is in."""
+        cos, sin = math.cos(origin.theta), math.sin(origin.theta)
+        return Pose(
+            origin.x + cos * self.x - sin * self.y,
+            origin.y + sin * self.x + cos * self.y,
+            wrap_angle(origin.theta + self.theta),
+        )
+
+    def relative_to(self, origin: "Pose") -> "Pose":
+        """The pose in the frame of `origin`: x ahead of it, y to its left."""
+        dx, dy = self.x - origin.x, self.y - origin.y
+        cos, sin = math.cos(origin.theta), math.sin(origin.theta)
+        return Pose(
+            cos * dx + sin * dy,
+            cos * dy - sin * dx,
+            wrap_angle(self.theta - origin.theta),
+        )

@@ -1,0 +1,1 @@
+"""Exploration: a robot maps a closed area with its distance sensors."""

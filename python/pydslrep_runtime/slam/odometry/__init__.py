@@ -1,0 +1,1 @@
+"""Localisation by wheel odometry and scans."""

@@ -1,0 +1,146 @@
+"""A robot that explores by wheel odometry, and corrects its pose by scans."""
+
+import math
+from collections.abc import Callable, Collection
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...pose import Pose, wrap_angle
+from ...settings import RIM_SPEED
+from ..occupancy_grid import Position
+from ..rover import SAFETY_MARGIN, SlamRover
+from ..session import SlamSession
+from .graph_slam import GraphSlam
+from .odometer import Odometer
+from .scan import Scan
+from .scan_log import ScanLog
+
+if TYPE_CHECKING:
+    from ...motion import Motion
+
+REBUILD_DISTANCE = 0.04  # m that a keyframe moves before the grid is rebuilt, or ...
+REBUILD_ANGLE = math.radians(2.0)  # ... turns
+WAYS = [0.02 * count for count in range(-15, 16)]  # m to drive to have room
+
+
+class OdometryRover(SlamRover):
+    """The rover of an explorer, whose robot relies on wheel odometry."""
+
+    turning_speed = 0.5 * RIM_SPEED  # wheels slip less when they turn slowly
+    pose_margin = 0.05
+    prefers_walls = True
+
+    def __init__(self, robot: "Motion", session: SlamSession) -> None:
+        super().__init__(robot, session)
+        self._odometer = Odometer(
+            robot.backend, tuple(robot.spec.wheels.values()), robot.drive.turning_radius
+        )
+        robot.use_odometry(self._odometer)
+        self._scan: Scan | None = None
+        self._wheel_travel = 0.0  # m, up to the last keyframe
+        self._slam = GraphSlam()
+        self._log = ScanLog()
+        self._grid_keyframes: list[Pose] = []  # the poses that the grid is built from
+
+    async def drive_to(self, goal: Position, should_stop: Callable[[], bool]) -> bool:
+        """Turns to a goal and drives there, or until an obstacle is near."""
+        await self._make_room()
+        return await super().drive_to(goal, should_stop)
+
+    async def _make_room(self) -> None:
+        """Drives back or ahead to where the robot can turn without touching a wall.
+
+        A wall would turn the robot, which its wheels do not notice.
+        """
+        here = self.pose()
+        walls = np.append(
+            self._slam.surfaces_near(here), self._log.obstacles_near(here)
+        )
+        is_beside = np.abs(walls.imag) < 0.6 * self.radius
+
+        def room_at(way: float) -> float:
+            """The distance to the nearest wall; 0 if one is in the way."""
+            if (
+                is_beside
+                & (np.abs(walls.real - way / 2.0) < (abs(way) + self.radius) / 2.0)
+            ).any():
+                return 0.0
+            return float(np.abs(walls - way).min(initial=1.0))
+
+        room = room_at(0.0) or float(np.abs(walls).min())
+        needed = self.radius + SAFETY_MARGIN
+        if room >= needed:
+            return
+        ways = sorted(WAYS, key=lambda way: (-min(room_at(way), needed), abs(way)))
+        if room_at(ways[0]) < room + 0.01:
+            return
+        self._obstacle = None
+
+        def must_stop(here: Pose) -> bool:
+            return self._observe(here) and ways[0] > 0.0 and self._obstacle is not None
+
+        await self._robot.drive_to(here.ahead(ways[0]), must_stop)
+
+    async def localise(self) -> int:
+        """Adds a keyframe and corrects the pose by a scan, or by several if it is lost."""
+        await self._make_room()
+        await self._take_keyframe()
+        if self._slam.has_slipped and self._slam.is_lost:
+            await self._take_keyframe()
+        return len(self._positions) - 1
+
+    def uncertain(self) -> Collection[int]:
+        """The keyframes at which the robot was lost."""
+        return self._slam.uncertain
+
+    async def _take_keyframe(self) -> None:
+        self._scan, self._last_pose = Scan(), None
+        # The first keyframe is the reference for all others, so scan it slowly.
+        speed = self.turning_speed * (1.0 if self._positions else 0.5)
+        await self._robot.rotate(self._blind_angle(), self._observe, speed)
+        scan, self._scan = self._scan, None
+        travelled = self._odometer.wheel_travel - self._wheel_travel
+        self._wheel_travel = self._odometer.wheel_travel
+        self._robot.correct(self._slam.add_keyframe(scan, self.pose(), travelled))
+        self._update_grid(scan.middle_pose())
+
+    def _update_grid(self, middle_pose: Pose) -> None:
+        """Adds the last leg to the grid, or all if keyframes have moved."""
+        keyframes = self._slam.keyframes
+        has_slipped = self._slam.has_slipped
+        self._log.add_keyframe(middle_pose, keyframes[-1], is_valid=not has_slipped)
+        self._positions = [(pose.x, pose.y) for pose in keyframes]
+        if has_slipped or any(map(has_shifted, self._grid_keyframes, keyframes)):
+            self.grid.reset()
+            self._grid_keyframes = []
+        self._log.replay(self.grid, keyframes, since=len(self._grid_keyframes))
+        self._grid_keyframes += keyframes[len(self._grid_keyframes) :]
+
+    def _observe(self, here: Pose) -> bool:
+        """Reads all sensors if the robot has moved or scans; returns if it has moved."""
+        is_new = self._has_moved(here)
+        if not is_new and self._scan is None:
+            return False
+        readings = self._read_sensors()
+        if is_new:
+            self._log.add(here, readings)
+            for reading in readings:
+                self._check_obstacle(reading, here)
+        if self._scan is not None:
+            self._scan.add(here, readings)
+        else:
+            for reading in readings:
+                self.grid.add_reading(reading.transformed_by(here))
+        return is_new
+
+    def _mark_obstacle(self, x: float, y: float) -> None:
+        """Keeps an obstacle that has stopped the robot, also when the grid is rebuilt."""
+        super()._mark_obstacle(x, y)
+        self._log.add_obstacle(self.pose(), x, y)
+
+
+def has_shifted(a: Pose, b: Pose) -> bool:
+    """Whether a keyframe has moved far enough to rebuild the grid."""
+    turned = abs(wrap_angle(a.theta - b.theta))
+    return math.hypot(a.x - b.x, a.y - b.y) > REBUILD_DISTANCE or turned > REBUILD_ANGLE

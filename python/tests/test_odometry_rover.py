@@ -1,0 +1,178 @@
+"""SLAM with wheels that slip."""
+
+import math
+import random
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from ideal_rover import at_once
+from pydslrep_runtime.pose import Pose
+from pydslrep_runtime.slam.occupancy_grid import Cell, OccupancyGrid, Reading
+from pydslrep_runtime.slam.odometry.rover import OdometryRover
+from pydslrep_runtime.slam.odometry.scan_log import ScanLog
+from rooms import Pillar, Rooms, Wall
+from slipping_robot import SlippingRobot
+
+AHEAD = [Reading(Pose(0.1, 0.0, 0.0), math.radians(170.0), 0.5, is_hit=True)]
+
+
+class Grid(OccupancyGrid):
+    """A grid that shows its cells."""
+
+    def cells(self) -> tuple[set[Cell], set[Cell]]:
+        return self._free, self._occupied - self._free
+
+
+def rover(robot: SlippingRobot) -> OdometryRover:
+    slam_session: Any = SimpleNamespace(
+        uses_odometry=True,
+        extent=20.0,
+        range=lambda robot, sensor, reported: reported,
+        cone=lambda robot, sensor, reported: reported,
+        radius=lambda robot, spanned: spanned,
+    )
+    driving: Any = robot
+    return OdometryRover(driving, slam_session)
+
+
+def test_exploring_with_wheels_that_slip() -> None:
+    # A path around a block: a loop to close.
+    rooms = Rooms(3.0, 3.0, start=(0.6, 0.6), pillars=[Pillar((1.5, 1.5), 0.45)])
+    robot = SlippingRobot(rooms, slip=0.02, noise=0.01, seed=1)
+    explorer = rover(robot).explorer()
+    at_once(explorer.explore())
+    assert not robot.touched
+    away, turned = robot.off()
+    assert away < 0.1
+    assert turned < 3.0
+    nodes = [node.position for node in explorer.map.nodes]
+    assert rooms.coverage(nodes, 1.5, grain=0.2) >= 0.95
+    for a, b, length in explorer.map.edges():
+        assert rooms.is_straight(nodes[a], nodes[b])
+        assert length == pytest.approx(math.dist(nodes[a], nodes[b]))
+
+
+# Neither half turns nor quarter turns leave it as it is.
+SCALENE = Rooms(1.6, 1.2, start=(0.6, 0.5), walls=[Wall((1.2, 0.0), (1.2, 0.5))])
+
+
+def pushed(robot: SlippingRobot, angle: float) -> OdometryRover:
+    """A rover after a push that its wheels have not noticed, and another scan."""
+    exploring = rover(robot)
+    at_once(exploring.localise())
+    robot.here = robot.here.turned(angle)
+    at_once(exploring.localise())
+    return exploring
+
+
+@pytest.mark.parametrize("degrees", [25.0, -40.0, 55.0])
+def test_a_robot_that_was_turned_finds_its_way(degrees: float) -> None:
+    robot = SlippingRobot(SCALENE, noise=0.01)
+    exploring = pushed(robot, math.radians(degrees))
+    assert not exploring.uncertain()
+    away, turned = robot.off()
+    assert away < 0.05
+    assert turned < 3.0
+
+
+def test_a_robot_is_lost_where_two_places_look_alike() -> None:
+    # Turned by 90 degrees to the left or to the right?
+    robot = SlippingRobot(Rooms(1.8, 1.0, start=(0.9, 0.5)), noise=0.01)
+    exploring = pushed(robot, math.radians(90.0))
+    assert exploring.uncertain()
+    assert 0 not in exploring.uncertain()
+
+
+def test_a_robot_makes_room_before_it_turns() -> None:
+    robot = SlippingRobot(Rooms(1.6, 1.6, start=(0.8, 0.8)))
+    exploring = rover(robot)
+    at_once(exploring.localise())
+    at_once(exploring.turn_by(-exploring.pose().theta))
+    at_once(robot.drive_to(exploring.pose().ahead(0.6), lambda _: False))
+    at_once(exploring.localise())
+    assert not robot.touched
+
+
+def test_readings_move_with_the_keyframes() -> None:
+    log = ScanLog()
+    start, end = Pose(0.0, 0.0, 0.0), Pose(2.0, 0.0, 0.0)
+    log.add(start, AHEAD)
+    log.add_keyframe(start, start)
+    for x in (0.0, 1.0, 2.0):
+        log.add(Pose(x, 0.0, 0.0), AHEAD)
+    log.add_keyframe(end, end)
+    straight = OccupancyGrid(0.05)
+    log.replay(straight, [start, end])
+    assert straight.has_clearance(1.3, 0.0)
+    assert not straight.has_clearance(1.3, 0.5)
+    # The second keyframe moves a metre to the left: halfway, that is half a metre.
+    bent = OccupancyGrid(0.05)
+    log.replay(bent, [start, Pose(2.0, 1.0, 0.0)])
+    assert bent.has_clearance(1.3, 0.5)
+    assert not bent.has_clearance(1.3, -0.3)
+
+
+def test_readings_are_dropped_where_odometry_has_failed() -> None:
+    log = ScanLog()
+    start, end = Pose(0.0, 0.0, 0.0), Pose(2.0, 0.0, 0.0)
+    log.add(start, AHEAD)
+    log.add_keyframe(start, start)
+    for x in (0.0, 1.0, 2.0):
+        log.add(Pose(x, 0.0, 0.0), AHEAD)
+    log.add_keyframe(end, end, is_valid=False)
+    grid = OccupancyGrid(0.05)
+    log.replay(grid, [start, end])
+    assert not grid.has_clearance(1.3, 0.0)
+    assert grid.has_clearance(2.3, 0.0)
+
+
+def test_an_obstacle_moves_with_its_keyframe() -> None:
+    log = ScanLog()
+    origin = Pose(0.0, 0.0, 0.0)
+    log.add(origin, AHEAD)
+    log.add_keyframe(origin, origin)
+    log.add_obstacle(origin, 0.3, 0.0)
+    grid = OccupancyGrid(0.05)
+    log.replay(grid, [origin])
+    assert not grid.has_clearance(0.3, 0.0)
+    grid.reset()
+    log.replay(grid, [Pose(0.0, 0.0, math.pi / 2.0)])
+    assert not grid.has_clearance(0.0, 0.3)
+
+
+def test_a_later_reading_finds_an_obstacle_gone() -> None:
+    log = ScanLog()
+    origin = Pose(0.0, 0.0, 0.0)
+    log.add_keyframe(origin, origin)
+    log.add(origin, AHEAD)
+    log.add_obstacle(origin, 0.3, 0.0)
+    log.add(origin, AHEAD)
+    grid = OccupancyGrid(0.05)
+    log.replay(grid, [origin])
+    assert grid.has_clearance(0.3, 0.0)
+
+
+@pytest.mark.parametrize("angle", [5.0, 20.0, 45.0])
+def test_the_log_finds_the_cells_of_each_reading(angle: float) -> None:
+    dice = random.Random(5)
+    readings = [
+        Reading(
+            Pose(dice.uniform(-9, 9), dice.uniform(-9, 9), dice.uniform(-4, 4)),
+            math.radians(angle),
+            dice.uniform(0.0, 2.0),
+            is_hit=dice.random() < 0.5,
+        )
+        for _ in range(200)
+    ]
+    one_by_one, together = Grid(0.01), Grid(0.01)
+    for reading in readings:
+        one_by_one.add_reading(reading)
+    one_by_one.mark_footprint(0.0, 0.0)
+    log = ScanLog()
+    origin = Pose(0.0, 0.0, 0.0)
+    log.add_keyframe(origin, origin)
+    log.add(origin, readings)
+    log.replay(together, [origin])
+    assert one_by_one.cells() == together.cells()
+    assert len(together.cells()[0]) > 1000

@@ -1,0 +1,47 @@
+"""Tests of `pose`."""
+
+import math
+import random
+
+import pytest
+from pydslrep_runtime.pose import Pose, wrap_angle
+
+
+def random_poses(count: int) -> list[tuple[Pose, Pose]]:
+    """Pairs of poses, the same ones every time."""
+    chance = random.Random(7)
+
+    def pose() -> Pose:
+        return Pose(chance.uniform(-9, 9), chance.uniform(-9, 9), chance.uniform(-4, 4))
+
+    return [(pose(), pose()) for _ in range(count)]
+
+
+@pytest.mark.parametrize(
+    ("angle", "wrapped"),
+    [(0.0, 0.0), (math.tau, 0.0), (4.0, 4.0 - math.tau), (-7.0, math.tau - 7.0)],
+)
+def test_angles_wrap(angle: float, wrapped: float) -> None:
+    assert wrap_angle(angle) == pytest.approx(wrapped)
+
+
+def test_ahead_is_along_the_heading() -> None:
+    pose = Pose(1.0, 2.0, math.radians(150.0)).ahead(-2.0)
+    assert pose.x == pytest.approx(1.0 + math.sqrt(3.0))
+    assert pose.y == pytest.approx(1.0)
+    assert pose.theta == pytest.approx(math.radians(150.0))
+
+
+def test_left_of_a_pose_is_positive_y() -> None:
+    seen = Pose(-1.0, 0.0, math.pi).relative_to(Pose(0.0, 0.0, math.pi / 2.0))
+    assert (seen.x, seen.y, seen.theta) == pytest.approx((0.0, 1.0, math.pi / 2.0))
+
+
+@pytest.mark.parametrize(("origin", "pose"), random_poses(50))
+def test_seen_from_inverts_going_there(origin: Pose, pose: Pose) -> None:
+    seen = pose.relative_to(origin)
+    again = origin.ahead(seen.x).turned(math.pi / 2.0).ahead(seen.y)
+    assert (again.x, again.y) == pytest.approx((pose.x, pose.y))
+    assert wrap_angle(origin.theta + seen.theta - pose.theta) == pytest.approx(
+        0.0, abs=1e-12
+    )

@@ -1,0 +1,148 @@
+"""The page on the article shows what its figures and programs give: `UPDATE_EXPECT=1` writes its tables and pictures."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import itertools
+import json
+import math
+import os
+import pathlib
+import re
+import subprocess
+
+import evaluation
+import line_counts
+import pytest
+from driven import (
+    ROOT,
+    TABLES,
+    area,
+    check_map,
+    drive_by_hand,
+    run,
+    runs_table,
+    simulator,
+)
+
+PAGE = ROOT / "docs" / "article.md"
+PICTURES = ROOT / "docs" / "images" / "article"
+# Without its sign: a heading of 180 degrees may be one of -180, and 0 may be -0.
+NUMBER = re.compile("[-\N{MINUS SIGN}]?(\\d+(?:\\.\\d+)?)")
+TEXT = re.compile(r">([^<>]+)</text>")
+IS_UPDATE = bool(os.environ.get("UPDATE_EXPECT"))
+
+
+def expect_on_page(name: str, text: str, *, is_driven: bool = False) -> None:
+    """The page has that text between the markers of that name."""
+    page = PAGE.read_text(encoding="utf-8")
+    start, end = f"<!-- {name}: made by tests/article -->\n", f"<!-- end of {name} -->"
+    before, rest = page.split(start)
+    found, after = rest.split(end)
+    if IS_UPDATE:
+        PAGE.write_text(f"{before}{start}\n{text}\n\n{end}{after}", encoding="utf-8")
+    elif is_driven:
+        assert_alike(found.strip(), text)
+    else:
+        assert found == f"\n{text}\n\n", "run it with UPDATE_EXPECT=1"
+
+
+def expect_picture(path: pathlib.Path, picture: str) -> None:
+    """The picture has those words and numbers."""
+    if IS_UPDATE:
+        path.write_text(picture, encoding="utf-8")
+    found = path.read_text(encoding="utf-8")
+    assert_alike(*(" ".join(TEXT.findall(one)) for one in (found, picture)))
+
+
+def assert_alike(found: str, expected: str) -> None:
+    """Numbers of runs may differ by 5 % or 0.2: how robots drive improves more often than the page is written."""
+    message = f"run it with UPDATE_EXPECT=1: {found} is now {expected}"
+    assert NUMBER.sub("", found) == NUMBER.sub("", expected), message
+    numbers = (map(float, NUMBER.findall(text)) for text in (found, expected))
+    for one, other in zip(*numbers, strict=True):
+        assert math.isclose(one, other, rel_tol=0.05, abs_tol=0.2), message
+
+
+def test_lines(command: str) -> None:
+    expect_on_page("lines", line_counts.table(command))
+
+
+def test_lines_are_counted_as_the_command_does(
+    command: str, tmp_path: pathlib.Path
+) -> None:
+    assert line_counts.of_python('"""A\n\nb."""\n# c\n\nx = """d\n# e\n"""  # f\n') == 3
+    assert (
+        line_counts.of_python(
+            'def f():\n    """A."""\n    return (\n        1\n    )\n'
+        )
+        == 4
+    )
+
+
+@pytest.mark.parametrize(
+    "table", ["means", "savings", "scores", "readings", "critical"]
+)
+def test_statistics(table: str) -> None:
+    expect_on_page(table, getattr(evaluation, f"{table}_table")())
+
+
+def test_programs_drive(command: str, tmp_path: pathlib.Path) -> None:
+    folders = [tmp_path / str(table.number) for table in TABLES]
+    for folder in folders:
+        folder.mkdir()
+    with concurrent.futures.ThreadPoolExecutor() as pool:
+        results = list(pool.map(run, itertools.repeat(command), TABLES, folders))
+    for table, result in zip(TABLES, results, strict=True):
+        if table.number == 7:
+            check_map(result.map, result.trace)
+        if table.picture:
+            expect_picture(PICTURES / table.picture, result.picture)
+    expect_on_page("runs", runs_table(results), is_driven=True)
+
+
+def serve(program: pathlib.Path, first: int) -> str:
+    """A program whose robots have ports of their own, from that one on."""
+    ports = itertools.count(first)
+    text = program.read_text(encoding="utf-8")
+    return re.sub(r"port \d+", lambda _: f"port {next(ports)}", text)
+
+
+def assert_near(
+    end: tuple[float, float, float], x: float, y: float, degrees: float
+) -> None:
+    assert math.dist(end[:2], (x, y)) < 0.02, end
+    assert abs(math.remainder(end[2] - degrees, 360.0)) < 1.5, end
+
+
+def test_environment_1_by_hand(command: str, tmp_path: pathlib.Path) -> None:
+    program = serve(line_counts.PROGRAMS[1], 47351)
+    with simulator(command, tmp_path, program) as port:
+        ends = drive_by_hand(1, port, tmp_path)
+    assert list(ends) == ["robot_1"]
+    assert_near(ends["robot_1"], 0.0, -4.0, 180.0)
+
+
+def test_environment_2_by_hand(command: str, tmp_path: pathlib.Path) -> None:
+    example = line_counts.PROGRAMS[2]
+    planned = subprocess.run(
+        [command, "plan", "--json", example], capture_output=True, check=True
+    )
+    [plan] = json.loads(planned.stdout)
+    scene = example.with_suffix(".scene.toml").read_text(encoding="utf-8")
+    with simulator(command, tmp_path, serve(example, 47352), scene) as port:
+        ends = drive_by_hand(2, port, tmp_path)
+    assert len(ends) == 4
+    for robot in plan["robots"]:
+        goal = robot["poses"][-1]
+        assert_near(
+            ends[robot["name"]], goal["x"], goal["y"], math.degrees(goal["theta"])
+        )
+
+
+def test_environment_3_by_hand(command: str, tmp_path: pathlib.Path) -> None:
+    program = serve(line_counts.PROGRAMS[3], 47356)
+    with simulator(command, tmp_path, program, area()) as port:
+        drive_by_hand(3, port, tmp_path)
+    found = json.loads((tmp_path / "map.json").read_text(encoding="utf-8"))
+    check_map(found, tmp_path / "trace.jsonl")

@@ -1,0 +1,76 @@
+"""Writes what the tests have injected into docs/reliability.md: `python3 table.py REPORT`.
+
+REPORT is the file that the tests wrote with `PYDSLREP_HOSTILE_REPORT=REPORT`.
+"""
+
+from __future__ import annotations
+
+import json
+import pathlib
+import sys
+from collections import defaultdict
+
+PAGE = pathlib.Path(__file__).parents[2] / "docs" / "reliability.md"
+BEGIN, END = "<!-- faults -->\n", "<!-- /faults -->\n"
+
+# The first word of a test's name in the report; what it injects; what must hold.
+ROWS = {
+    "messages": (
+        "messages to the language server with parts replaced, removed, repeated or nested",
+        "every request has one answer; all other answers are as before",
+    ),
+    "cancels": (
+        "requests that are cancelled at once, before or after they are sent",
+        "every request has one answer; all other answers are as before",
+    ),
+    "soak": (
+        "edits in one session, with a request after each",
+        "memory, open files and threads stay as they were",
+    ),
+    "ports": (
+        "sessions at the simulator's ports: recorded, changed, cut off",
+        "the simulator drives the next script; its memory and open files stay as they were",
+    ),
+    "kills": (
+        "runs of commands that write, killed at any moment",
+        "every file is as before or complete, only a trace may end early; no process and no temporary file stays",
+    ),
+    "limits": (
+        "runs of commands on a disk that is full after any number of bytes",
+        "an error with the file's name; every file is as before or complete",
+    ),
+}
+
+
+def counts(report: pathlib.Path) -> dict[str, int]:
+    """How many faults each test has injected."""
+    found: dict[str, int] = defaultdict(int)
+    for line in report.read_text(encoding="utf-8").splitlines():
+        entry = json.loads(line)
+        name = entry["test"].split()[0]
+        found[name] += next(
+            n for key, n in entry.items() if key not in ("test", "seed")
+        )
+    return found
+
+
+def table(found: dict[str, int]) -> str:
+    """The table of the page."""
+    lines = ["| Fault | Injected | What must hold |", "|---|---:|---|"]
+    for name, (fault, holds) in ROWS.items():
+        count = f"{found[name]:,}".replace(",", " ")
+        lines.append(f"| {fault} | {count} | {holds} |")
+    return "\n".join(lines) + "\n"
+
+
+def main(report: str) -> None:
+    """Replaces the table."""
+    text = PAGE.read_text(encoding="utf-8")
+    before, rest = text.split(BEGIN)
+    after = rest.split(END)[1]
+    text = before + BEGIN + table(counts(pathlib.Path(report))) + END + after
+    PAGE.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# Prints the path of Chromium, which it installs if necessary: CHROMIUM if that is set, else the one on the PATH.
+set -euo pipefail
+source "$(dirname "$0")/lock.sh"
+
+found() {
+  if [ -n "${CHROMIUM:-}" ]; then command -v "$CHROMIUM"; else command -v chromium chromium-browser google-chrome | head -1; fi
+}
+if [ -z "$(found)" ]; then
+  wait_for_turn
+fi
+if [ -z "$(found)" ]; then
+  if [ -n "${CHROMIUM:-}" ]; then
+    echo "CHROMIUM names no program: $CHROMIUM" >&2
+    exit 2
+  fi
+  "$repository/tests/install/apt.sh" chromium fonts-dejavu-core
+fi
+found

@@ -1,0 +1,21 @@
+"""What `pydslrep run` installs is locked: versions and hashes."""
+
+import pathlib
+import re
+
+import pytest
+
+PYTHON = pathlib.Path(__file__).parents[2] / "python"
+
+
+@pytest.mark.parametrize("name", ["requirements", "requirements-slam"])
+def test_every_requirement_is_locked_with_its_hashes(name: str) -> None:
+    wanted = re.findall(r"^[\w-]+==\S+$", (PYTHON / f"{name}.in").read_text(), re.M)
+    locked = (PYTHON / f"{name}.txt").read_text()
+    # A requirement goes on as long as its lines end in a backslash.
+    entries = re.findall(r"^(?!#)(?:.*\\\n)*.+", locked, re.M)
+    names = {entry.split()[0] for entry in entries if entry}
+    assert wanted
+    assert set(wanted) <= names
+    for entry in filter(None, entries):
+        assert re.search(r"--hash=sha256:[0-9a-f]{64}", entry), entry

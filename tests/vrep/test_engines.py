@@ -1,0 +1,190 @@
+"""Scripts in a simulator that treats them as CoppeliaSim does: pauses, killed clients, and frames that cannot be driven.
+
+A client of the legacy remote API pauses the simulation, because a paused CoppeliaSim 4.6 answers only that one.
+"""
+
+from __future__ import annotations
+
+import json
+import pathlib
+import subprocess
+
+import pytest
+import sim
+from stage import (
+    BLOCKING,
+    PROGRAM,
+    Stage,
+    assert_near,
+    ends,
+    finish,
+    free_ports,
+    handle,
+    interrupt,
+    note,
+    onlooker,
+    start,
+    wait_for_motion,
+    wait_for_rest,
+)
+
+ENGINES = ("coppeliasim-4.6", "coppeliasim-4.7")
+ACTIONS = "move 40 centimeters turn left move -20 centimeters"
+GOAL = (0.4, -0.2, 90.0)
+
+# The limits of scripts, for tests that wait for them.
+QUICK = {
+    "PROBE_PERIOD": 0.2,
+    "REPLY_TIMEOUT": 0.4,
+    "STOP_TIMEOUT": 0.3,
+    "CLIENT_TIMEOUT": 2.0,
+}
+
+
+def hurry(script: pathlib.Path, **settings: float) -> None:
+    """Changes settings of the package next to a script."""
+    file = script.parent / "pydslrep_runtime" / "settings.py"
+    changed = "".join(f"{name} = {value}\n" for name, value in settings.items())
+    file.write_text(file.read_text(encoding="utf-8") + changed, encoding="utf-8")
+
+
+class Scene:
+    """A stage with its ports and a script in a hurry."""
+
+    def __init__(self, command: str, folder: pathlib.Path, scene: str = "") -> None:
+        self.ports = free_ports(2)
+        self.stage = Stage(
+            command, folder / "stage", PROGRAM.format(*self.ports, actions=ACTIONS)
+        )
+        self.script = self.stage.build("coppeliasim")
+        hurry(self.script, **QUICK)
+        (self.stage.folder / "world.scene.toml").write_text(scene, encoding="utf-8")
+
+
+@pytest.fixture(name="scene")
+def fixture_scene(command: str, tmp_path: pathlib.Path) -> Scene:
+    """A scene without obstacles."""
+    return Scene(command, tmp_path)
+
+
+def test_wheels_that_slip_hardly_cost_time(
+    command: str, tmp_path: pathlib.Path
+) -> None:
+    actions = "move 1 meters turn left move 1 meters"
+    program = tmp_path / "program.pyr"
+    program.write_text(PROGRAM.format(23000, 23001, actions=actions), encoding="utf-8")
+    figures = tmp_path / "figures"
+    run = [command, "run", str(program), "--environment", "yard", "--no-progress"]
+    options = ["--engine", "coppeliasim-4.6", "--figures", str(figures)]
+    subprocess.run([*run, *options], check=True, capture_output=True)
+    found = json.loads(figures.read_text(encoding="utf-8"))
+    assert found["simulated"] <= 1.03 * found["planned"]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_script_waits_while_the_simulation_is_paused(
+    scene: Scene, engine: str
+) -> None:
+    trace = scene.stage.folder / "trace"
+    with (
+        scene.stage.simulator("--engine", engine),
+        onlooker(scene.ports[1]) as eye,
+    ):
+        script = start(scene.script, "--trace", str(trace))
+        wait_for_motion(eye, script)
+        assert sim.simxPauseSimulation(eye, BLOCKING) == 0
+        note(script, "paused")
+        assert sim.simxStartSimulation(eye, BLOCKING) == 0
+        _, err = finish(script)
+        assert "paused" not in err, "it says so once"
+    assert_near(ends(trace)["rover"], GOAL, 0.02, 1.5)
+
+
+def test_a_pause_may_outlast_the_timeout_of_a_script(scene: Scene) -> None:
+    hurry(scene.script, CLIENT_TIMEOUT=0.1)
+    trace = scene.stage.folder / "trace"
+    with (
+        scene.stage.simulator("--engine", "coppeliasim-4.6"),
+        onlooker(scene.ports[1]) as eye,
+    ):
+        script = start(scene.script, "--trace", str(trace))
+        wait_for_motion(eye, script)
+        assert sim.simxPauseSimulation(eye, BLOCKING) == 0
+        note(script, "paused")
+        assert sim.simxStartSimulation(eye, BLOCKING) == 0
+        finish(script)
+    assert_near(ends(trace)["rover"], GOAL, 0.02, 1.5)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_an_interrupt_during_a_pause_stops_every_wheel(
+    scene: Scene, engine: str
+) -> None:
+    with (
+        scene.stage.simulator("--engine", engine),
+        onlooker(scene.ports[1]) as eye,
+    ):
+        script = start(scene.script)
+        left = wait_for_motion(eye, script)
+        assert sim.simxPauseSimulation(eye, BLOCKING) == 0
+        note(script, "paused")
+        interrupt(script)
+        finish(script, 130)
+        assert sim.simxStartSimulation(eye, BLOCKING) == 0
+        wait_for_rest(eye, left)
+        wait_for_rest(eye, handle(eye, "/rover/wheelR"))
+
+
+def test_the_script_after_a_killed_one_waits_for_its_timeout(scene: Scene) -> None:
+    hurry(scene.script, HOLD_LIMIT=60.0)
+    with (
+        scene.stage.simulator("--engine", "coppeliasim-4.6"),
+        onlooker(scene.ports[1]) as eye,
+    ):
+        killed = start(scene.script)
+        wait_for_motion(eye, killed)
+        killed.kill()
+        killed.communicate()
+        script = start(scene.script)
+        note(script, "another client holds the simulation's time")
+        finish(script)
+
+
+def test_a_client_that_holds_the_time_is_named(scene: Scene) -> None:
+    with (
+        scene.stage.simulator("--engine", "coppeliasim-4.6"),
+        onlooker(scene.ports[1]) as eye,
+    ):
+        hurry(scene.script, CLIENT_TIMEOUT=600.0, HOLD_LIMIT=1.0)
+        killed = start(scene.script)
+        wait_for_motion(eye, killed)
+        killed.kill()
+        killed.communicate()
+        _, err = finish(start(scene.script), 1)
+        assert (
+            "move 0.4 m: another client holds the simulation's time: it is in stepping mode and takes no step. "
+            "End that program, or stop the simulation and start it again" in err
+        )
+
+
+@pytest.mark.parametrize(
+    ("frame", "code", "words"),
+    [
+        ("ahead", 0, ""),
+        ("x-up", 2, "the z axis of /rover is 90° off the vertical"),
+        ("z-ahead", 2, "the z axis of /rover is 90° off the vertical"),
+        (
+            "x-left",
+            2,
+            "the axis of /rover/wheelL is 90° off the y axis of /rover",
+        ),
+        ("static", 1, "the wheels drive away from /rover"),
+    ],
+)
+def test_frames_that_cannot_be_driven_are_refused(
+    command: str, tmp_path: pathlib.Path, frame: str, code: int, words: str
+) -> None:
+    scene = Scene(command, tmp_path, f'[robots.rover]\nframe = "{frame}"\n')
+    with scene.stage.simulator("--engine", "coppeliasim-4.6"):
+        _, err = finish(start(scene.script), code)
+        assert words in err
