@@ -88,6 +88,8 @@ prepare() {
   local log tools
   log=$(mktemp)
   trap "rm -f '$log'" EXIT
+  # Incremental compilation costs time that only the next build saves.
+  [ -z "${CI:-}" ] || export CARGO_INCREMENTAL=0
   # Most of it waits for the network while the compiler works.
   provide_tools >"$log" 2>&1 &
   tools=$!
@@ -125,7 +127,13 @@ run() { # how many at a time, parts
   # One that fails is in that file, and lets the others go on; another status than 0 says that one could not be run.
   printf '%s\n' "${@:2}" | xargs -P "$1" -I PART tests/run.sh --prepared PART || status=$?
   if [ $status != 0 ] || [ -s "$FAILURES" ]; then
-    step "FAILED: $(paste -s -d ' ' "$FAILURES") (see above)" >&2
+    # Once more, because the output of other parts follows the failure.
+    local part
+    while read -r part; do
+      step "the end of $part, which failed" >&2
+      tail -n 60 "target/$part.failed" >&2
+    done <"$FAILURES"
+    step "FAILED: $(paste -s -d ' ' "$FAILURES")" >&2
     exit 1
   fi
 }
@@ -144,7 +152,7 @@ run_prepared() { # part
   if command -v flock >/dev/null; then flock 8; fi
   step "$1 ($SECONDS s)"
   cat "$output"
-  [ $status = 0 ] || echo "$1" >>"$FAILURES"
+  [ $status = 0 ] || { cp "$output" "target/$1.failed"; echo "$1" >>"$FAILURES"; }
 }
 
 is_part() { [[ " ${parts[*]} ${in_editors[*]} " == *" $1 "* ]]; }
