@@ -4,7 +4,7 @@
 #
 # run.sh            everything but editors
 # run.sh --editors  also in real editors and browsers, which it installs on Debian-based systems
-# run.sh PART       one part: rust, python, extension, site; or vscode, typing, playground, preview, neovim, documentation, web
+# run.sh PART       one part: rust, python, extension, site; or vscode, playground, typing, preview, neovim, documentation, web
 #
 # What all parts need is installed and built first. Then some parts run at a time; each prints its output when it has ended.
 set -euo pipefail
@@ -12,7 +12,7 @@ cd "$(dirname "$0")/.."
 
 # The longest come first, because nothing runs beside the end of the last one.
 parts=(rust python extension site)
-in_editors=(vscode typing playground preview neovim documentation web)
+in_editors=(vscode playground typing preview neovim documentation web)
 
 step() { printf '\n== %s\n' "$*"; }
 
@@ -63,7 +63,7 @@ part_playground() { tests/editors/run.sh playground; }
 part_vscode() { tests/editors/run.sh vscode; }
 part_typing() { tests/editors/run.sh typing; }
 
-# Installs Python packages, Node packages, and for editors a browser and VS Code.
+# Installs Python packages, Node packages, and for editors a browser, VS Code and Neovim.
 provide_tools() {
   if ! python3 -c 'import ensurepip' 2>/dev/null; then
     # `venv` needs ensurepip, which is a separate package in Debian.
@@ -81,6 +81,7 @@ provide_tools() {
     # Where one cannot be had, the parts that need it fail and say so.
     tests/install/chromium.sh >/dev/null || true
     tests/install/code-server.sh "$(tests/install/node.sh 24)" >/dev/null || true
+    (. tests/editors/debian.sh; need tmux tmux; unpacked forky neovim) >/dev/null || true
   fi
 }
 
@@ -169,8 +170,7 @@ case ${1:-} in
     run 3 "${parts[@]}"
     VSIX=$(cat target/extension/native) VSIX_WEB=$(cat target/extension/web) PYDSLREP_WEB=$PWD/editors/web/dist
     export VSIX VSIX_WEB PYDSLREP_WEB
-    # Editors that answer too late would fail.
-    run 2 "${in_editors[@]}"
+    run 3 "${in_editors[@]}"
     ;;
   *)
     is_part "$1" || { sed -n '5,7s/^# //p' "$0" >&2; exit 2; }

@@ -40,7 +40,7 @@ unpack() { # suite, folder, package
     -qq -o Dir::Etc::sourcelist="$state/sources.list" -o Dir::Etc::sourceparts=/dev/null
     -o Dir::Etc::preferencesparts=/dev/null -o Dir::State="$state" -o Dir::State::status="$state/status"
     -o Dir::Cache="$state/cache" -o APT::Sandbox::User=root -o APT::Install-Recommends=false
-    -o Acquire::Languages=none -o Debug::NoLocking=1
+    -o Acquire::Languages=none -o Acquire::Retries=5 -o Debug::NoLocking=1
   )
   apt-get "${options[@]}" update
   apt-get "${options[@]}" -y --download-only install "$3" > /dev/null

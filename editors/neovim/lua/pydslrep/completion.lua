@@ -23,11 +23,12 @@ local function configure_cmp()
   cmp.setup.buffer({ sources = sources })
 end
 
---- Removes blink.cmp's fallback to words of the buffer, unless the user has set its sources.
+--- Removes blink.cmp's words of the buffer and paths, unless the user has set its sources: the server offers the names and
+--- the paths that fit, and after `*/` a path would be one of the root directory.
 local function configure_blink()
   local blink = package.loaded['blink.cmp.config']
   if blink and blink.sources.per_filetype.pydslrep == nil then
-    blink.sources.per_filetype.pydslrep = { 'lsp', 'path', 'snippets' }
+    blink.sources.per_filetype.pydslrep = { 'lsp', 'snippets' }
   end
 end
 
