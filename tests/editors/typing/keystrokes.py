@@ -30,7 +30,8 @@ class Behaviour:
 
     # Enter indents the next line. Otherwise, Tab does.
     indents: bool = True
-    # `{` inserts a `}`. If Enter indents, Enter between them moves the `}` to its own line, and Down reaches it.
+    # `{` inserts a `}`. If Enter indents, Enter between them moves the `}` to its own line, and Down reaches it. Otherwise,
+    # it stays after the cursor, and End passes it.
     closes_braces: bool = False
     # After a line comment, Enter starts another one with the `//` and blanks that this returns. It is deleted where the
     # program differs.
@@ -58,9 +59,12 @@ def strokes(program: str, behaviour: Behaviour) -> list[Stroke]:
     open_braces = _opened([], lines[0])
     for number, line in enumerate(lines[1:], 1):
         text = line.lstrip(" ")
-        goes_down = behaviour.closes_braces and behaviour.indents
-        if goes_down and text.startswith("}") and open_braces[-1]:
+        closes = text.startswith("}") and behaviour.closes_braces and open_braces[-1]
+        if closes and behaviour.indents:
             keys = ["Down", "End", *text.removeprefix("}")]
+        elif closes:
+            steps = (len(line) - len(text)) // STEP
+            keys = ["Enter", *["Tab"] * steps, "End", *text.removeprefix("}")]
         else:
             steps = 0 if behaviour.indents else (len(line) - len(text)) // STEP
             before = lines[number - 1].lstrip()
