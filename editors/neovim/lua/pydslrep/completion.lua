@@ -23,8 +23,8 @@ local function configure_cmp()
   cmp.setup.buffer({ sources = sources })
 end
 
---- Removes blink.cmp's words of the buffer and paths, unless the user has set its sources: the server offers the names and
---- the paths that fit, and after `*/` a path would be one of the root directory.
+--- Removes blink.cmp's words of the buffer and its paths, unless the user has set its sources. The server offers the
+--- names and files that fit; after `*/`, a path would be in the root directory.
 local function configure_blink()
   local blink = package.loaded['blink.cmp.config']
   if blink and blink.sources.per_filetype.pydslrep == nil then
