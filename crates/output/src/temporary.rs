@@ -20,6 +20,7 @@ pub struct TemporaryFolder {
     /// Locked as long as this exists. It is closed before the folder is deleted: Windows keeps open files.
     _lock: File,
     folder: TempDir,
+    is_kept: bool,
 }
 
 impl fmt::Debug for TemporaryFolder {
@@ -51,7 +52,7 @@ impl TemporaryFolder {
             // A file system without locks has none to find either.
             let _ = lock.lock();
             if path.exists() {
-                return Ok(Self { _lock: lock, folder });
+                return Ok(Self { _lock: lock, folder, is_kept: false });
             }
         }
     }
@@ -61,10 +62,45 @@ impl TemporaryFolder {
         self.folder.path()
     }
 
-    /// Does not delete it.
+    /// Does not delete it, nor does any later process.
     pub(crate) fn keep(&mut self) {
+        self.is_kept = true;
         self.folder.disable_cleanup(true);
+        // Without it, nobody takes the folder for a leftover. If it stays, so does the lock on it, for now.
+        let _ = fs::remove_file(self.path().join(LOCK));
     }
+}
+
+impl Drop for TemporaryFolder {
+    fn drop(&mut self) {
+        if !self.is_kept {
+            // What cannot be removed now is tried once more with the folder.
+            let _ = remove_content(self.path());
+        }
+    }
+}
+
+/// Removes everything in a folder but its lock file, by which the next process knows it, should this one be killed.
+fn remove_content(folder: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        if entry.file_type()?.is_dir() {
+            fs::remove_dir_all(entry.path())?;
+        } else if entry.file_name() != LOCK {
+            fs::remove_file(entry.path())?;
+        }
+    }
+    Ok(())
+}
+
+/// Removes a temporary folder that nobody holds a lock on. Failures are left to whoever comes next.
+pub(crate) fn remove_abandoned(folder: &Path) {
+    let lock = folder.join(LOCK);
+    if let Some(_held) = is_abandoned(&lock) {
+        let _ = remove_content(folder).and_then(|()| fs::remove_file(&lock));
+    }
+    // One whose owner was killed before the lock was made, or after it was removed, is empty; no other is removed by this.
+    let _ = fs::remove_dir(folder);
 }
 
 /// Removes the folders of killed processes; others, whoever made them, have no lock file of ours.
@@ -72,10 +108,7 @@ fn remove_leftovers(parent: &Path) {
     let Ok(entries) = fs::read_dir(parent) else { return };
     let ours = entries.flatten().filter(|entry| entry.file_name().to_string_lossy().starts_with(PREFIX));
     for path in ours.map(|entry| entry.path()).collect::<Vec<PathBuf>>() {
-        if let Some(_lock) = is_abandoned(&path.join(LOCK)) {
-            // It may be somebody else's.
-            let _ = fs::remove_dir_all(&path);
-        }
+        remove_abandoned(&path);
     }
 }
 
@@ -94,16 +127,43 @@ mod tests {
     fn only_folders_without_an_owner_are_removed() {
         let parent = tempfile::tempdir().unwrap();
         let used = TemporaryFolder::new_in(parent.path(), "pydslrep-").unwrap();
-        let [killed, strange] = ["pydslrep-killed", "pydslrep-mine"].map(|name| parent.path().join(name));
+        let [killed, empty, strange] =
+            ["pydslrep-killed", "pydslrep-empty", "pydslrep-mine"].map(|name| parent.path().join(name));
         for folder in [&killed, &strange] {
-            fs::create_dir(folder).unwrap();
+            fs::create_dir_all(folder.join("b/c")).unwrap();
             fs::write(folder.join("a"), "").unwrap();
         }
         fs::write(killed.join(LOCK), "").unwrap();
+        fs::create_dir(&empty).unwrap();
         remove_leftovers(parent.path());
-        assert!(used.path().exists() && strange.exists() && !killed.exists());
+        assert!(used.path().exists() && strange.exists());
+        assert!(!killed.exists() && !empty.exists());
         let path = used.path().to_owned();
         drop(used);
         assert!(!path.exists());
+    }
+
+    #[test]
+    fn the_lock_file_goes_last() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["a", LOCK, "z"] {
+            fs::write(folder.path().join(name), "").unwrap();
+        }
+        fs::create_dir_all(folder.path().join("b/c")).unwrap();
+        remove_content(folder.path()).unwrap();
+        let names = folder.path().read_dir().unwrap().map(|entry| entry.unwrap().file_name());
+        assert_eq!(names.collect::<Vec<_>>(), [LOCK]);
+    }
+
+    #[test]
+    fn what_is_kept_is_no_leftover() {
+        let parent = tempfile::tempdir().unwrap();
+        let mut folder = TemporaryFolder::new_in(parent.path(), "pydslrep-").unwrap();
+        let path = folder.path().join("a");
+        fs::write(&path, "").unwrap();
+        folder.keep();
+        drop(folder);
+        remove_leftovers(parent.path());
+        assert!(path.exists());
     }
 }

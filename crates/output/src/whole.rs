@@ -10,7 +10,7 @@ use std::sync::{LazyLock, Mutex, PoisonError};
 
 use tempfile::{Builder, NamedTempFile};
 
-use crate::temporary::{LOCK, TemporaryFolder, is_abandoned};
+use crate::temporary::{TemporaryFolder, is_abandoned, remove_abandoned};
 
 /// How temporary names begin; hidden on most systems.
 pub(crate) const PREFIX: &str = ".pydslrep-";
@@ -73,9 +73,7 @@ fn remove_leftovers(folder: &Path) {
 /// Removes a temporary file or folder that nobody holds a lock on. Failures are left to whoever comes next.
 fn remove_leftover(path: &Path) {
     if path.is_dir() {
-        if let Some(_lock) = is_abandoned(&path.join(LOCK)) {
-            let _ = fs::remove_dir_all(path);
-        }
+        remove_abandoned(path);
     } else if let Some(_lock) = is_abandoned(path) {
         let _ = fs::remove_file(path);
     }
@@ -167,6 +165,7 @@ mod tests {
     use pydslrep_files::open;
 
     use super::*;
+    use crate::temporary::LOCK;
 
     #[test]
     fn leftovers_of_killed_processes_are_removed() {
