@@ -9,7 +9,6 @@ import subprocess
 import sys
 import time
 import uuid
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import pytest
@@ -99,8 +98,15 @@ class Workplace:
             if path.is_file() and path.name not in self.case.varying
         }
 
+    def settle(self) -> None:
+        """Waits until the processes that come from a killed command have noticed, and ended."""
+        deadline = time.monotonic() + LIMIT
+        while left := self.processes():
+            assert time.monotonic() < deadline, left
+            time.sleep(0.01)
+
     def processes(self) -> list[str]:
-        """The processes that come from the command."""
+        """The processes that come from the command; none where the system does not list them in files."""
         found = []
         for process in pathlib.Path("/proc").glob("[0-9]*"):
             try:
@@ -114,14 +120,6 @@ class Workplace:
 def is_leftover(name: str) -> bool:
     """Whether a file is, or is in, something that the next start removes."""
     return any(part.startswith(".pydslrep-") for part in pathlib.PurePath(name).parts)
-
-
-def wait_until(what: Callable[[], bool]) -> None:
-    """Waits for a condition."""
-    deadline = time.monotonic() + LIMIT
-    while not what():
-        assert time.monotonic() < deadline
-        time.sleep(0.05)
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -143,6 +141,7 @@ def test_kills(command: str, tmp_path: pathlib.Path, name: str) -> None:
             process.send_signal(signal.SIGKILL)
             process.wait()
             killed += 1
+        place.settle()
         for file, content in place.files().items():
             if file.removesuffix(".partial") == case.trace:
                 assert complete[case.trace].startswith(content)
@@ -156,6 +155,5 @@ def test_kills(command: str, tmp_path: pathlib.Path, name: str) -> None:
         place.finish()
     assert place.files() == complete
     assert not list(place.scratch.iterdir()), "temporary files stay"
-    if pathlib.Path("/proc").exists():
-        wait_until(lambda: not place.processes())
+    place.settle()
     report(f"kills {name}", runs=count, killed=killed)
