@@ -149,6 +149,37 @@ def test_a_robot_that_localises_by_walls_tries_a_door_again(
     assert (coverage(rooms, explorer) >= 0.95) == prefers_walls
 
 
+class Misled(IdealRover):
+    """Is stopped by a wall in which its grid has holes."""
+
+    def __init__(self, rooms: Rooms) -> None:
+        super().__init__(rooms, OccupancyGrid(RADIUS))
+        self.bumps: list[Position] = []
+
+    async def drive_to(self, goal: Position, should_stop: Callable[[], bool]) -> bool:
+        if self.here.x < 2.0 < goal[0]:
+            dx, dy = goal[0] - self.here.x, goal[1] - self.here.y
+            heading = math.atan2(dy, dx)
+            way = (2.0 - RADIUS - self.here.x) / math.cos(heading)
+            self.here = Pose(self.here.x, self.here.y, heading).ahead(way)
+            bump = self.here.ahead(RADIUS)
+            self.bumps.append((bump.x, bump.y))
+            return False
+        return await super().drive_to(goal, should_stop)
+
+
+def test_a_robot_gives_up_a_wall_that_it_keeps_bumping_into() -> None:
+    # Without its wall, the grid shows a second room.
+    rover = Misled(Rooms(4.0, 2.5, start=(0.6, 0.5)))
+    explorer = Explorer(rover, rover.grid, STEP, math.pi, 20.0, prefers_walls=True)
+    at_once(explorer.explore())
+    for place in rover.bumps:
+        assert sum(math.dist(place, bump) < 0.1 for bump in rover.bumps) <= 5
+    assert rover.bumps
+    frontiers = [way for node in explorer.map.nodes for way in node.frontiers]
+    assert all(way.target is not None for way in frontiers)
+
+
 def test_a_closet_gives_a_map_of_one_node() -> None:
     _, explorer = explore(Rooms(0.7, 0.7, start=(0.35, 0.35)))
     assert len(explorer.map.nodes) == 1

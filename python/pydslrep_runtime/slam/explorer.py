@@ -89,6 +89,10 @@ class Explorer:
         # A robot that localises by walls may miss a door, and try it again in the end.
         self._max_attempts = 3 if prefers_walls else 1
         self._blocks: Counter[tuple[int, int]] = Counter()  # by node and bearing index
+        # Where obstacles have stopped it. Its grid may have a hole in a wall there, as wide
+        # as its pose is off: from each node nearby, that looks like another way through.
+        self._bumps: list[Position] = []
+        self._max_bumps = 4 if prefers_walls else math.inf
 
     async def explore(self) -> None:
         """Explores until no frontier is left; raises UnboundedAreaError."""
@@ -96,6 +100,12 @@ class Explorer:
         while target := self._nearest_target():
             if await self._travel_to(target.node):
                 await self._explore_frontier(target)
+        for node in self.map.nodes:
+            node.frontiers = [
+                frontier
+                for frontier in node.frontiers
+                if frontier.target is not None or not self._is_given_up(node, frontier)
+            ]
 
     def _nearest_target(self) -> Target | None:
         """The unexplored frontier with the shortest path, preferably straight ahead."""
@@ -118,9 +128,22 @@ class Explorer:
                 if cost < least and self._open_space_cost:
                     goal = self._endpoint(node, frontier.bearing)
                     cost += self._open_space_cost * self._grid.is_featureless(goal)
-                if cost < least and (target := self._target(node, frontier)):
+                if cost >= least or self._is_given_up(node, frontier):
+                    continue
+                if target := self._target(node, frontier):
                     best, least = target, cost
         return best
+
+    def _is_given_up(self, node: Node, frontier: Frontier) -> bool:
+        """Whether obstacles have stopped the robot too often on the way."""
+        here = Pose(node.x, node.y, frontier.bearing)
+        radius = self._grid.radius
+        count = 0
+        for x, y in self._bumps:
+            bump = Pose(x, y, 0.0).relative_to(here)
+            is_ahead = 0.0 < bump.x < self._step + radius
+            count += is_ahead and abs(bump.y) < 0.6 * radius
+        return count >= self._max_bumps
 
     def _target(self, node: Node, frontier: Frontier) -> Target | None:
         """What to explore through a frontier; None if it leads to a known node."""
@@ -173,6 +196,8 @@ class Explorer:
         )
         if not await self._rover.drive_to(target.goal, should_stop):
             # An obstacle has appeared: this is no longer a frontier.
+            contact = self._rover.pose().ahead(self._grid.radius)
+            self._bumps.append((contact.x, contact.y))
             await self._rover.back_up_to(node.position)
             self._discard(target)
             return

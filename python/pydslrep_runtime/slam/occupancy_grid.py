@@ -41,6 +41,7 @@ class OccupancyGrid:
 
     def __init__(self, radius: float) -> None:
         """`radius` is that of the circle around the robot that encloses its body."""
+        self.radius = radius
         self._footprint = list(self._disc(radius))
         self._clearance = list(self._disc(radius + self.CLEARANCE))
         self._reach = (radius + self.CLEARANCE) / self.CELL + 3.0
