@@ -51,7 +51,7 @@ type_into() { # editor
 # In parallel: most of the time they wait for the next key.
 running=()
 for editor in "${editors[@]}"; do
-  type_into "$editor" 2>&1 | sed "s/^/$editor: /" &
+  type_into "$editor" 2>&1 | sed -u "s/^/$editor: /" &
   running+=($!)
 done
 failed=0

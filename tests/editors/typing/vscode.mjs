@@ -75,7 +75,11 @@ function watch() {
   const STATUS_BAR = 30;
   const hasRoomBelow = (cursor, box) => cursor.bottom + box.height + STATUS_BAR < globalThis.innerHeight;
   globalThis.covered = {};
+  // The editor moves a popup up to two frames after the text: a lens above the line, or a new line, is drawn first.
+  const FRAMES = 3;
+  const frames = new Map();
   const check = () => {
+    const seen = new Set();
     const cursor = document.querySelector(".monaco-editor.focused .cursors-layer .cursor")?.getBoundingClientRect();
     for (const [name, selector] of cursor?.height ? Object.entries(POPUPS) : []) {
       for (const popup of document.querySelectorAll(selector)) {
@@ -90,8 +94,18 @@ function watch() {
         if (where) {
           const lines = [...document.querySelectorAll(".monaco-editor.focused .view-line")];
           const line = lines.find((one) => Math.abs(one.getBoundingClientRect().top - cursor.top) < 3)?.textContent;
-          globalThis.covered[`${name} ${where}`] ??= `${name} over ${where}: ${line?.replaceAll("\u00a0", " ")}`;
+          const what = `${name} over ${where}`;
+          seen.add(what);
+          frames.set(what, (frames.get(what) ?? 0) + 1);
+          if (frames.get(what) === FRAMES) {
+            globalThis.covered[what] ??= `${what}: ${line?.replaceAll("\u00a0", " ")}`;
+          }
         }
+      }
+    }
+    for (const what of frames.keys()) {
+      if (!seen.has(what)) {
+        frames.delete(what);
       }
     }
     requestAnimationFrame(check);
