@@ -5,12 +5,15 @@ import random
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from ideal_rover import at_once
 from pydslrep_runtime.pose import Pose
 from pydslrep_runtime.slam.occupancy_grid import Cell, OccupancyGrid, Reading
+from pydslrep_runtime.slam.odometry.graph_slam import GraphSlam
 from pydslrep_runtime.slam.odometry.rover import OdometryRover
 from pydslrep_runtime.slam.odometry.scan_log import ScanLog
+from pydslrep_runtime.slam.odometry.surface import SurfacePoints
 from rooms import Pillar, Rooms, Wall
 from slipping_robot import SlippingRobot
 
@@ -74,6 +77,34 @@ def test_a_robot_that_was_turned_finds_its_way(degrees: float) -> None:
     away, turned = robot.off()
     assert away < 0.05
     assert turned < 3.0
+
+
+class Walls:
+    """A scan of walls, most of them at one angle, the rest at right angles to the axes."""
+
+    def __init__(self, degrees: float, part: float) -> None:
+        count = round(40 * part)
+        bearing = np.linspace(0.0, math.tau, 40)
+        normal = np.exp(1j * np.radians(np.where(np.arange(40) < count, degrees, 0.0)))
+        self._points = SurfacePoints(np.exp(1j * bearing), normal, np.zeros(40))
+
+    def middle_pose(self) -> Pose:
+        return Pose(0.0, 0.0, 0.0)
+
+    def surface_points(self) -> SurfacePoints:
+        return self._points
+
+
+@pytest.mark.parametrize(("part", "corrected"), [(0.7, 0.0), (0.9, -12.0)])
+def test_few_oblique_walls_do_not_turn_the_robot(part: float, corrected: float) -> None:
+    slam, start = GraphSlam(), Pose(0.0, 0.0, 0.0)
+    first: Any = Walls(0.0, 1.0)
+    slam.add_keyframe(first, start, 0.0)
+    # Too far for a match with the first.
+    second: Any = Walls(12.0, part)
+    second.middle_pose = lambda: Pose(9.0, 0.0, 0.0)
+    here = slam.add_keyframe(second, Pose(9.0, 0.0, 0.0), 9.0)
+    assert math.degrees(here.theta) == pytest.approx(corrected, abs=3.0)
 
 
 def test_a_robot_is_lost_where_two_places_look_alike() -> None:

@@ -46,7 +46,11 @@ class GraphSlam:
     TRANSLATION_ERROR = 0.012  # m, and ...
     ROTATION_ERROR = 0.04  # radians, per square root of a metre (standard deviations)
     HEADING_ERROR = math.radians(0.8)  # of a heading from the dominant orientation
-    MIN_INLIER_RATIO = 0.5  # of points that agree on a dominant orientation
+    # Of points that agree on a dominant orientation. If it is off by a large angle, a few
+    # oblique walls are likelier than an error of the estimate.
+    MIN_INLIER_RATIO = 0.5
+    MIN_TURNED_RATIO = 0.75
+    LARGE_TURN = 0.1  # radians
 
     def __init__(self) -> None:
         self._graph = PoseGraph()
@@ -171,14 +175,12 @@ class GraphSlam:
             within = min(within, 0.03 + 3.0 * turned)
             guess = self._wall_direction - middle_pose.theta
         found = find_dominant_orientation(points, guess, within)
-        if (
-            found is None
-            or found.inlier_ratio < self.MIN_INLIER_RATIO
-            or abs(found.drift) > MAX_DRIFT
-            or abs(math.remainder(found.angle - guess, RIGHT_ANGLE)) > within
-        ):
+        if found is None or abs(found.drift) > MAX_DRIFT:
             return None
-        return found
+        turn = abs(math.remainder(found.angle - guess, RIGHT_ANGLE))
+        is_large = self._wall_direction is not None and turn > self.LARGE_TURN
+        least = self.MIN_TURNED_RATIO if is_large else self.MIN_INLIER_RATIO
+        return found if turn <= within and found.inlier_ratio >= least else None
 
     def _correct_heading(
         self, number: int, orientation: DominantOrientation, middle_pose: Pose
