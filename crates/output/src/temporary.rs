@@ -97,10 +97,10 @@ fn remove_content(folder: &Path) -> io::Result<()> {
 pub(crate) fn remove_abandoned(folder: &Path) {
     let lock = folder.join(LOCK);
     if let Some(_held) = is_abandoned(&lock) {
-        let _ = remove_content(folder).and_then(|()| fs::remove_file(&lock));
+        let _ = remove_content(folder)
+            .and_then(|()| fs::remove_file(&lock))
+            .and_then(|()| fs::remove_dir(folder));
     }
-    // One whose owner was killed before the lock was made, or after it was removed, is empty; no other is removed by this.
-    let _ = fs::remove_dir(folder);
 }
 
 /// Removes the folders of killed processes; others, whoever made them, have no lock file of ours.
@@ -127,17 +127,14 @@ mod tests {
     fn only_folders_without_an_owner_are_removed() {
         let parent = tempfile::tempdir().unwrap();
         let used = TemporaryFolder::new_in(parent.path(), "pydslrep-").unwrap();
-        let [killed, empty, strange] =
-            ["pydslrep-killed", "pydslrep-empty", "pydslrep-mine"].map(|name| parent.path().join(name));
+        let [killed, strange] = ["pydslrep-killed", "pydslrep-mine"].map(|name| parent.path().join(name));
         for folder in [&killed, &strange] {
             fs::create_dir_all(folder.join("b/c")).unwrap();
             fs::write(folder.join("a"), "").unwrap();
         }
         fs::write(killed.join(LOCK), "").unwrap();
-        fs::create_dir(&empty).unwrap();
         remove_leftovers(parent.path());
-        assert!(used.path().exists() && strange.exists());
-        assert!(!killed.exists() && !empty.exists());
+        assert!(used.path().exists() && strange.exists() && !killed.exists());
         let path = used.path().to_owned();
         drop(used);
         assert!(!path.exists());

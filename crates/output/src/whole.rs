@@ -74,6 +74,8 @@ fn remove_leftovers(folder: &Path) {
 fn remove_leftover(path: &Path) {
     if path.is_dir() {
         remove_abandoned(path);
+        // Its owner was killed before the lock was made, or after it was removed. Only an empty folder is removed.
+        let _ = fs::remove_dir(path);
     } else if let Some(_lock) = is_abandoned(path) {
         let _ = fs::remove_file(path);
     }
@@ -174,6 +176,7 @@ mod tests {
         fs::write(in_folder(".pydslrep-killed"), "half").unwrap();
         fs::create_dir(in_folder(".pydslrep-folder")).unwrap();
         fs::write(in_folder(".pydslrep-folder").join(LOCK), "").unwrap();
+        fs::create_dir(in_folder(".pydslrep-empty")).unwrap();
         fs::write(in_folder(".pydslrep-used"), "half").unwrap();
         let used = open(&in_folder(".pydslrep-used")).unwrap();
         used.lock().unwrap();
