@@ -11,9 +11,9 @@ function M.sleep(milliseconds)
   coroutine.yield()
 end
 
---- Waits until `condition` returns something, and returns it.
+--- Waits until `condition` returns something, and returns it. The limit is for machines that do other work.
 function M.wait(condition)
-  local deadline = vim.uv.hrtime() + 10e9
+  local deadline = vim.uv.hrtime() + 60e9
   while vim.uv.hrtime() < deadline do
     local value = condition()
     if value then return value end
