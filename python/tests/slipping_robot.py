@@ -6,12 +6,12 @@ from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
-from ideal_rover import MOUNTS, RADIUS, IdealRover, at_once, on
+from ideal_rover import HALF, MOUNTS, RADIUS, IdealRover, at_once, on
 from pydslrep_runtime.backend import SensorCone
 from pydslrep_runtime.errors import MovementError
 from pydslrep_runtime.pose import Pose
 from pydslrep_runtime.settings import RIM_SPEED
-from pydslrep_runtime.slam.occupancy_grid import OccupancyGrid, Reading
+from pydslrep_runtime.slam.occupancy_grid import OccupancyGrid, Position, Reading
 from pydslrep_runtime.slam.odometry.odometer import Odometer
 from pydslrep_runtime.slam.odometry.scan import Scan
 from rooms import Rooms
@@ -32,6 +32,9 @@ class SlippingRobot:
         self.ideal = IdealRover(rooms, OccupancyGrid(RADIUS))
         self.here = Pose(*rooms.start, 0.0)
         self.touched: list[Pose] = []
+        self.blocks: list[
+            Position
+        ] = []  # where something blocks it that no sensor detects
         self._dice, self._slip, self._noise = random.Random(seed), slip, noise
         self._wheels = [0.0, 0.0]
         self._angles = [0.0, 0.0]
@@ -72,13 +75,14 @@ class SlippingRobot:
     async def rotate(
         self,
         angle: float,
-        on_pose: Callable[[Pose], object],
+        should_stop: Callable[[Pose], bool],
         speed: float = RIM_SPEED,
     ) -> None:
         count = max(1, math.ceil(abs(angle) * TURNING_RADIUS / (speed * STEP)))
         for _ in range(count):
             self._roll(0.0, angle / count)
-            on_pose(self.pose())
+            if should_stop(self.pose()):
+                break
 
     async def drive_to(self, goal: Pose, should_stop: Callable[[Pose], bool]) -> None:
         remaining = goal.relative_to(self.pose()).x
@@ -104,10 +108,19 @@ class SlippingRobot:
             rim * (1.0 + slip) for rim, slip in zip(rims, self._wheels, strict=True)
         )
         turned = (right - left) / (2.0 * TURNING_RADIUS)
-        self.here = self.here.turned(turned).ahead((left + right) / 2.0)
-        here = self.here
+        here = self.here.turned(turned).ahead((left + right) / 2.0)
+        if any(
+            is_in_body(Pose(*block, 0.0).relative_to(here)) for block in self.blocks
+        ):
+            return
+        self.here = here
         if not self.ideal.rooms.holds(here.x, here.y, here.theta, 0.149):
             self.touched.append(here)
+
+
+def is_in_body(point: Pose) -> bool:
+    """Whether a point in the robot's frame is in its body."""
+    return max(abs(point.x), abs(point.y)) < HALF
 
 
 def scan_from(robot: SlippingRobot, pose: Pose, angle: float = math.pi) -> Scan:
@@ -115,13 +128,14 @@ def scan_from(robot: SlippingRobot, pose: Pose, angle: float = math.pi) -> Scan:
     robot.here = pose
     scan = Scan()
 
-    def look(here: Pose) -> None:
+    def look(here: Pose) -> bool:
         readings = []
         for number, mount in enumerate(MOUNTS):
             distance = robot.distance(str(number))
             depth = RANGE if distance is None else distance
             readings.append(Reading(mount, CONE, depth, distance is not None))
         scan.add(here, readings)
+        return False
 
     at_once(robot.rotate(angle, look))
     return scan

@@ -79,6 +79,25 @@ def test_a_robot_that_was_turned_finds_its_way(degrees: float) -> None:
     assert turned < 3.0
 
 
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("scans", [True, False])
+def test_a_robot_notices_that_it_cannot_turn(scans: bool, side: float) -> None:
+    robot = SlippingRobot(SCALENE, noise=0.01)
+    exploring = rover(robot)
+    at_once(exploring.localise())
+    before = robot.here
+    # Its wheels would turn on, by more than a quarter turn.
+    post = before.turned(side * math.radians(75.0)).ahead(0.19)
+    robot.blocks = [(post.x, post.y)]
+    at_once(exploring.localise() if scans else exploring.turn_by(math.pi))
+    away, turned = robot.off()
+    assert away < 0.05
+    assert turned < 10.0
+    # It has turned elsewhere.
+    assert abs(robot.here.relative_to(before).theta) == pytest.approx(math.pi, abs=0.2)
+    assert 0.05 < math.dist((robot.here.x, robot.here.y), (before.x, before.y)) < 0.3
+
+
 class Walls:
     """A scan of walls, most of them at one angle, the rest at right angles to the axes."""
 
@@ -105,6 +124,20 @@ def test_few_oblique_walls_do_not_turn_the_robot(part: float, corrected: float) 
     second.middle_pose = lambda: Pose(9.0, 0.0, 0.0)
     here = slam.add_keyframe(second, Pose(9.0, 0.0, 0.0), 9.0)
     assert math.degrees(here.theta) == pytest.approx(corrected, abs=3.0)
+
+
+def test_a_robot_that_was_held_finds_its_way() -> None:
+    robot = SlippingRobot(Rooms(4.0, 4.0, start=(0.4, 2.0)), noise=0.01)
+    exploring = rover(robot)
+    at_once(exploring.localise())
+    at_once(exploring.turn_by(-exploring.pose().theta))
+    # Its wheels roll on, but it does not move.
+    robot.blocks = [(robot.here.x + 0.16, robot.here.y + 0.1)]
+    at_once(exploring.drive_to((0.65, 2.0), lambda: False))
+    robot.blocks = []
+    assert robot.off()[0] > 0.2
+    at_once(exploring.localise())
+    assert robot.off()[0] < 0.05
 
 
 def test_a_robot_is_lost_where_two_places_look_alike() -> None:

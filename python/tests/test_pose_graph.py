@@ -82,6 +82,16 @@ def test_an_impossible_loop_is_rejected() -> None:
     assert math.hypot(graph.poses[4].x, graph.poses[4].y) < 1e-6
 
 
+def test_loops_close_after_a_push() -> None:
+    graph = chain(6, SIDE)
+    # By its scans, the robot has not moved from 0 to 1, which odometry did not notice.
+    scans = Constraint(0, 1, Pose(0.0, 0.0, 0.0), information(0.01, 0.01))
+    graph.add_constraint(scans)
+    graph.optimise()
+    loop = Constraint(1, 5, Pose(0.03, 0.0, 0.0), information(0.01, 0.01))
+    assert graph.try_loop_closure([loop])
+
+
 def test_headings_straighten_a_path() -> None:
     graph = chain(11, Pose(0.5, 0.0, 0.05))
     assert graph.poses[10].y > 1.0

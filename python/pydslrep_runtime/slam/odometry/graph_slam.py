@@ -19,11 +19,11 @@ from .scan_matching import MapPoints, ScanMatch, match_scan
 from .surface import Complex, SurfacePoints
 
 MAX_DRIFT = 0.1  # radians in a scan; more is a wrong match
-MIN_MATCH_RATIO = 0.5  # of points that match; if it is less, other poses are tried, ...
 FEW_SEEN_THROUGH = (
-    5  # ... as for more known surface points behind which others are seen
+    5  # known points behind which others are seen; more are doubtful, ...
 )
-MAX_SEEN_THROUGH = 20  # more is a wrong pose
+MAX_SEEN_THROUGH = 20  # ... and yet more a wrong pose
+MIN_KNOWN_RATIO = 0.9  # of points that match elsewhere if nothing is seen through
 MAX_LOOP_OFFSET = (
     0.3  # m between the estimated and the matched position in a loop, and ...
 )
@@ -108,9 +108,13 @@ class GraphSlam:
         is_enough = len(points) >= MIN_POINTS
         seen = seen_through(points, here, self._map_points(near)) if is_enough else 0
         is_wrong = seen >= MAX_SEEN_THROUGH
+        is_doubtful = seen >= FEW_SEEN_THROUGH or self.is_lost
         self.has_slipped = False
-        if seen >= FEW_SEEN_THROUGH or self.is_lost:
+        if is_doubtful or (is_enough and match is None):
             found = self._search(number, points)
+            # Something new may look like something else.
+            if found and not is_doubtful and found.inlier_ratio < MIN_KNOWN_RATIO:
+                found = None
             is_elsewhere = found is not None and not is_same(found.pose, here)
             if is_wrong or (is_elsewhere and not self.is_lost):
                 self._graph.loosen(number)
