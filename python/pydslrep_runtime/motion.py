@@ -58,7 +58,7 @@ class Motion:
         self._planned: Pose | None = None
         self._rates: Sequence[float] = ()
         self._odometer: Odometer | None = None
-        self._should_stop: Callable[[Pose], bool] | None = None  # a turn
+        self._on_pose: Callable[[Pose], object] | None = None
         self._drift, self._creep = Drift(), Creep()
 
     def pose(self) -> Pose:
@@ -132,19 +132,18 @@ class Motion:
     async def rotate(
         self,
         angle: float,
-        should_stop: Callable[[Pose], bool] | None = None,
+        on_pose: Callable[[Pose], object] | None = None,
         speed: float = RIM_SPEED,
     ) -> Pose:
         """Turns in place by radians, to the left if positive; may exceed a full turn.
 
-        `speed` is that of the rims in m/s. Stops early once `should_stop`, which is called
-        after every step, returns True.
+        `speed` is that of the rims in m/s; `on_pose` is called after every step.
         """
-        self._should_stop = should_stop
+        self._on_pose = on_pose
         try:
             return await self._rotate(self.pose(), angle, speed)
         finally:
-            self._should_stop = None
+            self._on_pose = None
 
     async def rotate_while(
         self, side: float, condition: Callable[[], bool]
@@ -235,10 +234,8 @@ class Motion:
             if not self.drive.scrubs:
                 moved = step * self.drive.turning_radius
                 self._creep.observe(rim_speed, moved, self.backend.clock.time_step)
-            if self._should_stop is not None and self._should_stop(here):
-                here = await self._come_to_rest(here)
-                goal = Pose(start.x, start.y, here.theta)
-                break
+            if self._on_pose is not None:
+                self._on_pose(here)
         self._planned = goal
         return await self._come_to_rest(here)
 

@@ -32,9 +32,8 @@ class SlippingRobot:
         self.ideal = IdealRover(rooms, OccupancyGrid(RADIUS))
         self.here = Pose(*rooms.start, 0.0)
         self.touched: list[Pose] = []
-        self.blocks: list[
-            Position
-        ] = []  # where something blocks it that no sensor detects
+        # Where something blocks it that no sensor detects.
+        self.blocks: list[Position] = []
         self._dice, self._slip, self._noise = random.Random(seed), slip, noise
         self._wheels = [0.0, 0.0]
         self._angles = [0.0, 0.0]
@@ -75,14 +74,13 @@ class SlippingRobot:
     async def rotate(
         self,
         angle: float,
-        should_stop: Callable[[Pose], bool],
+        on_pose: Callable[[Pose], object],
         speed: float = RIM_SPEED,
     ) -> None:
         count = max(1, math.ceil(abs(angle) * TURNING_RADIUS / (speed * STEP)))
         for _ in range(count):
             self._roll(0.0, angle / count)
-            if should_stop(self.pose()):
-                break
+            on_pose(self.pose())
 
     async def drive_to(self, goal: Pose, should_stop: Callable[[Pose], bool]) -> None:
         remaining = goal.relative_to(self.pose()).x
@@ -128,14 +126,13 @@ def scan_from(robot: SlippingRobot, pose: Pose, angle: float = math.pi) -> Scan:
     robot.here = pose
     scan = Scan()
 
-    def look(here: Pose) -> bool:
+    def look(here: Pose) -> None:
         readings = []
         for number, mount in enumerate(MOUNTS):
             distance = robot.distance(str(number))
             depth = RANGE if distance is None else distance
             readings.append(Reading(mount, CONE, depth, distance is not None))
         scan.add(here, readings)
-        return False
 
     at_once(robot.rotate(angle, look))
     return scan

@@ -80,22 +80,17 @@ def test_a_robot_that_was_turned_finds_its_way(degrees: float) -> None:
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
-@pytest.mark.parametrize("scans", [True, False])
-def test_a_robot_notices_that_it_cannot_turn(scans: bool, side: float) -> None:
+def test_a_robot_notices_that_it_could_not_turn(side: float) -> None:
     robot = SlippingRobot(SCALENE, noise=0.01)
     exploring = rover(robot)
     at_once(exploring.localise())
-    before = robot.here
-    # Its wheels would turn on, by more than a quarter turn.
-    post = before.turned(side * math.radians(75.0)).ahead(0.19)
+    # Its wheels turn on, by more than a quarter turn.
+    post = robot.here.turned(side * math.radians(75.0)).ahead(0.19)
     robot.blocks = [(post.x, post.y)]
-    at_once(exploring.localise() if scans else exploring.turn_by(math.pi))
+    at_once(exploring.localise())
     away, turned = robot.off()
     assert away < 0.05
-    assert turned < 10.0
-    # It has turned elsewhere.
-    assert abs(robot.here.relative_to(before).theta) == pytest.approx(math.pi, abs=0.2)
-    assert 0.05 < math.dist((robot.here.x, robot.here.y), (before.x, before.y)) < 0.3
+    assert turned < 3.0
 
 
 class Walls:

@@ -6,12 +6,13 @@ from pydslrep_runtime.pose import Pose, wrap_angle
 from pydslrep_runtime.slam.odometry.dominant_orientation import (
     find_dominant_orientation,
 )
+from pydslrep_runtime.slam.odometry.odometer import Odometer
 from pydslrep_runtime.slam.odometry.relocalisation import relocalise
 from pydslrep_runtime.slam.odometry.scan import Scan
 from pydslrep_runtime.slam.odometry.scan_matching import MapPoints, match_scan
 from pydslrep_runtime.slam.odometry.surface import NOTHING, SurfacePoints
 from rooms import Pillar, Rooms
-from slipping_robot import SlippingRobot, scan_from
+from slipping_robot import TURNING_RADIUS, WHEEL, SlippingRobot, scan_from
 
 ROOM = Rooms(1.4, 1.7)
 HERE = Pose(0.6, 0.8, 0.4)
@@ -47,6 +48,28 @@ def test_surface_points_are_on_the_walls(angle: float) -> None:
     # Cones round off corners, not flat walls.
     assert aways[len(aways) * 3 // 4] < 0.005
     assert turns[len(turns) // 2] < 1.5
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("free", [20.0, 40.0, 70.0])
+def test_a_scan_knows_how_far_the_turn_was_blocked(free: float, side: float) -> None:
+    robot = SlippingRobot(Rooms(1.9, 1.5), noise=0.01)
+    robot.here = HERE
+    robot.use_odometry(Odometer(robot.backend, (WHEEL, WHEEL), TURNING_RADIUS))
+    # A corner of the body gets there.
+    post = HERE.turned(side * math.radians(52.5 + free)).ahead(0.19)
+    robot.blocks = [(post.x, post.y)]
+    scan = scan_from(robot, HERE, side * math.pi)
+    lost = math.degrees(scan.correct())
+    assert lost == pytest.approx(side * (180.0 - free), abs=12.0)
+
+
+@pytest.mark.parametrize("slip", [0.0, 0.05])
+def test_a_scan_of_a_whole_turn_has_lost_nothing(slip: float) -> None:
+    robot = SlippingRobot(ROOM, slip=slip, noise=0.01)
+    robot.use_odometry(Odometer(robot.backend, (WHEEL, WHEEL), TURNING_RADIUS))
+    for place in (HERE, Pose(0.3, 0.3, -2.0), Pose(1.1, 1.4, 3.0)):
+        assert scan_from(robot, place).correct() == 0.0
 
 
 def test_noise_moves_surface_points_little() -> None:

@@ -75,7 +75,7 @@ class SlamRover:
 
     async def turn_by(self, angle: float) -> None:
         """Turns in place, to the left if positive."""
-        await self._robot.rotate(angle, self._look, self.turning_speed)
+        await self._robot.rotate(angle, self._observe, self.turning_speed)
 
     async def localise(self) -> int:
         """Adds a keyframe and returns its number."""
@@ -109,12 +109,12 @@ class SlamRover:
 
     async def back_up_to(self, goal: Position) -> None:
         """Reverses to a position behind the robot."""
-        await self._robot.drive_to(Pose(*goal, self.pose().theta), self._look)
 
-    def _look(self, here: Pose) -> bool:
-        """Reads all sensors on the way, and never stops the robot."""
-        self._observe(here)
-        return False
+        def observe(here: Pose) -> bool:
+            self._observe(here)
+            return False
+
+        await self._robot.drive_to(Pose(*goal, self.pose().theta), observe)
 
     def _observe(self, here: Pose) -> bool:
         """Reads all sensors if the robot has moved; returns whether it has."""

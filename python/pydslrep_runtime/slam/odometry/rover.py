@@ -15,14 +15,13 @@ from .graph_slam import GraphSlam
 from .odometer import Odometer
 from .scan import Scan
 from .scan_log import ScanLog
-from .turn_watch import TurnWatch
 
 if TYPE_CHECKING:
     from ...motion import Motion
 
 REBUILD_DISTANCE = 0.04  # m that a keyframe moves before the grid is rebuilt, or ...
 REBUILD_ANGLE = math.radians(2.0)  # ... turns
-WAYS_OUT = [-0.15, 0.3, -0.15]  # m to drive from where something blocks a turn
+BLOCKED_TRAVEL = 14.0  # m that are as uncertain as the heading after a blocked turn
 WAYS = [0.02 * count for count in range(-15, 16)]  # m to drive to have room
 
 
@@ -40,9 +39,8 @@ class OdometryRover(SlamRover):
         )
         robot.use_odometry(self._odometer)
         self._scan: Scan | None = None
-        self._watch: TurnWatch | None = None  # of the turn that the robot makes
-        self._was_blocked = False  # in a turn since the grid was built
         self._wheel_travel = 0.0  # m, up to the last keyframe
+        self._blocked_travel = 0.0  # m for a blocked turn at the last keyframe
         self._slam = GraphSlam()
         self._log = ScanLog()
         self._grid_keyframes: list[Pose] = []  # the poses that the grid is built from
@@ -86,38 +84,13 @@ class OdometryRover(SlamRover):
 
         await self._robot.drive_to(here.ahead(ways[0]), must_stop)
 
-    async def turn_by(self, angle: float) -> None:
-        """Turns in place, to the left if positive; drives on a little if it is blocked."""
-        for way in WAYS_OUT:
-            if await self._turn(angle, self.turning_speed):
-                return
-            await self._robot.drive_to(self.pose().ahead(way), self._look)
-
-    async def _turn(self, angle: float, speed: float) -> bool:
-        """Turns in place; turns back and returns False if something blocks the robot."""
-        start = self.pose()
-        self._watch = watch = TurnWatch(start.theta)
-
-        def must_stop(here: Pose) -> bool:
-            self._observe(here)
-            return watch.is_blocked()
-
-        await self._robot.rotate(angle, must_stop, speed)
-        self._watch = None
-        if not watch.is_blocked():
-            return True
-        # The wheels have turned on, but not the robot.
-        self._log.forget(watch.unchanged)
-        self._was_blocked = True
-        self._robot.correct(start.turned(watch.turned))
-        await self._robot.rotate(-watch.turned, self._look, speed)
-        return False
-
     async def localise(self) -> int:
         """Adds a keyframe and corrects the pose by a scan, or by several if it is lost."""
         await self._make_room()
-        await self._take_keyframe()
-        if self._slam.has_slipped and self._slam.is_lost:
+        was_blocked = await self._take_keyframe()
+        if was_blocked:
+            await self._make_room()
+        if was_blocked or (self._slam.has_slipped and self._slam.is_lost):
             await self._take_keyframe()
         return len(self._positions) - 1
 
@@ -125,26 +98,32 @@ class OdometryRover(SlamRover):
         """The keyframes at which the robot was lost."""
         return self._slam.uncertain
 
-    async def _take_keyframe(self) -> None:
-        scan = await self._take_scan()
+    async def _take_keyframe(self) -> bool:
+        """Scans in a turn; returns whether something has blocked it."""
+        self._scan = scan = Scan()
+        # The first keyframe is the reference for all others, so scan it slowly.
+        speed = self.turning_speed * (1.0 if self._positions else 0.5)
+        await self._robot.rotate(self._blind_angle(), self._observe, speed)
+        self._scan = None
+        lost = scan.correct()
+        if lost:
+            self._robot.correct(self.pose().turned(-lost))
+        self._log_scan(scan)
+        # The keyframe is halfway through the turn, so the next leg is uncertain, too.
+        before, self._blocked_travel = self._blocked_travel, BLOCKED_TRAVEL * bool(lost)
         travelled = self._odometer.wheel_travel - self._wheel_travel
+        travelled += max(before, self._blocked_travel)
         self._wheel_travel = self._odometer.wheel_travel
         self._robot.correct(self._slam.add_keyframe(scan, self.pose(), travelled))
         self._update_grid(scan.middle_pose())
+        return lost != 0.0
 
-    async def _take_scan(self) -> Scan:
-        """Scans in a turn; elsewhere if something blocks the robot."""
-        # The first keyframe is the reference for all others, so scan it slowly.
-        speed = self.turning_speed * (1.0 if self._positions else 0.5)
-        for way in WAYS_OUT:
-            self._scan = scan = Scan()
-            self._last_pose = None
-            has_turned = await self._turn(self._blind_angle(), speed)
-            self._scan = None
-            if has_turned:
-                break
-            await self._robot.drive_to(self.pose().ahead(way), self._look)
-        return scan
+    def _log_scan(self, scan: Scan) -> None:
+        """Keeps as many of a scan's readings as the grid needs."""
+        self._last_pose = None
+        for here, readings in scan.observations():
+            if self._has_moved(here):
+                self._log.add(here, readings)
 
     def _update_grid(self, middle_pose: Pose) -> None:
         """Adds the last leg to the grid, or all if keyframes have moved."""
@@ -152,32 +131,25 @@ class OdometryRover(SlamRover):
         has_slipped = self._slam.has_slipped
         self._log.add_keyframe(middle_pose, keyframes[-1], is_valid=not has_slipped)
         self._positions = [(pose.x, pose.y) for pose in keyframes]
-        is_wrong = has_slipped or self._was_blocked
-        if is_wrong or any(map(has_shifted, self._grid_keyframes, keyframes)):
+        if has_slipped or any(map(has_shifted, self._grid_keyframes, keyframes)):
             self.grid.reset()
             self._grid_keyframes = []
-            self._was_blocked = False
         self._log.replay(self.grid, keyframes, since=len(self._grid_keyframes))
         self._grid_keyframes += keyframes[len(self._grid_keyframes) :]
 
     def _observe(self, here: Pose) -> bool:
         """Reads all sensors if the robot has moved or scans; returns if it has moved."""
-        is_new = self._has_moved(here)
-        if not is_new and self._scan is None:
+        if self._scan is not None:
+            self._scan.add(here, self._read_sensors())
+            return False
+        if not self._has_moved(here):
             return False
         readings = self._read_sensors()
-        if self._watch is not None:
-            self._watch.add(here.theta, readings, is_kept=is_new)
-        if is_new:
-            self._log.add(here, readings)
-            for reading in readings:
-                self._check_obstacle(reading, here)
-        if self._scan is not None:
-            self._scan.add(here, readings)
-        else:
-            for reading in readings:
-                self.grid.add_reading(reading.transformed_by(here))
-        return is_new
+        self._log.add(here, readings)
+        for reading in readings:
+            self._check_obstacle(reading, here)
+            self.grid.add_reading(reading.transformed_by(here))
+        return True
 
     def _mark_obstacle(self, x: float, y: float) -> None:
         """Keeps an obstacle that has stopped the robot, also when the grid is rebuilt."""

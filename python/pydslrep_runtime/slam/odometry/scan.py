@@ -1,12 +1,13 @@
 """Scans: the surfaces that a robot detects while it turns in place."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
 from ...pose import Pose
 from ..occupancy_grid import Reading
+from .blocked_turn import actual_angles
 from .surface import Array, Complex, Flags, Indices, SurfacePoints, joined
 
 BIN = math.radians(2.5)  # angular resolution
@@ -16,6 +17,7 @@ MAX_DEPTH_STEP = 0.1  # m between readings: beyond it, one surface occludes anot
 MAX_GAP = 0.15  # m between neighbouring points on the same surface
 MAX_RMS_ERROR = 0.012  # m from points on a flat surface to the fitted line
 CORNER_DEPTH = 0.01  # m: cones round off corners; a deeper bend is a corner
+BEYOND = 0.3  # m from a sensor's range to where it could have detected something
 SMOOTHING_ANGLE = 1.05 * BIN  # to each side of a reading
 SMOOTHING_DEPTH = 0.06  # m between readings that are smoothed
 
@@ -41,6 +43,33 @@ class Scan:
     def middle_pose(self) -> Pose:
         """The robot's pose halfway through: the origin of the scan's frame."""
         return self._poses[len(self._poses) // 2]
+
+    def correct(self) -> float:
+        """Corrects the poses if something has blocked the turn.
+
+        Returns the angle by which the robot has turned less than its wheels report, in radians.
+        """
+        headings = np.unwrap([pose.theta for pose in self._poses])
+        ends = [
+            [
+                reading.sensor.ahead(reading.distance + (not reading.is_hit) * BEYOND)
+                for reading in readings
+            ]
+            for readings in self._readings
+        ]
+        turned = headings - headings[0]
+        angles = actual_angles(
+            turned, np.array([[complex(end.x, end.y) for end in row] for row in ends])
+        )
+        excess = (turned - angles).tolist()
+        self._poses = [
+            pose.turned(-angle) for pose, angle in zip(self._poses, excess, strict=True)
+        ]
+        return float(excess[-1])
+
+    def observations(self) -> Iterable[tuple[Pose, Sequence[Reading]]]:
+        """The poses with their readings."""
+        return zip(self._poses, self._readings, strict=True)
 
     def surface_points(self) -> SurfacePoints:
         """The points on surfaces, in the frame of the middle pose."""

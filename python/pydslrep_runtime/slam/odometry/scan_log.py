@@ -31,10 +31,6 @@ class ScanLog:
         """Adds readings in the robot's frame, taken at its estimated pose."""
         self._open_leg.append((here.relative_to(self._keyframe), readings))
 
-    def forget(self, count: int) -> None:
-        """Drops the latest readings, whose poses were wrong."""
-        del self._open_leg[len(self._open_leg) - count :]
-
     def add_obstacle(self, here: Pose, x: float, y: float) -> None:
         """Adds an obstacle that has stopped the robot, at its estimated position."""
         seen = Pose(x, y, 0.0).relative_to(here)
