@@ -34,6 +34,7 @@ class SlippingRobot:
         self.touched: list[Pose] = []
         # Where something blocks it that no sensor detects.
         self.blocks: list[Position] = []
+        self.blocked_steps = math.inf  # after which it slides free
         self._dice, self._slip, self._noise = random.Random(seed), slip, noise
         self._wheels = [0.0, 0.0]
         self._angles = [0.0, 0.0]
@@ -110,6 +111,9 @@ class SlippingRobot:
         if any(
             is_in_body(Pose(*block, 0.0).relative_to(here)) for block in self.blocks
         ):
+            self.blocked_steps -= 1
+            if self.blocked_steps <= 0:
+                self.blocks = []
             return
         self.here = here
         if not self.ideal.rooms.holds(here.x, here.y, here.theta, 0.149):

@@ -81,10 +81,12 @@ def test_a_robot_that_was_turned_finds_its_way(degrees: float) -> None:
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_robot_notices_that_it_could_not_turn(side: float) -> None:
-    robot = SlippingRobot(SCALENE, noise=0.01)
+    rooms = Rooms(1.8, 3.0, start=(0.4, 1.0))
+    robot = SlippingRobot(rooms, noise=0.01)
     exploring = rover(robot)
     at_once(exploring.localise())
-    # Its wheels turn on, by more than a quarter turn.
+    # Its wheels turn on, by more than a quarter turn, before it is free.
+    robot.blocked_steps = 110
     post = robot.here.turned(side * math.radians(75.0)).ahead(0.19)
     robot.blocks = [(post.x, post.y)]
     at_once(exploring.localise())

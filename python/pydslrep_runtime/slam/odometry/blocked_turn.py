@@ -12,7 +12,8 @@ from .surface import Array, Complex
 
 BIN = math.radians(5.0)
 BINS = round(math.tau / BIN)
-MAX_SPREAD = 0.035  # m in one direction, of a turn that may be as reported
+MAX_SPREAD = 0.06  # m between what sensors measure in one direction
+MAX_CONTRADICTED = 0.32  # of the readings of a turn that may be as reported
 MAX_SPREAD_RATIO = 0.5  # that is left if a turn was blocked
 ROUNDING = 1e-6  # radians
 TOLERANCE = 0.0005  # m between spreads that are equally good
@@ -28,8 +29,8 @@ def actual_angles(turned: Array, ends: Complex) -> Array:
     """
     depth, bearing = np.abs(ends), np.angle(ends)
 
-    def spread(angles: Array) -> float:
-        """The mean standard deviation of what sensors measure in the same direction."""
+    def spreads(angles: Array) -> tuple[Array, Array]:
+        """The standard deviations of what sensors measure in each direction, with weights."""
         direction = np.round((angles[:, None] + bearing) / BIN).astype(int) % BINS
         count, total, squares = (
             np.bincount(direction.ravel(), weights.ravel(), BINS)
@@ -37,15 +38,20 @@ def actual_angles(turned: Array, ends: Complex) -> Array:
         )
         mean = total / np.maximum(count, 1.0)
         variance = np.maximum(squares / np.maximum(count, 1.0) - mean**2, 0.0)
-        return float((count * np.sqrt(variance)).sum() / count.sum())
+        return np.sqrt(variance), count / count.sum()
 
-    reported, way = spread(turned), abs(float(turned[-1]))
-    if reported <= MAX_SPREAD or way < LEAST:
+    def mean_spread(angles: Array) -> float:
+        spread, weight = spreads(angles)
+        return float(spread @ weight)
+
+    spread, weight = spreads(turned)
+    way = abs(float(turned[-1]))
+    if weight @ (spread > MAX_SPREAD) <= MAX_CONTRADICTED or way < LEAST:
         return turned
     starts, losses = np.arange(0.0, way, STEPS[0]), np.arange(LEAST, way, STEPS[0])
     for _ in STEPS:
         found = [
-            (spread(blocked(turned, start, lost)), start, lost)
+            (mean_spread(blocked(turned, start, lost)), start, lost)
             for start in starts
             for lost in losses
             if start + lost < way + ROUNDING
@@ -57,7 +63,7 @@ def actual_angles(turned: Array, ends: Complex) -> Array:
         )
         around = np.arange(-STEPS[0], STEPS[0], STEPS[1])
         starts, losses = np.maximum(start + around, 0.0), lost + around
-    is_blocked = least < MAX_SPREAD_RATIO * reported
+    is_blocked = least < MAX_SPREAD_RATIO * (spread @ weight)
     return blocked(turned, start, lost) if is_blocked else turned
 
 
