@@ -1,6 +1,7 @@
 //! Kinematic models of wheeled robots, exact integration of their motion, and planned paths.
 //!
-//! Knows numbers only. Must never know the language, files, clocks or threads.
+//! Knows numbers only; of a type of robot, where its wheels are and which way they push. Must never know the language,
+//! files, clocks or threads.
 //! Units everywhere: metres, seconds, radians; x forward, y left, θ counter-clockwise.
 //!
 //! The formulas for two wheels are equations 1 to 6 of the article "PyDSLRep: A domain-specific language for
@@ -15,19 +16,20 @@
 //! | the pose after turning about it by ωΔt | [`Pose::advance`] |
 //! | `v_r` = v + ω d/2, `v_l` = v − ω d/2, wheel rate v/r | [`Model::inverse`] |
 
-mod drive;
 mod model;
 pub mod motion;
+mod per_wheel;
 mod plan;
 mod pose;
 mod profile;
 mod traction;
 
-pub use drive::Drive;
-pub use model::{Geometry, Model, ModelError};
+pub use model::{Geometry, Model, ModelError, Settable, Setting, Turning};
+pub use per_wheel::PerWheel;
 pub use plan::{
     Action, ActionIndex, Leg, Plan, PlanError, RobotPath, RobotPlan, Run, TimedPose, plan, plan_movement,
 };
 pub use pose::{Pose, Twist, angle_between, heading_degrees, wrap_angle};
 pub use profile::SpeedProfile;
-pub use traction::{Traction, scrub_factor};
+pub use pydslrep_robots::Drive;
+pub use traction::{SCRIPT_TRACK_FACTOR, Traction, scrub_factor};

@@ -1,8 +1,9 @@
 //! How robots move where neither program nor scene says otherwise.
 //!
-//! The only place for these figures: plans, scripts and the simulator all read them here.
+//! The only place for these figures. Plans and the simulator read them here; what scripts need of them is written into
+//! `python/pydslrep_runtime/facts.py`, and a test fails while that file has others (`crates/script/tests/facts.rs`).
 
-/// Length of a simulation step, in seconds (CoppeliaSim's default too).
+/// Length of a simulation step, in seconds: that of CoppeliaSim unless a scene chooses another one.
 pub const STEP: f64 = 0.05;
 
 /// Rim speed of a straight move without `at`, and of every turn, in metres per second.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use crate::{Model, Pose, SpeedProfile, Twist, motion};
+use crate::{Model, PerWheel, Pose, SpeedProfile, Twist, motion};
 
 /// What a robot is to do next, in numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,7 +15,7 @@ pub enum Action {
         /// Rim speed in metres per second, above zero.
         speed: f64,
     },
-    /// In place, at [`motion::RIM_SPEED`].
+    /// As the robot turns ([`crate::Turning`]), at [`motion::RIM_SPEED`].
     Turn {
         /// Radians; positive is left (counter-clockwise).
         angle: f64,
@@ -67,7 +67,7 @@ pub struct Leg {
     /// How long it takes, seconds, with ramps and [`motion::REST`].
     pub duration: f64,
     /// Wheel rates at the highest speed it reaches, rad/s, in the order of the robot's wheels.
-    pub rates: Vec<f64>,
+    pub rates: PerWheel,
     /// Rim speed over time.
     pub profile: SpeedProfile,
     /// Body motion per metre of rim travel; times whole rim travel it leads from `from` to `to`.
@@ -237,9 +237,7 @@ fn leg(model: &Model, action: Action, index: ActionIndex, from: Pose, start: Opt
         Action::Move { distance, speed } => {
             (Twist { vx: distance.signum(), ..Twist::default() }, distance, speed)
         }
-        Action::Turn { angle } => {
-            (Twist { omega: angle.signum(), ..Twist::default() }, angle, motion::RIM_SPEED)
-        }
+        Action::Turn { angle } => (model.turning().twist(angle), angle, motion::RIM_SPEED),
         Action::Unknown => return None,
     };
     let rim_per_unit = model.fastest_rim(unit);
@@ -254,7 +252,7 @@ fn leg(model: &Model, action: Action, index: ActionIndex, from: Pose, start: Opt
         to: from.advance(unit, amount.abs()),
         start,
         duration: profile.duration() + rest,
-        rates: model.inverse(peak),
+        rates: model.inverse(peak).rates,
         profile,
         twist_per_rim,
     })
@@ -265,6 +263,7 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
     use super::*;
+    use crate::model::tests::turning_on_a_circle;
     use crate::{Drive, Geometry};
 
     fn robot(start: Pose) -> RobotPlan {
@@ -302,6 +301,20 @@ mod tests {
         let end = path.end();
         assert!(end.distance(&Pose::new(-1.0, -2.0, 0.0)) < 1e-12 && (end.theta + FRAC_PI_2).abs() < 1e-12);
         assert!(path.legs[0].rates.iter().all(|&rate| rate < 0.0));
+    }
+
+    #[test]
+    fn who_cannot_turn_in_place_turns_on_a_circle() {
+        let RobotPlan { model, start } = robot(Pose::default());
+        let model = turning_on_a_circle(&model, 1.0);
+        for (angle, side) in [(PI, 2.0), (-PI, -2.0)] {
+            let path = plan_movement(&model, start, &[Action::Turn { angle }]);
+            let leg = &path.legs[0];
+            assert!(leg.to.distance(&Pose::new(0.0, side, 0.0)) < 1e-12, "{leg:?}");
+            assert!(close(leg.end(), PI * (1.0 + 0.15) / 0.09 + 0.18 + motion::REST), "{leg:?}");
+            let driving = leg.duration - motion::REST;
+            assert!(leg.pose_at(driving / 2.0).distance(&Pose::new(1.0, side / 2.0, 0.0)) < 1e-12);
+        }
     }
 
     #[test]
@@ -363,6 +376,46 @@ mod tests {
         let times: Vec<Option<f64>> = plan.robots[0].sample(1).iter().map(|pose| pose.time).collect();
         let again = plan.robots[0].legs[1].start;
         assert_eq!(times, [Some(0.0), plan.robots[0].legs[0].end(), again, plan.duration]);
+    }
+
+    #[test]
+    fn an_action_of_nothing_takes_no_time() {
+        let nothing = [forward(0.0), Action::Turn { angle: 0.0 }, forward(1.0)];
+        let path = plan_movement(&robot(Pose::default()).model, Pose::default(), &nothing);
+        assert!(close(path.legs[2].start, 0.0) && close(path.legs[2].end(), METRE), "{path:?}");
+        assert_eq!((path.legs[0].to, path.legs[1].to), (Pose::default(), Pose::default()));
+    }
+
+    #[test]
+    fn runs_of_one_robot_in_a_group_follow_one_another() {
+        // The language refuses such programs (`parallel-conflict`), but no robot can do two things at once.
+        let robots = [robot(Pose::default()), robot(Pose::default())];
+        let run = |robot, distance| Run { robot, actions: vec![forward(distance)] };
+        let plan = plan(&robots, &[vec![run(0, 1.0), run(1, 1.0), run(0, -1.0)]]).unwrap();
+        let starts: Vec<Option<f64>> = plan.robots[0].legs.iter().map(|leg| leg.start).collect();
+        assert!(close(starts[0], 0.0) && close(starts[1], METRE), "{starts:?}");
+        assert!(close(plan.robots[1].legs[0].start, 0.0) && close(plan.duration, 2.0 * METRE));
+        assert!(plan.robots[0].end().distance(&Pose::default()) < 1e-12);
+    }
+
+    #[test]
+    fn no_point_of_a_robot_is_faster_than_its_top_speed_and_some_are_as_fast() {
+        let actions =
+            [forward(-1.0), Action::Turn { angle: -PI }, Action::Move { distance: 0.2, speed: 0.4 }];
+        let path = plan_movement(&robot(Pose::default()).model, Pose::default(), &actions);
+        for leg in &path.legs {
+            let (mut fastest, count) = (0.0_f64, 4_000);
+            for step in 0..count {
+                let seconds = leg.duration / f64::from(count);
+                let [before, after] = [step, step + 1].map(|step| leg.pose_at(f64::from(step) * seconds));
+                for (x, y) in [(0.2, 0.0), (-0.2, 0.0), (0.0, 0.2), (0.0, -0.2)] {
+                    let [before, after] = [before, after].map(|pose| pose.compose(&Pose::new(x, y, 0.0)));
+                    fastest = fastest.max(before.distance(&after) / seconds);
+                }
+            }
+            let top = leg.top_speed(0.2);
+            assert!(fastest <= top + 1e-9 && fastest > 0.99 * top, "{fastest} of {top}: {leg:?}");
+        }
     }
 
     #[test]

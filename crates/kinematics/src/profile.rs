@@ -27,13 +27,16 @@ impl SpeedProfile {
         if self.distance == 0.0 {
             return 0.0;
         }
+        if self.peak == 0.0 {
+            return f64::INFINITY;
+        }
         self.distance / self.peak + self.peak / self.acceleration
     }
 
     /// The way covered `seconds` after the start, metres; 0 before it, the whole distance after the end.
     pub fn distance_at(&self, seconds: f64) -> f64 {
         let (duration, ramp) = (self.duration(), self.peak / self.acceleration);
-        if seconds <= 0.0 {
+        if seconds <= 0.0 || self.peak == 0.0 {
             0.0
         } else if seconds >= duration {
             self.distance
@@ -67,6 +70,14 @@ mod tests {
         assert!((profile.peak() - 0.2).abs() < 1e-15);
         assert!((profile.duration() - 0.8).abs() < 1e-15);
         assert!((profile.distance_at(0.4) - 0.04).abs() < 1e-15);
+    }
+
+    #[test]
+    fn signs_are_dropped_and_without_speed_it_never_gets_there() {
+        assert_eq!(SpeedProfile::new(-1.0, -0.09, -0.5), SpeedProfile::new(1.0, 0.09, 0.5));
+        for stuck in [SpeedProfile::new(1.0, 0.0, 0.5), SpeedProfile::new(1.0, 0.09, 0.0)] {
+            assert!(stuck.duration().is_infinite() && stuck.distance_at(1e9) == 0.0, "{stuck:?}");
+        }
     }
 
     #[test]

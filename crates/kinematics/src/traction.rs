@@ -1,8 +1,14 @@
 //! What wheels that are dragged over the floor make of a robot.
 
-use nalgebra::{DVector, Matrix3, Matrix3xX, Vector2, Vector3};
+use nalgebra::{Matrix3, SMatrix, Vector2, Vector3};
+use pydslrep_robots::{Drive, MAX_WHEELS, WheelPlace};
 
-use crate::{Drive, Geometry, Twist};
+use crate::{Geometry, Twist};
+
+/// The factor by which scripts take the track to be wider in turns of a robot whose wheels scrub. It is 1: scripts close the
+/// loop on the pose, which corrects what [`scrub_factor`] foretells and plans and the simulator count on. The runtime's figure
+/// is written from this one.
+pub const SCRIPT_TRACK_FACTOR: f64 = 1.0;
 
 /// How a robot moves when its wheels turn, with all that they are dragged across the floor. Where [`crate::Model`] says
 /// how a robot should move, this is about how it does.
@@ -15,25 +21,24 @@ use crate::{Drive, Geometry, Twist};
 /// "Experimental kinematics for wheeled skid-steer mobile robots", 2007.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Traction {
-    /// vx, vy, ω (rows) for a unit of each wheel's rim speed (columns).
-    twist_per_rim: Matrix3xX<f64>,
+    /// vx, vy, ω (rows) for a unit of each wheel's rim speed (columns); those beyond the robot's wheels are 0.
+    twist_per_rim: SMatrix<f64, 3, MAX_WHEELS>,
 }
 
 impl Traction {
     /// The traction of a robot whose wheels have this friction across the direction they drive in, as a share of that along
     /// it: from 0 for none, which makes it the ideal model, to 1.
     pub fn new(drive: Drive, geometry: Geometry, lateral_friction: f64) -> Self {
-        let positions = geometry.wheel_positions(drive);
         let mut normal = Matrix3::zeros();
-        let mut per_rim = Matrix3xX::zeros(positions.len());
-        for (wheel, &(x, y)) in positions.iter().enumerate() {
-            let along = direction_of_force(drive, wheel);
+        let mut per_rim: SMatrix<f64, 3, MAX_WHEELS> = SMatrix::zeros();
+        for (wheel, mut column) in drive.row().wheels.iter().zip(per_rim.column_iter_mut()) {
+            let (x, y) = geometry.position(wheel);
+            let along = direction_of_force(wheel);
             let across = Vector2::new(-along.y, along.x);
             for (direction, weight) in [(along, 1.0), (across, lateral_friction)] {
                 // The speed of the point of contact in this direction is this times the twist.
                 let speed = Vector3::new(direction.x, direction.y, direction.y * x - direction.x * y);
                 normal += weight * speed * speed.transpose();
-                let mut column = per_rim.column_mut(wheel);
                 column += weight * direction.x * speed;
             }
         }
@@ -42,31 +47,31 @@ impl Traction {
         Self { twist_per_rim: inverse * per_rim }
     }
 
-    /// The twist for rim speeds in m/s, in the order of [`Drive`]; missing ones count as 0.
+    /// The twist for rim speeds in m/s, in the order of the type; missing ones count as 0.
     pub fn twist(&self, rims: &[f64]) -> Twist {
-        let rims = DVector::from_fn(self.twist_per_rim.ncols(), |wheel, _| *rims.get(wheel).unwrap_or(&0.0));
-        let twist = &self.twist_per_rim * rims;
+        let parts = self.twist_per_rim.column_iter().zip(rims).map(|(column, rim)| column * *rim);
+        let twist: Vector3<f64> = parts.sum();
         Twist { vx: twist.x, vy: twist.y, omega: twist.z }
     }
 }
 
 /// How much wider a skid-steered robot seems when it turns; 1 for others, whose wheels follow.
 pub fn scrub_factor(drive: Drive, geometry: Geometry, lateral_friction: f64) -> f64 {
-    match drive {
-        Drive::FourWheel => 1.0 + lateral_friction * (geometry.wheelbase / geometry.track).powi(2),
-        Drive::TwoWheel | Drive::FourMecanum => 1.0,
+    if drive.row().scrubs() {
+        1.0 + lateral_friction * (geometry.wheelbase / geometry.track).powi(2)
+    } else {
+        1.0
     }
 }
 
 /// The direction in which a wheel pushes the robot: along it, or along the axis of a mecanum wheel's rollers, which form
 /// an X seen from above.
-fn direction_of_force(drive: Drive, wheel: usize) -> Vector2<f64> {
-    let half = std::f64::consts::FRAC_1_SQRT_2;
-    match (drive, wheel) {
-        (Drive::FourMecanum, 0 | 3) => Vector2::new(half, -half),
-        (Drive::FourMecanum, _) => Vector2::new(half, half),
-        _ => Vector2::new(1.0, 0.0),
+fn direction_of_force(wheel: &WheelPlace) -> Vector2<f64> {
+    if wheel.push == 0.0 {
+        return Vector2::new(1.0, 0.0);
     }
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    Vector2::new(half, wheel.push * half)
 }
 
 #[cfg(test)]
@@ -74,10 +79,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::Model;
+    use crate::{Model, Setting};
 
     const GEOMETRY: Geometry = Geometry { track: 0.30, wheelbase: 0.25 };
-    const DRIVES: [Drive; 3] = [Drive::TwoWheel, Drive::FourWheel, Drive::FourMecanum];
 
     fn close(a: Twist, b: Twist, tolerance: f64) -> bool {
         [a.vx - b.vx, a.vy - b.vy, a.omega - b.omega].iter().all(|off| off.abs() <= tolerance)
@@ -123,19 +127,19 @@ mod tests {
     proptest! {
         #[test]
         fn without_grip_it_is_the_ideal_model(
-            drive in prop::sample::select(DRIVES.to_vec()),
+            drive in prop::sample::select(Drive::ALL.to_vec()),
             rates in prop::collection::vec(-5.0..5.0, 4), track in 0.1..1.0, wheelbase in 0.1..1.0,
         ) {
             let geometry = Geometry { track, wheelbase };
             let rates = &rates[..drive.wheel_count()];
             let model = Model::new(drive, &[1.0; 4][..drive.wheel_count()], geometry).unwrap();
             let twist = Traction::new(drive, geometry, 0.0).twist(rates);
-            prop_assert!(close(twist, model.forward(rates), 1e-9), "{:?}", twist);
+            prop_assert!(close(twist, model.forward(&Setting::of_rates(rates)), 1e-9), "{:?}", twist);
         }
 
         #[test]
         fn nothing_is_gained_by_slipping(
-            drive in prop::sample::select(DRIVES.to_vec()),
+            drive in prop::sample::select(Drive::ALL.to_vec()),
             rims in prop::collection::vec(-1.0..1.0, 4), lateral_friction in 0.0..1.0,
         ) {
             let rims = &rims[..drive.wheel_count()];

@@ -1,0 +1,204 @@
+//! The table: a row for each type of robot.
+
+use crate::Drive;
+
+/// What tells a type of robot apart from the others.
+#[derive(Debug, PartialEq)]
+pub struct RobotType {
+    /// The type.
+    pub drive: Drive,
+    /// As programs spell it.
+    pub word: &'static str,
+    /// What people call it, with its article: `a two-wheel robot`.
+    pub noun: &'static str,
+    /// How it is driven, as the title of a description: `Two-wheel differential drive`.
+    pub label: &'static str,
+    /// The places of its wheels, in the order in which programs list them and everything else has them.
+    pub wheels: &'static [WheelPlace],
+    /// Whether it drives on mecanum wheels (`wheelH`); otherwise on standard ones (`wheel`).
+    pub mecanum: bool,
+    /// Another type that it is driven as if all its wheels are mecanum wheels, which is then a warning instead of an error: so
+    /// the article's programs have it.
+    pub on_mecanum: Option<Drive>,
+    /// Whether it can explore with distance sensors (`slam`).
+    pub explores: bool,
+    /// The class that a script makes such robots of.
+    pub class: &'static str,
+    /// The class of the runtime that drives them.
+    pub runtime_drive: &'static str,
+    /// The rates of its wheels for a twist, as people write it: v or vx ahead, vy to the left, ω, the wheels' radius r, and
+    /// for the distances of wheels d (the track) or K (half of track and wheelbase).
+    pub equations: &'static [&'static str],
+    /// Length and width of its body where the scene does not say otherwise, metres.
+    pub body: (f64, f64),
+    /// The friction of its wheels across their rolling direction, as a share of that along it, where the scene does not say
+    /// otherwise: the same for rubber tyres, next to nothing for the rollers of mecanum wheels.
+    pub lateral_friction: f64,
+}
+
+/// Where a wheel is on its robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WheelPlace {
+    /// As scripts spell it: `left_front`.
+    pub identifier: &'static str,
+    /// How far ahead of the body's middle, in half wheelbases: 1, −1, or 0 on the only axle.
+    pub ahead: f64,
+    /// How far to the left of it, in half tracks: 1 or −1.
+    pub left: f64,
+    /// Which way it pushes: 0 along the wheel, 1 ahead and to the left by as much, −1 ahead and to the right, as the axes of a
+    /// mecanum wheel's rollers lead.
+    pub push: f64,
+}
+
+/// The most wheels that any type has.
+pub const MAX_WHEELS: usize = {
+    let (mut most, mut index) = (0, 0);
+    while index < Drive::ALL.len() {
+        let count = Drive::ALL[index].wheel_count();
+        most = if count > most { count } else { most };
+        index += 1;
+    }
+    most
+};
+
+const fn wheel(identifier: &'static str, ahead: f64, left: f64, push: f64) -> WheelPlace {
+    WheelPlace { identifier, ahead, left, push }
+}
+
+pub(crate) const TWO_WHEEL: RobotType = RobotType {
+    drive: Drive::TwoWheel,
+    word: "tw",
+    noun: "a two-wheel robot",
+    label: "Two-wheel differential drive",
+    wheels: &[wheel("left", 0.0, 1.0, 0.0), wheel("right", 0.0, -1.0, 0.0)],
+    mecanum: false,
+    on_mecanum: None,
+    explores: true,
+    class: "TwoWheelRobot",
+    runtime_drive: "TwoWheelDrive",
+    equations: &["left  = (v − ω d/2) / r", "right = (v + ω d/2) / r"],
+    body: (0.30, 0.30),
+    lateral_friction: 1.0,
+};
+
+pub(crate) const FOUR_WHEEL: RobotType = RobotType {
+    drive: Drive::FourWheel,
+    word: "fw",
+    noun: "a four-wheel robot",
+    label: "Four-wheel skid-steer drive",
+    wheels: &[
+        wheel("left_front", 1.0, 1.0, 0.0),
+        wheel("left_rear", -1.0, 1.0, 0.0),
+        wheel("right_front", 1.0, -1.0, 0.0),
+        wheel("right_rear", -1.0, -1.0, 0.0),
+    ],
+    mecanum: false,
+    on_mecanum: Some(Drive::FourMecanum),
+    explores: false,
+    class: "FourWheelRobot",
+    runtime_drive: "FourWheelDrive",
+    equations: &["left front, left rear   = (v − ω d/2) / r", "right front, right rear = (v + ω d/2) / r"],
+    body: (0.36, 0.30),
+    lateral_friction: 1.0,
+};
+
+pub(crate) const FOUR_MECANUM: RobotType = RobotType {
+    drive: Drive::FourMecanum,
+    word: "fwh",
+    noun: "a mecanum robot",
+    label: "Mecanum drive",
+    wheels: &[
+        wheel("left_front", 1.0, 1.0, -1.0),
+        wheel("left_rear", -1.0, 1.0, 1.0),
+        wheel("right_front", 1.0, -1.0, 1.0),
+        wheel("right_rear", -1.0, -1.0, -1.0),
+    ],
+    mecanum: true,
+    on_mecanum: None,
+    explores: false,
+    class: "MecanumRobot",
+    runtime_drive: "FourMecanumDrive",
+    equations: &[
+        "left front  = (vx − vy − K ω) / r",
+        "left rear   = (vx + vy − K ω) / r",
+        "right front = (vx + vy + K ω) / r",
+        "right rear  = (vx − vy + K ω) / r",
+    ],
+    body: (0.36, 0.30),
+    lateral_friction: 0.05,
+};
+
+impl RobotType {
+    /// Whether some wheels are ahead of others.
+    pub fn has_wheelbase(&self) -> bool {
+        self.wheels.iter().any(|wheel| wheel.ahead != 0.0)
+    }
+
+    /// Whether wheels are dragged sideways over the floor in turns: standard ones that are not on an axle through the middle.
+    pub fn scrubs(&self) -> bool {
+        !self.mecanum && self.has_wheelbase()
+    }
+
+    /// The places of its wheels in order, in words: `left, right`.
+    pub fn order(&self) -> String {
+        self.wheels.iter().map(WheelPlace::words).collect::<Vec<_>>().join(", ")
+    }
+}
+
+impl WheelPlace {
+    /// In words: `left front`.
+    pub fn words(&self) -> String {
+        self.identifier.replace('_', " ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wheels_on_the_left_come_first_and_front_ones_before_rear_ones() {
+        for drive in Drive::ALL {
+            let places: Vec<(f64, f64)> =
+                drive.row().wheels.iter().map(|wheel| (-wheel.left, -wheel.ahead)).collect();
+            assert!(places.is_sorted(), "{drive:?}: {places:?}");
+            for wheel in drive.row().wheels {
+                assert_eq!(wheel.identifier.starts_with("left"), wheel.left > 0.0, "{wheel:?}");
+                assert_eq!(wheel.identifier.ends_with("front"), wheel.ahead > 0.0, "{wheel:?}");
+                assert_eq!(wheel.push != 0.0, drive.row().mecanum, "{wheel:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn wheels_push_evenly() {
+        for drive in Drive::ALL {
+            let sum =
+                |of: fn(&WheelPlace) -> f64| -> f64 { drive.row().wheels.iter().map(of).sum::<f64>().abs() };
+            assert!(sum(|wheel| wheel.left) + sum(|wheel| wheel.ahead) + sum(|wheel| wheel.push) == 0.0);
+        }
+        assert_eq!(MAX_WHEELS, 4);
+    }
+
+    #[test]
+    fn types_of_as_many_wheels_have_them_in_the_same_places() {
+        for drive in Drive::ALL {
+            for other in Drive::with_wheels(drive.wheel_count()) {
+                assert_eq!(drive.row().order(), other.row().order(), "lists without a type have one order");
+            }
+        }
+    }
+
+    #[test]
+    fn equations_name_every_wheel_once_and_in_order() {
+        for drive in Drive::ALL {
+            let left = drive.row().equations.iter().filter_map(|line| Some(line.split_once('=')?.0.trim()));
+            assert_eq!(left.collect::<Vec<_>>().join(", "), drive.row().order());
+        }
+    }
+
+    #[test]
+    fn only_standard_wheels_off_the_axle_scrub() {
+        assert_eq!(Drive::ALL.map(|drive| drive.row().scrubs()), [false, true, false]);
+    }
+}
