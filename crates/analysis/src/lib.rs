@@ -31,7 +31,7 @@ pub use database::{Absence, Database, EditCounts, EntityId, EntityRef, FileId, F
 pub use diagnostic::{Diagnostic, Edit, Fix, Related, Severity};
 pub use fix_validator::{FixValidator, Offers};
 pub use fixing::Fixing;
-pub use plan::{Driver, plan, plan_movement, scene};
+pub use plan::{Driver, plan, plan_movement, reach, scene};
 pub use resolve::{Blocked, Fingerprint};
 pub use snapshot::Snapshot;
 pub use target::Target;

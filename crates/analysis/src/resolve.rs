@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use pydslrep_kinematics::{Drive, motion};
 use pydslrep_scene::{Scene, SensorKind};
-use pydslrep_syntax::ast::{self, ActionKind as Statement, DriveWord, Entity, Name, TurnExtent};
+use pydslrep_syntax::ast::{self, ActionKind as Statement, Entity, Name, TurnExtent};
 use pydslrep_syntax::{EntityKind, Parse, Span, TokenKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -202,21 +202,17 @@ impl Database {
     }
 }
 
-/// The wheel layout of a robot whose wheels are those that `wheel` finds by their names.
+/// The type of a robot whose wheels are those that `wheel` finds by their names.
 pub(crate) fn drive<'a>(
     robot: &ast::Robot,
     wheel: impl Fn(&Name) -> Option<&'a ast::Wheel>,
 ) -> Option<Drive> {
     let wheels = &robot.wheels.as_ref()?.names;
     let is_mecanum = |name: &Name| wheel(name).is_some_and(|wheel| wheel.mecanum);
-    match (robot.drive.map(|clause| clause.word), wheels.len()) {
-        (Some(Some(DriveWord::Tw)), _) | (None, 2) => Some(Drive::TwoWheel),
-        (Some(Some(DriveWord::Fwh)), _) => Some(Drive::FourMecanum),
-        (Some(Some(DriveWord::Fw)), _) | (None, 4) => {
-            let all_mecanum = wheels.len() == 4 && wheels.iter().all(is_mecanum);
-            Some(if all_mecanum { Drive::FourMecanum } else { Drive::FourWheel })
-        }
-        (Some(None) | None, _) => None,
+    let all_mecanum = |count: usize| wheels.len() == count && wheels.iter().all(is_mecanum);
+    match robot.drive.map(|clause| clause.word) {
+        Some(word) => word.map(|drive| drive.driven(|| all_mecanum(drive.wheel_count()))),
+        None => Drive::inferred(wheels.len(), || all_mecanum(wheels.len())),
     }
 }
 

@@ -1,25 +1,43 @@
 //! Programs at random: the parser takes them, the formatter keeps what they mean, and the database says of them what a
-//! naive checker reads in the language's contract. `PYDSLREP_PROGRAMS` says how many to try.
+//! naive checker reads in the language's contract, also where a program is in several files. `PYDSLREP_PROGRAMS` says how
+//! many to try.
 
 use std::collections::BTreeSet;
 
 use proptest::prelude::*;
-use pydslrep_analysis::Database;
-use pydslrep_naive::Finding;
+use pydslrep_analysis::{Absence, Database, FileId, Target};
+use pydslrep_naive::{Finding, Recipe, Source, Verdict};
 use pydslrep_syntax::{format, parse};
 
 /// What is said of a program, and where.
-fn diagnostics(text: &str) -> Vec<Finding> {
+fn diagnostics(text: &str) -> BTreeSet<Finding> {
     let mut database = Database::new();
     let file = database.open("random.pyr", text);
+    findings(&database, file)
+}
+
+fn findings(database: &Database, file: FileId) -> BTreeSet<Finding> {
     let finding = |diagnostic: &pydslrep_analysis::Diagnostic| Finding {
         start: diagnostic.span.start as usize,
         end: diagnostic.span.end as usize,
         code: diagnostic.code(),
     };
-    let mut findings: Vec<Finding> = database.diagnostics(file).iter().map(finding).collect();
-    findings.sort();
-    findings
+    database.diagnostics(file).iter().map(finding).collect()
+}
+
+/// What is said of each file of a project.
+fn diagnostics_of_project(sources: &[Source]) -> Vec<BTreeSet<Finding>> {
+    let mut database = Database::new();
+    let files: Vec<FileId> = sources.iter().map(|source| database.open(source.path, &source.text)).collect();
+    for (file, source) in files.iter().zip(sources) {
+        database.set_target(*file, if source.for_vrep { Target::VRep } else { Target::CoppeliaSim });
+        for path in database.imports(*file).to_vec() {
+            if database.file(&path).is_none() {
+                database.set_absence(*file, &path, Some(Absence::Missing));
+            }
+        }
+    }
+    files.into_iter().map(|file| findings(&database, file)).collect()
 }
 
 /// The trees of a text without their places; `None` where it has a syntax error.
@@ -47,10 +65,14 @@ fn check(text: &str) -> Result<(), TestCaseError> {
     prop_assert_eq!(meaning(&formatted), meant, "formatting changes the meaning:\n{}", &formatted);
     prop_assert_eq!(format(&formatted), formatted.clone(), "formatting again changes something");
 
-    let said: BTreeSet<Finding> = diagnostics(text).into_iter().collect();
+    compare(&diagnostics(text), verdict)
+}
+
+/// What is said must be what the naive checker finds.
+fn compare(said: &BTreeSet<Finding>, verdict: Verdict) -> Result<(), TestCaseError> {
     let expected: BTreeSet<Finding> = verdict.findings.into_iter().collect();
     let excused: BTreeSet<Finding> = verdict.excused.into_iter().collect();
-    let missing: Vec<_> = expected.difference(&said).collect();
+    let missing: Vec<_> = expected.difference(said).collect();
     let invented: Vec<_> = said.difference(&expected).filter(|finding| !excused.contains(finding)).collect();
     prop_assert!(missing.is_empty(), "not said: {:?}", missing);
     prop_assert!(invented.is_empty(), "said, but nothing in the contract: {:?}", invented);
@@ -58,7 +80,7 @@ fn check(text: &str) -> Result<(), TestCaseError> {
 }
 
 fn how_many() -> u32 {
-    std::env::var("PYDSLREP_PROGRAMS").ok().and_then(|count| count.parse().ok()).unwrap_or(2_000)
+    std::env::var("PYDSLREP_PROGRAMS").ok().and_then(|count| count.parse().ok()).unwrap_or(1_500)
 }
 
 proptest! {
@@ -67,5 +89,20 @@ proptest! {
     #[test]
     fn random_programs_mean_what_the_contract_says(text in pydslrep_naive::programs()) {
         check(&text)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: how_many() / 4, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn programs_in_several_files_mean_what_the_contract_says(sources in Recipe::default().projects()) {
+        let verdicts = pydslrep_naive::check_project(&sources);
+        prop_assert!(verdicts.is_some(), "the naive checker does not understand this");
+        for ((source, said), verdict) in
+            sources.iter().zip(diagnostics_of_project(&sources)).zip(verdicts.unwrap_or_default())
+        {
+            compare(&said, verdict).map_err(|error| TestCaseError::fail(format!("{}: {error}", source.path)))?;
+        }
     }
 }

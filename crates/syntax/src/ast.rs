@@ -1,6 +1,7 @@
 //! The syntax tree of one entity. Every clause is optional, because any of them may be missing or broken while the
 //! rest is fine; an error says so wherever one is absent that must be there.
 
+pub use pydslrep_robots::Drive;
 use smol_str::SmolStr;
 
 use crate::{EntityKind, Span};
@@ -189,48 +190,11 @@ pub struct Robot {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DriveClause {
     /// Which one; `None` where the word is missing or unknown.
-    pub word: Option<DriveWord>,
+    pub word: Option<Drive>,
     /// From `type` to the word.
     pub span: Span,
     /// Whether it is before the name, as the article's grammar prints it.
     pub before_name: bool,
-}
-
-/// The words for wheel layouts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum DriveWord {
-    /// `tw`
-    Tw,
-    /// `fw`
-    Fw,
-    /// `fwh`
-    Fwh,
-}
-
-impl DriveWord {
-    /// The layout that wheels make by their number and kind: of each, whether it is a `wheelH`.
-    pub fn from_wheels(mecanum: &[bool]) -> Option<Self> {
-        match mecanum {
-            [false, false] => Some(Self::Tw),
-            [false, false, false, false] => Some(Self::Fw),
-            [true, true, true, true] => Some(Self::Fwh),
-            _ => None,
-        }
-    }
-
-    /// How many wheels it has.
-    pub fn wheel_count(self) -> usize {
-        if self == Self::Tw { 2 } else { 4 }
-    }
-
-    /// As the language spells it.
-    pub fn spelling(self) -> &'static str {
-        match self {
-            Self::Tw => "tw",
-            Self::Fw => "fw",
-            Self::Fwh => "fwh",
-        }
-    }
 }
 
 /// `movement`

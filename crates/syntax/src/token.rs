@@ -1,6 +1,7 @@
 //! The words and signs of the language. The keyword list exists here and nowhere else.
 
 use logos::Logos;
+use pydslrep_robots::Drive;
 use pydslrep_text::{closest, is_similar};
 
 /// A token without its text; the text is found by the span beside it.
@@ -212,6 +213,9 @@ impl TokenKind {
     /// The keywords that begin an action.
     pub const ACTIONS: [Self; 3] = [Self::Move, Self::Turn, Self::Slam];
 
+    /// The keywords for types of robots.
+    pub const DRIVES: [Self; 3] = [Self::Tw, Self::Fw, Self::Fwh];
+
     /// The keywords that begin a declaration, `import` included.
     pub const DECLARATIONS: [Self; 9] = [
         Self::Import,
@@ -249,6 +253,11 @@ impl TokenKind {
     /// Whether it begins an action.
     pub fn is_action(self) -> bool {
         Self::ACTIONS.contains(&self)
+    }
+
+    /// The type of robot that it stands for.
+    pub fn drive(self) -> Option<Drive> {
+        Drive::from_word(self.spelling()?)
     }
 
     /// How a keyword or sign is written; `None` for tokens whose text varies.
@@ -427,6 +436,14 @@ mod tests {
             let contextual = matches!(token, TokenKind::Distance | TokenKind::Bumper | TokenKind::Import);
             assert_eq!(token.is_keyword(), !contextual, "{word}");
             assert_eq!(token.is_name(), contextual, "{word}");
+        }
+    }
+
+    #[test]
+    fn every_type_of_robot_has_its_keyword() {
+        assert_eq!(TokenKind::DRIVES.map(TokenKind::drive), Drive::ALL.map(Some));
+        for (token, word) in KEYWORDS {
+            assert_eq!(token.drive().is_some(), TokenKind::DRIVES.contains(&token), "{word}");
         }
     }
 

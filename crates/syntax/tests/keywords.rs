@@ -6,6 +6,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use pydslrep_syntax::ast::Drive;
 use pydslrep_syntax::{KEYWORDS, TokenKind};
 
 const GRAMMAR: &str = include_str!("../../../grammar/pydslrep.ebnf");
@@ -24,6 +25,19 @@ fn quoted_words() -> BTreeSet<&'static str> {
 fn the_grammar_has_every_keyword_and_no_other() {
     let keywords: BTreeSet<&str> = KEYWORDS.iter().map(|(_, word)| *word).collect();
     assert_eq!(quoted_words(), keywords);
+}
+
+/// The words for types of robots, quoted, with `separator` between them.
+fn drives(separator: &str) -> String {
+    Drive::ALL.map(|drive| format!("\"{}\"", drive.word())).join(separator)
+}
+
+#[test]
+fn the_grammars_have_every_type_of_robot() {
+    assert!(GRAMMAR.contains(&format!("\"type\" ( {} )", drives(" | "))), "grammar/pydslrep.ebnf");
+    let tree_sitter = include_str!("../../../grammar/tree-sitter/grammar.js");
+    let clause = format!("incomplete(\"type\", choice({}))", drives(", "));
+    assert!(tree_sitter.contains(&clause), "grammar/tree-sitter/grammar.js has no {clause}");
 }
 
 /// The words of the keywords that fulfil a condition.

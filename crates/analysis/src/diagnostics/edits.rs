@@ -5,8 +5,8 @@ use pydslrep_syntax::{Span, Token, TokenKind, escape};
 
 use super::absolute;
 use super::context::Context;
-use super::problem::ProblemFix;
-use crate::{Database, Edit, EntityId, FileId, Fix};
+use super::problem::{ProblemFix, Renaming};
+use crate::{Database, Edit, EntityId, FileId, FileSpan, Fix};
 
 /// A replacement of text in one entity.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -174,7 +174,20 @@ pub(super) fn located(database: &Database, fix: &ProblemFix) -> Option<Fix> {
         let text = if edit.joins { edit.text.clone() } else { kept_apart(database, file, span, &edit.text) };
         Some(Edit { file, span, text: text.replace('\n', database.line_ending(file)) })
     });
-    Some(Fix { title: fix.title.clone(), safe: fix.safe, edits: edits.collect::<Option<_>>()? })
+    let mut edits = edits.collect::<Option<Vec<Edit>>>()?;
+    edits.extend(fix.renames.iter().flat_map(|renaming| renamed(database, renaming)));
+    Some(Fix { title: fix.title.clone(), safe: fix.safe, edits })
+}
+
+/// The edits that give a declaration and all references to it another text.
+fn renamed(database: &Database, Renaming { declared, kind, name, text }: &Renaming) -> Vec<Edit> {
+    let Some(home) = database.file_of(*declared) else { return Vec::new() };
+    let declarations = database.declarations(home, *kind, name).into_iter();
+    let declarations = declarations.map(|span| FileSpan { file: home, span });
+    let mut places: Vec<FileSpan> = declarations.chain(database.references(home, *kind, name)).collect();
+    places.sort_unstable();
+    let edit = |FileSpan { file, span }| Edit { file, span, text: kept_apart(database, file, span, text) };
+    places.into_iter().map(edit).collect()
 }
 
 /// The entity, it or one before it, that a declaration can precede without cutting another one in two: what comes

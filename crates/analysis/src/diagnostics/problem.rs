@@ -52,6 +52,16 @@ pub(crate) struct ProblemFix {
     pub(crate) title: String,
     pub(crate) safe: bool,
     pub(crate) edits: Vec<ProblemEdit>,
+    pub(crate) renames: Option<Renaming>,
+}
+
+/// New text for what the checked entity declares, and for all that refers to it, wherever that is then.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Renaming {
+    pub(crate) declared: EntityId,
+    pub(crate) kind: EntityKind,
+    pub(crate) name: SmolStr,
+    pub(crate) text: String,
 }
 
 impl Rule {
@@ -125,8 +135,14 @@ impl Problem {
         self.add_fix(title.into(), false, edits.into())
     }
 
+    /// A fix by another name.
+    pub(super) fn renaming(mut self, title: String, safe: bool, renaming: Renaming) -> Self {
+        self.fixes.push(ProblemFix { title, safe, edits: Vec::new(), renames: Some(renaming) });
+        self
+    }
+
     fn add_fix(mut self, title: String, safe: bool, edits: Vec<ProblemEdit>) -> Self {
-        self.fixes.push(ProblemFix { title, safe, edits });
+        self.fixes.push(ProblemFix { title, safe, edits, renames: None });
         self
     }
 }

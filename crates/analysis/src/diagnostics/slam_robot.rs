@@ -1,6 +1,5 @@
 //! `slam-robot`: only two-wheeled robots can slam.
 
-use pydslrep_kinematics::Drive;
 use pydslrep_syntax::ast::{ActionKind, Entity};
 
 use super::context::Context;
@@ -64,7 +63,7 @@ environment maze has { rover } robots with { explore } moves",
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
     let Some((id, robot)) = movement.robot.as_ref().and_then(|name| context.robot(name)) else { return };
-    let Some(drive) = context.drive(id).filter(|drive| *drive != Drive::TwoWheel) else { return };
+    let Some(drive) = context.drive(id).filter(|drive| !drive.row().explores) else { return };
     let Some(name) = &robot.name else { return };
     for action in movement.actions.iter().filter(|action| action.kind == ActionKind::Slam) {
         problems.push(

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use pydslrep_syntax::ast::{DriveWord, Entity, Name, Robot};
+use pydslrep_syntax::ast::{Entity, Name, Robot};
 use pydslrep_syntax::{EntityKind, SyntaxError, SyntaxErrorKind, escape};
 use pydslrep_text::closest_of_any_order;
 use smol_str::SmolStr;
@@ -140,7 +140,8 @@ fn wheel(context: &Context<'_>, robot: &Robot, name: &str) -> String {
     let others = robot.wheels.iter().flat_map(|list| &list.names).filter_map(|other| context.wheel(other));
     let others: Vec<_> = others.map(|(_, wheel)| wheel).collect();
     let drive = robot.drive.and_then(|clause| clause.word);
-    let mecanum = others.first().map_or(drive == Some(DriveWord::Fwh), |wheel| wheel.mecanum);
+    let by_type = drive.is_some_and(|drive| drive.row().mecanum);
+    let mecanum = others.first().map_or(by_type, |wheel| wheel.mecanum);
     let radius = others
         .iter()
         .filter_map(|wheel| wheel.radius.as_ref()?.value)
@@ -174,6 +175,7 @@ mod tests {
             &expect![[r#"
                 error[syntax-error] 2:8 "left" `left` is a word of the language, so a sensor cannot be called that
                   help: write `^left` to use it as a name, or choose another name
+                  suggestion: rename it to `left_sensor` -> sensor left_sensor
                   fix: write `^left` -> sensor ^left
                 error[syntax-error] 3:29 "left" expected the name of a wheel, found `left`
                   help: `left` is a word of the language; only a name can stand here

@@ -1,7 +1,7 @@
 //! `wheel-count`: a type of robot has a certain number of wheels.
 
 use pydslrep_syntax::Span;
-use pydslrep_syntax::ast::{DriveWord, Entity, References, Robot};
+use pydslrep_syntax::ast::{Drive, Entity, References, Robot};
 
 use super::context::Context;
 use super::problem::Problem;
@@ -43,7 +43,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         return;
     }
     let count = list.names.len();
-    if drive.map_or(count != 2 && count != 4, |drive| count != drive.wheel_count()) {
+    if drive.map_or(!Drive::wheel_counts().contains(&count), |drive| count != drive.wheel_count()) {
         problems.push(problem(context, robot, list, drive));
     }
 }
@@ -54,32 +54,46 @@ fn understood(context: &Context<'_>, list: &References) -> bool {
     is_written && !list.broken && !context.errors.iter().any(|error| list.span.touches(error.span.start))
 }
 
-fn problem(context: &Context<'_>, robot: &Robot, list: &References, drive: Option<DriveWord>) -> Problem {
+fn problem(context: &Context<'_>, robot: &Robot, list: &References, drive: Option<Drive>) -> Problem {
     let count = list.names.len();
-    let wanted = match drive {
-        Some(DriveWord::Tw) => "a two-wheel robot (`tw`) has 2 wheels",
-        Some(DriveWord::Fw) => "a four-wheel robot (`fw`) has 4 wheels",
-        Some(DriveWord::Fwh) => "a mecanum robot (`fwh`) has 4 wheels",
-        None => "a robot has 2 or 4 wheels",
+    let wanted = if let Some(drive) = drive {
+        format!("{} (`{}`) has {} wheels", drive.row().noun, drive.word(), drive.wheel_count())
+    } else {
+        let counts = Drive::wheel_counts().iter().map(usize::to_string).collect::<Vec<_>>();
+        format!("a robot has {} wheels", counts.join(" or "))
     };
     let lists = if count == 0 { "none".to_owned() } else { count.to_string() };
-    let problem = RULE
-        .problem(list.span, format!("{wanted}, but this list names {lists}"))
-        .help("list two wheels as left, right; or four as left front, left rear, right front, right rear");
+    let problem =
+        RULE.problem(list.span, format!("{wanted}, but this list names {lists}")).help(wheel_orders());
     match (robot.drive, fitting(context, list)) {
-        (Some(clause), Some(word)) => {
-            let edit = context.replace(clause.span, format!("type {}", word.spelling()));
-            problem.suggestion(format!("change the type to `{}`", word.spelling()), [edit])
+        (Some(clause), Some(drive)) => {
+            let edit = context.replace(clause.span, format!("type {}", drive.word()));
+            problem.suggestion(format!("change the type to `{}`", drive.word()), [edit])
         }
         _ => problem,
     }
 }
 
 /// The type that these wheels make, if all are known and of one kind.
-pub(super) fn fitting(context: &Context<'_>, list: &References) -> Option<DriveWord> {
+pub(super) fn fitting(context: &Context<'_>, list: &References) -> Option<Drive> {
     let kinds: Option<Vec<bool>> =
         list.names.iter().map(|name| context.wheel(name).map(|(_, wheel)| wheel.mecanum)).collect();
-    DriveWord::from_wheels(&kinds?)
+    Drive::from_wheels(&kinds?)
+}
+
+/// How to list wheels, by their number.
+pub(super) fn wheel_orders() -> String {
+    let types = Drive::wheel_counts().into_iter().filter_map(|count| Drive::with_wheels(count).next());
+    let orders = types.enumerate().map(|(index, drive)| {
+        let wheels = if index == 0 { " wheels" } else { "" };
+        format!("{}{wheels} as {}", in_words(drive.wheel_count()), drive.row().order())
+    });
+    format!("list {}", orders.collect::<Vec<_>>().join("; or "))
+}
+
+pub(super) fn in_words(count: usize) -> String {
+    const WORDS: [&str; 5] = ["no", "one", "two", "three", "four"];
+    WORDS.get(count).map_or_else(|| count.to_string(), |&word| word.to_owned())
 }
 
 /// Where the type is written or could be.

@@ -1,11 +1,11 @@
 //! `wheel-kind-mismatch`: the wheels are not of the kind that the robot's type drives on.
 
 use pydslrep_syntax::Span;
-use pydslrep_syntax::ast::{DriveWord, Entity, Name, Robot};
+use pydslrep_syntax::ast::{Drive, Entity, Name, Robot};
 
 use super::context::Context;
 use super::problem::Problem;
-use super::wheel_count::{fitting, type_place};
+use super::wheel_count::{fitting, in_words, type_place};
 use super::{Applicability, Page, Rule};
 use crate::Severity;
 
@@ -47,7 +47,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let drive = robot.drive.and_then(|clause| clause.word);
     let counts = match drive {
         Some(drive) => list.names.len() == drive.wheel_count(),
-        None => robot.drive.is_none() && matches!(list.names.len(), 2 | 4),
+        None => robot.drive.is_none() && Drive::wheel_counts().contains(&list.names.len()),
     };
     if !counts {
         return;
@@ -58,30 +58,39 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let count = list.names.len();
     let mecanum = known.iter().filter(|(_, mecanum)| *mecanum).count();
     let one_kind = mecanum == 0 || mecanum == known.len();
-    let wants_mecanum =
-        drive == Some(DriveWord::Fwh) || (drive.is_none() && count == 4 && one_kind && mecanum > 0);
+    // Without a type it follows from the wheels, if these are of one kind.
+    let wanted = drive.or_else(|| Drive::inferred(count, || one_kind && mecanum > 0));
+    let wants_mecanum = wanted.is_some_and(|drive| drive.row().mecanum);
     let Some((odd, _)) = known.iter().find(|(_, mecanum)| *mecanum != wants_mecanum) else { return };
     let place = type_place(robot).unwrap_or(odd.span);
-    let problem = match (drive, mecanum) {
-        (Some(DriveWord::Fw), 4) => all_mecanum(place),
-        _ => mixed(context, place, drive, count, odd),
+    let driven = drive.map(|drive| drive.driven(|| mecanum == count)).filter(|driven| Some(*driven) != drive);
+    let problem = match driven {
+        Some(driven) => all_mecanum(place, driven),
+        None => mixed(context, place, drive, wants_mecanum, count, odd),
     };
     let problem =
         problem.note("a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways");
     problems.push(with_type(context, robot, problem, fitting(context, list)));
 }
 
-fn all_mecanum(place: Span) -> Problem {
-    RULE.problem(place, "four `wheelH` make a mecanum robot, which is type `fwh`")
+fn all_mecanum(place: Span, driven: Drive) -> Problem {
+    let (count, noun, word) = (in_words(driven.wheel_count()), driven.row().noun, driven.word());
+    RULE.problem(place, format!("{count} `wheelH` make {noun}, which is type `{word}`"))
         .severity(Severity::Warning)
-        .help("write `type fwh`; that is how it will be driven")
+        .help(format!("write `type {word}`; that is how it will be driven"))
 }
 
-fn mixed(context: &Context<'_>, place: Span, drive: Option<DriveWord>, count: usize, odd: &Name) -> Problem {
-    let (wanted, other) =
-        if drive == Some(DriveWord::Fwh) { ("wheelH", "wheel") } else { ("wheel", "wheelH") };
+fn mixed(
+    context: &Context<'_>,
+    place: Span,
+    drive: Option<Drive>,
+    wants_mecanum: bool,
+    count: usize,
+    odd: &Name,
+) -> Problem {
+    let (wanted, other) = if wants_mecanum { ("wheelH", "wheel") } else { ("wheel", "wheelH") };
     let drives = match drive {
-        Some(word) => format!("a robot of type `{}` drives on `{wanted}`", word.spelling()),
+        Some(drive) => format!("a robot of type `{}` drives on `{wanted}`", drive.word()),
         None if count == 2 => format!("a robot with two wheels drives on `{wanted}`"),
         None => "a robot's four wheels must be of one kind".to_owned(),
     };
@@ -102,9 +111,9 @@ fn mixed(context: &Context<'_>, place: Span, drive: Option<DriveWord>, count: us
     }
 }
 
-fn with_type(context: &Context<'_>, robot: &Robot, problem: Problem, fitting: Option<DriveWord>) -> Problem {
-    let (Some(clause), Some(word)) = (robot.drive, fitting) else { return problem };
-    let spelling = word.spelling();
+fn with_type(context: &Context<'_>, robot: &Robot, problem: Problem, fitting: Option<Drive>) -> Problem {
+    let (Some(clause), Some(drive)) = (robot.drive, fitting) else { return problem };
+    let spelling = drive.word();
     problem.fix(
         format!("change the type to `{spelling}`"),
         [context.replace(clause.span, format!("type {spelling}"))],

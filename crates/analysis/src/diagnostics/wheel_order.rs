@@ -4,6 +4,7 @@ use pydslrep_syntax::ast::{Entity, Name};
 
 use super::context::Context;
 use super::problem::Problem;
+use super::wheel_count::wheel_orders;
 use super::{Applicability, Page, Rule};
 use crate::Severity;
 
@@ -33,9 +34,6 @@ wheel wheelR with radius 4.5
 robot rover with port 23000 has { wheelL wheelR } wheels",
 };
 
-const HELP: &str =
-    "list two wheels as left, right; or four as left front, left rear, right front, right rear";
-
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Robot(robot)) = context.tree else { return };
     let names = robot.wheels.as_ref().map_or(&[][..], |list| &list.names);
@@ -61,7 +59,7 @@ fn swapped(context: &Context<'_>, first: &Name, second: &Name) -> Problem {
     ];
     RULE.problem(first.span, format!("`{}` is in the place of the left wheel", first.text))
         .related(context.id, second.span, format!("and `{}` in the place of the right wheel", second.text))
-        .help(HELP)
+        .help(wheel_orders())
         .suggestion(format!("swap `{}` and `{}`", first.text, second.text), swap)
 }
 
@@ -71,7 +69,7 @@ fn alternating(context: &Context<'_>, first: &Name, second: &Name, names: &[Name
     let problem = RULE
         .problem(first.span, message)
         .related(context.id, second.span, format!("`{}` is here", second.text))
-        .help(HELP);
+        .help(wheel_orders());
     let has_right = |name: &Name| names.iter().any(|other| is_right_of(&other.text, &name.text));
     let has_left = |name: &Name| names.iter().any(|other| is_right_of(&name.text, &other.text));
     let lefts = names.iter().filter(|name| has_right(name) && !has_left(name));

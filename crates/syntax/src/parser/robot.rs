@@ -6,11 +6,11 @@ use super::slot::{
     Fault, NAME, NUMBER, declared_name, keyword, nothing_more, one_in, references, slot, take,
 };
 use super::{Extra, Input, Rule};
-use crate::ast::{DriveClause, DriveWord, Entity, Name, PortNumber, References, Robot};
+use crate::ast::{DriveClause, Entity, Name, PortNumber, References, Robot};
 use crate::{EntityKind, Expected, Span, TokenKind, TokenSet};
 
 const TYPE: TokenSet = TokenSet::of(&[TokenKind::Type]);
-const DRIVES: TokenSet = TokenSet::of(&[TokenKind::Tw, TokenKind::Fw, TokenKind::Fwh]);
+const DRIVES: TokenSet = TokenSet::of(&TokenKind::DRIVES);
 const WITH: TokenSet = TokenSet::of(&[TokenKind::With]);
 const PORT: TokenSet = TokenSet::of(&[TokenKind::Port]);
 const HAS: TokenSet = TokenSet::of(&[TokenKind::Has]);
@@ -60,14 +60,10 @@ fn drive<'s>(
     first: impl Parser<'s, Input<'s>, TokenKind, Extra<'s>> + Clone + 's,
     next: TokenSet,
 ) -> impl Parser<'s, Input<'s>, DriveClause, Extra<'s>> + Clone {
-    let word = choice((
-        just(TokenKind::Tw).to(DriveWord::Tw),
-        just(TokenKind::Fw).to(DriveWord::Fw),
-        just(TokenKind::Fwh).to(DriveWord::Fwh),
-    ));
+    let word = choice(TokenKind::DRIVES.map(|word| just(word).map(TokenKind::drive)));
     first
         .ignore_then(slot(word, DRIVES, next.or(PORT).or(NUMBER).or(TAIL)))
-        .map_with(|word, extra| DriveClause { word, span: extra.span(), before_name: false })
+        .map_with(|word, extra| DriveClause { word: word.flatten(), span: extra.span(), before_name: false })
         .boxed()
 }
 

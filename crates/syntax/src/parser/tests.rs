@@ -96,7 +96,7 @@ environment f with ip here has { r q } robots with { m m } moves"#,
             sensor s Some(Bumper)
             sensor t None
             ip here Some("127.0.0.1")
-            robot r Some(Tw) Some(Some(1)) {a b} -
+            robot r Some(TwoWheel) Some(Some(1)) {a b} -
             robot q None Some(None) {a b c d} {s t}
             movement m Some("r") [move turn turn turn slam]
             environment e Some("here") {r} -

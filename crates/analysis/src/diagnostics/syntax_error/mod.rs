@@ -1,9 +1,10 @@
 //! `syntax-error`: the text does not follow the grammar.
 //!
 //! [`words`] holds how what was expected is said, [`common_mistakes`] what people bring along from elsewhere, [`rewrite`] whole
-//! statements of that sort, [`repair`] how a fix is found: by trying what could be one.
+//! statements of that sort, [`glued`] words without a blank between them, [`repair`] how a fix is found: by trying what could be one.
 
 mod common_mistakes;
+mod glued;
 mod repair;
 mod rewrite;
 mod words;
@@ -14,7 +15,7 @@ use pydslrep_syntax::{EntityKind, Expected, Found, Span, SyntaxError, SyntaxErro
 pub(super) use self::rewrite::{Rewrite, find as rewrites};
 use self::words::{listed, shape, telling};
 use super::context::Context;
-use super::problem::{Brace, Problem};
+use super::problem::{Brace, Problem, Renaming};
 use super::{Applicability, Page, Rule};
 use crate::{Diagnostic, Resolution, Severity};
 
@@ -39,9 +40,14 @@ const PAGE: Page = Page {
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
-    let errors = context.errors.iter().filter(|error| !context.is_rewritten(error.span));
+    let glued = glued::find(context);
+    let explain_all = glued::explain_all(context, &glued);
+    let is_explained = |span: Span| explain_all || glued.iter().any(|glued| glued.explains(span));
+    let errors =
+        context.errors.iter().filter(|error| !context.is_rewritten(error.span) && !is_explained(error.span));
     let others = errors.filter_map(|error| problem(context, error));
     problems.extend(others.map(|problem| rewrite::with_fallback(context, problem)));
+    problems.extend(glued.iter().map(|glued| glued.problem(context)));
     problems.extend(context.rewrites.iter().filter_map(|rewrite| rewrite.problem(context)));
     problems.extend(late_import(context));
 }
@@ -59,7 +65,9 @@ fn problem(context: &Context<'_>, error: &SyntaxError) -> Option<Problem> {
         SyntaxErrorKind::Misplaced { written, to, inside } => misplaced(context, span, written, *to, *inside),
         SyntaxErrorKind::Unbraced { close, inside } => unbraced(context, span, *close, *inside),
         SyntaxErrorKind::Misspelt { written, keyword } => misspelt(context, span, written, *keyword),
-        SyntaxErrorKind::KeywordAsName { written, of } => keyword_as_name(context, span, written, *of),
+        SyntaxErrorKind::KeywordAsName { written, of } => {
+            return keyword_as_name(context, span, written, *of);
+        }
         SyntaxErrorKind::MalformedNumber { written } => malformed_number(context, span, written),
         SyntaxErrorKind::PortNotWhole { written } => RULE
             .problem(span, format!("a port is a whole number, and `{written}` is not"))
@@ -92,20 +100,41 @@ fn misspelt(context: &Context<'_>, span: Span, written: &str, keyword: TokenKind
     }
 }
 
-fn keyword_as_name(context: &Context<'_>, span: Span, written: &str, of: EntityKind) -> Problem {
-    let declared = context.tree.and_then(Entity::name).is_some_and(|name| name.span == span);
+/// `None` where it refers to a declaration that has the same mistake: there it is reported, for all uses.
+fn keyword_as_name(context: &Context<'_>, span: Span, written: &str, of: EntityKind) -> Option<Problem> {
+    let message = format!("`{written}` is a word of the language, so {} cannot be called that", of.a_noun());
+    let help = format!("write `^{written}` to use it as a name, or choose another name");
+    let problem = RULE.problem(span, message).help(help);
     let name = Name { text: written.into(), span };
-    if !declared && context.resolve(of, &name) == Resolution::Nothing {
-        return RULE
-            .problem(span, format!("expected the name of {}, found `{written}`", of.a_noun()))
-            .help(format!("`{written}` is a word of the language; only a name can stand here"));
+    if context.tree.and_then(Entity::name).is_some_and(|name| name.span == span) {
+        let renaming =
+            |text: String| Renaming { declared: context.id, kind: of, name: name.text.clone(), text };
+        let free = free_name(context, of, written);
+        let problem = problem.renaming(format!("rename it to `{free}`"), false, renaming(free));
+        return Some(problem.renaming(format!("write `^{written}`"), true, renaming(format!("^{written}"))));
     }
-    RULE.problem(
-        span,
-        format!("`{written}` is a word of the language, so {} cannot be called that", of.a_noun()),
-    )
-    .help(format!("write `^{written}` to use it as a name, or choose another name"))
-    .fix(format!("write `^{written}`"), [context.replace(Span::at(span.start), "^")])
+    match context.resolve(of, &name) {
+        Resolution::Nothing => Some(
+            RULE.problem(span, format!("expected the name of {}, found `{written}`", of.a_noun()))
+                .help(format!("`{written}` is a word of the language; only a name can stand here")),
+        ),
+        Resolution::To(declared) if context.name_of(declared).is_some_and(is_bare) => None,
+        _ => Some(problem.fix(format!("write `^{written}`"), [context.replace(Span::at(span.start), "^")])),
+    }
+}
+
+/// Whether a name is written without `^`.
+fn is_bare(name: &Name) -> bool {
+    name.span.len() as usize == name.text.len()
+}
+
+/// A name that says what it is called now and what it is, and that nobody of the kind has.
+fn free_name(context: &Context<'_>, kind: EntityKind, written: &str) -> String {
+    let stem =
+        if written == kind.noun() { format!("{written}_1") } else { format!("{written}_{}", kind.noun()) };
+    let numbered = (2_u32..).map(|number| format!("{stem}_{number}"));
+    let mut candidates = std::iter::once(stem.clone()).chain(numbered);
+    candidates.find(|candidate| !context.is_declared(kind, candidate)).unwrap_or_default()
 }
 
 fn malformed_number(context: &Context<'_>, span: Span, written: &str) -> Problem {
@@ -383,6 +412,35 @@ mod tests {
     }
 
     #[test]
+    fn a_word_of_the_language_as_a_name_is_one_problem() {
+        check(
+            "wheel a with radius 4 wheel b with radius 4\nsensor left\nsensor left_sensor\n\
+             robot r with port 1 has { a b } wheels with sensors { left }\n\
+             movement m of r { turn left until { left } }",
+            &expect![[r#"
+                error[syntax-error] 2:8 "left" `left` is a word of the language, so a sensor cannot be called that
+                  help: write `^left` to use it as a name, or choose another name
+                  suggestion: rename it to `left_sensor_2` -> sensor left_sensor_2 ⏎ robot r with port 1 has { a b } wheels with sensors { left_sensor_2 } ⏎ movement m of r { turn left until { left_sensor_2 } }
+                  fix: write `^left` -> sensor ^left ⏎ robot r with port 1 has { a b } wheels with sensors { ^left } ⏎ movement m of r { turn left until { ^left } }
+            "#]],
+        );
+        check(
+            "sensor ^left\nrobot r with port 1 has { a b } wheels with sensors { left }",
+            &expect![[r#"
+                error[unresolved-reference] 2:27 "a" there is no wheel called `a`
+                  help: declare it: `wheel NAME with radius CENTIMETRES`
+                  suggestion: declare the wheel `a` -> wheel a with radius 4.5
+                error[unresolved-reference] 2:29 "b" there is no wheel called `b`
+                  help: declare it: `wheel NAME with radius CENTIMETRES`
+                  suggestion: declare the wheel `b` -> wheel b with radius 4.5
+                error[syntax-error] 2:55 "left" `left` is a word of the language, so a sensor cannot be called that
+                  help: write `^left` to use it as a name, or choose another name
+                  fix: write `^left` -> robot r with port 1 has { a b } wheels with sensors { ^left }
+            "#]],
+        );
+    }
+
+    #[test]
     fn what_does_not_belong_is_shown() {
         check(
             "wheel a with radius 4.5 4.5",
@@ -402,10 +460,11 @@ mod tests {
         check(
             "wheel left with radius 4.5",
             &expect![[r#"
-            error[syntax-error] 1:7 "left" `left` is a word of the language, so a wheel cannot be called that
-              help: write `^left` to use it as a name, or choose another name
-              fix: write `^left` -> wheel ^left with radius 4.5
-        "#]],
+                error[syntax-error] 1:7 "left" `left` is a word of the language, so a wheel cannot be called that
+                  help: write `^left` to use it as a name, or choose another name
+                  suggestion: rename it to `left_wheel` -> wheel left_wheel with radius 4.5
+                  fix: write `^left` -> wheel ^left with radius 4.5
+            "#]],
         );
         check(
             &format!("{PARTS}robot r with port 1.5 has {{ a 7 b }} wheels with sensors {{ }}"),

@@ -21,7 +21,18 @@ pub(super) fn is_split(context: &Context<'_>, edits: &[ProblemEdit]) -> bool {
     entities_if_fixed(context, edits).is_some()
 }
 
+/// Whether nothing is wrong after the edits, which may also begin another entity.
+pub(super) fn has_no_errors(context: &Context<'_>, edits: &[ProblemEdit]) -> bool {
+    entities_and_errors(context, edits).is_some_and(|(_, errors)| errors == 0)
+}
+
 fn entities_if_fixed(context: &Context<'_>, edits: &[ProblemEdit]) -> Option<usize> {
+    let (entities, errors) = entities_and_errors(context, edits)?;
+    (errors < context.errors.len()).then_some(entities)
+}
+
+/// How many entities and errors there are after the edits; `None` where that is not tried.
+fn entities_and_errors(context: &Context<'_>, edits: &[ProblemEdit]) -> Option<(usize, usize)> {
     let end = context.tokens.last()?.1.end;
     if context.errors.len() > MOST_ERRORS || end > LONGEST {
         return None;
@@ -35,8 +46,8 @@ fn entities_if_fixed(context: &Context<'_>, edits: &[ProblemEdit]) -> Option<usi
         text.replace_range(range, &edit.text);
     }
     let pieces = parse(&text);
-    let errors: usize = pieces.iter().map(|(_, parse)| parse.errors.len()).sum();
-    (errors < context.errors.len()).then_some(pieces.len())
+    let errors = pieces.iter().map(|(_, parse)| parse.errors.len()).sum();
+    Some((pieces.len(), errors))
 }
 
 /// Offers to insert what is missing at `span`, where exactly one thing fixes it.

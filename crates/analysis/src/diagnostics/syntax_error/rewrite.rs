@@ -11,7 +11,7 @@ use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, KEYWORDS, Span, SyntaxErrorKind, Token, TokenKind, lex, parse};
 use pydslrep_text::is_similar;
 
-use super::{RULE, repair, words};
+use super::{RULE, glued, repair, words};
 use crate::diagnostics::context::Context;
 use crate::diagnostics::problem::Problem;
 
@@ -69,11 +69,16 @@ pub(crate) fn find(context: &Context<'_>) -> Vec<Rewrite> {
     if context.errors.is_empty() || end > repair::LONGEST {
         return Vec::new();
     }
-    match context.tree {
+    let mut found: Vec<Rewrite> = match context.tree {
         None | Some(Entity::Import(_)) => Vec::new(),
         Some(Entity::Movement(_)) => actions::find(context),
         Some(tree) => tree.kind().and_then(|kind| entities::find(context, kind)).into_iter().collect(),
+    };
+    if !found.is_empty() {
+        let glued = glued::find(context);
+        found.retain(|rewrite| !glued.iter().any(|glued| rewrite.reaches(glued.span())));
     }
+    found
 }
 
 /// A problem that has no fix that helps with that of the statement it is in.

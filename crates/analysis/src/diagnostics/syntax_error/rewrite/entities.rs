@@ -242,7 +242,7 @@ fn robot(words: &[Word], default_port: u16) -> Option<String> {
     for word in others {
         let slot = match word.token {
             TokenKind::With | TokenKind::Type | TokenKind::Port => continue,
-            TokenKind::Tw | TokenKind::Fw | TokenKind::Fwh => &mut drive,
+            token if token.drive().is_some() => &mut drive,
             TokenKind::Integer => &mut port,
             token if token.is_name() && name.is_none() => &mut name,
             _ if says_nothing(word) => continue,
