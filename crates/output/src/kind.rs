@@ -29,6 +29,8 @@ pub enum Kind {
     Figures,
     /// A picture, as SVG or PNG.
     Picture,
+    /// What happens in a run, as JSON lines.
+    Events,
 }
 
 impl Kind {
@@ -40,13 +42,14 @@ impl Kind {
             Self::Map => "a map",
             Self::Figures => "the result of a run",
             Self::Picture => "a picture by PyDSLRep",
+            Self::Events => "a file of events",
         }
     }
 
     /// Whether a file is of this kind, and as this program wrote it.
     pub(crate) fn inspect(self, path: &Path) -> Result<Origin, ReadError> {
         let content = match self {
-            Self::Trace | Self::Picture => read_start(path, START)?,
+            Self::Trace | Self::Picture | Self::Events => read_start(path, START)?,
             Self::Script | Self::Map | Self::Figures => match read_bytes(path, MAX_BYTES) {
                 Err(ReadError::TooLarge) => return Ok(Origin::Foreign),
                 read => read?,
@@ -59,16 +62,18 @@ impl Kind {
         let is_ours = match self {
             _ if content.is_empty() => true,
             Self::Script => return origin(content),
-            Self::Trace => {
-                let line = content.split(|byte| *byte == b'\n').next().unwrap_or_default();
-                has_keys(line, &["t", "robot", "x", "y", "theta"])
-            }
+            Self::Trace => has_keys(first_line(content), &["t", "robot", "x", "y", "theta"]),
+            Self::Events => has_keys(first_line(content), &["event"]),
             Self::Map => has_keys(content, &["environment", "nodes", "edges"]),
             Self::Figures => has_keys(content, &["environment", "complete", "simulated", "robots"]),
             Self::Picture => is_picture(content),
         };
         if is_ours { Origin::Generated } else { Origin::Foreign }
     }
+}
+
+fn first_line(content: &[u8]) -> &[u8] {
+    content.split(|byte| *byte == b'\n').next().unwrap_or_default()
 }
 
 fn has_keys(json: &[u8], keys: &[&str]) -> bool {
@@ -88,10 +93,11 @@ mod tests {
 
     #[test]
     fn each_kind_knows_its_own() {
-        let ours: [(Kind, &str); 4] = [
+        let ours: [(Kind, &str); 5] = [
             (Kind::Trace, "{\"t\": 0.05, \"robot\": \"r\", \"x\": 0, \"y\": 0, \"theta\": 0}\nand so on"),
             (Kind::Map, "{\"environment\": \"e\", \"nodes\": [], \"edges\": []}"),
             (Kind::Figures, "{\"environment\":\"e\",\"complete\":true,\"simulated\":1,\"robots\":[]}"),
+            (Kind::Events, "{\"event\": \"started\"}\n{\"event\": \"note\"}"),
             (Kind::Picture, "<svg><!-- Drawn by PyDSLRep --></svg>"),
         ];
         for (kind, content) in ours {

@@ -19,6 +19,7 @@ mod script;
 mod temporary;
 mod whole;
 
+use std::fs::File;
 use std::path::Path;
 
 pub use error::WriteError;
@@ -38,4 +39,13 @@ pub use whole::{write_file, write_new_folder};
 pub fn write_output(path: &Path, kind: Kind, content: &[u8]) -> Result<(), WriteError> {
     let place = place::free_place(path, kind)?;
     write_file(&place, content).map_err(|error| WriteError::unwritten(path, error))
+}
+
+/// Opens a file to write to while something runs, under its own name from the start: readers follow it.
+///
+/// # Errors
+/// If the path holds anything but an older one of its kind, or cannot be written.
+pub fn open_output(path: &Path, kind: Kind) -> Result<File, WriteError> {
+    let place = place::free_place(path, kind)?;
+    File::create(&place).map_err(|error| WriteError::unwritten(path, error))
 }

@@ -166,12 +166,14 @@ impl Moment<'_> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
     use std::f64::consts::FRAC_PI_2;
 
+    use proptest::prelude::*;
     use pydslrep_kinematics::{Action, Drive, RobotPlan, Run, motion, plan};
 
     use super::*;
-    use crate::{Obstacle, Robot, Wheel};
+    use crate::{Obstacle, Robot, Shape, Wheel};
 
     const AHEAD: Action = Action::Move { distance: 2.0, speed: 0.1 };
     const LEFT: Action = Action::Turn { angle: FRAC_PI_2 };
@@ -249,13 +251,168 @@ mod tests {
         assert!((met.pose.x - 0.7).abs() < 0.002, "{met:?}");
     }
 
+    /// Two robots whose paths cross at the origin, 1 m ahead of each.
+    fn crossing() -> Scene {
+        scene(&[Pose::new(-1.0, 0.0, 0.0), Pose::new(0.0, -1.0, FRAC_PI_2)], vec![])
+    }
+
     #[test]
-    fn nothing_is_reported_after_an_unknown_time() {
+    fn robots_do_not_collide_after_an_action_of_unknown_duration() {
+        // Where each robot is once the unknown action begins is not known, nor when others start after it.
+        for schedule in [
+            [&[(0, &[Action::Unknown, AHEAD][..]), (1, &[AHEAD])][..], &[]],
+            [&[(0, &[AHEAD]), (1, &[Action::Unknown, AHEAD])], &[]],
+            [&[(0, &[Action::Unknown])], &[(0, &[AHEAD]), (1, &[AHEAD])]],
+            [&[(0, &[Action::Unknown])], &[(1, &[AHEAD])]],
+        ] {
+            assert_eq!(found(&crossing(), &schedule), [], "{schedule:?}");
+        }
+        // A third robot's unknown action leaves the two where they are, but not when.
+        let mut scene = crossing();
+        scene.robots.push(Robot { start: Pose::new(5.0, 5.0, 0.0), ..scene.robots[0].clone() });
+        let before: &[(usize, &[Action])] = &[(2, &[Action::Unknown])];
+        assert_eq!(found(&scene, &[before, &[(0, &[AHEAD]), (1, &[AHEAD])]]), []);
+        let met = found(&scene, &[&[(0, &[AHEAD]), (1, &[AHEAD]), (2, &[Action::Unknown])]]);
+        assert!(met.len() == 1 && met[0].time.is_some(), "it delays nobody in its own group: {met:?}");
+    }
+
+    #[test]
+    fn robots_collide_before_an_action_of_unknown_duration() {
+        let met = found(&crossing(), &[&[(0, &[AHEAD, Action::Unknown]), (1, &[AHEAD])]]);
+        let [met] = met.as_slice() else { panic!("{met:?}") };
+        assert!(met.robot == 0 && met.with == Thing::Robot(1), "{met:?}");
+        assert!(met.time.is_some_and(|time| (time - 7.1).abs() < 0.05), "{met:?}");
+        // One that turns on the spot or explores from there may be anywhere when the other comes by.
+        let to_the_middle = Action::Move { distance: 1.0, speed: 0.1 };
+        let later = Action::Move { distance: 2.0, speed: 0.01 };
+        assert_eq!(found(&crossing(), &[&[(0, &[to_the_middle, Action::Unknown]), (1, &[later])]]), []);
+        assert_eq!(found(&crossing(), &[&[(0, &[to_the_middle]), (1, &[later])]]).len(), 1);
+    }
+
+    #[test]
+    fn an_obstacle_on_a_known_path_is_hit_at_an_unknown_time() {
         let wall = Obstacle::wall("w", (1.0, -1.0), (1.0, 1.0), 0.1);
-        let scene = scene(&[Pose::default(), Pose::new(0.0, -1.0, FRAC_PI_2)], vec![wall]);
-        assert_eq!(found(&scene, &[&[(0, &[Action::Unknown, AHEAD])], &[(1, &[AHEAD])]]), []);
-        // Its path is known, though not its times.
+        let scene = scene(&[Pose::default(), Pose::new(-5.0, -1.0, FRAC_PI_2)], vec![wall]);
         let met = found(&scene, &[&[(1, &[Action::Unknown])], &[(0, &[AHEAD])]]);
-        assert!(met.len() == 1 && met[0].time.is_none(), "{met:?}");
+        assert!(met.len() == 1 && met[0].time.is_none() && met[0].with == Thing::Obstacle(0), "{met:?}");
+        assert!((met[0].pose.x - 0.8).abs() < 0.001, "{met:?}");
+        assert_eq!(found(&scene, &[&[(0, &[Action::Unknown, AHEAD])]]), [], "nor is its path");
+    }
+
+    #[test]
+    fn a_bay_is_free_up_to_its_bottom() {
+        // A U that opens to the left, with 0.8 m between its arms: narrower than the hull of its corners is long.
+        let corners = [
+            (0.5, -0.6),
+            (2.0, -0.6),
+            (2.0, 0.6),
+            (0.5, 0.6),
+            (0.5, 0.4),
+            (1.8, 0.4),
+            (1.8, -0.4),
+            (0.5, -0.4),
+        ];
+        for corners in [corners.to_vec(), corners.into_iter().rev().collect()] {
+            let bay =
+                Obstacle { name: "u".to_owned(), pose: Pose::default(), shape: Shape::Polygon(corners) };
+            let scene = scene(&[Pose::default()], vec![bay]);
+            let met = found(&scene, &[&[(0, &[AHEAD])]]);
+            assert!(met.len() == 1 && (met[0].pose.x - 1.65).abs() < 0.001, "{met:?}");
+            let shorter = Action::Move { distance: 1.6, speed: 0.1 };
+            assert_eq!(found(&scene, &[&[(0, &[shorter])]]), []);
+            let across = Action::Move { distance: 1.0, speed: 0.1 };
+            let met = found(&scene, &[&[(0, &[across, LEFT, across])]]);
+            assert!(met.len() == 1 && (met[0].pose.y - 0.25).abs() < 0.001, "the arm: {met:?}");
+        }
+    }
+
+    prop_compose! {
+        fn actions()(moves in prop::collection::vec((0..3, -2.0..2.0, 0.05..0.5), 1..5)) -> Vec<Action> {
+            let action = |&(which, amount, speed): &(i32, f64, f64)| match which {
+                0 => Action::Turn { angle: amount },
+                _ => Action::Move { distance: amount, speed },
+            };
+            moves.iter().map(action).collect()
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(32))]
+
+        /// Against a look at the robots every few milliseconds: the same things are met, at the same time.
+        #[test]
+        fn collisions_are_those_that_a_close_look_finds(
+            first in actions(), second in actions(), together: bool,
+            x in -1.0..1.0, y in -1.0..1.0, theta in -3.0..3.0,
+        ) {
+            let corners = [(0.0, 0.0), (0.6, 0.0), (0.6, 0.5), (0.5, 0.5), (0.5, 0.1), (0.0, 0.1)];
+            let hook = Obstacle {
+                name: "hook".to_owned(),
+                pose: Pose::new(0.6, 0.7, theta),
+                shape: Shape::Polygon(corners.to_vec()),
+            };
+            let wall = Obstacle::wall("w", (-1.0, -0.9), (0.5, -1.2), 0.02);
+            let scene = scene(&[Pose::default(), Pose::new(x, y, theta)], vec![hook, wall]);
+            prop_assume!(scene.overlaps().is_empty());
+            let groups: Vec<Vec<(usize, &[Action])>> = if together {
+                vec![vec![(0, &first), (1, &second)]]
+            } else {
+                vec![vec![(0, &first)], vec![(1, &second)]]
+            };
+            let schedule: Vec<&[(usize, &[Action])]> = groups.iter().map(Vec::as_slice).collect();
+            let found = found(&scene, &schedule);
+
+            let robots: Vec<_> =
+                scene.robots.iter().map(|robot| RobotPlan { model: robot.model().unwrap(), start: robot.start }).collect();
+            let runs = |group: &Vec<(usize, &[Action])>| {
+                group.iter().map(|&(robot, actions)| Run { robot, actions: actions.to_vec() }).collect()
+            };
+            let plan = plan(&robots, &groups.iter().map(runs).collect::<Vec<Vec<Run>>>()).unwrap();
+            let (space, end, step) = (Space::of(&scene), plan.duration.unwrap(), 0.004);
+            // What is nearer than it moves in two steps may be met between them.
+            let doubt = 2.0 * step * 0.6;
+            let mut looked: BTreeMap<(usize, usize), (f64, f64)> = BTreeMap::new();
+            let mut time = 0.0;
+            while time < end + step {
+                let bodies: Vec<(Body, Pose)> = scene
+                    .robots
+                    .iter()
+                    .zip(&plan.robots)
+                    .map(|(robot, path)| (robot.body, pose_at(path, time)))
+                    .collect();
+                let mut see = |what: (usize, usize), distance: f64| {
+                    let (nearest, met) = looked.entry(what).or_insert((f64::INFINITY, f64::INFINITY));
+                    *nearest = nearest.min(distance);
+                    if distance < TOUCH + doubt {
+                        *met = met.min(time);
+                    }
+                };
+                for (robot, &(body, pose)) in bodies.iter().enumerate() {
+                    see((robot, 9), space.nearest(body, pose, 9.0).map_or(9.0, |near| near.distance));
+                }
+                see((0, 1), distance_between(bodies[0], bodies[1]));
+                time += step;
+            }
+            for (what, (nearest, met)) in looked {
+                let collision = found.iter().find(|collision| match collision.with {
+                    Thing::Obstacle(_) => what == (collision.robot, 9),
+                    Thing::Robot(_) => what.1 == 1,
+                });
+                match collision {
+                    None => prop_assert!(nearest >= TOUCH - 1e-9, "{what:?} meet at {nearest}, not found"),
+                    Some(collision) => {
+                        prop_assert!(nearest < TOUCH + doubt, "{what:?} are {nearest} apart: {collision:?}");
+                        let time = collision.time.unwrap();
+                        prop_assert!(time >= met - step, "{what:?} at {met}, not {time}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// The pose of a robot at a time, looked up leg by leg.
+    fn pose_at(path: &RobotPath, time: f64) -> Pose {
+        let mut begun = path.legs.iter().filter(|leg| leg.start.is_some_and(|start| start <= time));
+        begun.next_back().map_or(path.start, |leg| leg.pose_at(time - leg.start.unwrap()))
     }
 }

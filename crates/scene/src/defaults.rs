@@ -1,4 +1,5 @@
-//! The defaults of a scene. Those for the motion of robots are in [`pydslrep_kinematics::motion`].
+//! The defaults of a scene. Those for the motion of robots are in [`pydslrep_kinematics::motion`], those of a type of robot in
+//! its row ([`Drive::row`]).
 
 use pydslrep_kinematics::{Drive, Geometry, Pose};
 
@@ -7,8 +8,11 @@ use crate::{Body, SensorKind};
 /// Distances between wheels.
 pub const GEOMETRY: Geometry = Geometry { track: 0.30, wheelbase: 0.25 };
 
-/// Opening angle of a proximity sensor's cone, 20° in radians.
-pub const CONE: f64 = 20.0 * std::f64::consts::PI / 180.0;
+/// Opening angle of a proximity sensor's cone, radians.
+pub const CONE: f64 = CONE_DEGREES * std::f64::consts::PI / 180.0;
+
+/// The same in degrees.
+pub const CONE_DEGREES: f64 = 20.0;
 
 /// The greatest acceleration of a wheel's rim, metres per second squared: twice
 /// [`pydslrep_kinematics::motion::RIM_ACCELERATION`], which leaves controllers room to correct.
@@ -33,21 +37,10 @@ pub fn start(index: usize) -> Pose {
     Pose::new(0.0, 0.0 - f64::from(row), 0.0)
 }
 
-/// The body of a robot with this wheel layout.
+/// The body of a robot of this type.
 pub fn body(drive: Drive) -> Body {
-    match drive {
-        Drive::TwoWheel => Body { length: 0.30, width: 0.30 },
-        Drive::FourWheel | Drive::FourMecanum => Body { length: 0.36, width: 0.30 },
-    }
-}
-
-/// The friction of wheels across their rolling direction, as a share of that along it: the same for rubber tyres, next to
-/// nothing for the rollers of mecanum wheels.
-pub fn lateral_friction(drive: Drive) -> f64 {
-    match drive {
-        Drive::TwoWheel | Drive::FourWheel => 1.0,
-        Drive::FourMecanum => 0.05,
-    }
+    let (length, width) = drive.row().body;
+    Body { length, width }
 }
 
 /// The range of a sensor of this kind, metres.

@@ -117,6 +117,22 @@ mod tests {
     }
 
     #[test]
+    fn the_first_on_a_side_is_foremost_and_the_first_behind_is_on_the_left() {
+        let body = Body { length: 0.4, width: 0.3 };
+        for (side, first, last) in [
+            ("l", (0.16, 0.15), (-0.16, 0.15)),
+            ("r", (0.16, -0.15), (-0.16, -0.15)),
+            ("b", (-0.2, 0.12), (-0.2, -0.12)),
+        ] {
+            let names = [1, 2].map(|number| (format!("{side}{number}"), SensorKind::Distance));
+            let mounts = mounts_by_name(&names, body);
+            for (mount, (x, y)) in mounts.iter().zip([first, last]) {
+                assert!((mount.pose.x - x).abs() < 1e-12 && (mount.pose.y - y).abs() < 1e-12, "{mounts:?}");
+            }
+        }
+    }
+
+    #[test]
     fn two_on_a_side_are_apart() {
         let sensors = [("l1".to_owned(), SensorKind::Bumper), ("l2".to_owned(), SensorKind::Distance)];
         let mounts = mounts_by_name(&sensors, Body { length: 0.3, width: 0.3 });

@@ -56,3 +56,39 @@ impl Obstacle {
         placed.map(|corner| (corner.x, corner.y)).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+
+    #[test]
+    fn outlines_go_once_around() {
+        let pose = Pose::new(1.0, 2.0, FRAC_PI_2);
+        let outline = |shape| Obstacle { name: String::new(), pose, shape }.outline(4);
+        let cases = [
+            (Shape::Cylinder { radius: 0.5 }, [(1.0, 2.5), (0.5, 2.0), (1.0, 1.5), (1.5, 2.0)]),
+            (Shape::Box(Body { length: 2.0, width: 1.0 }), [(0.5, 3.0), (0.5, 1.0), (1.5, 1.0), (1.5, 3.0)]),
+            (
+                Shape::Polygon(vec![(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.2, 0.3)]),
+                [(1.0, 2.0), (1.0, 3.0), (0.0, 3.0), (0.7, 2.2)],
+            ),
+        ];
+        for (shape, expected) in cases {
+            let found = outline(shape);
+            let is_near = |(a, b): (&(f64, f64), &(f64, f64))| (a.0 - b.0).hypot(a.1 - b.1) < 1e-12;
+            assert!(found.len() == 4 && found.iter().zip(&expected).all(is_near), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn a_wall_is_between_its_ends() {
+        let wall = Obstacle::wall("w", (1.0, 1.0), (1.0, 4.0), 0.2);
+        let corners = wall.outline(0);
+        for corner in [(0.9, 1.0), (1.1, 1.0), (0.9, 4.0), (1.1, 4.0)] {
+            let is_there = corners.iter().any(|at| (at.0 - corner.0).hypot(at.1 - corner.1) < 1e-12);
+            assert!(is_there, "{corners:?}");
+        }
+    }
+}

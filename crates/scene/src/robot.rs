@@ -11,9 +11,9 @@ use crate::{Mount, defaults, mounts_by_name};
 pub struct Robot {
     /// Its name, also for clients of the remote API.
     pub name: String,
-    /// Wheel layout.
+    /// Its type.
     pub drive: Drive,
-    /// As many as `drive` asks for, in its order.
+    /// As many as its type has, in its order.
     pub wheels: Vec<Wheel>,
     /// Sensors with their mounts.
     pub sensors: Vec<Sensor>,
@@ -155,7 +155,7 @@ impl Robot {
             start: Pose::default(),
             body,
             geometry: defaults::GEOMETRY,
-            lateral_friction: defaults::lateral_friction(drive),
+            lateral_friction: drive.row().lateral_friction,
             motor_acceleration: defaults::MOTOR_ACCELERATION,
             motor_speed: f64::INFINITY,
             frame: Frame::default(),

@@ -321,6 +321,21 @@ mod tests {
     }
 
     #[test]
+    fn of_equally_near_obstacles_the_first_is_told() {
+        let walls = [1.0, -1.0].map(|x| Obstacle::wall("w", (x, -1.0), (x, 1.0), 0.1));
+        let near = space(walls.to_vec()).nearest(BODY, Pose::default(), 9.0).unwrap();
+        assert!(near.obstacle == 0 && close(near.distance, 0.75), "{near:?}");
+    }
+
+    #[test]
+    fn the_bound_counts_from_the_edge_of_the_body() {
+        let big = Body { length: 2.0, width: 2.0 };
+        let post = obstacle(Pose::new(1.5, 0.0, 0.0), Shape::Cylinder { radius: 0.1 });
+        let near = space(vec![post]).nearest(big, Pose::default(), 0.41);
+        assert!(near.is_some_and(|near| close(near.distance, 0.4)), "{near:?}");
+    }
+
+    #[test]
     fn the_nearest_of_several() {
         let walls = [3.0, 1.0, 2.0].map(|x| Obstacle::wall("w", (x, -1.0), (x, 1.0), 0.1));
         let near = space(walls.to_vec()).nearest(BODY, Pose::default(), 9.0).unwrap();
@@ -338,10 +353,11 @@ mod tests {
         assert_eq!(seen.what, Thing::Obstacle(0));
         assert_eq!(space.sight(Pose::default(), &looking(0.7, 20.0), &[]), None);
         assert_eq!(space.sight(Pose::new(0.0, 0.0, PI), &looking(1.0, 20.0), &[]), None);
-        // Turned by 30°, only the cone's edge sees it, under 20°.
-        let seen = space.sight(Pose::new(0.8, 0.0, 30_f64.to_radians()), &looking(1.0, 20.0), &[]);
-        let x = 0.8 + 0.2 * 30_f64.to_radians().cos();
-        assert!(seen.is_none() || x > 0.95, "{seen:?}");
+        // Turned by 30°, only the cone's right edge meets it, under 20°.
+        let seen = space.sight(Pose::new(0.5, 0.0, 30_f64.to_radians()), &looking(1.0, 20.0), &[]).unwrap();
+        let (x, edge) = (0.5 + 0.2 * 30_f64.to_radians().cos(), 20_f64.to_radians());
+        assert!(close(seen.distance, (0.95 - x) / edge.cos()) && close(seen.point.0, 0.95), "{seen:?}");
+        assert!(close(seen.normal.0, -1.0) && close(seen.normal.1, 0.0), "{seen:?}");
         let robot = (3, BODY, Pose::new(0.7, 0.0, 0.0));
         let seen = space.sight(Pose::default(), &looking(1.0, 20.0), &[robot]).unwrap();
         assert!(seen.what == Thing::Robot(3) && close(seen.distance, 0.3), "{seen:?}");
@@ -354,35 +370,166 @@ mod tests {
         assert!((seen.distance - 0.7_f64.hypot(0.05) + 0.001).abs() < 1e-9, "{seen:?}");
     }
 
-    proptest! {
-        /// The cone against many rays: never further than the nearest ray says, and not much nearer either.
-        #[test]
-        fn a_cone_sees_what_its_rays_see(
-            x in -1.5..1.5, y in -1.5..1.5, theta in -3.0..3.0,
-            cone in 5.0..120.0, which in 0..3,
-        ) {
+    /// The outline of a shape on the floor, without any triangle: corner after corner, or a circle.
+    enum Outline {
+        Corners(Vec<(f64, f64)>),
+        Circle { centre: (f64, f64), radius: f64 },
+    }
+
+    impl Outline {
+        fn of(obstacle: &Obstacle) -> Self {
+            let on_floor = |x, y| {
+                let point = obstacle.pose.compose(&Pose::new(x, y, 0.0));
+                (point.x, point.y)
+            };
+            match &obstacle.shape {
+                Shape::Box(Body { length, width }) => {
+                    let (x, y) = (length / 2.0, width / 2.0);
+                    Self::Corners([(x, y), (-x, y), (-x, -y), (x, -y)].map(|(x, y)| on_floor(x, y)).to_vec())
+                }
+                Shape::Cylinder { radius } => Self::Circle { centre: on_floor(0.0, 0.0), radius: *radius },
+                Shape::Polygon(corners) => {
+                    Self::Corners(corners.iter().map(|&(x, y)| on_floor(x, y)).collect())
+                }
+            }
+        }
+
+        fn edges(corners: &[(f64, f64)]) -> impl Iterator<Item = ((f64, f64), (f64, f64))> {
+            corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
+        }
+
+        /// Whether a point is inside: a line from it to the right crosses an odd number of edges.
+        fn holds(&self, (x, y): (f64, f64)) -> bool {
+            match self {
+                Self::Circle { centre, radius } => (x - centre.0).hypot(y - centre.1) <= *radius,
+                Self::Corners(corners) => {
+                    let crosses = |(a, b): &((f64, f64), (f64, f64))| {
+                        (a.1 > y) != (b.1 > y) && x < a.0 + (y - a.1) / (b.1 - a.1) * (b.0 - a.0)
+                    };
+                    Self::edges(corners).filter(crosses).count() % 2 == 1
+                }
+            }
+        }
+
+        /// How far a ray goes before it meets the outline.
+        fn ray(&self, from: (f64, f64), angle: f64) -> Option<f64> {
+            let (dx, dy) = (angle.cos(), angle.sin());
+            match self {
+                Self::Circle { centre, radius } => {
+                    let (cx, cy) = (centre.0 - from.0, centre.1 - from.1);
+                    let (along, across) = (cx * dx + cy * dy, cx * dy - cy * dx);
+                    let half = (radius * radius - across * across).sqrt();
+                    [along - half, along + half].into_iter().find(|way| *way >= 0.0)
+                }
+                Self::Corners(corners) => {
+                    let meets = |(a, b): ((f64, f64), (f64, f64))| {
+                        let (ax, ay, ex, ey) = (a.0 - from.0, a.1 - from.1, b.0 - a.0, b.1 - a.1);
+                        let cross = dx * ey - dy * ex;
+                        let (way, share) = ((ax * ey - ay * ex) / cross, (ax * dy - ay * dx) / cross);
+                        (way >= 0.0 && (0.0..=1.0).contains(&share)).then_some(way)
+                    };
+                    Self::edges(corners).filter_map(meets).min_by(f64::total_cmp)
+                }
+            }
+        }
+
+        /// The points of each edge that can be the nearest to a point: the foot of the perpendicular, or a corner.
+        fn nearest(&self, (x, y): (f64, f64)) -> Vec<(f64, f64)> {
+            match self {
+                Self::Circle { centre, radius } => {
+                    let away = (x - centre.0).hypot(y - centre.1);
+                    vec![(
+                        centre.0 + (x - centre.0) * radius / away,
+                        centre.1 + (y - centre.1) * radius / away,
+                    )]
+                }
+                Self::Corners(corners) => {
+                    let foot = |(a, b): ((f64, f64), (f64, f64))| {
+                        let (ex, ey) = (b.0 - a.0, b.1 - a.1);
+                        let share = ((x - a.0) * ex + (y - a.1) * ey) / (ex * ex + ey * ey);
+                        (a.0 + share.clamp(0.0, 1.0) * ex, a.1 + share.clamp(0.0, 1.0) * ey)
+                    };
+                    Self::edges(corners).map(foot).collect()
+                }
+            }
+        }
+
+        /// The distance from a point outside to the outline.
+        fn distance(&self, (x, y): (f64, f64)) -> f64 {
+            let ways = self.nearest((x, y)).into_iter().map(|point| (point.0 - x).hypot(point.1 - y));
+            ways.fold(f64::INFINITY, f64::min)
+        }
+
+        /// The distance to the nearest point of the outline in a cone: on one of the cone's edges, or between them.
+        fn distance_in_cone(&self, (x, y): (f64, f64), heading: f64, cone: f64) -> f64 {
+            let on_edges = [-0.5, 0.5].into_iter().filter_map(|side| self.ray((x, y), heading + side * cone));
+            let between = self.nearest((x, y)).into_iter().filter(|point| {
+                let bearing = (point.1 - y).atan2(point.0 - x) - heading;
+                pydslrep_kinematics::angle_between(0.0, bearing).abs() <= cone / 2.0
+            });
+            let ways = between.map(|point| (point.0 - x).hypot(point.1 - y));
+            on_edges.chain(ways).fold(f64::INFINITY, f64::min)
+        }
+    }
+
+    prop_compose! {
+        /// A box, a cylinder, a U, or a star with notches of any depth: somewhere near the origin.
+        fn obstacles()(
+            x in -0.5..0.5, y in -0.5..0.5, theta in -3.0..3.0, which in 0..4,
+            spokes in prop::collection::vec(0.1..0.8, 3..12),
+        ) -> Obstacle {
             let shape = match which {
                 0 => Shape::Box(Body { length: 0.7, width: 0.3 }),
                 1 => Shape::Cylinder { radius: 0.3 },
-                _ => u_shape(),
-            };
-            let space = space(vec![obstacle(Pose::new(0.1, -0.2, 0.4), shape)]);
-            let pose = Pose::new(x, y, theta);
-            let mount = Mount { pose: Pose::default(), range: 2.0, cone: f64::to_radians(cone) };
-            let seen = space.sight(pose, &mount, &[]).map(|seen| seen.distance);
-            let rays = 400;
-            let by_ray = (0..=rays).filter_map(|ray| {
-                let bearing = mount.cone * (f64::from(ray) / f64::from(rays) - 0.5);
-                let thin = Mount { pose: Pose::new(0.0, 0.0, bearing), cone: 0.0, ..mount };
-                space.sight(pose, &thin, &[]).map(|seen| seen.distance)
-            });
-            match (seen, by_ray.min_by(f64::total_cmp)) {
-                (Some(seen), Some(by_ray)) => {
-                    prop_assert!(seen <= by_ray + 1e-9 && seen >= by_ray - 0.02, "{seen} {by_ray}");
+                2 => u_shape(),
+                _ => {
+                    let apart = 2.0 * PI / f64::from(u32::try_from(spokes.len()).unwrap());
+                    let angles = (0_u32..).map(|spoke| f64::from(spoke) * apart);
+                    let corner = |(angle, spoke): (f64, &f64)| (spoke * angle.cos(), spoke * angle.sin());
+                    Shape::Polygon(angles.zip(&spokes).map(corner).collect())
                 }
-                (None, by_ray) => prop_assert_eq!(by_ray, None),
-                (Some(_), None) => {} // between two rays
+            };
+            obstacle(Pose::new(x, y, theta), shape)
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(1_000))]
+
+        /// What a sensor sees is the nearest point of the outline in its cone.
+        #[test]
+        fn a_cone_sees_the_nearest_point_of_the_outline_in_it(
+            obstacle in obstacles(), x in -1.5..1.5, y in -1.5..1.5, theta in -3.0..3.0, cone in 5.0..120.0,
+        ) {
+            let outline = Outline::of(&obstacle);
+            let mount = Mount { pose: Pose::default(), range: 2.0, cone: f64::to_radians(cone) };
+            let seen = space(vec![obstacle]).sight(Pose::new(x, y, theta), &mount, &[]);
+            if outline.holds((x, y)) {
+                prop_assert_eq!(seen.map(|seen| seen.distance), Some(0.0));
+                return Ok(());
             }
+            let distance = outline.distance_in_cone((x, y), theta, mount.cone);
+            match seen {
+                None => prop_assert!(distance > mount.range, "{distance}"),
+                Some(seen) => {
+                    prop_assert!((seen.distance - distance).abs() < 1e-9, "{seen:?} {distance}");
+                    let at = (seen.point.0 - x).hypot(seen.point.1 - y);
+                    prop_assert!(close(at, distance) && outline.distance(seen.point) < 1e-9, "{seen:?}");
+                    let (nx, ny) = seen.normal;
+                    let towards = nx * (x - seen.point.0) + ny * (y - seen.point.1);
+                    prop_assert!(close(nx.hypot(ny), 1.0) && towards > 0.0, "{seen:?}");
+                }
+            }
+        }
+
+        /// A point is as far from an obstacle as from its outline: nothing of a polygon is lost when it is cut.
+        #[test]
+        fn a_point_is_as_far_away_as_the_outline(obstacle in obstacles(), x in -1.5..1.5, y in -1.5..1.5) {
+            let outline = Outline::of(&obstacle);
+            let point = Body { length: 1e-9, width: 1e-9 };
+            let near = space(vec![obstacle]).nearest(point, Pose::new(x, y, 0.0), 9.0).unwrap();
+            let distance = if outline.holds((x, y)) { 0.0 } else { outline.distance((x, y)) };
+            prop_assert!((near.distance - distance).abs() < 1e-6, "{} {distance}", near.distance);
         }
     }
 }

@@ -75,6 +75,19 @@ impl Workspace {
         self.database.definitions(first, EntityKind::Environment, &name.into()).first().copied()
     }
 
+    /// Whether several programs have the environment of a scene.
+    pub fn is_shared_scene(&self, scene: &str) -> bool {
+        self.scenes.of(scene).len() > 1
+    }
+
+    /// The environments of a scene: of each program beside it that has one of its name.
+    pub fn environments_of_scene(&self, scene: &str) -> Vec<EntityId> {
+        let Some(name) = environment_name(scene).map(Into::into) else { return Vec::new() };
+        let programs = self.scenes.of(scene).into_iter();
+        let first = |file| self.database.definitions(file, EntityKind::Environment, &name).first().copied();
+        programs.filter_map(first).collect()
+    }
+
     /// The keys of the scenes that were found for environments of a program.
     pub(crate) fn scenes_of(&self, program: FileId) -> Vec<String> {
         let scenes = self.database.scenes().filter(|(file, ..)| *file == program);

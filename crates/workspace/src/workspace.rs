@@ -224,6 +224,11 @@ impl Workspace {
         self.follow_scenes();
     }
 
+    /// Whether there is a file with a key, readable or not.
+    pub fn is_file(&self, key: &str) -> bool {
+        self.files.is_file(&path_of(key))
+    }
+
     /// The folders of the workspace, as keys with `/` at their end.
     pub fn folders(&self) -> &[String] {
         &self.folders

@@ -65,7 +65,7 @@ mod tests {
     use pydslrep_kinematics::Drive;
 
     use super::*;
-    use crate::{Robot, Scene, SensorKind, Wheel};
+    use crate::{Robot, Scene, SensorKind, Wheel, defaults};
 
     #[test]
     fn the_manual_and_the_schema_are_up_to_date() {
@@ -73,6 +73,32 @@ mod tests {
         expect_file![root.join("docs/scenes.md")].assert_eq(&manual());
         let schema = serde_json::to_string_pretty(&json_schema()).unwrap() + "\n";
         expect_file![root.join("editors/scene.schema.json")].assert_eq(&schema);
+    }
+
+    #[test]
+    fn the_documented_defaults_are_those_that_are_used() {
+        let documented = |table: &str, key: &str| {
+            let table = SCHEMA.tables.iter().find(|each| each.name == table).unwrap();
+            table.key(key).unwrap().default
+        };
+        let robot = |key| documented("robots.NAME", key);
+        assert_eq!(robot("track"), format!("`{:.2}`", defaults::GEOMETRY.track));
+        assert_eq!(robot("wheelbase"), format!("`{:.2}`", defaults::GEOMETRY.wheelbase));
+        assert_eq!(robot("rim-acceleration"), format!("`{:?}`", defaults::MOTOR_ACCELERATION));
+        let [two, four, mecanum] = Drive::ALL.map(Drive::row);
+        let body = |(length, width): (f64, f64)| format!("`[{length:.2}, {width:.2}]`");
+        assert_eq!(
+            robot("body"),
+            format!("{} with two wheels, {} with four", body(two.body), body(four.body))
+        );
+        assert_eq!(four.body, mecanum.body);
+        let grip = format!("`{}`, for mecanum wheels `{}`", two.lateral_friction, mecanum.lateral_friction);
+        assert_eq!(robot("grip"), grip);
+        assert_eq!(two.lateral_friction.to_string(), four.lateral_friction.to_string());
+        let sensor = |key| documented("robots.NAME.sensors.NAME", key);
+        let [range, reach] = [SensorKind::Distance, SensorKind::Bumper].map(defaults::range);
+        assert_eq!(sensor("range"), format!("`{range:?}`, for a bumper `{reach:?}`"));
+        assert_eq!(sensor("cone"), format!("`{}`", defaults::CONE_DEGREES));
     }
 
     #[test]

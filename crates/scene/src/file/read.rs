@@ -413,6 +413,36 @@ mod tests {
     }
 
     #[test]
+    fn walls_are_around_the_floor() {
+        for (text, [left, bottom, right, top]) in [
+            ("[world]\nsize = [4, 3]\n", [-2.0, -1.5, 2.0, 1.5]),
+            ("[world]\nsize = [4, 3]\ncorner = [1, -2]\n", [1.0, -2.0, 5.0, 1.0]),
+        ] {
+            let space = crate::Space::of(&read(text, Scene::default()).0);
+            let point = Body { length: 1e-9, width: 1e-9 };
+            let distance =
+                |x, y| space.nearest(point, Pose::new(x, y, 0.0), 9.0).map_or(9.0, |near| near.distance);
+            let (x, y) = (f64::midpoint(left, right), f64::midpoint(bottom, top));
+            for (x, y) in [(left + 0.4, y), (right - 0.4, y), (x, bottom + 0.4), (x, top - 0.4)] {
+                assert!((distance(x, y) - 0.4).abs() < 1e-6, "{text}: ({x}, {y})");
+            }
+            for (x, y) in [(left, bottom), (left, top), (right, bottom), (right, top)] {
+                let (out_x, out_y) =
+                    (x + 0.05 * (x - left - right + x).signum(), y + 0.05 * (y - bottom - top + y).signum());
+                assert!(distance(out_x, out_y) == 0.0, "{text}: a gap at ({x}, {y})");
+            }
+        }
+    }
+
+    #[test]
+    fn the_heading_of_a_box_is_in_degrees() {
+        let (scene, problems) =
+            read("[[box]]\nat = [1, 2]\nsize = [2, 1]\nheading = -90\n", Scene::default());
+        let heading = scene.obstacles[0].pose.theta;
+        assert!(problems.is_empty() && (heading + std::f64::consts::FRAC_PI_2).abs() < 1e-12, "{heading}");
+    }
+
+    #[test]
     fn nobody_starts_in_something() {
         check(
             "[[box]]\nat = [0.2, 0.1]\nsize = [1, 1]\n[robots.robot_2]\nstart = [9, 9]\n",
