@@ -25,8 +25,10 @@ const MAX_ITEMS: usize = 200;
 /// What triggered a completion request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CompletionTrigger {
-    /// An explicit request, or a letter of a word: editors do not distinguish these.
+    /// The user has asked for the list.
     Invoked,
+    /// A letter of a word: the list opens automatically, or is open already.
+    Letter,
     /// Punctuation or a space. A list opens automatically only where one of its items must come next.
     Character(char),
 }
@@ -130,16 +132,18 @@ pub fn completions(
 ) -> Vec<Completion> {
     if let Some(string) = paths::string_at(database, position) {
         let items = match trigger {
-            CompletionTrigger::Invoked | CompletionTrigger::Character('"' | '/') => {
-                paths::paths(database, position.file, &string)
-            }
+            CompletionTrigger::Invoked
+            | CompletionTrigger::Letter
+            | CompletionTrigger::Character('"' | '/') => paths::paths(database, position.file, &string),
             CompletionTrigger::Character(_) => Vec::new(),
         };
-        return filter_at(database, position, items);
+        return filter_at(database, position, items, trigger);
     }
     let Some(context) = CursorContext::find(database, position, speed) else { return Vec::new() };
+    let expected = expected_after(&context.text, &context.before);
     let opens = match trigger {
         CompletionTrigger::Invoked => true,
+        CompletionTrigger::Letter => !context.is_whole_name(&expected),
         CompletionTrigger::Character('^') => context.is_escaped,
         CompletionTrigger::Character(' ') => context.needs_name(),
         CompletionTrigger::Character(_) => false,
@@ -147,14 +151,13 @@ pub fn completions(
     if !opens {
         return Vec::new();
     }
-    let expected = expected_after(&context.text, &context.before);
     let may_end =
         expected.iter().any(|expected| matches!(expected, Expected::Action | Expected::Declaration));
     let mut items: Vec<Completion> = Vec::new();
     for expected in expected {
         let is_clause = may_end && matches!(expected, Expected::Word(word) if word != TokenKind::CloseBrace);
         let is_name = matches!(expected, Expected::ReferenceTo(_));
-        if is_name || trigger == CompletionTrigger::Invoked {
+        if is_name || matches!(trigger, CompletionTrigger::Invoked | CompletionTrigger::Letter) {
             let mut found = items_for(&context, expected);
             if is_clause {
                 // On the same line, continuing the statement is more likely; on a new line, starting another one.
@@ -167,11 +170,16 @@ pub fn completions(
         }
     }
     items.sort_by_key(|item| item.rank);
-    filter_at(database, position, items)
+    filter_at(database, position, items, trigger)
 }
 
 /// Drops the items that would get in the way of typing. All of them replace the same word.
-fn filter_at(database: &Database, position: FilePosition, items: Vec<Completion>) -> Vec<Completion> {
+fn filter_at(
+    database: &Database,
+    position: FilePosition,
+    items: Vec<Completion>,
+    trigger: CompletionTrigger,
+) -> Vec<Completion> {
     let Some(word) = items.first().map(|item| item.replace) else { return items };
     let slice = |start, end| database.slice(position.file, Span::new(start, end));
     let (before, after) = (slice(word.start, position.offset), slice(position.offset, word.end));
@@ -179,7 +187,7 @@ fn filter_at(database: &Database, position: FilePosition, items: Vec<Completion>
         let following = text.get_byte_slice(word.end as usize..);
         following.is_none_or(|following| filter::ends_line(following.chars()))
     });
-    filter::filter(items, filter::Word { before: &before, after: &after, ends_line })
+    filter::filter(items, filter::Word { before: &before, after: &after, ends_line }, trigger)
 }
 
 fn items_for(context: &CursorContext<'_>, expected: Expected) -> Vec<Completion> {
@@ -405,6 +413,7 @@ mod tests {
             "wheel w with radius 4\nrob$0",
             &expect![[r#"
                 robot … [a complete robot declaration] "rob" -> "robot ${1:rover} type ${5:tw} with port ${4:23000} has { $2 } wheels"
+                robot [robot NAME [type tw | fw | fwh] with port PORT has { WHEELS } wheels [with sensors { SENSORS }]] "rob" -> "robot"
             "#]],
         );
     }
@@ -414,8 +423,7 @@ mod tests {
         let (database, position) = at_cursor(fixture);
         let typed = fixture[..position.offset as usize].chars().last().unwrap();
         let is_letter = typed.is_alphanumeric() || typed == '_';
-        let trigger =
-            if is_letter { CompletionTrigger::Invoked } else { CompletionTrigger::Character(typed) };
+        let trigger = if is_letter { CompletionTrigger::Letter } else { CompletionTrigger::Character(typed) };
         completions(&database, position, trigger, 9.0).into_iter().map(|item| item.label).collect()
     }
 
@@ -494,7 +502,44 @@ mod tests {
     fn a_word_inside_a_line_is_offered_until_it_is_complete() {
         let fixture = |typed: &str| format!("{PARTS}movement m of {typed}$0 {{ slam }}");
         assert_eq!(opens(&fixture("rove")), ["rover"]);
-        assert_eq!(opens(&fixture("rover")), ["rover"]);
+        assert_eq!(opens(&fixture("rover")), [""; 0]);
+    }
+
+    /// The list that the user asks for.
+    fn asked(fixture: &str) -> Vec<String> {
+        let (database, position) = at_cursor(fixture);
+        let found = completions(&database, position, CompletionTrigger::Invoked, 9.0);
+        found.into_iter().map(|item| item.label).collect()
+    }
+
+    const SIMILAR: &str = "wheel abc with radius 4.5\nwheel ab with radius 4.5\nwheel a2 with radius 4.5\nwheel a with radius 4.5\n";
+
+    #[test]
+    fn no_list_opens_at_a_name_that_others_begin_with() {
+        let inside = |list: &str| format!("{SIMILAR}robot r with port 1 has {{\n  {list}");
+        for list in
+            ["a$0", "ab$0", "a\n  ab$0", "a\n  ab\n  a2$0 } wheels", "ab$0 } wheels", "a$0 ab } wheels"]
+        {
+            assert_eq!(opens(&inside(list)), [""; 0], "{list}");
+        }
+        assert_eq!(opens(&inside("a ab$0 ab")), [""; 0], "a name that the list has already");
+    }
+
+    #[test]
+    fn a_list_that_is_asked_for_begins_with_the_exact_name() {
+        let inside = |list: &str| format!("{SIMILAR}robot r with port 1 has {{\n  {list}");
+        assert_eq!(asked(&inside("ab$0")), ["ab", "abc"]);
+        assert_eq!(asked(&inside("a$0")), ["a", "a2", "ab", "abc"]);
+        assert_eq!(asked(&format!("{PARTS}movement m of rover {{ move 2 meters$0 }}")), ["meters"]);
+    }
+
+    #[test]
+    fn the_exact_name_is_among_the_first_of_very_many() {
+        let many: Vec<String> = (0..3_000).map(|number| format!("sensor s{number}")).collect();
+        let many = many.join("\n");
+        let list = format!("{many}\nrobot r with port 1 has {{ }} wheels with sensors {{ s2999, s2$0");
+        let found = asked(&list);
+        assert_eq!((found[0].as_str(), found.len()), ("s2", MAX_ITEMS));
     }
 
     #[test]
@@ -559,6 +604,19 @@ mod tests {
             &[wheels, more, ("a.pyr", "// head\nimport \"more.pyr\"\nrobot r with port 1 has { r$0")],
             &expect![[r#"
                 round [wheel from lib/wheels.pyr, adds the import] "r" -> "round" and "import \"lib/wheels.pyr\"\n" at 8
+            "#]],
+        );
+        check_in(
+            &[wheels, ("a.pyr", "wheel rear with radius 1\nrobot r with port 1 has { r$0")],
+            &expect![[r#"
+                rear [wheel] "r" -> "rear"
+            "#]],
+        );
+        check_in(
+            &[wheels, ("a.pyr", "wheelH rear with radius 1\nrobot r type tw with port 1 has { $0")],
+            &expect![[r#"
+                } wheels [has { WHEELS } wheels] "" -> "} wheels"
+                big [wheel from lib/wheels.pyr, adds the import] "" -> "big" and "import \"lib/wheels.pyr\"\n\n" at 0
             "#]],
         );
         check_in(
@@ -677,7 +735,7 @@ mod tests {
         let labels = found("");
         assert_eq!(labels.len(), MAX_ITEMS);
         assert!(labels.contains(&"near".to_owned()), "the nearest declaration");
-        assert_eq!(found("s4321end").len(), 0, "it is complete");
+        assert_eq!(found("s4321end"), ["s4321end"]);
         assert_eq!(found("s432").iter().filter(|label| label.starts_with("s432")).count(), 10);
         assert_eq!(found("Z"), ["zigzag"]);
     }

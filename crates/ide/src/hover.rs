@@ -281,6 +281,14 @@ mod tests {
     }
 
     #[test]
+    fn ways_there_and_back_add_up() {
+        let actions = "move 1.5 meters turn left 90 turn right 30 move -1 meters turn left -45";
+        let (database, position) = at_cursor(&format!("{PARTS}movement $0m of rover {{ {actions} }}"));
+        let shown = hover(&database, position).map(|hover| hover.markdown).unwrap_or_default();
+        assert!(shown.contains("drives 2.5 m and turns 165°"), "{shown}");
+    }
+
+    #[test]
     fn an_environment_shows_its_timeline() {
         check(
             &format!("{PARTS}{}", REST.replace(" slam ", " ").replace("environment e", "environment $0e")),

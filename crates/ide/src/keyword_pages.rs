@@ -162,9 +162,32 @@ pub fn keyword_page(token: TokenKind) -> Option<KeywordPage> {
 
 #[cfg(test)]
 mod tests {
+    use pydslrep_kinematics::motion::RIM_SPEED;
     use pydslrep_syntax::KEYWORDS;
+    use pydslrep_syntax::ast::Drive;
 
     use super::*;
+
+    #[test]
+    fn the_pages_of_types_say_what_their_rows_do() {
+        let words = Drive::ALL.map(Drive::word).join(" | ");
+        assert_eq!(TYPE, format!("type {words}"));
+        assert!(ROBOT_SHAPE.contains(&format!("[{TYPE}]")), "{ROBOT_SHAPE}");
+        for token in TokenKind::DRIVES {
+            let row = token.drive().unwrap().row();
+            let count = ["two", "four"][usize::from(row.wheels.len() == 4)];
+            let wheel = if row.mecanum { "wheelH" } else { "wheel" };
+            let meaning = format!("{}: {count} `{wheel}`, listed {}.", row.label, row.order());
+            assert_eq!(keyword_page(token).unwrap().meaning, meaning);
+            assert!(keyword_page(token).unwrap().example.contains(&format!("type {}", row.word)));
+        }
+    }
+
+    #[test]
+    fn the_default_speed_is_that_of_plans() {
+        let page = keyword_page(TokenKind::Move).unwrap();
+        assert!(page.meaning.contains(&format!("defaults to {:?}.", RIM_SPEED * 100.0)), "{}", page.meaning);
+    }
 
     #[test]
     fn every_keyword_has_a_page_that_uses_it() {

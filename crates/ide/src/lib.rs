@@ -32,6 +32,7 @@ mod signature;
 mod symbols;
 mod toml;
 mod type_definition;
+mod unsettled;
 mod workspace_symbols;
 
 #[cfg(test)]
@@ -56,19 +57,24 @@ pub use linked_editing::linked_editing_ranges;
 pub use on_type::{format_after_brace, format_after_line_break};
 pub use planned_action::{NumberedAction, PlannedAt, action_place, planned_at};
 pub use planned_path::{
-    BodySize, Met, Obstacle, PlannedAction, PlannedCollision, PlannedLeg, PlannedPath, PlannedPose,
+    BodySize, Met, NoPath, Obstacle, PlannedAction, PlannedCollision, PlannedLeg, PlannedPath, PlannedPose,
     PlannedRobot, SensorCone, planned_path,
 };
 pub use quick_fixes::{QuickFix, quick_fixes};
 pub use refactorings::{Refactoring, RefactoringKind, refactorings};
-pub use references::{count_mentions, references};
+pub use references::{count_mentions, declaration, references};
 pub use rename::{RenameError, RenameTarget, prepare_rename, rename};
 pub use selection::selection_ranges;
 pub use semantic_tokens::{HighlightKind, Modifier, SemanticToken, entity_tokens, semantic_tokens};
 pub use signature::{Signature, SignatureHelp, SignatureTrigger, signature_help};
 pub use symbols::{Symbol, SymbolKind, document_symbols};
-pub use toml::{KeyFix, TomlFile, toml_completions, toml_fixes, toml_hover};
+pub use toml::{
+    KeyFix, NameInScene, SceneAction, SceneChanges, ScenePlace, TomlFile, highlights_in_scene,
+    mentions_in_scenes, name_in_scene, rename_in_scenes, scene_actions, toml_completions, toml_fixes,
+    toml_hover, toml_symbols,
+};
 pub use type_definition::goto_type_definition;
+pub use unsettled::TypedStatement;
 pub use workspace_symbols::{SymbolSearch, WorkspaceSymbol, workspace_symbols};
 
 use pydslrep_analysis::FileId;

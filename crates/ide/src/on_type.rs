@@ -1,10 +1,12 @@
 //! Formatting while typing: a closing brace formats its movement, list or action, and a new line is indented.
 //!
-//! Other entities never change, and entities with errors are only indented.
+//! Other entities never change. Of an entity with errors, only the list that the brace closes is formatted.
+
+use std::ops::Range;
 
 use pydslrep_analysis::{Database, EntityRef};
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{EntityKind, Span, TextEdit, Token, TokenKind, format_edits};
+use pydslrep_syntax::{EntityKind, Span, TextEdit, Token, TokenKind, format_edits, parse};
 
 use crate::FilePosition;
 use crate::cursor::body;
@@ -12,57 +14,150 @@ use crate::cursor::body;
 /// The width of one indentation level, in spaces.
 const INDENT: usize = 2;
 
-/// The edits after a `}` was typed right before a position.
+/// The edits after a `}` was typed right before a position. A `}` after it that closes nothing, which the editor inserted
+/// together with the `{`, is removed.
 pub fn format_after_brace(database: &Database, position: FilePosition) -> Vec<TextEdit> {
     let Some(brace) = position.offset.checked_sub(1) else { return Vec::new() };
     let Some(entity) = database.entity_at(position.file, brace) else { return Vec::new() };
-    let start = entity.span.start;
-    let closes = |(token, span): &&Token| *token == TokenKind::CloseBrace && span.start + start == brace;
-    if !entity.parse.tokens.iter().any(|token| closes(&token)) {
-        // The brace is in a comment.
-        return Vec::new();
-    }
-    if !entity.parse.errors.is_empty() {
-        return format_after_line_break(database, FilePosition { offset: brace, ..position });
-    }
-    let part = match &entity.parse.entity {
-        Some(Entity::Movement(movement)) => {
-            let action = movement.actions.iter().map(|action| action.span.shifted(start));
-            action.into_iter().find(|span| span.touches(position.offset)).unwrap_or_else(|| body(&entity))
-        }
-        _ => body(&entity),
-    };
-    let part = Span::new(part.start, part.end.min(position.offset));
-    format_part(database, &entity, part)
-}
-
-/// The formatting edits within a part of an entity without errors.
-fn format_part(database: &Database, entity: &EntityRef<'_>, part: Span) -> Vec<TextEdit> {
-    let start = entity.span.start;
-    let text = database.slice(entity.file, entity.span);
-    let edits = format_edits(&text, [(Span::of(&text), entity.parse)]);
-    let ending = database.line_ending(entity.file);
+    let tokens = significant(&entity);
+    let is_typed = |(token, span): &Token| *token == TokenKind::CloseBrace && span.start == brace;
+    // Otherwise the brace is in a comment.
+    let Some(typed) = tokens.iter().position(is_typed) else { return Vec::new() };
+    let inserted = inserted_brace(database, &entity, &tokens, typed);
+    let mut edits = closed_part(database, &entity, position.offset, inserted).unwrap_or_else(|| {
+        let mut edits: Vec<TextEdit> = indentation(database, position, brace).into_iter().collect();
+        edits.extend(format_list(database, &entity, &tokens, typed));
+        edits
+    });
+    edits.extend(inserted.map(|span| TextEdit { span, text: String::new() }));
     edits
-        .into_iter()
-        .map(|edit| TextEdit {
-            span: edit.span.shifted(start),
-            // The entity alone may have no line break to infer the ending from.
-            text: edit.text.replace("\r\n", "\n").replace('\n', ending),
-        })
-        .filter(|edit| part.start < edit.span.start && edit.span.end < part.end)
-        .collect()
 }
 
-/// The edits after a line break was typed before a position: replaces the white space before it if it is not that of
-/// the canonical layout.
-pub fn format_after_line_break(database: &Database, position: FilePosition) -> Vec<TextEdit> {
-    let Some(line) = Line::at(database, position) else { return Vec::new() };
-    let Some(depth) = line.depth(database, position) else { return Vec::new() };
-    let wanted = " ".repeat(depth * INDENT);
-    if wanted == database.slice(position.file, line.blank) {
-        return Vec::new();
+/// The tokens of an entity without comments, with their ranges in the file.
+fn significant(entity: &EntityRef<'_>) -> Vec<Token> {
+    let in_file = |(token, span): &Token| (*token, span.shifted(entity.span.start));
+    entity.parse.tokens.iter().map(in_file).filter(|(token, _)| !token.is_comment()).collect()
+}
+
+/// The `}` after the typed one, and the white space before it, if the typed one leaves a brace too many.
+fn inserted_brace(
+    database: &Database,
+    entity: &EntityRef<'_>,
+    tokens: &[Token],
+    typed: usize,
+) -> Option<Span> {
+    let brace = tokens[typed].1;
+    let following = tokens[typed + 1..].iter().take_while(|(token, _)| *token == TokenKind::CloseBrace);
+    let closed = typed + 1 + following.count();
+    let mut open = 0_usize;
+    for (token, _) in &tokens[..=typed] {
+        match token {
+            TokenKind::OpenBrace => open += 1,
+            // It closes nothing, whatever follows.
+            TokenKind::CloseBrace => open = open.checked_sub(1)?,
+            _ => {}
+        }
     }
-    vec![TextEdit { span: line.blank, text: wanted }]
+    let (_, next) = tokens[typed + 1..closed].first().filter(|_| closed - typed - 1 > open)?;
+    let between = database.slice(entity.file, Span::new(brace.end, next.start));
+    between.trim().is_empty().then(|| Span::new(brace.end, next.end))
+}
+
+/// The formatting edits within the part of an entity that the brace before an offset closes, without a brace that is
+/// removed; `None` if the entity then has errors.
+fn closed_part(
+    database: &Database,
+    entity: &EntityRef<'_>,
+    offset: u32,
+    removed: Option<Span>,
+) -> Option<Vec<TextEdit>> {
+    let start = entity.span.start;
+    let mut text = database.slice(entity.file, entity.span);
+    let pieces;
+    let parse = match removed {
+        None => entity.parse,
+        Some(removed) => {
+            text.replace_range(Range::from(Span::new(removed.start - start, removed.end - start)), "");
+            pieces = parse(&text);
+            &pieces.first()?.1
+        }
+    };
+    if !parse.errors.is_empty() {
+        return None;
+    }
+    let whole = || Span::new(start, offset.max(start));
+    let part = match &parse.entity {
+        Some(Entity::Movement(movement)) => {
+            let mut actions = movement.actions.iter().map(|action| action.span.shifted(start));
+            actions.find(|span| span.touches(offset)).unwrap_or_else(whole)
+        }
+        _ => whole(),
+    };
+    let part = Span::new(part.start, part.end.min(offset));
+    let ending = database.line_ending(entity.file);
+    let edits = format_edits(&text, [(Span::of(&text), parse)]).into_iter().map(|edit| TextEdit {
+        span: edit.span.shifted(start),
+        // The entity alone may have no line break to infer the ending from.
+        text: edit.text.replace("\r\n", "\n").replace('\n', ending),
+    });
+    Some(edits.filter(|edit| part.start < edit.span.start && edit.span.end < part.end).collect())
+}
+
+/// The edit that writes a list of names on one line as in the canonical layout; `closing` is the index of its `}`.
+fn format_list(
+    database: &Database,
+    entity: &EntityRef<'_>,
+    tokens: &[Token],
+    closing: usize,
+) -> Option<TextEdit> {
+    let in_list = |(token, _): &&Token| token.is_name() || *token == TokenKind::Comma;
+    let opening = closing.checked_sub(1 + tokens[..closing].iter().rev().take_while(in_list).count())?;
+    if tokens[opening].0 != TokenKind::OpenBrace {
+        return None;
+    }
+    let is_of_sensors = tokens.first()?.0.entity_kind() != Some(EntityKind::Environment)
+        && matches!(tokens[opening.checked_sub(1)?].0, TokenKind::Until | TokenKind::Sensors);
+    let inside = Span::new(tokens[opening].1.end, tokens[closing].1.start);
+    let written = database.slice(entity.file, inside);
+    if written.contains(['\n', '\r', '/']) {
+        return None;
+    }
+    let names = tokens[opening + 1..closing].iter().filter(|(token, _)| token.is_name());
+    let names: Vec<String> = names.map(|(_, span)| database.slice(entity.file, *span)).collect();
+    let wanted = format!(" {} ", names.join(if is_of_sensors { ", " } else { " " }));
+    (!names.is_empty() && wanted != written).then_some(TextEdit { span: inside, text: wanted })
+}
+
+/// The edits after a line break was typed before a position: indents the new line as in the canonical layout, whatever the
+/// lines before look like, and formats a list that ends the line before.
+pub fn format_after_line_break(database: &Database, position: FilePosition) -> Vec<TextEdit> {
+    let mut edits: Vec<TextEdit> = list_on_line_before(database, position).into_iter().collect();
+    edits.extend(indentation(database, position, position.offset));
+    edits
+}
+
+fn list_on_line_before(database: &Database, position: FilePosition) -> Option<TextEdit> {
+    let line = Line::at(database, position)?;
+    let entity = database.entity_at(position.file, line.blank.start.checked_sub(1)?)?;
+    let tokens = significant(&entity);
+    let last = tokens.iter().rposition(|(_, span)| span.end <= line.blank.start)?;
+    let (token, span) = tokens[last];
+    let line_break = database.slice(entity.file, Span::new(span.end, line.blank.start));
+    let ends_line = matches!(line_break.trim_matches([' ', '\t']), "\n" | "\r\n" | "\r");
+    if token == TokenKind::CloseBrace && ends_line {
+        format_list(database, &entity, &tokens, last)
+    } else {
+        None
+    }
+}
+
+/// The edit that indents the line of an offset.
+fn indentation(database: &Database, position: FilePosition, offset: u32) -> Option<TextEdit> {
+    let position = FilePosition { offset, ..position };
+    let line = Line::at(database, position)?;
+    let wanted = " ".repeat(line.depth(database, position)? * INDENT);
+    (wanted != database.slice(position.file, line.blank))
+        .then_some(TextEdit { span: line.blank, text: wanted })
 }
 
 /// The leading white space of a line.
@@ -101,18 +196,22 @@ impl Line {
             tokens().any(|(token, span)| token == TokenKind::CloseBrace && span.start == self.blank.end);
         let is_movement = typed.first().and_then(|token| token.entity_kind()) == Some(EntityKind::Movement);
         match open {
-            0 => self.ends(&entity).then_some(0),
+            0 if self.continues_entity(&entity, &typed) => None,
+            0 => Some(0),
             // Each line of a movement's body begins an action or continues one.
             1 if is_movement && !closes && continues(&typed) => Some(2),
             open => Some(open - usize::from(closes)),
         }
     }
 
-    /// Whether a complete entity ends before the line.
-    fn ends(&self, entity: &EntityRef<'_>) -> bool {
-        entity.parse.entity.is_some()
+    /// Whether the line goes on with an entity that is not complete before it: its clauses belong on one line.
+    fn continues_entity(&self, entity: &EntityRef<'_>, typed: &[TokenKind]) -> bool {
+        let is_complete = entity.parse.entity.is_some()
             && entity.parse.errors.is_empty()
-            && body(entity).end <= self.blank.start
+            && body(entity).end <= self.blank.start;
+        let mut tokens = entity.parse.tokens.iter();
+        let has_more = tokens.any(|(_, span)| span.start + entity.span.start == self.blank.end);
+        !typed.is_empty() && has_more && !is_complete
     }
 }
 
@@ -182,6 +281,66 @@ mod tests {
         line_break("robot r with port 1 has {\n$0", "robot r with port 1 has {\n  ");
         line_break("robot r with port 1 has {\r\n  a\r\n  $0}", "robot r with port 1 has {\r\n  a\r\n}");
         line_break("wheel a with radius 3\n    $0", "wheel a with radius 3\n");
+        line_break("\n   $0wheel a with radius 3", "\nwheel a with radius 3");
+    }
+
+    #[test]
+    fn a_line_is_indented_whatever_the_lines_before_look_like() {
+        let robot = "robot r with port 1 has {\n      a\n   b } wheels";
+        line_break(&format!("{robot}\n   $0"), &format!("{robot}\n"));
+        // Its `wheels` is still missing.
+        line_break("robot r with port 1 has {\n  b }\n  $0", "robot r with port 1 has {\n  b }\n");
+        let movement =
+            |line: &str| format!("{robot}\n\n   movement m of r {{\n      slam\n{line}turn left }}");
+        line_break(&movement("    $0"), &movement("  "));
+        line_break("  robot r with port 1\n  $0", "  robot r with port 1\n");
+    }
+
+    #[test]
+    fn a_list_is_formatted_every_time_even_before_its_movement_is_closed() {
+        let begun = "movement m of r {\n  turn left until { s }\n  move 1 meters\n";
+        for rest in ["", "\n}"] {
+            brace(
+                &format!("{begun}  turn left until {{s,t}}$0{rest}"),
+                &format!("{begun}  turn left until {{ s, t }}{rest}"),
+            );
+            line_break(
+                &format!("{begun}  turn left until {{s,t}}\n$0{rest}"),
+                &format!("{begun}  turn left until {{ s, t }}\n  {rest}"),
+            );
+        }
+        brace("robot r with port has {a,  b}$0", "robot r with port has { a b }");
+        brace(
+            "robot r with port has { } wheels with sensors {a b}$0",
+            "robot r with port has { } wheels with sensors { a, b }",
+        );
+        brace("robot r with port has {/*a*/b}$0", "robot r with port has {/*a*/b}");
+        brace("robot r with port has {}$0", "robot r with port has {}");
+    }
+
+    #[test]
+    fn a_brace_that_was_typed_over_an_inserted_one_leaves_no_second() {
+        brace(
+            "movement m of r {\n  move 1  meters\n  slam }$0\n}\n\nsensor s",
+            "movement m of r {\n  move 1 meters\n  slam\n}\n\nsensor s",
+        );
+        brace("movement m of r {\n  slam\n  }$0\n\n}", "movement m of r {\n  slam\n}");
+        brace("robot r with port 1 has {a b}$0 } wheels", "robot r with port 1 has { a b } wheels");
+        brace("robot r has {a b}$0}", "robot r has { a b }");
+        brace(
+            "movement m of r {\n  turn left until {s}$0 }\n}",
+            "movement m of r {\n  turn left until { s }\n}",
+        );
+    }
+
+    #[test]
+    fn a_brace_that_closes_something_else_stays() {
+        brace(
+            "movement m of r {\n  turn left until { s }$0\n}",
+            "movement m of r {\n  turn left until { s }\n}",
+        );
+        brace("movement m of r { slam }$0 // }\n}", "movement m of r { slam } // }\n}");
+        brace("movement m of r { slam } }$0 }", "movement m of r { slam } } }");
     }
 
     #[test]
@@ -189,6 +348,5 @@ mod tests {
         line_break("robot r with port 1\n   $0has", "robot r with port 1\n   has");
         line_break("movement m of r { /*\n   $0*/", "movement m of r { /*\n   */");
         line_break("   $0wheel", "   wheel");
-        line_break("\n   $0wheel a with radius 3", "\n   wheel a with radius 3");
     }
 }

@@ -3,9 +3,11 @@
 //! These structs are what clients receive, field by field: `editors/preview/host/protocol.ts` has the same shape in
 //! TypeScript, and a test below holds it there.
 
+use std::fmt;
+
 use pydslrep_analysis::environment::Environment;
 use pydslrep_analysis::{Blocked, Database, EntityId, check_cancelled, plan};
-use pydslrep_kinematics::{ActionIndex, Leg, Plan, Pose, RobotPath};
+use pydslrep_kinematics::{ActionIndex, Leg, ModelError, Plan, Pose, RobotPath};
 use pydslrep_scene::{self as scenery, Collision, ENDING, Mount, Robot, Scene, Shape, Thing};
 use pydslrep_schema::Problem;
 use serde::{Deserialize, Serialize};
@@ -159,6 +161,35 @@ pub enum Met {
     Robot(String),
 }
 
+/// Why there is no planned path.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NoPath {
+    /// The environment has errors.
+    Blocked(Blocked),
+    /// Its scene has.
+    Scene {
+        /// The environment's name.
+        environment: String,
+        /// All of them, in the order of the text.
+        problems: Vec<Problem>,
+    },
+    /// A robot cannot drive.
+    Robot(ModelError),
+}
+
+impl fmt::Display for NoPath {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Blocked(blocked) => f.write_str(&blocked.reason()),
+            Self::Scene { environment, problems } => {
+                let first = problems.first().map_or("it has errors", |problem| problem.message.as_str());
+                write!(f, "`{environment}{ENDING}`: {first}")
+            }
+            Self::Robot(error) => error.fmt(f),
+        }
+    }
+}
+
 /// Poses of a planned action, at equal intervals of time: enough for a curve and for the ramps at its ends.
 const POSES_PER_ACTION: u32 = 8;
 
@@ -166,11 +197,13 @@ const POSES_PER_ACTION: u32 = 8;
 ///
 /// # Errors
 /// If the environment or its scene has errors, or a robot cannot drive.
-pub fn planned_path(database: &Database, environment: EntityId) -> Result<PlannedPath, String> {
+pub fn planned_path(database: &Database, environment: EntityId) -> Result<PlannedPath, NoPath> {
     let id = environment;
-    let environment = database.environment(id).map_err(|blocked: Blocked| blocked.reason())?;
-    let scene = database.scene(id, &environment).map_err(|problems| wrong_scene(&environment, &problems))?;
-    let plan = plan(&environment, &scene).map_err(|error| error.to_string())?;
+    let environment = database.environment(id).map_err(NoPath::Blocked)?;
+    let scene = database
+        .scene(id, &environment)
+        .map_err(|problems| NoPath::Scene { environment: environment.name.clone(), problems })?;
+    let plan = plan(&environment, &scene).map_err(NoPath::Robot)?;
     let collisions = collisions(&environment, &scene, &plan);
     let robots = scene.robots.iter().zip(&plan.robots);
     let robots = robots.map(|(robot, path)| planned_robot(&environment, robot, path)).collect();
@@ -222,12 +255,6 @@ fn collisions(environment: &Environment, scene: &Scene, plan: &Plan) -> Vec<Plan
     found
 }
 
-/// The error message for a scene with errors.
-fn wrong_scene(environment: &Environment, problems: &[Problem]) -> String {
-    let first = problems.first().map_or("it has errors", |problem| problem.message.as_str());
-    format!("`{}{ENDING}`: {first}", environment.name)
-}
-
 fn poses(environment: &Environment, path: &RobotPath) -> Vec<PlannedPose> {
     let start = planned_pose(Some(0.0), path.start, None);
     std::iter::once(start).chain(path.legs.iter().flat_map(|leg| on_leg(environment, leg))).collect()
@@ -269,7 +296,7 @@ mod tests {
     use super::*;
     use crate::fixture::PARTS;
 
-    fn path(rest: &str) -> Result<PlannedPath, String> {
+    fn path(rest: &str) -> Result<PlannedPath, NoPath> {
         let mut database = Database::new();
         let file = database.open("a.pyr", &format!("{PARTS}{rest}"));
         let environment = database.environments(file)[0].0;
@@ -282,7 +309,7 @@ mod tests {
             "movement m of rover { move 1 meters turn left slam move 1 meters }\nenvironment e has { rover } robots with { m } moves",
         );
         // `slam` needs sensors that this robot does not have.
-        assert!(path.unwrap_err().contains("sensors"));
+        assert!(path.unwrap_err().to_string().contains("sensors"));
         let path = self::path(
             "movement m of rover { move 1 meters turn left turn left until { front } move 1 meters }\nenvironment e has { rover } robots with { m } moves",
         )
@@ -335,7 +362,7 @@ mod tests {
         assert!((end.x - 1.0).hypot(end.y - 3.0) < 1e-9, "{end:?}");
         database.set_scene(file, "e", Some("[robots.rovr]\nstart = [1, 2, 90]"));
         let why = planned_path(&database, id).unwrap_err();
-        assert_eq!(why, "`e.scene.toml`: the environment has no robot `rovr`");
+        assert_eq!(why.to_string(), "`e.scene.toml`: the environment has no robot `rovr`");
     }
 
     /// `tsc` holds the types of the preview against this value.

@@ -2,7 +2,7 @@
 //!
 //! For an undeclared name, the references in the same file.
 
-use pydslrep_analysis::{Database, FileSpan};
+use pydslrep_analysis::{Database, EntityId, FileSpan};
 
 use crate::FilePosition;
 use crate::cursor::{Referent, referent_at};
@@ -36,6 +36,14 @@ pub(crate) fn declarations(database: &Database, referent: &Referent) -> Vec<File
     let Referent { home, kind, name, .. } = referent;
     let spans = database.declarations(*home, *kind, name).into_iter();
     spans.map(|span| FileSpan { file: *home, span }).collect()
+}
+
+/// The position of the name that an entity declares.
+pub fn declaration(database: &Database, id: EntityId) -> Option<FilePosition> {
+    let (file, tree) = (database.file_of(id)?, database.tree(id)?);
+    let referent = Referent { kind: tree.kind()?, name: tree.name()?.text.clone(), home: file };
+    let FileSpan { file, span } = declarations(database, &referent).into_iter().next()?;
+    Some(FilePosition { file, offset: span.start })
 }
 
 #[cfg(test)]

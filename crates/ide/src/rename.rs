@@ -79,7 +79,7 @@ pub(crate) fn is_separated(database: &Database, place: FileSpan) -> bool {
 }
 
 /// Parses a name; the result has no `^`.
-fn parse_name(text: &str) -> Result<SmolStr, RenameError> {
+pub(crate) fn parse_name(text: &str) -> Result<SmolStr, RenameError> {
     match lex(text)[..] {
         [(token, span)] if span == Span::of(text) && token.is_name() && token != TokenKind::MalformedName => {
             Ok(text.strip_prefix('^').unwrap_or(text).into())

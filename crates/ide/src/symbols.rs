@@ -31,6 +31,10 @@ pub enum SymbolKind {
     Entity(EntityKind),
     /// An action of a movement.
     Action,
+    /// An obstacle of a scene.
+    Obstacle,
+    /// Any other table of a TOML file.
+    Table,
 }
 
 /// The named entities of a file in text order, movements with their actions.
@@ -65,8 +69,7 @@ pub(crate) fn detail(tree: &Entity) -> String {
         },
         Entity::Ip(ip) => ip.address.as_ref().map(|(address, _)| address.to_string()).unwrap_or_default(),
         Entity::Robot(robot) => {
-            let drive =
-                robot.drive.and_then(|clause| clause.word).map(|word| format!("{}, ", word.spelling()));
+            let drive = robot.drive.and_then(|clause| clause.word).map(|drive| format!("{}, ", drive.word()));
             let port = robot.port.as_ref().and_then(|port| port.value).map(|port| format!("port {port}"));
             format!("{}{}", drive.unwrap_or_default(), port.unwrap_or_default())
         }
@@ -135,6 +138,7 @@ mod tests {
             let kind = match symbol.kind {
                 SymbolKind::Entity(kind) => kind.noun(),
                 SymbolKind::Action => "action",
+                SymbolKind::Obstacle | SymbolKind::Table => unreachable!("a program has none"),
             };
             let (full, focus) = (symbol.full, symbol.focus);
             *out += &format!(

@@ -16,14 +16,16 @@ const OF_INVALID_CODE: [&str; 4] =
     ["syntax-error", "invalid-character", "unterminated-comment", "unterminated-string"];
 
 /// Diagnostics related to another one: with the same cause, or caused by it.
-const RELATED: [(&str, &[&str]); 6] = [
+const RELATED: [(&str, &[&str]); 7] = [
     ("movement-robot-missing", &["movement-robot-missing", "empty-environment"]),
     ("unresolved-reference", &["unresolved-reference", "movement-robot-missing", "sensor-not-on-robot"]),
     ("sensor-not-on-robot", &["sensor-not-on-robot"]),
+    // A radius in metres differs from one in centimetres.
+    ("implausible-radius", &["mixed-radii"]),
     ("unused-declaration", &["duplicate-name"]),
     ("wheel-count", &["slam-robot"]),
-    // One brace of a pair.
-    ("syntax-error", &["syntax-error"]),
+    // One brace of a pair; a name that others refer to.
+    ("syntax-error", &["syntax-error", "unresolved-reference"]),
 ];
 
 fn opened(text: &str) -> (Database, FileId) {

@@ -1,8 +1,8 @@
 //! The context of a completion: the entity before the cursor, as far as it is typed.
 
 use pydslrep_analysis::{Database, EntityId, EntityRef, FileId};
-use pydslrep_syntax::ast::{DriveWord, Entity, Movement};
-use pydslrep_syntax::{Span, Token, TokenKind};
+use pydslrep_syntax::ast::{Drive, Entity, Movement};
+use pydslrep_syntax::{Expected, Span, Token, TokenKind};
 use smol_str::SmolStr;
 
 use crate::FilePosition;
@@ -29,7 +29,9 @@ pub(super) struct CursorContext<'a> {
     pub(super) speed: f64,
     /// The range of the word at the cursor in the file.
     pub(super) word: Span,
-    /// That word up to the cursor, without `^`, in lower case.
+    /// That word up to the cursor, without `^`.
+    pub(super) written: SmolStr,
+    /// The same in lower case.
     pub(super) typed: String,
     /// Whether it begins with `^`.
     pub(super) is_escaped: bool,
@@ -69,6 +71,7 @@ impl<'a> CursorContext<'a> {
             speed,
             word,
             is_escaped: typed.starts_with('^'),
+            written: name(&typed),
             typed: typed.trim_start_matches('^').to_lowercase(),
         })
     }
@@ -118,8 +121,14 @@ impl<'a> CursorContext<'a> {
         let Some(Entity::Robot(robot)) = self.tree else { return false };
         let in_wheels =
             !self.before.iter().any(|(token, _)| matches!(token, TokenKind::Wheels | TokenKind::Sensors));
-        let wanted = robot.drive.and_then(|clause| clause.word).map_or(2, DriveWord::wheel_count);
+        let wanted = robot.drive.and_then(|clause| clause.word).map_or(2, Drive::wheel_count);
         in_wheels && self.listed().len() < wanted
+    }
+
+    /// Whether the word up to the cursor is a name that can be referred to here, even if it fits less well than others.
+    pub(super) fn is_whole_name(&self, expected: &[Expected]) -> bool {
+        let is_visible = |kind| self.database.resolve(self.file, kind, &self.written).entity().is_some();
+        expected.iter().any(|expected| matches!(expected, Expected::ReferenceTo(kind) if is_visible(*kind)))
     }
 
     /// Whether an import is allowed here: only other imports precede the cursor.

@@ -4,7 +4,7 @@
 
 use pydslrep_analysis::{Database, EntityId};
 use pydslrep_syntax::ast::{
-    Action, ActionKind, Direction, DriveWord, Entity, Movement, Robot, Turn, TurnExtent, Unit, Wheel,
+    Action, ActionKind, Direction, Drive, Entity, Movement, Robot, Turn, TurnExtent, Unit, Wheel,
 };
 use pydslrep_syntax::{EntityKind, Span, escape};
 use smol_str::SmolStr;
@@ -152,15 +152,17 @@ impl<'a> Defaults<'a> {
             robot.wheels.iter().flat_map(|list| &list.names).map(|name| name.text.clone()).collect()
         };
         let unused = self.layout(&left_first(unused));
-        unused.or_else(|| self.layout(&of_the_last())).unwrap_or(Layout { drive: "tw", names: Vec::new() })
+        unused
+            .or_else(|| self.layout(&of_the_last()))
+            .unwrap_or(Layout { drive: Drive::TwoWheel.word(), names: Vec::new() })
     }
 
     fn layout(&self, names: &[SmolStr]) -> Option<Layout> {
         let mecanum: Option<Vec<bool>> =
             names.iter().map(|name| super::keywords::is_mecanum(self.context, name)).collect();
-        let drive = DriveWord::from_wheels(&mecanum?)?;
+        let drive = Drive::from_wheels(&mecanum?)?;
         let names = names.iter().map(|name| escape(name)).collect();
-        Some(Layout { drive: drive.spelling(), names })
+        Some(Layout { drive: drive.word(), names })
     }
 
     /// The sensors that no robot uses yet.

@@ -5,8 +5,8 @@ use pydslrep_syntax::Span;
 
 use super::{Completion, CompletionKind, CompletionTrigger};
 
-/// Items that save no more letters than this are not offered. Otherwise the list would still be open when the user
-/// presses Enter right after the word, until the response to the last letter arrives.
+/// A list that opens automatically has no items that save fewer letters than this or as many. Otherwise it would still be
+/// open when the user presses a key right after the word, until the response to the last letter arrives.
 const MIN_SAVED_LETTERS: usize = 3;
 
 /// The word at the cursor.
@@ -34,22 +34,24 @@ pub(crate) fn ends_line(following: impl Iterator<Item = char>) -> bool {
     line.all(|character| " \t}]\"'".contains(character))
 }
 
-/// The items that match the typed part of the word. Where Enter may end the line, a complete word gets no list, and
-/// items that are almost complete are left out.
-pub(crate) fn filter(items: Vec<Completion>, word: Word<'_>) -> Vec<Completion> {
+/// The items that match the typed part of the word, the word itself first. No list opens automatically at a complete
+/// word; where Enter may end the line, it has no items that are almost complete.
+pub(crate) fn filter(items: Vec<Completion>, word: Word<'_>, trigger: CompletionTrigger) -> Vec<Completion> {
     if word.before.is_empty() && word.after.is_empty() {
         return items;
     }
-    if word.ends_line && word.after.is_empty() && items.iter().any(|item| item.plain() == word.before) {
+    let is_automatic = trigger != CompletionTrigger::Invoked;
+    let is_whole = |item: &Completion| word.after.is_empty() && item.plain() == word.before;
+    if is_automatic && items.iter().any(is_whole) {
         return Vec::new();
     }
     let typed = bare(word.before).to_lowercase();
     let mut found: Vec<(bool, Completion)> = items
         .into_iter()
-        .filter(|item| !word.almost_completes(&item.plain()))
+        .filter(|item| !is_automatic || !word.almost_completes(&item.plain()))
         .filter_map(|item| Some((!fit(&item, &typed)?, item)))
         .collect();
-    found.sort_by_key(|(is_inside, item)| (*is_inside, item.rank));
+    found.sort_by_key(|(is_inside, item)| (!is_whole(item), *is_inside, item.rank));
     found.into_iter().map(|(_, item)| item).collect()
 }
 
@@ -97,7 +99,12 @@ fn has_letters(word: &str, typed: &str) -> bool {
 }
 
 /// The same for a TOML file; all items at a position replace the same word.
-pub(crate) fn filter_in_toml(items: Vec<Completion>, text: &str, offset: u32) -> Vec<Completion> {
+pub(crate) fn filter_in_toml(
+    items: Vec<Completion>,
+    text: &str,
+    offset: u32,
+    trigger: CompletionTrigger,
+) -> Vec<Completion> {
     let Some(word) = items.first().map(|item| item.replace) else { return items };
     let cut = offset.clamp(word.start, word.end);
     let following = text.get(word.end as usize..).unwrap_or_default();
@@ -106,14 +113,14 @@ pub(crate) fn filter_in_toml(items: Vec<Completion>, text: &str, offset: u32) ->
         after: Span::new(cut, word.end).text(text),
         ends_line: ends_line(following.chars()),
     };
-    filter(items, word)
+    filter(items, word, trigger)
 }
 
 impl CompletionTrigger {
     /// Whether the list opens in a TOML file: automatically where a value is expected and in a header.
     pub(crate) fn opens_in_toml(self, cursor: &CursorContext) -> bool {
         match self {
-            Self::Invoked => true,
+            Self::Invoked | Self::Letter => true,
             Self::Character('[') => matches!(cursor.slot, Slot::Table { .. }),
             Self::Character(' ' | '"') => matches!(cursor.slot, Slot::Value { .. }),
             Self::Character(_) => false,

@@ -1,7 +1,7 @@
 //! Keywords, with the ones that must follow them, and values.
 
 use pydslrep_analysis::{EntityId, Target};
-use pydslrep_syntax::ast::{DriveWord, Entity};
+use pydslrep_syntax::ast::{Drive, Entity};
 use pydslrep_syntax::{EntityKind, Expected, Span, TokenKind, expected_after};
 use smol_str::SmolStr;
 
@@ -51,23 +51,18 @@ pub(super) fn keyword(context: &CursorContext<'_>, word: TokenKind) -> Option<Co
 
 /// For the values of `type`, their meaning; otherwise the syntax.
 fn detail(word: TokenKind, page: &KeywordPage) -> String {
-    let text = match word {
-        TokenKind::Tw | TokenKind::Fw | TokenKind::Fwh => page.meaning.split(':').next(),
-        _ => page.syntax.lines().next(),
-    };
-    text.unwrap_or_default().to_owned()
+    match word.drive() {
+        Some(drive) => drive.row().label.to_owned(),
+        None => page.syntax.lines().next().unwrap_or_default().to_owned(),
+    }
 }
 
 /// Whether a keyword is the drive type that the robot's wheels imply.
 fn matches_wheels(context: &CursorContext<'_>, word: TokenKind) -> bool {
-    let (TokenKind::Tw | TokenKind::Fw | TokenKind::Fwh, Some(Entity::Robot(robot))) = (word, context.tree)
-    else {
-        return false;
-    };
+    let (Some(drive), Some(Entity::Robot(robot))) = (word.drive(), context.tree) else { return false };
     let names = robot.wheels.iter().flat_map(|list| &list.names);
     let mecanum: Vec<bool> = names.filter_map(|name| is_mecanum(context, &name.text)).collect();
-    let drive = DriveWord::from_wheels(&mecanum);
-    drive.is_some_and(|drive| word.spelling() == Some(drive.spelling()))
+    Drive::from_wheels(&mecanum) == Some(drive)
 }
 
 /// Whether the wheel of this name is a mecanum wheel; `None` if there is no such wheel.

@@ -7,7 +7,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use pydslrep_analysis::{Database, EntityId, FileId};
-use pydslrep_syntax::ast::{DriveWord, Entity, Robot};
+use pydslrep_syntax::ast::{Entity, Robot};
 use pydslrep_syntax::{EntityKind, TextEdit, escape};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
@@ -33,7 +33,7 @@ pub(super) fn names(context: &CursorContext<'_>, kind: EntityKind) -> Vec<Comple
     let chosen = wanted.only(context).unwrap_or_else(|| visible(context, &wanted));
     let mut found: Vec<Completion> =
         chosen.iter().filter_map(|name| reference(context, kind, name)).collect();
-    if !matches!(wanted.for_, For::Turn(_)) {
+    if !matches!(wanted.for_, For::Turn(_)) && !begins_a_name(context, &wanted) {
         found.extend(unimported(context, &wanted));
     }
     found
@@ -169,12 +169,9 @@ fn wheels_of<'a>(context: &CursorContext<'a>, robot: &Robot, listed: &[SmolStr])
             _ => None,
         }
     });
-    let by_type = match robot.drive.and_then(|clause| clause.word) {
-        Some(DriveWord::Tw) => Some(false),
-        Some(DriveWord::Fwh) => Some(true),
-        // In the paper, robots of this type have mecanum wheels.
-        Some(DriveWord::Fw) | None => None,
-    };
+    // A robot of a type that may be another one with mecanum wheels can have either.
+    let drive = robot.drive.and_then(|clause| clause.word).filter(|drive| drive.row().on_mecanum.is_none());
+    let by_type = drive.map(|drive| drive.row().mecanum);
     For::Robot(first.map(|(_, mecanum)| mecanum).or(by_type), radius)
 }
 
@@ -221,9 +218,9 @@ fn visible(context: &CursorContext<'_>, wanted: &Wanted<'_>) -> Vec<SmolStr> {
     chosen
 }
 
-/// Sorts names with the typed prefix before those that only contain the letters.
-fn order(context: &CursorContext<'_>, name: &str) -> bool {
-    !starts_with(name, &context.typed)
+/// Sorts the name that is typed already first, and names with the typed prefix before those that only contain the letters.
+fn order(context: &CursorContext<'_>, name: &str) -> (bool, bool) {
+    (name != context.written, !starts_with(name, &context.typed))
 }
 
 /// Whether a name contains the typed letters in this order, ignoring case: every editor's own filter requires this.
@@ -252,6 +249,16 @@ fn reference(context: &CursorContext<'_>, kind: EntityKind, name: &SmolStr) -> O
         insert: escape(name),
         ..context.item(name, CompletionKind::Reference(kind), Rank::Fitting)
     })
+}
+
+/// Whether a visible name begins with the typed letters: then no others are offered.
+fn begins_a_name(context: &CursorContext<'_>, wanted: &Wanted<'_>) -> bool {
+    let may_stand_here = |name: &&SmolStr| {
+        let seen = context.database.resolve(context.file, wanted.kind, name).entity();
+        wanted.is_taken(name) || seen.is_some_and(|id| wanted.fits(context.database, id))
+    };
+    let names = context.database.names_in_sight(context.file, wanted.kind);
+    names.filter(|name| starts_with(name, &context.typed)).any(|name| may_stand_here(&name))
 }
 
 /// Names from files that are not imported yet, each with the edit that imports its file.

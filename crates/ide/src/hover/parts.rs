@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use pydslrep_analysis::environment::Robot;
 use pydslrep_analysis::{Database, EntityId, FileId};
-use pydslrep_kinematics::{Drive, scrub_factor};
+use pydslrep_kinematics::scrub_factor;
 use pydslrep_scene::defaults;
 use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::{Entity, SensorKind};
@@ -39,10 +39,12 @@ pub(super) fn ip(database: &Database, id: EntityId) -> Option<String> {
 
 pub(super) fn robot(database: &Database, id: EntityId) -> Option<String> {
     let robot = database.robot(id)?;
-    let mut text = format!("{}, port {}.\n\n", drive_name(robot.drive), robot.port);
+    let row = robot.drive.row();
+    let mut text = format!("{} (`{}`), port {}.\n\n", row.label, row.word, robot.port);
     text += "| wheel | position | radius |\n|---|---|---|\n";
-    for (wheel, position) in robot.wheels.iter().zip(positions(robot.drive)) {
-        text += &format!("| `{}` | {position} | {} cm |\n", wheel.name, number(wheel.radius * 100.0, 3));
+    for (wheel, place) in robot.wheels.iter().zip(row.wheels) {
+        text +=
+            &format!("| `{}` | {} | {} cm |\n", wheel.name, place.words(), number(wheel.radius * 100.0, 3));
     }
     if !robot.sensors.is_empty() {
         text += &format!("\nSensors: {}.\n", names(robot.sensors.iter().map(|sensor| sensor.name.as_str())));
@@ -52,53 +54,25 @@ pub(super) fn robot(database: &Database, id: EntityId) -> Option<String> {
     Some(text)
 }
 
-fn drive_name(drive: Drive) -> &'static str {
-    match drive {
-        Drive::TwoWheel => "Two-wheel differential drive (`tw`)",
-        Drive::FourWheel => "Four-wheel skid-steer drive (`fw`)",
-        Drive::FourMecanum => "Mecanum drive (`fwh`)",
-    }
-}
-
-fn positions(drive: Drive) -> &'static [&'static str] {
-    match drive {
-        Drive::TwoWheel => &["left", "right"],
-        Drive::FourWheel | Drive::FourMecanum => &["left front", "left rear", "right front", "right rear"],
-    }
-}
-
 /// The inverse kinematics with this robot's radius. Other lengths come from the scene, so they stay symbols.
 fn equations(robot: &Robot) -> String {
     let radius = robot.wheels.first().map_or_else(String::new, |wheel| number(wheel.radius, 4));
-    let lines: &[&str] = match robot.drive {
-        Drive::TwoWheel => &["left  = (v − ω d/2) / r", "right = (v + ω d/2) / r"],
-        Drive::FourWheel => {
-            &["left front, left rear   = (v − ω d/2) / r", "right front, right rear = (v + ω d/2) / r"]
-        }
-        Drive::FourMecanum => &[
-            "left front  = (vx − vy − K ω) / r",
-            "left rear   = (vx + vy − K ω) / r",
-            "right front = (vx + vy + K ω) / r",
-            "right rear  = (vx − vy + K ω) / r",
-        ],
-    };
+    let row = robot.drive.row();
     let geometry = defaults::GEOMETRY;
     let (track, base) = (number(geometry.track, 3), number(geometry.wheelbase, 3));
-    let lengths = match robot.drive {
-        Drive::FourMecanum => {
-            let sum = number(f64::midpoint(geometry.track, geometry.wheelbase), 3);
-            format!("K = {sum} m (half of track {track} m and wheelbase {base} m)")
-        }
-        Drive::TwoWheel => format!("d = {track} m"),
-        Drive::FourWheel => {
-            let scrub = scrub_factor(robot.drive, geometry, defaults::lateral_friction(robot.drive));
-            let wide = number(scrub * geometry.track, 3);
-            format!("d = {wide} m (track {track} m × {} for tyre scrub in turns)", number(scrub, 2))
-        }
+    let lengths = if row.mecanum {
+        let sum = number(f64::midpoint(geometry.track, geometry.wheelbase), 3);
+        format!("K = {sum} m (half of track {track} m and wheelbase {base} m)")
+    } else if row.scrubs() {
+        let scrub = scrub_factor(robot.drive, geometry, row.lateral_friction);
+        let wide = number(scrub * geometry.track, 3);
+        format!("d = {wide} m (track {track} m × {} for tyre scrub in turns)", number(scrub, 2))
+    } else {
+        format!("d = {track} m")
     };
     format!(
         "\nWheel rates in rad/s:\n```text\n{}\n```\nr = {radius} m, {lengths} unless the scene overrides them.\n",
-        lines.join("\n")
+        row.equations.join("\n")
     )
 }
 

@@ -1,8 +1,7 @@
 //! Add a missing `type`, inferred from the wheels.
 
 use pydslrep_analysis::Database;
-use pydslrep_kinematics::Drive;
-use pydslrep_syntax::ast::{DriveWord, Entity, Name, Robot};
+use pydslrep_syntax::ast::{Drive, Entity, Name, Robot};
 use pydslrep_syntax::{EntityKind, Span};
 
 use super::{Refactoring, RefactoringKind, Selection};
@@ -11,24 +10,20 @@ use crate::cursor::resolved;
 /// The refactoring for a robot without a type, if its wheels determine it.
 pub(super) fn add(selection: &Selection<'_>) -> Option<Refactoring> {
     let Some(Entity::Robot(robot)) = &selection.entity.parse.entity else { return None };
-    let word = inferred(selection, robot)?.spelling();
+    let word = inferred(selection, robot)?.word();
     let edit = selection.edit(Span::at(robot.name.as_ref()?.span.end), format!(" type {word}"));
     Some(Refactoring::new(format!("add `type {word}`"), RefactoringKind::Rewrite, vec![edit]))
 }
 
-fn inferred(selection: &Selection<'_>, robot: &Robot) -> Option<DriveWord> {
+fn inferred(selection: &Selection<'_>, robot: &Robot) -> Option<Drive> {
     if robot.drive.is_some() {
         return None;
     }
     let wheels = &robot.wheels.as_ref()?.names;
     let mecanum: Vec<bool> =
         wheels.iter().map(|name| is_mecanum(selection.database, selection, name)).collect::<Option<_>>()?;
-    let word = match selection.database.drive(selection.entity.id)? {
-        Drive::TwoWheel => DriveWord::Tw,
-        Drive::FourWheel => DriveWord::Fw,
-        Drive::FourMecanum => DriveWord::Fwh,
-    };
-    mecanum.iter().all(|wheel| *wheel == (word == DriveWord::Fwh)).then_some(word)
+    let drive = selection.database.drive(selection.entity.id)?;
+    mecanum.iter().all(|wheel| *wheel == drive.row().mecanum).then_some(drive)
 }
 
 fn is_mecanum(database: &Database, selection: &Selection<'_>, name: &Name) -> Option<bool> {

@@ -25,7 +25,7 @@ pub fn toml_completions(
     others.retain(|part| part.span != cursor.word);
     let schema = file.schema();
     let headers = headers(schema, &file.names());
-    filter_in_toml(Offers { schema, cursor, others, headers }.fitting(), text, offset)
+    filter_in_toml(Offers { schema, cursor, others, headers }.fitting(), text, offset, trigger)
 }
 
 struct Offers {

@@ -1,15 +1,27 @@
-//! Settings and scene files: diagnostics, completion, hover and fixes for keys, values and the names of robots and sensors
-//! in a `pydslrep.toml` and in a `<environment>.scene.toml`, also while they are incomplete.
+//! Settings and scene files: diagnostics, completion, hover, outline and fixes for keys, values and the names of robots and
+//! sensors in a `pydslrep.toml` and in a `<environment>.scene.toml`, also while they are incomplete. A scene belongs to its
+//! program: definition, references, highlights and rename work in both directions, and actions of the program create the
+//! scene and complete it.
 //!
 //! A text, an offset and the kind of file in, plain structs out. `config` and `scene` list the keys.
 
 mod completion;
 mod fixes;
 mod hover;
+mod outline;
+mod scene_actions;
+mod scene_names;
+mod statements;
 
 pub use completion::toml_completions;
 pub use fixes::{KeyFix, toml_fixes};
 pub use hover::toml_hover;
+pub use outline::toml_symbols;
+pub use scene_actions::{SceneAction, scene_actions};
+pub use scene_names::{
+    NameInScene, SceneChanges, ScenePlace, highlights_in_scene, mentions_in_scenes, name_in_scene,
+    rename_in_scenes,
+};
 
 use pydslrep_analysis::{Database, EntityId};
 use pydslrep_config::Config;

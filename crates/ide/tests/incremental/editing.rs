@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use proptest::prelude::*;
 use pydslrep_analysis::{Absence, Database, Diagnostic, FileId, Snapshot, Target};
-use pydslrep_syntax::{EntityKind, KEYWORDS, Span, lex, parse};
+use pydslrep_syntax::{EntityKind, KEYWORDS, Span, TokenKind, lex, parse};
 
 use crate::answers::{self, Focus};
 use crate::panics::without_panic;
@@ -16,6 +16,12 @@ use crate::smallest::Failure;
 pub(crate) enum Step {
     /// Replaces text.
     Replace { file: usize, at: Anchor, len: Length, text: String },
+    /// Replaces a name or a number by another one of the file: what was grammatical stays so.
+    Swap { file: usize, token: u8, with: u8 },
+    /// Writes whole entities before another one.
+    Insert { file: usize, to: u8, text: &'static str },
+    /// Opens a file again with its text at the beginning.
+    Restore { file: usize },
     /// Moves an entity before another one, possibly in another file.
     Move { file: usize, entity: u8, to_file: usize, to: u8 },
     /// Copies an entity before another one.
@@ -115,6 +121,22 @@ const SIGNS: [&str; 60] = [
     "",
 ];
 
+/// Whole entities.
+const ENTITIES: [&str; 12] = [
+    "wheel a with radius 3\n",
+    "wheel b with radius 5 ",
+    "wheelH a with radius 3\n",
+    "sensor s\n",
+    "ip here 10.0.0.1\n",
+    "robot r with port 20000 has { a b } wheels\n",
+    "robot q type tw with port 20000 has { a b } wheels with sensors { s }\n",
+    "movement m of r { move 2 meters turn left }\n",
+    "parallel movement m of r { move -1 meters at 20 }\n",
+    "parallel movement n of q { turn right 30 move 1.5 meters }\n",
+    "environment e has { q r } robots with { n m } moves\n",
+    "environment f has { r q } robots with { m n m } moves\n",
+];
+
 /// Scenes with many, some or no collisions, and an invalid one.
 const SCENES: [&str; 5] = [
     "[world]\nsize = [1.5, 1.5]\n",
@@ -129,7 +151,8 @@ fn files() -> impl Strategy<Value = usize> {
     prop_oneof![3 => Just(0), 2 => Just(1), 1 => Just(2), 1 => Just(3)]
 }
 
-fn steps() -> impl Strategy<Value = Step> {
+/// Any edits: most leave syntax errors behind, as typing does.
+fn steps() -> BoxedStrategy<Step> {
     let text = prop_oneof![
         2 => proptest::sample::select(KEYWORDS.map(|(_, word)| format!("{word} ")).to_vec()),
         1 => (proptest::sample::select(KEYWORDS.map(|(_, word)| word).to_vec()), any::<u8>())
@@ -146,6 +169,27 @@ fn steps() -> impl Strategy<Value = Step> {
         2 => (1..4_u8).prop_map(Length::Tokens),
         1 => (4..80_u8).prop_map(Length::Bytes),
     ];
+    prop_oneof![
+        30 => (files(), at, len, text).prop_map(|(file, at, len, text)| Step::Replace { file, at, len, text }),
+        28 => whole_steps(),
+    ]
+    .boxed()
+}
+
+/// Edits that leave grammatical programs grammatical.
+fn careful_steps() -> BoxedStrategy<Step> {
+    prop_oneof![
+        20 => (files(), any::<u8>(), any::<u8>()).prop_map(|(file, token, with)| Step::Swap { file, token, with }),
+        4 => (files(), any::<u8>(), proptest::sample::select(ENTITIES.to_vec()))
+            .prop_map(|(file, to, text)| Step::Insert { file, to, text }),
+        3 => files().prop_map(|file| Step::Restore { file }),
+        24 => whole_steps(),
+    ]
+    .boxed()
+}
+
+/// Edits of whole entities and files, and other inputs.
+fn whole_steps() -> impl Strategy<Value = Step> {
     let import = 0..IMPORTS.len();
     let why = prop_oneof![
         Just(None),
@@ -155,7 +199,6 @@ fn steps() -> impl Strategy<Value = Step> {
     ];
     let moved = || (files(), any::<u8>(), files(), any::<u8>());
     prop_oneof![
-        30 => (files(), at, len, text).prop_map(|(file, at, len, text)| Step::Replace { file, at, len, text }),
         4 => moved().prop_map(|(file, entity, to_file, to)| Step::Move { file, entity, to_file, to }),
         2 => moved().prop_map(|(file, entity, to_file, to)| Step::Copy { file, entity, to_file, to }),
         6 => (1..4_u8).prop_map(Step::Undo),
@@ -163,15 +206,17 @@ fn steps() -> impl Strategy<Value = Step> {
         2 => files().prop_map(|file| Step::CloseOrOpen { file }),
         1 => (files(), files()).prop_map(|(file, like)| Step::Reopen { file, like }),
         2 => (files(), import, why).prop_map(|(file, import, why)| Step::Absence { file, import, why }),
-        1 => (files(), proptest::sample::select(Target::ALL.to_vec())).prop_map(|(file, target)| Step::Target { file, target }),
+        2 => (files(), proptest::sample::select(Target::ALL.to_vec())).prop_map(|(file, target)| Step::Target { file, target }),
         3 => (files(), any::<u8>(), proptest::option::weighted(0.8, 0..SCENES.len()))
             .prop_map(|(file, environment, scene)| Step::Scene { file, environment, scene }),
     ]
 }
 
-/// Programs with about `length` steps.
+/// Programs with about `length` steps; half of the programs are edited with care.
 pub(crate) fn strategy(steps_in_a_row: usize) -> impl Strategy<Value = (Start, Vec<Step>)> {
-    let steps = proptest::collection::vec(steps(), steps_in_a_row / 2..=steps_in_a_row * 3 / 2);
+    let length = steps_in_a_row / 2..=steps_in_a_row * 3 / 2;
+    let in_a_row = move |steps: BoxedStrategy<Step>| proptest::collection::vec(steps, length.clone());
+    let steps = prop_oneof![in_a_row(steps()), in_a_row(careful_steps())];
     (steps, programs::starts()).prop_map(|(steps, start)| (start, steps))
 }
 
@@ -325,6 +370,8 @@ pub(crate) struct Editing {
     redo: Vec<Change>,
     /// The last texts of closed files.
     closed: [String; 4],
+    /// The texts at the beginning.
+    begun: [String; 4],
     /// Snapshots of files.
     kept: Vec<(Snapshot, usize)>,
     beginning: Database,
@@ -365,6 +412,7 @@ impl Editing {
             undo: Vec::new(),
             redo: Vec::new(),
             closed,
+            begun: start.texts(),
             turn: 0,
             every,
         }
@@ -425,6 +473,12 @@ impl Editing {
                 let span = span(self.model.text(*file), *at, *len);
                 vec![Change::Edit { file: *file, span, text: text.clone() }]
             }
+            Step::Swap { file, token, with } => self.swapped(*file, *token, *with).into_iter().collect(),
+            Step::Insert { file, to, text } => {
+                let to = entity(self.model.text(*file), *to).start;
+                vec![Change::Edit { file: *file, span: Span::at(to), text: (*text).to_owned() }]
+            }
+            Step::Restore { file } => vec![Change::Open { file: *file, text: self.begun[*file].clone() }],
             Step::Move { file, entity, to_file, to } => self.moved(*file, *entity, *to_file, *to, true),
             Step::Copy { file, entity, to_file, to } => self.moved(*file, *entity, *to_file, *to, false),
             Step::CloseOrOpen { file } => vec![match self.model.texts[*file] {
@@ -450,6 +504,18 @@ impl Editing {
         }
     }
 
+    /// Another name in place of a name, or another number in place of a number.
+    fn swapped(&self, file: usize, token: u8, with: u8) -> Option<Change> {
+        let text = self.model.text(file);
+        let is_value =
+            |kind: TokenKind| matches!(kind, TokenKind::Name | TokenKind::Integer | TokenKind::Float);
+        let values: Vec<_> = lex(text).into_iter().filter(|(kind, _)| is_value(*kind)).collect();
+        let (kind, span) = *values.get(usize::from(token) % values.len().max(1))?;
+        let alike: Vec<_> = values.iter().filter(|(other, _)| *other == kind).collect();
+        let (_, other) = alike[usize::from(with) % alike.len()];
+        Some(Change::Edit { file, span, text: other.text(text).to_owned() })
+    }
+
     /// The name of one of a file's environments.
     fn environment(&self, file: usize, index: u8) -> String {
         let pieces = parse(self.model.text(file));
@@ -463,13 +529,9 @@ impl Editing {
 
     fn moved(&self, file: usize, entity: u8, to_file: usize, to: u8, is_move: bool) -> Vec<Change> {
         let text = self.model.text(file);
-        let chosen = |text: &str, index: u8| {
-            let pieces = parse(text);
-            pieces.get(usize::from(index) % pieces.len()).map_or(Span::at(0), |(span, _)| *span)
-        };
-        let from = chosen(text, entity);
+        let from = self::entity(text, entity);
         let moved = from.text(text).to_owned();
-        let mut to = chosen(self.model.text(to_file), to).start;
+        let mut to = self::entity(self.model.text(to_file), to).start;
         let insert = |to| Change::Edit { file: to_file, span: Span::at(to), text: moved.clone() };
         if !is_move {
             return vec![insert(to)];
@@ -539,6 +601,12 @@ impl Editing {
             }
         }
     }
+}
+
+/// The range of an entity.
+fn entity(text: &str, index: u8) -> Span {
+    let pieces = parse(text);
+    pieces.get(usize::from(index) % pieces.len()).map_or(Span::at(0), |(span, _)| *span)
 }
 
 /// The range of an anchor and a length.

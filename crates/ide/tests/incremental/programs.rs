@@ -46,8 +46,10 @@ wheel c with radius 3
 robot p with port 2 has { b c } wheels
 ";
 
-/// A program of several files whose only problems are planned collisions.
-const DRIVING: [&str; 4] = [
+/// Programs of several files whose only problems are planned collisions, and ports with V-REP.
+const DRIVING: [[&str; 4]; 2] = [TAKING_TURNS, SIDE_BY_SIDE];
+
+const TAKING_TURNS: [&str; 4] = [
     "\
 import \"lib.pyr\"
 movement m of r { move 4 meters turn left move 3 meters }
@@ -59,7 +61,7 @@ wheel b with radius 4
 robot r type tw with port 23000 has { a b } wheels
 wheel c with radius 4
 wheel d with radius 4
-robot q type tw with port 20000 has { c d } wheels
+robot q type tw with port 23000 has { c d } wheels
 movement n of q { move 2 meters }
 ",
     "",
@@ -69,7 +71,33 @@ environment e has { q } robots with { n } moves
 ",
 ];
 
-/// Its scenes, by file and environment.
+const SIDE_BY_SIDE: [&str; 4] = [
+    "\
+import \"parts/more.pyr\"
+environment e has { r q } robots with { m n o m } moves
+",
+    "\
+import \"parts/more.pyr\"
+environment f has { q p } robots with { n o } moves
+",
+    "\
+import \"../base.pyr\"
+robot r with port 20000 has { a b } wheels with sensors { s }
+robot q with port 20000 has { a b } wheels
+robot p type fw with port 20000 has { a b a2 b2 } wheels
+parallel movement m of r { move 2 meters turn left until { s } }
+parallel movement n of q { turn right move 1 meters }
+movement o of q { move -30 centimeters at 4.5 }
+wheel a with radius 4
+wheel b with radius 4
+wheel a2 with radius 4
+wheel b2 with radius 4
+sensor s
+",
+    "wheel a with radius 5\nwheel b with radius 5\nsensor s : bumper\n",
+];
+
+/// Their scenes, by file and environment.
 const IN_THE_WAY: [(usize, &str, &str); 2] =
     [(0, "e", "[[wall]]\nfrom = [1, -9]\nto = [1, 9]\n"), (3, "e", "[world]\nsize = [2, 2]\n")];
 
@@ -88,18 +116,20 @@ pub(crate) struct Start {
     open: u8,
     /// The entities that are present.
     kept: Vec<bool>,
-    /// Whether there are scenes and initially no errors.
-    driving: bool,
+    /// One of the programs that have scenes and initially no errors.
+    driving: Option<usize>,
+    /// Whether generated programs have mistakes.
+    mistakes: bool,
 }
 
 pub(crate) fn starts() -> impl Strategy<Value = Start> {
     let written = proptest::option::of(0..WRITTEN.len());
     let kept = proptest::collection::vec(proptest::bool::weighted(0.97), 128);
     let imports = proptest::bits::u32::masked(0xff_ffff);
-    let driving = proptest::bool::weighted(0.15);
+    let driving = proptest::option::weighted(0.3, 0..DRIVING.len());
     let open = proptest::bits::u8::masked(0b1110);
-    (any::<u64>().no_shrink(), written, any::<bool>(), imports, open, kept, driving).prop_map(
-        |(seed, written, dealt, imports, open, kept, driving)| Start {
+    (any::<u64>().no_shrink(), written, any::<bool>(), imports, open, kept, driving, any::<bool>()).prop_map(
+        |(seed, written, dealt, imports, open, kept, driving, mistakes)| Start {
             seed,
             written,
             dealt,
@@ -107,6 +137,7 @@ pub(crate) fn starts() -> impl Strategy<Value = Start> {
             open,
             kept,
             driving,
+            mistakes,
         },
     )
 }
@@ -114,8 +145,8 @@ pub(crate) fn starts() -> impl Strategy<Value = Start> {
 impl Start {
     /// The text of each file.
     pub(crate) fn texts(&self) -> [String; 4] {
-        if self.driving {
-            return DRIVING.map(str::to_owned);
+        if let Some(driving) = self.driving {
+            return DRIVING[driving].map(str::to_owned);
         }
         let mut kept = self.kept.iter().copied().chain(std::iter::repeat(true));
         let mut programs: Vec<String> = (0..PATHS.len()).map(|index| self.program(index)).collect();
@@ -139,12 +170,12 @@ impl Start {
 
     /// The scenes there are: file, environment, and text.
     pub(crate) fn scenes(&self) -> &'static [(usize, &'static str, &'static str)] {
-        if self.driving { &IN_THE_WAY } else { &[] }
+        if self.driving.is_some() { &IN_THE_WAY } else { &[] }
     }
 
     /// Whether a file is open before the first step.
     pub(crate) fn is_open(&self, file: usize) -> bool {
-        self.driving || file == 0 || self.open >> file & 1 == 1
+        self.driving.is_some() || file == 0 || self.open >> file & 1 == 1
     }
 
     fn program(&self, index: usize) -> String {
@@ -154,8 +185,8 @@ impl Start {
             _ => {
                 let lines = if self.dealt { 18 } else { 5 + (seed % 12) as usize };
                 let odd_layout = seed.is_multiple_of(3);
-                Recipe { lines, odd_layout, imports: seed.is_multiple_of(4), ..Recipe::default() }
-                    .seeded(seed)
+                let (imports, mistakes) = (seed.is_multiple_of(4), self.mistakes);
+                Recipe { lines, mistakes, odd_layout, imports, ..Recipe::default() }.seeded(seed)
             }
         }
     }

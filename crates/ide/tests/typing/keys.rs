@@ -77,7 +77,7 @@ fn accepted(typed: &Typed, program: &str) -> Vec<(usize, usize)> {
     let before = program[..typed.length].chars().last();
     let opened = match before {
         Some(letter) if letter.is_ascii_alphanumeric() || letter == '_' => {
-            typed.offered(CompletionTrigger::Invoked)
+            typed.offered(CompletionTrigger::Letter)
         }
         Some(other) => typed.offered(CompletionTrigger::Character(other)),
         None => Vec::new(),

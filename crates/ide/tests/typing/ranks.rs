@@ -63,7 +63,7 @@ fn offered(program: &str, word: Span) -> Option<Vec<String>> {
     let by_blank = blank.map(|blank| asked(program, word.start, CompletionTrigger::Character(blank)));
     by_blank.filter(|words| !words.is_empty()).or_else(|| {
         let length = word.end - word.start;
-        let words = (length > 1).then(|| asked(program, word.start + 1, CompletionTrigger::Invoked));
+        let words = (length > 1).then(|| asked(program, word.start + 1, CompletionTrigger::Letter));
         words.filter(|words| length > 4 || !words.is_empty())
     })
 }
