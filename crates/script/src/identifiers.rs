@@ -3,10 +3,15 @@
 use std::collections::HashSet;
 
 use pydslrep_analysis::environment::Environment;
+use pydslrep_kinematics::Drive;
 
-/// Everything that a script may import from the runtime.
-pub(crate) const IMPORTS: [&str; 6] =
-    ["FourWheelRobot", "MecanumRobot", "TwoWheelRobot", "movement", "parallel", "run"];
+/// Everything that a script may import from the runtime, in the order of imports.
+pub(crate) fn imports() -> Vec<&'static str> {
+    let mut names = Drive::ALL.map(|drive| drive.row().class).to_vec();
+    names.extend(["movement", "parallel", "run"]);
+    names.sort_unstable();
+    names
+}
 
 /// Python's keywords and builtins, one per line; tests/repository compares them with Python's own.
 const PYTHON: &str = include_str!("python_names.txt");
@@ -29,7 +34,7 @@ impl Identifiers {
     /// Chooses them in the order of the script.
     pub(crate) fn new(environment: &Environment) -> Self {
         let mut taken: HashSet<String> =
-            PYTHON.lines().chain(IMPORTS).chain(AMBIGUOUS).map(str::to_owned).collect();
+            PYTHON.lines().chain(imports()).chain(AMBIGUOUS).map(str::to_owned).collect();
         let mut choose = |name: &str, kind: &str, number| {
             let found = choose(name, kind, number, &taken);
             taken.insert(found.clone());

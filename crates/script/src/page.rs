@@ -8,9 +8,9 @@ use pydslrep_analysis::Target;
 use pydslrep_analysis::environment::{
     Action, ActionKind, Environment, Movement, Robot, Sensor, SensorKind, Source,
 };
-use pydslrep_kinematics::{Drive, motion::RIM_SPEED};
+use pydslrep_kinematics::motion::RIM_SPEED;
 
-use crate::identifiers::{IMPORTS, Identifiers};
+use crate::identifiers::{Identifiers, imports};
 use crate::layout::Expression::{self, Atom, Call, Dict, List, Tuple};
 use crate::layout::{WIDTH, commented, float, literal};
 use crate::runtime;
@@ -53,9 +53,9 @@ fn import(environment: &Environment, target: Target, program: &str) -> String {
         "movement" => !environment.movements.is_empty(),
         "parallel" => environment.schedule.iter().any(|group| group.len() > 1),
         "run" => true,
-        class => environment.robots.iter().any(|robot| class_of(robot.drive) == class),
+        class => environment.robots.iter().any(|robot| robot.drive.row().class == class),
     };
-    let names: Vec<&str> = IMPORTS.into_iter().filter(|name| is_used(name)).collect();
+    let names: Vec<&str> = imports().into_iter().filter(|name| is_used(name)).collect();
     let from = format!("from {} import ", runtime::NAME);
     let [short, long] = hints(target, program);
     let line = format!("{from}{}", names.join(", "));
@@ -79,23 +79,10 @@ fn hints(target: Target, program: &str) -> [String; 2] {
     [short, long]
 }
 
-/// The Python class of a drive.
-fn class_of(drive: Drive) -> &'static str {
-    match drive {
-        Drive::TwoWheel => "TwoWheelRobot",
-        Drive::FourWheel => "FourWheelRobot",
-        Drive::FourMecanum => "MecanumRobot",
-    }
-}
-
 fn robot(robot: &Robot, used: &BTreeSet<usize>, identifier: &str) -> String {
-    let corners: &[_] = match robot.drive {
-        Drive::TwoWheel => &["left", "right"],
-        Drive::FourWheel | Drive::FourMecanum => &["left_front", "left_rear", "right_front", "right_rear"],
-    };
     let mut arguments = vec![Atom(literal(&robot.name)), Atom(format!("port={}", robot.port))];
-    arguments.extend(corners.iter().zip(&robot.wheels).map(|(keyword, wheel)| Tuple {
-        keyword,
+    arguments.extend(robot.drive.row().wheels.iter().zip(&robot.wheels).map(|(place, wheel)| Tuple {
+        keyword: place.identifier,
         items: vec![Atom(literal(&wheel.name)), Atom(float(wheel.radius))],
     }));
     let used: Vec<&Sensor> = used.iter().map(|&sensor| &robot.sensors[sensor]).collect();
@@ -105,7 +92,7 @@ fn robot(robot: &Robot, used: &BTreeSet<usize>, identifier: &str) -> String {
         arguments.extend((!items.is_empty()).then_some(List { keyword, items }));
     }
     arguments.extend(objects(robot, &used));
-    let head = format!("{identifier} = {}", class_of(robot.drive));
+    let head = format!("{identifier} = {}", robot.drive.row().class);
     Call { head, arguments }.lay_out(0, "")
 }
 

@@ -12,16 +12,16 @@ pub(crate) fn line(line: u32) -> Source {
 
 /// A robot with wheels named as in the paper.
 pub(crate) fn robot(name: &str, drive: Drive, port: u16) -> Robot {
-    let wheels = match drive {
-        Drive::TwoWheel => vec!["wheelL", "wheelR"],
-        Drive::FourWheel | Drive::FourMecanum => vec!["wheelL0", "wheelL1", "wheelR0", "wheelR1"],
+    let wheels: &[&str] = match drive.wheel_count() {
+        2 => &["wheelL", "wheelR"],
+        _ => &["wheelL0", "wheelL1", "wheelR0", "wheelR1"],
     };
     Robot {
         name: name.to_owned(),
         drive,
         port,
         objects: Objects::new(),
-        wheels: wheels.into_iter().map(|name| Wheel { name: name.to_owned(), radius: 0.045 }).collect(),
+        wheels: wheels.iter().map(|&name| Wheel { name: name.to_owned(), radius: 0.045 }).collect(),
         sensors: Vec::new(),
         source: line(4),
     }

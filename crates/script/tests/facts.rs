@@ -1,0 +1,98 @@
+//! What the package that scripts import shares with this program: written from the tables here
+//! (`UPDATE_EXPECT=1 cargo test -p pydslrep-script --test facts`).
+
+use std::fmt::Write;
+
+use expect_test::expect_file;
+use pydslrep_kinematics::{Drive, SCRIPT_TRACK_FACTOR, motion};
+use pydslrep_scene::{SensorKind, defaults};
+
+#[test]
+fn the_package_has_the_types_of_robots_and_the_figures_of_this_program() {
+    expect_file!["../../../python/pydslrep_runtime/facts.py"].assert_eq(&(figures() + &robot_types()));
+}
+
+fn figures() -> String {
+    format!(
+        r#""""Types of robots, and figures of scenes and motion, as the command has them.
+
+A test of the command writes this file, crates/script/tests/facts.rs: do not change it here.
+"""
+
+import math
+from typing import Literal, NamedTuple
+
+STEP = {step:?}  # s of simulation time, unless a scene has other steps
+RIM_SPEED = {speed:?}  # m/s at the wheels' rims, in turns and in moves without a speed
+RIM_ACCELERATION = {acceleration:?}  # m/s² at the rims, when accelerating and braking
+MOTOR_ACCELERATION = {motor:?}  # m/s² at the rims, at most, unless a scene has it
+TRACK_FACTOR = {track:?}  # how much wider tracks of wheels that scrub are taken to be
+SENSOR_RANGE = {range:?}  # m of a distance sensor, unless a scene has it
+SENSOR_CONE = math.radians({cone:?})  # opening angle of a sensor, unless a scene has it
+"#,
+        step = motion::STEP,
+        speed = motion::RIM_SPEED,
+        acceleration = motion::RIM_ACCELERATION,
+        motor = defaults::MOTOR_ACCELERATION,
+        track = SCRIPT_TRACK_FACTOR,
+        range = defaults::range(SensorKind::Distance),
+        cone = defaults::CONE_DEGREES,
+    )
+}
+
+fn robot_types() -> String {
+    let words = Drive::ALL.map(|drive| format!("\"{}\"", drive.word())).join(", ");
+    let mut text = format!(
+        r#"
+TypeName = Literal[{words}]
+
+
+class RobotType(NamedTuple):
+    """What tells a type of robot apart from the others."""
+
+    robot: str  # the class that scripts make robots of
+    drive: str  # the class that drives them
+    wheels: tuple[str, ...]  # their places in order
+    pushes: tuple[float, ...]  # to the left, as a share of that ahead
+    mecanum: bool
+    one_axle: bool  # so that casters must support it
+    scrubs: bool  # whether wheels slide sideways in turns
+    grip: float  # as in a scene, unless that says otherwise
+
+
+ROBOT_TYPES: dict[TypeName, RobotType] = {{
+"#
+    );
+    for drive in Drive::ALL {
+        let row = drive.row();
+        let places = row.wheels.iter();
+        let _ = write!(
+            text,
+            r#"    "{}": RobotType(
+        robot="{}",
+        drive="{}",
+        wheels=({}),
+        pushes=({}),
+        mecanum={},
+        one_axle={},
+        scrubs={},
+        grip={:?},
+    ),
+"#,
+            row.word,
+            row.class,
+            row.runtime_drive,
+            places.clone().map(|place| format!("\"{}\"", place.identifier)).collect::<Vec<_>>().join(", "),
+            places.map(|place| format!("{:?}", place.push)).collect::<Vec<_>>().join(", "),
+            python(row.mecanum),
+            python(!row.has_wheelbase()),
+            python(row.scrubs()),
+            row.lateral_friction,
+        );
+    }
+    text + "}\n"
+}
+
+fn python(truth: bool) -> &'static str {
+    if truth { "True" } else { "False" }
+}
