@@ -1,7 +1,9 @@
 //! Engines: what a physics engine and its server do to a script, beyond the ideal world.
 
+use pydslrep_kinematics::motion;
+
 /// The step that the figures were measured at, seconds.
-const MEASURED_STEP: f64 = 0.05;
+const MEASURED_STEP: f64 = motion::STEP;
 
 /// The engine that a simulator imitates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

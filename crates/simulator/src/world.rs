@@ -5,7 +5,7 @@ mod noise;
 
 use std::fmt;
 
-use pydslrep_kinematics::{ModelError, Pose, Traction, Twist, motion};
+use pydslrep_kinematics::{ModelError, PerWheel, Pose, Traction, Twist, motion};
 use pydslrep_scene::{Body, Scene, SensorKind, Sighting, Space};
 
 use contact::Surroundings;
@@ -67,11 +67,18 @@ pub enum WorldError {
         /// Its name.
         robot: String,
     },
-    /// The step is not positive.
+    /// The step is not positive, or too long.
     Step {
         /// Seconds.
         step: f64,
     },
+}
+
+/// The longest step, seconds: within a longer one no controller could correct anything.
+const MAX_STEP: f64 = 10.0;
+
+fn is_step(step: f64) -> bool {
+    step > 0.0 && step <= MAX_STEP
 }
 
 impl fmt::Display for WorldError {
@@ -84,7 +91,9 @@ impl fmt::Display for WorldError {
                     "robot `{robot}` cannot drive: the acceleration and speed of its motors must be positive"
                 )
             }
-            Self::Step { step } => write!(f, "the simulation step must be positive, but it is {step} s"),
+            Self::Step { step } => {
+                write!(f, "the simulation step must be above 0 and up to {MAX_STEP} s, but it is {step:e} s")
+            }
         }
     }
 }
@@ -103,9 +112,9 @@ impl World {
     /// The scene at rest, stepped by `step` seconds.
     ///
     /// # Errors
-    /// If a robot cannot drive or the step is not positive.
+    /// If a robot cannot drive, or the step is not positive or longer than 10 s.
     pub fn with_step(scene: Scene, step: f64) -> Result<Self, WorldError> {
-        if !(step.is_finite() && step > 0.0) {
+        if !is_step(step) {
             return Err(WorldError::Step { step });
         }
         let robots =
@@ -116,9 +125,9 @@ impl World {
     /// From now on steps take `step` seconds. What an engine does depends on it: see [`World::use_engine`].
     ///
     /// # Errors
-    /// If the step is not positive.
+    /// If the step is not positive or longer than 10 s.
     pub fn set_step_length(&mut self, step: f64) -> Result<(), WorldError> {
-        if !(step.is_finite() && step > 0.0) {
+        if !is_step(step) {
             return Err(WorldError::Step { step });
         }
         self.step = step;
@@ -323,7 +332,7 @@ fn robot_at_rest(scene: &Scene, index: usize) -> Result<RobotState, WorldError> 
         released: false,
         slip: Slip::new(scene.noise, scene.seed, index, wheel),
     };
-    let joints = (0..robot.wheels.len()).map(joint).collect();
+    let joints = (0..model.settable().rates).map(joint).collect();
     Ok(RobotState {
         radii: model.radii().to_vec(),
         traction: robot.traction(),
@@ -352,14 +361,13 @@ impl RobotState {
         seconds: f64,
     ) -> Twist {
         let (creep, least_speed) = physics.map_or((0.0, 0.0), |physics| (physics.creep, physics.least_speed));
-        let (mut rims, mut mean_rims) = (Vec::new(), Vec::new());
-        for (joint, radius) in self.joints.iter_mut().zip(&self.radii) {
+        let rims = self.joints.iter_mut().zip(&self.radii).map(|(joint, radius)| {
             let mean =
                 joint.advance(rim_acceleration / radius, rim_speed / radius, least_speed / radius, seconds);
             let on_floor = radius * (1.0 + joint.slip.value - creep);
-            rims.push(joint.rate * on_floor);
-            mean_rims.push(mean * on_floor);
-        }
+            (joint.rate * on_floor, mean * on_floor)
+        });
+        let (rims, mean_rims): (PerWheel, PerWheel) = rims.unzip();
         self.twist = self.drifting(self.traction.twist(&rims));
         self.drifting(self.traction.twist(&mean_rims))
     }
@@ -417,6 +425,18 @@ mod tests {
         assert!((world.pose(0).x - (0.02 + 0.02)).abs() < 1e-12, "{:?}", world.pose(0));
         assert!((world.angle(0, 0) * 0.05 - world.pose(0).x).abs() < 1e-12);
         assert!((world.time() - 0.3).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_step_has_a_length() {
+        let mut world = world(Drive::TwoWheel);
+        for step in [0.0, -0.1, f64::NAN, f64::INFINITY, 1e308, 10.1] {
+            let error = world.set_step_length(step).unwrap_err().to_string();
+            assert!(error.len() < 100, "{error}");
+        }
+        world.set_step_length(0.1).unwrap();
+        world.step();
+        assert!((world.time() - 0.1).abs() < 1e-12);
     }
 
     #[test]
@@ -655,6 +675,52 @@ mod tests {
         let off = pose.relative(&run(1, None, false).0);
         assert!(off.y.abs() > 1e-4 && off.y.abs() < 0.2 && off.x.abs() < 0.05, "{off:?}");
         assert!((reading - (9.0 - 0.05 - 0.15 - pose.x)).abs() < 0.05, "{reading}");
+    }
+
+    #[test]
+    fn the_slip_of_wheels_changes_within_a_second() {
+        let mut scene = Scene::empty_floor(vec![robot("a", 0.0, 0.0, 0.0)]);
+        scene.noise = Some(Noise::default());
+        let mut world = World::new(scene).unwrap();
+        let slips: Vec<f64> = (0..4000)
+            .map(|_| {
+                world.step();
+                world.robots[0].joints[0].slip.value
+            })
+            .collect();
+        let product = |after: usize| -> f64 { slips.iter().zip(&slips[after..]).map(|(a, b)| a * b).sum() };
+        // In theory 0.37 of a value is left after a second, which is 20 steps.
+        let left = product(20) / product(0);
+        assert!((0.15..0.6).contains(&left), "{left}");
+    }
+
+    #[test]
+    fn noise_takes_no_reading_beyond_the_range() {
+        let wall = Obstacle::wall("w", (1.2, -1.0), (1.2, 1.0), 0.1);
+        let robots = vec![robot("a", 0.0, 0.0, 0.0)];
+        let noise = Some(Noise::default());
+        let mut world =
+            World::new(Scene { robots, obstacles: vec![wall], noise, ..Scene::default() }).unwrap();
+        let readings: Vec<Option<f64>> = (0..100)
+            .map(|_| {
+                world.step();
+                world.sight(0, 0).map(|seen| seen.distance)
+            })
+            .collect();
+        // The wall is exactly at the end of the range: about half of the readings would be beyond it.
+        assert!(readings.iter().flatten().all(|distance| *distance <= 1.0), "{readings:?}");
+        let seen = readings.iter().flatten().count();
+        assert!((30..70).contains(&seen), "{seen}");
+    }
+
+    #[test]
+    fn a_parked_robot_is_where_it_started() {
+        let mut world = world(Drive::TwoWheel);
+        world.use_engine(Engine::CoppeliaSim46);
+        world.step();
+        assert_ne!(world.pose(0), Pose::default(), "its contacts tremble");
+        world.park();
+        assert_eq!(world.pose(0), Pose::default());
     }
 
     #[test]

@@ -43,7 +43,7 @@ impl<'a> Arguments<'a> {
     }
 
     pub(super) fn integer(&self, index: usize) -> Result<i64, Failure> {
-        self.get(index).and_then(integer).ok_or_else(|| self.wrong_type())
+        self.get(index).and_then(integer).ok_or_else(|| self.unfit(index))
     }
 
     /// An optional integer.
@@ -53,16 +53,16 @@ impl<'a> Arguments<'a> {
 
     /// A finite number; clients may send it as an integer.
     pub(super) fn number(&self, index: usize) -> Result<f64, Failure> {
-        self.get(index).and_then(number).filter(|value| value.is_finite()).ok_or_else(|| self.wrong_type())
+        self.get(index).and_then(number).filter(|value| value.is_finite()).ok_or_else(|| self.unfit(index))
     }
 
     pub(super) fn text(&self, index: usize) -> Result<&'a str, Failure> {
-        self.get(index).and_then(Value::as_text).ok_or_else(|| self.wrong_type())
+        self.get(index).and_then(Value::as_text).ok_or_else(|| self.unfit(index))
     }
 
     /// True for `true` and for non-zero numbers, as in the engine.
     pub(super) fn truth(&self, index: usize) -> Result<bool, Failure> {
-        let value = self.get(index).ok_or_else(|| self.wrong_type())?;
+        let value = self.get(index).ok_or_else(|| self.unfit(index))?;
         value.as_bool().or_else(|| Some(number(value)? != 0.0)).ok_or_else(|| self.wrong_type())
     }
 
@@ -72,8 +72,17 @@ impl<'a> Arguments<'a> {
         map.iter().find(|(key, _)| key.as_text() == Some(name)).map(|(_, value)| value)
     }
 
+    /// An argument is missing or has the wrong type: what of both, the first argument that fails tells.
+    fn unfit(&self, index: usize) -> Failure {
+        if index < self.values.len() || self.is("sim.getObject") {
+            return self.wrong_type();
+        }
+        self.failure(316, "the function requires more arguments.")
+    }
+
     pub(super) fn wrong_type(&self) -> Failure {
-        self.failure(1308, "one of the function's argument type is not correct.")
+        let number = if self.is("sim.getObject") { 1308 } else { 316 };
+        self.failure(number, "one of the function's argument type is not correct.")
     }
 }
 
@@ -116,6 +125,11 @@ pub(super) fn position(frame: &Isometry3<f64>) -> Value {
 pub(super) fn pose(frame: &Isometry3<f64>) -> Value {
     let quaternion = frame.rotation.coords;
     list(frame.translation.vector.iter().chain(quaternion.iter()).copied())
+}
+
+/// x, y, z, w.
+pub(super) fn quaternion(frame: &Isometry3<f64>) -> Value {
+    list(frame.rotation.coords.iter().copied())
 }
 
 pub(super) fn euler_angles(frame: &Isometry3<f64>) -> Value {
@@ -199,7 +213,8 @@ mod tests {
         );
         assert_eq!((arguments.truth(0), arguments.truth(5)), (Ok(true), Ok(true)));
         assert!(arguments.truth(2).is_err());
-        let wrong = "1308: in sim.f: one of the function's argument type is not correct.";
-        assert_eq!(arguments.text(9), Err(Failure(wrong.to_owned())));
+        let wrong = |reason: &str| Err(Failure(format!("316: in sim.f: {reason}")));
+        assert_eq!(arguments.text(0), wrong("one of the function's argument type is not correct."));
+        assert_eq!(arguments.text(9), wrong("the function requires more arguments."));
     }
 }

@@ -1,13 +1,16 @@
 //! The calls that create objects, and that read and change those which clients have created.
 
+use std::f64::consts::{PI, TAU};
+
 use ciborium::Value;
 use nalgebra::{Isometry3, Matrix3, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
 
 use super::arguments::{self, Arguments, Failure, Outcome};
 use super::calls::CallContext;
 use super::info;
-use super::objects::{Handle, Kind};
+use super::objects::{Handle, Kind, Object};
 use super::parts::{Form, JointPart, PartKind, SensorPart, ShapePart};
+use super::sight;
 
 /// The maximum length of an alias or the name of custom data.
 const MAX_NAME: usize = 200;
@@ -19,14 +22,20 @@ const MAX_TAGS: usize = 8;
 /// The maximum number of corners and of triangles of a shape.
 const MAX_CORNERS: usize = 10_000;
 
+/// The maximum length of a list that has a length of its own.
+const MAX_NUMBERS: usize = 100;
+
+/// The maximum number of parameters of physics engines that an object has.
+const MAX_ENGINE_PARAMETERS: usize = 50;
+
 /// The range of sizes, metres; as in the engine, others are limited to it.
 const SIZES: (f64, f64) = (1e-5, 1e5);
 
 /// Nothing is further away than this, metres.
 const FAR: f64 = 1e6;
 
-/// The density that shapes have first, kg/m³.
-const DENSITY: f64 = 1000.0;
+/// The torque of a new motor, N·m.
+const FIRST_TORQUE: f64 = 2.5;
 
 /// The handle of the main script, which is no object.
 const MAIN_SCRIPT: i64 = 1_000_000;
@@ -55,20 +64,28 @@ pub(super) fn call(context: &mut CallContext, function: &str, arguments: &Argume
         "removeScript" => remove_script(context, arguments),
         "getScriptStringParam" => script_text(context, arguments),
         "setScriptStringParam" => set_script_text(context, arguments),
-        "readCustomDataBlock" => context.object(arguments).map(|_| vec![]),
+        "readCustomDataBlock" => context.object(arguments).map(|_| vec![Value::from("")]),
+        "readCustomDataBlockTags" => context.object(arguments).map(|_| vec![Value::Array(vec![])]),
+        // Forces are not simulated; the engine has none while the simulation is stopped.
+        "getJointForce" => context.joint_object(arguments).map(|_| vec![]),
+        "getJointInterval" => context.joint_object(arguments).map(|_| interval()),
+        "checkProximitySensor" => sight::check(context, arguments),
         "getJointType" => context.joint(arguments).map(|_| vec![info::JOINT_REVOLUTE.into()]),
         // The motors of a program's robots reach their rates whatever it takes.
         "getJointTargetForce" => context.joint(arguments).map(|_| vec![Value::from(100.0)]),
+        "setEngineFloatParam" | "getEngineFloatParam" => Err(unfit(context, arguments, 1, info::TYPE_SHAPE)),
+        "setJointTargetForce" | "setJointMode" => Err(unfit(context, arguments, 0, info::TYPE_JOINT)),
         "writeCustomDataBlock"
         | "setObjectSpecialProperty"
         | "setObjectFloatParam"
         | "setShapeMass"
-        | "setEngineFloatParam"
-        | "setJointTargetForce"
-        | "setJointMode" => Err(arguments.failure(316, "object belongs to the program.")),
-        "getShapeMass" | "getShapeGeomInfo" | "getObjectSpecialProperty" => {
-            Err(arguments.failure(316, "object is not a shape that was created."))
-        }
+        | "getShapeMass"
+        | "getShapeGeomInfo"
+        | "getShapeMesh" => Err(unfit(context, arguments, 0, info::TYPE_SHAPE)),
+        "getObjectSpecialProperty" => context.object(arguments).map(|(handle, _)| {
+            let is_shape = type_of(context, handle) == Some(info::TYPE_SHAPE);
+            vec![Value::from(if is_shape { info::SPECIAL_ALL } else { 0 })]
+        }),
         _ => return None,
     })
 }
@@ -80,12 +97,13 @@ pub(super) fn call_of_made(
     arguments: &Arguments,
 ) -> Option<Outcome> {
     // The parameters of engines come before their objects.
-    let place = usize::from(function == "setEngineFloatParam");
+    let place = usize::from(["setEngineFloatParam", "getEngineFloatParam"].contains(&function));
     let handle = arguments.integer(place).ok()?;
     let kind = context.objects.part(handle)?.kind.clone();
     Some(match (function, kind) {
         ("readCustomDataBlock", _) => read_data(context, handle, arguments),
         ("writeCustomDataBlock", _) => write_data(context, handle, arguments),
+        ("readCustomDataBlockTags", _) => Ok(vec![tags(context, handle)]),
         ("getObjectSpecialProperty", _) => {
             Ok(vec![context.objects.part(handle).map_or(0, |part| part.special).into()])
         }
@@ -98,8 +116,15 @@ pub(super) fn call_of_made(
             set_kind(context, handle, PartKind::Shape(ShapePart { mass: mass.max(1e-7), ..shape }));
             vec![]
         }),
-        ("setEngineFloatParam", _) => arguments.number(2).map(|_| vec![]),
-        ("getObjectFloatParam", PartKind::Shape(shape)) => shape_number(&shape, arguments),
+        ("getShapeMesh", PartKind::Shape(shape)) => mesh(&shape.form, arguments),
+        ("setEngineFloatParam", PartKind::Shape(_)) => set_engine(context, handle, arguments),
+        ("setEngineFloatParam", _) => Ok(vec![Value::from(0)]),
+        ("getEngineFloatParam", PartKind::Shape(shape)) => engine(context, handle, &shape.form, arguments),
+        ("getObjectFloatParam", kind)
+            if matches!(kind, PartKind::Shape(_)) || bound(&kind, arguments).is_some() =>
+        {
+            Ok(number_of(&kind, arguments))
+        }
         ("getShapeGeomInfo", PartKind::Shape(shape)) => Ok(geometry_of(&shape.form)),
         ("getJointType", PartKind::Joint(joint)) => Ok(vec![joint.subtype.into()]),
         ("getJointMode", PartKind::Joint(joint)) => Ok(vec![joint.mode.into(), Value::from(0)]),
@@ -142,7 +167,7 @@ fn create(context: &mut CallContext, arguments: &Arguments, kind: PartKind) -> O
 fn create_primitive_shape(context: &mut CallContext, arguments: &Arguments) -> Outcome {
     let primitive = arguments.integer(0)?;
     if !(1..=8).contains(&primitive) {
-        return Err(arguments.failure(316, "invalid primitive type."));
+        return Ok(vec![Value::from(-1)]);
     }
     let [x, y, z] = numbers::<3>(arguments, 1)?.map(|size| size.clamp(SIZES.0, SIZES.1));
     create(context, arguments, shape(Form::Primitive(primitive, Vector3::new(x, y, z))))
@@ -167,13 +192,13 @@ fn create_shape(context: &mut CallContext, arguments: &Arguments) -> Outcome {
 }
 
 fn shape(form: Form) -> PartKind {
-    let mass = (DENSITY * form.size().product()).max(1e-7);
+    let mass = form.mass();
     PartKind::Shape(ShapePart { form, is_static: true, is_respondable: false, mask: 0xffff, mass })
 }
 
 fn create_joint(context: &mut CallContext, arguments: &Arguments) -> Outcome {
     let (subtype, mode) = (arguments.integer(0)?, arguments.integer(1)?);
-    let joint = JointPart { subtype, mode, control: info::CONTROL_FREE, torque: 0.0, target: 0.0 };
+    let joint = JointPart { subtype, mode, control: info::CONTROL_FREE, torque: FIRST_TORQUE, target: 0.0 };
     create(context, arguments, PartKind::Joint(joint))
 }
 
@@ -183,17 +208,18 @@ fn create_proximity_sensor(context: &mut CallContext, arguments: &Arguments) -> 
     let volume = numbers::<15>(arguments, 4)?;
     let (offset, range, angle) = (volume[0].max(0.0), volume[1].max(0.0), volume[9]);
     let angle = angle.clamp(0.0, std::f64::consts::PI);
-    create(context, arguments, PartKind::Sensor(SensorPart { subtype, offset, range, angle }))
+    let sensor = SensorPart { subtype, offset, range, angle, size: volume[12].max(0.0) };
+    create(context, arguments, PartKind::Sensor(sensor))
 }
 
 fn remove_objects(context: &mut CallContext, arguments: &Arguments) -> Outcome {
     let handles = arguments.get(0).and_then(Value::as_array).ok_or_else(|| arguments.wrong_type())?;
     let handles: Option<Vec<Handle>> = handles.iter().map(arguments::integer).collect();
     let handles = handles.ok_or_else(|| arguments.wrong_type())?;
-    if let Some(other) = handles.iter().find(|handle| context.objects.part(**handle).is_none()) {
-        let exists = context.objects.get(*other).is_some();
-        let reason = if exists { "object belongs to the program." } else { "object does not exist." };
-        return Err(arguments.failure(316, reason));
+    let is_own =
+        |handle: &Handle| context.objects.get(*handle).is_some() && context.objects.part(*handle).is_none();
+    if handles.iter().any(is_own) {
+        return Err(arguments.failure(316, "object belongs to the program."));
     }
     for handle in handles {
         context.objects.remove(handle);
@@ -210,18 +236,11 @@ fn objects_in_tree(context: &CallContext, arguments: &Arguments) -> Outcome {
     if root.is_some_and(|root| objects.get(root).is_none()) {
         return Err(arguments.failure(316, "object does not exist."));
     }
-    let is_in = |handle: Handle| match root {
-        Some(root) if handle == root => !without_base && !children_only,
-        _ if children_only => objects.get(handle).is_some_and(|object| object.parent == root),
-        Some(root) => objects.ancestors(handle).contains(&root),
-        None => true,
+    let is_wanted = |handle: &Handle| {
+        (kind == info::HANDLE_ALL || type_of(context, *handle) == Some(kind))
+            && !(without_base && Some(*handle) == root)
     };
-    let found = objects
-        .iter()
-        .filter(|(_, object)| kind == info::HANDLE_ALL || object.type_number() == kind)
-        .filter(|(handle, _)| is_in(*handle))
-        .map(|(handle, _)| Value::from(handle))
-        .collect();
+    let found = objects.tree(root, !children_only).into_iter().filter(is_wanted).map(Value::from).collect();
     Ok(vec![Value::Array(found)])
 }
 
@@ -237,10 +256,11 @@ fn made(context: &CallContext, arguments: &Arguments) -> Result<Handle, Failure>
 fn set_object_alias(context: &mut CallContext, arguments: &Arguments) -> Outcome {
     let handle = made(context, arguments)?;
     let alias = arguments.text(1)?;
-    let is_valid = |c: char| c == '_' || c.is_ascii_alphanumeric();
-    let alias = alias.chars().take(MAX_NAME).map(|c| if is_valid(c) { c } else { '_' });
-    context.objects.rename(handle, alias.collect());
-    Ok(vec![Value::from(1)])
+    let is_valid = |byte: u8| byte == b'_' || byte.is_ascii_alphanumeric();
+    let alias = alias.bytes().take(MAX_NAME).map(|byte| if is_valid(byte) { char::from(byte) } else { '_' });
+    let alias: String = alias.collect();
+    context.objects.rename(handle, if alias.is_empty() { "_".to_owned() } else { alias });
+    Ok(vec![])
 }
 
 fn set_object_parent(context: &mut CallContext, arguments: &Arguments) -> Outcome {
@@ -250,10 +270,13 @@ fn set_object_parent(context: &mut CallContext, arguments: &Arguments) -> Outcom
         return Err(arguments.failure(316, "parent does not exist, or belongs to the program."));
     }
     let stays = arguments.get(2).is_none() || arguments.truth(2)?;
+    if parent.is_some_and(|parent| parent == handle || context.objects.ancestors(parent).contains(&handle)) {
+        return Err(arguments.failure(316, "object is ancestor of desired parent."));
+    }
     if context.objects.set_parent(handle, parent, stays) {
         return Ok(vec![Value::from(1)]);
     }
-    Err(arguments.failure(316, "object cannot have that parent."))
+    Err(arguments.failure(316, "the objects would be nested too deep."))
 }
 
 /// Places an object by its frame, which is relative to the third argument's object (default: the world).
@@ -370,7 +393,15 @@ fn script_of<'a>(context: &'a mut CallContext, arguments: &Arguments) -> Result<
 fn read_data(context: &CallContext, handle: Handle, arguments: &Arguments) -> Outcome {
     let name = arguments.text(1)?;
     let data = context.objects.part(handle).and_then(|part| part.data.get(name));
-    Ok(data.map(|data| Value::from(data.as_str())).into_iter().collect())
+    Ok(vec![Value::from(data.map_or("", String::as_str))])
+}
+
+/// The names of an object's custom data.
+fn tags(context: &CallContext, handle: Handle) -> Value {
+    let data = context.objects.part(handle).map(|part| &part.data);
+    Value::Array(
+        data.into_iter().flat_map(|data| data.keys()).map(|name| Value::from(name.as_str())).collect(),
+    )
 }
 
 fn write_data(context: &mut CallContext, handle: Handle, arguments: &Arguments) -> Outcome {
@@ -391,7 +422,67 @@ fn set_special(context: &mut CallContext, handle: Handle, arguments: &Arguments)
     if let Some(part) = context.objects.part_mut(handle) {
         part.special = special;
     }
-    Ok(vec![])
+    Ok(vec![Value::from(1)])
+}
+
+/// The number of an object's type.
+fn type_of(context: &CallContext, handle: Handle) -> Option<i64> {
+    context.objects.get(handle).map(Object::type_number)
+}
+
+/// Why the object of an argument cannot be read or changed: it has another type than the one that is needed, or belongs to the
+/// program.
+fn unfit(context: &CallContext, arguments: &Arguments, index: usize, needed: i64) -> Failure {
+    let found = match arguments.integer(index) {
+        Ok(handle) => type_of(context, handle),
+        Err(failure) => return failure,
+    };
+    let reason = match found {
+        None => "object does not exist.",
+        Some(found) if found == needed => "object belongs to the program.",
+        Some(_) if needed == info::TYPE_JOINT => "object is not a joint.",
+        Some(_) => "object is not a shape.",
+    };
+    arguments.failure(316, reason)
+}
+
+/// Whether a joint turns without end, and its range: the least angle and its width.
+fn interval() -> Vec<Value> {
+    vec![true.into(), arguments::list([-PI, TAU])]
+}
+
+/// Corners, the indices of the triangles, and the normals at each of their corners.
+fn mesh(form: &Form, arguments: &Arguments) -> Outcome {
+    let Some((corners, triangles)) = form.mesh() else {
+        return Err(arguments.failure(316, "round primitives have no mesh in this simulator."));
+    };
+    let normals = triangles.iter().flat_map(|triangle| {
+        let [a, b, c] = triangle.map(|index| corners[index]);
+        let normal = (b - a).cross(&(c - a)).try_normalize(1e-12).unwrap_or_default();
+        [normal; 3]
+    });
+    let coordinates =
+        |all: Vec<Vector3<f64>>| arguments::list(all.iter().flat_map(|each| [each.x, each.y, each.z]));
+    let normals = coordinates(normals.collect());
+    let indices = triangles.iter().flatten().map(|index| Value::from(*index as u64)).collect();
+    Ok(vec![coordinates(corners), Value::Array(indices), normals])
+}
+
+fn set_engine(context: &mut CallContext, handle: Handle, arguments: &Arguments) -> Outcome {
+    let (parameter, value) = (arguments.integer(0)?, arguments.number(2)?);
+    let Some(part) = context.objects.part_mut(handle) else { return Ok(vec![]) };
+    if part.engine.len() >= MAX_ENGINE_PARAMETERS {
+        return Err(arguments.failure(316, "there are too many parameters."));
+    }
+    part.engine.insert(parameter, value);
+    Ok(vec![Value::from(1)])
+}
+
+fn engine(context: &CallContext, handle: Handle, form: &Form, arguments: &Arguments) -> Outcome {
+    let parameter = arguments.integer(0)?;
+    let set = context.objects.part(handle).and_then(|part| part.engine.get(&parameter)).copied();
+    let first = (parameter == info::BULLET_OLD_FRICTION).then(|| form.friction());
+    Ok(set.or(first).map(Value::from).into_iter().collect())
 }
 
 fn set_kind(context: &mut CallContext, handle: Handle, kind: PartKind) {
@@ -413,7 +504,7 @@ fn shape_integer(
             info::PARAM_STATIC => i64::from(shape.is_static),
             info::PARAM_RESPONDABLE => i64::from(shape.is_respondable),
             info::PARAM_RESPONDABLE_MASK => shape.mask,
-            _ => return Err(arguments.failure(316, "invalid parameter.")),
+            _ => return Ok(vec![]),
         };
         return Ok(vec![value.into()]);
     }
@@ -422,26 +513,26 @@ fn shape_integer(
         info::PARAM_STATIC => shape.is_static = value != 0,
         info::PARAM_RESPONDABLE => shape.is_respondable = value != 0,
         info::PARAM_RESPONDABLE_MASK => shape.mask = value,
-        _ => return Err(arguments.failure(316, "invalid parameter.")),
+        _ => return Err(arguments.failure(316, "could not set parameter.")),
     }
     set_kind(context, handle, PartKind::Shape(shape));
-    Ok(vec![])
+    Ok(vec![Value::from(1)])
 }
 
-/// The mass of a shape, or a corner of its bounding box.
-fn shape_number(shape: &ShapePart, arguments: &Arguments) -> Outcome {
-    let (low, high) = shape.form.bounds();
-    let value = match arguments.integer(1)? {
-        info::PARAM_MASS => shape.mass,
-        15 => low.x,
-        16 => low.y,
-        17 => low.z,
-        18 => high.x,
-        19 => high.y,
-        20 => high.z,
-        _ => return Err(arguments.failure(316, "invalid parameter.")),
+/// The mass of a shape, or a corner of an object's bounding box; nothing for other parameters.
+fn number_of(kind: &PartKind, arguments: &Arguments) -> Vec<Value> {
+    let value = match (kind, arguments.integer(1)) {
+        (PartKind::Shape(shape), Ok(info::PARAM_MASS)) => Some(shape.mass),
+        _ => bound(kind, arguments),
     };
-    Ok(vec![value.into()])
+    value.map(Value::from).into_iter().collect()
+}
+
+/// The coordinate of an object's bounding box that the second argument asks for.
+fn bound(kind: &PartKind, arguments: &Arguments) -> Option<f64> {
+    let place = usize::try_from(arguments.integer(1).ok()? - info::PARAM_BOX).ok()?;
+    let (low, high) = kind.reported_bounds();
+    [low.x, low.y, low.z, high.x, high.y, high.z].get(place).copied()
 }
 
 /// What a shape is (2: a primitive, 4: convex), which primitive, and its sizes.
@@ -450,7 +541,10 @@ fn geometry_of(form: &Form) -> Vec<Value> {
         Form::Primitive(kind, size) => {
             vec![Value::from(6), (*kind).into(), arguments::list([size.x, size.y, size.z, 0.0])]
         }
-        Form::Mesh(_) => vec![Value::from(0), Value::from(0), arguments::list([0.0; 4])],
+        Form::Mesh(_) => {
+            let what = if form.is_convex() { 4 } else { 0 };
+            vec![Value::from(what), Value::from(0), arguments::list([0.0; 4])]
+        }
     }
 }
 
@@ -461,29 +555,21 @@ fn joint_parameter(
     function: &str,
     arguments: &Arguments,
 ) -> Outcome {
-    let is_control = || -> Result<(), Failure> {
-        if arguments.integer(1)? == info::PARAM_CONTROL_MODE {
-            return Ok(());
-        }
-        Err(arguments.failure(316, "invalid parameter."))
-    };
+    let is_control = arguments.integer(1) == Ok(info::PARAM_CONTROL_MODE);
     match function {
         "setJointMode" => joint.mode = arguments.integer(1)?,
         "setJointTargetForce" => joint.torque = arguments.number(1)?,
         "getObjectInt32Param" => {
-            is_control()?;
-            return Ok(vec![joint.control.into()]);
+            return Ok(is_control.then(|| Value::from(joint.control)).into_iter().collect());
         }
-        _ => {
-            is_control()?;
-            joint.control = arguments.integer(2)?;
-        }
+        _ if is_control => joint.control = arguments.integer(2)?,
+        _ => return Err(arguments.failure(316, "could not set parameter.")),
     }
     if let Some(Kind::Wheel { robot, wheel }) = context.objects.role(handle) {
         context.world.set_controlled(robot, wheel, joint.follows_velocity());
     }
     set_kind(context, handle, PartKind::Joint(joint));
-    Ok(vec![])
+    Ok(if function == "setObjectInt32Param" { vec![Value::from(1)] } else { vec![] })
 }
 
 /// The rates and angles of a joint that is not simulated.
@@ -501,13 +587,16 @@ fn idle_joint(
             Ok(vec![Value::from(1)])
         }
         "getJointTargetVelocity" => Ok(vec![joint.target.into()]),
+        "getObjectFloatParam" if arguments.integer(1)? != info::PARAM_VELOCITY => Ok(vec![]),
         _ => Ok(vec![Value::from(0.0)]),
     }
 }
 
 /// A list of exactly as many finite numbers.
 fn numbers<const COUNT: usize>(arguments: &Arguments, index: usize) -> Result<[f64; COUNT], Failure> {
-    list(arguments, index, COUNT)?.try_into().map_err(|_| arguments.wrong_type())
+    list(arguments, index, MAX_NUMBERS)?
+        .try_into()
+        .map_err(|_| arguments.failure(316, "incorrect table size."))
 }
 
 /// A list of finite numbers.

@@ -10,6 +10,7 @@ use super::arguments::{self, Arguments, Outcome};
 use super::building;
 use super::info;
 use super::objects::{Handle, Kind, Object, Objects};
+use super::sight;
 use crate::{Sightings, World};
 
 /// The state that calls read and change.
@@ -24,6 +25,8 @@ pub(super) struct CallContext<'a> {
     /// The calling connection.
     pub(super) connection: u64,
     pub(super) seen: &'a mut Sightings,
+    /// The step of the physics engine, seconds.
+    pub(super) physics_step: f64,
 }
 
 /// The connection that set the rate of each wheel last, by robot and wheel.
@@ -66,6 +69,8 @@ pub(super) fn call(context: &mut CallContext, function: &str, arguments: &Argume
         "getObjectOrientation" => context.frame(arguments).map(|frame| vec![arguments::euler_angles(&frame)]),
         "getObjectPose" => context.frame(arguments).map(|frame| vec![arguments::pose(&frame)]),
         "getObjectMatrix" => context.frame(arguments).map(|frame| vec![arguments::matrix(&frame)]),
+        "getObjectQuaternion" => context.frame(arguments).map(|frame| vec![arguments::quaternion(&frame)]),
+        "getObjectUid" => context.object(arguments).map(|(handle, _)| vec![handle.into()]),
         "getObjectVelocity" => context.get_object_velocity(arguments),
         "getJointPosition" => context.read_joint(arguments, World::angle).map(|angle| vec![angle.into()]),
         "getJointVelocity" => context.read_joint(arguments, World::rate).map(|rate| vec![rate.into()]),
@@ -84,6 +89,9 @@ pub(super) fn call(context: &mut CallContext, function: &str, arguments: &Argume
         "readProximitySensor" => context.read_proximity_sensor(arguments),
         "handleProximitySensor" => context.handle_proximity_sensor(arguments),
         "getInt32Param" => parameter(arguments, info::PARAM_PROGRAM_VERSION, info::PROGRAM_VERSION.into()),
+        "getFloatParam" if arguments.integer(0) == Ok(info::PARAM_PHYSICS_STEP) => {
+            Ok(vec![context.physics_step.into()])
+        }
         "getFloatParam" => parameter(arguments, info::PARAM_TIME_STEP, context.world.step_length().into()),
         "getBoolParam" => parameter(arguments, info::PARAM_REAL_TIME, true.into()),
         "getSimulationTimeStep" => Ok(vec![context.world.step_length().into()]),
@@ -129,8 +137,7 @@ impl CallContext<'_> {
     fn get_object_alias(&self, arguments: &Arguments) -> Outcome {
         let (handle, _) = self.object(arguments)?;
         let alias = match arguments.integer_or(1, -1)? {
-            1 => self.objects.short_path(handle),
-            2 => self.objects.path(handle),
+            1 | 2 => self.objects.path(handle),
             _ => self.objects.get(handle).map(|object| object.alias.clone()),
         };
         Ok(vec![alias.unwrap_or_default().into()])
@@ -198,6 +205,15 @@ impl CallContext<'_> {
         [linear, Vector3::new(0.0, 0.0, twist.omega)]
     }
 
+    /// A joint of any kind, as the first argument.
+    pub(super) fn joint_object(&self, arguments: &Arguments) -> Result<Handle, arguments::Failure> {
+        let (handle, _) = self.object(arguments)?;
+        match self.objects.get(handle).map(Object::type_number) {
+            Some(info::TYPE_JOINT) => Ok(handle),
+            _ => Err(arguments.failure(316, "object is not a joint.")),
+        }
+    }
+
     pub(super) fn joint(&self, arguments: &Arguments) -> Result<Joint, arguments::Failure> {
         let (handle, _) = self.object(arguments)?;
         self.joint_of(handle).ok_or_else(|| arguments.failure(316, "object is not a joint."))
@@ -234,31 +250,39 @@ impl CallContext<'_> {
     }
 
     fn get_object_int_param(&self, arguments: &Arguments) -> Outcome {
-        let Joint { robot, wheel, .. } = self.joint(arguments)?;
-        let controlled = self.world.is_controlled(robot, wheel);
-        match arguments.integer(1)? {
-            info::PARAM_CONTROL_MODE if controlled => Ok(vec![info::CONTROL_VELOCITY.into()]),
-            info::PARAM_CONTROL_MODE => Ok(vec![info::CONTROL_FREE.into()]),
-            _ => Err(arguments.failure(316, "invalid parameter.")),
-        }
+        let ((handle, kind), parameter) = (self.object(arguments)?, arguments.integer(1)?);
+        let value = match (parameter, self.joint_of(handle), kind) {
+            (info::PARAM_CONTROL_MODE, Some(Joint { robot, wheel, .. }), _) => {
+                let is_controlled = self.world.is_controlled(robot, wheel);
+                if is_controlled { info::CONTROL_VELOCITY } else { info::CONTROL_FREE }
+            }
+            // Robots move, and robots and obstacles collide.
+            (info::PARAM_STATIC, _, Kind::Robot(_)) => 0,
+            (info::PARAM_STATIC, _, Kind::Obstacle(_))
+            | (info::PARAM_RESPONDABLE, _, Kind::Robot(_) | Kind::Obstacle(_)) => 1,
+            _ => return Ok(vec![]),
+        };
+        Ok(vec![value.into()])
     }
 
     fn set_object_int_param(&mut self, arguments: &Arguments) -> Outcome {
-        let Joint { robot, wheel, .. } = self.joint(arguments)?;
-        let value = arguments.integer(2)?;
-        if arguments.integer(1)? != info::PARAM_CONTROL_MODE {
-            return Err(arguments.failure(316, "invalid parameter."));
-        }
+        let (handle, parameter, value) =
+            (self.object(arguments)?.0, arguments.integer(1)?, arguments.integer(2)?);
+        let Some(Joint { robot, wheel, .. }) =
+            self.joint_of(handle).filter(|_| parameter == info::PARAM_CONTROL_MODE)
+        else {
+            return Err(arguments.failure(316, "could not set parameter."));
+        };
         self.world.set_controlled(robot, wheel, value == info::CONTROL_VELOCITY);
-        Ok(vec![])
+        Ok(vec![Value::from(1)])
     }
 
     fn get_object_float_param(&self, arguments: &Arguments) -> Outcome {
-        let rate = self.read_joint(arguments, World::rate)?;
-        if arguments.integer(1)? != info::PARAM_VELOCITY {
-            return Err(arguments.failure(316, "invalid parameter."));
+        let (handle, parameter) = (self.object(arguments)?.0, arguments.integer(1)?);
+        if self.joint_of(handle).is_none() || parameter != info::PARAM_VELOCITY {
+            return Ok(vec![]);
         }
-        Ok(vec![rate.into()])
+        self.read_joint(arguments, World::rate).map(|rate| vec![rate.into()])
     }
 
     /// The range of a proximity sensor.
@@ -287,8 +311,9 @@ impl CallContext<'_> {
     }
 
     fn sensor(&self, arguments: &Arguments) -> Result<Handle, arguments::Failure> {
-        match self.object(arguments)? {
-            (handle, Kind::Sensor { .. }) => Ok(handle),
+        let (handle, _) = self.object(arguments)?;
+        match self.objects.get(handle).map(Object::type_number) {
+            Some(info::TYPE_SENSOR) => Ok(handle),
             _ => Err(arguments.failure(316, "object is not a proximity sensor.")),
         }
     }
@@ -311,8 +336,17 @@ impl CallContext<'_> {
         if !self.has_handled_sensors() {
             return None;
         }
-        let seen = self.world.sight(robot, sensor)?;
         let frame = self.objects.frame(handle, self.world)?;
+        let seen = self.world.sight(robot, sensor);
+        if let Some((floor, seen)) = self.floor_before(handle, seen.map(|seen| seen.distance)) {
+            return Some(Detected {
+                distance: seen.distance,
+                point: frame.inverse_transform_point(&seen.point).coords,
+                handle: floor,
+                normal: frame.inverse_transform_vector(&seen.normal),
+            });
+        }
+        let seen = seen?;
         // Objects on the floor are as high as the sensor.
         let point = Point3::new(seen.point.0, seen.point.1, frame.translation.z);
         let way = frame.inverse_transform_point(&point).coords;
@@ -324,6 +358,12 @@ impl CallContext<'_> {
             handle: self.objects.handle_of(seen.what).unwrap_or(-1),
             normal: frame.inverse_transform_vector(&Vector3::new(seen.normal.0, seen.normal.1, 0.0)),
         })
+    }
+
+    /// The floor that a sensor sees, if it is nearer than anything else.
+    fn floor_before(&self, sensor: Handle, other: Option<f64>) -> Option<(Handle, sight::Seen)> {
+        sight::nearest_floor(self.objects, self.world, sensor)
+            .filter(|(_, floor)| other.is_none_or(|distance| floor.distance < distance))
     }
 
     /// Whether sensors have been evaluated since the start: the first step does it.

@@ -33,7 +33,7 @@ const CONSTANTS: &[(&str, i64)] = &[
     ("object_dummy_type", TYPE_DUMMY),
     ("object_forcesensor_type", TYPE_FORCE_SENSOR),
     ("joint_revolute_subtype", JOINT_REVOLUTE),
-    ("joint_prismatic_subtype", 11),
+    ("joint_prismatic_subtype", JOINT_PRISMATIC),
     ("joint_spherical_subtype", 12),
     ("jointmode_kinematic", 0),
     ("jointmode_dependent", 4),
@@ -50,16 +50,33 @@ const CONSTANTS: &[(&str, i64)] = &[
     ("shapeintparam_respondable", PARAM_RESPONDABLE),
     ("shapeintparam_respondable_mask", PARAM_RESPONDABLE_MASK),
     ("shapefloatparam_mass", PARAM_MASS),
-    ("objfloatparam_objbbox_min_x", 15),
-    ("objfloatparam_objbbox_min_y", 16),
-    ("objfloatparam_objbbox_min_z", 17),
-    ("objfloatparam_objbbox_max_x", 18),
-    ("objfloatparam_objbbox_max_y", 19),
-    ("objfloatparam_objbbox_max_z", 20),
+    ("objfloatparam_objbbox_min_x", PARAM_BOX),
+    ("objfloatparam_objbbox_min_y", PARAM_BOX + 1),
+    ("objfloatparam_objbbox_min_z", PARAM_BOX + 2),
+    ("objfloatparam_objbbox_max_x", PARAM_BOX + 3),
+    ("objfloatparam_objbbox_max_y", PARAM_BOX + 4),
+    ("objfloatparam_objbbox_max_z", PARAM_BOX + 5),
     ("objectspecialproperty_collidable", 1),
     ("objectspecialproperty_measurable", 2),
-    ("objectspecialproperty_detectable", 0x1f0),
-    ("bullet_body_friction", BULLET_FRICTION),
+    ("objectspecialproperty_detectable", SPECIAL_DETECTABLE),
+    ("bullet_body_friction", 6003),
+    ("bullet_body_oldfriction", BULLET_OLD_FRICTION),
+    ("ode_body_friction", 15001),
+    ("vortex_body_primlinearaxisfriction", 24001),
+    ("newton_body_staticfriction", 33001),
+    ("newton_body_kineticfriction", 33002),
+    ("mujoco_body_friction1", 43001),
+    ("floatparam_physicstimestep", PARAM_PHYSICS_STEP),
+    ("object_camera_type", 3),
+    ("scripttype_childscript", 1),
+    ("scripttype_customizationscript", 6),
+    ("handle_self", -4),
+    ("handle_tree", -6),
+    ("jointmode_ik", 2),
+    ("jointmode_force", JOINT_MODE_DYNAMIC),
+    ("proximitysensor_pyramid_subtype", 30),
+    ("proximitysensor_disc_subtype", 32),
+    ("objintparam_visibility_layer", 10),
 ];
 
 pub(super) const HANDLE_ALL: i64 = -2;
@@ -72,18 +89,23 @@ pub(super) const TYPE_SENSOR: i64 = 5;
 pub(super) const TYPE_DUMMY: i64 = 4;
 pub(super) const TYPE_FORCE_SENSOR: i64 = 12;
 pub(super) const JOINT_REVOLUTE: i64 = 10;
+pub(super) const JOINT_PRISMATIC: i64 = 11;
 pub(super) const SENSOR_RAY: i64 = 34;
 pub(super) const PRIMITIVE_CUBOID: i64 = 3;
 pub(super) const PRIMITIVE_SPHERE: i64 = 4;
 pub(super) const PRIMITIVE_CYLINDER: i64 = 5;
+/// The first of six coordinates of a bounding box.
+pub(super) const PARAM_BOX: i64 = 15;
 pub(super) const PARAM_STATIC: i64 = 3003;
 pub(super) const PARAM_RESPONDABLE: i64 = 3004;
 pub(super) const PARAM_MASS: i64 = 3005;
 pub(super) const PARAM_RESPONDABLE_MASK: i64 = 3019;
-/// Collidable, measurable, detectable.
-pub(super) const SPECIAL_ALL: i64 = 0x1f3;
+/// Collidable, measurable, detectable, renderable.
+pub(super) const SPECIAL_ALL: i64 = 0x3f3;
+/// Detectable by any kind of sensor.
+pub(super) const SPECIAL_DETECTABLE: i64 = 0x1f0;
 pub(super) const MAIN_SCRIPT_TYPE: i64 = 0;
-const BULLET_FRICTION: i64 = 6003;
+pub(super) const BULLET_OLD_FRICTION: i64 = 6002;
 pub(super) const JOINT_MODE_DYNAMIC: i64 = 5;
 pub(super) const PARAM_CONTROL_MODE: i64 = 2039;
 pub(super) const CONTROL_FREE: i64 = 0;
@@ -91,6 +113,7 @@ pub(super) const CONTROL_VELOCITY: i64 = 4;
 pub(super) const PARAM_VELOCITY: i64 = 2012;
 pub(super) const PARAM_PROGRAM_VERSION: i64 = 1;
 pub(super) const PARAM_TIME_STEP: i64 = 1;
+pub(super) const PARAM_PHYSICS_STEP: i64 = 5;
 pub(super) const SCRIPT_TEXT: i64 = 2;
 pub(super) const PARAM_REAL_TIME: i64 = 25;
 
@@ -101,6 +124,7 @@ pub(super) const PROGRAM_VERSION: i64 = 40600;
 pub(super) const FUNCTIONS: &[&str] = &[
     "addLog",
     "addScript",
+    "checkProximitySensor",
     "createDummy",
     "createForceSensor",
     "createJoint",
@@ -108,10 +132,13 @@ pub(super) const FUNCTIONS: &[&str] = &[
     "createProximitySensor",
     "createShape",
     "getBoolParam",
+    "getEngineFloatParam",
     "getFloatArrayProperty",
     "getFloatParam",
     "getFloatProperty",
     "getInt32Param",
+    "getJointForce",
+    "getJointInterval",
     "getJointMode",
     "getJointPosition",
     "getJointTargetForce",
@@ -128,14 +155,17 @@ pub(super) const FUNCTIONS: &[&str] = &[
     "getObjectParent",
     "getObjectPose",
     "getObjectPosition",
+    "getObjectQuaternion",
     "getObjectSpecialProperty",
     "getObjectType",
+    "getObjectUid",
     "getObjectVelocity",
     "getObjectsInTree",
     "getScript",
     "getScriptStringParam",
     "getShapeGeomInfo",
     "getShapeMass",
+    "getShapeMesh",
     "getSimulationState",
     "getSimulationTime",
     "getSimulationTimeStep",
@@ -143,6 +173,7 @@ pub(super) const FUNCTIONS: &[&str] = &[
     "isHandle",
     "pauseSimulation",
     "readCustomDataBlock",
+    "readCustomDataBlockTags",
     "readProximitySensor",
     "removeObjects",
     "removeScript",

@@ -53,9 +53,14 @@ pub(super) fn outcome_map(outcome: Outcome) -> Vec<(Value, Value)> {
     match outcome {
         // The engine encodes an empty list as an empty map.
         Ok(values) if values.is_empty() => vec![("ret".into(), Value::Map(vec![]))],
-        Ok(values) => vec![("ret".into(), Value::Array(values))],
+        Ok(values) => vec![("ret".into(), Value::Array(values.into_iter().map(table).collect()))],
         Err(Failure(text)) => vec![("err".into(), text.into())],
     }
+}
+
+/// A value as the engine encodes it: its lists are Lua's tables, of which an empty one is a map.
+fn table(value: Value) -> Value {
+    if value.as_array().is_some_and(Vec::is_empty) { Value::Map(vec![]) } else { value }
 }
 
 pub(super) fn encode(map: Vec<(Value, Value)>) -> Vec<u8> {

@@ -11,6 +11,7 @@ mod objects;
 mod parts;
 mod recognition;
 mod session;
+mod sight;
 
 pub use legacy::{LegacyResponse, Malformed};
 pub use session::{Answer, Session};

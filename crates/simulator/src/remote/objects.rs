@@ -11,6 +11,7 @@ use pydslrep_scene::{Frame, Scene, Thing};
 use super::info;
 use super::parts::{Part, PartKind};
 use super::recognition::{Recognized, recognize};
+use super::sight;
 use crate::World;
 
 /// The maximum number of objects that clients create.
@@ -75,6 +76,8 @@ pub(super) struct Objects {
     offsets: BTreeMap<Handle, Isometry3<f64>>,
     /// The objects of created obstacles, by their indices in the scene.
     obstacles: BTreeMap<usize, Handle>,
+    /// The created floors that sensors see, since the latest start.
+    floors: Vec<Handle>,
     /// Paths of the user's own, beside those by names.
     paths: BTreeMap<String, Vec<Handle>>,
 }
@@ -88,6 +91,7 @@ impl Objects {
             has_changed: false,
             offsets: BTreeMap::new(),
             obstacles: BTreeMap::new(),
+            floors: Vec::new(),
             paths: BTreeMap::new(),
         };
         for (index, robot) in scene.robots.iter().enumerate() {
@@ -154,7 +158,8 @@ impl Objects {
         }
         let handle = self.add(kind.alias(), None, Kind::Made);
         let local = Isometry3::identity();
-        let part = Part { kind, local, data: BTreeMap::new(), special: info::SPECIAL_ALL };
+        let special = kind.special();
+        let part = Part { kind, local, data: BTreeMap::new(), special, engine: BTreeMap::new() };
         if let Some(object) = self.all.get_mut(&handle) {
             object.part = Some(Box::new(part));
         }
@@ -176,6 +181,7 @@ impl Objects {
             }
         }
         self.all.remove(&handle);
+        self.floors.retain(|&floor| floor != handle);
         self.offsets.remove(&handle);
         self.has_changed = true;
     }
@@ -254,7 +260,13 @@ impl Objects {
             }
         }
         self.offsets = offsets.into_iter().collect();
+        self.floors = self.made().filter(|&handle| sight::is_detectable_floor(self, handle)).collect();
         Some(scene)
+    }
+
+    /// The created floors that sensors see.
+    pub(super) fn floors(&self) -> &[Handle] {
+        &self.floors
     }
 
     /// While the simulation is stopped, created objects that have changed are where clients have put them.
@@ -332,11 +344,21 @@ impl Objects {
         Some(format!("{parent}/{}{index}", object.alias))
     }
 
-    /// The shortest unique path of an object.
-    pub(super) fn short_path(&self, handle: Handle) -> Option<String> {
-        let object = self.get(handle)?;
-        let unique = self.iter().filter(|(_, other)| other.alias == object.alias).count() == 1;
-        if unique { Some(format!("/{}", object.alias)) } else { self.path(handle) }
+    /// An object, if it is not the scene's root, and all objects below it, level by level; only the next level below if they
+    /// are not `deep`.
+    pub(super) fn tree(&self, root: Option<Handle>, deep: bool) -> Vec<Handle> {
+        let mut children: BTreeMap<Option<Handle>, Vec<Handle>> = BTreeMap::new();
+        for (handle, object) in self.iter() {
+            children.entry(object.parent).or_default().push(handle);
+        }
+        let below = |handle: Option<Handle>| children.get(&handle).cloned().unwrap_or_default();
+        let mut found: Vec<Handle> = root.into_iter().chain(below(root)).collect();
+        let mut next = root.iter().count();
+        while let Some(handle) = found.get(next).copied().filter(|_| deep) {
+            found.extend(below(Some(handle)));
+            next += 1;
+        }
+        found
     }
 
     /// The frame of a created object in the world while the simulation is stopped.
@@ -375,7 +397,7 @@ impl Objects {
             Kind::Robot(_) if scene.frame == Frame::Static => planar(scene.start, height),
             Kind::Robot(_) | Kind::Obstacle(_) | Kind::Made => body * rotation_of(scene.frame),
             Kind::Wheel { wheel, .. } => {
-                let &(x, y) = scene.geometry.wheel_positions(scene.drive).get(wheel)?;
+                let (x, y) = scene.geometry.wheel_positions(scene.drive).nth(wheel)?;
                 let wheel = scene.wheels.get(wheel)?;
                 let tilt = if wheel.mirrored { FRAC_PI_2 } else { -FRAC_PI_2 };
                 let rotation = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), tilt);
@@ -464,7 +486,6 @@ mod tests {
             (objects.path(3).unwrap(), objects.path(5).unwrap()),
             ("/a/r".to_owned(), "/a/l[1]".to_owned())
         );
-        assert_eq!(objects.short_path(1).as_deref(), Some("/a"));
         for wrong in [0, -1, 11, i64::MIN, i64::MAX] {
             assert!(objects.get(wrong).is_none());
         }

@@ -1,6 +1,7 @@
 //! The objects that clients create: what each of them is made of.
 
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 
 use nalgebra::{Isometry3, Vector3};
 
@@ -16,7 +17,28 @@ pub(super) struct Part {
     pub(super) data: BTreeMap<String, String>,
     /// The sum of `sim.objectspecialproperty_…`.
     pub(super) special: i64,
+    /// The parameters of physics engines that clients have set.
+    pub(super) engine: BTreeMap<i64, f64>,
 }
+
+/// Meshes of more triangles count as not convex: to find out takes time.
+const MAX_CONVEX: usize = 300;
+
+/// The sides of a cuboid, whose corners count x, y and z as bits.
+const CUBOID: [[usize; 3]; 12] = [
+    [0, 2, 1],
+    [1, 2, 3],
+    [4, 5, 6],
+    [5, 7, 6],
+    [0, 1, 4],
+    [1, 5, 4],
+    [2, 6, 3],
+    [3, 6, 7],
+    [0, 4, 2],
+    [2, 4, 6],
+    [1, 3, 5],
+    [3, 7, 5],
+];
 
 /// What an object is.
 #[derive(Debug, Clone)]
@@ -47,6 +69,9 @@ pub(super) enum Form {
     Mesh(Vec<[Vector3<f64>; 3]>),
 }
 
+/// The corners of a mesh, metres, and its triangles as indices of three corners each.
+pub(super) type Mesh = (Vec<Vector3<f64>>, Vec<[usize; 3]>);
+
 #[derive(Debug, Clone)]
 pub(super) struct JointPart {
     /// Its number in `sim.joint_…_subtype`.
@@ -68,7 +93,20 @@ pub(super) struct SensorPart {
     pub(super) range: f64,
     /// The opening angle of its cone, radians.
     pub(super) angle: f64,
+    /// The edge of the box that it is drawn as, metres.
+    pub(super) size: f64,
 }
+
+/// The length and the diameter that a joint is drawn with, metres.
+const JOINT_SIZE: (f64, f64) = (0.15, 0.02);
+
+/// The density that shapes have first, kg/m³, and the mass of a mesh, kg.
+const DENSITY: f64 = 500.0;
+const MESH_MASS: f64 = 1.0;
+
+/// The friction that shapes have first in the engine Bullet.
+const PRIMITIVE_FRICTION: f64 = 1.0;
+const MESH_FRICTION: f64 = 0.71;
 
 impl PartKind {
     /// The number of its type.
@@ -85,12 +123,43 @@ impl PartKind {
     /// What an object of this kind is called before it gets an alias.
     pub(super) fn alias(&self) -> &'static str {
         match self {
+            Self::Shape(ShapePart { form: Form::Primitive(kind, _), .. }) => match *kind {
+                info::PRIMITIVE_CUBOID => "Cuboid",
+                info::PRIMITIVE_SPHERE => "Sphere",
+                info::PRIMITIVE_CYLINDER => "Cylinder",
+                _ => "Shape",
+            },
             Self::Shape(_) => "Shape",
-            Self::Joint(_) => "joint",
-            Self::Sensor(_) => "proximitySensor",
-            Self::ForceSensor => "forceSensor",
-            Self::Dummy => "dummy",
+            Self::Joint(JointPart { subtype: info::JOINT_REVOLUTE, .. }) => "Revolute_joint",
+            Self::Joint(JointPart { subtype: info::JOINT_PRISMATIC, .. }) => "Prismatic_joint",
+            Self::Joint(_) => "Spherical_joint",
+            Self::Sensor(_) => "Proximity_sensor",
+            Self::ForceSensor => "ForceSensor",
+            Self::Dummy => "Dummy",
         }
+    }
+
+    /// The sum of `sim.objectspecialproperty_…` that it has first.
+    pub(super) fn special(&self) -> i64 {
+        if matches!(self, Self::Shape(_)) { info::SPECIAL_ALL } else { 0 }
+    }
+
+    /// The corners of its bounding box as the engine reports them, metres.
+    ///
+    /// That of a mesh has axes of its own there: it tells sizes, and no places.
+    pub(super) fn reported_bounds(&self) -> (Vector3<f64>, Vector3<f64>) {
+        let half = match self {
+            Self::Shape(ShapePart { form: Form::Primitive(_, size), .. }) => size / 2.0,
+            Self::Shape(ShapePart { form, .. }) => {
+                let mut sizes: [f64; 3] = form.size().into();
+                sizes.sort_by(f64::total_cmp);
+                Vector3::from(sizes) / 2.0
+            }
+            Self::Joint(_) => Vector3::new(JOINT_SIZE.1, JOINT_SIZE.1, JOINT_SIZE.0) / 2.0,
+            Self::Sensor(sensor) => Vector3::repeat(sensor.size / 2.0),
+            Self::ForceSensor | Self::Dummy => Vector3::zeros(),
+        };
+        (-half, half)
     }
 }
 
@@ -102,6 +171,53 @@ impl JointPart {
 }
 
 impl Form {
+    /// The mass that a shape has first, kilograms.
+    pub(super) fn mass(&self) -> f64 {
+        let Self::Primitive(kind, size) = self else { return MESH_MASS };
+        let share = match *kind {
+            info::PRIMITIVE_SPHERE => PI / 6.0,
+            info::PRIMITIVE_CYLINDER => PI / 4.0,
+            _ => 1.0,
+        };
+        (DENSITY * share * size.product()).max(1e-7)
+    }
+
+    /// The friction that a shape has first in the engine Bullet.
+    pub(super) fn friction(&self) -> f64 {
+        if matches!(self, Self::Primitive(..)) { PRIMITIVE_FRICTION } else { MESH_FRICTION }
+    }
+
+    /// Whether no corner is outside of any triangle.
+    pub(super) fn is_convex(&self) -> bool {
+        let Self::Mesh(triangles) = self else { return true };
+        let tolerance = 1e-6 * self.size().norm();
+        triangles.iter().take(MAX_CONVEX).all(|[a, b, c]| {
+            let normal = (b - a).cross(&(c - a)).normalize();
+            triangles.iter().flatten().all(|corner| normal.dot(&(corner - a)) <= tolerance)
+        }) && triangles.len() <= MAX_CONVEX
+    }
+
+    /// Its corners, and its triangles as three indices each, counter-clockwise from outside. Of the primitives, only a cuboid
+    /// has them here.
+    pub(super) fn mesh(&self) -> Option<Mesh> {
+        match self {
+            Self::Primitive(info::PRIMITIVE_CUBOID, size) => {
+                let side = |corner: usize, bit: usize| if corner >> bit & 1 == 0 { -0.5 } else { 0.5 };
+                let corner =
+                    |corner: usize| Vector3::from([0, 1, 2].map(|axis| side(corner, axis) * size[axis]));
+                Some(((0..8).map(corner).collect(), CUBOID.to_vec()))
+            }
+            Self::Primitive(..) => None,
+            Self::Mesh(triangles) => {
+                let corners = triangles.iter().flatten().copied().collect();
+                Some((
+                    corners,
+                    (0..triangles.len()).map(|first| [0, 1, 2].map(|next| 3 * first + next)).collect(),
+                ))
+            }
+        }
+    }
+
     /// The corners of its bounding box, metres.
     pub(super) fn bounds(&self) -> (Vector3<f64>, Vector3<f64>) {
         match self {

@@ -20,7 +20,7 @@ const MAX_ROBOTS: usize = 32;
 const MAX_OBSTACLES: usize = 4000;
 
 /// What does not rise higher above the floor is no obstacle, metres.
-const FLOOR: f64 = 0.02;
+pub(super) const FLOOR: f64 = 0.02;
 
 /// The scene of a program with what clients have created, and what the objects are in it.
 pub(super) struct Recognized {
@@ -72,7 +72,8 @@ fn add_robot(objects: &Objects, body: Handle, shape: &ShapePart, found: &mut Rec
     }
     let below = objects.below(body);
     let mut wheels: Vec<FoundWheel> = below.iter().filter_map(|&joint| wheel(objects, body, joint)).collect();
-    let Some((frame, drive)) = objects.rest_frame(body).zip(drive_of(&wheels)) else { return };
+    let drive = Drive::inferred(wheels.len(), || wheels.iter().all(|wheel| wheel.has_rollers));
+    let Some((frame, drive)) = objects.rest_frame(body).zip(drive) else { return };
     let Some(heading) = heading(&frame, &wheels) else { return };
     let turned = planar(Pose::new(0.0, 0.0, heading), 0.0);
     let on_floor = |wheel: &FoundWheel| turned.inverse_transform_vector(&wheel.frame.translation.vector);
@@ -147,15 +148,6 @@ fn wheel(objects: &Objects, body: Handle, joint: Handle) -> Option<FoundWheel> {
     (radius > 0.0).then_some(FoundWheel { handle: joint, frame, radius, has_rollers })
 }
 
-fn drive_of(wheels: &[FoundWheel]) -> Option<Drive> {
-    match wheels.len() {
-        2 => Some(Drive::TwoWheel),
-        4 if wheels.iter().all(|wheel| wheel.has_rollers) => Some(Drive::FourMecanum),
-        4 => Some(Drive::FourWheel),
-        _ => None,
-    }
-}
-
 /// Where a robot drives when its wheels roll forward: across their axes, and the way that its x axis points.
 fn heading(body: &Isometry3<f64>, wheels: &[FoundWheel]) -> Option<f64> {
     let axis = wheels.first()?.frame * Vector3::z();
@@ -188,14 +180,7 @@ fn mount(objects: &Objects, handle: Handle, origin: &Isometry3<f64>) -> Option<M
 
 fn add_obstacle(objects: &Objects, handle: Handle, shape: &ShapePart, found: &mut Recognized) {
     let Some(frame) = objects.rest_frame(handle).filter(|_| shape.is_respondable) else { return };
-    let (low, high) = shape.form.bounds();
-    let top = (0..8)
-        .map(|corner| {
-            let pick = |axis: usize| if corner >> axis & 1 == 0 { low[axis] } else { high[axis] };
-            (frame * nalgebra::Point3::new(pick(0), pick(1), pick(2))).z
-        })
-        .fold(f64::NEG_INFINITY, f64::max);
-    if top <= FLOOR {
+    if top_of(&frame, &shape.form) <= FLOOR {
         return;
     }
     let name = objects.get(handle).map(|object| object.alias.clone()).unwrap_or_default();
@@ -207,7 +192,17 @@ fn add_obstacle(objects: &Objects, handle: Handle, shape: &ShapePart, found: &mu
     }
 }
 
-fn outlines(frame: &Isometry3<f64>, form: &Form) -> Vec<(Pose, Shape)> {
+/// How high a shape rises, metres.
+pub(super) fn top_of(frame: &Isometry3<f64>, form: &Form) -> f64 {
+    let (low, high) = form.bounds();
+    let corner = |corner: usize| {
+        let pick = |axis: usize| if corner >> axis & 1 == 0 { low[axis] } else { high[axis] };
+        (frame * nalgebra::Point3::new(pick(0), pick(1), pick(2))).z
+    };
+    (0..8).map(corner).fold(f64::NEG_INFINITY, f64::max)
+}
+
+pub(super) fn outlines(frame: &Isometry3<f64>, form: &Form) -> Vec<(Pose, Shape)> {
     let at = frame.translation.vector;
     let ahead = frame * Vector3::x();
     let is_upright = (frame * Vector3::z()).z.abs() > 0.999;

@@ -17,6 +17,9 @@ use super::objects::Objects;
 use super::recognition;
 use crate::{Engine, Sightings, World, WorldError};
 
+/// The step of the physics engine in a new scene, seconds.
+const PHYSICS_STEP: f64 = 0.005;
+
 /// The maximum number of clients per connection; real connections have one.
 const MAX_CLIENTS_PER_CONNECTION: usize = 16;
 
@@ -62,6 +65,8 @@ pub struct Session {
     engine: Engine,
     /// The text of the main script, if there is one.
     main_script: Option<String>,
+    /// The step of the physics engine, seconds; the simulation itself has one step.
+    physics_step: f64,
     /// The requests that wait for the end of a pause.
     held: Vec<HeldRequest>,
 }
@@ -127,6 +132,7 @@ impl Session {
             strangers: BTreeSet::new(),
             engine: Engine::Ideal,
             main_script: Some(building::DEFAULT_MAIN_SCRIPT.to_owned()),
+            physics_step: PHYSICS_STEP,
             held: Vec::new(),
         }
     }
@@ -379,6 +385,7 @@ impl Session {
             drivers: &mut self.drivers,
             connection,
             seen: &mut self.seen,
+            physics_step: self.physics_step,
         }
     }
 
@@ -435,15 +442,22 @@ impl Session {
         Ok(vec![before.into()])
     }
 
-    /// `sim.setFloatParam`, of which the length of a step is the only parameter here.
+    /// `sim.setFloatParam`, which has the lengths of both steps here.
     fn set_step_length(&mut self, arguments: &Arguments) -> Outcome {
-        let step = arguments.number(1)?;
-        if arguments.integer(0)? != info::PARAM_TIME_STEP || self.state != State::Stopped {
-            return Err(arguments.failure(316, "invalid parameter, or the simulation is not stopped."));
+        let (parameter, step) = (arguments.integer(0)?, arguments.number(1)?);
+        if ![info::PARAM_TIME_STEP, info::PARAM_PHYSICS_STEP].contains(&parameter) {
+            return Err(arguments.failure(316, "invalid parameter."));
         }
-        self.world.set_step_length(step).map_err(|error| arguments.failure(316, &format!("{error}.")))?;
-        self.world.use_engine(self.engine);
-        Ok(vec![])
+        if self.state != State::Stopped {
+            return Ok(vec![Value::from(0)]);
+        }
+        if parameter == info::PARAM_PHYSICS_STEP {
+            self.physics_step = step.clamp(1e-6, 1.0);
+        } else {
+            self.world.set_step_length(step).map_err(|error| arguments.failure(316, &format!("{error}.")))?;
+            self.world.use_engine(self.engine);
+        }
+        Ok(vec![Value::from(1)])
     }
 
     pub(super) fn start(&mut self) {
@@ -519,8 +533,7 @@ impl Session {
             // Real servers finish a step that was requested before a pause after it.
             let cancelled = if real { self.state == State::Stopped } else { !running };
             let done = step_request.steps <= steps || cancelled;
-            if let Some((ticket, since)) = step_request.open.filter(|_| done) {
-                client.last_seen = client.last_seen.max(since);
+            if let Some((ticket, _)) = step_request.open.filter(|_| done) {
                 client.step_request = None;
                 answers.push(Answer { ticket, bytes: encode(outcome_map(Ok(vec![]))) });
             }

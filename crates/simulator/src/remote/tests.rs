@@ -184,8 +184,9 @@ fn errors_match_the_engines_messages() {
     check("sim.getObjectPose", cbor!([robot, 99]), "316: in sim.getObjectPose: object does not exist.");
     let no_joint = "316: in sim.setJointTargetVelocity: object is not a joint.";
     check("sim.setJointTargetVelocity", cbor!([robot, 1]), no_joint);
-    let wrong = "1308: in sim.setJointTargetVelocity: one of the function's argument type is not correct.";
-    check("sim.setJointTargetVelocity", cbor!([joint]), wrong);
+    let missing = "316: in sim.setJointTargetVelocity: the function requires more arguments.";
+    check("sim.setJointTargetVelocity", cbor!([joint]), missing);
+    let wrong = "316: in sim.setJointTargetVelocity: one of the function's argument type is not correct.";
     check("sim.setJointTargetVelocity", cbor!([joint, f64::NAN]), wrong);
     check("sim.setJointTargetVelocity", cbor!([joint, f64::INFINITY]), wrong);
     let explicit = "316: in sim.handleProximitySensor: object not tagged for explicit handling.";
@@ -338,7 +339,10 @@ fn a_mirrored_joint_turns_the_other_way_for_the_same_motion() {
     let pose = lab.session.world().pose(0);
     assert!(pose.x > 0.0 && pose.theta.abs() < 1e-12, "{pose:?}");
     assert_near(&[lab.number("a", "sim.getJointVelocity", cbor!([left]).unwrap())], &[-1.0]);
-    assert!(lab.number("a", "sim.getJointPosition", cbor!([left]).unwrap()) < 0.0);
+    assert_near(&[lab.number("a", "sim.getJointTargetVelocity", cbor!([left]).unwrap())], &[-1.0]);
+    let angle = pose.x / 0.035;
+    assert_near(&[lab.number("a", "sim.getJointPosition", cbor!([left]).unwrap())], &[-angle]);
+    assert_near(&[lab.number("a", "sim.getJointPosition", cbor!([right]).unwrap())], &[angle]);
 }
 
 #[test]
@@ -401,6 +405,53 @@ fn a_silent_client_expires_after_its_timeout() {
     lab.take(answers);
     assert!(lab.answered(step).is_some_and(|reply| get(&reply, "ret").is_some()));
     assert_near(&[lab.time()], &[0.05]);
+}
+
+#[test]
+fn a_client_that_waited_long_for_a_step_still_holds_the_time_after_it() {
+    let mut lab = Lab::new(2);
+    let hello = cbor!({ "func" => "sim.setStepping", "args" => [true], "uuid" => "a", "timeout" => 5 });
+    lab.send("a", &hello.unwrap());
+    lab.join("b");
+    lab.start();
+    let mut step = lab.ask("a", "sim.step", none());
+    for _ in 0..60 {
+        lab.now += SECOND;
+        let answers = lab.session.expire_clients(lab.now);
+        lab.take(answers);
+        assert!(lab.answered(step).is_some_and(|reply| get(&reply, "func").is_some()), "a keep-alive reply");
+        step = lab.ask("a", "_*executed*_", none());
+    }
+    lab.ask("b", "sim.step", none());
+    assert!(lab.answered(step).is_some_and(|reply| get(&reply, "ret").is_some()));
+    // From here on it is silent: it holds the time for five seconds, and no longer.
+    let next = lab.ask("b", "sim.step", none());
+    for (after, holds) in [(5 * SECOND, true), (Duration::from_millis(1), false)] {
+        lab.now += after;
+        let answers = lab.session.expire_clients(lab.now);
+        lab.take(answers);
+        assert_near(&[lab.time()], &[if holds { 0.05 } else { 0.1 }]);
+        if holds {
+            assert!(lab.answered(next).is_some_and(|reply| get(&reply, "func").is_some()));
+            lab.ask("b", "_*executed*_", none());
+        }
+    }
+}
+
+#[test]
+fn a_client_has_its_timeout_to_handle_a_keep_alive_reply() {
+    let mut lab = Lab::new(2);
+    let hello = cbor!({ "func" => "sim.setStepping", "args" => [true], "uuid" => "a", "timeout" => 5 });
+    lab.send("a", &hello.unwrap());
+    lab.join("b");
+    lab.start();
+    lab.ask("a", "sim.step", none());
+    for (seconds, clients) in [(4, 3), (9, 3), (10, 2)] {
+        lab.now = seconds * SECOND;
+        let answers = lab.session.expire_clients(lab.now);
+        lab.take(answers);
+        assert_eq!(lab.session.client_count(), clients, "after {seconds} s");
+    }
 }
 
 #[test]

@@ -241,6 +241,19 @@ mod tests {
     }
 
     #[test]
+    fn friction_is_a_share_of_the_push() {
+        // Flush with a wall on its left, a body that wants to go ahead and into the wall is pushed back across its wheels,
+        // which costs 0.3 · √3 of the speed that it is pushed by.
+        let space = space(vec![Obstacle::wall("w", (-9.0, 0.2015), (9.0, 0.2015), 0.1)]);
+        let around = Surroundings { space: &space, others: &[] };
+        for left in [0.0, 0.02, 0.05, 0.1, 0.3] {
+            let end = after(&around, Pose::default(), Twist { vx: 0.1, vy: left, omega: 0.0 }, 4.0);
+            let speed = (0.1 - 0.3 * 3.0_f64.sqrt() * left).max(0.0);
+            assert!((end.x - 4.0 * speed).abs() < 0.003, "{left}: {end:?}, not {}", 4.0 * speed);
+        }
+    }
+
+    #[test]
     fn does_not_slide_when_driving_straight_into_a_wall() {
         let wall = Obstacle::wall("w", (1.0, -3.0), (1.0, 3.0), 0.1);
         let corner = Obstacle::wall("c", (-3.0, 0.5), (3.0, 0.5), 0.1);

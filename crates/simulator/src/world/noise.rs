@@ -81,34 +81,49 @@ mod tests {
 
     const NOISE: Option<Noise> = Some(Noise { wheel_slip: 0.02, sensor: 0.01 });
 
+    #[allow(clippy::cast_precision_loss)]
+    fn mean(values: &[f64]) -> f64 {
+        values.iter().sum::<f64>() / values.len() as f64
+    }
+
     fn deviation(values: &[f64]) -> f64 {
-        #[allow(clippy::cast_precision_loss)]
-        let count = values.len() as f64;
-        (values.iter().map(|value| value * value).sum::<f64>() / count).sqrt()
+        mean(&values.iter().map(|value| value * value).collect::<Vec<_>>()).sqrt()
     }
 
     #[test]
     fn slip_has_its_deviation_and_changes_slowly() {
         let mut slip = Slip::new(NOISE, 1, 0, 0);
-        let values: Vec<f64> = (0..200_000)
-            .map(|_| {
-                slip.advance(0.05);
-                slip.value
-            })
-            .collect();
-        assert!((deviation(&values) - 0.02).abs() < 0.001, "{}", deviation(&values));
-        let changes: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        // √(2 (1 − e^(−0.05))) of the deviation.
-        assert!((deviation(&changes) - 0.02 * 0.3123).abs() < 0.0005, "{}", deviation(&changes));
+        let mut values = vec![slip.value];
+        values.extend((0..200_000).map(|_| {
+            slip.advance(0.05);
+            slip.value
+        }));
+        assert!((deviation(&values) - 0.02).abs() < 0.0005, "{}", deviation(&values));
+        // Of each value e^(−0.05) is left in the next; the rest is new, and independent.
+        let kept = (-0.05_f64).exp();
+        let new: Vec<f64> = values.windows(2).map(|pair| pair[1] - kept * pair[0]).collect();
+        let expected = 0.02 * (1.0 - kept * kept).sqrt();
+        assert!((deviation(&new) / expected - 1.0).abs() < 0.01, "{}", deviation(&new));
+        assert!(mean(&new).abs() < 0.01 * expected, "{}", mean(&new));
+        let together: Vec<f64> = new.iter().zip(&values).map(|(new, before)| new * before).collect();
+        assert!(mean(&together).abs() < 0.01 * 0.02 * expected, "{}", mean(&together));
+    }
+
+    #[test]
+    fn the_first_slip_has_its_deviation_too() {
+        let first: Vec<f64> = (0..20_000).map(|seed| Slip::new(NOISE, seed, 0, 0).value).collect();
+        assert!((deviation(&first) / 0.02 - 1.0).abs() < 0.015, "{}", deviation(&first));
     }
 
     #[test]
     fn readings_have_their_deviation_and_are_the_same_each_time() {
         let readings =
-            |seed| (0..5000).map(|steps| reading_error(NOISE, seed, 0, 0, steps)).collect::<Vec<_>>();
-        assert!((deviation(&readings(1)) - 0.01).abs() < 0.0005, "{}", deviation(&readings(1)));
-        assert_eq!(readings(1), readings(1));
-        assert_ne!(readings(1), readings(2));
+            |seed, count| (0..count).map(|steps| reading_error(NOISE, seed, 0, 0, steps)).collect::<Vec<_>>();
+        let many = readings(1, 20_000);
+        let (deviation, mean) = (deviation(&many), mean(&many));
+        assert!((deviation / 0.01 - 1.0).abs() < 0.015 && mean.abs() < 0.015 * 0.01, "{deviation} {mean}");
+        assert_eq!(readings(1, 9), readings(1, 9));
+        assert_ne!(readings(1, 9), readings(2, 9));
         let of = |robot, sensor| reading_error(NOISE, 1, robot, sensor, 7);
         assert!((of(0, 0) - of(0, 1)).abs() > 1e-9 && (of(0, 0) - of(1, 0)).abs() > 1e-9);
     }

@@ -262,6 +262,7 @@ fn wheels_turn_about_their_joints_own_axis() {
     assert_eq!(floats(&lab.ask(1, 0x2007, &[ROBOT, 11], &[])), [0.1]);
     assert_eq!(floats(&lab.ask(1, 0x1036, &[ROBOT], &[])), [0.1, 0.0, 0.0, 0.0, 0.0, 0.0]);
     assert!((floats(&lab.ask(1, 0x1001, &[LEFT], &[]))[0] - 0.9).abs() < 1e-6);
+    assert!((floats(&lab.ask(1, 0x1001, &[RIGHT], &[]))[0] + 0.9).abs() < 1e-6, "it is mirrored");
     assert_eq!(lab.time(1), 500);
 }
 

@@ -1,21 +1,15 @@
-//! The simulator on real ports, driven by another implementation of ZeroMQ and by invalid connections.
-
-// Clippy exempts only functions marked as tests, not their helpers.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+//! The ZeroMQ remote API, driven by clients and disturbed by invalid connections.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
-use std::time::Duration;
 
 use ciborium::{Value, cbor};
 use pydslrep_kinematics::Drive;
 use pydslrep_scene::{Robot, Scene, Wheel};
 use pydslrep_simulator::{Options, Simulator, StartError};
 use pydslrep_trace::TraceRecord;
-use zeromq::{ReqSocket, Socket, SocketRecv, SocketSend, ZmqMessage};
 
-/// The time limit, which turns hanging tests into failures.
-const LIMIT: Duration = Duration::from_secs(30);
+use super::client::{Client, LIMIT, introduction};
 
 fn scene(robots: usize) -> Scene {
     let robot = |number| {
@@ -30,33 +24,7 @@ fn start(robots: usize) -> Simulator {
     Simulator::start(scene(robots), &options).unwrap()
 }
 
-struct Client {
-    socket: ReqSocket,
-    name: String,
-}
-
 impl Client {
-    async fn connect(port: u16, name: &str) -> Self {
-        let mut socket = ReqSocket::new();
-        socket.connect(&format!("tcp://127.0.0.1:{port}")).await.unwrap();
-        Self { socket, name: name.to_owned() }
-    }
-
-    async fn call(&mut self, function: &str, arguments: Value) -> Value {
-        let request =
-            cbor!({ "func" => function, "args" => arguments, "uuid" => self.name.as_str() }).unwrap();
-        let mut bytes = Vec::new();
-        ciborium::into_writer(&request, &mut bytes).unwrap();
-        self.socket.send(ZmqMessage::from(bytes)).await.unwrap();
-        let reply = tokio::time::timeout(LIMIT, self.socket.recv()).await.expect("a reply in time").unwrap();
-        let map: Value = ciborium::from_reader(reply.get(0).unwrap().as_ref()).unwrap();
-        let ret = map.as_map().unwrap().iter().find(|(key, _)| key.as_text() == Some("ret"));
-        match ret.unwrap_or_else(|| panic!("{function}: {map:?}")).1.clone() {
-            Value::Array(values) => values.into_iter().next().unwrap_or(Value::Null),
-            _ => Value::Null,
-        }
-    }
-
     async fn time(&mut self) -> f64 {
         self.call("sim.getSimulationTime", Value::Array(vec![])).await.as_float().unwrap()
     }
@@ -120,15 +88,6 @@ async fn a_client_that_hangs_up_in_the_middle_of_a_step_holds_nobody_up() {
     };
     tokio::join!(both, one);
     assert!((stays.time().await - 0.1).abs() < 1e-9);
-}
-
-/// The handshake of a ZeroMQ client.
-fn introduction() -> Vec<u8> {
-    let mut bytes = vec![0xff, 0, 0, 0, 0, 0, 0, 0, 0, 0x7f, 3, 0];
-    bytes.extend_from_slice(b"NULL");
-    bytes.resize(64, 0);
-    bytes.extend_from_slice(b"\x04\x19\x05READY\x0bSocket-Type\0\0\0\x03REQ");
-    bytes
 }
 
 /// Sends bytes and returns whether the simulator closes the connection.

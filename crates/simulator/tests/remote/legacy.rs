@@ -1,20 +1,14 @@
 //! The legacy remote API on real ports, with the bytes of V-REP's client, next to ZeroMQ clients and invalid connections.
 
-// Clippy exempts only functions marked as tests, not their helpers.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
-use std::time::Duration;
 
-use ciborium::{Value, cbor};
+use ciborium::cbor;
 use pydslrep_kinematics::Drive;
 use pydslrep_scene::{Robot, Scene, Wheel};
 use pydslrep_simulator::{Options, Simulator};
-use zeromq::{ReqSocket, Socket, SocketRecv, SocketSend, ZmqMessage};
 
-/// The time limit, which turns hanging tests into failures.
-const LIMIT: Duration = Duration::from_secs(30);
+use super::client::{self, LIMIT};
 
 /// The client's request for the handle of `/robot_1`, as message number 0.
 const ASK_HANDLE: &[u8] = b"\x01\x00\x35\x00\x00\x00\
@@ -224,33 +218,19 @@ fn a_client_that_vanishes_stops_its_wheels_and_holds_nobody_up() {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn clients_of_both_protocols_advance_in_lockstep() {
     let simulator = start();
-    let mut modern = ReqSocket::new();
-    modern.connect(&format!("tcp://127.0.0.1:{}", simulator.ports()[0])).await.unwrap();
+    let mut modern = client::Client::connect(simulator.ports()[0], "modern").await;
     let mut legacy = Client::connect(&simulator);
     legacy.ask(0x0001, &[], &[]);
-    call(&mut modern, "sim.setStepping", cbor!([true]).unwrap()).await;
+    modern.call("sim.setStepping", cbor!([true]).unwrap()).await;
     legacy.ask(0x1007, &[0], &[]);
     for step in 1..=50 {
         legacy.ask(0x0003, &[], &[]);
         assert_eq!(legacy.time(), (step - 1) * 50, "the other one has not stepped");
-        call(&mut modern, "sim.step", cbor!([]).unwrap()).await;
+        modern.call("sim.step", cbor!([]).unwrap()).await;
         assert_eq!(legacy.time(), step * 50);
     }
     drop(legacy);
-    call(&mut modern, "sim.step", cbor!([]).unwrap()).await;
-    let time = call(&mut modern, "sim.getSimulationTime", cbor!([]).unwrap()).await;
+    modern.call("sim.step", cbor!([]).unwrap()).await;
+    let time = modern.call("sim.getSimulationTime", cbor!([]).unwrap()).await;
     assert!((time.as_float().unwrap() - 2.55).abs() < 1e-9, "{time:?}");
-}
-
-async fn call(socket: &mut ReqSocket, function: &str, arguments: Value) -> Value {
-    let request = cbor!({ "func" => function, "args" => arguments, "uuid" => "modern" }).unwrap();
-    let mut bytes = Vec::new();
-    ciborium::into_writer(&request, &mut bytes).unwrap();
-    socket.send(ZmqMessage::from(bytes)).await.unwrap();
-    let reply = tokio::time::timeout(LIMIT, socket.recv()).await.expect("a reply in time").unwrap();
-    let map: Value = ciborium::from_reader(reply.get(0).unwrap().as_ref()).unwrap();
-    match map.as_map().unwrap().iter().find(|(key, _)| key.as_text() == Some("ret")).unwrap().1.clone() {
-        Value::Array(values) => values.into_iter().next().unwrap_or(Value::Null),
-        _ => Value::Null,
-    }
 }
