@@ -2,18 +2,15 @@
 
 import math
 
-from .settings import (
-    ARRIVAL_TOLERANCE,
-    CLOSE_TOLERANCE,
-    RIM_ACCELERATION,
-    STALL_TIME,
-)
+from .facts import RIM_ACCELERATION
+from .settings import ARRIVAL_TOLERANCE, CLOSE_TOLERANCE, STALL_TIME
 
 # Near the goal, a robot that does not get to this share of its distance within so many steps has arrived: the motion is
 # below the tremor of its contacts, or its motors do not turn that slowly.
 CLOSE_PROGRESS = 0.9
 CLOSE_STEPS = 4
 CLOSE_TIME = 1.0  # s that a slow action has for it, at most
+CRAWL = 2.0  # times its planned duration, and the time of a stall, after which an action crawls
 
 
 class Approach:
@@ -38,6 +35,7 @@ class Approach:
         self._closest = math.inf
         self._nearest = math.inf
         self._progress_time = math.nan
+        self._start_time = self._way = math.nan
 
     def next_speed(self, remaining: float) -> float:
         """The signed rim speed for the next step, with `remaining` metres to go."""
@@ -72,6 +70,14 @@ class Approach:
         else:
             self._close_steps += 1
         return distance <= ARRIVAL_TOLERANCE or self._close_steps >= self._close_limit
+
+    def crawls(self, remaining: float, time: float) -> bool:
+        """Whether the action takes far longer than planned, at a simulation time in seconds."""
+        if math.isnan(self._start_time):
+            self._start_time, self._way = time, abs(remaining)
+        ramps = 2.0 * self.top_speed / RIM_ACCELERATION
+        planned = self._way / self.top_speed + ramps
+        return time - self._start_time > CRAWL * planned + STALL_TIME
 
     def stalled(self, remaining: float, time: float) -> bool:
         """Whether the robot has made no progress for STALL_TIME, at a simulation time in seconds."""

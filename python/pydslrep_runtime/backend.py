@@ -118,6 +118,10 @@ class Backend(Protocol):
         """Why the robot may not move although its wheels should turn."""
         return "an obstacle may be in the way"
 
+    def crawl_reason(self) -> str:
+        """Why the robot may be slower than planned."""
+        return "something may brake it"
+
     def stop(self) -> None:
         """Stops the wheels, at the end and after any error. May be called twice."""
         self.set_wheel_rates([0.0] * len(self.wheel_mounts()))

@@ -98,7 +98,20 @@ def parse_arguments(
         metavar="FILE",
         help="write every step to FILE, as JSON lines",
     )
+    parser.add_argument(
+        "--events",
+        metavar="FILE",
+        help="write what happens to FILE, as JSON lines for programs; "
+        "- is standard output, in place of the lines for people",
+    )
     parser.add_argument("--realtime", action="store_true", help=simulator.realtime)
+    if backend == "coppeliasim":
+        # V-REP often listens only while its simulation runs.
+        parser.add_argument(
+            "--restart",
+            action="store_true",
+            help="stop a simulation that runs already, which puts everything back, and start it again",
+        )
     add_slam_options(parser, environment)
     options = parser.parse_args()
     ports = {robot.name: robot.port for robot in robots}

@@ -10,31 +10,54 @@ from typing import Any
 from .backend import Backend, RobotSpec, SensorCone
 from .errors import SetupError, SimulatorError
 from .mounting import MAX_MISALIGNMENT, Mounting, angle_to_left, angle_to_vertical
-from .notes import pause
+from .notes import Notes, pause
 from .patience import PAUSED, Patience
 from .pose import Pose
-from .remote_api import EXECUTED, RUN_VARIABLE, Connection, RefusedError, Request
+from .readings import TIME, check, check_time
+from .remote_api import (
+    EXECUTED,
+    RUN_VARIABLE,
+    Connection,
+    RefusedError,
+    Request,
+    accepts_connections,
+)
 from .scene.lookup import objects_at, part_paths, robot_paths
-from .settings import CLIENT_TIMEOUT, PROBE_PERIOD, STOP_TIMEOUT
+from .settings import (
+    CLIENT_TIMEOUT,
+    PROBE_PERIOD,
+    STANDSTILL_CHECKS,
+    STOP_TIMEOUT,
+)
 
 DEFAULT_PORT = 23000  # of the ZeroMQ remote API
 LEGACY_PORT = 19999  # of the legacy remote API
 TURNING = 0.01  # rad/s above which a wheel turns
-STEPS_PER_CHECK = 20  # steps after which the time is compared with the simulator's
+STEPS_PER_CHECK = (
+    20  # steps after which time and wheels are compared with the simulator's
+)
+SPEED_OF_FALL = 1.0  # m/s, at which a body sinks that nothing carries
+FALLEN = 0.1  # m below its start, from which on it has
+SAME_RATE = 0.001  # rad/s by which a wheel's target differs from the one that was set
 
 
 class CoppeliaSim:
     """The simulator, and its clock: its first connection steps it for all robots."""
 
-    def __init__(self, host: str, *, realtime: bool) -> None:
-        """With `realtime`, time passes no faster than real time."""
+    def __init__(self, host: str, *, realtime: bool, restart: bool = False) -> None:
+        """With `realtime`, time passes no faster than real time; with `restart`, a simulation that runs is stopped first."""
         self.time = 0.0
         self.time_step = 0.0
-        self._host, self._realtime = host, realtime
+        self._host, self._realtime, self._restart = host, realtime, restart
+        self._robots: dict[str, CoppeliaSimRobot] = {}
+        self._notes = Notes()
         self._connections: dict[int, Connection] = {}
         self._has_started = self._is_stepping = False
         self._step_due: float | None = None
         self._steps = 0
+        self._last_step = 0.0  # in the time of `time.monotonic`
+        self._checked_time = 0.0  # what the simulator said last
+        self._checked_steps = self._standstills = 0
         self.is_doubtful = False  # whether the latest step may have taken no time
         self._patience: dict[Connection, Patience] = {}
 
@@ -43,25 +66,50 @@ class CoppeliaSim:
         try:
             if spec.port not in self._connections:
                 self._connections[spec.port] = Connection(self._host, spec.port)
-            return CoppeliaSimRobot(spec, self._connections[spec.port], self)
+                self._stop_running()
+            robot = CoppeliaSimRobot(spec, self._connections[spec.port], self)
         except SimulatorError as error:
-            is_silent = spec.port not in self._connections
-            if spec.port == LEGACY_PORT and is_silent:
+            if spec.port in self._connections:
+                raise SetupError(f"robot {spec.name}: {error}") from error
+            if spec.port == LEGACY_PORT:
                 raise SetupError(
                     f"robot {spec.name}: no reply from port {spec.port}. CoppeliaSim's ZeroMQ "
                     f"remote API listens on {DEFAULT_PORT}: change the port in the program, or "
                     f"use --port {DEFAULT_PORT}."
                 ) from error
             raise SetupError(
-                f"robot {spec.name}: {error}. Is CoppeliaSim running there, with its ZeroMQ "
-                "remote API on that port? Use --host and --port to connect elsewhere."
+                f"robot {spec.name}: {error}. {self._reason_for_silence(spec.port)}"
             ) from error
+        self._robots[spec.name] = robot
+        return robot
+
+    def _reason_for_silence(self, port: int) -> str:
+        """What to do about a simulator that does not reply."""
+        address = f"{self._host}:{port}"
+        if port not in self._connections and accepts_connections(address):
+            from .scene.findings import finding
+
+            why = finding("no-reply", address=address)
+            return f"{why.message[0].upper()}{why.message[1:]}: {why.help}."
+        return (
+            "Is CoppeliaSim running there, with its ZeroMQ remote API on that port? Use --host and --port to connect "
+            "elsewhere."
+        )
+
+    def _stop_running(self) -> None:
+        """Puts everything back, once, if that is wanted: before anything is measured."""
+        if self._restart and not self._is_stopped():
+            first = self._first()
+            first.call(first.sim.stopSimulation)
+            self._wait_until(stopped=True)
+        self._restart = False
 
     def start(self) -> None:
         """Starts the simulation if it is stopped; time stands still until `advance`."""
         first = self._first()
         self._is_stepping = True
         first.call(first.sim.setStepping, True)
+        self._last_step = time.monotonic()
         self.time_step = first.call(first.sim.getSimulationTimeStep)
         for connection in self._connections.values():
             patience = self._patience[connection] = Patience(connection.address)
@@ -71,11 +119,16 @@ class CoppeliaSim:
             first.call(first.sim.startSimulation)
             self._wait_until(stopped=False)
         self._wait_while_paused()
-        self.time = first.call(first.sim.getSimulationTime)
+        now = first.call(first.sim.getSimulationTime)
+        check(f"error from {first.address}: sim.getSimulationTime", now, TIME)
+        self.time = self._checked_time = now
+        if not self._has_started:
+            poses = {name: robot.pose() for name, robot in self._robots.items()}
+            self._notes.say_running(self.time, poses)
 
     def advance(self) -> None:
         """Takes one step."""
-        first, *others = self._connections.values()
+        _first, *others = self._connections.values()
         for connection in others:
             # The step must not overtake commands on other connections.
             connection.finish()
@@ -85,7 +138,7 @@ class CoppeliaSim:
         for connection in self._connections.values():
             connection.read_ahead()
         if self._step_due is None:
-            self.time = first.call(first.sim.getSimulationTime)
+            self.time = self._read_time()
             self._step_due = time.monotonic()
         else:
             self.time += self.time_step
@@ -108,7 +161,7 @@ class CoppeliaSim:
 
     def _take_step(self) -> None:
         first, began = self._first(), time.monotonic()
-        if began - first.last_message > CLIENT_TIMEOUT / 2.0:
+        if began - self._last_step > CLIENT_TIMEOUT / 2.0:
             self._hold_time()
         try:
             first.result(first.post("sim.step"))
@@ -117,7 +170,8 @@ class CoppeliaSim:
             if EXECUTED not in str(error):
                 raise
         self._steps += 1
-        if time.monotonic() - began > CLIENT_TIMEOUT / 2.0:
+        self._last_step = time.monotonic()
+        if self._last_step - began > CLIENT_TIMEOUT / 2.0:
             self._hold_time()
 
     def _hold_time(self) -> None:
@@ -129,12 +183,29 @@ class CoppeliaSim:
 
     def _check_time(self) -> None:
         """Corrects the time; while the simulation is paused, newer versions return from steps that they have not taken."""
-        first = self._first()
         self.is_doubtful = False
-        now = first.call(first.sim.getSimulationTime)
+        now = self._read_time()
         if abs(now - self.time) > self.time_step / 2.0:
             self._wait_while_paused()
             self.time = now
+
+    def _read_time(self) -> float:
+        """The simulator's own time in seconds; raises SimulatorError if it stands still although steps were taken."""
+        first, before = self._first(), self._checked_time
+        now: float = first.call(first.sim.getSimulationTime)
+        check_time(f"error from {first.address}: sim.getSimulationTime", before, now)
+        if now > before or self._steps == self._checked_steps:
+            self._standstills = 0
+        else:
+            # While the simulation is paused, some steps are not taken.
+            self._standstills += 1
+            if self._standstills >= STANDSTILL_CHECKS:
+                raise SimulatorError(
+                    f"error from {first.address}: sim.getSimulationTime stands still at {now:g} s, "
+                    "although the simulation runs"
+                )
+        self._checked_time, self._checked_steps = now, self._steps
+        return now
 
     def _wait_while_paused(self) -> None:
         first = self._first()
@@ -181,6 +252,11 @@ class CoppeliaSimRobot(Backend):
         self._rates = [math.inf] * len(joints)
         self._commands: list[Request] = []
         self._last_matrix: Sequence[float] = ()
+        self._height = body[11]
+        self._last_height = (math.inf, body[11])  # s, m
+        self._has_rival = False  # whether another program drives it, too
+        self._steps = 0
+        self._notes = Notes()
 
     def wheel_mounts(self) -> Sequence[tuple[float, float]]:
         """The positions of the wheels on the body."""
@@ -228,11 +304,28 @@ class CoppeliaSimRobot(Backend):
         if matrix == self._last_matrix and any(self._rates):
             self.clock.is_doubtful = True
         self._last_matrix = matrix
+        self._check_fall(matrix)
         return self._mounting.pose(matrix)
+
+    def _check_fall(self, body: Sequence[float]) -> None:
+        """Raises SimulatorError if nothing carries the robot: off its floor, it would go on driving."""
+        now, height = self.clock.time, body[11]
+        (before, higher), self._last_height = self._last_height, (now, height)
+        if now <= before or self._height - height < FALLEN:
+            return
+        if higher - height > SPEED_OF_FALL * (now - before):
+            path = robot_paths(self._spec)[0]
+            raise SimulatorError(
+                f"it has fallen off its floor: {path} is {self._height - height:.2f} m lower than at the start. The "
+                "floor must be larger than its way; `pydslrep scene push` builds one"
+            )
 
     def set_wheel_rates(self, rates: Sequence[float]) -> None:
         """Sets the rates of the wheels in rad/s, forward if positive."""
         self._check_commands()
+        self._steps += 1
+        if self._steps % STEPS_PER_CHECK == 2 and not self._has_rival:
+            self._check_driver()
         for index, rate in enumerate(rates):
             # Skip negligible changes, except to zero.
             if abs(rate - self._rates[index]) > (1e-4 if rate else 0.0):
@@ -242,6 +335,26 @@ class CoppeliaSimRobot(Backend):
                     self._connection.post(command, self._joints[index], velocity)
                 )
                 self._rates[index] = rate
+
+    def _check_driver(self) -> None:
+        """Says if somebody else drives the robot, too."""
+        for name, joint, sign, rate in zip(
+            self._spec.wheels,
+            self._joints,
+            self._mounting.axis_signs,
+            self._rates,
+            strict=True,
+        ):
+            found = self._connection.try_call("getJointTargetVelocity", joint)
+            if found is None or math.isinf(rate):
+                continue
+            if abs(sign * found - rate) > SAME_RATE:
+                self._has_rival = True
+                self._notes.say(
+                    f"another program drives robot {self._spec.name}, too: it has set its wheel {name} to "
+                    f"{sign * found:.2f} rad/s, this script to {rate:.2f} rad/s. End one of them"
+                )
+                return
 
     def detects(self, sensor: str) -> bool:
         """Whether a proximity sensor detects an object."""
@@ -273,6 +386,9 @@ class CoppeliaSimRobot(Backend):
         state = self._call(self._sim.getSimulationState)
         if not state & self._sim.simulation_advancing:
             return "the simulation was stopped or paused"
+        tilt = angle_to_vertical(self._matrix(self._body))
+        if tilt > MAX_MISALIGNMENT:
+            return f"it has fallen over: its body is {tilt:.0f}° off the vertical. Stop the simulation, which puts it back"
         from .scene.checks import explain
 
         if why := explain(self._connection, self._spec):
@@ -305,6 +421,14 @@ class CoppeliaSimRobot(Backend):
             + hint
         )
 
+    def crawl_reason(self) -> str:
+        """Why the robot may be slower than planned."""
+        from .scene.checks import explain_crawl
+
+        if why := explain_crawl(self._connection, self._spec):
+            return why
+        return super().crawl_reason() + "; `pydslrep doctor` checks the scene"
+
     def stop(self) -> None:
         """Stops the wheels, even after an error."""
         self._connection.last_calls(
@@ -328,20 +452,23 @@ class CoppeliaSimRobot(Backend):
         return reading
 
     def _find_objects(self) -> None:
-        name = self._spec.name
         joint = self._sim.object_joint_type
         sensor = self._sim.object_proximitysensor_type
         self._missing: list[str] = []
         self._body = self._find(
             "robot", lambda kind: kind not in (joint, sensor), *robot_paths(self._spec)
         )
+        self._check_found()  # where it is, its parts are
         self._joints = self._find_parts("joint", joint, self._spec.wheels)
         sensors = (*self._spec.sensors, *self._spec.bumpers)
         handles = self._find_parts("proximity sensor", sensor, sensors)
         self._sensors = dict(zip(sensors, handles, strict=True))
+        self._check_found()
+
+    def _check_found(self) -> None:
         if self._missing:
             raise SetupError(
-                f"robot {name}: the scene at {self._connection.address} has no "
+                f"robot {self._spec.name}: the scene at {self._connection.address} has no "
                 + ", no ".join(self._missing)
                 + "; `pydslrep scene push` builds what the program needs"
             )

@@ -9,6 +9,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import Protocol
 
+from . import facts
 from .errors import SetupError
 from .pose import Pose
 from .steering import arc_speed, return_speed, steer
@@ -98,7 +99,7 @@ class FourWheelDrive(SteeredDrive):
 
     # Wheels scrub sideways in a turn, so the robot turns less than they roll. Set this
     # factor if you have measured it; closed-loop control corrects the rest.
-    TRACK_FACTOR = 1.0
+    TRACK_FACTOR = facts.TRACK_FACTOR
     scrubs = True
 
     def __init__(

@@ -7,10 +7,16 @@ time, robots in parallel tasks take each step together, and nothing depends on t
 
 import asyncio
 import selectors
+import time
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from .backend import Clock
+from .errors import SimulatorError
+from .readings import check_time
+from .settings import STANDSTILL_LIMIT
+
+MAX_CORRECTION = 100  # steps by which a clock may be put back
 
 
 class Waiter(NamedTuple):
@@ -43,11 +49,14 @@ class SimulationLoop(asyncio.SelectorEventLoop):
     def __init__(self) -> None:
         self._clock: Clock | None = None
         self._waiting: list[Waiter] = []
+        self._times: dict[Clock, float] = {}  # the last one of each that was a time
+        self._latest: dict[Clock, float] = {}
+        self._passed: dict[Clock, float] = {}  # when time passed last, in real time
         super().__init__(StepSelector(self._advance))
 
     def time(self) -> float:
         """Seconds of simulation time, or of real time while there is no clock."""
-        return super().time() if self._clock is None else self._clock.time
+        return super().time() if self._clock is None else self._time_of(self._clock)
 
     def use_clock(self, clock: Clock | None) -> None:
         """Sets the clock that `time` reads; without one, no clock advances any more."""
@@ -67,11 +76,11 @@ class SimulationLoop(asyncio.SelectorEventLoop):
         clocks = [waiter.clock for waiter in waiting]
         if until_timer is not None or not clocks:
             clocks.append(self._clock)
-        clock = min(clocks, key=next_step_due)
+        clock = min(clocks, key=self._next_step_due)
         due = [waiter for waiter in waiting if waiter.clock is clock]
         self._waiting = [waiter for waiter in waiting if waiter.clock is not clock]
         try:
-            clock.advance()
+            self._take_step(clock)
         except Exception as error:
             if not due:
                 raise
@@ -81,10 +90,31 @@ class SimulationLoop(asyncio.SelectorEventLoop):
                 waiter.wake_up.set_result(None)
         return True
 
+    def _take_step(self, clock: Clock) -> None:
+        """Advances a clock; raises SimulatorError if its time is none."""
+        before, name = self._time_of(clock), type(clock).__name__
+        self._times[clock] = before
+        latest = self._latest.setdefault(clock, before)
+        clock.advance()
+        # A simulator's clock may find that it has counted steps which were not taken.
+        check_time(f"{name}.time", latest, clock.time, MAX_CORRECTION * clock.time_step)
+        self._times[clock] = clock.time
+        self._latest[clock] = max(latest, clock.time)
+        now = time.monotonic()
+        if clock.time > latest:
+            self._passed[clock] = now
+        # A step may take no time now and then.
+        elif now - self._passed.setdefault(clock, now) > STANDSTILL_LIMIT:
+            raise SimulatorError(
+                f"{name}.time stands still at {latest:g} s, although steps were taken for {STANDSTILL_LIMIT:g} s"
+            )
 
-def next_step_due(clock: Clock) -> float:
-    """When a clock's next step ends, in its own time."""
-    return clock.time + clock.time_step
+    def _time_of(self, clock: Clock) -> float:
+        return self._times.get(clock, clock.time)
+
+    def _next_step_due(self, clock: Clock) -> float:
+        """When a clock's next step ends, in its own time."""
+        return self._time_of(clock) + clock.time_step
 
 
 def in_order(waiters: Iterable[Waiter]) -> list[Waiter]:

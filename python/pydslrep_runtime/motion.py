@@ -4,14 +4,17 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
+from . import events
 from .approach import Approach
 from .backend import Backend, RobotSpec
 from .creep import Creep
 from .drives import Drive
 from .errors import MovementError
 from .event_loop import SimulationLoop
+from .facts import RIM_SPEED
+from .notes import Notes
 from .pose import Pose, wrap_angle
-from .settings import MAX_LATERAL_ERROR, RIM_SPEED, STALL_TIME
+from .settings import MAX_LATERAL_ERROR, STALL_TIME
 from .steering import Drift
 from .trace import Trace
 
@@ -53,13 +56,22 @@ class Motion:
         """`order` is the robot's place among those that act in the same step."""
         self.spec, self.backend, self.drive = spec, backend, drive
         self.name = spec.name
-        self.movement = self.action = ""  # for messages and the trace
+        self.movement = self.action_text = ""  # for messages, the trace and events
+        self.action_number = 0  # in its movement, from 1
         self._loop, self._order, self._trace = loop, order, trace
         self._planned: Pose | None = None
         self._rates: Sequence[float] = ()
         self._odometer: Odometer | None = None
         self._on_pose: Callable[[Pose], object] | None = None
         self._drift, self._creep = Drift(), Creep()
+        self._notes = Notes()
+        self._crawling = ("", "")  # the movement and the action that this was said of
+        self._is_recorded = False  # whether the trace has the pose that it starts from
+
+    @property
+    def action(self) -> str:
+        """The action that it does, with its number."""
+        return f"{self.action_number}: {self.action_text}" if self.action_number else ""
 
     def pose(self) -> Pose:
         """The pose of the wheels' centre, by odometry if that is in use."""
@@ -82,7 +94,21 @@ class Motion:
     def failure(self, reason: object) -> MovementError:
         """An error with the robot, movement and action that it occurred in."""
         return MovementError(
-            f"robot {self.name}, movement {self.movement}, action {self.action}: {reason}"
+            f"robot {self.name}, movement {self.movement}, action {self.action}: {reason}",
+            self.name,
+            self.movement,
+            self.action_number,
+        )
+
+    def moment(self, here: Pose) -> events.Moment:
+        """What it does now, for events."""
+        return events.Moment(
+            self.backend.clock.time,
+            self.name,
+            self.movement,
+            self.action_number,
+            self.action_text,
+            here,
         )
 
     def forget_plan(self) -> None:
@@ -102,7 +128,7 @@ class Motion:
         clock = self.backend.clock
         await self._loop.next_step(clock, self._order)
         here = self.pose()
-        self._trace.add(clock.time, self.name, here, rates, self.movement, self.action)
+        self._record(here, rates)
         return here
 
     async def wait(self) -> Pose:
@@ -208,7 +234,15 @@ class Motion:
 
     def _start(self, here: Pose) -> Pose:
         """The planned start of a motion: the planned end of the last one."""
+        if not self._is_recorded:
+            # The first step has moved it already.
+            self._record(here, self.zero_rates())
         return self._planned or here
+
+    def _record(self, here: Pose, rates: Sequence[float]) -> None:
+        self._is_recorded = True
+        time = self.backend.clock.time
+        self._trace.add(time, self.name, here, rates, self.movement, self.action)
 
     def _approach(self, speed: float) -> Approach:
         return Approach(speed, self.backend.clock.time_step)
@@ -254,14 +288,32 @@ class Motion:
         return here
 
     def _check_progress(self, approach: Approach, remaining: float) -> None:
+        if approach.crawls(remaining, self.backend.clock.time):
+            self._say_crawl()
         if approach.stalled(remaining, self.backend.clock.time):
+            self._report_contact()
             raise self.failure(
                 f"no progress for {STALL_TIME:g} s, {abs(remaining):.3f} m from the goal; "
                 + self.backend.stall_reason()
             )
 
+    def _say_crawl(self) -> None:
+        """Says once why an action takes so long: to find out takes calls."""
+        if self._crawling != (self.movement, self.action):
+            self._crawling = self.movement, self.action
+            why = self.backend.crawl_reason()
+            self._notes.say(
+                f"robot {self.name}, movement {self.movement}, action {self.action}: takes more than twice as long "
+                f"as planned; {why}"
+            )
+
+    def _report_contact(self) -> None:
+        if events.current.is_read:
+            events.current.contact(self.moment(self.pose()))
+
     def _check_arrival(self, lateral_error: float) -> None:
         if abs(lateral_error) > MAX_LATERAL_ERROR:
+            self._report_contact()
             side = "left" if lateral_error > 0.0 else "right"
             raise self.failure(
                 f"ended {abs(lateral_error):.3f} m to the {side} of the goal; "

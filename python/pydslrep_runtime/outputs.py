@@ -13,11 +13,14 @@ from typing import TextIO
 
 from .errors import SetupError
 
-if sys.platform != "win32":
+if sys.platform == "win32":
+    import msvcrt
+else:
     import fcntl
 
 PICTURE_MARK = "Drawn by PyDSLRep"
 PNG = b"\x89PNG\r\n\x1a\n"
+LOCKED_BYTE = 1 << 30
 START = 1 << 16  # bytes; enough for a line of a trace and for the text of a PNG
 
 
@@ -78,13 +81,60 @@ def growing_trace(path: Path) -> Iterator[TextIO]:
     place = output_path(path, is_trace, "a trace")
     partial = place.with_name(f"{place.name}.partial")
     partial = output_path(partial, is_trace, "a trace")
-    with partial.open("w", encoding="utf-8", buffering=1) as file:
+    with claimed(partial) as file:
         try:
             yield file
-        finally:
-            # Also what was driven up to an error is worth keeping.
+        except BaseException:
+            # What was driven up to an error is worth keeping, but nothing replaces an older trace.
+            give_name(file, partial, place, keep_older=file.tell() == 0)
+            raise
+        give_name(file, partial, place, keep_older=False)
+
+
+def give_name(file: TextIO, partial: Path, place: Path, *, keep_older: bool) -> None:
+    """Ends a trace: it gets its name, or is removed."""
+    file.flush()
+    if sys.platform == "win32":
+        # A file cannot be renamed there while it is open.
+        file.close()
+    if keep_older and place.exists():
+        partial.unlink()
+    else:
+        partial.replace(place)
+
+
+def claimed(path: Path) -> TextIO:
+    """An empty file that no other process claims before this one closes it; raises SetupError."""
+    while True:
+        file = path.open("a", encoding="utf-8", buffering=1)
+        try:
+            lock(file)
+            # Who had claimed it before may have given it another name.
+            if path.exists() and os.path.samestat(os.fstat(file.fileno()), path.stat()):
+                file.truncate(0)
+                return file
+        except (BlockingIOError, PermissionError):
             file.close()
-            partial.replace(place)
+            raise SetupError(
+                f"cannot write {path}: another process is writing it; choose another file"
+            ) from None
+        file.close()
+
+
+def lock(file: TextIO) -> None:
+    """Locks a file until it is closed; raises BlockingIOError or PermissionError if another process has done so."""
+    if sys.platform == "win32":
+        # Nothing is there, so the lock hinders no reader.
+        file.seek(LOCKED_BYTE)
+        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        file.seek(0)
+    else:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise
+        except OSError:
+            return  # some file systems have no locks
 
 
 def write_whole(place: Path, content: bytes) -> None:

@@ -17,13 +17,18 @@ class Patience(Notes):
         """`address` is that of the simulator: host and port."""
         super().__init__()
         self._address = address
+        self._excused = 0.0  # s of the call in which nobody held the time
 
     def wait(self, waited: float) -> None:
         """Returns to go on waiting after `waited` seconds without a reply; raises SimulatorError."""
+        if waited < self._excused:  # it is another call
+            self._excused = 0.0
         try:
             state = ask(self._address, "sim.getSimulationState", PROBE_PERIOD)
         except SimulatorError:
             state = None
+        if state in (None, PAUSED):
+            self._excused = waited
         if state is None:
             # CoppeliaSim 4.6 answers nobody while it is paused.
             self._limit(waited, SILENCE_LIMIT, f"no reply from {self._address}")
@@ -35,15 +40,17 @@ class Patience(Notes):
         elif state == PAUSED:
             self.say_paused()
         else:
+            held = waited - self._excused
             self._limit(
-                waited,
+                held,
                 HOLD_LIMIT,
-                f"{HELD}. End that program, or stop the simulation and start it again",
+                HELD,
+                ". End that program, or stop the simulation and start this script again",
             )
-            if waited > REPLY_TIMEOUT / 2.0:
+            if held > REPLY_TIMEOUT / 2.0:
                 self.say(f"{HELD}; this script waits up to {HOLD_LIMIT:g} s for it")
 
     @staticmethod
-    def _limit(waited: float, limit: float, reason: str) -> None:
+    def _limit(waited: float, limit: float, reason: str, advice: str = "") -> None:
         if waited > limit:
-            raise SimulatorError(f"{reason}, for {limit:g} s")
+            raise SimulatorError(f"{reason}, for {limit:g} s{advice}")

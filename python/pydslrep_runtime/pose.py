@@ -9,6 +9,12 @@ def wrap_angle(angle: float) -> float:
     return math.remainder(angle, math.tau)
 
 
+def heading_degrees(theta: float) -> float:
+    """A heading as people read it: tenths of a degree above -180 and up to 180, and never -0."""
+    degrees = round(math.degrees(wrap_angle(theta)), 1) + 0.0
+    return 180.0 if degrees <= -180.0 else degrees
+
+
 @dataclass(frozen=True)
 class Pose:
     """A position and a heading: x forward and y left in metres, theta in radians.

@@ -13,7 +13,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any
 
-from .errors import SetupError, SimulatorError
+from .errors import ReadingError, SetupError, SimulatorError
+from .readings import CONSTANT, check, read_reply, shortened, shown
 from .settings import CLIENT_TIMEOUT, CONNECT_TIMEOUT, REPLY_TIMEOUT, STOP_TIMEOUT
 
 try:
@@ -40,6 +41,10 @@ class RefusedError(SimulatorError):
     """The simulator has replied with an error."""
 
 
+class MissingError(SimulatorError, AttributeError):
+    """The simulator lacks a function or a constant."""
+
+
 Read = tuple[str, int]
 """A function and the handle of the object that it reads."""
 
@@ -52,6 +57,7 @@ LOOK_PERIOD = (
 )
 RETRY_PERIOD = 0.05  # s
 LINGER = 500  # ms
+MAX_MESSAGE = 64 << 20  # bytes; who sends a larger one is disconnected
 
 
 def new_socket() -> Any:
@@ -70,6 +76,7 @@ class Line:
         self.socket = new_socket()
         self.socket.linger = 0
         self.socket.reconnect_ivl = -1
+        self.socket.maxmsgsize = MAX_MESSAGE
         self._events: Any = self.socket.get_monitor_socket(
             zmq.EVENT_CONNECTED | zmq.EVENT_DISCONNECTED | zmq.EVENT_CLOSED
         )
@@ -137,7 +144,6 @@ class PatientSocket:
         client.socket = self
         self._address = address
         self._start = self._deadline = 0.0
-        self.last_message = time.monotonic()
         self.on_silence: Callable[[float], object] = self._give_up
         self._socket = self._line.socket
         self._socket.rcvtimeo = math.ceil(1000.0 * min(LOOK_PERIOD, limit))
@@ -183,7 +189,6 @@ class PatientSocket:
                         f"lost connection to {self._address}"
                     ) from None
             else:
-                self.last_message = now
                 return reply
 
     def close(self, linger: int = 0) -> None:
@@ -206,15 +211,14 @@ def ask(address: str, function: str, limit: float) -> Any:
         line.socket.send(request_of(new_id, function, ()), NO_WAIT)
         line.socket.rcvtimeo = math.ceil(1000.0 * limit)
         reply = cbor.loads(line.socket.recv() or line.socket.recv())
-    except zmq.ZMQError:
+    except Exception:  # the decoders have no error class in common
         return None
     finally:
         line.close()
-    match reply:
-        case {"ret": [value, *_]}:
-            return value
-        case _:
-            return None
+    try:
+        return read_reply(function, reply["ret"])
+    except (TypeError, KeyError, ReadingError):
+        return None
 
 
 def request_of(client: str, function: str, arguments: Sequence[Any]) -> bytes:
@@ -234,11 +238,31 @@ def request_of(client: str, function: str, arguments: Sequence[Any]) -> bytes:
 class Request:
     """A request whose reply is awaited later."""
 
-    __slots__ = ("message", "reply")
+    __slots__ = ("function", "message", "reply")
 
-    def __init__(self, message: bytes) -> None:
-        self.message = message
+    def __init__(self, function: str, message: bytes) -> None:
+        self.function, self.message = function, message
         self.reply: dict[str, Any] | None = None
+
+
+class Interface:
+    """The functions and constants of a simulator, by their names."""
+
+    def __init__(self, functions: Any, address: str) -> None:
+        """`functions` are those that the client has made."""
+        self._functions, self._address = functions, address
+
+    def __getattr__(self, name: str) -> Any:
+        """A function or a constant; raises MissingError, and ReadingError if it is no number."""
+        try:
+            value = getattr(self._functions, name)
+        except AttributeError:
+            raise MissingError(
+                f"the simulator at {self._address} has no sim.{name}"
+            ) from None
+        if not callable(value):
+            check(f"error from {self._address}: sim.{name}", value, CONSTANT)
+        return value
 
 
 class Connection:
@@ -259,10 +283,13 @@ class Connection:
             self._client.uuid = f"{os.environ.get(RUN_VARIABLE, '')}{self._client.uuid}"
             # A script that is killed says no goodbye: until then it holds the time.
             self._client.timeout = CLIENT_TIMEOUT
+            # The client's own would run any function of the script that the simulator names.
+            self._client.call = self._call_of_client
             self._socket = PatientSocket(self._client, self.address, CONNECT_TIMEOUT)
         except zmq.ZMQError as error:
             raise self._loss(error) from error
-        self.sim = self.call(self._client.require, "sim")
+        functions = self.call(self._client.require, "sim")
+        self.sim = Interface(functions, self.address)
         self._socket.limit = REPLY_TIMEOUT
 
     def call(self, function: Callable[..., Any], *arguments: Any) -> Any:
@@ -277,15 +304,27 @@ class Connection:
             raise self._loss(error) from error
         except Exception as error:  # the client has no error class of its own
             self._is_broken = False
-            raise self._failure(error) from error
+            raise self._failure(
+                f"the client cannot read a reply: {shortened(str(error))}"
+            ) from error
         self._is_broken = False
         return result
+
+    def _call_of_client(self, function: str, arguments: Sequence[Any]) -> Any:
+        """What the client calls a function with."""
+        # The client adds to its first request what the simulator has to know of it.
+        self._client._send({"func": function, "args": list(arguments)})
+        request = Request(function, self._encode(function, *arguments))
+        self._under_way.append(request)
+        return self.result(request)
 
     def try_call(self, function: str, *arguments: Any) -> Any:
         """The result of a function that older versions lack, or that fails; else None."""
         try:
             return self.call(getattr(self.sim, function), *arguments)
-        except (AttributeError, SimulatorError):
+        except ReadingError:
+            raise
+        except SimulatorError:
             if self._is_broken:
                 raise  # the connection failed, not the function
             return None
@@ -293,11 +332,6 @@ class Connection:
     def be_patient(self, on_silence: Callable[[float], object], period: float) -> None:
         """From now on, `on_silence` decides every `period` seconds whether to go on waiting for a reply."""
         self._socket.on_silence, self._socket.limit = on_silence, period
-
-    @property
-    def last_message(self) -> float:
-        """When the last reply arrived, in the time of `time.monotonic`."""
-        return self._socket.last_message
 
     def last_call(self, function: str, *arguments: Any) -> Any:
         """Calls a function by its name during a shutdown, unless the connection is lost.
@@ -333,12 +367,12 @@ class Connection:
             with self._socket.impatient():
                 self.finish()
                 requests = [
-                    self._post(request_of(client, function, arguments))
+                    self._post(function, request_of(client, function, arguments))
                     for arguments in calls
                 ]
                 for index, request in enumerate(requests):
                     if not self.is_silent:
-                        with suppress(RefusedError):
+                        with suppress(RefusedError, ReadingError):
                             results[index] = self.result(request)
         except SimulatorError:
             # The first error is reported. Later calls are sent, but not waited for.
@@ -361,7 +395,7 @@ class Connection:
 
     def post(self, function: str, *arguments: Any) -> Request:
         """Calls a function by its name, and does not wait for its result; raises SimulatorError."""
-        return self._post(self._encode(function, *arguments))
+        return self._post(function, self._encode(function, *arguments))
 
     def result(self, request: Request) -> Any:
         """Waits for the result of a request; raises SimulatorError."""
@@ -371,9 +405,13 @@ class Connection:
                 self._receive()
             self._is_broken = False
         if "err" in request.reply:
-            raise RefusedError(str(self._failure(request.reply["err"])))
-        values = request.reply["ret"]
-        return values[0] if len(values) == 1 else values
+            reason = request.reply["err"]
+            reason = reason if isinstance(reason, str) else shown(reason)
+            raise RefusedError(str(self._failure(shortened(reason))))
+        try:
+            return read_reply(request.function, request.reply["ret"])
+        except ReadingError as error:
+            raise self._failure(error) from None
 
     def finish(self) -> None:
         """Waits for the replies to all requests; raises SimulatorError."""
@@ -405,10 +443,10 @@ class Connection:
         message = self._messages.get(key)
         if message is None:
             message = self._messages[key] = self._encode(*key)
-        return self._post(message)
+        return self._post(key[0], message)
 
-    def _post(self, message: bytes) -> Request:
-        request = Request(message)
+    def _post(self, function: str, message: bytes) -> Request:
+        request = Request(function, message)
         self._is_broken = True
         self._send(request, message)
         self._is_broken = False
@@ -437,7 +475,8 @@ class Connection:
         except zmq.ZMQError as error:
             raise self._loss(error) from error
         except Exception as error:  # the decoders have no error class in common
-            raise self._failure(error) from error
+            function = self._under_way[0].function
+            raise self._failure(f"the reply to {function} cannot be decoded") from error
         request = self._under_way.popleft()
         match reply:
             case {"ret": _} | {"err": _}:
@@ -447,10 +486,12 @@ class Connection:
             case {"func": function} if function == REPEAT:
                 self._send(request, request.message)
             case _:
-                raise self._failure(f"unknown reply {str(reply)[:80]}")
+                raise self._failure(
+                    f"unknown reply to {request.function}: {shown(reply)}"
+                )
 
     def _failure(self, reason: object) -> SimulatorError:
-        return SimulatorError(f"error from {self.address}: {reason}")
+        return ReadingError(f"error from {self.address}: {reason}")
 
     def _loss(self, reason: object) -> SimulatorError:
         return SimulatorError(f"lost connection to {self.address}: {reason}")

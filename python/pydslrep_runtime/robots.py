@@ -5,15 +5,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, ClassVar, Literal
 
-from . import movements
+from . import events, movements
 from .backend import Backend, RobotSpec
 from .drives import Drive, DriveType, FourMecanumDrive, FourWheelDrive, TwoWheelDrive
 from .errors import SetupError, SimulatorError
 from .event_loop import SimulationLoop
+from .facts import RIM_SPEED
 from .motion import Motion
 from .movements import Movement
 from .pose import Pose
-from .settings import RIM_SPEED
 from .trace import Trace
 
 if TYPE_CHECKING:
@@ -179,6 +179,8 @@ class Robot:
         self._count(motion, what)
         self._is_acting = True
         try:
+            if events.current.is_read:
+                events.current.action_begun(motion.moment(motion.pose()))
             yield motion
         except SimulatorError as error:
             self._abort(motion)
@@ -194,7 +196,8 @@ class Robot:
         if movement is not self._movement:
             self._movement, self._actions = movement, 0
         self._actions += 1
-        motion.movement, motion.action = movement.name, f"{self._actions}: {what}"
+        motion.movement = movement.name
+        motion.action_number, motion.action_text = self._actions, what
 
     @staticmethod
     def _abort(motion: Motion) -> None:
@@ -203,15 +206,7 @@ class Robot:
             motion.backend.stop()
 
     def _report(self, here: Pose) -> None:
-        motion = self._connected()
-        # Adding zero turns -0 into 0. The precision is that of the inlay hints in editors.
-        x, y = round(here.x, 2) + 0.0, round(here.y, 2) + 0.0
-        degrees = round(math.degrees(here.theta), 1) + 0.0
-        print(
-            f"{self.time:8.2f} s  {self.name}  {motion.movement}  {motion.action}  "
-            f"at x {x:.2f} m, y {y:.2f} m, {degrees:g} deg",
-            flush=True,
-        )
+        events.current.action_ended(self._connected().moment(here))
 
 
 class TwoWheelRobot(Robot):

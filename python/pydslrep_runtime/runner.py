@@ -3,15 +3,16 @@
 import argparse
 import asyncio
 import inspect
-import signal
+import os
 import sys
-from collections.abc import Callable, Coroutine, Sequence
-from contextlib import ExitStack, nullcontext
-from types import FrameType
-from typing import Any, Literal, NoReturn, Protocol
+from collections.abc import Callable, Coroutine, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Any, Literal, NoReturn, Protocol, TextIO
 
-from . import movements
+from . import events, interrupts, movements
 from .backend import Backend, RobotSpec, load_backend
+from .checked_backend import CheckedBackend
 from .command_line import parse_arguments
 from .errors import MovementError, SetupError, SimulatorError
 from .event_loop import SimulationLoop
@@ -25,7 +26,7 @@ from .version import __version__
 BackendName = Literal["coppeliasim", "vrep"]
 Main = Callable[[], Coroutine[Any, Any, object]]
 
-DONE, FAILED, BROKEN, INTERRUPTED = 0, 1, 2, 130  # exit codes
+DONE, FAILED, BROKEN = 0, 1, 2  # exit codes
 
 
 class Simulator(Protocol):
@@ -56,7 +57,6 @@ def run(
     function's, `version` the version of the runtime that the script was generated for. Exit codes: 0 done, 1 an action
     failed, 2 a robot cannot be reached, 130 interrupted.
     """
-    warn_of_other_version(version)
     environment = name or main.__name__
     options = parse_arguments(
         robots,
@@ -65,47 +65,58 @@ def run(
         backend=backend,
         environment=environment,
     )
-    handle_signals()
-    sys.exit(report(lambda: drive(main, robots, backend, environment, options)))
+    interrupts.listen()
+    with ExitStack() as reports:
+
+        def run_reported() -> None:
+            reporter = reports.enter_context(events.use(options.events))
+            reporter.started(environment, [robot.name for robot in robots])
+            warn_of_other_version(version)
+            drive(main, robots, backend, environment, options)
+
+        code = report(run_reported)
+    close_outputs()
+    sys.exit(code)
 
 
 def warn_of_other_version(version: str | None) -> None:
     """Says if a script was generated for another version of the runtime."""
     if version not in (None, __version__):
-        print(
-            f"warning: this script was generated for pydslrep_runtime {version}, but runs with "
-            f"{__version__}: generate it again with `pydslrep build`",
-            file=sys.stderr,
+        events.current.warning(
+            f"this script was generated for pydslrep_runtime {version}, but runs with "
+            f"{__version__}: generate it again with `pydslrep build`"
         )
 
 
-def handle_signals() -> None:
-    """Ctrl-C and a request to end interrupt the run at once, even while a call waits."""
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-        # asyncio replaces the default handler by one that waits for the call.
-        signal.signal(signal.SIGINT, interrupt)
-    signal.signal(signal.SIGTERM, interrupt)
-
-
-def interrupt(_signal: int, _frame: FrameType | None) -> None:
-    """Handles a signal."""
-    raise KeyboardInterrupt
-
-
 def report(run: Callable[[], None]) -> int:
-    """Prints the error that ends a run, and returns the exit code."""
+    """Reports the error that ends a run, and returns the exit code."""
     try:
         run()
+        interrupts.ignore()
     except MovementError as error:
-        print(f"error: {error}", file=sys.stderr)
+        events.current.failed(error)
         return FAILED
     except (SetupError, SimulatorError, OSError) as error:
-        print(f"error: {error}", file=sys.stderr)
+        events.current.failed(error)
         return BROKEN
     except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
-        return INTERRUPTED
+        events.current.interrupted()
+        return interrupts.EXIT_CODE
+    except Exception as error:
+        events.current.crashed(error)
+        raise
+    finally:
+        interrupts.ignore()
     return DONE
+
+
+def close_outputs() -> None:
+    """Writes what is left; Python would end with a code of its own if a closed terminal does not take it."""
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except OSError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def drive(
@@ -116,18 +127,35 @@ def drive(
     options: argparse.Namespace,
 ) -> None:
     """Connects the robots and runs `main`; stops them whatever happens."""
-    trace_file = growing_trace(options.trace) if options.trace else nullcontext()
-    with trace_file as file, ExitStack() as cleanup:
+    with ExitStack() as cleanup:
+        file = cleanup.enter_context(trace_file(options.trace))
         fleet = Fleet(robots, backend, options)
         cleanup.callback(fleet.close)
+        cleanup.callback(interrupts.hold)
         fleet.connect()
         loop = SimulationLoop()
         runner = cleanup.enter_context(asyncio.Runner(loop_factory=lambda: loop))
         # Before the tasks are cancelled, which runs code of the script.
         cleanup.callback(fleet.stop)
         cleanup.callback(loop.use_clock, None)
+        cleanup.callback(interrupts.hold)
         fleet.start(loop, Trace(file), SlamSession(environment, options))
         runner.run(run_main(main, environment))
+
+
+@contextmanager
+def trace_file(path: Path | None) -> Iterator[TextIO | None]:
+    """The trace to write, if one is asked for, and reports it when it is complete."""
+    if path is None:
+        yield None
+        return
+    with ExitStack() as after, growing_trace(path) as file:
+        try:
+            yield file
+        finally:
+            # Up to an error, it is worth reading too.
+            if file.tell() > 0:
+                after.callback(events.current.file, "trace", path)
 
 
 async def run_main(main: Main, environment: str) -> None:
@@ -152,8 +180,11 @@ class Fleet:
         for robot in self._robots:
             spec = robot.spec(options.host, options.ports[robot.name])
             own_class = options.classes[robot.name]
-            connect = load_backend(own_class) if own_class else self._simulated
-            self._connected.append((robot, spec, connect(spec)))
+            if own_class:
+                backend: Backend = CheckedBackend(load_backend(own_class)(spec), spec)
+            else:
+                backend = self._simulated(spec)
+            self._connected.append((robot, spec, backend))
 
     def start(
         self, loop: SimulationLoop, trace: Trace, slam_session: SlamSession
@@ -197,4 +228,4 @@ def connect_to(backend: BackendName, options: argparse.Namespace) -> Simulator:
         return VRep(options.host, realtime=options.realtime)
     from .coppeliasim import CoppeliaSim
 
-    return CoppeliaSim(options.host, realtime=options.realtime)
+    return CoppeliaSim(options.host, realtime=options.realtime, restart=options.restart)

@@ -1,17 +1,45 @@
-"""Defaults for speeds, tolerances and timeouts."""
+"""Tolerances and timeouts; speeds are in `facts`, which the command shares."""
 
-RIM_SPEED = 0.09  # m/s at the wheels' rims, in turns and in moves without a speed
-RIM_ACCELERATION = 0.5  # m/s², when accelerating and braking
+import os
+from contextlib import suppress
+
+# Shorter limits for tests: `REPLY_TIMEOUT=0.5,HOLD_LIMIT=2`.
+TIME_LIMITS = os.environ.get("PYDSLREP_TIME_LIMITS", "")
+
+
+def limit(name: str, seconds: float) -> float:
+    """A limit on waiting, which the environment may change."""
+    for each in TIME_LIMITS.split(","):
+        key, _, value = each.partition("=")
+        if key == name:
+            with suppress(ValueError):
+                return float(value)
+    return seconds
+
+
 ARRIVAL_TOLERANCE = 0.0001  # m at the rim within which an action is complete
 CLOSE_TOLERANCE = (
     0.001  # m at the rim within which it is complete if the robot comes no nearer
 )
 STALL_TIME = 5.0  # s of simulation time without progress before an action fails
 MAX_LATERAL_ERROR = 0.05  # m to the side of its goal, above which a move fails
-CONNECT_TIMEOUT = 5.0  # s to wait for the simulator's first reply
-REPLY_TIMEOUT = 10.0  # s to wait for any later reply
-STOP_TIMEOUT = 1.0  # s to wait for a reply while stopping after an error
+CONNECT_TIMEOUT = limit(
+    "CONNECT_TIMEOUT", 5.0
+)  # s to wait for the simulator's first reply
+REPLY_TIMEOUT = limit("REPLY_TIMEOUT", 10.0)  # s to wait for any later reply
+STOP_TIMEOUT = limit(
+    "STOP_TIMEOUT", 1.0
+)  # s to wait for a reply while stopping after an error
 CLIENT_TIMEOUT = 30.0  # s of silence after which the simulator forgets this client
-PROBE_PERIOD = 2.0  # s without a reply after which the simulator is asked why
-HOLD_LIMIT = 40.0  # s to wait for another client that holds the time; longer than the timeout of a killed script
-SILENCE_LIMIT = 600.0  # s to wait for a simulator that answers nothing, perhaps because it is paused
+PROBE_PERIOD = limit(
+    "PROBE_PERIOD", 2.0
+)  # s without a reply after which the simulator is asked why
+HOLD_LIMIT = limit(
+    "HOLD_LIMIT", 40.0
+)  # s to wait for another client that holds the time; longer than the timeout of a killed script
+SILENCE_LIMIT = limit(
+    "SILENCE_LIMIT", 600.0
+)  # s to wait for a simulator that answers nothing, perhaps because it is paused
+STANDSTILL_LIMIT = limit("STANDSTILL_LIMIT", 10.0)  # s during which steps take no time
+STANDSTILL_CHECKS = 10  # comparisons with the simulator's time that find it unchanged
+END_LIMIT = limit("END_LIMIT", 15.0)  # s for the end of a run that was interrupted

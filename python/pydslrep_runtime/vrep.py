@@ -15,6 +15,7 @@ from .errors import SetupError, SimulatorError
 from .mounting import Mounting
 from .notes import Notes, pause
 from .pose import Pose
+from .readings import LEGACY_POINT, LEGACY_RESULTS, Form, read_result
 from .settings import CONNECT_TIMEOUT, REPLY_TIMEOUT, STOP_TIMEOUT
 
 # Constants of the remote API that its client does not name, or not in all versions.
@@ -92,16 +93,29 @@ class Connection:
         `allow` has the bits of return codes that are no errors.
         """
         result = function(self.id, *arguments)
-        code, *values = result if isinstance(result, tuple) else (result,)
+        code, *values = result if isinstance(result, tuple | list) else (result,)
         self.check(code & ~allow, function.__name__)
-        return values[0] if values else None
+        if code:  # it has no value
+            return values[0] if values else None
+        return self.read(function, values)
+
+    def read(
+        self,
+        function: Callable[..., Any],
+        values: Sequence[Any],
+        forms: Sequence[Form] | None = None,
+    ) -> Any:
+        """The result of a function: those values that are read; raises SimulatorError."""
+        name = function.__name__
+        forms = LEGACY_RESULTS.get(name, ()) if forms is None else forms
+        return read_result(f"error from {self.address}: {name}", values, forms)
 
     def find(self, function: Callable[..., Any], *arguments: Any) -> int | None:
         """The number that a function returns; None if the simulator refuses it."""
         wait = self.client.simx_opmode_blocking
         code, value = function(self.id, *arguments, wait)
         self.check(code & ~REMOTE_ERROR)
-        return None if code else int(value)
+        return None if code else int(self.read(function, [value]))
 
     def check(self, code: int, function: str = "a command") -> None:
         """Raises SimulatorError unless a return code is 0."""
@@ -118,7 +132,8 @@ class Connection:
 
     def milliseconds(self) -> int:
         """The simulation time of the latest message."""
-        return int(self.client.simxGetLastCmdTime(self.id))
+        read = self.client.simxGetLastCmdTime
+        return int(self.read(read, [read(self.id)]))
 
     def is_running(self) -> bool:
         """Whether the simulation runs and is not paused, after all earlier commands."""
@@ -151,8 +166,9 @@ class Connection:
     def _state(self) -> int:
         self.call(self.client.simxGetPingTime)
         # Unlike others, its first result is no return code.
-        _, state = self.client.simxGetInMessageInfo(self.id, SERVER_STATE)
-        return int(state)
+        read = self.client.simxGetInMessageInfo
+        _, state = read(self.id, SERVER_STATE)
+        return int(self.read(read, [state]))
 
 
 class VRep:
@@ -322,11 +338,13 @@ class VRepRobot(Backend):
         """The distance that a proximity sensor measures, in metres; None if nothing."""
         client, handle = self._client, self._sensors[sensor]
         self._connection.wait_for(self.clock.milliseconds)
-        code, state, point, _, _ = client.simxReadProximitySensor(
-            self._connection.id, handle, client.simx_opmode_buffer
-        )
+        read = client.simxReadProximitySensor
+        code, *values = read(self._connection.id, handle, client.simx_opmode_buffer)
         self._connection.check(code, "simxReadProximitySensor")
-        return math.hypot(*point) if state else None
+        if self._connection.read(read, values) <= 0:
+            return None
+        point = self._connection.read(read, values[1:], (LEGACY_POINT,))
+        return math.hypot(*point)
 
     def sensor_cone(self, sensor: str) -> SensorCone:
         """The mount of a proximity sensor; the remote API does not report its volume."""

@@ -34,7 +34,10 @@ class FakeObject:
     control: int = VELOCITY
     torque: float = 5.0  # N·m
     rate: float = 0.0  # rad/s
-    speed: float = 0.0  # m/s
+    speed: float = 0.0  # m/s, along x of the world
+    mask: int = 0xFFFF  # what it collides with
+    special: int = 1  # collidable
+    sees: dict[str, float] = field(default_factory=dict)  # m, by alias
 
 
 @dataclass
@@ -45,6 +48,7 @@ class FakeScene:
     version: int = 40600
     state: int = STOPPED
     time_step: float = 0.05
+    physics_step: float = 0.005
     times: Iterator[float] = field(default_factory=lambda: iter([0.0]))
     main_script: int = 1
 
@@ -65,7 +69,10 @@ class FakeScene:
 class FakeSim:
     """The functions and constants of the simulator."""
 
-    handle_all = -2
+    handle_all, handle_scene = -2, -12
+    objectspecialproperty_detectable = 0x1F0
+    floatparam_physicstimestep = 5
+    shapeintparam_respondable_mask = 3019
     intparam_program_version = 1
     scripttype_mainscript = 0
     simulation_stopped, simulation_paused, simulation_advancing = STOPPED, PAUSED, 16
@@ -122,7 +129,10 @@ class FakeSim:
         return -1 if parent is None else self._handle(parent)
 
     def getObjectsInTree(self, handle: int, kind: int, options: int) -> Any:
-        """All objects below; the server sends an empty list as an empty map."""
+        """All objects below, or all shapes; the server sends an empty list as an empty map."""
+        if handle == self.handle_scene:
+            shapes = (i for i, o in enumerate(self._scene.objects) if o.kind == kind)
+            return list(shapes) or {}
         assert (kind, options) == (self.handle_all, 1)
 
         def is_below(each: FakeObject) -> bool:
@@ -134,9 +144,11 @@ class FakeSim:
         return [i for i, each in enumerate(self._scene.objects) if is_below(each)] or {}
 
     def getObjectMatrix(self, handle: int) -> list[float]:
-        """Rows of rotation and translation."""
+        """Rows of rotation and translation, after the time that has passed."""
         each = self._object(handle)
-        rows = zip(each.rotation, each.position, strict=True)
+        x, y, z = each.position
+        position = x + each.speed * self._time, y, z
+        rows = zip(each.rotation, position, strict=True)
         return [number for row, offset in rows for number in (*row, offset)]
 
     def getJointType(self, handle: int) -> int:
@@ -155,9 +167,22 @@ class FakeSim:
         """In rad/s."""
         return self._object(handle).rate
 
-    def getObjectVelocity(self, handle: int) -> tuple[list[float], list[float]]:
-        """In m/s and rad/s."""
-        return [self._object(handle).speed, 0.0, 0.0], [0.0, 0.0, 0.0]
+    def getObjectSpecialProperty(self, handle: int) -> int:
+        """Collidable and more."""
+        return self._object(handle).special
+
+    def checkProximitySensor(self, sensor: int, other: int) -> tuple[Any, ...]:
+        """Whether a sensor sees an object, and how far that is."""
+        distance = self._object(sensor).sees.get(self._object(other).alias)
+        nothing = [0.0, 0.0, 0.0]
+        if distance is None:
+            return 0, 0.0, nothing, -1, nothing
+        return 1, distance, [0.0, 0.0, distance], other, [0.0, 0.0, -1.0]
+
+    def getFloatParam(self, parameter: int) -> float:
+        """The step of the physics engine in seconds."""
+        assert parameter == self.floatparam_physicstimestep
+        return self._scene.physics_step
 
     def getObjectInt32Param(self, handle: int, parameter: int) -> int:
         """What the checks ask for."""
@@ -166,6 +191,7 @@ class FakeSim:
             self.jointintparam_dynctrlmode: each.control,
             self.shapeintparam_static: int(each.static),
             self.shapeintparam_respondable: int(each.respondable),
+            self.shapeintparam_respondable_mask: each.mask,
         }[parameter]
 
     def getObjectFloatParam(self, handle: int, parameter: int) -> float:
@@ -210,6 +236,32 @@ class FakeConnection:
     def call(self, function: Callable[..., Any], *arguments: Any) -> Any:
         """Calls a function."""
         return function(*arguments)
+
+
+def mecanum_scene(name: str = "robot_1", mask: int = 0xFF00) -> FakeScene:
+    """A robot with a mecanum wheel of two rollers that overlap, and three wheels without rollers."""
+    scene = FakeScene([])
+    body = scene.add(alias=name, kind=SHAPE, mass=4.0)
+    for wheel, x, y in (
+        ("a", 0.1, 0.1),
+        ("b", -0.1, 0.1),
+        ("c", 0.1, -0.1),
+        ("d", -0.1, -0.1),
+    ):
+        values = {"parent": body, "position": (x, y, 0.05), "rotation": AXLE}
+        joint = scene.add(alias=wheel, kind=JOINT, **values)
+        hub = scene.add(alias="hub", kind=SHAPE, parent=joint, size=(0.1, 0.1, 0.02))
+        for number in range(2) if wheel == "a" else ():
+            axle = scene.add(alias=f"axle{number}", kind=JOINT, parent=hub)
+            scene.add(
+                alias=f"roller{number}",
+                kind=SHAPE,
+                parent=axle,
+                position=(x + 0.02 * number, y, 0.05),
+                size=(0.03, 0.03, 0.03),
+                mask=mask,
+            )
+    return scene
 
 
 def two_wheel_scene(name: str = "robot_1") -> FakeScene:

@@ -31,6 +31,7 @@ class FakeJoint:
     mode: int = 4  # velocity
     target: float = 0.0
     rate: float = 0.0
+    angle: float = 0.0
 
 
 @dataclass
@@ -49,9 +50,16 @@ class FakeRobot:
     is_static: bool = False
     tremor: float = 0.0  # m and radians that contacts move it in every step
     wall: float = math.inf  # the body's x cannot exceed this
+    edge: float = math.inf  # where its floor ends in x
+    height: float = 0.1  # m
+    sinking: float = 0.0  # m/s
+    tilt: float = 0.0  # radians about its x axis
     kerb: float = -math.inf  # it slides along this where y would fall below it
     sensors: dict[str, Callable[["FakeRobot"], bool]] = field(default_factory=dict)
     rate_history: list[list[float]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.start = self.x, self.y, self.theta
 
     def advance(self, dt: float, noise: random.Random) -> None:
         """Moves for dt seconds."""
@@ -59,6 +67,9 @@ class FakeRobot:
             1.0 - self.creep + (noise.gauss(0.0, self.slip) if self.slip else 0.0)
             for _ in self.joints
         ]
+        if self.x > self.edge:
+            self.sinking += 9.81 * dt
+            self.height -= self.sinking * dt
         before = self.theta
         for _ in range(SUBSTEPS):
             self._substep(dt / SUBSTEPS, traction)
@@ -77,6 +88,7 @@ class FakeRobot:
             change = joint.target - joint.rate if joint.mode == 4 else -joint.rate
             limit = self.motor_acceleration * dt
             joint.rate += max(-limit, min(limit, change))
+            joint.angle += joint.rate * dt
         vx, vy, omega = self.twist(traction)
         middle = self.theta + omega * dt / 2.0
         if self.x + (vx * math.cos(middle) - vy * math.sin(middle)) * dt > self.wall:
@@ -151,7 +163,7 @@ class FakeWorld:
         self.robots = {robot.name: robot for robot in robots}
         self.dt = dt
         self.steps = 0
-        self.running = False
+        self.running = self.puts_back = False
         self.calls: Counter[str] = Counter()
         self.aliases: dict[str, str] = {}
         self.before_step: Callable[[], None] = lambda: None
@@ -308,7 +320,12 @@ class FakeSim:
         robot, joint = thing if isinstance(thing, tuple) else (thing, None)
         c, s = math.cos(robot.theta), math.sin(robot.theta)
         if joint is None:
-            return [c, -s, 0.0, robot.x, s, c, 0.0, robot.y, 0.0, 0.0, 1.0, 0.1]
+            up, side = math.cos(robot.tilt), math.sin(robot.tilt)
+            return [
+                *(c, -s * up, s * side, robot.x),
+                *(s, c * up, -c * side, robot.y),
+                *(0.0, side, up, robot.height),
+            ]
         # the joint's z axis points to the left, or right; its x axis ahead
         x, y = robot.x + c * joint.x - s * joint.y, robot.y + s * joint.x + c * joint.y
         k = joint.axis_sign
@@ -324,6 +341,16 @@ class FakeSim:
         assert math.isfinite(velocity)
         self._world.object(handle)[1].target = velocity
         return 1
+
+    def getJointPosition(self, handle: int) -> float:
+        """A joint's angle about its own axis."""
+        angle: float = self._world.object(handle)[1].angle
+        return angle
+
+    def getJointTargetVelocity(self, handle: int) -> float:
+        """A motor's target."""
+        target: float = self._world.object(handle)[1].target
+        return target
 
     def readProximitySensor(self, handle: int) -> tuple[Any, ...]:
         """State and more; no reading before the first step."""
@@ -362,8 +389,10 @@ class FakeSim:
         self._world.running = True
 
     def stopSimulation(self) -> None:
-        """Stops."""
+        """Stops, and puts everything back if tests do not look at the end."""
         self._world.running = False
+        for robot in self._world.robots.values() if self._world.puts_back else ():
+            robot.x, robot.y, robot.theta = robot.start
 
     def setStepping(self, enable: bool) -> int:
         """Counts levels per client."""

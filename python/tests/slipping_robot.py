@@ -9,8 +9,8 @@ from typing import Any
 from ideal_rover import HALF, MOUNTS, RADIUS, IdealRover, at_once, on
 from pydslrep_runtime.backend import SensorCone
 from pydslrep_runtime.errors import MovementError
+from pydslrep_runtime.facts import RIM_SPEED
 from pydslrep_runtime.pose import Pose
-from pydslrep_runtime.settings import RIM_SPEED
 from pydslrep_runtime.slam.occupancy_grid import OccupancyGrid, Position, Reading
 from pydslrep_runtime.slam.odometry.odometer import Odometer
 from pydslrep_runtime.slam.odometry.scan import Scan

@@ -5,10 +5,10 @@ import math
 
 import pytest
 from pydslrep_runtime.approach import Approach
+from pydslrep_runtime.facts import RIM_ACCELERATION
 from pydslrep_runtime.settings import (
     ARRIVAL_TOLERANCE,
     CLOSE_TOLERANCE,
-    RIM_ACCELERATION,
     STALL_TIME,
 )
 
@@ -38,11 +38,42 @@ def test_ramps_up_cruises_and_ends_at_the_goal(
     )
     if way > 2.0 * top_speed**2 / RIM_ACCELERATION + 2.0 * top_speed * dt:
         assert fastest == top_speed
-        # the duration of a trapezoidal profile, plus the slow final approach
-        assert (
-            steps * dt
-            <= way / top_speed + top_speed / RIM_ACCELERATION + 1.0 + 20.0 * dt
-        )
+        if top_speed > 0.01:
+            assert_takes(steps, duration(way, top_speed, dt), dt)
+
+
+def duration(way: float, top_speed: float, dt: float) -> float:
+    """Seconds that a drive takes in theory: up a ramp, along, braking, and ever more slowly over the last millimetres.
+
+    It brakes with three quarters of the acceleration, until its speed is the distance to the goal times a rate: 10 1/s,
+    or less where steps are so long that it would be further than half of the distance in one.
+    """
+    deceleration, rate = 0.75 * RIM_ACCELERATION, min(10.0, 0.5 / dt)
+    ramp_way = top_speed**2 / (2.0 * RIM_ACCELERATION)
+    slow_speed = min(top_speed, deceleration / rate)
+    slow_way = slow_speed / rate
+    braking_way = (top_speed**2 - slow_speed**2) / (2.0 * deceleration)
+    return (
+        top_speed / RIM_ACCELERATION
+        + (way - ramp_way - braking_way - slow_way) / top_speed
+        + (top_speed - slow_speed) / deceleration
+        + math.log(slow_way / ARRIVAL_TOLERANCE) / rate
+    )
+
+
+def assert_takes(steps: int, seconds: float, dt: float) -> None:
+    """It is a few steps faster than in theory, since a speed holds for a whole step, but not more."""
+    assert seconds - 5.5 * dt < steps * dt < seconds - 1.0 * dt
+
+
+@pytest.mark.parametrize(("dt", "top_speed"), [(0.005, 0.4), (0.005, 3.0), (0.05, 3.0)])
+def test_brakes_as_hard_as_it_should(dt: float, top_speed: float) -> None:
+    """Braking 5 % more softly or harder takes at least four steps more or less."""
+    approach, remaining, steps = Approach(top_speed, dt), 40.0, 0
+    while not approach.arrived(remaining):
+        remaining -= approach.next_speed(remaining) * dt
+        steps += 1
+    assert_takes(steps, duration(40.0, top_speed, dt), dt)
 
 
 def test_a_delay_of_the_wheels_causes_no_oscillation() -> None:

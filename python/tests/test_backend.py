@@ -56,6 +56,7 @@ def test_every_method_of_the_protocol_is_asked_for() -> None:
         "sensor_cone",
         "wheel_angles",
         "stall_reason",
+        "crawl_reason",
         "stop",
         "close",
     }

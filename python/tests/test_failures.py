@@ -4,6 +4,7 @@ import math
 import re
 import socket
 import threading
+import time
 from collections.abc import Iterator
 
 import cbor2
@@ -51,6 +52,30 @@ def test_a_deflected_robot_fails_its_action(
     assert all(joint.target == 0.0 for joint in fake.joints)
 
 
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_deflection_of_up_to_five_centimetres_is_accepted(
+    side: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The robot is pushed where it has no way left to return to its line."""
+
+    def drive(push: float) -> None:
+        fake = FakeRobot("r", joints("two-wheel"))
+        world = FakeWorld(fake)
+
+        def deflect() -> None:
+            if fake.x > 0.999 and fake.y == 0.0:
+                fake.y = side * push
+
+        world.before_step = deflect
+        drive_alone(world, monkeypatch, "two-wheel", move_a_metre)
+        assert abs(fake.y) == pytest.approx(push, abs=0.001)
+
+    drive(0.048)
+    words = f"ended 0.052 m to the {'left' if side > 0.0 else 'right'} of the goal"
+    with pytest.raises(MovementError, match=re.escape(words)):
+        drive(0.052)
+
+
 def test_a_joint_in_another_mode_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     fake = FakeRobot("r", joints("two-wheel"))
     for joint in fake.joints:
@@ -66,6 +91,37 @@ def test_a_static_body_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     fake = FakeRobot("r", joints("two-wheel"), is_static=True)
     with pytest.raises(SetupError, match="/r does not move, as it is a static shape"):
         drive_alone(FakeWorld(fake), monkeypatch, "two-wheel", move_a_metre)
+
+
+@pytest.mark.parametrize("late", ["step", "script"])
+def test_holds_the_time_again_when_the_simulator_may_have_forgotten_it(
+    late: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After 30 s of silence it does; from half of that on, nothing is certain."""
+    world = FakeWorld(FakeRobot("r", joints("two-wheel")))
+    clock, passed = time.monotonic, 0.0
+    monkeypatch.setattr(time, "monotonic", lambda: clock() + passed)
+
+    def forget() -> None:
+        nonlocal passed
+        passed += 16.0
+        world.holders.clear()
+
+    def forget_in_a_step() -> None:
+        if late == "step" and world.steps == 40:
+            forget()
+
+    async def actions(robot: Robot) -> None:
+        await robot.move(0.5)
+        if late == "script":
+            forget()
+        await robot.move(0.5)
+        assert sum(world.holders.values()) == 1
+
+    world.before_step = forget_in_a_step
+    drive_alone(world, monkeypatch, "two-wheel", actions)
+    assert passed == 16.0
+    assert not any(world.holders.values())
 
 
 def test_a_stopped_simulation_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -94,19 +150,22 @@ def test_all_missing_objects_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_objects_of_another_type_are_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     fake = FakeRobot("r", joints("two-wheel"), sensors={"eye": lambda _: False})
     world = FakeWorld(fake)
-    world.paths["/r"] = world.paths["/r/eye"]
     world.paths["/r/wheelR"] = world.paths["/r/eye"]
     world.paths["/eye_r"] = world.paths.pop("/r/wheelL") * 3
     del world.paths["/r/eye"]
     with pytest.raises(SetupError) as error:
         drive_alone(world, monkeypatch, "two-wheel", move_a_metre)
     assert str(error.value) == (
-        "robot r: the scene at 127.0.0.1:19999 has no robot /r (an object of another type), "
-        "no joint /r/wheelL or /wheelL_r, "
+        "robot r: the scene at 127.0.0.1:19999 has no joint /r/wheelL or /wheelL_r, "
         "no joint /r/wheelR (an object of another type) or /wheelR_r, "
         "no proximity sensor /r/eye or /eye_r (an object of another type); "
         "`pydslrep scene push` builds what the program needs"
     )
+    world.paths["/r"] = world.paths["/r/wheelR"]
+    with pytest.raises(
+        SetupError, match=r"no robot /r \(an object of another type\); "
+    ):
+        drive_alone(world, monkeypatch, "two-wheel", move_a_metre)
 
 
 def test_robot_wheel_and_sensor_may_share_a_name(

@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 from pydslrep_runtime.pose import Pose
 from pydslrep_runtime.slam.odometry.odometer import Odometer
+from pydslrep_runtime.vrep import VRepRobot
 
 
 def odometer_of(angles: list[float]) -> Odometer:
@@ -51,3 +52,16 @@ def test_wheel_travel_counts_both_directions() -> None:
     angles[:] = [0.0, 2.0]
     odometer.pose()
     assert odometer.wheel_travel == pytest.approx(0.05 * (1.5 + 0.5))
+
+
+def test_wheels_in_vrep_whose_axes_point_to_the_right_turn_forward_too() -> None:
+    client = SimpleNamespace(simxGetJointPosition=None, simx_opmode_buffer=0)
+    robot: Any = SimpleNamespace(
+        _client=client,
+        _connection=SimpleNamespace(wait_for=lambda _time: None),
+        clock=SimpleNamespace(milliseconds=0),
+        _call=lambda _read, joint, _mode: {7: 2.0, 8: -2.0}[joint],
+        _joints=[7, 8],
+        _mounting=SimpleNamespace(axis_signs=[1.0, -1.0]),
+    )
+    assert VRepRobot.wheel_angles(robot) == [2.0, 2.0]

@@ -1,8 +1,12 @@
 """What a run writes, and what it leaves alone."""
 
 import argparse
+import copy
+import functools
 import json
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from pydslrep_runtime.errors import SetupError
@@ -114,3 +118,58 @@ def test_maps_replace_maps_only(tmp_path: Path) -> None:
         with pytest.raises(SetupError, match="is not a map"):
             write()
     assert file.read_text(encoding="utf-8") == '{"mine": 1}'
+
+
+def test_a_trace_has_one_writer(tmp_path: Path) -> None:
+    path = tmp_path / "driven.jsonl"
+    with growing_trace(path) as first:
+        first.write(ROW)
+        with (
+            pytest.raises(SetupError, match="another process is writing it"),
+            growing_trace(path),
+        ):
+            pass
+        first.write(ROW)
+    assert path.read_text(encoding="utf-8") == ROW * 2
+    with growing_trace(path) as second:
+        second.write(ROW)
+    assert path.read_text(encoding="utf-8") == ROW
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_run_that_drives_nothing_keeps_an_older_trace(tmp_path: Path) -> None:
+    path = tmp_path / "driven.jsonl"
+    path.write_text(ROW, encoding="utf-8")
+    with pytest.raises(SetupError, match="no reply"), growing_trace(path):
+        raise SetupError("no reply")
+    assert path.read_text(encoding="utf-8") == ROW
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_the_maps_of_two_robots_are_one_map(tmp_path: Path) -> None:
+    """The nodes of the second have other numbers than those of the first, and so have its ways."""
+    parser = argparse.ArgumentParser()
+    add_slam_options(parser, "yard")
+    file = tmp_path / "yard_map.json"
+    slam = SlamSession("yard", parser.parse_args(["--map", str(file)]))
+    ways = [{"bearing": 0.0, "to": 1}, {"bearing": 90.0, "to": None}]
+    nodes = [
+        {"id": 0, "x": 0.0, "y": 0.0, "exits": ways},
+        {"id": 1, "x": 1.0, "y": 0.0, "exits": []},
+    ]
+    for robot in ("one", "two"):
+        data = {
+            "nodes": copy.deepcopy(nodes),
+            "edges": [{"from": 0, "to": 1, "length": 1.0}],
+        }
+        found: Any = SimpleNamespace(as_json=functools.partial(copy.deepcopy, data))
+        slam.add_map(robot, found)
+    written = json.loads(file.read_text(encoding="utf-8"))
+    assert [(n["id"], n["robot"]) for n in written["nodes"]] == [
+        (0, "one"),
+        (1, "one"),
+        (2, "two"),
+        (3, "two"),
+    ]
+    assert [(e["from"], e["to"]) for e in written["edges"]] == [(0, 1), (2, 3)]
+    assert [way["to"] for way in written["nodes"][2]["exits"]] == [3, None]

@@ -63,6 +63,36 @@ def test_does_not_wait_for_ever(
         patient(monkeypatch, state).wait(waited)
 
 
+def test_who_goes_on_after_a_pause_holds_no_time(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    states = iter([None, patience.PAUSED, RUNNING, RUNNING, RUNNING])
+    monkeypatch.setattr(patience, "ask", lambda *_: next(states))
+    waits = Patience("127.0.0.1:23000")
+    waits.wait(2.0)
+    waits.wait(HOLD_LIMIT + 5.0)
+    waits.wait(HOLD_LIMIT + 7.0)
+    assert "another client" not in capsys.readouterr().err
+    waits.wait(HOLD_LIMIT + 12.0)
+    assert "another client" in capsys.readouterr().err
+    with pytest.raises(SimulatorError) as error:
+        waits.wait(2.0 * HOLD_LIMIT + 6.0)
+    assert str(error.value) == (
+        "another client holds the simulation's time: it is in stepping mode and takes no step, for 40 s. End that "
+        "program, or stop the simulation and start this script again"
+    )
+
+
+def test_a_pause_excuses_its_own_call_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    states = iter([patience.PAUSED, RUNNING, RUNNING])
+    monkeypatch.setattr(patience, "ask", lambda *_: next(states))
+    waits = Patience("127.0.0.1:23000")
+    waits.wait(100.0)
+    waits.wait(2.0)
+    with pytest.raises(SimulatorError, match="another client"):
+        waits.wait(HOLD_LIMIT + 1.0)
+
+
 def test_a_slow_step_is_no_news(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -4,7 +4,7 @@ import math
 import random
 
 import pytest
-from pydslrep_runtime.pose import Pose, wrap_angle
+from pydslrep_runtime.pose import Pose, heading_degrees, wrap_angle
 
 
 def random_poses(count: int) -> list[tuple[Pose, Pose]]:
@@ -23,6 +23,20 @@ def random_poses(count: int) -> list[tuple[Pose, Pose]]:
 )
 def test_angles_wrap(angle: float, wrapped: float) -> None:
     assert wrap_angle(angle) == pytest.approx(wrapped)
+
+
+@pytest.mark.parametrize(
+    ("theta", "shown"),
+    [
+        (-math.pi, "180"),
+        (-3.14159, "180"),
+        (math.pi, "180"),
+        (-0.0001, "0"),
+        (-0.5, "-28.6"),
+    ],
+)
+def test_a_heading_has_one_sign(theta: float, shown: str) -> None:
+    assert f"{heading_degrees(theta):g}" == shown
 
 
 def test_ahead_is_along_the_heading() -> None:

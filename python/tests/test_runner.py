@@ -2,15 +2,18 @@
 
 import json
 import math
+import signal
 import subprocess
 import sys
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from driving import errors, joints
 from fake_simulator import FakeRobot, FakeWorld
+from pydslrep_runtime import interrupts
+from pydslrep_runtime.settings import CLIENT_TIMEOUT
 from pydslrep_runtime.version import __version__
 
 PACKAGE = Path(__file__).parents[1]
@@ -63,8 +66,10 @@ Run = Callable[..., int]
 
 
 @pytest.fixture(name="run")
-def fixture_run(monkeypatch: pytest.MonkeyPatch) -> Run:
+def fixture_run(monkeypatch: pytest.MonkeyPatch) -> Iterator[Run]:
     """Runs a script in a world; returns its exit code."""
+
+    before = {number: signal.getsignal(number) for number in interrupts.SIGNALS}
 
     def run(script: str, world: FakeWorld, *arguments: str) -> int:
         world.serve(monkeypatch)
@@ -75,7 +80,9 @@ def fixture_run(monkeypatch: pytest.MonkeyPatch) -> Run:
         assert isinstance(end.value.code, int)
         return end.value.code
 
-    return run
+    yield run
+    for number, handler in before.items():
+        signal.signal(number, handler)
 
 
 def one_robot(**options: float) -> FakeWorld:
@@ -94,8 +101,9 @@ def test_three_sides_of_a_square(
     assert angle < 0.1
     rows = [json.loads(line) for line in trace.read_text(encoding="utf-8").splitlines()]
     assert [row["t"] for row in rows] == pytest.approx(
-        [0.05 * (i + 1) for i in range(len(rows))]
+        [0.05 * i for i in range(len(rows))]
     )
+    assert (rows[0]["x"], rows[0]["wheels"]) == (0.0, [0.0, 0.0]), "before any step"
     assert {row["movement"] for row in rows} == {"around the corner"}
     actions = list(dict.fromkeys(row["action"] for row in rows))
     assert actions == [
@@ -149,8 +157,8 @@ def test_a_missing_robot_is_exit_code_2(
     world = FakeWorld(FakeRobot("robot_7", joints("two-wheel")))
     assert run(THREE_SIDES, world, "--host", "10.0.0.1", "--port", "23000") == 2
     error = capsys.readouterr().err
-    assert "the scene at 10.0.0.1:23000 has no robot /robot_1, " in error
-    assert "/robot_1/wheelL or /wheelL_robot_1" in error
+    assert "the scene at 10.0.0.1:23000 has no robot /robot_1; " in error
+    assert "wheelL" not in error, "it would be there if the robot were"
     assert not world.running
 
 
@@ -165,6 +173,67 @@ def test_interruption_is_exit_code_130(run: Run) -> None:
     assert run(THREE_SIDES, world) == 130
     assert not world.running
     assert all(joint.target == 0.0 for joint in world.robots["robot_1"].joints)
+
+
+TURNS_WHEELS = THREE_SIDES.replace(
+    "    await mov_1()\n", "    await robot_1.step([2.0, 2.0])\n    {then}\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("then", "code"),
+    [
+        ("return", 0),
+        ("raise OSError('no')", 2),
+        ("raise KeyboardInterrupt", 130),
+        ("1 / 0", None),
+    ],
+)
+def test_wheels_that_turn_outside_of_actions_stop_at_the_end(
+    run: Run, then: str, code: int | None
+) -> None:
+    world = one_robot()
+    script = TURNS_WHEELS.replace("{then}", then)
+    if code is None:
+        with pytest.raises(ZeroDivisionError):
+            run(script, world)
+    else:
+        assert run(script, world) == code
+    wheels = world.robots["robot_1"].joints
+    assert [wheel.rate for wheel in wheels] == pytest.approx([2.0, 2.0])
+    assert [wheel.target for wheel in wheels] == [0.0, 0.0]
+
+
+def test_wheels_that_another_client_left_turning_stop_before_the_first_step(
+    run: Run,
+) -> None:
+    world = one_robot()
+    for wheel in world.robots["robot_1"].joints:
+        wheel.target = 3.0
+    script = THREE_SIDES.replace(
+        "    await mov_1()\n", "    await asyncio.sleep(1.0)\n"
+    )
+    assert run(f"import asyncio\n{script}", world) == 0
+    assert world.steps >= 20
+    assert world.robots["robot_1"].x == 0.0
+
+
+def test_time_is_held_once_by_a_client_that_is_not_forgotten(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After a step that took long it asks again; the fake simulator refuses a second level of stepping mode."""
+    world, now = one_robot(), [0.0]
+    monkeypatch.setattr("time.monotonic", lambda: now[0])
+
+    def before_step() -> None:
+        if world.steps == 10:
+            now[0] += CLIENT_TIMEOUT
+        assert [*world.holders.values()] == [1]
+
+    world.before_step = before_step
+    assert run(THREE_SIDES, world) == 0
+    assert world.steps > 100
+    assert [*world.holders.values()] == [0]
 
 
 def test_an_unwritable_trace_is_exit_code_2(run: Run, tmp_path: Path) -> None:
@@ -276,6 +345,7 @@ def test_help_names_the_options(run: Run, capsys: pytest.CaptureFixture[str]) ->
         "--port",
         "--robot",
         "--trace",
+        "--events",
         "--realtime",
         "area_1_map.json",
     ):

@@ -16,11 +16,17 @@ from fake_scene import (
     VISION_SENSOR,
     FakeConnection,
     FakeScene,
+    mecanum_scene,
     two_wheel_scene,
 )
 from pydslrep_runtime import RobotSpec, SimulatorError
 from pydslrep_runtime.scene import checks, doctor
-from pydslrep_runtime.scene.checks import check_robot, check_simulator, explain
+from pydslrep_runtime.scene.checks import (
+    check_robot,
+    check_simulator,
+    explain,
+    explain_crawl,
+)
 from pydslrep_runtime.scene.findings import RULES, Finding, Severity, finding
 from pydslrep_runtime.scene.reader import SceneReader
 
@@ -30,6 +36,9 @@ SPEC = RobotSpec(
 UPRIGHT = ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0))  # x up
 SIDEWAYS = ((0.0, 1.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0))  # x to the right
 BACKWARD = ((-1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+TICKS = [1.0 + 0.05 * step for step in range(1, 60)]  # s
 
 
 def reader(scene: FakeScene) -> SceneReader:
@@ -100,9 +109,23 @@ def remove_tyre(scene: FakeScene) -> None:
 
 
 def spin(scene: FakeScene) -> None:
-    scene.state, scene.times = RUNNING, iter([1.0, 1.05])
+    scene.state, scene.times = RUNNING, iter([1.0, *TICKS])
     scene["/robot_1/wheelL"].rate = scene["/robot_1/wheelR"].rate = 2.0
     scene["/robot_1"].speed = 0.001
+
+
+def fall(scene: FakeScene) -> None:
+    scene.state, scene.times = RUNNING, iter([1.0, 1.05])
+    scene["/robot_1"].position = (12.0, 0.0, -3.0)
+
+
+def see_the_floor(scene: FakeScene) -> None:
+    size, low = (9.0, 9.0, 0.1), (0.0, 0.0, -0.05)
+    scene.add(
+        **{"alias": "carpet", "kind": SHAPE, "static": True, "special": 0x1F1},
+        **{"size": size, "position": low},
+    )
+    scene["/robot_1/fSensor"].sees["carpet"] = 0.27
 
 
 TYRE = "/robot_1/wheelL/tyre"
@@ -114,6 +137,8 @@ BROKEN: dict[str, Callable[[FakeScene], None]] = {
     "paused": change_scene(state=PAUSED),
     "time-held": change_scene(state=RUNNING),
     "time-step": change_scene(time_step=0.1),
+    "physics-step": change_scene(physics_step=0.05),
+    "fallen": fall,
     "robot-missing": change("/robot_1", alias="Pioneer"),
     "robot-kind": change("/robot_1", kind=JOINT),
     "duplicate-name": duplicate,
@@ -136,12 +161,15 @@ BROKEN: dict[str, Callable[[FakeScene], None]] = {
     "wheel-radius": change(TYRE, size=(0.1, 0.02, 0.1)),
     "sensor-missing": change("/robot_1/fSensor", alias="eye"),
     "sensor-kind": change("/robot_1/fSensor", kind=VISION_SENSOR),
+    "sensor-sees-floor": see_the_floor,
     "wheels-spin": spin,
 }
+MECANUM = RobotSpec(
+    "robot_1", "127.0.0.1", 23000, dict.fromkeys(["a", "b", "c", "d"], 0.05)
+)
 
 # What leads to others.
 CONSEQUENCES = {
-    "robot-missing": ["wheel-missing", "wheel-missing", "sensor-missing"],
     "duplicate-name": ["duplicate-name"] * 3,
 }
 
@@ -154,7 +182,9 @@ def test_a_scene_without_faults_has_no_findings() -> None:
 
 def test_every_rule_has_a_scene() -> None:
     assert len({rule.code for rule in RULES}) == len(RULES)
-    assert BROKEN.keys() | UNREACHABLE == {rule.code for rule in RULES}
+    assert BROKEN.keys() | UNREACHABLE | {"rollers-collide"} == {
+        rule.code for rule in RULES
+    }
 
 
 @pytest.mark.parametrize("code", BROKEN)
@@ -240,11 +270,68 @@ def test_what_cannot_be_measured_is_not_judged() -> None:
     assert codes(scene) == []
 
 
+def test_rollers_that_overlap_must_not_collide() -> None:
+    assert codes(mecanum_scene(mask=0xFF00), MECANUM) == []
+    (found,) = findings(mecanum_scene(mask=0xFF02), MECANUM)
+    assert found.rule.code == "rollers-collide"
+    assert found.message.startswith("/robot_1/a/hub/axle0/roller0 and /robot_1/a/hub/")
+    scene = mecanum_scene(mask=0xFF02)
+    scene["/robot_1/a/hub/axle1/roller1"].position = (0.2, 0.1, 0.05)
+    assert codes(scene, MECANUM) == [], "they are apart"
+
+
+def test_a_floor_is_seen_only_if_it_is_detectable_and_low() -> None:
+    for change_it in (
+        change("/carpet", special=1),
+        change("/carpet", position=(0.0, 0.0, 0.05)),
+        change("/carpet", static=False),
+    ):
+        scene = two_wheel_scene()
+        see_the_floor(scene)
+        change_it(scene)
+        assert codes(scene) == []
+
+
+def test_a_robot_that_has_tipped_over_is_no_matter_of_its_frame() -> None:
+    scene = two_wheel_scene()
+    scene["/robot_1"].rotation = UPRIGHT
+    scene.state, scene.times = RUNNING, iter([1.0, 1.05])
+    assert codes(scene) == ["fallen"]
+
+
 def test_a_robot_that_moves_does_not_spin_its_wheels() -> None:
     scene = two_wheel_scene()
     spin(scene)
     scene["/robot_1"].speed = 0.08
     assert codes(scene) == []
+
+
+def test_a_robot_is_observed_for_a_second() -> None:
+    """A blocked body trembles: at any moment, it may be as fast as one that drives."""
+    scene = two_wheel_scene()
+    spin(scene)
+    scene["/robot_1"].speed = 0.0
+    connection: Any = FakeConnection(scene)
+    matrix, trembles = connection.sim.getObjectMatrix, iter([0.001, -0.001] * 99)
+
+    def trembling(handle: int) -> list[float]:
+        found: list[float] = matrix(handle)
+        found[3] += next(trembles)
+        return found
+
+    connection.sim.getObjectMatrix = trembling
+    found = list(check_robot(SceneReader(connection), SPEC))
+    assert [each.rule.code for each in found] == ["wheels-spin"]
+
+
+def test_time_that_stands_still_tells_nothing_of_the_wheels(
+    fake_time: FakeTime,
+) -> None:
+    scene = two_wheel_scene()
+    spin(scene)
+    scene.times = iter([1.0])
+    assert list(check_robot(reader(scene), SPEC)) == []
+    assert fake_time.now > checks.OBSERVE_LIMIT
 
 
 def test_a_script_says_the_first_error_and_what_to_do() -> None:
@@ -259,6 +346,20 @@ def test_a_script_says_the_first_error_and_what_to_do() -> None:
         "/robot_1/wheelR has no motor, as its control mode is Free: double-click the icon of /robot_1/wheelR in the "
         "scene hierarchy, click [Dynamic properties dialog] of the joint, and set Control mode to Velocity"
     )
+
+
+def test_a_script_that_crawls_says_why() -> None:
+    connection: Any = FakeConnection(mecanum_scene(mask=0xFF02))
+    assert "collide with each other" in explain_crawl(connection, MECANUM)
+    connection = FakeConnection(change_scene_of(physics_step=0.05))
+    assert "set Dynamics dt to 5 ms" in explain_crawl(connection, SPEC)
+    assert explain_crawl(FakeConnection(two_wheel_scene()), SPEC) == ""  # type: ignore[arg-type]
+
+
+def change_scene_of(**values: Any) -> FakeScene:
+    scene = two_wheel_scene()
+    change_scene(**values)(scene)
+    return scene
 
 
 def test_a_simulator_that_cannot_be_asked_keeps_the_scripts_own_error() -> None:

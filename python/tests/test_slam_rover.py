@@ -95,7 +95,7 @@ def explore(body: Body, found: SlamSession) -> None:
     spec = RobotSpec("r", "127.0.0.1", 19999, {"l": 0.05, "r": 0.05}, SENSORS)
     drive = TwoWheelDrive([(0.0, 0.15), (0.0, -0.15)], [0.05, 0.05])
     motion = Motion(spec, backend, drive, loop, 0, Trace())
-    motion.movement, motion.action = "m", "1: slam"
+    motion.movement, motion.action_number, motion.action_text = "m", 1, "slam"
     at_once(exploration.explore(motion, found))
 
 

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
+from ..facts import TypeName
 from ..pose import Pose
 
-DriveType = Literal["tw", "fw", "fwh"]
 Point = tuple[float, float]
 
 
@@ -44,7 +44,7 @@ class RobotDescription:
     """A robot: a rectangular body, whose centre is that of the wheels."""
 
     name: str
-    type: DriveType
+    type: TypeName
     x: float  # of its start
     y: float
     heading: float
@@ -84,6 +84,8 @@ class SceneDescription:
     environment: str
     robots: tuple[RobotDescription, ...]
     obstacles: tuple[ObstacleDescription, ...] = ()
+    # The least and the greatest coordinates that robots may get to; none if that is unknown.
+    reach: tuple[Point, ...] = ()
 
     def as_json(self) -> dict[str, Any]:
         """The opposite of `read_scene`."""
@@ -96,6 +98,7 @@ def read_scene(json: Mapping[str, Any]) -> SceneDescription:
         json["environment"],
         tuple(_robot(robot) for robot in json["robots"]),
         tuple(_obstacle(obstacle) for obstacle in json["obstacles"]),
+        _points(json.get("reach", ())),
     )
 
 

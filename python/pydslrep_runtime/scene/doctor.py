@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Sequence
 
 from ..backend import RobotSpec
-from ..errors import SimulatorError
-from ..remote_api import Connection, accepts_connections
+from ..errors import ReadingError, SimulatorError
+from ..remote_api import Connection, RefusedError, accepts_connections
 from .checks import check_robot, check_simulator
 from .findings import Finding, finding
 from .reader import SceneReader
@@ -37,9 +37,11 @@ def examine(robots: Sequence[RobotSpec]) -> Iterator[Finding]:
 
 
 def connect(host: str, port: int) -> Connection:
-    """Connects to a simulator; raises UnreachableError."""
+    """Connects to a simulator; raises UnreachableError, and SimulatorError if it answers nonsense."""
     try:
         return Connection(host, port)
+    except (ReadingError, RefusedError):
+        raise  # somebody answers
     except SimulatorError as error:
         raise UnreachableError(_reason(host, port)) from error
 

@@ -68,8 +68,10 @@ JOINT_DYNAMICS = "double-click the icon of {object} in the scene hierarchy, clic
 SHAPE_DYNAMICS = "double-click the icon of {object} in the scene hierarchy, click [Dynamic properties dialog] of the shape, "
 
 FRAME = (
-    "rotate its reference frame with [Edit > Shape reference frame], until x points forward, y to the left and z up; "
-    "the shape itself stays as it is"
+    "a mesh: stand the robot upright and let it face along x of the world, select {object}, and choose [Edit > Shape "
+    "reference frame > Relocate to world origin], then [Relocate to mesh center] there; a primitive shape keeps its axes: "
+    "add another cuboid with [Add > Primitive shape], whose x points forward, y to the left and z up, give it the alias "
+    "{robot}, drag joints and sensors onto it in the scene hierarchy, and remove {object}"
 )
 
 # In the order in which they are looked for: the first one of a robot is the most likely cause of others.
@@ -133,6 +135,14 @@ RULES = (
         "set Simulation dt to 50 ms in [Simulation > Simulation settings]; with 10 ms, robots arrive ten times nearer",
     ),
     Rule(
+        "physics-step",
+        WARNING,
+        "The step of the physics engine is longer than 5 ms",
+        "the physics engine takes steps of {milliseconds:g} ms, in which wheels stick and slip: robots arrive centimetres "
+        "beside their goals, and late",
+        "stop the simulation, and set Dynamics dt to 5 ms in [Simulation > Simulation settings]",
+    ),
+    Rule(
         "robot-missing",
         ERROR,
         "There is no object with the robot's name",
@@ -170,6 +180,14 @@ RULES = (
         "give the alias {robot} to {chassis}, and detach that with [Edit > Set parent-less]",
     ),
     Rule(
+        "fallen",
+        ERROR,
+        "The robot has fallen over, or off its floor",
+        "{object} has fallen: it is {depth:.2f} m below the height of the floor, and {angle:.0f}° off the vertical",
+        "choose [Simulation > Stop simulation], which puts it back; its floor must be larger than its way: `pydslrep scene "
+        "push` builds one",
+    ),
+    Rule(
         "tilted-body",
         ERROR,
         "The z axis of the robot's body does not point up",
@@ -188,8 +206,8 @@ RULES = (
         ERROR,
         "The left wheel is on the right",
         "{left} is not to the left of {right}, as {object} faces",
-        "swap the aliases of the wheels; or, if x of {object} points backward, turn its reference frame by 180° with "
-        "[Edit > Shape reference frame]",
+        "double-click the aliases of the two wheels in the scene hierarchy and swap them; or, if x of {object} points "
+        "backward: " + FRAME,
     ),
     Rule(
         "wheel-missing",
@@ -269,6 +287,15 @@ RULES = (
         SHAPE_DYNAMICS + "and check Body is respondable",
     ),
     Rule(
+        "rollers-collide",
+        ERROR,
+        "Rollers of a mecanum wheel collide with each other",
+        "{first} and {second} overlap and collide with each other: they push the robot around, and brake it",
+        "stop the simulation, and build the robot again with `pydslrep scene push --replace`; for a robot of your own, "
+        "double-click the icon of each roller in the scene hierarchy, click [Dynamic properties dialog] of the shape, and "
+        "uncheck all local boxes of Respondable mask",
+    ),
+    Rule(
         "wheel-radius",
         WARNING,
         "A wheel has another radius than in the program",
@@ -288,6 +315,14 @@ RULES = (
         "The object with a sensor's name is not a proximity sensor",
         "{object} is a {kind}, not a proximity sensor",
         "replace it with [Add > Proximity sensor]",
+    ),
+    Rule(
+        "sensor-sees-floor",
+        ERROR,
+        "A sensor sees the floor",
+        "{object} sees the floor, {floor}, {distance:.2f} m ahead: to the robot, that is an obstacle",
+        "double-click the icon of {floor} in the scene hierarchy, click Common, and uncheck Detectable; or raise {object}, "
+        "or let it look up",
     ),
     Rule(
         "wheels-spin",

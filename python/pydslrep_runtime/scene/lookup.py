@@ -3,6 +3,8 @@
 from collections.abc import Iterator, Sequence
 
 from ..backend import RobotSpec
+from ..errors import ReadingError
+from ..readings import MAX_NAMESAKES
 from ..remote_api import Connection
 
 
@@ -20,10 +22,11 @@ def part_paths(spec: RobotSpec, part: str) -> Sequence[str]:
 def objects_at(connection: Connection, path: str) -> Iterator[int]:
     """All objects with a path: a wheel and a sensor may share one. Raises SimulatorError."""
     found: set[int] = set()
-    while True:
+    while len(found) < MAX_NAMESAKES:
         options = {"noError": True, "index": len(found)}
         handle: int = connection.call(connection.sim.getObject, path, options)
         if handle < 0 or handle in found:
             return
         found.add(handle)
         yield handle
+    raise ReadingError(f"the scene has more than {MAX_NAMESAKES} objects {path}")

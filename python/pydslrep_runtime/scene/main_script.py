@@ -9,14 +9,23 @@ require('defaultMainScript')
 """
 
 
-def add_main_script(connection: Connection) -> bool:
-    """Adds a main script to a scene without one; returns whether it did."""
+def add_main_script(connection: Connection) -> int | None:
+    """Adds a main script to a scene without one; returns its handle, or None if there is one."""
     sim, call = connection.sim, connection.call
     if call(sim.getScript, sim.scripttype_mainscript) >= 0:
-        return False
-    script = call(sim.addScript, sim.scripttype_mainscript)
-    call(sim.setScriptStringParam, script, sim.scriptstringparam_text, TEXT)
-    return True
+        return None
+    script: int = call(sim.addScript, sim.scripttype_mainscript)
+    try:
+        call(sim.setScriptStringParam, script, sim.scriptstringparam_text, TEXT)
+    except BaseException:
+        undo_main_script(connection, script)
+        raise
+    return script
+
+
+def undo_main_script(connection: Connection, script: int) -> None:
+    """Removes a main script that was just added, even after an error."""
+    connection.last_call("sim.removeScript", script)
 
 
 def remove_main_script(connection: Connection) -> bool:

@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
+from ..readings import read_mark
 from ..remote_api import Connection
 
 TAG = "PyDSLRep"  # the name of the custom data
@@ -34,11 +35,7 @@ class Marks:
             text = self._connection.call(self._sim.readCustomStringData, handle, TAG)
         else:
             text = self._connection.call(self._sim.readCustomDataBlock, handle, TAG)
-        try:
-            mark = json.loads(text or "null")
-        except (TypeError, ValueError):  # somebody else's data, with the same name
-            return None
-        return mark if isinstance(mark, dict) and "kind" in mark else None
+        return read_mark(f"the mark of object {handle}", text)
 
     def all(self) -> Iterator[tuple[int, dict[str, Any]]]:
         """All marked objects of the scene with their marks."""

@@ -11,7 +11,9 @@ from .maker import Maker, Matter, Place
 HEIGHT = 0.3  # m
 FLOOR = "floor"
 FLOOR_THICKNESS = 0.1  # m
-MARGIN = 10.0  # m of floor around everything
+MARGIN = (
+    10.0  # m of floor around everything, and around all places that robots may get to
+)
 
 # Robots slide along what they touch.
 OBSTACLE = Matter(friction=0.3, detectable=True)
@@ -19,7 +21,7 @@ OBSTACLE = Matter(friction=0.3, detectable=True)
 
 def build_floor(maker: Maker, scene: SceneDescription) -> None:
     """Makes a floor below everything; raises SimulatorError. Sensors do not see it: their cones would touch it."""
-    points = [(robot.x, robot.y) for robot in scene.robots]
+    points = [*scene.reach, *((robot.x, robot.y) for robot in scene.robots)]
     for obstacle in scene.obstacles:
         reach = _reach(obstacle)
         points += [(obstacle.x - reach, obstacle.y - reach)]

@@ -4,8 +4,16 @@ import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from itertools import chain
+from typing import TypeVar
 
+from ..facts import (
+    MOTOR_ACCELERATION,
+    ROBOT_TYPES,
+    SENSOR_CONE,
+    SENSOR_RANGE,
+    TypeName,
+)
 from ..remote_api import Connection
 from .description import (
     ObstacleDescription,
@@ -14,17 +22,18 @@ from .description import (
     SensorDescription,
     WheelDescription,
 )
-from .frames import Frame, inverse, product
+from .frames import Frame, Vector, inverse, product
 from .marks import Marks
+from .outlines import Polygon, Triangle, hull, outlines
 from .reader import SceneReader
 
+ALONG_FLOOR = 0.5  # the least cosine between a sensor's direction and the floor
 LEVEL = 0.999  # the least cosine between an axis and its intended direction
 FLOOR_TOP = 0.02  # m; what does not rise higher is a floor
 T = TypeVar("T")
 
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
-DEFAULT_RANGE, DEFAULT_CONE = 1.0, math.radians(20.0)
-COMPOUND, PRIMITIVE = 1, 2  # bits of what a shape is
+COMPOUND, PRIMITIVE, CONVEX = 1, 2, 4  # bits of what a shape is
 
 
 def pull(
@@ -33,8 +42,8 @@ def pull(
     """The scene, and what of it was not understood, in a sentence each; raises SimulatorError."""
     puller = _Puller(connection)
     robots = tuple(puller.understood(puller.robot, puller.bodies()))
-    obstacles = tuple(puller.understood(puller.obstacle, puller.solids()))
-    return SceneDescription(environment, robots, obstacles), puller.unclear
+    obstacles = chain(*puller.understood(puller.obstacles, puller.solids()))
+    return SceneDescription(environment, robots, tuple(obstacles)), puller.unclear
 
 
 class _UnclearError(Exception):
@@ -90,12 +99,12 @@ class _Puller:
         ]
 
     def robot(self, body: int) -> RobotDescription:
-        """The robot with a body, if it is one of the three types."""
+        """The robot with a body, if it is one of the known types."""
         path = self._scene.path(body)
         frame = list(self._scene.matrix(body))
         below = [handle for handle in self._all if body in self._above(handle)]
         wheels = [wheel for each in below if (wheel := self._wheel(each, body, frame))]
-        if len(wheels) not in (2, 4):
+        if len(wheels) not in {len(each.wheels) for each in ROBOT_TYPES.values()}:
             raise _UnclearError(
                 f"{path} has {len(wheels)} wheels on joints that velocities drive, not two or four"
             )
@@ -123,18 +132,19 @@ class _Puller:
         )
         size = self._size(body)
         mark = self._marks.read(body) or {}
+        kind = self._type(wheels)
         sensors = [each for each in below if self._kinds[each] == "proximity sensor"]
         return RobotDescription(
             names[0],
-            self._type(wheels),
+            kind,
             middle[3],
             middle[7],
             math.atan2(frame[4], frame[0]),
             size[0],
             size[1],
-            mark.get("grip", 0.05 if self._type(wheels) == "fwh" else 1.0),
+            mark.get("grip", ROBOT_TYPES[kind].grip),
             mark.get("rim_speed"),
-            mark.get("rim_acceleration", 1.0),
+            mark.get("rim_acceleration", MOTOR_ACCELERATION),
             tuple(
                 WheelDescription(
                     name,
@@ -150,10 +160,23 @@ class _Puller:
             ),
         )
 
-    def obstacle(self, shape: int) -> ObstacleDescription | None:
-        """The obstacle that a shape is, unless it is a floor."""
+    def obstacles(self, shape: int) -> Sequence[ObstacleDescription]:
+        """The obstacles that a shape is: none if it is a floor, several if it consists of several parts."""
         frame = list(self._scene.matrix(shape))
         mark = self._marks.read(shape) or {}
+        name = str(mark.get("name") or self._alias(shape))
+        if "corners" in mark:
+            frame = product(frame, inverse(mark["origin"]))
+            place = (frame[3], frame[7], math.atan2(frame[4], frame[0]))
+            points = tuple((x, y) for x, y in mark["corners"])
+            return [ObstacleDescription(name, *place, corners=points)]
+        if self._is_primitive(shape):
+            return self._primitive(shape, name, frame)
+        return self._mesh_obstacles(shape, name, frame)
+
+    def _primitive(
+        self, shape: int, name: str, frame: Frame
+    ) -> Sequence[ObstacleDescription]:
         low, high = self._bounds(shape)
         corners = [
             frame[8] * x + frame[9] * y + frame[10] * z + frame[11]
@@ -162,35 +185,43 @@ class _Puller:
             for z in (low[2], high[2])
         ]
         if max(corners) <= FLOOR_TOP:
-            return None
-        name = str(mark.get("name") or self._alias(shape))
-        if "corners" in mark:
-            frame = product(frame, inverse(mark["origin"]))
-            place = (frame[3], frame[7], math.atan2(frame[4], frame[0]))
-            points = tuple((x, y) for x, y in mark["corners"])
-            return ObstacleDescription(name, *place, corners=points)
+            return []
+        if abs(frame[10]) < LEVEL:
+            raise _UnclearError(f"{self._scene.path(shape)} is tilted")
         place = (frame[3], frame[7], math.atan2(frame[4], frame[0]))
-        path, is_upright = self._scene.path(shape), abs(frame[10]) >= LEVEL
-        what, kind, size = self._geometry(shape)
-        if what & PRIMITIVE and not what & COMPOUND and is_upright:
-            sim = self.connection.sim
-            if kind == sim.primitiveshape_cuboid:
-                return ObstacleDescription(name, *place, size=(size[0], size[1]))
-            if kind in (sim.primitiveshape_cylinder, sim.primitiveshape_spheroid):
-                return ObstacleDescription(
-                    name, *place, radius=max(size[0], size[1]) / 2.0
-                )
-        if not is_upright:
-            raise _UnclearError(f"{path} is tilted")
-        self.unclear.append(
-            f"{path} is no box and no cylinder: its bounding box is taken"
-        )
-        center = [(a + b) / 2.0 for a, b in zip(low, high, strict=True)]
-        x = frame[0] * center[0] + frame[1] * center[1] + frame[3]
-        y = frame[4] * center[0] + frame[5] * center[1] + frame[7]
-        return ObstacleDescription(
-            name, x, y, place[2], size=(high[0] - low[0], high[1] - low[1])
-        )
+        _, kind, size = self._geometry(shape)
+        sim = self.connection.sim
+        if kind in (sim.primitiveshape_cylinder, sim.primitiveshape_spheroid):
+            radius = max(size[0], size[1]) / 2.0
+            return [ObstacleDescription(name, *place, radius=radius)]
+        if kind != sim.primitiveshape_cuboid:
+            self.unclear.append(
+                f"{self._scene.path(shape)} is no box and no cylinder: its bounding box is taken"
+            )
+        return [ObstacleDescription(name, *place, size=(size[0], size[1]))]
+
+    def _mesh_obstacles(
+        self, shape: int, name: str, frame: Frame
+    ) -> Sequence[ObstacleDescription]:
+        """The outline of a mesh: its bounding box has axes that no function tells."""
+        own, triangles = self._mesh(shape)
+        vertices = [_moved(frame, vertex) for vertex in own]
+        if max(z for _, _, z in vertices) <= FLOOR_TOP:
+            return []
+        is_convex = bool(self._geometry(shape)[0] & CONVEX)
+        found = outlines(vertices, triangles, is_convex=is_convex)
+        if found is None:
+            path = self._scene.path(shape)
+            self.unclear.append(
+                f"the outline of {path} is not clear: the convex hull is taken"
+            )
+            found = [hull(vertices)]
+        if any(len(corners) < 3 for corners in found):
+            raise _UnclearError(f"{self._scene.path(shape)} covers no area")
+        names = [name, *(f"{name}_{number}" for number in range(2, len(found) + 1))]
+        return [
+            _polygon(name, corners) for name, corners in zip(names, found, strict=True)
+        ]
 
     def understood(
         self, read: Callable[[int], T | None], handles: Iterable[int]
@@ -217,10 +248,16 @@ class _Puller:
     def _alias(self, handle: int) -> str:
         return str(self._scene.call("getObjectAlias", handle, -1))
 
-    def _type(self, wheels: Sequence[_Wheel]) -> Any:
-        if len(wheels) == 2:
-            return "tw"
-        return "fwh" if all(wheel.has_rollers for wheel in wheels) else "fw"
+    def _type(self, wheels: Sequence[_Wheel]) -> TypeName:
+        """The type of a robot with as many wheels, of their kind if there are several."""
+        mecanum = all(wheel.has_rollers for wheel in wheels)
+        fitting = [
+            name
+            for name, each in ROBOT_TYPES.items()
+            if len(each.wheels) == len(wheels)
+        ]
+        kinds = (name for name in fitting if ROBOT_TYPES[name].mecanum == mecanum)
+        return next(kinds, fitting[0])
 
     def _wheel(self, joint: int, body: int, frame: Frame) -> _Wheel | None:
         """A joint below a body, if it drives a wheel."""
@@ -258,7 +295,7 @@ class _Puller:
             raise _UnclearError(
                 f"{path} cannot be a name in a program; change its alias"
             )
-        if math.hypot(frame[2], frame[6]) < 0.9:
+        if math.hypot(frame[2], frame[6]) < ALONG_FLOOR:
             raise _UnclearError(f"sensor {path} does not look along the floor")
         mark = self._marks.read(sensor) or {}
         get = self.connection.try_call
@@ -276,15 +313,33 @@ class _Puller:
             frame[3],
             frame[7],
             math.atan2(frame[6], frame[2]),
-            reach or DEFAULT_RANGE,
-            cone or DEFAULT_CONE,
+            reach or SENSOR_RANGE,
+            cone or SENSOR_CONE,
         )
 
     def _geometry(self, shape: int) -> tuple[int, int, Sequence[float]]:
         what, kind, size = self._scene.call("getShapeGeomInfo", shape)
         return what, kind, size
 
+    def _is_primitive(self, shape: int) -> bool:
+        what, _, _ = self._geometry(shape)
+        return bool(what & PRIMITIVE and not what & COMPOUND)
+
+    def _mesh(self, shape: int) -> tuple[Sequence[Vector], Sequence[Triangle]]:
+        """The vertices of a mesh in its frame, and its triangles."""
+        numbers, indices = self._scene.call("getShapeMesh", shape)
+        is_whole = len(numbers) % 3 == 0 and len(indices) % 3 == 0
+        if not is_whole or 3 * max(indices) >= len(numbers):
+            raise _UnclearError(f"the mesh of {self._scene.path(shape)} is incomplete")
+        vertices = list(zip(numbers[::3], numbers[1::3], numbers[2::3], strict=True))
+        triangles = list(zip(indices[::3], indices[1::3], indices[2::3], strict=True))
+        return vertices, triangles
+
     def _bounds(self, shape: int) -> tuple[list[float], list[float]]:
+        """The corners of a box around a shape, along the axes of its frame."""
+        if not self._is_primitive(shape):
+            columns = list(zip(*self._mesh(shape)[0], strict=True))
+            return [min(each) for each in columns], [max(each) for each in columns]
         low, high = (
             [
                 self._scene.number(shape, f"objfloatparam_objbbox_{end}_{axis}")
@@ -297,3 +352,19 @@ class _Puller:
     def _size(self, shape: int) -> list[float]:
         low, high = self._bounds(shape)
         return [b - a for a, b in zip(low, high, strict=True)]
+
+
+def _moved(frame: Frame, point: Vector) -> Vector:
+    """Where a point of a frame is."""
+    x, y, z = (
+        sum(frame[row + axis] * point[axis] for axis in range(3)) + frame[row + 3]
+        for row in (0, 4, 8)
+    )
+    return x, y, z
+
+
+def _polygon(name: str, corners: Polygon) -> ObstacleDescription:
+    """An obstacle of an outline, which is placed by the middle of its corners."""
+    x, y = (sum(each) / len(corners) for each in zip(*corners, strict=True))
+    points = tuple((a - x, b - y) for a, b in corners)
+    return ObstacleDescription(name, x, y, 0.0, corners=points)

@@ -5,12 +5,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace as changed
 
 from ..remote_api import Connection
+from .checks import check_steps
 from .description import RobotDescription, SceneDescription
-from .main_script import add_main_script
+from .main_script import add_main_script, undo_main_script
 from .maker import Maker
 from .marks import Marks
 from .object_names import alias_of, named_as_objects
 from .obstacles import FLOOR, build_floor, build_obstacle
+from .reader import SceneReader
 from .refusal import RefusalError
 from .robot_parts import build_robot
 
@@ -41,21 +43,28 @@ def push(
         )
     wanted = {FLOOR, *aliases, *(robot.name for robot in scene.robots)}
     _check_free(connection, marks, wanted, earlier)
-    maker = Maker(connection, marks, scene.environment)
+    # Before anything is made: what is asked may fail.
+    steps = list(check_steps(SceneReader(connection)))
+    maker, notes = Maker(connection, marks, scene.environment), []
+    script = None
     try:
         build_floor(maker, scene)
         for alias, obstacle in zip(aliases, scene.obstacles, strict=True):
             build_obstacle(maker, obstacle, alias)
         for robot in scene.robots:
-            build_robot(maker, robot)
+            notes += build_robot(maker, robot)
+        script = add_main_script(connection)
+        # At last: nothing brings them back.
         if earlier:
             connection.call(connection.sim.removeObjects, list(earlier))
     except BaseException:
         maker.undo()
+        if script is not None:
+            undo_main_script(connection, script)
         raise
-    if add_main_script(connection):
-        return ["the scene had no main script, and has CoppeliaSim's own now"]
-    return []
+    if script is not None:
+        notes.append("the scene had no main script, and has CoppeliaSim's own now")
+    return notes + [f"{each.message}: {each.help}" for each in steps]
 
 
 def obstacle_aliases(scene: SceneDescription) -> Sequence[str]:

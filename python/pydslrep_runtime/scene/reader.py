@@ -3,7 +3,8 @@
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from ..errors import SimulatorError
+from ..errors import ReadingError, SimulatorError
+from ..readings import MAX_DEPTH
 from ..remote_api import Connection
 from .lookup import objects_at
 
@@ -34,6 +35,8 @@ class SceneReader:
     def __init__(self, connection: Connection) -> None:
         self.connection = connection
         self._sim = connection.sim
+        self._parents: dict[int, int] = {}  # as far as they have been read
+        self._objects_below: dict[int, int] = {}  # in the longest branch
         types = {
             getattr(self._sim, f"object_{kind}_type", None): kind for kind in KINDS
         }
@@ -77,9 +80,23 @@ class SceneReader:
         )
 
     def parent(self, handle: int) -> int | None:
-        """The object above."""
+        """The object above; raises SimulatorError if the objects above are no line."""
         parent: int = self.call("getObjectParent", handle)
-        return parent if parent >= 0 else None
+        self._parents[handle] = parent
+        if parent < 0:
+            return None
+        below = self._objects_below.get(handle, 0) + 1
+        self._objects_below[parent] = max(below, self._objects_below.get(parent, 0))
+        above: int | None = parent
+        for _ in range(MAX_DEPTH - below):
+            if above is None:
+                return parent
+            if above == handle:
+                raise ReadingError(f"object {handle} of the scene is its own ancestor")
+            above = self._parents.get(above)
+        raise ReadingError(
+            f"object {handle} of the scene is in a branch of more than {MAX_DEPTH} objects"
+        )
 
     def below(self, handle: int) -> Sequence[int]:
         """All objects below."""
@@ -122,13 +139,25 @@ class SceneReader:
         mode = self.call("getJointMode", joint)
         return int(mode if isinstance(mode, int) else mode[0])
 
-    def radius(self, shape: int) -> float | None:
-        """The radius of a round shape in metres, by its bounding box; None if it is not round."""
-        size = sorted(
+    def shapes(self) -> Sequence[int]:
+        """All shapes of the scene."""
+        scene = self.constant("handle_scene")
+        # A list without elements is an empty map.
+        return list(
+            self.call("getObjectsInTree", scene, self.constant("object_shape_type"), 0)
+        )
+
+    def size(self, shape: int) -> Sequence[float]:
+        """The lengths of the edges of a shape's bounding box in metres; those of primitives are along its axes."""
+        return [
             self.number(shape, f"objfloatparam_objbbox_max_{axis}")
             - self.number(shape, f"objfloatparam_objbbox_min_{axis}")
             for axis in "xyz"
-        )
+        ]
+
+    def radius(self, shape: int) -> float | None:
+        """The radius of a round shape in metres, by its bounding box; None if it is not round."""
+        size = sorted(self.size(shape))
         pairs = [(size[0], size[1]), (size[1], size[2])]
         smaller, larger = min(pairs, key=lambda pair: pair[1] - pair[0])
         is_round = larger - smaller <= SIMILAR * larger

@@ -1,9 +1,9 @@
 """The action slam, with the simulator's poses or by odometry."""
 
 import importlib
-import sys
 from typing import TYPE_CHECKING
 
+from .. import events
 from .explorer import UnboundedAreaError
 from .rover import SlamRover
 from .session import SlamSession
@@ -22,23 +22,44 @@ async def explore(robot: "Motion", session: SlamSession) -> None:
     """
     session.check_outputs()
     explorer = make_rover(robot, session).explorer()
+    explorer.on_node = lambda: _report(robot, explorer.map)
     try:
         await explorer.explore()
     except UnboundedAreaError as error:
         raise robot.failure(error) from error
+    else:
+        if not any(explorer.map.edges()):
+            raise robot.failure(_reason_for_nothing(robot))
     finally:
         session.add_map(robot.name, explorer.map)
         warn_of_uncertain_nodes(robot.name, explorer.map)
+
+
+def _report(robot: "Motion", found: TopologicalMap) -> None:
+    """Tells how far the map has grown."""
+    exits = (frontier for node in found.nodes for frontier in node.frontiers)
+    unexplored = sum(frontier.target is None for frontier in exits)
+    text = f"slam: {len(found.nodes)} nodes, {unexplored} exits to explore"
+    events.current.progress(robot.backend.clock.time, robot.name, text)
+
+
+def _reason_for_nothing(robot: "Motion") -> str:
+    """Why a robot may have found no way from where it started."""
+    readings = (robot.backend.distance(sensor) for sensor in robot.spec.sensors)
+    seen = [distance for distance in readings if distance is not None]
+    reason = "it has explored nothing: it saw no way from where it started"
+    if seen:
+        reason += f". Its sensors see something {min(seen):.2f} m away: if that is the floor, `pydslrep doctor` says what to do"
+    return reason
 
 
 def warn_of_uncertain_nodes(robot: str, found: TopologicalMap) -> None:
     """Tells which nodes may be somewhere else."""
     uncertain = [str(node.number) for node in found.nodes if node.is_uncertain]
     if uncertain:
-        print(
-            f"warning: robot {robot} lost its way and did not find it again: in its map, "
-            f"the positions of these nodes are uncertain: {', '.join(uncertain)}",
-            file=sys.stderr,
+        events.current.warning(
+            f"robot {robot} lost its way and did not find it again: in its map, "
+            f"the positions of these nodes are uncertain: {', '.join(uncertain)}"
         )
 
 

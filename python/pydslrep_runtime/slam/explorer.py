@@ -78,6 +78,7 @@ class Explorer:
         `extent` limits the distance from the start, in metres.
         """
         self.map = TopologicalMap()
+        self.on_node: Callable[[], object] = lambda: None  # when the map has grown
         self._rover, self._grid = rover, grid
         self._step, self._blind_angle, self._extent = step, blind_angle, extent
         # In metres: a robot that localises by walls explores open space last.
@@ -274,6 +275,7 @@ class Explorer:
         await self._look_around(node)
         for nearby in self.map.nodes_near(node.position, 4.0 * self._step):
             self._find_frontiers(nearby)
+        self.on_node()
         return node
 
     def _check_bounds(self, node: Node) -> None:

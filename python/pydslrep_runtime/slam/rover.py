@@ -4,8 +4,8 @@ import math
 from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING
 
+from ..facts import RIM_SPEED
 from ..pose import Pose, wrap_angle
-from ..settings import RIM_SPEED
 from .explorer import Explorer
 from .occupancy_grid import OccupancyGrid, Position, Reading
 from .session import SlamSession

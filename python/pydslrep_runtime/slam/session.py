@@ -5,11 +5,12 @@ import importlib
 import io
 import json
 import math
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .. import events
 from ..errors import SetupError
+from ..facts import SENSOR_CONE, SENSOR_RANGE
 from ..outputs import PICTURE_MARK, is_map, is_picture, output_path, write_whole
 
 if TYPE_CHECKING:
@@ -107,12 +108,12 @@ class SlamSession:
     def range(self, robot: str, sensor: str, reported: float | None) -> float:
         """The range of a sensor in metres; `reported` is the simulator's value."""
         given = lookup(self._ranges, f"{robot}.{sensor}", sensor)
-        return given or reported or 1.0
+        return given or reported or SENSOR_RANGE
 
     def cone(self, robot: str, sensor: str, reported: float | None) -> float:
         """The opening angle of a sensor in radians; `reported` is the simulator's."""
         given = lookup(self._cones, f"{robot}.{sensor}", sensor)
-        return math.radians(given) if given else reported or math.radians(20.0)
+        return math.radians(given) if given else reported or SENSOR_CONE
 
     def radius(self, robot: str, measured: float) -> float:
         """The radius of the circle that encloses a robot, in metres."""
@@ -144,6 +145,7 @@ class SlamSession:
         }
         text = json.dumps(data, indent=1) + "\n"
         write_whole(output_path(self._file, is_map, "a map"), text.encode())
+        events.current.file("map", self._file)
         self._plot(self._file.with_suffix(".png"))
 
     def _plot(self, file: Path) -> None:
@@ -168,9 +170,10 @@ class SlamSession:
             place = output_path(file, is_picture, "a picture of a map")
         except SetupError as error:
             # The map is written, and it is what counts.
-            print(f"warning: {error}", file=sys.stderr)
+            events.current.warning(str(error))
         else:
             write_whole(place, content.getvalue())
+            events.current.file("map-picture", file)
 
 
 def check_modules() -> None:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from ..pose import heading_degrees
 from .occupancy_grid import Position
 
 
@@ -116,7 +117,7 @@ class TopologicalMap:
                     "y": round(node.y, 4) + 0.0,
                     "exits": [
                         {
-                            "bearing": round(math.degrees(frontier.bearing), 1) + 0.0,
+                            "bearing": heading_degrees(frontier.bearing),
                             "to": frontier.target,
                         }
                         for frontier in node.frontiers

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...facts import RIM_SPEED
 from ...pose import Pose, wrap_angle
-from ...settings import RIM_SPEED
 from ..occupancy_grid import Position
 from ..rover import SAFETY_MARGIN, SlamRover
 from ..session import SlamSession
