@@ -47,6 +47,9 @@ def end_with_parent() -> None:
     threading.Thread(target=watch, daemon=True).start()
 
 
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    # A shell has started the whole run in the background; this signal ends the script in any case.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 end_with_parent()
 package, program, *sys.argv = sys.argv[1:]
 folders = [package]

@@ -12,6 +12,7 @@ use crate::commands::{
     stats,
 };
 use crate::failure::Failure;
+use crate::help::{self, Help};
 
 /// Cargo's own colours.
 const STYLES: Styles = Styles::styled()
@@ -20,20 +21,23 @@ const STYLES: Styles = Styles::styled()
     .literal(AnsiColor::BrightCyan.on_default().effects(Effects::BOLD))
     .placeholder(AnsiColor::Cyan.on_default());
 
-const EXAMPLES: &str = "\
-Examples:
-  pydslrep new patrol                    create a program that drives a square
-  pydslrep check patrol/patrol.pyr       show its errors and how to fix them
-  pydslrep run patrol/patrol.pyr         run it in the embedded simulator
-  pydslrep build patrol/patrol.pyr       generate its Python script for CoppeliaSim
-
-Exit codes: 0 fine, 1 errors in the program or a movement that failed, 2 wrong use or
-an outside failure (file, port, missing Python), 130 interrupted.";
+const HELP: Help = Help {
+    examples: &[
+        ("pydslrep new patrol", "create a program that drives a square"),
+        ("pydslrep check patrol/patrol.pyr", "show its errors and how to fix them"),
+        ("pydslrep run patrol/patrol.pyr", "run it in the embedded simulator"),
+        ("pydslrep build patrol/patrol.pyr", "generate its Python script for CoppeliaSim"),
+    ],
+    notes: &[
+        "Exit codes: 0 fine, 1 errors in the program or a movement that failed, 2 wrong use or an outside \
+         failure (file, port, missing Python), 130 interrupted.",
+    ],
+};
 
 /// Check, plan and run programs for mobile robots, and generate Python scripts for the simulators CoppeliaSim and V-REP.
 #[derive(Debug, Parser)]
-#[command(name = "pydslrep", version, styles = STYLES, after_help = EXAMPLES, propagate_version = true)]
-#[command(max_term_width = 100)]
+#[command(name = "pydslrep", version, styles = STYLES, after_help = HELP.text(), propagate_version = true)]
+#[command(term_width = help::columns())]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -54,7 +58,8 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     Check(check::Arguments),
     Build(build::Arguments),
-    Run(run::Arguments),
+    // By far the largest.
+    Run(Box<run::Arguments>),
     Sim(sim::Arguments),
     Scene(scene::Arguments),
     Plan(plan::Arguments),

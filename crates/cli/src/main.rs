@@ -5,6 +5,7 @@
 //!
 //! * [`arguments`]: the command line. [`commands`] has one file per command, with its own arguments; [`options`] what
 //!   several of them share.
+//! * [`help`]: the examples and notes in the help of commands.
 //! * [`inputs`]: the programs a command works on, and the workspace around them.
 //! * [`report`]: what is printed: diagnostics in every format, tables, failures.
 //! * [`run`]: a run, from a Python interpreter to its result.
@@ -14,6 +15,7 @@ mod arguments;
 mod commands;
 mod failure;
 mod fixing;
+mod help;
 mod inputs;
 mod options;
 mod report;

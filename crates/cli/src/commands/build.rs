@@ -14,30 +14,32 @@ use pydslrep_output::{
 use pydslrep_script::{file_name, generate};
 
 use crate::failure::Failure;
+use crate::help::Help;
 use crate::inputs::Inputs;
 use crate::inputs::{lines, program};
 use crate::options::target_parser;
 use crate::report::output;
 
-const EXAMPLES: &str = "\
-Examples:
-  pydslrep build patrol.pyr                     writes a script per environment next to it
-  pydslrep build rooms/ -o scripts              all programs of a folder
-  pydslrep build patrol.pyr --environment hall --stdout | less
-  pydslrep build patrol.pyr --target vrep       for V-REP's legacy remote API
-  pydslrep build patrol.pyr --force             also replaces scripts that you changed
-
-Scripts import the Python package pydslrep_runtime, whose folder is written next to them unless it
-is installed in your Python. It is replaced when its version differs, and kept if you change it.
-
-The nearest pydslrep.toml above a program sets the defaults:
-  output = \"scripts\"
-  target = \"coppeliasim\"
-  write-runtime = false";
+const HELP: Help = Help {
+    examples: &[
+        ("pydslrep build patrol.pyr", "writes a script per environment next to it"),
+        ("pydslrep build rooms/ -o scripts", "all programs of a folder"),
+        ("pydslrep build patrol.pyr --environment hall --stdout | less", ""),
+        ("pydslrep build patrol.pyr --target vrep", "for V-REP's legacy remote API"),
+        ("pydslrep build patrol.pyr --force", "also replaces scripts that you changed"),
+    ],
+    notes: &[
+        "Scripts import the Python package pydslrep_runtime, whose folder is written next to them unless \
+         it is installed in your Python. It is replaced when its version differs, and kept if you change \
+         it.",
+        "The nearest pydslrep.toml above a program sets the defaults:\n  output = \"scripts\"\n  target = \
+         \"coppeliasim\"\n  write-runtime = false",
+    ],
+};
 
 /// Write a Python script for each environment of programs
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = HELP.text())]
 pub(crate) struct Arguments {
     /// Programs, folders with programs, or `-` for standard input [default: this folder]
     #[arg(value_name = "PATH")]

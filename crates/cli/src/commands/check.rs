@@ -11,31 +11,33 @@ use pydslrep_config::Config;
 
 use crate::failure::Failure;
 use crate::fixing::{self, Fixed};
+use crate::help::Help;
 use crate::inputs::scenes::{self, SceneProblem};
 use crate::inputs::{Inputs, count_files};
 use crate::options;
 use crate::report::output::{self, count};
 use crate::report::{github, json, render, sarif, summary};
 
-const EXAMPLES: &str = "\
-Examples:
-  pydslrep check                         all programs in this folder and below
-  pydslrep check patrol.pyr rooms/       one program, and all in a folder
-  pydslrep check --format json - < x.pyr
-  pydslrep check --fix                   apply all safe fixes, and show what is left
-  pydslrep check --watch                 check again whenever something changes
-  pydslrep check --deny warnings         for use in CI
-  pydslrep check --format github         the same, as annotations of a pull request
-  pydslrep check --format sarif > x.sarif
-  pydslrep check --severity unused-declaration=off --severity wheel-count=warning
-
-The nearest pydslrep.toml above a program sets default severities:
-  [severity]
-  unused-declaration = \"off\"";
+const HELP: Help = Help {
+    examples: &[
+        ("pydslrep check", "all programs in this folder and below"),
+        ("pydslrep check patrol.pyr rooms/", "one program, and all in a folder"),
+        ("pydslrep check --format json - < x.pyr", ""),
+        ("pydslrep check --fix", "apply all safe fixes, and show what is left"),
+        ("pydslrep check --watch", "check again whenever something changes"),
+        ("pydslrep check --deny warnings", "for use in CI"),
+        ("pydslrep check --format github", "the same, as annotations of a pull request"),
+        ("pydslrep check --format sarif > x.sarif", ""),
+        ("pydslrep check --severity unused-declaration=off --severity wheel-count=warning", ""),
+    ],
+    notes: &[
+        "The nearest pydslrep.toml above a program sets default severities:\n  [severity]\n  unused-declaration = \"off\"",
+    ],
+};
 
 /// Check programs for errors, and show how to fix them
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = HELP.text())]
 pub(crate) struct Arguments {
     /// Programs, folders with programs, or `-` for standard input [default: this folder]
     #[arg(value_name = "PATH")]

@@ -6,17 +6,21 @@ use clap::{Args, Command};
 use clap_complete::Shell;
 
 use crate::failure::Failure;
+use crate::help::Help;
 use crate::report::output;
 
-const EXAMPLES: &str = "\
-Examples:
-  pydslrep completions bash > ~/.local/share/bash-completion/completions/pydslrep
-  pydslrep completions zsh > ~/.zfunc/_pydslrep
-  pydslrep completions fish > ~/.config/fish/completions/pydslrep.fish";
+const HELP: Help = Help {
+    examples: &[
+        ("pydslrep completions bash > ~/.local/share/bash-completion/completions/pydslrep", ""),
+        ("pydslrep completions zsh > ~/.zfunc/_pydslrep", ""),
+        ("pydslrep completions fish > ~/.config/fish/completions/pydslrep.fish", ""),
+    ],
+    notes: &[],
+};
 
 /// Print the completion of this command for a shell
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = HELP.text())]
 pub(crate) struct Arguments {
     /// The shell
     #[arg(value_enum)]

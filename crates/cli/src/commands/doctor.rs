@@ -11,24 +11,28 @@ use pydslrep_script::used_sensors;
 use serde::{Deserialize, Serialize, Serializer};
 
 use crate::failure::Failure;
+use crate::help::Help;
 use crate::inputs::{Inputs, program};
 use crate::options::Port;
 use crate::report::output;
 use crate::run::interrupt;
 use crate::run::scene_tasks::{Interpreter, carry_out};
 
-const EXAMPLES: &str = "\
-Examples:
-  pydslrep doctor patrol.pyr                       the CoppeliaSim on this machine
-  pydslrep doctor patrol.pyr --host 192.168.0.7    one on another machine
-  pydslrep doctor patrol.pyr --port 23000          on another port than the program says
-
-It changes nothing, and may run beside a script that drives. Exit codes: 0 nothing is wrong,
-1 findings, 2 it cannot connect.";
+const HELP: Help = Help {
+    examples: &[
+        ("pydslrep doctor patrol.pyr", "the CoppeliaSim on this machine"),
+        ("pydslrep doctor patrol.pyr --host 192.168.0.7", "one on another machine"),
+        ("pydslrep doctor patrol.pyr --port 23000", "on another port than the program says"),
+    ],
+    notes: &[
+        "It changes nothing, and may run beside a script that drives. Exit codes: 0 nothing is wrong, 1 \
+         findings, 2 it cannot connect.",
+    ],
+};
 
 /// Check the scene of a running CoppeliaSim against a program: what is wrong with it, and what to do
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = HELP.text())]
 pub(crate) struct Arguments {
     /// A program, or `-` for standard input
     program: PathBuf,

@@ -9,19 +9,20 @@ use pydslrep_analysis::diagnostics::{CATALOGUE, Rule};
 use pydslrep_config::find_rule;
 
 use crate::failure::Failure;
+use crate::help::{self, Help};
 use crate::report::output;
 
-const EXAMPLES: &str = "\
-Examples:
-  pydslrep explain                  all diagnostics
-  pydslrep explain invalid-radius   one of them, with an example";
-
-/// Longer lines are hard to read.
-const MOST_COLUMNS: usize = 100;
+const HELP: Help = Help {
+    examples: &[
+        ("pydslrep explain", "all diagnostics"),
+        ("pydslrep explain invalid-radius", "one of them, with an example"),
+    ],
+    notes: &[],
+};
 
 /// Explain a diagnostic: what it finds, why that matters, and what to write instead
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = HELP.text())]
 pub(crate) struct Arguments {
     /// The code of a diagnostic, such as `wheel-count` [default: list all]
     code: Option<String>,
@@ -32,7 +33,7 @@ pub(crate) struct Arguments {
 /// # Errors
 /// If there is no such diagnostic, or nothing can be printed.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let columns = textwrap::termwidth().min(MOST_COLUMNS);
+    let columns = help::columns();
     output::print(&match &arguments.code {
         Some(code) => page(&find_rule(code)?.manual(), columns),
         None => list(columns),

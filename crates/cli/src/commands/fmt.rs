@@ -9,20 +9,24 @@ use pydslrep_syntax::{apply_edits, format_edits, parse};
 use similar::TextDiff;
 
 use crate::failure::Failure;
+use crate::help::Help;
 use crate::inputs::read::{Found, Source, read_programs};
 use crate::inputs::rewrite::replace;
 use crate::report::output::{self, count};
 
-const EXAMPLES: &str = "\
-Examples:
-  pydslrep fmt                     all programs in this folder and those in it
-  pydslrep fmt --diff patrol.pyr   what would change
-  pydslrep fmt --check             for use in CI: exit code 1 if anything would
-  pydslrep fmt - < patrol.pyr      from standard input to standard output";
+const HELP: Help = Help {
+    examples: &[
+        ("pydslrep fmt", "all programs in this folder and those in it"),
+        ("pydslrep fmt --diff patrol.pyr", "what would change"),
+        ("pydslrep fmt --check", "for use in CI: exit code 1 if anything would"),
+        ("pydslrep fmt - < patrol.pyr", "from standard input to standard output"),
+    ],
+    notes: &[],
+};
 
 /// Format programs: indentation, blank lines, spaces, commas
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = HELP.text())]
 pub(crate) struct Arguments {
     /// Programs, folders with programs, or `-` for standard input [default: this folder]
     #[arg(value_name = "PATH")]

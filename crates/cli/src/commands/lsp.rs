@@ -5,15 +5,19 @@ use std::process::ExitCode;
 use clap::Args;
 
 use crate::failure::Failure;
+use crate::help::Help;
 
-const EXAMPLES: &str = "\
-Examples:
-  pydslrep lsp                  for editors that start their servers
-  pydslrep lsp --socket 4711    for editors that wait on a port";
+const HELP: Help = Help {
+    examples: &[
+        ("pydslrep lsp", "for editors that start their servers"),
+        ("pydslrep lsp --socket 4711", "for editors that wait on a port"),
+    ],
+    notes: &[],
+};
 
 /// Serve an editor: the language server
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = HELP.text())]
 pub(crate) struct Arguments {
     #[command(flatten)]
     server: pydslrep_server::Arguments,

@@ -6,19 +6,23 @@ use std::process::ExitCode;
 use clap::Args;
 
 use crate::failure::Failure;
+use crate::help::Help;
 use crate::report::output;
 use pydslrep_output::write_new_folder;
 use pydslrep_scene::ENDING;
 use pydslrep_text::file_names::{PROGRAM_EXTENSION as EXTENSION, is_reserved_on_windows};
 
-const EXAMPLES: &str = "\
-Examples:
-  pydslrep new patrol           creates patrol/patrol.pyr and its scene
-  pydslrep run patrol/patrol.pyr";
+const HELP: Help = Help {
+    examples: &[
+        ("pydslrep new patrol", "creates patrol/patrol.pyr and its scene"),
+        ("pydslrep run patrol/patrol.pyr", ""),
+    ],
+    notes: &[],
+};
 
 /// Start a program: a robot that drives a square
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = HELP.text())]
 pub(crate) struct Arguments {
     /// Name of the folder, the program and its environment; letters, digits and `_`
     name: PathBuf,

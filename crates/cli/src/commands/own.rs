@@ -10,15 +10,17 @@ use std::time::Duration;
 use clap::{Args, Subcommand};
 
 use crate::failure::Failure;
+use crate::help::Help;
 use crate::report::output;
 use crate::run::python;
 
-const EXAMPLES: &str = "\
-Examples:
-  pydslrep self check                 for a bug report
-  pydslrep self check --host lab-pc   whether the CoppeliaSim on another machine can be reached
-
-Exit codes: 0 scripts can run here, 1 they cannot.";
+const HELP: Help = Help {
+    examples: &[
+        ("pydslrep self check", "for a bug report"),
+        ("pydslrep self check --host lab-pc", "whether the CoppeliaSim on another machine can be reached"),
+    ],
+    notes: &["Exit codes: 0 scripts can run here, 1 they cannot."],
+};
 
 /// The port of CoppeliaSim's `ZeroMQ` remote API.
 const PORT: u16 = 23000;
@@ -40,7 +42,7 @@ enum Task {
 
 /// Print versions, paths, the Python of scripts, and whether CoppeliaSim can be reached
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = HELP.text())]
 struct Check {
     /// Where CoppeliaSim runs
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1")]

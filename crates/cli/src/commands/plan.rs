@@ -13,23 +13,28 @@ use pydslrep_scene::{Collision, Scene, Thing, collisions};
 use serde::Serialize;
 
 use crate::failure::Failure;
+use crate::help::Help;
 use crate::inputs::Inputs;
 use crate::inputs::program;
 use crate::report::numbers::{fixed, heading};
 use crate::report::output;
 use crate::run::pictures::Pictures;
 use crate::run::planned::Planned;
+use crate::run::reporter::Reporter;
 
-const EXAMPLES: &str = "\
-Examples:
-  pydslrep plan patrol.pyr
-  pydslrep plan patrol.pyr --json
-  pydslrep plan patrol.pyr --picture patrol.svg
-  pydslrep plan patrol.pyr --replay patrol.svg     an animated SVG for a browser";
+const HELP: Help = Help {
+    examples: &[
+        ("pydslrep plan patrol.pyr", ""),
+        ("pydslrep plan patrol.pyr --json", ""),
+        ("pydslrep plan patrol.pyr --picture patrol.svg", ""),
+        ("pydslrep plan patrol.pyr --replay patrol.svg", "an animated SVG for a browser"),
+    ],
+    notes: &[],
+};
 
 /// Show the planned path of each robot: poses, times and wheel rates
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = HELP.text())]
 pub(crate) struct Arguments {
     /// A program, or `-` for standard input
     program: PathBuf,
@@ -70,7 +75,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     output::print(&if arguments.json { json(&plans)? } else { plans.iter().map(table).collect() })?;
     if let Some(planned) = plans.first() {
         planned.draw(&arguments.pictures, "planned path", &planned.routes())?;
-        arguments.pictures.report();
+        arguments.pictures.report(&Reporter::for_people());
     }
     Ok(ExitCode::from(u8::from(prepared.has_errors)))
 }

@@ -9,23 +9,27 @@ use pydslrep_config::Config;
 use pydslrep_server::FilePreview;
 
 use crate::failure::Failure;
+use crate::help::Help;
 use crate::inputs::Inputs;
 use crate::inputs::paths::absolute;
 use crate::inputs::watch::{Scope, Watch};
 use crate::report::output;
 use crate::run::interrupt::{self, Interrupts};
 
-const EXAMPLES: &str = "\
-Examples:
-  pydslrep preview patrol.pyr             opens the page in a browser
-  pydslrep preview patrol.pyr --no-open   prints its address only
-
-The page follows the saved program, its imports, its scenes and its settings until Ctrl+C. It is
-served to this machine only, under an address with a random secret.";
+const HELP: Help = Help {
+    examples: &[
+        ("pydslrep preview patrol.pyr", "opens the page in a browser"),
+        ("pydslrep preview patrol.pyr --no-open", "prints its address only"),
+    ],
+    notes: &[
+        "The page follows the saved program, its imports, its scenes and its settings until Ctrl+C. It is \
+         served to this machine only, under an address with a random secret.",
+    ],
+};
 
 /// Show the planned path in a browser, and follow the saved program
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = HELP.text())]
 pub(crate) struct Arguments {
     /// A program
     program: PathBuf,

@@ -13,9 +13,10 @@ use pydslrep_output::{Kind, TemporaryFolder, check_outputs, provide_runtime, wri
 use pydslrep_scene::Scene;
 use pydslrep_script::{file_name, generate};
 use pydslrep_simulator::{Engine, Options, Simulator};
-use pydslrep_trace::Map;
+use pydslrep_trace::{FailureClass, FileKind, Map, RunEvent, RunFailure};
 
 use crate::failure::Failure;
+use crate::help::Help;
 use crate::inputs::{Inputs, paths, program};
 use crate::options::{above_zero, engine_parser, target_parser};
 use crate::report::output;
@@ -26,32 +27,37 @@ use crate::run::own_robots::{self, OwnRobot};
 use crate::run::pictures::Pictures;
 use crate::run::planned::Planned;
 use crate::run::progress::Progress;
-use crate::run::python::{self, Packages};
-use crate::run::script::{Ending, Script, drive};
-use crate::run::{exploring, vrep_client};
+use crate::run::python::{self, Packages, Watcher};
+use crate::run::reporter::{self, Reporter, is_standard_output};
+use crate::run::script::{Listener, Script, drive};
+use crate::run::{exploring, script, vrep_client};
 
-const EXAMPLES: &str = "\
-Examples:
-  pydslrep run patrol.pyr                          in the embedded simulator
-  pydslrep run patrol.pyr --picture patrol.svg     and draw planned and driven path
-  pydslrep run patrol.pyr --replay driven.svg      and draw an animated SVG for a browser
-  pydslrep run patrol.pyr --scene hall.scene.toml  with the obstacles of a hall
-  pydslrep run patrol.pyr --host 127.0.0.1 --port 23000
-                                                   in a CoppeliaSim that is running there
-  pydslrep run patrol.pyr --target vrep            with V-REP's legacy remote API
-  pydslrep run patrol.pyr --robot my_robot:Rover   with a robot of your own: the class Rover in
-                                                   my_robot.py, next to the program
-
-The first run creates a Python virtual environment in your cache folder and installs the
-CoppeliaSim client library into it, which needs Python 3.11 or later and network access.
-The first run with --odometry does the same with NumPy and SciPy.
-With --target vrep, your own Python runs the script with V-REP's client (sim.py or vrep.py and
-its library) from the program's folder or from Python's path. If all robots are your own, your
-own Python runs the script without a simulator.";
+const HELP: Help = Help {
+    examples: &[
+        ("pydslrep run patrol.pyr", "in the embedded simulator"),
+        ("pydslrep run patrol.pyr --picture patrol.svg", "and draw planned and driven path"),
+        ("pydslrep run patrol.pyr --replay driven.svg", "and draw an animated SVG for a browser"),
+        ("pydslrep run patrol.pyr --scene hall.scene.toml", "with the obstacles of a hall"),
+        ("pydslrep run patrol.pyr --host 127.0.0.1 --port 23000", "in a CoppeliaSim that is running there"),
+        ("pydslrep run patrol.pyr --target vrep", "with V-REP's legacy remote API"),
+        ("pydslrep run patrol.pyr --events -", "and tell a program what happens"),
+        (
+            "pydslrep run patrol.pyr --robot my_robot:Rover",
+            "with a robot of your own: the class Rover in my_robot.py, next to the program",
+        ),
+    ],
+    notes: &["The first run creates a Python virtual environment in your cache folder and installs the \
+         CoppeliaSim client library into it, which needs Python 3.11 or later and network access. The first \
+         run with --odometry does the same with NumPy and SciPy. With --target vrep, your own Python runs \
+         the script with V-REP's client (sim.py or vrep.py and its library) from the program's folder or \
+         from Python's path. If all robots are your own, your own Python runs the script without a \
+         simulator."],
+};
 
 /// Run a program: check it, generate its script, and run that in the embedded simulator
+#[expect(clippy::struct_excessive_bools, reason = "each is an option of the command line")]
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = HELP.text())]
 pub(crate) struct Arguments {
     /// A program, or `-` for standard input
     program: PathBuf,
@@ -81,6 +87,9 @@ pub(crate) struct Arguments {
     /// Write the result to a file, as JSON: times, and where each robot ends
     #[arg(long, value_name = "FILE")]
     figures: Option<PathBuf>,
+    /// Write what happens to a file, as JSON lines for programs; `-` is standard output, in place of the table
+    #[arg(long, value_name = "FILE")]
+    events: Option<PathBuf>,
     /// Explore by wheel odometry, without poses from the simulator
     #[arg(long)]
     odometry: bool,
@@ -102,6 +111,9 @@ pub(crate) struct Arguments {
     /// Port of that CoppeliaSim, for all robots or for one; may be repeated
     #[arg(long, value_name = "[ROBOT=]PORT", requires = "host")]
     port: Vec<String>,
+    /// Stop a simulation that runs there already, which puts everything back, and start it again
+    #[arg(long, requires = "host")]
+    restart: bool,
     /// End as after Ctrl-C when standard input ends: for a parent process that may be killed
     #[arg(long, hide = true)]
     until_input_ends: bool,
@@ -117,6 +129,7 @@ impl Arguments {
             (self.trace.as_deref(), Kind::Trace),
             (map, Kind::Map),
             (self.figures.as_deref(), Kind::Figures),
+            (self.events.as_deref().filter(|path| !is_standard_output(path)), Kind::Events),
         ];
         let others = others.into_iter().filter_map(|(path, kind)| Some((path?, kind)));
         self.pictures.outputs().chain(others).collect()
@@ -128,13 +141,36 @@ impl Arguments {
 /// # Errors
 /// If anything outside of the program fails.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let mut reporter = Reporter::for_people();
+    let outcome = perform(arguments, &mut reporter);
+    if let Err(failure) = &outcome {
+        reporter.fail(failure);
+    }
+    outcome
+}
+
+fn perform(arguments: &Arguments, reporter: &mut Reporter) -> Result<ExitCode, Failure> {
+    let events = arguments.events.as_deref();
+    if events.is_some_and(is_standard_output) {
+        *reporter = Reporter::open(events)?;
+    }
     let (mut inputs, file) = Inputs::open_one(&arguments.program, &Config::of_target(arguments.target))?;
+    if let Some(path) = events.filter(|path| !is_standard_output(path)) {
+        check_outputs(&[(path, Kind::Events)], &inputs.read_paths())?;
+        *reporter = Reporter::open(events)?;
+    }
     let target = inputs.settings(file).target;
+    if arguments.restart && target == Target::VRep {
+        return Err(Failure::new(
+            "--restart is for CoppeliaSim: V-REP may listen only while its simulation runs",
+        ));
+    }
     let id = program::environment(&inputs, file, arguments.environment.as_deref())?;
     if let Some(scene) = &arguments.scene {
         inputs.use_scene(file, id, scene)?;
     }
     let Some(environment) = program::prepare(&inputs, file, &[id]).environments.pop() else {
+        reporter.refuse("the program has errors");
         return Ok(ExitCode::FAILURE);
     };
     let name = file_name(&environment);
@@ -142,6 +178,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         Ok(text) => text,
         Err(error) => {
             output::error(&error.to_string(), None);
+            reporter.refuse(&error.to_string());
             return Ok(ExitCode::FAILURE);
         }
     };
@@ -153,7 +190,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     check_outputs(&outputs, &inputs.read_paths())?;
     let home = inputs.place(file).and_then(Path::parent).unwrap_or(Path::new(".")).to_owned();
     let simulated = own_robots::simulated(&arguments.robot, &environment)?;
-    let run = Run { arguments, target, home, simulated, map, planned: Planned::new(environment, scene)? };
+    let planned = Planned::new(environment, scene)?;
+    let run = Run { arguments, reporter, target, home, simulated, map, planned };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let code = runtime.map_err(|error| unstarted(&error))?.block_on(run.drive(&name, &text))?;
     Ok(ExitCode::from(code))
@@ -171,6 +209,7 @@ fn token(folder: &Path) -> String {
 
 struct Run<'a> {
     arguments: &'a Arguments,
+    reporter: &'a Reporter,
     target: Target,
     /// The program's folder.
     home: PathBuf,
@@ -189,7 +228,10 @@ impl Run<'_> {
         }
         let python = tokio::select! {
             python = self.python() => python?,
-            () = interrupts.next() => return Ok(interrupt::EXIT_CODE),
+            () = interrupts.next() => {
+                self.reporter.write(&RunEvent::Failed(script::interrupted()));
+                return Ok(interrupt::EXIT_CODE);
+            }
         };
         let folder = TemporaryFolder::new("run-").map_err(|error| unstarted(&error))?;
         if self.target == Target::VRep && self.needs_simulator() {
@@ -218,16 +260,15 @@ impl Run<'_> {
         let mut driven = Driven::new(robots, in_scene);
         let mut progress = Progress::new(&self.planned, self.arguments.no_progress);
         let begin = Instant::now();
-        let ending = drive(&script, simulator.as_ref(), &mut driven, &mut progress, &mut interrupts).await;
+        let listener = Listener::new(simulator.as_ref(), &mut driven, &mut progress, self.reporter);
+        let ending = drive(&script, listener, &mut interrupts).await;
         let wall = begin.elapsed();
         progress.clear();
         let strangers = simulator.as_ref().map_or(0, Simulator::strangers);
         if strangers > 0 {
             let others = output::count(strangers, "connection");
-            output::warning(
-                &format!("{others} of other programs to the simulator of this run refused"),
-                None,
-            );
+            let refused = format!("{others} of other programs to the simulator of this run refused");
+            self.reporter.warn(&refused, None);
         }
         drop(simulator);
         if let (Some(trace), true) = (&trace, self.needs_trace()) {
@@ -256,7 +297,8 @@ impl Run<'_> {
     async fn python(&self) -> Result<PathBuf, Failure> {
         let chosen = self.arguments.python.as_deref();
         if self.target == Target::CoppeliaSim && self.needs_simulator() {
-            python::prepare(chosen, self.packages(), self.arguments.no_progress).await
+            let watcher = Watcher { reporter: self.reporter, quiet: self.arguments.no_progress };
+            python::prepare(chosen, self.packages(), watcher).await
         } else {
             python::interpreter(chosen).await
         }
@@ -311,7 +353,7 @@ impl Run<'_> {
     ) -> Vec<OsString> {
         let mut all: Vec<OsString> = vec![path.into()];
         let host = self.arguments.host.as_deref().unwrap_or("127.0.0.1");
-        all.extend(["--host".into(), host.into()]);
+        all.extend(["--host".into(), host.into(), "--events".into(), reporter::STANDARD_OUTPUT.into()]);
         all.extend(own_robots::arguments(&self.arguments.robot));
         let ports: Vec<String> = match simulator {
             Some(simulator) => self
@@ -324,6 +366,7 @@ impl Run<'_> {
         for port in ports {
             all.extend(["--port".into(), port.into()]);
         }
+        all.extend(self.arguments.restart.then(|| "--restart".into()));
         if let Some(trace) = trace {
             all.extend(["--trace".into(), trace.into()]);
         }
@@ -351,55 +394,51 @@ impl Run<'_> {
         let picture = map.with_extension("png");
         if picture.exists() {
             // The map is what counts.
-            if let Err(error) = copy(&picture, &file.with_extension("png"), Kind::Picture) {
-                output::fail(&error);
+            let place = file.with_extension("png");
+            match copy(&picture, &place, Kind::Picture) {
+                Ok(()) => self
+                    .reporter
+                    .write(&RunEvent::File { kind: FileKind::MapPicture, path: place.display().to_string() }),
+                Err(error) => output::fail(&error),
             }
         }
         let robots = &self.planned.environment.robots;
         robots.iter().map(|robot| exploring::read(map, &robot.name)).collect()
     }
 
-    fn report(&self, ending: Ending, driven: &Driven, wall: std::time::Duration) -> Result<u8, Failure> {
-        let is_complete = matches!(ending, Ending::Done);
+    fn report(
+        &self,
+        ending: Option<RunFailure>,
+        driven: &Driven,
+        wall: std::time::Duration,
+    ) -> Result<u8, Failure> {
+        let is_complete = ending.is_none();
         let outcome = Outcome { planned: &self.planned, driven, wall, is_complete };
-        let code = match ending {
-            Ending::Done => 0,
-            Ending::Failed(message) => {
-                report_error(&message);
-                1
-            }
-            Ending::Broken(message) => {
-                report_error(&message);
-                return Ok(Failure::EXIT_CODE);
-            }
-            Ending::Interrupted => {
-                output::say("interrupted\n");
-                interrupt::EXIT_CODE
-            }
+        if let Some(failure) = &ending {
+            self.reporter.report_failure(failure);
+        }
+        let code = match ending.map(|failure| failure.class) {
+            None => 0,
+            Some(FailureClass::Action) => 1,
+            Some(FailureClass::Interrupted) => interrupt::EXIT_CODE,
+            // What was driven says nothing about the program.
+            Some(_) => return Ok(Failure::EXIT_CODE),
         };
         let figures = outcome.figures();
-        output::print(&figures.table())?;
+        self.reporter.report_figures(&figures)?;
         if let Some(path) = &self.arguments.figures {
             let json = serde_json::to_vec(&figures).map_err(|error| Failure::unwritten(path, &error))?;
             write_output(path, Kind::Figures, &json)?;
         }
         self.planned.draw(&self.arguments.pictures, "planned and driven path", &outcome.routes())?;
-        self.arguments.pictures.report();
+        self.arguments.pictures.report(self.reporter);
         let map = self.map.as_ref().filter(|_| !driven.maps.is_empty());
         let (trace, figures) = (self.arguments.trace.as_ref(), self.arguments.figures.as_ref());
-        for (what, path) in [("trace", trace), ("map", map), ("figures", figures)] {
+        for (kind, path) in [(FileKind::Trace, trace), (FileKind::Map, map), (FileKind::Figures, figures)] {
             if let Some(path) = path {
-                output::say(&format!("{what}: {}\n", path.display()));
+                self.reporter.report_file(kind, path);
             }
         }
         Ok(code)
-    }
-}
-
-/// Reports a script's message in the style of this command.
-fn report_error(message: &str) {
-    match message.strip_prefix("error: ") {
-        Some(message) if !message.contains('\n') => output::error(message, None),
-        _ => output::say(&format!("{message}\n")),
     }
 }

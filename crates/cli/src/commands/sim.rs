@@ -16,29 +16,33 @@ use pydslrep_trace::lines;
 use tokio::time::{MissedTickBehavior, interval};
 
 use crate::failure::Failure;
+use crate::help::Help;
 use crate::inputs::Inputs;
 use crate::inputs::program;
 use crate::options::{above_zero, engine_parser};
 use crate::report::output;
 use crate::run::interrupt::{self, Interrupts};
 
-const EXAMPLES: &str = "\
-Examples:
-  pydslrep sim patrol.pyr                          serves the port of each robot, until Ctrl+C
-  python3 yard.py                                  in another terminal: the script of the program
-  pydslrep sim patrol.pyr --trace driven.jsonl     also write the poses of the robots
-  pydslrep sim --empty                             as CoppeliaSim starts: for `pydslrep scene push`
-
-Scripts of both targets can connect at the same time: the first message of a client tells which
-remote API it uses. Scripts step the simulation; while none does, it runs by itself. The wheels of
-a script that disconnects stop.";
+const HELP: Help = Help {
+    examples: &[
+        ("pydslrep sim patrol.pyr", "serves the port of each robot, until Ctrl+C"),
+        ("python3 yard.py", "in another terminal: the script of the program"),
+        ("pydslrep sim patrol.pyr --trace driven.jsonl", "also write the poses of the robots"),
+        ("pydslrep sim --empty", "as CoppeliaSim starts: for `pydslrep scene push`"),
+    ],
+    notes: &[
+        "Scripts of both targets can connect at the same time: the first message of a client tells which \
+         remote API it uses. Scripts step the simulation; while none does, it runs by itself. The wheels of \
+         a script that disconnects stop.",
+    ],
+};
 
 /// How often the trace is written.
 const WRITE_PERIOD: Duration = Duration::from_millis(50);
 
 /// Start the embedded simulator alone, for scripts of your own
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = HELP.text())]
 pub(crate) struct Arguments {
     /// A program, or `-` for standard input
     #[arg(required_unless_present = "empty")]

@@ -9,21 +9,22 @@ use pydslrep_script::{Target, generate, runtime};
 use serde::Serialize;
 
 use crate::failure::Failure;
+use crate::help::Help;
 use crate::inputs::Inputs;
 use crate::inputs::{lines, program};
 use crate::report::output;
 
-const EXAMPLES: &str = "\
-Examples:
-  pydslrep stats patrol.pyr
-  pydslrep stats patrol.pyr --json";
+const HELP: Help = Help {
+    examples: &[("pydslrep stats patrol.pyr", ""), ("pydslrep stats patrol.pyr --json", "")],
+    notes: &[],
+};
 
 /// Count the lines of a program and those of its scripts
 ///
 /// Lines that are blank or hold nothing but comments do not count; what the program imports does. The package that scripts
 /// import is counted apart.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = HELP.text())]
 pub(crate) struct Arguments {
     /// A program, or `-` for standard input
     program: PathBuf,

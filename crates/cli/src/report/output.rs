@@ -1,10 +1,13 @@
 //! Output: results on standard output, everything else on standard error, colours only where they are wanted.
 
+use std::borrow::Cow;
+use std::env;
 use std::io::{self, Write};
 
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{Group, Level, Renderer};
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, Width, presets};
+use terminal_size::terminal_size;
 
 use crate::failure::Failure;
 
@@ -14,7 +17,9 @@ use crate::failure::Failure;
 /// If standard output cannot be written.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = anstream::stdout().lock();
-    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|error| unprinted(&error))
+    out.write_all(without_controls(text).as_bytes())
+        .and_then(|()| out.flush())
+        .map_err(|error| unprinted(&error))
 }
 
 /// Prints a user's text as it is: escape sequences in it stay.
@@ -38,7 +43,25 @@ fn unprinted(error: &io::Error) -> Failure {
 
 /// Writes to standard error; a failure to do so is ignored.
 pub(crate) fn say(text: &str) {
-    let _ = anstream::stderr().lock().write_all(text.as_bytes());
+    let _ = anstream::stderr().lock().write_all(without_controls(text).as_bytes());
+}
+
+/// Names and messages may contain the control characters from U+0080 to U+009F, which terminals obey as they do escape
+/// sequences: they are written as JSON does.
+pub(crate) fn without_controls(text: &str) -> Cow<'_, str> {
+    let is_control = |character| ('\u{80}'..='\u{9f}').contains(&character);
+    if !text.contains(is_control) {
+        return Cow::Borrowed(text);
+    }
+    let mut clean = String::with_capacity(text.len());
+    for character in text.chars() {
+        if is_control(character) {
+            clean += &format!("\\u{:04x}", u32::from(character));
+        } else {
+            clean.push(character);
+        }
+    }
+    Cow::Owned(clean)
 }
 
 /// Reports a failure.
@@ -60,6 +83,11 @@ pub(crate) fn warning(message: &str, help: Option<&str>) {
     report(&Level::WARNING, message, help);
 }
 
+/// Reports what is worth knowing.
+pub(crate) fn note(message: &str) {
+    report(&Level::NOTE, message, None);
+}
+
 fn report(level: &Level<'_>, message: &str, help: Option<&str>) {
     let mut group = Group::with_title(level.clone().primary_title(message));
     if let Some(help) = help {
@@ -79,9 +107,11 @@ pub(crate) fn count(number: usize, noun: &str) -> String {
     format!("{number} {noun}{plural}")
 }
 
-/// The width of the terminal; 80 if there is none.
+/// The width of the terminal; without one, that in `COLUMNS`, else 80.
 pub(crate) fn columns() -> usize {
-    textwrap::termwidth()
+    let of_terminal = terminal_size().map(|(width, _)| usize::from(width.0));
+    let of_variable = || env::var("COLUMNS").ok()?.parse().ok().filter(|columns| *columns > 0);
+    of_terminal.or_else(of_variable).unwrap_or(80)
 }
 
 /// Text wrapped to the terminal; continuation lines are indented.
@@ -113,5 +143,16 @@ pub(crate) fn align_right(table: &mut Table, columns: &[usize]) {
             let whole = u16::try_from(longest + 1).unwrap_or(u16::MAX);
             column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(whole)));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn terminals_are_not_controlled_by_names() {
+        assert_eq!(without_controls("caf\u{e9} \u{9b}31m\u{85}"), "caf\u{e9} \\u009b31m\\u0085");
+        assert!(matches!(without_controls("\u{1b}[1mcaf\u{e9}\u{1b}[0m"), Cow::Borrowed(_)));
     }
 }

@@ -1,4 +1,4 @@
-//! Interrupts: Ctrl-C, a closed terminal, SIGTERM, on Windows Ctrl-Break.
+//! Interrupts: everything from outside that ends a command. Scripts have the same list (`interrupts.py` of their package).
 
 use std::io;
 use std::thread;
@@ -8,7 +8,7 @@ use tokio::sync::oneshot;
 /// Receives interrupts. Before it exists, an interrupt ends the process at once.
 pub(crate) struct Interrupts {
     #[cfg(unix)]
-    signals: [tokio::signal::unix::Signal; 3],
+    signals: [tokio::signal::unix::Signal; 4],
     #[cfg(windows)]
     ctrl_c: tokio::signal::windows::CtrlC,
     #[cfg(windows)]
@@ -16,6 +16,10 @@ pub(crate) struct Interrupts {
     /// The window of the terminal is closed; the system ends this process some seconds later.
     #[cfg(windows)]
     ctrl_close: tokio::signal::windows::CtrlClose,
+    #[cfg(windows)]
+    ctrl_logoff: tokio::signal::windows::CtrlLogoff,
+    #[cfg(windows)]
+    ctrl_shutdown: tokio::signal::windows::CtrlShutdown,
     /// Resolves at the end of standard input, if that counts as an interrupt.
     end_of_input: Option<oneshot::Receiver<()>>,
 }
@@ -31,18 +35,20 @@ impl Interrupts {
     /// If the system does not allow it.
     pub(crate) fn listen() -> io::Result<Self> {
         use tokio::signal::unix::{SignalKind, signal};
-        let kinds = [SignalKind::interrupt(), SignalKind::terminate(), SignalKind::hangup()];
-        let [interrupt, terminate, hangup] = kinds.map(signal);
-        Ok(Self { signals: [interrupt?, terminate?, hangup?], end_of_input: None })
+        let kinds =
+            [SignalKind::interrupt(), SignalKind::terminate(), SignalKind::hangup(), SignalKind::quit()];
+        let [interrupt, terminate, hangup, quit] = kinds.map(signal);
+        Ok(Self { signals: [interrupt?, terminate?, hangup?, quit?], end_of_input: None })
     }
 
     /// Waits for the next interrupt.
     pub(crate) async fn next(&mut self) {
-        let [interrupt, terminate, hangup] = &mut self.signals;
+        let [interrupt, terminate, hangup, quit] = &mut self.signals;
         tokio::select! {
             _ = interrupt.recv() => {}
             _ = terminate.recv() => {}
             _ = hangup.recv() => {}
+            _ = quit.recv() => {}
             () = ended(&mut self.end_of_input) => {}
         }
     }
@@ -60,6 +66,8 @@ impl Interrupts {
             ctrl_c: windows::ctrl_c()?,
             ctrl_break: windows::ctrl_break()?,
             ctrl_close: windows::ctrl_close()?,
+            ctrl_logoff: windows::ctrl_logoff()?,
+            ctrl_shutdown: windows::ctrl_shutdown()?,
             end_of_input: None,
         })
     }
@@ -70,6 +78,8 @@ impl Interrupts {
             _ = self.ctrl_c.recv() => {}
             _ = self.ctrl_break.recv() => {}
             _ = self.ctrl_close.recv() => {}
+            _ = self.ctrl_logoff.recv() => {}
+            _ = self.ctrl_shutdown.recv() => {}
             () = ended(&mut self.end_of_input) => {}
         }
     }

@@ -1,7 +1,7 @@
 //! Runs: from a Python interpreter to the result.
 //!
-//! [`python`] and [`vrep_client`] prepare what a script needs, [`script`] runs it, [`progress`] shows it, and [`outcome`]
-//! compares [`driven`] with [`planned`]. [`scene_tasks`] reads and changes the scene of a simulator that runs elsewhere.
+//! [`python`] and [`vrep_client`] prepare what a script needs, [`script`] runs it and reads its events, [`progress`] shows
+//! them, [`reporter`] passes them on, and [`outcome`] compares [`driven`] with [`planned`]. [`scene_tasks`] reads and changes the scene of a simulator that runs elsewhere.
 
 pub(crate) mod driven;
 pub(crate) mod exploring;
@@ -12,6 +12,7 @@ pub(crate) mod pictures;
 pub(crate) mod planned;
 pub(crate) mod progress;
 pub(crate) mod python;
+pub(crate) mod reporter;
 pub(crate) mod scene_description;
 pub(crate) mod scene_tasks;
 pub(crate) mod script;

@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use pydslrep_output::{Kind, write_output};
 use pydslrep_picture::{Picture, png};
+use pydslrep_trace::FileKind;
 
 use crate::failure::Failure;
-use crate::report::output;
+use crate::run::reporter::Reporter;
 
 /// Where to write pictures, if at all.
 #[derive(Debug, Clone, clap::Args)]
@@ -47,11 +48,11 @@ impl Pictures {
         self.replay.as_ref().map_or(Ok(()), |path| write(path, picture.replay().as_bytes()))
     }
 
-    /// Prints where the pictures are.
-    pub(crate) fn report(&self) {
-        for (what, path) in [("picture", &self.picture), ("replay", &self.replay)] {
+    /// Reports where the pictures are.
+    pub(crate) fn report(&self, reporter: &Reporter) {
+        for (kind, path) in [(FileKind::Picture, &self.picture), (FileKind::Replay, &self.replay)] {
             if let Some(path) = path {
-                output::say(&format!("{what}: {}\n", path.display()));
+                reporter.report_file(kind, path);
             }
         }
     }

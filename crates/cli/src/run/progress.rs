@@ -6,6 +6,7 @@ use std::time::Duration;
 use indicatif::{MultiProgress, ProgressBar, ProgressState, ProgressStyle};
 
 use crate::report::numbers::fixed;
+use crate::report::output;
 use crate::run::planned::Planned;
 
 /// At most this many robots are shown one by one.
@@ -56,16 +57,22 @@ impl Progress {
         self.time.tick();
     }
 
-    /// Reads a line of the script: an action has ended. Returns its simulation time, seconds.
-    pub(crate) fn read(&mut self, line: &str) -> Option<f64> {
-        let mut fields = line.split("  ").map(str::trim).filter(|field| !field.is_empty());
-        let seconds = fields.next()?.strip_suffix(" s")?.parse().ok()?;
-        let robot = fields.next()?;
+    /// A robot has ended an action.
+    pub(crate) fn end_action(&mut self, robot: &str) {
         if let Some(tasks) = self.tasks.iter_mut().find(|tasks| tasks.robot == robot) {
             tasks.left.pop_front();
         }
         self.show_tasks();
-        Some(seconds)
+    }
+
+    /// Prints what is worth knowing, above the bars.
+    pub(crate) fn note(&self, text: &str) {
+        self.bars.suspend(|| output::note(text));
+    }
+
+    /// Prints what is wrong, above the bars.
+    pub(crate) fn warn(&self, text: &str, help: Option<&str>) {
+        self.bars.suspend(|| output::warning(text, help));
     }
 
     /// Removes the bars from the terminal.

@@ -1,25 +1,18 @@
 //! An environment with its scene as JSON: what `python/pydslrep_runtime/scene/description.py` reads.
 
-use pydslrep_kinematics::Drive;
+use pydslrep_kinematics::Pose;
 use pydslrep_scene::{Obstacle, Robot, Scene, SensorKind, Shape, triangulate};
 use serde_json::{Value, json};
 
-/// The description of a scene; metres and radians.
-pub(crate) fn describe(environment: &str, scene: &Scene) -> Value {
+/// The description of a scene; metres and radians. `reach` has the least and the greatest coordinates that robots may get
+/// to.
+pub(crate) fn describe(environment: &str, scene: &Scene, reach: [Pose; 2]) -> Value {
     json!({
         "environment": environment,
+        "reach": reach.map(|corner| [corner.x, corner.y]),
         "robots": scene.robots.iter().map(robot).collect::<Vec<_>>(),
         "obstacles": scene.obstacles.iter().map(obstacle).collect::<Vec<_>>(),
     })
-}
-
-/// The type of a robot, as in a program.
-fn type_of(drive: Drive) -> &'static str {
-    match drive {
-        Drive::TwoWheel => "tw",
-        Drive::FourWheel => "fw",
-        Drive::FourMecanum => "fwh",
-    }
 }
 
 fn robot(robot: &Robot) -> Value {
@@ -55,7 +48,7 @@ fn robot(robot: &Robot) -> Value {
         })
         .collect();
     json!({
-        "name": robot.name, "type": type_of(robot.drive),
+        "name": robot.name, "type": robot.drive.word(),
         "x": robot.start.x, "y": robot.start.y, "heading": robot.start.theta,
         "length": robot.body.length, "width": robot.body.width,
         "grip": robot.lateral_friction,
@@ -85,6 +78,7 @@ fn obstacle(obstacle: &Obstacle) -> Value {
 
 #[cfg(test)]
 mod tests {
+    use pydslrep_kinematics::Drive;
     use pydslrep_scene::Wheel;
 
     use super::*;
@@ -98,10 +92,11 @@ mod tests {
         scene.obstacles.push(Obstacle::wall("wall", (0.0, 2.0), (4.0, 2.0), 0.1));
         scene.obstacles.push(Obstacle {
             name: "corner".to_owned(),
-            pose: pydslrep_kinematics::Pose::new(3.0, 0.0, 0.0),
+            pose: Pose::new(3.0, 0.0, 0.0),
             shape: Shape::Polygon(corners),
         });
-        let found = describe("area", &scene);
+        let found = describe("area", &scene, [Pose::new(-1.0, 0.0, 0.0), Pose::new(2.0, 3.0, 0.0)]);
+        assert_eq!(found["reach"], json!([[-1.0, 0.0], [2.0, 3.0]]));
         let robot = &found["robots"][0];
         assert_eq!((&robot["type"], &robot["rim_speed"]), (&json!("tw"), &Value::Null));
         let wheel =

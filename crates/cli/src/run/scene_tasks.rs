@@ -9,19 +9,32 @@ use std::time::Duration;
 use pydslrep_output::{TemporaryFolder, provide_runtime};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use tokio::io::AsyncWriteExt;
-use tokio::process::Command;
+use tokio::io::{AsyncRead, AsyncReadExt, AsyncWriteExt};
+use tokio::process::{Child, Command};
 use tokio::time::timeout;
 
 use crate::failure::Failure;
 use crate::run::interrupt::{Interrupts, interrupt_process};
-use crate::run::python::{self, Packages};
+use crate::run::python::{self, Packages, Watcher};
+use crate::run::reporter::Reporter;
 
 /// Starts the module: the argument is the folder of its package.
 const BOOT: &str = "import runpy, sys; sys.path.insert(0, sys.argv.pop(1)); runpy.run_module('pydslrep_runtime.scene', None, '__main__')";
 
+/// At most this much of an answer is read, bytes: more than the largest scene takes.
+const MAX_ANSWER: u64 = 64 << 20;
+
+/// At most this much of what Python says besides is kept, bytes.
+const MAX_STDERR: u64 = 1 << 20;
+
 /// A task that is interrupted undoes what it has begun within this time.
 const STOP_LIMIT: Duration = Duration::from_secs(5);
+
+/// How a traceback of Python begins.
+const TRACEBACK: &str = "Traceback (most recent call last)";
+
+/// Characters of its last line.
+const MAX_REASON: usize = 300;
 
 /// The Python that carries out tasks; it gets the `CoppeliaSim` client library.
 #[derive(Debug, Clone, Copy)]
@@ -48,12 +61,13 @@ pub(crate) fn carry_out<T: DeserializeOwned>(
     interpreter: Interpreter<'_>,
     request: &impl Serialize,
 ) -> Result<Option<T>, Failure> {
+    let watcher = Watcher { reporter: &Reporter::for_people(), quiet: interpreter.quiet };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let request = serde_json::to_vec(request).map_err(|error| unstarted(&error))?;
     runtime.map_err(|error| unstarted(&error))?.block_on(async {
         let mut interrupts = Interrupts::listen().map_err(|error| unstarted(&error))?;
         let python = tokio::select! {
-            python = python::prepare(interpreter.chosen, Packages::Client, interpreter.quiet) => python?,
+            python = python::prepare(interpreter.chosen, Packages::Client, watcher) => python?,
             () = interrupts.next() => return Ok(None),
         };
         result(&python, &request, &mut interrupts).await
@@ -79,6 +93,9 @@ async fn result<T: DeserializeOwned>(
             let failure = Failure::new(error).reason(reason);
             Err(if let Some(help) = help { failure.help(help) } else { failure })
         }
+        Err(error) if output.status.success() => {
+            Err(Failure::new(format!("the answer of Python cannot be read: {error}")))
+        }
         Err(_) => Err(unanswered(&output.stderr, output.status)),
     }
 }
@@ -99,22 +116,45 @@ async fn exchange(
         // A child that has ended already says why.
         let _ = stdin.write_all(request).await;
     }
-    let output = child.wait_with_output();
+    let output = limited_output(&mut child);
     tokio::pin!(output);
     tokio::select! {
         output = &mut output => return output.map(Some),
         () = interrupts.next() => interrupt_process(id),
     }
-    tokio::select! {
-        _ = timeout(STOP_LIMIT, output) => {}
-        () = interrupts.next() => {}
-    }
+    // Further interrupts change nothing: it has to undo what it has begun.
+    let _ = timeout(STOP_LIMIT, output).await;
     Ok(None)
+}
+
+/// The output of a process, and how it ended; one that writes too much is killed.
+async fn limited_output(child: &mut Child) -> io::Result<Output> {
+    let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
+    let (stdout, stderr) = tokio::join!(limited(stdout, MAX_ANSWER), limited(stderr, MAX_STDERR));
+    let (stdout, stderr) = (stdout?, stderr?);
+    if [(&stdout, MAX_ANSWER), (&stderr, MAX_STDERR)].iter().any(|(all, limit)| all.len() as u64 > *limit) {
+        child.kill().await?;
+        return Err(io::Error::other("its answer is too long"));
+    }
+    Ok(Output { status: child.wait().await?, stdout, stderr })
+}
+
+/// Reads a stream to its end, or to one byte more than a limit.
+async fn limited(stream: Option<impl AsyncRead + Unpin>, limit: u64) -> io::Result<Vec<u8>> {
+    let mut all = Vec::new();
+    if let Some(stream) = stream {
+        stream.take(limit + 1).read_to_end(&mut all).await?;
+    }
+    Ok(all)
 }
 
 fn unanswered(stderr: &[u8], status: ExitStatus) -> Failure {
     match String::from_utf8_lossy(stderr).trim() {
         "" => Failure::new(format!("Python ended with {status} and no answer")),
+        // A traceback ends with what went wrong.
+        all if all.contains(TRACEBACK) => Failure::new(
+            all.lines().next_back().unwrap_or_default().chars().take(MAX_REASON).collect::<String>(),
+        ),
         message => Failure::new(message.strip_prefix("error: ").unwrap_or(message)),
     }
 }

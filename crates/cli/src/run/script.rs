@@ -7,6 +7,7 @@ use std::process::{ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 use pydslrep_simulator::Simulator;
+use pydslrep_trace::{FailureClass, RunEvent, RunFailure};
 use tokio::io::{AsyncBufReadExt, AsyncReadExt, BufReader, Lines};
 use tokio::process::{Child, ChildStdin, ChildStdout, Command};
 use tokio::task::JoinHandle;
@@ -14,8 +15,9 @@ use tokio::time::{MissedTickBehavior, interval, timeout};
 
 use crate::failure::Failure;
 use crate::run::driven::Driven;
-use crate::run::interrupt::Interrupts;
+use crate::run::interrupt::{self, Interrupts};
 use crate::run::progress::Progress;
+use crate::run::reporter::Reporter;
 
 /// Starts a script: adds folders to those that Python imports from, also where it is isolated.
 const BOOT: &str = include_str!("../../python/boot.py");
@@ -39,16 +41,72 @@ const NEW_PROCESS_GROUP: u32 = 0x200;
 /// At most this much of a script's standard error is kept, bytes.
 const MAX_STDERR: u64 = 1 << 20;
 
-/// How a script ended.
-pub(crate) enum Ending {
-    /// It succeeded.
-    Done,
-    /// A movement failed, with the script's message.
-    Failed(String),
-    /// Something outside of the program failed, with the script's message.
-    Broken(String),
-    /// The user interrupted it.
-    Interrupted,
+/// What a run makes of the events of its script.
+pub(crate) struct Listener<'a> {
+    simulator: Option<&'a Simulator>,
+    driven: &'a mut Driven,
+    progress: &'a mut Progress,
+    reporter: &'a Reporter,
+    /// Why the script is about to end.
+    failure: Option<RunFailure>,
+}
+
+impl<'a> Listener<'a> {
+    /// What the embedded simulator records, if the script uses it, goes to `driven`.
+    pub(crate) fn new(
+        simulator: Option<&'a Simulator>,
+        driven: &'a mut Driven,
+        progress: &'a mut Progress,
+        reporter: &'a Reporter,
+    ) -> Self {
+        Self { simulator, driven, progress, reporter, failure: None }
+    }
+
+    /// Reads a line of the script; what is no event is not for this program.
+    fn read(&mut self, line: &str) {
+        let Some(event) = RunEvent::parse(line) else { return };
+        match &event {
+            RunEvent::ActionEnded(moment) => {
+                self.progress.end_action(&moment.robot);
+                if self.simulator.is_none() {
+                    self.progress.pass(moment.t);
+                    self.driven.time = moment.t;
+                }
+            }
+            RunEvent::Note { text } => self.progress.note(text),
+            RunEvent::Warning { text, help } => self.progress.warn(text, help.as_deref()),
+            RunEvent::Failed(failure) => {
+                // It is reported at the end, with what else the script has said.
+                self.failure = Some(failure.clone());
+                return;
+            }
+            // Its files are temporary ones, and the result is of this program.
+            RunEvent::File { .. } | RunEvent::Figures { .. } => return,
+            RunEvent::Started { .. }
+            | RunEvent::ActionBegun(_)
+            | RunEvent::Contact(_)
+            | RunEvent::Progress { .. } => {}
+        }
+        self.reporter.write(&event);
+    }
+}
+
+/// How a script ended, by its exit status, the failure that it has reported, and what else it wrote to standard error.
+fn ending(status: ExitStatus, failure: Option<RunFailure>, said: String) -> Option<RunFailure> {
+    if status.success() {
+        return None;
+    }
+    if status.code() == Some(i32::from(interrupt::EXIT_CODE)) {
+        return Some(interrupted());
+    }
+    let failure = failure
+        .unwrap_or_else(|| RunFailure::new(FailureClass::Crash, format!("the script ended with {status}")));
+    Some(RunFailure { output: Some(said).filter(|said| !said.is_empty()), ..failure })
+}
+
+/// The user has ended the run.
+pub(crate) fn interrupted() -> RunFailure {
+    RunFailure::new(FailureClass::Interrupted, "interrupted")
 }
 
 /// A script to start.
@@ -66,17 +124,16 @@ pub(crate) struct Script {
     pub(crate) arguments: Vec<OsString>,
 }
 
-/// Runs a script to its end. What the embedded simulator records, if the script uses it, goes to `driven`.
+/// Runs a script to its end and reports its events; returns why it failed, if it did.
 ///
 /// # Errors
 /// If it cannot be started or its end is lost.
 pub(crate) async fn drive(
     script: &Script,
-    simulator: Option<&Simulator>,
-    driven: &mut Driven,
-    progress: &mut Progress,
+    mut listener: Listener<'_>,
     interrupts: &mut Interrupts,
-) -> Result<Ending, Failure> {
+) -> Result<Option<RunFailure>, Failure> {
+    let simulator = listener.simulator;
     let mut running = Running::start(script)?;
     let mut polls = interval(POLL_PERIOD);
     polls.set_missed_tick_behavior(MissedTickBehavior::Delay);
@@ -84,45 +141,38 @@ pub(crate) async fn drive(
     let ending = loop {
         tokio::select! {
             line = next_line(&mut running.lines), if running.has_output => match line {
-                Some(line) => read(&line, simulator, driven, progress),
+                Some(line) => listener.read(&line),
                 None => running.has_output = false,
             },
             status = running.child.wait() => {
                 let status = status.map_err(|error| Failure::new(format!("lost the script: {error}")))?;
                 // Its last lines may not be read yet; a process that it left behind could keep the pipe open.
                 while let Ok(Some(line)) = timeout(STOP_LIMIT, next_line(&mut running.lines)).await {
-                    read(&line, simulator, driven, progress);
+                    listener.read(&line);
                 }
-                break running.ending(status).await;
+                break ending(status, listener.failure.take(), running.said().await);
             }
             () = interrupts.next() => {
-                running.stop(interrupts).await;
-                break Ending::Interrupted;
+                running.stop().await;
+                break Some(interrupted());
             }
             _ = polls.tick() => if let Some(simulator) = simulator {
-                driven.extend(&simulator.take_trace());
-                progress.pass(simulator.time());
+                listener.driven.extend(&simulator.take_trace());
+                listener.progress.pass(simulator.time());
                 if stopwatch.stands_still(simulator.time()) {
-                    running.stop(interrupts).await;
+                    running.stop().await;
                     let seconds = STANDSTILL_LIMIT.as_secs();
-                    break Ending::Broken(format!("error: simulation time stood still for {seconds} s, so the script was stopped"));
+                    let message = format!("simulation time stood still for {seconds} s, so the script was stopped");
+                    break Some(RunFailure::new(FailureClass::Simulator, message));
                 }
             },
         }
     };
     if let Some(simulator) = simulator {
-        driven.extend(&simulator.take_trace());
-        driven.sightings = simulator.sightings();
+        listener.driven.extend(&simulator.take_trace());
+        listener.driven.sightings = simulator.sightings();
     }
     Ok(ending)
-}
-
-/// Reads a line of the script. Without the embedded simulator, the line also tells the simulation time.
-fn read(line: &str, simulator: Option<&Simulator>, driven: &mut Driven, progress: &mut Progress) {
-    if let (Some(seconds), None) = (progress.read(line), simulator) {
-        progress.pass(seconds);
-        driven.time = seconds;
-    }
 }
 
 /// The next line of a script; `None` at the end. Lines that are not UTF-8 are skipped.
@@ -162,6 +212,7 @@ struct Running {
     lines: Lines<BufReader<ChildStdout>>,
     /// Whether standard output is still open.
     has_output: bool,
+    /// What it writes to standard error: its messages are events.
     stderr: JoinHandle<String>,
     /// The script's input, which stays empty; where there are no signals, its end interrupts the script.
     #[cfg_attr(unix, expect(dead_code, reason = "it is there to be closed with this process"))]
@@ -196,12 +247,12 @@ impl Running {
             return Err(failure("its output cannot be read"));
         };
         let stderr = tokio::spawn(async move {
-            let mut bytes = Vec::new();
+            let mut text = Vec::new();
             let mut all = stderr.take(MAX_STDERR);
             // What was read before an error is still worth showing.
-            let _ = all.read_to_end(&mut bytes).await;
+            let _ = all.read_to_end(&mut text).await;
             let _ = tokio::io::copy(&mut all.into_inner(), &mut tokio::io::sink()).await;
-            String::from_utf8_lossy(&bytes).trim_end().to_owned()
+            String::from_utf8_lossy(&text).trim_end().to_owned()
         });
         Ok(Self {
             child,
@@ -212,29 +263,22 @@ impl Running {
         })
     }
 
-    async fn ending(self, status: ExitStatus) -> Ending {
+    /// What it wrote to standard error, once it has ended.
+    async fn said(self) -> String {
         // A process that the script left behind could keep the pipe open.
         let stderr = timeout(STOP_LIMIT, self.stderr).await;
-        let stderr = stderr.ok().and_then(Result::ok).unwrap_or_default();
-        match status.code() {
-            Some(0) => Ending::Done,
-            Some(1) if !stderr.contains("Traceback (most recent call last)") => Ending::Failed(stderr),
-            Some(130) => Ending::Interrupted,
-            _ if stderr.is_empty() => Ending::Broken(format!("error: the script ended with {status}")),
-            _ => Ending::Broken(stderr),
-        }
+        stderr.ok().and_then(Result::ok).unwrap_or_default()
     }
 
-    /// Asks the script to stop its robots and end; kills it if it does not, or on a second interrupt.
-    async fn stop(&mut self, interrupts: &mut Interrupts) {
+    /// Asks the script to stop its robots and end; kills it if it does not. Further interrupts change nothing: a script that
+    /// is killed leaves wheels turning.
+    async fn stop(&mut self) {
         self.interrupt();
-        tokio::select! {
-            _ = timeout(STOP_LIMIT, self.child.wait()) => {}
-            () = interrupts.next() => {}
-        }
+        let _ = timeout(STOP_LIMIT, self.child.wait()).await;
         // An error means that it has ended already.
         let _ = self.child.kill().await;
     }
+
     #[cfg(unix)]
     fn interrupt(&mut self) {
         use rustix::process::{Pid, Signal, kill_process};

@@ -185,6 +185,11 @@ fn severities_are_a_matter_of_taste() {
     let expected = choices[1..].iter().map(|&choice| choice.to_owned()).collect();
     assert_eq!(severities(&arguments), (expected, Some(0)));
     assert_eq!(severities(&[&arguments[..], &["--deny", "warnings"]].concat()).1, Some(1));
+    // Neither hints nor information are warnings.
+    let mild = [&arguments[..], &["--severity", "unused-declaration=hint", "--deny", "warnings"]].concat();
+    let (shown, code) = severities(&mild);
+    assert!(shown.contains(&"repeated-wheel=information".to_owned()), "{shown:?}");
+    assert_eq!(code, Some(0));
     // The last one counts.
     arguments.extend(["--severity", "repeated-wheel=error"]);
     assert_eq!(severities(&arguments).1, Some(1));

@@ -6,6 +6,8 @@ use std::process::{ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 
 use expect_test::expect;
+use pydslrep_trace::{FailureClass, RunEvent, RunFailure};
+use rustix::process::Signal;
 
 use crate::process::{Done, Place, paper};
 
@@ -46,12 +48,44 @@ fn run(behaviour: &str) -> Done {
     command(&place(behaviour)).output().unwrap().into()
 }
 
+/// A command that writes an event.
+fn tell(event: &RunEvent) -> String {
+    format!("echo '{}'", event.line().trim_end())
+}
+
+/// A command that tells of a failure.
+fn failed(class: FailureClass, message: &str) -> String {
+    tell(&RunEvent::Failed(RunFailure::new(class, message)))
+}
+
+#[test]
+fn a_run_tells_how_it_failed() {
+    for (behaviour, class, message) in [
+        ("exit 3", FailureClass::Crash, "the script ended with exit status: 3"),
+        ("exit 130", FailureClass::Interrupted, "interrupted"),
+        (failed(FailureClass::File, "no space").as_str(), FailureClass::Crash, ""),
+    ] {
+        let place = place(behaviour);
+        let done: Done = command(&place).args(["--events", "-"]).output().unwrap().into();
+        let events: Vec<RunEvent> = done.out.lines().map(|line| RunEvent::parse(line).unwrap()).collect();
+        let found = events.iter().find_map(|event| match event {
+            RunEvent::Failed(failure) => Some((failure.class, failure.message.as_str())),
+            _ => None,
+        });
+        // A script that ends with 0 has succeeded.
+        assert_eq!(found, (done.code != Some(0)).then_some((class, message)), "{}", done.out);
+        let begin = events.iter().take_while(|event| matches!(event, RunEvent::Progress { robot: None, .. }));
+        assert_eq!(begin.count(), 2, "of a first run: {}", done.out);
+    }
+}
+
 #[test]
 fn a_movement_that_failed_is_told() {
-    let done = run("echo 'error: robot robot_1, movement mov_1, action 1: move 4 m: stuck' >&2; exit 1");
+    let stuck = failed(FailureClass::Action, "robot robot_1, movement mov_1, action 1: move 4 m: stuck");
+    let done = run(&format!("{stuck}; echo 'of a class of its own' >&2; exit 1"));
     assert_eq!(done.code, Some(1));
     let failure = "error: robot robot_1, movement mov_1, action 1: move 4 m: stuck\n";
-    assert_eq!(done.err, format!("{PREPARING}{failure}"));
+    assert_eq!(done.err, format!("{PREPARING}of a class of its own\n{failure}"));
 }
 
 #[test]
@@ -183,6 +217,37 @@ fn an_interrupt_stops_the_script() {
 }
 
 #[test]
+fn further_interrupts_let_it_stop_its_robots() {
+    for signal in [Signal::INT, Signal::QUIT, Signal::HUP, Signal::TERM] {
+        let running = Running::start(
+            "mkfifo go; tail -f /dev/null > /dev/null 2>&1 & \
+             trap 'trap \"\" INT; kill $!; echo > asked; read line < go; echo stopped > end; exit 130' INT; \
+             mkfifo asked; echo > started; wait",
+        );
+        running.signal(signal);
+        // It is stopping now, and hears of nothing else.
+        fs::read(running.place.path("asked")).unwrap();
+        for _ in 0..3 {
+            running.signal(signal);
+        }
+        running.place.write("go", "\n");
+        assert_eq!(running.event(), Event::Ended(Some(130)));
+        assert_eq!(running.place.read("end"), "stopped\n");
+    }
+}
+
+#[test]
+fn a_script_says_at_once_why_it_waits() {
+    let note = tell(&RunEvent::Note { text: "it waits".to_owned() });
+    let warning = tell(&RunEvent::Warning { text: "it is old".to_owned(), help: None });
+    let failed = failed(FailureClass::Simulator, "no reply");
+    let place = place(&format!("{note}; {warning}; {failed}; exit 2"));
+    let done: Done = command(&place).arg("--no-progress").output().unwrap().into();
+    let said = "note: it waits\nwarning: it is old\nerror: no reply\n";
+    assert_eq!((done.code, done.err.as_str()), (Some(2), said));
+}
+
+#[test]
 fn whoever_started_a_run_need_not_live_to_end_it() {
     let mut running = Running::start_with(
         &["--until-input-ends"],
@@ -238,7 +303,11 @@ impl Running {
     }
 
     fn interrupt(&self) {
-        rustix::process::kill_process(self.pid, rustix::process::Signal::INT).unwrap();
+        self.signal(Signal::INT);
+    }
+
+    fn signal(&self, signal: Signal) {
+        rustix::process::kill_process(self.pid, signal).unwrap();
     }
 
     fn event(&self) -> Event {

@@ -10,6 +10,7 @@ mod explain;
 mod fake_python;
 mod fix;
 mod fmt;
+mod help;
 mod new;
 mod newcomer;
 mod own;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::net::TcpListener;
 use std::sync::Mutex;
 
+use pydslrep_trace::{FailureClass, FileKind, RunEvent};
 use serde_json::Value;
 
 use crate::process::{Done, Place, paper, repository};
@@ -155,6 +156,46 @@ fn a_blocked_robot_fails_its_action() {
     let message = "action 1: move 2 m: no progress for 5 s, 1.201 m from the goal; its wheels turn, but the body does not move: an obstacle may be in the way";
     assert!(done.err.contains(message), "{}", done.err);
     assert!(done.out.contains("stopped  0.799  0.000"), "{}", done.out);
+}
+
+/// The events in a text: every line is one.
+fn events(text: &str) -> Vec<RunEvent> {
+    text.lines().map(|line| RunEvent::parse(line).unwrap_or_else(|| panic!("{line}"))).collect()
+}
+
+#[test]
+fn events_tell_what_happens() {
+    let place = Place::with("x.pyr", SCOUT);
+    place.write("wall.scene.toml", "[[wall]]\nfrom = [1, -1]\nto = [1, 1]\n");
+    let run_with = |target: &str| {
+        let options = ["--environment", "wall", "--no-progress", "--trace", "t.jsonl", "--events", target];
+        run(&place, &[&["x.pyr"], &options[..]].concat())
+    };
+    let done = run_with("events.jsonl");
+    assert_eq!(done.code, Some(1), "{}", done.err);
+    let found = events(&place.read("events.jsonl"));
+    let [RunEvent::Started { robots, .. }, RunEvent::ActionBegun(begin), middle @ .., last] = &found[..]
+    else {
+        panic!("{found:?}")
+    };
+    assert_eq!((robots.len(), begin.action, begin.t), (1, 1, 0.0));
+    assert_eq!(*last, RunEvent::File { kind: FileKind::Trace, path: "t.jsonl".to_owned() });
+    let [RunEvent::Contact(contact), RunEvent::Failed(failure), RunEvent::Figures { figures, table }] =
+        middle
+    else {
+        panic!("{middle:?}")
+    };
+    assert!((contact.x - 0.8).abs() < 0.01, "{contact:?}");
+    assert_eq!((failure.class, failure.action), (FailureClass::Action, Some(1)));
+    // The warning before is of the program, which is no event.
+    let said = format!("file.\nerror: {}\ntrace: t.jsonl\n", failure.message);
+    assert!(done.err.ends_with(&said), "{}", done.err);
+    assert_eq!((&figures["complete"], table), (&Value::Bool(false), &done.out));
+
+    let done = run_with("-");
+    assert_eq!(events(&done.out).len(), found.len());
+    assert!(done.err.contains("no progress for 5 s"), "{}", done.err);
+    assert!(run_with("x.pyr").err.contains("x.pyr"), "it is an input");
 }
 
 #[test]

@@ -12,19 +12,22 @@ use std::process::ExitCode;
 use clap::{Args, Subcommand};
 
 use crate::failure::Failure;
+use crate::help::Help;
 
-const EXAMPLES: &str = "\
-Examples:
-  pydslrep scene push patrol.pyr               build the program's robots and obstacles in CoppeliaSim
-  pydslrep scene push patrol.pyr --replace     build them again after a change
-  pydslrep run patrol.pyr --host 127.0.0.1 --port 23000
-                                               drive them there
-  pydslrep scene remove                        take them away; what you made yourself stays
-  pydslrep scene pull hall                     create hall/hall.pyr and its scene from what is there";
+const HELP: Help = Help {
+    examples: &[
+        ("pydslrep scene push patrol.pyr", "build the program's robots and obstacles in CoppeliaSim"),
+        ("pydslrep scene push patrol.pyr --replace", "build them again after a change"),
+        ("pydslrep run patrol.pyr --host 127.0.0.1 --port 23000", "drive them there"),
+        ("pydslrep scene remove", "take them away; what you made yourself stays"),
+        ("pydslrep scene pull hall", "create hall/hall.pyr and its scene from what is there"),
+    ],
+    notes: &[],
+};
 
 /// Build a program's scene in a running CoppeliaSim, or read a scene from there
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = HELP.text())]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     task: Task,

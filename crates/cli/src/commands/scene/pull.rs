@@ -2,11 +2,15 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use clap::Args;
+use pydslrep_analysis::Severity;
 use pydslrep_output::write_new_folder;
 use pydslrep_scene::ENDING;
 use pydslrep_text::file_names::PROGRAM_EXTENSION as EXTENSION;
+use pydslrep_workspace::{MemoryFiles, Workspace, key_of};
+use ropey::Rope;
 use serde::Deserialize;
 use serde_json::json;
 
@@ -75,6 +79,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 fn write(folder: &Path, name: &str, environment: &str, scene: &Pulled, port: u16) -> Result<(), Failure> {
     let (program, file) = (format!("{name}.{EXTENSION}"), format!("{environment}{ENDING}"));
     let (program_content, scene_content) = (program_text(scene, environment, port), scene_text(scene));
+    check(folder, &program_content, environment, &scene_content)?;
     let files = [(program.as_str(), program_content.as_str()), (file.as_str(), scene_content.as_str())];
     write_new_folder(folder, &files).map_err(|error| Failure::unwritten(folder, &error))?;
     output::print(&format!(
@@ -84,4 +89,65 @@ fn write(folder: &Path, name: &str, environment: &str, scene: &Pulled, port: u16
         output::count(scene.robots.len(), "robot"),
         output::count(scene.obstacles.len(), "obstacle"),
     ))
+}
+
+/// Checks what is to be written as an editor would.
+fn check(folder: &Path, program: &str, environment: &str, scene: &str) -> Result<(), Failure> {
+    let place = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
+    let (program_path, scene_path) =
+        (place.join(format!("program.{EXTENSION}")), place.join(format!("{environment}{ENDING}")));
+    let files = MemoryFiles::default();
+    files.write(&scene_path, scene);
+    let mut workspace = Workspace::new(Arc::new(files));
+    let key = key_of(&program_path);
+    workspace.open(&key, Rope::from_str(program));
+    let in_scene = workspace.problems(&key_of(&scene_path)).into_iter().map(|problem| problem.message);
+    let database = workspace.database();
+    let of_program = database.file(&key).map(|file| database.diagnostics(file)).unwrap_or_default();
+    let in_program = of_program.into_iter().filter(|problem| problem.severity == Severity::Error);
+    let mut errors = in_scene.chain(in_program.map(|problem| problem.message));
+    match errors.next() {
+        None => Ok(()),
+        Some(first) => {
+            let more = errors.count();
+            let more = if more > 0 {
+                format!(", and {}", output::count(more, "other error"))
+            } else {
+                String::new()
+            };
+            Err(Failure::new(format!("what is in the scene makes no program: {first}{more}"))
+                .help("correct the scene in CoppeliaSim; nothing was written"))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn checked(radius: f64, name: &str) -> Result<(), Failure> {
+        let wheel = |name: &str, y: f64| json!({ "name": name, "radius": radius, "x": 0.0, "y": y });
+        let scene: Pulled = serde_json::from_value(json!({
+            "robots": [{
+                "name": "rover", "type": "tw", "x": 1.0, "y": 0.0, "heading": 0.5, "length": 0.3, "width": 0.3,
+                "grip": 1.0, "rim_speed": null, "rim_acceleration": 1.0,
+                "wheels": [wheel("l", 0.15), wheel("r", -0.15)], "sensors": [],
+            }],
+            "obstacles": [{
+                "name": name, "x": 5.0, "y": 5.0, "heading": 0.0, "size": [1.0, 1.0], "radius": null, "corners": [],
+            }],
+        }))
+        .unwrap();
+        check(Path::new("hall"), &program_text(&scene, "area", 23000), "area", &scene_text(&scene))
+    }
+
+    #[test]
+    fn what_makes_no_program_is_not_written() {
+        assert!(checked(0.045, "the \"crate\"").is_ok());
+        for radius in [1e5, 1e300] {
+            let Err(Failure::Message { message, .. }) = checked(radius, "crate") else { panic!("{radius}") };
+            assert!(message.starts_with("what is in the scene makes no program: "), "{message}");
+            assert!(message.len() < 400, "{message}");
+        }
+    }
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use pydslrep_kinematics::{Drive, heading_degrees};
 use pydslrep_syntax::escape;
 use serde::Deserialize;
 
@@ -63,6 +64,14 @@ pub(super) struct Obstacle {
     corners: Vec<[f64; 2]>,
 }
 
+impl Robot {
+    /// The keyword that declares its wheels.
+    fn wheel_keyword(&self) -> &'static str {
+        let is_mecanum = Drive::from_word(&self.drive).is_some_and(|drive| drive.row().mecanum);
+        if is_mecanum { "wheelH" } else { "wheel" }
+    }
+}
+
 impl Pulled {
     /// Without the robots that share a name, or the name of a wheel or sensor of another kind, with an earlier one: in a
     /// program a name stands for one thing.
@@ -70,7 +79,7 @@ impl Pulled {
         let mut known: BTreeMap<String, String> = BTreeMap::new();
         let mut robots: Vec<Robot> = Vec::new();
         for robot in self.robots {
-            let wheel = if robot.drive == "fwh" { "wheelH" } else { "wheel" };
+            let wheel = robot.wheel_keyword();
             let wheels = robot.wheels.iter().map(|part| {
                 (format!("wheel {}", part.name), format!("{wheel} {}", number(100.0 * part.radius)))
             });
@@ -102,7 +111,7 @@ pub(super) fn program_text(scene: &Pulled, environment: &str, port: u16) -> Stri
             .to_owned();
     let mut declared: Vec<String> = Vec::new();
     for robot in &scene.robots {
-        let wheel = if robot.drive == "fwh" { "wheelH" } else { "wheel" };
+        let wheel = robot.wheel_keyword();
         let wheels = robot.wheels.iter().map(|part| {
             format!("{wheel} {} with radius {}\n", escape(&part.name), number(100.0 * part.radius))
         });
@@ -156,7 +165,7 @@ pub(super) fn scene_text(scene: &Pulled) -> String {
         let _ = write!(text, "\n[[{table}]]\nname = {}\n", quoted(&obstacle.name));
         if let Some(size) = obstacle.size {
             let _ = writeln!(text, "at = {}\nsize = {}", pair([obstacle.x, obstacle.y]), pair(size));
-            let _ = writeln!(text, "heading = {}", degrees(obstacle.heading));
+            let _ = writeln!(text, "heading = {}", heading(obstacle.heading));
         } else if let Some(radius) = obstacle.radius {
             let _ = writeln!(text, "at = {}\nradius = {}", pair([obstacle.x, obstacle.y]), number(radius));
         } else {
@@ -181,7 +190,7 @@ fn robot_table(text: &mut String, robot: &Robot) {
         robot.name,
         number(robot.x),
         number(robot.y),
-        degrees(robot.heading),
+        heading(robot.heading),
         pair([robot.length, robot.width]),
     );
     let half = robot.wheels.len() / 2;
@@ -209,7 +218,7 @@ fn robot_table(text: &mut String, robot: &Robot) {
             robot.name,
             sensor.name,
             pair([sensor.x, sensor.y]),
-            degrees(sensor.bearing),
+            heading(sensor.bearing),
             number(sensor.range),
             degrees(sensor.cone),
         );
@@ -223,15 +232,20 @@ fn number(value: f64) -> String {
     format!("{}", rounded + 0.0)
 }
 
+/// The opening of a cone.
 fn degrees(radians: f64) -> String {
     number(radians.to_degrees())
+}
+
+fn heading(radians: f64) -> String {
+    format!("{}", heading_degrees(radians, 6))
 }
 
 fn pair([x, y]: [f64; 2]) -> String {
     format!("[{}, {}]", number(x), number(y))
 }
 
-/// A basic string of TOML, whose escapes are those of JSON.
+/// A basic string of TOML, whose escapes are those of JSON; TOML allows no control character without one.
 fn quoted(text: &str) -> String {
-    serde_json::Value::from(text).to_string()
+    serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007F")
 }

@@ -58,8 +58,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         return Ok(ExitCode::FAILURE);
     };
     let scene = inputs.scene(file, &environment)?;
+    let reach = pydslrep_analysis::reach(&environment, &scene)
+        .map_err(|error| Failure::new(format!("`{}` cannot be built: {error}", environment.name)))?;
     let parameters = json!({
-        "scene": describe(&environment.name, &scene),
+        "scene": describe(&environment.name, &scene, reach),
         "replace": arguments.replace,
     });
     let simulator = arguments.address.with(&inputs.settings(file).coppeliasim);

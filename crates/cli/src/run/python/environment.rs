@@ -14,7 +14,7 @@ use tokio::time::sleep;
 use super::index::{check_index, uninstalled};
 use super::interpreter::Interpreter;
 use super::subprocess::succeed;
-use super::{Packages, manifest, uncached};
+use super::{Packages, Watcher, manifest, uncached};
 use crate::failure::Failure;
 use crate::report::output;
 
@@ -52,18 +52,19 @@ impl Environment {
     }
 
     /// Its interpreter; creates or replaces it where that is necessary.
-    pub(super) async fn prepare(self, quiet: bool) -> Result<PathBuf, Failure> {
+    pub(super) async fn prepare(self, watcher: Watcher<'_>) -> Result<PathBuf, Failure> {
         let python = python_in(&self.home);
         if let State::Sound = self.state() {
             return Ok(python);
         }
-        let steps = Steps { progress: if quiet { ProgressBar::hidden() } else { spinner() }, quiet };
+        let steps =
+            Steps { progress: if watcher.quiet { ProgressBar::hidden() } else { spinner() }, watcher };
         let lock = self.lock(&steps).await;
         match self.state() {
             // Another run was faster.
             State::Sound => return Ok(python),
             State::Missing => {}
-            State::Damaged(reason) => output::warning(
+            State::Damaged(reason) => watcher.reporter.warn(
                 &format!("the Python environment in {} is damaged: {reason}", self.home.display()),
                 Some("it is made again"),
             ),
@@ -103,7 +104,7 @@ impl Environment {
 
     /// Lets one run at a time change the cache. The lock goes with the process, whatever ends it; `None` where the file
     /// system has no locks.
-    async fn lock(&self, steps: &Steps) -> Option<File> {
+    async fn lock(&self, steps: &Steps<'_>) -> Option<File> {
         let file =
             File::options().create(true).truncate(false).write(true).open(self.cache.join("lock")).ok()?;
         loop {
@@ -129,7 +130,7 @@ impl Environment {
     }
 
     /// Creates a complete environment in a temporary folder.
-    async fn create(&self, steps: &Steps) -> Result<TempDir, Failure> {
+    async fn create(&self, steps: &Steps<'_>) -> Result<TempDir, Failure> {
         self.show(steps, "creating a virtual environment");
         let folder = tempfile::Builder::new().prefix(UNFINISHED).tempdir_in(&self.cache);
         let folder = folder.map_err(|error| uncached(&self.cache, &error))?;
@@ -157,7 +158,7 @@ impl Environment {
         Ok(folder)
     }
 
-    fn show(&self, steps: &Steps, step: &str) {
+    fn show(&self, steps: &Steps<'_>, step: &str) {
         steps.show(&format!("preparing Python for {}: {step}", self.packages.first_run()));
     }
 
@@ -178,24 +179,25 @@ fn python_in(home: &Path) -> PathBuf {
 }
 
 /// Shows the current step: as a spinner on a terminal, else as a line, which an editor shows as progress.
-struct Steps {
+struct Steps<'a> {
     progress: ProgressBar,
-    quiet: bool,
+    watcher: Watcher<'a>,
 }
 
-impl Steps {
+impl Steps<'_> {
     fn show(&self, step: &str) {
         if self.progress.message() == step {
             return;
         }
         self.progress.set_message(step.to_owned());
-        if !self.quiet && !io::stderr().is_terminal() {
+        self.watcher.reporter.progress(step);
+        if !self.watcher.quiet && !io::stderr().is_terminal() {
             output::say(&format!("{step}\n"));
         }
     }
 }
 
-impl Drop for Steps {
+impl Drop for Steps<'_> {
     fn drop(&mut self) {
         self.progress.finish_and_clear();
     }

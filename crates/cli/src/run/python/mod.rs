@@ -16,6 +16,7 @@ use pydslrep_script::{REQUIREMENTS, REQUIREMENTS_SLAM};
 
 use self::environment::Environment;
 use crate::failure::Failure;
+use crate::run::reporter::Reporter;
 
 /// What is installed for a script.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,21 +60,29 @@ impl Packages {
     }
 }
 
+/// Who is told how the preparations get on.
+#[derive(Clone, Copy)]
+pub(crate) struct Watcher<'a> {
+    pub(crate) reporter: &'a Reporter,
+    /// Whether people see no progress.
+    pub(crate) quiet: bool,
+}
+
 /// An interpreter with these packages: the user's own if it has them, else that of a private environment. The first call
-/// creates it, and a later one replaces it if it is damaged; of concurrent calls, one does. `quiet` hides progress.
+/// creates it, and a later one replaces it if it is damaged; of concurrent calls, one does.
 ///
 /// # Errors
 /// If there is no suitable Python or the environment cannot be created.
 pub(crate) async fn prepare(
     chosen: Option<&Path>,
     packages: Packages,
-    quiet: bool,
+    watcher: Watcher<'_>,
 ) -> Result<PathBuf, Failure> {
     let base = interpreter::find(chosen, packages.modules()).await?;
     if base.modules.len() == packages.modules().len() {
         return Ok(base.path);
     }
-    Environment::new(base, packages, cache()?).prepare(quiet).await
+    Environment::new(base, packages, cache()?).prepare(watcher).await
 }
 
 /// The interpreter itself, for scripts without requirements.
