@@ -96,10 +96,12 @@ pub(crate) struct Running {
 /// What a child process does.
 #[derive(Debug)]
 pub(crate) enum ChildEvent {
+    /// It printed a line on standard output; the end of the line is part of it.
+    Printed(String),
     /// It printed a line on standard error.
     Line(String),
-    /// It ended, with this exit code if there is one; the text is its whole standard output.
-    Ended(Option<i32>, String),
+    /// It ended, with this exit code if there is one. This is the last event.
+    Ended(Option<i32>),
 }
 
 /// Interrupts a child when it is dropped, because the request that waits for it was cancelled. A child that has ended is
@@ -158,22 +160,29 @@ fn follow(
     stderr: Option<impl Read>,
     sender: &UnboundedSender<ChildEvent>,
 ) {
-    let printed = thread::spawn(move || {
-        let mut printed = Vec::new();
-        // Output before a failure is still worth showing.
-        let _ = stdout.map(|mut stdout| stdout.read_to_end(&mut printed));
-        String::from_utf8_lossy(&printed).into_owned()
+    let printed = sender.clone();
+    let printing = thread::spawn(move || {
+        pass_on(stdout, &printed, |line| ChildEvent::Printed(line.to_owned()));
     });
-    let mut lines = stderr.map(BufReader::new);
-    let mut line = Vec::new();
-    while lines.as_mut().is_some_and(|lines| lines.read_until(b'\n', &mut line).is_ok_and(|read| read > 0)) {
-        let _ = sender.unbounded_send(ChildEvent::Line(String::from_utf8_lossy(&line).trim_end().to_owned()));
-        line.clear();
-    }
-    let printed = printed.join().unwrap_or_default();
+    pass_on(stderr, sender, |line| ChildEvent::Line(line.trim_end().to_owned()));
+    let _ = printing.join();
     await_end(child);
     let status = child.child.lock().unwrap_or_else(PoisonError::into_inner).wait();
-    let _ = sender.unbounded_send(ChildEvent::Ended(status.ok().and_then(|status| status.code()), printed));
+    let _ = sender.unbounded_send(ChildEvent::Ended(status.ok().and_then(|status| status.code())));
+}
+
+/// Passes on the lines of a stream; what comes before a failure is still worth showing.
+fn pass_on(
+    stream: Option<impl Read>,
+    sender: &UnboundedSender<ChildEvent>,
+    event: impl Fn(&str) -> ChildEvent,
+) {
+    let mut lines = stream.map(BufReader::new);
+    let mut line = Vec::new();
+    while lines.as_mut().is_some_and(|lines| lines.read_until(b'\n', &mut line).is_ok_and(|read| read > 0)) {
+        let _ = sender.unbounded_send(event(&String::from_utf8_lossy(&line)));
+        line.clear();
+    }
 }
 
 /// Waits without the lock, which is needed to interrupt the child. The process id is not reused before [`Child::wait`],

@@ -3,6 +3,7 @@
 use pydslrep_analysis::Fingerprint;
 use pydslrep_ide::PlannedPath;
 use serde::{Deserialize, Serialize};
+use tower_lsp::jsonrpc::Error;
 use tower_lsp::ls_types::Uri;
 
 use crate::page::Audience;
@@ -41,8 +42,8 @@ impl Watched {
 pub(crate) enum Sent {
     /// This one.
     Path(PlannedPath),
-    /// There was none.
-    Nothing,
+    /// There was none, for this reason.
+    Failure(Error),
     /// One that is too long to be compared, or that is still being planned.
     Long,
 }

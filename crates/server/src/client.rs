@@ -59,8 +59,12 @@ pub(crate) struct ClientFeatures {
     pub(crate) resolve_edits: bool,
     /// Edits may name the version of their document.
     pub(crate) versioned_edits: bool,
+    /// It applies edits that it is sent.
+    pub(crate) applies_edits: bool,
     /// Edits may create files.
     pub(crate) create_files: bool,
+    /// Edits may rename files.
+    pub(crate) rename_files: bool,
     /// It takes deltas of semantic tokens.
     pub(crate) token_deltas: bool,
     /// It can notify of changed files.
@@ -123,9 +127,11 @@ impl ClientFeatures {
             workspace.code_lens.as_ref().is_some_and(|lenses| lenses.refresh_support == Some(true));
         self.refreshes_diagnostics =
             workspace.diagnostics.as_ref().is_some_and(|pulled| pulled.refresh_support == Some(true));
+        self.applies_edits = workspace.apply_edit == Some(true);
         let Some(edit) = &workspace.workspace_edit else { return };
         let operations = edit.resource_operations.as_deref().unwrap_or_default();
         self.create_files = operations.contains(&ResourceOperationKind::Create);
+        self.rename_files = operations.contains(&ResourceOperationKind::Rename);
         // Neovim lists only operations, which only versioned edits can contain.
         self.versioned_edits = edit.document_changes == Some(true) || !operations.is_empty();
     }

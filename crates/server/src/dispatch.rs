@@ -29,7 +29,7 @@ use crate::message::{Body, Outbox, WriteJson, encode, encode_answer, encode_erro
 use crate::reader::{Reader, yield_now};
 use crate::server::{Server, Stage};
 use crate::state::State;
-use crate::work::{SHORT, Work};
+use crate::work::{FileWork, SHORT, Work};
 
 /// The protocol's code for requests that come too early.
 const NOT_INITIALIZED: ErrorCode = ErrorCode::ServerError(-32002);
@@ -117,7 +117,11 @@ impl Table {
     {
         self.request::<R>(announce, move |server, id, params| {
             let work = prepare(&mut server.state(), &params);
-            let Some(work) = work else { return answer_now(&id, Ok(Value::Null)) };
+            let work = match work {
+                None => return answer_now(&id, Ok(Value::Null)),
+                Some(Work::Done(answer)) => return answer_now(&id, Ok(answer)),
+                Some(Work::OnFile(work)) => work,
+            };
             if work.snapshot.text().len_bytes() < SHORT {
                 return answer_now(&id, Ok((work.run)(work.snapshot)));
             }
@@ -128,7 +132,7 @@ impl Table {
                     // Room is asked for in turn, not when the request comes.
                     yield_now().await;
                     room.await;
-                    let Work { snapshot, outdated: is_outdated, run } = work;
+                    let FileWork { snapshot, outdated: is_outdated, run } = work;
                     let snapshot = snapshot.cancelled_by(is_outdated.clone()).cancelled_by(token);
                     let body = encode_answer(&id, &run(snapshot));
                     if is_outdated.is_cancelled() {

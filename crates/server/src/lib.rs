@@ -24,6 +24,7 @@ mod dispatch;
 mod documents;
 #[cfg(feature = "process")]
 mod driven;
+mod edits;
 #[cfg(feature = "process")]
 mod file_preview;
 #[cfg(feature = "process")]

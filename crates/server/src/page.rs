@@ -74,6 +74,15 @@ impl Pages {
         self.cursor_is(Cursor { at: place(uri, position), environment: None, is_edit: false });
     }
 
+    /// The cursor is in the scene of an environment that is declared here.
+    pub(crate) fn chosen_at(&mut self, program: &Uri, environment: String, position: Position) {
+        let (at, environment) = (place(program, position), Some(environment));
+        let is_known = |before: &Cursor| before.at == at && before.environment == environment;
+        if !self.cursor.as_ref().is_some_and(is_known) {
+            self.cursor_is(Cursor { at, environment, is_edit: false });
+        }
+    }
+
     /// The text was edited, here if that is known.
     pub(crate) fn edited_at(&mut self, uri: &Uri, position: Option<Position>) {
         let before = self.cursor.as_ref().filter(|cursor| cursor.at.text_document.uri == *uri);

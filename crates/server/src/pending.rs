@@ -85,3 +85,34 @@ impl Drop for Entry {
         self.requests.lock().remove(&self.id);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use futures::FutureExt;
+
+    use super::*;
+
+    #[test]
+    fn work_that_is_cancelled_while_it_computes_ends_as_cancelled() {
+        let (pending, id) = (PendingRequests::default(), Id::Number(1));
+        let request = pending.register(&id).unwrap();
+        let token = request.token.clone();
+        let answer = request.run(async {
+            // As another thread does it; what the work returns then is incomplete.
+            pending.cancel(&id);
+            Ok(token.is_cancelled())
+        });
+        assert_eq!(answer.now_or_never(), Some(Err(Error::request_cancelled())));
+        let again = pending.register(&id).expect("the id is free again");
+        assert_eq!(again.run(async { Ok(7) }).now_or_never(), Some(Ok(7)));
+    }
+
+    #[test]
+    fn an_id_has_one_request_at_a_time() {
+        let (pending, id) = (PendingRequests::default(), Id::Number(1));
+        let first = pending.register(&id).unwrap();
+        assert!(pending.register(&id).is_err());
+        drop(first);
+        assert!(pending.register(&id).is_ok());
+    }
+}

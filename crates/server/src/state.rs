@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use futures::channel::oneshot;
-use pydslrep_analysis::{CancellationToken, Database, EditCounts, FileId, Snapshot};
+use pydslrep_analysis::{CancellationToken, Database, EditCounts, EntityId, FileId, Severity, Snapshot};
 use pydslrep_config::{Config, Problem};
 use pydslrep_files::Disk;
-use pydslrep_ide::{FilePosition, TomlFile};
+use pydslrep_ide::{FilePosition, ScenePlace, TomlFile, TypedStatement};
 use pydslrep_text::Span;
 use pydslrep_workspace::{
     Changes, DocumentKind, FileSystem, MAX_BYTES, MemoryFiles, ReadError, TextChange, Workspace, path_of,
@@ -20,7 +20,7 @@ use tower_lsp::ls_types::{
     TextDocumentPositionParams, TraceValue, Uri,
 };
 
-use crate::chosen::Watched;
+use crate::chosen::{ChosenEnvironment, Watched};
 use crate::client::ClientFeatures;
 use crate::documents::{ClientDocument, Document, key, text_changes};
 use crate::handlers::driven_path::DrivenPaths;
@@ -30,7 +30,7 @@ use crate::positions::{Encoding, to_offset, to_position, to_range, to_span};
 use crate::runtimes::Runtimes;
 use crate::shared::SharedWorkspace;
 use crate::typing::{Typing, replacements};
-use crate::work::{SHORT, Work};
+use crate::work::{FileWork, SHORT, Work};
 
 /// Documents, their analysis, and what the client can do.
 #[derive(Debug)]
@@ -171,11 +171,37 @@ impl State {
         let after = changes.last().map_or(before, |change| &change.after);
         let replaced = replacements(events, &spans, before, after);
         let are_alike = events.windows(2).all(|pair| pair[0].text == pair[1].text);
-        let is_elsewhere = self.typing.as_ref().is_some_and(|typing| typing.key != key);
+        let before_key = self.typing.as_ref().map(|typing| typing.key.clone());
+        let is_elsewhere = before_key.as_ref().is_some_and(|before| before != key);
         self.typing = Typing::after(self.typing.take(), key, &replaced, are_alike);
         if is_elsewhere {
             self.outdated = Outdated { hints: true, lenses: true };
         }
+        if let Some(left) = before_key.filter(|_| is_elsewhere) {
+            self.changes.documents.insert(left);
+        }
+    }
+
+    /// The statements being typed in a document, one for each cursor.
+    pub(crate) fn statements_being_typed(&self, document: Document<'_>) -> Vec<TypedStatement<'_>> {
+        let typing = self.typing.as_ref().filter(|typing| typing.key == document.key);
+        let places = typing.map_or(&[][..], Typing::unsaved_places);
+        let Some(file) = document.file else { return Vec::new() };
+        let statement =
+            |offset: &u32| TypedStatement::at(self.database(), FilePosition { file, offset: *offset });
+        places.iter().filter_map(statement).collect()
+    }
+
+    /// Whether the next word of a statement being typed will settle an error.
+    pub(crate) fn is_error_unsettled(&self) -> bool {
+        let Some(document) = self.typing.as_ref().and_then(|typing| self.document_at(&typing.key)) else {
+            return false;
+        };
+        let statements = self.statements_being_typed(document);
+        let Some(file) = document.file.filter(|_| !statements.is_empty()) else { return false };
+        let found = self.database().diagnostics(file);
+        let mut errors = found.iter().filter(|found| found.severity == Severity::Error);
+        errors.any(|error| statements.iter().any(|statement| statement.settles(error)))
     }
 
     /// What has changed in the workspace since this was last asked.
@@ -242,6 +268,8 @@ impl State {
         let uri = &at.text_document.uri;
         if self.is_program(uri) {
             self.pages.cursor_is_at(uri, at.position);
+        } else if let Some((which, position)) = self.driven_in(uri) {
+            self.pages.chosen_at(&which.uri, which.environment, position);
         }
     }
 
@@ -256,9 +284,22 @@ impl State {
         let key = key(uri);
         let (Some(typing), Some(document)) = (&self.typing, self.workspace.document(&key)) else { return };
         if typing.is_left(&key, range, &document.text) {
+            self.changes.documents.insert(typing.key.clone());
             self.typing = None;
             self.outdated = Outdated { hints: true, lenses: true };
         }
+    }
+
+    /// Whether this is the first request for completion since the text changed at this place; from now on it is not.
+    pub(crate) fn is_first_completion_after_typing(&mut self, at: &TextDocumentPositionParams) -> bool {
+        let key = key(&at.text_document.uri);
+        let Some(document) = self.workspace.document(&key) else { return false };
+        if !document.is_program() {
+            // Where the user types in other files is not noted.
+            return true;
+        }
+        let offset = to_offset(&document.text, at.position, self.client.encoding);
+        self.typing.as_mut().is_some_and(|typing| typing.complete(&key, offset))
     }
 
     /// Has the client ask again for what is no longer so.
@@ -277,7 +318,10 @@ impl State {
     /// Notes that a document was saved.
     pub(crate) fn saved(&mut self, uri: &Uri) {
         let key = key(uri);
-        self.outdated.lenses |= self.typing.as_mut().is_some_and(|typing| typing.save(&key));
+        if self.typing.as_mut().is_some_and(|typing| typing.save(&key)) {
+            self.outdated.lenses = true;
+            self.changes.documents.insert(key);
+        }
     }
 
     /// Closes a document; false if it is not open. From now on its file counts, if there is one.
@@ -353,17 +397,64 @@ impl State {
         run: impl FnOnce(Document<'_>, Encoding) -> Box<dyn FnOnce(Snapshot) -> R + Send>,
     ) -> Option<Work<R>> {
         let (document, file) = self.analysed(uri)?;
-        Some(Work {
+        Some(Work::OnFile(FileWork {
             snapshot: self.database().snapshot(file, None)?,
             outdated: document.outdated(),
             run: run(document, self.client.encoding),
-        })
+        }))
     }
 
     /// What a position in a document points at.
     pub(crate) fn place(&self, at: &TextDocumentPositionParams) -> Option<Place<'_>> {
         let (document, file) = self.analysed(&at.text_document.uri)?;
         Some(Place { document, file, offset: self.offset(document, at.position) })
+    }
+
+    /// The name at a position of a program, or of a scene that one has.
+    pub(crate) fn named(&self, at: &TextDocumentPositionParams) -> Option<Named<'_>> {
+        let document = self.document(&at.text_document.uri)?;
+        let offset = self.offset(document, at.position);
+        if let Some(file) = document.file {
+            return Some(Named { document, span: None, position: FilePosition { file, offset } });
+        }
+        let environment = self.environment_of_scene(document)?;
+        let text = document.text.to_string();
+        let found = pydslrep_ide::name_in_scene(self.database(), environment, &text, offset)?;
+        Some(Named { document, span: Some(found.span), position: found.declared })
+    }
+
+    /// The environment of a document that is a scene.
+    pub(crate) fn environment_of_scene(&self, document: Document<'_>) -> Option<EntityId> {
+        let is_scene = document.kind == DocumentKind::Scene;
+        is_scene.then(|| self.workspace.environment_of_scene(document.key)).flatten()
+    }
+
+    /// The environment that is driven in the scene at an address, and where that is declared.
+    pub(crate) fn driven_in(&self, scene: &Uri) -> Option<(ChosenEnvironment, Position)> {
+        let declared = self.environment_of_scene(self.document(scene)?)?;
+        let FilePosition { file, offset } = pydslrep_ide::declaration(self.database(), declared)?;
+        let (program, tree) = (self.document_of(file)?, self.database().tree(declared)?);
+        let which = ChosenEnvironment { uri: program.uri()?, environment: tree.name()?.text.to_string() };
+        Some((which, to_position(program.text, offset, self.client.encoding)))
+    }
+
+    /// The scene of an environment of a program, if there is one.
+    pub(crate) fn scene_document(&self, program: FileId, environment: &str) -> Option<Document<'_>> {
+        self.document_at(&self.workspace.scene_key(program, environment)?)
+    }
+
+    /// Places in scenes, each once: programs in one folder can share a scene.
+    pub(crate) fn scene_locations(&self, places: &[ScenePlace]) -> Vec<Location> {
+        let mut locations: Vec<Location> = Vec::new();
+        for place in places {
+            let Some(document) = self.scene_document(place.program, &place.environment) else { continue };
+            let Some(uri) = document.uri() else { continue };
+            let location = Location::new(uri, self.range(document, place.span));
+            if !locations.contains(&location) {
+                locations.push(location);
+            }
+        }
+        locations
     }
 
     /// The settings or the scene at an address, with its text.
@@ -415,6 +506,16 @@ fn end_of_edit(
     let (event, change) = (events.last()?, changes.last()?);
     let length = u32::try_from(event.text.len()).ok()?;
     Some(to_position(&change.after, change.span?.start + length, encoding))
+}
+
+/// A name in a program or a scene, and the place of a program that says what it refers to.
+pub(crate) struct Named<'a> {
+    /// The document that has the name.
+    pub(crate) document: Document<'a>,
+    /// Where the name is, in a scene.
+    pub(crate) span: Option<Span>,
+    /// The name itself in a program; its declaration, for one in a scene.
+    pub(crate) position: FilePosition,
 }
 
 /// A place in a document.

@@ -1,7 +1,8 @@
 //! Where the user is typing. The protocol has no cursor, but a change ends at the cursor, and some requests are about
 //! the position it moved to.
 //!
-//! A change counts as typing at its end: on the line that Enter begins, on the last line of pasted text. A message with
+//! A change counts as typing at its end: on the line that Enter begins, on the last line of pasted text; but before a brace or
+//! quote that the editor closes, and on the line in the middle where it makes two of Enter. A message with
 //! several changes is typing with several cursors if all of them insert the same text; otherwise it is formatting or a
 //! rename, and the cursor has not moved.
 
@@ -21,6 +22,8 @@ pub(crate) struct Typing {
     places: Vec<u32>,
     /// Whether the document has been saved since.
     is_saved: bool,
+    /// Whether completion has been requested since.
+    is_completed: bool,
 }
 
 /// A change of a text.
@@ -30,6 +33,22 @@ pub(crate) struct Replacement {
     span: Span,
     /// The length of the new text.
     length: u32,
+    /// Where the cursor is in the new text.
+    cursor: u32,
+}
+
+/// Where the cursor is after a text was typed, in bytes from its start.
+fn cursor_in(text: &str) -> u32 {
+    let breaks = text.matches('\n').count();
+    let end = if matches!(text, "{}" | "\"\"") {
+        1
+    } else if breaks > 1 && text.trim().is_empty() {
+        let before = text.rfind('\n').map_or(text, |last| &text[..last]);
+        before.strip_suffix('\r').unwrap_or(before).len()
+    } else {
+        text.len()
+    };
+    u32::try_from(end).unwrap_or(u32::MAX)
 }
 
 /// What the changes of one message replaced; `spans` has the range of each, `None` where the whole text was sent.
@@ -44,7 +63,8 @@ pub(crate) fn replacements(
     }
     let each = spans.iter().zip(changes);
     each.filter_map(|(span, change)| {
-        Some(Replacement { span: (*span)?, length: Span::of(&change.text).len() })
+        let (length, cursor) = (Span::of(&change.text).len(), cursor_in(&change.text));
+        Some(Replacement { span: (*span)?, length, cursor })
     })
     .collect()
 }
@@ -58,7 +78,10 @@ fn whole(before: &Rope, after: &Rope) -> Option<Replacement> {
     let offset = |byte: usize| u32::try_from(byte).unwrap_or(u32::MAX);
     let span = Span::new(offset(head), offset(before.len_bytes() - tail));
     let length = offset(after.len_bytes() - tail - head);
-    (!span.is_empty() || length > 0).then_some(Replacement { span, length })
+    // Not a multiple of a character, if characters share bytes.
+    let text = after.get_byte_slice(head..after.len_bytes() - tail).map(|text| text.to_string());
+    let cursor = text.map_or(length, |text| cursor_in(&text));
+    (!span.is_empty() || length > 0).then_some(Replacement { span, length, cursor })
 }
 
 impl Typing {
@@ -78,7 +101,7 @@ impl Typing {
             return None;
         }
         let mut places = stays.map_or_else(Vec::new, |before| before.places);
-        for Replacement { span, length } in changes {
+        for Replacement { span, length, cursor } in changes {
             for place in &mut places {
                 if *place >= span.end {
                     *place = *place - span.len() + length;
@@ -87,10 +110,10 @@ impl Typing {
                 }
             }
             if is_typed {
-                places.push(span.start + length);
+                places.push(span.start + cursor);
             }
         }
-        Some(Self { key: key.to_owned(), places, is_saved: false })
+        Some(Self { key: key.to_owned(), places, is_saved: false, is_completed: false })
     }
 
     /// The lines being typed in, without their endings.
@@ -110,6 +133,11 @@ impl Typing {
         if self.is_saved { &[] } else { &self.places }
     }
 
+    /// Notes that completion is requested at an offset; returns whether that is the first time since a change there.
+    pub(crate) fn complete(&mut self, key: &str, offset: u32) -> bool {
+        self.key == key && self.places.contains(&offset) && !std::mem::replace(&mut self.is_completed, true)
+    }
+
     /// Notes that a document was saved; returns whether that changes anything.
     pub(crate) fn save(&mut self, key: &str) -> bool {
         self.key == key && !std::mem::replace(&mut self.is_saved, true)
@@ -120,5 +148,16 @@ impl Typing {
         let line_of = |place: &u32| text.byte_to_line((*place as usize).min(text.len_bytes()));
         let cursor = range.start.line as usize..=range.end.line as usize;
         self.key != key || !self.places.iter().any(|place| cursor.contains(&line_of(place)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cursor_is_before_what_the_editor_adds() {
+        assert_eq!(["a", "{", "{}", "\"\"", "}"].map(cursor_in), [1, 1, 1, 1, 1]);
+        assert_eq!(["\n  ", "\n  \n", "\r\n  \r\n", "a\n\nb"].map(cursor_in), [3, 3, 4, 4]);
     }
 }

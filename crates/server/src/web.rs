@@ -22,6 +22,7 @@ use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper::{Method, Request, Response, StatusCode};
 use hyper_util::rt::{TokioIo, TokioTimer};
+use tokio::io::AsyncWriteExt;
 use tokio::net::TcpStream;
 use tokio::runtime;
 use tokio::sync::{Semaphore, broadcast, oneshot};
@@ -38,8 +39,16 @@ const MOST_BYTES: usize = 64 << 10;
 /// How long a request may take to arrive, its head and its body each.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-/// How many connections may be open; a browser opens six for one page. Others wait until the slow ones are dropped.
+/// How many connections may be open; a browser opens six for one page. Others wait until the slow ones are dropped, and are
+/// told so if none is.
 const MOST_CONNECTIONS: usize = 128;
+
+/// How many may wait for that. Still others are closed.
+const MOST_WAITING: usize = 128;
+
+/// What one is told that has waited in vain.
+const FULL: &str = "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nContent-Length: 62\r\n\
+    Connection: close\r\n\r\nToo many pages are connected to the preview: close some first\n";
 
 /// How many events may wait for a page that is slow to read.
 const MOST_EVENTS: usize = 256;
@@ -174,21 +183,32 @@ struct Door {
 /// Accepts connections until it fails.
 async fn accept(listener: TcpListener, door: Arc<Door>) -> io::Result<()> {
     let listener = tokio::net::TcpListener::from_std(listener)?;
-    let room = Arc::new(Semaphore::new(MOST_CONNECTIONS));
+    let (room, queue) = (Arc::new(Semaphore::new(MOST_CONNECTIONS)), Arc::new(Semaphore::new(MOST_WAITING)));
     loop {
-        let Ok(permit) = Arc::clone(&room).acquire_owned().await else { return Ok(()) };
         match listener.accept().await {
             Ok((stream, _)) => {
-                let door = Arc::clone(&door);
+                let Ok(place) = Arc::clone(&queue).try_acquire_owned() else { continue };
+                let (door, room) = (Arc::clone(&door), Arc::clone(&room));
                 tokio::spawn(async move {
-                    serve(stream, door).await;
-                    drop(permit);
+                    // The slow ones are dropped by then.
+                    let permit = timeout(2 * PATIENCE, room.acquire_owned()).await;
+                    drop(place);
+                    match permit {
+                        Ok(Ok(_permit)) => serve(stream, door).await,
+                        _ => refuse(stream).await,
+                    }
                 });
             }
             // The client has left, or too many files are open.
             Err(_) => sleep(Duration::from_millis(50)).await,
         }
     }
+}
+
+/// Tells a connection that there is no room for it.
+async fn refuse(mut stream: TcpStream) {
+    // It may have left.
+    let _ = timeout(PATIENCE, stream.write_all(FULL.as_bytes())).await;
 }
 
 /// Serves one connection until it ends.

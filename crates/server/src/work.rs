@@ -5,8 +5,16 @@ use pydslrep_analysis::{CancellationToken, Snapshot};
 /// Texts shorter than this many bytes are read before they could be handed to another thread.
 pub(crate) const SHORT: usize = 64 << 10;
 
-/// Work on one file.
-pub(crate) struct Work<R> {
+/// The work of a request about one file.
+pub(crate) enum Work<R> {
+    /// To be done on a program.
+    OnFile(FileWork<R>),
+    /// Done already: other files are short.
+    Done(R),
+}
+
+/// Work on one program.
+pub(crate) struct FileWork<R> {
     /// The file.
     pub(crate) snapshot: Snapshot,
     /// Cancelled when the file changes.

@@ -7,25 +7,36 @@ use pydslrep_analysis as analysis;
 use pydslrep_analysis::FileId;
 use pydslrep_ide as ide;
 use pydslrep_output::WriteError;
-use rustc_hash::FxHashMap;
+use pydslrep_scene::ENDING;
 use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::{
     CodeAction, CodeActionDisabled, CodeActionKind, CodeActionOptions, CodeActionOrCommand, CodeActionParams,
-    CodeActionResponse, CodeActionTriggerKind, Command, Diagnostic, DocumentChanges, OneOf,
-    OptionalVersionedTextDocumentIdentifier, ServerCapabilities, TextDocumentEdit,
-    TextDocumentPositionParams, TextEdit, Uri, WorkspaceEdit,
+    CodeActionResponse, CodeActionTriggerKind, Command, Diagnostic, ServerCapabilities,
+    TextDocumentPositionParams, Uri, WorkspaceEdit,
+};
+#[cfg(feature = "process")]
+use tower_lsp::ls_types::{
+    CodeActionContext, Location, PartialResultParams, TextDocumentIdentifier, WorkDoneProgressParams,
 };
 
 use self::rewriting::FixAllOf;
 use crate::chosen::ChosenEnvironment;
 use crate::client::ClientFeatures;
-use crate::documents::Document;
+use crate::documents::{Document, uri_of};
+use crate::edits::{self, Edits};
 use crate::handlers::diagnostics;
 use crate::handlers::scripts::{self, Script};
 use crate::state::State;
 
+/// The kind of actions that create a scene or add to one.
+pub(crate) const SCENE_KIND: CodeActionKind = CodeActionKind::new("scene");
+
 /// The kind of the action that generates a script; editors may run it on save.
 pub(crate) const GENERATE_SCRIPT_KIND: CodeActionKind = CodeActionKind::new("source.generateScript");
+
+/// The kind of the same action in a menu about the environment at the cursor: menus of some editors leave out what is
+/// about the whole file.
+const SCRIPT_HERE_KIND: CodeActionKind = CodeActionKind::new("script");
 
 /// Its command, where the client cannot create files.
 pub(crate) const GENERATE_SCRIPT: &str = "pydslrep.generateScript";
@@ -39,8 +50,10 @@ pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures)
         CodeActionKind::REFACTOR_EXTRACT,
         CodeActionKind::REFACTOR_INLINE,
         CodeActionKind::REFACTOR_REWRITE,
+        SCENE_KIND,
         CodeActionKind::SOURCE_FIX_ALL,
         GENERATE_SCRIPT_KIND,
+        SCRIPT_HERE_KIND,
     ];
     let options = CodeActionOptions {
         code_action_kinds: Some(kinds),
@@ -83,13 +96,36 @@ pub(crate) fn code_actions(state: &mut State, params: &CodeActionParams) -> Opti
         actions.extend(rewriting::fix_all(state, document, file));
     }
     if wanted(&GENERATE_SCRIPT_KIND) {
-        actions.extend(script_actions(state, document, file));
+        actions.extend(script_actions(state, document, file, params));
+    }
+    if wanted(&SCENE_KIND) && state.client.action_literals {
+        actions.extend(scene_actions(state, document, file, params));
     }
     Some(actions)
 }
 
+/// The edit of the quick fix with a title at a location.
+#[cfg(feature = "process")]
+pub(crate) fn quick_fix(state: &mut State, location: &Location, title: &str) -> Option<WorkspaceEdit> {
+    let params = CodeActionParams {
+        text_document: TextDocumentIdentifier { uri: location.uri.clone() },
+        range: location.range,
+        context: CodeActionContext {
+            only: Some(vec![CodeActionKind::QUICKFIX]),
+            ..CodeActionContext::default()
+        },
+        work_done_progress_params: WorkDoneProgressParams::default(),
+        partial_result_params: PartialResultParams::default(),
+    };
+    let is_it = |action: CodeActionOrCommand| match action {
+        CodeActionOrCommand::CodeAction(action) if action.title == title => action.edit,
+        _ => None,
+    };
+    code_actions(state, &params)?.into_iter().find_map(is_it)
+}
+
 /// A title with a capital, as in editors: the crates below write them for the middle of a sentence, as in a terminal.
-fn sentence(title: &str) -> String {
+pub(crate) fn sentence(title: &str) -> String {
     let mut characters = title.chars();
     characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
 }
@@ -130,17 +166,51 @@ fn key_fixes(
     params: &CodeActionParams,
 ) -> Vec<CodeActionOrCommand> {
     let action = |fix: ide::KeyFix| {
-        let edit = TextEdit::new(state.range(document, fix.span), fix.text);
+        let mut edits = Edits::of_programs(state, &fix.program);
+        for (span, text) in fix.edits {
+            edits.add(state, document, span, text);
+        }
         let shown = diagnostics::convert_problem(state, document, fix.problem);
         CodeAction {
             title: sentence(&fix.title),
             kind: Some(CodeActionKind::QUICKFIX),
             diagnostics: Some(vec![as_the_client_has_it(&params.context.diagnostics, shown)]),
-            edit: Some(edit_of_documents(state, [(document, vec![edit])])),
+            edit: Some(edits.finish(state)),
             ..CodeAction::default()
         }
     };
     found.into_iter().map(|fix| action(fix).into()).collect()
+}
+
+/// Creates the scenes of what is at the cursor, or adds what is missing in them.
+fn scene_actions(
+    state: &State,
+    document: Document<'_>,
+    file: FileId,
+    params: &CodeActionParams,
+) -> Vec<CodeActionOrCommand> {
+    let offset = state.offset(document, params.range.end);
+    let offers = ide::scene_actions(state.database(), ide::FilePosition { file, offset });
+    offers.into_iter().filter_map(|offer| scene_action(state, offer)).map(Into::into).collect()
+}
+
+/// `None` where there is no place for the scene, or this client cannot create it.
+fn scene_action(state: &State, offer: ide::SceneAction) -> Option<CodeAction> {
+    let ide::SceneAction { program, environment, added, span, text } = offer;
+    let file_name = format!("{environment}{ENDING}");
+    let (title, edit) = if let Some(span) = span {
+        let mut edits = Edits::default();
+        edits.add(state, state.scene_document(program, &environment)?, span, text);
+        (format!("Add {} to {file_name}", added.join(", ")), edits.finish(state))
+    } else {
+        let key = state.workspace.scene_key(program, &environment)?;
+        // What cannot be read is no reason to replace it.
+        if !state.client.create_files || state.workspace.is_file(&key) {
+            return None;
+        }
+        (format!("Create scene {file_name}"), edits::new_file(uri_of(&key)?, text))
+    };
+    Some(CodeAction { title, kind: Some(SCENE_KIND), edit: Some(edit), ..CodeAction::default() })
 }
 
 /// Clients find the diagnostic an action belongs to by comparing: their own copy is the one that matches.
@@ -149,47 +219,30 @@ fn as_the_client_has_it(theirs: &[Diagnostic], ours: Diagnostic) -> Diagnostic {
     theirs.iter().find(same).cloned().unwrap_or(ours)
 }
 
-/// Edits of open documents, in the best form that this client supports.
+/// Edits of programs, in the best form that this client supports.
 pub(crate) fn workspace_edit(state: &State, edits: &[analysis::Edit]) -> WorkspaceEdit {
-    let mut by_file: FxHashMap<FileId, Vec<TextEdit>> = FxHashMap::default();
-    for edit in edits {
-        if let Some(document) = state.document_of(edit.file) {
-            let range = state.range(document, edit.span);
-            by_file.entry(edit.file).or_default().push(TextEdit::new(range, edit.text.clone()));
-        }
-    }
-    let of_documents = by_file
-        .into_iter()
-        .filter_map(|(file, edits)| state.document_of(file).map(|document| (document, edits)));
-    edit_of_documents(state, of_documents)
-}
-
-fn edit_of_documents<'a>(
-    state: &State,
-    of_documents: impl IntoIterator<Item = (Document<'a>, Vec<TextEdit>)>,
-) -> WorkspaceEdit {
-    let of_documents = of_documents.into_iter();
-    if state.client.versioned_edits {
-        let changes = of_documents.filter_map(|(document, edits)| {
-            let (uri, version) = (document.uri()?, document.version());
-            let text_document = OptionalVersionedTextDocumentIdentifier { uri, version };
-            Some(TextDocumentEdit { text_document, edits: edits.into_iter().map(OneOf::Left).collect() })
-        });
-        let document_changes = Some(DocumentChanges::Edits(changes.collect()));
-        WorkspaceEdit { document_changes, ..WorkspaceEdit::default() }
-    } else {
-        let changes = of_documents.filter_map(|(document, edits)| Some((document.uri()?, edits))).collect();
-        WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }
-    }
+    Edits::of_programs(state, edits).finish(state)
 }
 
 /// **Generate script** for every environment of the document.
-fn script_actions(state: &State, document: Document<'_>, file: FileId) -> Vec<CodeActionOrCommand> {
+fn script_actions(
+    state: &State,
+    document: Document<'_>,
+    file: FileId,
+    params: &CodeActionParams,
+) -> Vec<CodeActionOrCommand> {
     let Some(uri) = document.uri() else { return Vec::new() };
     let environments = state.database().environments(file);
     let scripts = scripts::of_environments(state, &uri, environments.iter().map(|(id, _)| *id));
+    let cursor = state.database().entity_at(file, state.offset(document, params.range.end));
     let named = environments.iter().zip(scripts);
-    named.filter_map(|((_, name), script)| script_action(state, &uri, &name.text, script)).collect()
+    let actions = named.filter_map(|((id, name), script)| {
+        let is_here = cursor.is_some_and(|cursor| cursor.id == *id);
+        let kind =
+            if is_here && params.context.only.is_none() { SCRIPT_HERE_KIND } else { GENERATE_SCRIPT_KIND };
+        script_action(state, &uri, &name.text, script, kind)
+    });
+    actions.collect()
 }
 
 fn script_action(
@@ -197,10 +250,11 @@ fn script_action(
     uri: &Uri,
     name: &str,
     script: Result<Script>,
+    kind: CodeActionKind,
 ) -> Option<CodeActionOrCommand> {
     let script = match script {
         Ok(script) => script,
-        Err(error) => return disabled(state, name, error.message.into_owned()),
+        Err(error) => return disabled(state, name, error.message.into_owned(), kind),
     };
     let title = format!("Generate script {}", script.file_name());
     let which = ChosenEnvironment { uri: uri.clone(), environment: name.to_owned() };
@@ -213,9 +267,9 @@ fn script_action(
     // The command asks; an edit would just replace it.
     let must_ask = matches!(obstacle, Some(WriteError::Changed(_)));
     if let (Some(error), false) = (&obstacle, must_ask) {
-        return disabled(state, name, scripts::reason(error));
+        return disabled(state, name, scripts::reason(error), kind);
     }
-    let mut action = script_code_action(title);
+    let mut action = CodeAction { title, kind: Some(kind), ..CodeAction::default() };
     if must_ask || !client.create_files {
         let title = action.title.clone();
         action.command = Some(Command::new(title, GENERATE_SCRIPT.to_owned(), Some(vec![argument])));
@@ -234,15 +288,11 @@ fn script_action(
     Some(action.into())
 }
 
-fn script_code_action(title: String) -> CodeAction {
-    CodeAction { title, kind: Some(GENERATE_SCRIPT_KIND), ..CodeAction::default() }
-}
-
 /// A disabled action with the reason why there is no script; nothing where the client does not show those.
-fn disabled(state: &State, name: &str, reason: String) -> Option<CodeActionOrCommand> {
+fn disabled(state: &State, name: &str, reason: String, kind: CodeActionKind) -> Option<CodeActionOrCommand> {
     state.client.disabled_actions.then(|| {
-        let action = script_code_action(format!("Generate script of {name}"));
-        CodeAction { disabled: Some(CodeActionDisabled { reason }), ..action }.into()
+        let (title, disabled) = (format!("Generate script of {name}"), Some(CodeActionDisabled { reason }));
+        CodeAction { title, kind: Some(kind), disabled, ..CodeAction::default() }.into()
     })
 }
 

@@ -1,6 +1,7 @@
 //! `textDocument/codeLens`: commands for environments, and for all other declarations how often they are used, which is
 //! counted only for visible lenses.
 
+use pydslrep_analysis::FileId;
 use pydslrep_config::CodeLens as Wanted;
 use pydslrep_ide as ide;
 use pydslrep_syntax::EntityKind;
@@ -20,11 +21,11 @@ use crate::typing::Typing;
 
 /// The commands for an environment, with their labels. The argument of each is a [`ChosenEnvironment`].
 const OF_ENVIRONMENTS: &[(IsShown, &str, &str)] = &[
-    (|wanted| wanted.generate_script, "Generate script", GENERATE_SCRIPT),
     #[cfg(feature = "process")]
     (|wanted| wanted.run, "Run", runs::RUN),
     #[cfg(feature = "process")]
     (|wanted| wanted.preview, "Preview", runs::PREVIEW_PATH),
+    (|wanted| wanted.generate_script, "Generate script", GENERATE_SCRIPT),
 ];
 
 /// Whether a lens is shown.
@@ -55,6 +56,10 @@ struct LensOf {
 pub(crate) fn code_lenses(state: &mut State, params: &CodeLensParams) -> Option<Vec<CodeLens>> {
     let uri = &params.text_document.uri;
     let key = key(uri);
+    if let Some((which, _)) = state.driven_in(uri) {
+        let wanted = &state.workspace.document(&key)?.settings.code_lens;
+        return Some(of_environment(&which.uri, &which.environment, Range::default(), wanted));
+    }
     let document = state.workspace.document(&key)?;
     let client = state.clients.entry(key.clone()).or_default();
     let typing = state.typing.as_ref().filter(|typing| typing.key == key);
@@ -91,6 +96,17 @@ fn of_environment(uri: &Uri, name: &str, range: Range, wanted: &Wanted) -> Vec<C
         .collect()
 }
 
+/// The references to what a file declares, in programs and in scenes.
+fn locations(state: &State, file: FileId, kind: EntityKind, name: &str) -> Vec<Location> {
+    let (database, name) = (state.database(), name.into());
+    let in_programs = database.references(file, kind, &name).into_iter();
+    let in_programs = in_programs.filter_map(|place| state.location(place.file, place.span));
+    let first = database.definitions(file, kind, &name).first();
+    let declared = first.and_then(|id| ide::declaration(database, *id));
+    let in_scenes = declared.map(|position| ide::mentions_in_scenes(database, position)).unwrap_or_default();
+    in_programs.chain(state.scene_locations(&in_scenes)).collect()
+}
+
 /// `codeLens/resolve`: counts the references.
 pub(crate) fn resolve(state: &State, lens: &CodeLens) -> Result<CodeLens> {
     let lens = lens.clone();
@@ -100,22 +116,18 @@ pub(crate) fn resolve(state: &State, lens: &CodeLens) -> Result<CodeLens> {
     let kind = EntityKind::ALL.into_iter().find(|kind| kind.noun() == of.kind);
     let known = kind.and_then(|kind| Some((kind, state.analysed(&of.uri)?.1)));
     // A document may be closed before its lenses are resolved.
-    let places = known
-        .map(|(kind, file)| state.database().references(file, kind, &of.name.as_str().into()))
-        .unwrap_or_default();
+    let places = known.map(|(kind, file)| locations(state, file, kind, &of.name)).unwrap_or_default();
     let title = match places.len() {
         1 => "1 reference".to_owned(),
         count => format!("{count} references"),
     };
     let mut command = Command::new(title, String::new(), None);
     if state.client.show_references && !places.is_empty() {
-        let locations: Vec<Location> =
-            places.iter().filter_map(|place| state.location(place.file, place.span)).collect();
         SHOW_REFERENCES.clone_into(&mut command.command);
         command.arguments = Some(vec![
             serde_json::to_value(&of.uri).unwrap_or_default(),
             serde_json::to_value(lens.range.start).unwrap_or_default(),
-            serde_json::to_value(locations).unwrap_or_default(),
+            serde_json::to_value(places).unwrap_or_default(),
         ]);
     }
     Ok(CodeLens { command: Some(command), ..lens })

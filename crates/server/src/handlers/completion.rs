@@ -6,9 +6,9 @@ use pydslrep_syntax::EntityKind;
 use serde::{Deserialize, Serialize};
 use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::{
-    CompletionContext, CompletionItem, CompletionItemKind, CompletionList, CompletionOptions,
-    CompletionParams, CompletionResponse, CompletionTextEdit, CompletionTriggerKind, Documentation,
-    InsertTextFormat, MarkupContent, ServerCapabilities, TextEdit,
+    CompletionItem, CompletionItemKind, CompletionList, CompletionOptions, CompletionParams,
+    CompletionResponse, CompletionTextEdit, CompletionTriggerKind, Documentation, InsertTextFormat,
+    MarkupContent, ServerCapabilities, TextEdit,
 };
 
 use crate::client::ClientFeatures;
@@ -39,9 +39,10 @@ pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
 }
 
 /// What the grammar allows at a position, and which names make sense there; in a settings file or a scene, which keys.
-pub(crate) fn completion(state: &State, params: &CompletionParams) -> Option<CompletionResponse> {
+pub(crate) fn completion(state: &mut State, params: &CompletionParams) -> Option<CompletionResponse> {
+    let trigger = trigger(state, params);
+    let state = &*state;
     let at = &params.text_document_position;
-    let trigger = trigger(params.context.as_ref());
     if let Some((document, file, text)) = state.toml_text(&at.text_document.uri) {
         let offset = state.offset(document, at.position);
         return Some(list(state, document, ide::toml_completions(file, &text, offset, trigger)));
@@ -56,11 +57,23 @@ pub(crate) fn completion(state: &State, params: &CompletionParams) -> Option<Com
     Some(list(state, place.document, found))
 }
 
-fn trigger(context: Option<&CompletionContext>) -> ide::CompletionTrigger {
-    let character = context
-        .filter(|context| context.trigger_kind == CompletionTriggerKind::TRIGGER_CHARACTER)
-        .and_then(|context| context.trigger_character.as_ref()?.chars().next());
-    character.map_or(ide::CompletionTrigger::Invoked, ide::CompletionTrigger::Character)
+/// The protocol does not distinguish a letter from a request of the user. The first request after a letter, at that letter,
+/// is the editor's own.
+fn trigger(state: &mut State, params: &CompletionParams) -> ide::CompletionTrigger {
+    let at = &params.text_document_position;
+    let is_first_after_letter = state.is_first_completion_after_typing(at);
+    let context = params.context.as_ref();
+    let character = context.and_then(|context| context.trigger_character.as_ref()?.chars().next());
+    match (context.map(|context| context.trigger_kind), character) {
+        (Some(CompletionTriggerKind::TRIGGER_CHARACTER), Some(character)) => {
+            ide::CompletionTrigger::Character(character)
+        }
+        (Some(CompletionTriggerKind::TRIGGER_FOR_INCOMPLETE_COMPLETIONS), _) => {
+            ide::CompletionTrigger::Letter
+        }
+        _ if is_first_after_letter => ide::CompletionTrigger::Letter,
+        _ => ide::CompletionTrigger::Invoked,
+    }
 }
 
 /// The list is incomplete, so that editors request it again after each character. A list that they filter themselves

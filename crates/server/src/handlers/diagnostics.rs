@@ -9,6 +9,7 @@ use pydslrep_analysis::diagnostics::Tag;
 use pydslrep_config::Problem;
 use pydslrep_text::Span;
 use pydslrep_workspace::Workspace;
+use serde::Serialize;
 use tower_lsp::jsonrpc::Result;
 use tower_lsp::ls_types::notification::PublishDiagnostics;
 use tower_lsp::ls_types::{
@@ -145,10 +146,28 @@ pub(crate) fn result_id(items: &[Diagnostic], opening: u64) -> String {
     format!("{:016x}", hasher.finish())
 }
 
-/// All diagnostics of a document, as this client can show them.
+/// The data of a diagnostic that the next word of the statement being typed will settle. Clients that know it do not show
+/// the diagnostic as long as the cursor is on that line.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Unsettled {
+    /// The line being typed.
+    typed_line: u32,
+}
+
+/// All diagnostics of a document, as this client can show them. Of the statement being typed, what its next word will
+/// settle is marked where the client pulls, and otherwise left out.
 pub(crate) fn of_document(state: &State, document: Document<'_>) -> Vec<Diagnostic> {
-    let in_program = document.file.map(|file| state.database().diagnostics(file)).unwrap_or_default();
-    let in_program = in_program.iter().filter_map(|diagnostic| convert(state, document, diagnostic));
+    let found = document.file.map(|file| state.database().diagnostics(file)).unwrap_or_default();
+    let statements = state.statements_being_typed(document);
+    let in_program = found.iter().filter_map(|diagnostic| {
+        let Some(statement) = statements.iter().find(|statement| statement.settles(diagnostic)) else {
+            return convert(state, document, diagnostic);
+        };
+        let converted = convert(state, document, diagnostic).filter(|_| state.client.pull_diagnostics)?;
+        let typed_line = state.range(document, Span::at(statement.offset())).start.line;
+        Some(Diagnostic { data: serde_json::to_value(Unsettled { typed_line }).ok(), ..converted })
+    });
     let problems = state.workspace.problems(document.key).into_iter();
     in_program.chain(problems.map(|problem| convert_problem(state, document, problem))).collect()
 }

@@ -15,6 +15,17 @@ use crate::work::Work;
 pub(crate) fn document_symbols(state: &mut State, params: &DocumentSymbolParams) -> Option<Work<Outline>> {
     let as_tree = state.client.symbol_tree;
     let uri = params.text_document.uri.clone();
+    if let Some((document, file, text)) = state.toml_text(&uri) {
+        let table = LineTable::new(document.text, state.client.encoding);
+        let symbols = ide::toml_symbols(file, &text);
+        return Some(Work::Done(if as_tree {
+            Outline::Ready(table, symbols)
+        } else {
+            let mut flat = Vec::new();
+            flatten(&table, &uri, symbols.into_iter(), None, &mut flat);
+            Outline::List(flat)
+        }));
+    }
     state.work(&params.text_document.uri, |_, encoding| {
         Box::new(move |snapshot| {
             let table = LineTable::new(snapshot.text(), encoding);
@@ -32,6 +43,8 @@ pub(crate) fn document_symbols(state: &mut State, params: &DocumentSymbolParams)
 pub(crate) enum Outline {
     /// Of this file, symbol by symbol when it is written: a long file's may be megabytes.
     Tree(LineTable, Snapshot),
+    /// Of a TOML file.
+    Ready(LineTable, Vec<ide::Symbol>),
     List(Vec<SymbolInformation>),
 }
 
@@ -42,6 +55,10 @@ impl WriteJson for Outline {
         match self {
             Self::Tree(table, snapshot) => {
                 write_tree(table, ide::document_symbols(snapshot), json);
+                Ok(())
+            }
+            Self::Ready(table, symbols) => {
+                write_tree(table, symbols.iter().cloned(), json);
                 Ok(())
             }
             Self::List(list) => list.write_json(json),
@@ -124,6 +141,8 @@ pub(crate) fn kind(kind: ide::SymbolKind) -> SymbolKind {
         ide::SymbolKind::Entity(EntityKind::Movement) => SymbolKind::FUNCTION,
         ide::SymbolKind::Entity(EntityKind::Environment) => SymbolKind::NAMESPACE,
         ide::SymbolKind::Action => SymbolKind::EVENT,
+        ide::SymbolKind::Obstacle => SymbolKind::OBJECT,
+        ide::SymbolKind::Table => SymbolKind::STRUCT,
     }
 }
 

@@ -5,6 +5,7 @@
 
 use std::str::FromStr;
 
+use pydslrep_analysis::Edit;
 use pydslrep_config::FILE_NAME;
 use pydslrep_ide as ide;
 use pydslrep_scene::ENDING;
@@ -34,11 +35,11 @@ pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
     let scenes = filter(format!("**/*{ENDING}"), FileOperationPatternKind::File);
     let folders = filter("**".to_owned(), FileOperationPatternKind::Folder);
     let all = FileOperationRegistrationOptions {
-        filters: vec![programs.clone(), settings, scenes, folders.clone()],
+        filters: vec![programs.clone(), settings, scenes.clone(), folders.clone()],
     };
     let workspace = server.workspace.get_or_insert_default();
     workspace.file_operations = Some(WorkspaceFileOperationsServerCapabilities {
-        will_rename: Some(FileOperationRegistrationOptions { filters: vec![programs, folders] }),
+        will_rename: Some(FileOperationRegistrationOptions { filters: vec![programs, scenes, folders] }),
         did_rename: Some(all.clone()),
         did_create: Some(all.clone()),
         did_delete: Some(all),
@@ -46,7 +47,8 @@ pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
     });
 }
 
-/// The edits that keep all imports valid; `None` where none is needed.
+/// The edits that keep all imports valid, and environments of the same name as their scenes; `None` where none is
+/// needed.
 pub(crate) fn will_rename(state: &State, params: &RenameFilesParams) -> Option<WorkspaceEdit> {
     let path = |uri: &str| Some(key(&Uri::from_str(uri).ok()?).trim_end_matches('/').to_owned());
     let renames: Vec<ide::FileRename> = params
@@ -54,8 +56,30 @@ pub(crate) fn will_rename(state: &State, params: &RenameFilesParams) -> Option<W
         .iter()
         .filter_map(|file| Some(ide::FileRename { from: path(&file.old_uri)?, to: path(&file.new_uri)? }))
         .collect();
-    let edits = ide::rename_files(state.database(), &renames);
+    let mut edits = ide::rename_files(state.database(), &renames);
+    edits.extend(renames.iter().flat_map(|rename| environment_renamed(state, rename)));
     (!edits.is_empty()).then(|| code_actions::workspace_edit(state, &edits))
+}
+
+/// The edits that give the environment of a scene its new name, where that is one.
+fn environment_renamed(state: &State, rename: &ide::FileRename) -> Vec<Edit> {
+    let parts = |path: &str| {
+        let (folder, name) = path.rsplit_once('/')?;
+        Some((folder.to_owned(), name.strip_suffix(ENDING)?.to_owned()))
+    };
+    let (Some((from, _)), Some((to, name))) = (parts(&rename.from), parts(&rename.to)) else {
+        return Vec::new();
+    };
+    // In another folder it is the scene of other programs.
+    if from != to {
+        return Vec::new();
+    }
+    let environments = state.workspace.environments_of_scene(&rename.from).into_iter();
+    let edits = environments.filter_map(|id| {
+        let position = ide::declaration(state.database(), id)?;
+        ide::rename(state.database(), position, &name).ok()
+    });
+    edits.flatten().collect()
 }
 
 /// `workspace/didRenameFiles`.

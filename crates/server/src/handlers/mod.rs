@@ -142,7 +142,7 @@ fn problems_and_actions(table: &mut Table) {
 }
 
 fn typing(table: &mut Table) {
-    table.read::<Completion, _>(completion::completion, completion::announce);
+    table.read_and_note::<Completion, _>(completion::completion, completion::announce);
     table.read::<ResolveCompletionItem, _>(completion::resolve, NOTHING);
     table.read_and_note::<SignatureHelpRequest, _>(
         |state, params| {

@@ -1,4 +1,4 @@
-//! From a use to its declaration, and from a movement to its robot.
+//! From a use, in a program or a scene, to its declaration, and from a movement to its robot.
 
 use pydslrep_analysis::Database;
 use pydslrep_ide as ide;
@@ -30,13 +30,13 @@ fn go_to(
     feature: fn(&Database, ide::FilePosition) -> Option<ide::Definition>,
     links: bool,
 ) -> Option<GotoDefinitionResponse> {
-    let place = state.place(&params.text_document_position_params)?;
-    let found = feature(state.database(), place.position())?;
+    let named = state.named(&params.text_document_position_params)?;
+    let found = feature(state.database(), named.position)?;
     if !links {
         let locations = found.targets.iter().filter_map(|target| state.location(target.file, target.focus));
         return Some(GotoDefinitionResponse::Array(locations.collect()));
     }
-    let origin = state.range(place.document, found.origin);
+    let origin = state.range(named.document, named.span.unwrap_or(found.origin));
     let links = found.targets.iter().filter_map(|target| {
         let document = state.document_of(target.file)?;
         Some(LocationLink {

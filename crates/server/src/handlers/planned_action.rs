@@ -6,7 +6,7 @@ use pydslrep_ide::{self as ide, NumberedAction};
 use serde::{Deserialize, Serialize};
 use tower_lsp::jsonrpc::Result;
 use tower_lsp::ls_types::request::Request;
-use tower_lsp::ls_types::{Location, TextDocumentPositionParams};
+use tower_lsp::ls_types::{Location, TextDocumentPositionParams, Uri};
 
 use crate::chosen::ChosenEnvironment;
 use crate::handlers::scripts::environment;
@@ -17,7 +17,7 @@ pub(crate) enum PlannedAt {}
 
 impl Request for PlannedAt {
     type Params = TextDocumentPositionParams;
-    type Result = Option<ide::PlannedAt>;
+    type Result = Option<At>;
     const METHOD: &'static str = "pydslrep/plannedAt";
 }
 
@@ -39,11 +39,34 @@ pub(crate) struct ActionOf {
     action: NumberedAction,
 }
 
-/// What a position has to do with planned paths; `None` where the document is not open or not a program.
-pub(crate) fn planned_at(state: &mut State, at: &TextDocumentPositionParams) -> Option<ide::PlannedAt> {
+/// What a position has to do with planned paths.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct At {
+    #[serde(flatten)]
+    planned: ide::PlannedAt,
+    /// The program, where the position is in its scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    program: Option<Uri>,
+}
+
+/// What a position has to do with planned paths; `None` where the document is not open, or neither a program nor the
+/// scene of one. An environment being typed is named once it lists robots: before, its name changes with each letter.
+pub(crate) fn planned_at(state: &mut State, at: &TextDocumentPositionParams) -> Option<At> {
     let state = &*state;
-    let place = state.place(at)?;
-    Some(ide::planned_at(state.database(), place.position()))
+    if let Some(place) = state.place(at) {
+        let mut planned = ide::planned_at(state.database(), place.position());
+        for statement in state.statements_being_typed(place.document) {
+            if let Some(begun) = statement.begun_environment() {
+                planned.environments.retain(|name| name != begun);
+                planned.using.retain(|name| name != begun);
+            }
+        }
+        return Some(At { planned, program: None });
+    }
+    let (which, _) = state.driven_in(&at.text_document.uri)?;
+    let (environments, using) = (vec![which.environment.clone()], vec![which.environment]);
+    let planned = ide::PlannedAt { environments, using, action: None };
+    Some(At { planned, program: Some(which.uri) })
 }
 
 /// Where an action of an environment is written; `None` if it is gone.

@@ -3,12 +3,16 @@
 
 use pydslrep_analysis::Fingerprint;
 use pydslrep_ide as ide;
-use tower_lsp::jsonrpc::Result;
+use serde_json::Value;
+use tower_lsp::jsonrpc::{Error, Result};
+use tower_lsp::ls_types::Location;
 use tower_lsp::ls_types::notification::Notification;
 use tower_lsp::ls_types::request::Request;
 
 use crate::chosen::{ChosenEnvironment, Sent, Watched};
-use crate::handlers::scripts::{environment, failure};
+use crate::documents::Document;
+use crate::handlers::code_actions;
+use crate::handlers::scripts::{Cause, blocked, environment, failure, with_cause};
 use crate::message::Outbox;
 use crate::page::Audience;
 use crate::state::State;
@@ -46,10 +50,10 @@ pub(crate) fn planned_path(
     let sent = match &path {
         Ok(path) if path.robots.iter().any(|robot| robot.legs.len() > MOST_LEGS) => Sent::Long,
         Ok(path) => Sent::Path(path.clone()),
-        Err(_) => Sent::Nothing,
+        Err(error) => Sent::Failure(error.clone()),
     };
     state.watched.push(Watched { audience, which: which.clone(), fingerprint, sent });
-    path
+    path.map_err(|error| with_fix(state, which, error))
 }
 
 /// Notes who wants to know when a path changes, even if that is before it is planned.
@@ -61,7 +65,55 @@ pub(crate) fn watch(state: &mut State, which: &ChosenEnvironment, audience: Audi
 }
 
 fn plan(state: &State, which: &ChosenEnvironment) -> Result<ide::PlannedPath> {
-    ide::planned_path(state.database(), environment(state, which)?).map_err(failure)
+    let path = ide::planned_path(state.database(), environment(state, which)?);
+    path.map_err(|why| no_path(state, which, &why))
+}
+
+/// Why there is no path, with the place of the first error.
+fn no_path(state: &State, which: &ChosenEnvironment, why: &ide::NoPath) -> Error {
+    match why {
+        ide::NoPath::Blocked(errors) => blocked(state, errors),
+        ide::NoPath::Scene { problems, .. } => {
+            let scene = scene(state, which);
+            let span = problems.first().and_then(|problem| problem.span);
+            let location = scene
+                .zip(span)
+                .and_then(|(scene, span)| Some(Location::new(scene.uri()?, state.range(scene, span))));
+            with_cause(why.to_string(), &Cause::Errors { location })
+        }
+        ide::NoPath::Robot(_) => failure(why.to_string()),
+    }
+}
+
+/// Adds the title of the first fix to the data of an error of [`no_path`]: the code action of this title at its location.
+fn with_fix(state: &State, which: &ChosenEnvironment, mut error: Error) -> Error {
+    if let Some(Value::Object(data)) = &mut error.data
+        && let Some(title) = first_fix(state, which)
+    {
+        data.insert("fix".to_owned(), title.into());
+    }
+    error
+}
+
+fn first_fix(state: &State, which: &ChosenEnvironment) -> Option<String> {
+    let (database, id) = (state.database(), environment(state, which).ok()?);
+    let title = if let Err(blocked) = database.environment(id) {
+        let first = blocked.errors.first()?;
+        let fixes = ide::quick_fixes(database, first.file, first.span).into_iter();
+        fixes.map(|found| found.fix.title).next()?
+    } else {
+        let uri = scene(state, which)?.uri()?;
+        let (document, file, text) = state.toml_text(&uri)?;
+        let problem = state.workspace.problems(document.key).into_iter().next()?;
+        ide::toml_fixes(file, &text, problem.span?).into_iter().next()?.title
+    };
+    Some(code_actions::sentence(&title))
+}
+
+/// The scene of an environment.
+fn scene<'a>(state: &'a State, which: &ChosenEnvironment) -> Option<Document<'a>> {
+    let (_, file) = state.analysed(&which.uri)?;
+    state.scene_document(file, &which.environment)
 }
 
 fn fingerprint(state: &State, which: &ChosenEnvironment) -> Option<Fingerprint> {
@@ -72,7 +124,7 @@ fn fingerprint(state: &State, which: &ChosenEnvironment) -> Option<Fingerprint> 
 fn is_sent(state: &State, watched: &Watched) -> bool {
     match &watched.sent {
         Sent::Path(path) => plan(state, &watched.which).as_ref() == Ok(path),
-        Sent::Nothing => plan(state, &watched.which).is_err(),
+        Sent::Failure(error) => plan(state, &watched.which).as_ref() == Err(error),
         Sent::Long => false,
     }
 }
@@ -81,12 +133,16 @@ fn is_sent(state: &State, watched: &Watched) -> bool {
 /// need them.
 pub(crate) fn announce(state: &mut State, outbox: &Outbox) {
     let watched = std::mem::take(&mut state.watched);
+    let is_error_unsettled = state.is_error_unsettled();
     for mut watched in watched {
         let fingerprint = fingerprint(state, &watched.which);
         // Most edits do not affect the path: then nothing is planned again.
         let is_the_same = fingerprint.is_some() && fingerprint == watched.fingerprint;
         if is_the_same || is_sent(state, &watched) {
             watched.fingerprint = fingerprint;
+            state.watched.push(watched);
+        } else if is_error_unsettled && plan(state, &watched.which).is_err() {
+            // What was sent stays until the line is left.
             state.watched.push(watched);
         } else {
             match watched.audience {

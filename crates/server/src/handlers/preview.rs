@@ -2,8 +2,8 @@
 //! editor. `docs/protocol.md` describes its messages, which are those of the protocol and a few more.
 
 use pydslrep_workspace::Document;
-use serde::Deserialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use tower_lsp::jsonrpc::{Error, Id, Result};
 use tower_lsp::ls_types::notification::ShowMessage;
@@ -15,6 +15,7 @@ use tower_lsp::ls_types::{
 
 use crate::chosen::ChosenEnvironment;
 use crate::documents::key;
+use crate::handlers::code_actions;
 use crate::handlers::driven_path::DrivenPath;
 use crate::handlers::planned_action::{self, ActionLocation, PlannedAt};
 use crate::handlers::planned_path::{self, PlannedPath};
@@ -60,6 +61,23 @@ impl Request for Reveal {
     type Params = Location;
     type Result = bool;
     const METHOD: &'static str = "pydslrep/reveal";
+}
+
+/// The request of a page to apply a fix of a problem.
+enum ApplyFix {}
+
+impl Request for ApplyFix {
+    type Params = FixOf;
+    type Result = bool;
+    const METHOD: &'static str = "pydslrep/applyFix";
+}
+
+/// A fix that a page was told of.
+#[derive(Debug, Serialize, Deserialize)]
+struct FixOf {
+    location: Location,
+    /// The title of its code action.
+    fix: String,
 }
 
 /// The command [`OPEN_PREVIEW`]: opens the page in a browser, or says where it is.
@@ -155,6 +173,7 @@ fn answer(server: &Server, message: &[u8]) -> Body {
             Ok(encode_answer(&id, &location))
         }),
         Reveal::METHOD => read(params).map(|location| encode_answer(&id, &reveal(server, location))),
+        ApplyFix::METHOD => read(params).map(|fix| encode_answer(&id, &apply_fix(server, &fix))),
         _ => Err(Error::method_not_found()),
     };
     answered.unwrap_or_else(|error| encode_error(id, error))
@@ -164,7 +183,16 @@ fn planned_path(server: &Server, id: &Id, params: Value) -> Result<Body> {
     let which: ChosenEnvironment = read(params)?;
     planned_path::watch(&mut server.state(), &which, Audience::Page);
     let path =
-        server.read_latest(&which.uri, |state| planned_path::planned_path(state, &which, Audience::Page))?;
+        server.read_latest(&which.uri, |state| planned_path::planned_path(state, &which, Audience::Page));
+    let path = path.map_err(|mut error| {
+        // What the page cannot have done is not offered.
+        if !server.state().client.applies_edits
+            && let Some(Value::Object(data)) = &mut error.data
+        {
+            data.remove("fix");
+        }
+        error
+    })?;
     Ok(encode_answer(id, &path))
 }
 
@@ -176,7 +204,7 @@ fn planned_at(server: &Server, id: &Id, params: Value) -> Result<Body> {
 
 /// Has the editor select a location in a program; false if it cannot.
 fn reveal(server: &Server, Location { uri, range }: Location) -> bool {
-    let can_show = |state: &State| state.client.show_document && state.is_program(&uri);
+    let can_show = |state: &State| state.client.show_document && state.document(&uri).is_some();
     if !can_show(&server.state()) {
         return false;
     }
@@ -185,6 +213,25 @@ fn reveal(server: &Server, Location { uri, range }: Location) -> bool {
     tokio::spawn(async move {
         if let Err(error) = client.send_request::<ShowDocument>(params).await {
             log(format_args!("the client did not show an action: {error}"));
+        }
+    });
+    true
+}
+
+/// Has the editor apply a fix; false if it cannot, or there is no such fix any more.
+fn apply_fix(server: &Server, of: &FixOf) -> bool {
+    let edit = {
+        let state = &mut *server.state();
+        if !state.client.applies_edits {
+            return false;
+        }
+        code_actions::quick_fix(state, &of.location, &of.fix)
+    };
+    let Some(edit) = edit else { return false };
+    let client = server.client.clone();
+    tokio::spawn(async move {
+        if let Err(error) = client.apply_edit(edit).await {
+            log(format_args!("the client did not apply a fix: {error}"));
         }
     });
     true

@@ -16,12 +16,14 @@ pub(crate) fn has_many(state: &State, at: &TextDocumentPositionParams) -> Option
     (ide::count_mentions(state.database(), place.position()) > MANY).then(|| place.document.key.to_owned())
 }
 
-/// All occurrences of the name at a position.
+/// All occurrences of the name at a position, in programs and in scenes.
 pub(crate) fn references(state: &mut State, params: &ReferenceParams) -> Option<Vec<Location>> {
     let state = &*state;
-    let place = state.place(&params.text_document_position)?;
-    let found = ide::references(state.database(), place.position(), params.context.include_declaration)?;
-    Some(found.into_iter().filter_map(|place| state.location(place.file, place.span)).collect())
+    let position = state.named(&params.text_document_position)?.position;
+    let found = ide::references(state.database(), position, params.context.include_declaration)?;
+    let in_programs = found.into_iter().filter_map(|place| state.location(place.file, place.span));
+    let in_scenes = ide::mentions_in_scenes(state.database(), position);
+    Some(in_programs.chain(state.scene_locations(&in_scenes)).collect())
 }
 
 /// The occurrences of the name at a position in its document.
@@ -30,7 +32,18 @@ pub(crate) fn highlights(
     params: &DocumentHighlightParams,
 ) -> Option<Vec<DocumentHighlight>> {
     let state = &*state;
-    let place = state.place(&params.text_document_position_params)?;
+    let at = &params.text_document_position_params;
+    let document = state.document(&at.text_document.uri)?;
+    if let Some(environment) = state.environment_of_scene(document) {
+        let (text, offset) = (document.text.to_string(), state.offset(document, at.position));
+        let spans = ide::highlights_in_scene(state.database(), environment, &text, offset).into_iter();
+        let highlight = |span| DocumentHighlight {
+            range: state.range(document, span),
+            kind: Some(DocumentHighlightKind::READ),
+        };
+        return Some(spans.map(highlight).collect());
+    }
+    let place = state.place(at)?;
     let found = ide::highlights(state.database(), place.position()).into_iter();
     let highlight = |found: ide::Highlight| {
         let kind =

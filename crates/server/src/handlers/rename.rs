@@ -1,15 +1,18 @@
 //! `textDocument/prepareRename`, `textDocument/rename` and `textDocument/linkedEditingRange`.
 
 use pydslrep_ide as ide;
+use pydslrep_scene::ENDING;
 use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::{
     LinkedEditingRangeParams, LinkedEditingRanges, OneOf, PrepareRenameResponse, RenameOptions, RenameParams,
-    ServerCapabilities, TextDocumentPositionParams, WorkDoneProgressOptions, WorkspaceEdit,
+    ServerCapabilities, TextDocumentPositionParams, Uri, WorkDoneProgressOptions, WorkspaceEdit,
 };
 
 use crate::client::ClientFeatures;
-use crate::handlers::{code_actions, scripts};
-use crate::state::State;
+use crate::documents::{Document, uri_of};
+use crate::edits::Edits;
+use crate::handlers::scripts;
+use crate::state::{Named, State};
 
 /// The pattern of names: editors stop linked editing when the text no longer matches.
 const NAME_PATTERN: &str = r"\^?[A-Za-z_][A-Za-z0-9_]*";
@@ -32,24 +35,87 @@ pub(crate) fn prepare(
     state: &State,
     params: &TextDocumentPositionParams,
 ) -> Result<Option<PrepareRenameResponse>> {
-    let Some(place) = state.place(params) else { return Ok(None) };
-    let target = ide::prepare_rename(state.database(), place.position()).map_err(refused)?;
+    let Some(named) = renamed_at(state, params)? else { return Ok(None) };
+    let target = ide::prepare_rename(state.database(), named.position).map_err(refused)?;
     Ok(Some(PrepareRenameResponse::RangeWithPlaceholder {
-        range: state.range(place.document, target.span),
+        range: state.range(named.document, named.span.unwrap_or(target.span)),
         placeholder: target.text,
     }))
 }
 
-/// The edits of a rename, in all documents.
+/// The edits of a rename, in all documents, and the rename of the scene that an environment has.
 ///
 /// # Errors
 ///
 /// If it is refused; the message is the reason.
 pub(crate) fn rename(state: &mut State, params: &RenameParams) -> Result<Option<WorkspaceEdit>> {
     let state = &*state;
-    let Some(place) = state.place(&params.text_document_position) else { return Ok(None) };
-    let edits = ide::rename(state.database(), place.position(), &params.new_name).map_err(refused)?;
-    Ok(Some(code_actions::workspace_edit(state, &edits)))
+    let Some(named) = renamed_at(state, &params.text_document_position)? else { return Ok(None) };
+    let (database, new) = (state.database(), &params.new_name);
+    let edits = ide::rename(database, named.position, new).map_err(refused)?;
+    let in_scenes = ide::rename_in_scenes(database, named.position, new).map_err(refused)?;
+    let mut all = Edits::of_programs(state, &edits);
+    for (place, text) in in_scenes.edits {
+        if let Some(document) = state.scene_document(place.program, &place.environment) {
+            all.add(state, document, place.span, text);
+        }
+    }
+    if let Some((place, name)) = &in_scenes.renamed {
+        all.renamed = moved_scene(state, place, name)?;
+    }
+    Ok(Some(all.finish(state)))
+}
+
+/// The name that is to be renamed. The table of robots in a scene stands for its environment, but has another name.
+///
+/// # Errors
+///
+/// In a scene, where there is no name of a program.
+fn renamed_at<'a>(state: &'a State, at: &TextDocumentPositionParams) -> Result<Option<Named<'a>>> {
+    let named = state.named(at);
+    let is_scene = |document| state.environment_of_scene(document).is_some();
+    if !state.document(&at.text_document.uri).is_some_and(is_scene) {
+        return Ok(named);
+    }
+    let is_name =
+        |named: &Named<'_>| named.span.is_some_and(|span| span.slice(named.document.text) != "robots");
+    named
+        .filter(is_name)
+        .map(Some)
+        .ok_or_else(|| scripts::failure("there is no name to rename here".to_owned()))
+}
+
+/// Where the scene of an environment goes when that gets another name; `None` if it stays, because another program has
+/// it, too, and there is one of the new name.
+///
+/// # Errors
+///
+/// If it cannot go there.
+fn moved_scene(state: &State, place: &ide::ScenePlace, name: &str) -> Result<Option<(Uri, Uri)>> {
+    let workspace = &state.workspace;
+    let keys =
+        workspace.scene_key(place.program, &place.environment).zip(workspace.scene_key(place.program, name));
+    let Some((old, new)) = keys else { return Ok(None) };
+    let (old_name, new_name) = (format!("{}{ENDING}", place.environment), format!("{name}{ENDING}"));
+    let is_taken = workspace.document(&new).is_some() || workspace.is_file(&new);
+    if workspace.is_shared_scene(&old) {
+        if is_taken {
+            return Ok(None);
+        }
+        return Err(scripts::failure(format!(
+            "`{old_name}` is the scene of another program, too: copy it to `{new_name}` first"
+        )));
+    }
+    if is_taken {
+        return Err(scripts::failure(format!("there is already a file `{new_name}`")));
+    }
+    if !state.client.rename_files {
+        return Err(scripts::failure(format!(
+            "this editor cannot rename the environment's scene with it: rename `{old_name}` to `{new_name}` first"
+        )));
+    }
+    let old = state.document_at(&old).and_then(Document::uri);
+    Ok(old.zip(uri_of(&new)))
 }
 
 /// The ranges that are edited together with the name at a position.

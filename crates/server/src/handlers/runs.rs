@@ -6,6 +6,7 @@
 
 mod child;
 mod command;
+mod failed_run;
 pub(crate) mod scenes;
 
 pub(crate) use self::command::run;
@@ -42,6 +43,9 @@ struct ProgramCopy {
     folder: TemporaryFolder,
     program: PathBuf,
 }
+
+/// How a printed error begins.
+const ERROR: &str = "error: ";
 
 /// The exit code of a child that was interrupted.
 const INTERRUPTED: i32 = 130;
@@ -170,7 +174,7 @@ impl Job {
         command.arg("--replay").arg(replay(&picture));
         if self.subcommand == "run" {
             command.arg("--trace").arg(trace(&picture)).arg("--map").arg(map(&picture));
-            command.arg("--figures").arg(figures(&picture)).arg("--until-input-ends");
+            command.args(["--events", "-", "--until-input-ends"]);
         }
         let (running, events) = start(children, &mut command, self.copy.folder)?;
         Ok((running, events, picture))
@@ -208,24 +212,17 @@ pub(crate) fn map(picture: &Path) -> PathBuf {
     picture.with_extension("map.json")
 }
 
-/// The path of the result of a run, next to the picture.
-pub(crate) fn figures(picture: &Path) -> PathBuf {
-    picture.with_extension("figures.json")
-}
-
-/// The error for a run that failed or was interrupted.
+/// The error for a child that failed or was interrupted.
 pub(crate) fn ended_badly(code: Option<i32>, said: &[String]) -> Error {
     if code == Some(INTERRUPTED) {
         return cancelled("the run was cancelled");
     }
-    // The paths of its output and what it began with are not reasons.
-    let others = ["picture: ", "replay: ", "trace: ", "map: ", "figures: ", "preparing Python "];
-    let is_reason = |line: &&String| !others.iter().any(|other| line.starts_with(other));
-    let words: Vec<&str> = said.iter().filter(is_reason).map(String::as_str).collect();
-    if words.is_empty() {
+    // Warnings about the program come before the error that ended it, and an editor shows those anyway.
+    let first = said.iter().position(|line| line.starts_with(ERROR)).unwrap_or(0);
+    if said.is_empty() {
         return failure("pydslrep exited without output".to_owned());
     }
-    failure(words.join("\n"))
+    failure(said[first..].join("\n"))
 }
 
 /// The error for a request that the user does not want any more.

@@ -192,9 +192,12 @@ fn program_name(program: &Uri) -> String {
 /// What a client can do about a failure, in the `data` of the error.
 #[derive(Debug, Serialize)]
 #[serde(tag = "reason", rename_all = "kebab-case")]
-enum Cause {
+pub(crate) enum Cause {
     /// The program was never saved.
     Unsaved,
+    /// An action failed in a run.
+    #[cfg(feature = "process")]
+    FailedRun { location: Location },
     /// There are errors; the first is here, if the client can find it.
     Errors { location: Option<Location> },
 }
@@ -211,7 +214,7 @@ pub(crate) fn blocked(state: &State, blocked: &Blocked) -> Error {
     with_cause(blocked.reason(), &Cause::Errors { location })
 }
 
-fn with_cause(message: String, cause: &Cause) -> Error {
+pub(crate) fn with_cause(message: String, cause: &Cause) -> Error {
     Error { data: serde_json::to_value(cause).ok(), ..failure(message) }
 }
 

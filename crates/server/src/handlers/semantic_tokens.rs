@@ -291,14 +291,19 @@ mod tests {
 
     fn all_of(state: &mut State) -> SemanticTokens {
         let params = serde_json::from_value(serde_json::json!({ "textDocument": { "uri": uri() } })).unwrap();
-        let work = full(state, &params).unwrap();
-        (work.run)(work.snapshot)
+        done(full(state, &params).unwrap())
     }
 
     fn changes_since(state: &mut State, id: &str) -> SemanticTokensFullDeltaResult {
         let params = serde_json::json!({ "textDocument": { "uri": uri() }, "previousResultId": id });
-        let work = delta(state, &serde_json::from_value(params).unwrap()).unwrap();
-        (work.run)(work.snapshot)
+        done(delta(state, &serde_json::from_value(params).unwrap()).unwrap())
+    }
+
+    fn done<R>(work: Work<R>) -> R {
+        match work {
+            Work::OnFile(work) => (work.run)(work.snapshot),
+            Work::Done(answer) => answer,
+        }
     }
 
     /// As a client applies changes, to its list of tokens.

@@ -177,6 +177,108 @@ fn check_hurried_client(wheels: usize) {
     assert!((LIMIT..most).contains(&load.most_bytes()), "{}", load.most_bytes());
 }
 
+/// What happens in turn: a client that reads nothing has cancelled a request, that ends, and only then the client reads.
+#[derive(Default)]
+struct Turns {
+    state: Mutex<Turn>,
+    changed: Condvar,
+}
+
+#[derive(Default, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Turn {
+    #[default]
+    Writing,
+    /// The request has ended.
+    Ended,
+    Reading,
+}
+
+/// What does not happen within this time does not happen.
+const LIMIT: Duration = Duration::from_secs(60);
+
+impl Turns {
+    fn set(&self, turn: Turn) {
+        let mut state = self.state.lock().unwrap();
+        *state = turn.max(*state);
+        self.changed.notify_all();
+    }
+
+    /// Waits for a turn, or a limit; returns the turn.
+    fn wait(&self, for_turn: Turn) -> Turn {
+        let state = self.state.lock().unwrap();
+        *self.changed.wait_timeout_while(state, LIMIT, |turn| *turn < for_turn).unwrap().0
+    }
+}
+
+/// Writes one part after the other; `read` is called when the server has handled all before the last.
+struct Written<F>(Vec<Cursor<Vec<u8>>>, F);
+
+impl<F: FnMut()> Read for Written<F> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        loop {
+            let Some(part) = self.0.first_mut() else { return Ok(0) };
+            let length = part.read(buffer)?;
+            if length > 0 {
+                return Ok(length);
+            }
+            self.0.remove(0);
+            if self.0.len() == 1 {
+                (self.1)();
+            }
+        }
+    }
+}
+
+/// Reads nothing before its turn.
+struct Late(Arc<Turns>, Shared);
+
+impl Write for Late {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.wait(Turn::Reading);
+        self.1.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn what_is_cancelled_ends_while_the_client_does_not_read() {
+    const REQUESTS: i64 = 40;
+    let wheels = "wheel w with radius 4\n".repeat(300);
+    let mut requests = [initialize(), open(&wheels), request(1000, "test/forever", Value::Null)].concat();
+    for id in 1..=REQUESTS {
+        let params = json!({"textDocument": {"uri": DOCUMENT}});
+        requests.extend(request(id, "textDocument/documentSymbol", params));
+    }
+    let cancel = notification("$/cancelRequest", json!({"id": 1000}));
+    let (turns, output) = (Arc::new(Turns::default()), Shared::default());
+    let has_ended = Arc::new(Mutex::new(false));
+    let (during, noted) = (Arc::clone(&turns), Arc::clone(&has_ended));
+    let input = Written([requests, cancel, goodbye()].map(Cursor::new).into(), move || {
+        *noted.lock().unwrap() = during.wait(Turn::Ended) == Turn::Ended;
+        during.set(Turn::Reading);
+    });
+    let (late, ended) = (Late(Arc::clone(&turns), output.clone()), Arc::clone(&turns));
+    let ending = serve_with_load(input, late, &Load::new(200_000), |outbox, runtime| {
+        let run = move |unfinished| {
+            let ended = Arc::clone(&ended);
+            drop(runtime.spawn(async move {
+                let () = unfinished.await;
+                ended.set(Turn::Ended);
+            }));
+        };
+        Session::with_table(table(), outbox, Box::new(run))
+    });
+    assert_eq!(ending.unwrap(), Ending::Orderly);
+    assert!(*has_ended.lock().unwrap(), "the request goes on although it was cancelled");
+    let messages = messages(&output);
+    assert_eq!(error_code(&messages, 1000), -32800);
+    let place = |id| messages.iter().position(|message| message["id"] == id).unwrap();
+    assert!(place(1000) < place(REQUESTS), "the last requests are answered when there is room");
+}
+
 fn frame(body: impl AsRef<[u8]>) -> Vec<u8> {
     let body = body.as_ref();
     [format!("Content-Length: {}\r\n\r\n", body.len()).as_bytes(), body].concat()
@@ -239,6 +341,11 @@ impl Write for Shared {
 fn session(parts: &[Vec<u8>]) -> (Ending, Vec<Value>) {
     let output = Shared::default();
     let ending = serve_in_test(Cursor::new(parts.concat()), output.clone());
+    (ending, messages(&output))
+}
+
+/// The messages in an output.
+fn messages(output: &Shared) -> Vec<Value> {
     let bytes = output.0.lock().unwrap().clone();
     let mut frames = FrameReader::new(&bytes[..]);
     let mut messages = Vec::new();
@@ -246,7 +353,7 @@ fn session(parts: &[Vec<u8>]) -> (Ending, Vec<Value>) {
         let Frame::Body(body) = found else { panic!("a bad frame on the output") };
         messages.push(serde_json::from_slice(&body).unwrap());
     }
-    (ending, messages)
+    messages
 }
 
 fn answer(messages: &[Value], id: i64) -> &Value {

@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 
 use futures::StreamExt;
 use futures::channel::mpsc::UnboundedReceiver;
+use pydslrep_trace::{RunEvent, RunFailure};
 use tower_lsp::ls_types::{ProgressToken, WorkDoneProgressCreateParams, request};
 
 use crate::children::{ChildEvent, KillOnDrop, Running};
@@ -21,6 +22,54 @@ pub(super) struct Ended {
     pub(super) printed: String,
     /// The end of what it said on standard error, in lines.
     pub(super) said: Vec<String>,
+    /// What a run has reported.
+    pub(super) report: Report,
+}
+
+/// What is left of the events of a run in its end.
+#[derive(Debug, Default)]
+pub(super) struct Report {
+    /// The result in numbers.
+    pub(super) figures: serde_json::Value,
+    /// The same for people.
+    pub(super) table: String,
+    /// Why it failed.
+    pub(super) failure: Option<RunFailure>,
+}
+
+impl Report {
+    /// Reads a line of standard output. Returns what to show of it while the run goes on; `None` if nothing.
+    fn read(&mut self, line: &str) -> Option<String> {
+        match RunEvent::parse(line)? {
+            // Of the preparations: while robots drive, nothing moves but they.
+            RunEvent::Progress { text, robot: None, .. } => Some(text),
+            RunEvent::Note { text } => Some(format!("note: {text}")),
+            RunEvent::Warning { text, .. } => Some(format!("warning: {text}")),
+            RunEvent::Figures { figures, table } => {
+                (self.figures, self.table) = (figures, table);
+                None
+            }
+            RunEvent::Failed(failure) => {
+                self.failure = Some(failure);
+                None
+            }
+            RunEvent::Progress { .. }
+            | RunEvent::Started { .. }
+            | RunEvent::ActionBegun(_)
+            | RunEvent::ActionEnded(_)
+            | RunEvent::Contact(_)
+            | RunEvent::File { .. } => None,
+        }
+    }
+}
+
+/// What a child tells while it runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Tells {
+    /// Lines on standard error.
+    Lines,
+    /// Events on standard output (`docs/run-events.md`).
+    Events,
 }
 
 /// Waits for the end of a child, and reports its progress under a title. The child ends with the request.
@@ -28,6 +77,7 @@ pub(super) async fn follow(
     server: &Server,
     asked: Option<ProgressToken>,
     title: String,
+    tells: Tells,
     (running, mut events): (Running, UnboundedReceiver<ChildEvent>),
 ) -> Ended {
     let _kill = KillOnDrop(running.clone());
@@ -42,9 +92,15 @@ pub(super) async fn follow(
     let mut ended = Ended::default();
     while let Some(event) = events.next().await {
         match event {
-            ChildEvent::Ended(code, printed) => ended = Ended { code, printed, said: Vec::new() },
+            ChildEvent::Ended(code) => ended.code = code,
+            ChildEvent::Printed(line) if tells == Tells::Events => {
+                if let (Some(text), Some(progress)) = (ended.report.read(&line), &progress) {
+                    progress.report_with_message(text, None).await;
+                }
+            }
+            ChildEvent::Printed(line) => ended.printed += &line,
             ChildEvent::Line(line) => {
-                if let Some(progress) = &progress {
+                if let (Some(progress), Tells::Lines) = (&progress, tells) {
                     progress.report_with_message(line.clone(), None).await;
                 }
                 said.push_back(line);

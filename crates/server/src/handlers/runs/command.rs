@@ -3,7 +3,8 @@
 use tower_lsp::jsonrpc::Result;
 use tower_lsp::ls_types::{ExecuteCommandParams, LSPAny, ShowDocumentParams, Uri};
 
-use super::child::{Ended, follow};
+use super::child::{Ended, Tells, follow};
+use super::failed_run;
 use crate::chosen::ChosenEnvironment;
 use crate::handlers::runs;
 use crate::server::Server;
@@ -21,7 +22,8 @@ pub(crate) async fn run(
     let is_run = params.command == runs::RUN;
     let title = format!("{} {}", if is_run { "Running" } else { "Planning" }, which.environment);
     let token = params.work_done_progress_params.work_done_token;
-    let Ended { code, printed, said } = follow(&server, token, title, (running, events)).await;
+    let tells = if is_run { Tells::Events } else { Tells::Lines };
+    let Ended { code, printed, said, report } = follow(&server, token, title, tells, (running, events)).await;
     if is_run {
         // The path up to a failure is worth showing too.
         let State { driven, pages, .. } = &mut *server.state();
@@ -34,11 +36,13 @@ pub(crate) async fn run(
         // Nothing was drawn.
         let _ = std::fs::remove_file(&picture);
         let _ = std::fs::remove_file(runs::replay(&picture));
-        return Err(runs::ended_badly(code, &said));
+        let error = match &report.failure {
+            Some(failure) => failed_run::error(&server.state(), &which, failure, &said),
+            None => runs::ended_badly(code, &said),
+        };
+        return Err(error);
     }
-    let figures = std::fs::read(runs::figures(&picture)).unwrap_or_default();
-    // A plan has none.
-    let figures: LSPAny = serde_json::from_slice(&figures).unwrap_or_default();
+    let output = if is_run { report.table } else { printed };
     let replay = Uri::from_file_path(runs::replay(&picture));
     let picture = Uri::from_file_path(&picture);
     let shows_documents = server.state().client.show_document;
@@ -52,7 +56,6 @@ pub(crate) async fn run(
         // The picture exists, whether or not the client shows it.
         let _ = server.client.show_document(show).await;
     }
-    let result =
-        serde_json::json!({ "picture": picture, "replay": replay, "output": printed, "figures": figures });
+    let result = serde_json::json!({ "picture": picture, "replay": replay, "output": output, "figures": report.figures });
     Ok(Some(result))
 }

@@ -11,7 +11,7 @@ use tower_lsp::ls_types::{
     ExecuteCommandParams, LSPAny, MessageActionItem, MessageType, ProgressToken, ShowMessageRequestParams,
 };
 
-use super::child::{Ended, follow};
+use super::child::{Ended, Tells, follow};
 use super::{INTERRUPTED, cancelled, copy, ended_badly, start};
 use crate::chosen::ChosenEnvironment;
 use crate::handlers::scripts::{failure, tell};
@@ -200,7 +200,7 @@ impl Child<'_> {
             command.arg(format!("--host={}", address.host)).arg(format!("--port={}", address.port));
             start(&mut children, &mut command, copy.folder)?
         };
-        let ended = follow(server, token, title.to_owned(), started).await;
+        let ended = follow(server, token, title.to_owned(), Tells::Lines, started).await;
         Ok((format!("{}:{}", address.host, address.port), ended))
     }
 }

@@ -1,0 +1,82 @@
+//! Edits of several documents, in the best form that the client supports.
+
+use pydslrep_analysis::Edit;
+use pydslrep_text::Span;
+use tower_lsp::ls_types::{
+    CreateFile, CreateFileOptions, DocumentChangeOperation, DocumentChanges, OneOf,
+    OptionalVersionedTextDocumentIdentifier, Position, Range, RenameFile, ResourceOp, TextDocumentEdit,
+    TextEdit, Uri, WorkspaceEdit,
+};
+
+use crate::documents::Document;
+use crate::state::State;
+
+/// Edits of documents, each document once, and what happens to files.
+#[derive(Default)]
+pub(crate) struct Edits<'a> {
+    documents: Vec<(Document<'a>, Vec<TextEdit>)>,
+    /// A file that gets another name, after the edits.
+    pub(crate) renamed: Option<(Uri, Uri)>,
+}
+
+impl<'a> Edits<'a> {
+    /// Edits of programs.
+    pub(crate) fn of_programs(state: &'a State, edits: &[Edit]) -> Self {
+        let mut all = Self::default();
+        for edit in edits {
+            if let Some(document) = state.document_of(edit.file) {
+                all.add(state, document, edit.span, edit.text.clone());
+            }
+        }
+        all
+    }
+
+    /// Replaces a part of a document, unless the same is done already.
+    pub(crate) fn add(&mut self, state: &State, document: Document<'a>, span: Span, text: String) {
+        let edit = TextEdit::new(state.range(document, span), text);
+        match self.documents.iter_mut().find(|(other, _)| other.key == document.key) {
+            Some((_, edits)) if edits.contains(&edit) => {}
+            Some((_, edits)) => edits.push(edit),
+            None => self.documents.push((document, vec![edit])),
+        }
+    }
+
+    /// All of it for the client.
+    pub(crate) fn finish(self, state: &State) -> WorkspaceEdit {
+        if !state.client.versioned_edits {
+            let changes = self.documents.into_iter();
+            let changes = changes.filter_map(|(document, edits)| Some((document.uri()?, edits))).collect();
+            return WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() };
+        }
+        let edits = self.documents.into_iter().filter_map(|(document, edits)| {
+            let (uri, version) = (document.uri()?, document.version());
+            let text_document = OptionalVersionedTextDocumentIdentifier { uri, version };
+            Some(TextDocumentEdit { text_document, edits: edits.into_iter().map(OneOf::Left).collect() })
+        });
+        let changes = match self.renamed {
+            None => DocumentChanges::Edits(edits.collect()),
+            Some((old_uri, new_uri)) => {
+                let rename = RenameFile { old_uri, new_uri, options: None, annotation_id: None };
+                let operations = edits.map(DocumentChangeOperation::Edit);
+                let rename = DocumentChangeOperation::Op(ResourceOp::Rename(rename));
+                DocumentChanges::Operations(operations.chain([rename]).collect())
+            }
+        };
+        WorkspaceEdit { document_changes: Some(changes), ..WorkspaceEdit::default() }
+    }
+}
+
+/// The edit that creates a file with a text, which fails if it exists.
+pub(crate) fn new_file(uri: Uri, text: String) -> WorkspaceEdit {
+    let options = CreateFileOptions { overwrite: None, ignore_if_exists: None };
+    let create = CreateFile { uri: uri.clone(), options: Some(options), annotation_id: None };
+    let text_document = OptionalVersionedTextDocumentIdentifier { uri, version: None };
+    let start = Range::new(Position::new(0, 0), Position::new(0, 0));
+    let edits = vec![OneOf::Left(TextEdit::new(start, text))];
+    let operations = vec![
+        DocumentChangeOperation::Op(ResourceOp::Create(create)),
+        DocumentChangeOperation::Edit(TextDocumentEdit { text_document, edits }),
+    ];
+    let document_changes = Some(DocumentChanges::Operations(operations));
+    WorkspaceEdit { document_changes, ..WorkspaceEdit::default() }
+}

@@ -1,0 +1,43 @@
+//! Why a run failed, and where in the user's program: scripts say which action of which movement it was.
+
+use pydslrep_ide::{NumberedAction, action_place};
+use pydslrep_trace::{FailureClass, RunFailure};
+use tower_lsp::jsonrpc::Error;
+
+use super::{ERROR, cancelled, ended_badly};
+use crate::chosen::ChosenEnvironment;
+use crate::handlers::scripts::{Cause, environment, failure, with_cause};
+use crate::state::State;
+
+/// The error of a run, with the place of the action that failed if that is still there. `said` is what the command wrote to
+/// standard error.
+pub(super) fn error(state: &State, which: &ChosenEnvironment, failed: &RunFailure, said: &[String]) -> Error {
+    match failed.class {
+        FailureClass::Interrupted => cancelled("the run was cancelled"),
+        // The problems are there.
+        FailureClass::Program => ended_badly(None, said),
+        FailureClass::Crash => failure(failed.output.clone().unwrap_or_else(|| words(failed))),
+        FailureClass::Action | FailureClass::Setup | FailureClass::Simulator | FailureClass::File => {
+            located(state, which, failed).unwrap_or_else(|| failure(words(failed)))
+        }
+    }
+}
+
+/// A failure as the command prints it.
+fn words(failed: &RunFailure) -> String {
+    let help = failed.help.as_ref().map(|help| format!("\n |\n = help: {help}"));
+    format!("{ERROR}{}{}", failed.message, help.unwrap_or_default())
+}
+
+/// The error with the place of the action that failed, if it is an action's failure.
+fn located(state: &State, which: &ChosenEnvironment, failed: &RunFailure) -> Option<Error> {
+    let index = failed.action?.checked_sub(1)?;
+    let action = NumberedAction { movement: failed.movement.clone()?, index };
+    let database = state.database();
+    let (file, span) = action_place(database, environment(state, which).ok()?, &action)?;
+    let location = state.location(file, span)?;
+    let name = database.path(file).rsplit('/').next().unwrap_or_default();
+    let line = location.range.start.line + 1;
+    let message = format!("{} ({name}, line {line})", failed.message);
+    Some(with_cause(message, &Cause::FailedRun { location }))
+}
