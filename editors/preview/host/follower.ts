@@ -7,6 +7,7 @@ import {
   PLANNED_PATH,
   type DrivenPath,
   type EnvironmentId,
+  type ErrorData,
   type Location,
   type NumberedAction,
   type PlannedAt,
@@ -26,6 +27,7 @@ export class Follower {
   private isPathRequested = false;
   /** Whether the server has named the program's environments. */
   private areEnvironmentsKnown = false;
+  private latestProblem: ErrorData | undefined;
   /** The latest request of each kind; a newer one cancels it. */
   private readonly pending = new Map<string, AbortController>();
 
@@ -33,6 +35,11 @@ export class Follower {
     private readonly sendRequest: Request,
     private readonly show: (message: ToPage) => void,
   ) {}
+
+  /** What can be done about the problem that is shown, if one is. */
+  get problem(): ErrorData | undefined {
+    return this.latestProblem;
+  }
 
   /** The URI of the shown program. */
   get program(): string | undefined {
@@ -56,10 +63,22 @@ export class Follower {
       await this.update(position);
     } else if (environment !== undefined && environment !== this.environment) {
       this.environment = environment;
+      this.isPathRequested = false;
+      // So that the page is told which one is shown.
+      this.environments = [];
       await this.update(position);
     } else {
       await this.update(position, true);
     }
+  }
+
+  /** Shows the environment whose scene this is. */
+  async followScene(uri: string): Promise<void> {
+    const found = await this.request("scene", PLANNED_AT, { textDocument: { uri }, position: { line: 0, character: 0 } });
+    if (!isPlannedAt(found) || found.program === undefined) return;
+    const { program, environments } = found;
+    if (program === this.uri && environments[0] === this.environment) return;
+    await this.follow(program, { line: 0, character: 0 }, environments[0]);
   }
 
   /** Call this when the text or the cursor changes. Only `maySwitch` allows another environment to be shown. */
@@ -163,8 +182,12 @@ export class Follower {
   private async requestPlanned(id: EnvironmentId): Promise<void> {
     const path = await this.request("planned", PLANNED_PATH, id);
     if (path === undefined || !this.isShown(id)) return;
-    if (path instanceof Failure) this.showProblem(path.message);
-    else this.show({ type: "path", uri: id.uri, path: path as PlannedPath });
+    if (path instanceof Failure) {
+      this.showProblem(path.message, undefined, path.data);
+      return;
+    }
+    this.latestProblem = undefined;
+    this.show({ type: "path", uri: id.uri, path: path as PlannedPath });
   }
 
   private async requestDriven(id: EnvironmentId, isNew = false): Promise<void> {
@@ -177,8 +200,22 @@ export class Follower {
     this.showProblem("The program has no environment yet. Add one to see the path.", "addEnvironment");
   }
 
-  private showProblem(message: string, suggestion?: Suggestion): void {
-    this.show({ type: "problem", uri: this.uri ?? null, message, ...(suggestion ? { suggestion } : {}) });
+  private showProblem(message: string, suggestion?: Suggestion, data: ErrorData = {}): void {
+    this.latestProblem = data;
+    const { location, fix } = data;
+    this.show({
+      type: "problem",
+      uri: this.uri ?? null,
+      message,
+      ...(suggestion ? { suggestion } : {}),
+      ...(location ? { place: this.placeOf(location) } : {}),
+      ...(location && fix !== undefined ? { fix } : {}),
+    });
+  }
+
+  private placeOf({ uri, range }: Location): string {
+    const line = `line ${range.start.line + 1}`;
+    return uri === this.uri ? line : `${decodeURIComponent(uri.slice(uri.lastIndexOf("/") + 1))}, ${line}`;
   }
 
   /** The response; undefined if a newer request of the same kind has been sent. */
@@ -198,8 +235,15 @@ export class Follower {
 /** A request that was rejected. */
 class Failure {
   readonly message: string;
+  readonly data: ErrorData;
 
   constructor(error: unknown) {
     this.message = error instanceof Error ? error.message : String(error);
+    const data: unknown = error instanceof Error && "data" in error ? error.data : undefined;
+    this.data = typeof data === "object" && data !== null ? data : {};
   }
+}
+
+function isPlannedAt(found: unknown): found is PlannedAt {
+  return typeof found === "object" && found !== null && !(found instanceof Failure);
 }

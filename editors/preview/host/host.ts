@@ -1,6 +1,6 @@
 // What every host of the page does, whichever editor it is: answers the page's messages and passes on those of the server.
 import { Follower, type Request } from "./follower";
-import { fromPage, type Suggestion, type ToPage } from "./messages";
+import { fromPage, type Result, type Suggestion, type ToPage } from "./messages";
 import { DRIVEN_PATH_CHANGED, type EnvironmentId, type Location, type NumberedAction, PLANNED_PATH_CHANGED } from "./protocol";
 
 /** What a host does in its own way. */
@@ -10,10 +10,22 @@ export interface Actions {
   /** The user accepted what was suggested about a problem of a program. */
   accept: (suggestion: Suggestion, program: string) => void;
   export: () => void;
+  /** Applies the code action of this title at a location; where there is none, no fix is offered. */
+  fix?: (location: Location, title: string) => void;
+  /** Runs the shown environment; where there is none, there is no button. */
+  run?: (environment: EnvironmentId) => void;
+}
+
+/** A button of a run's result. */
+export interface Button {
+  label: string;
+  press: () => unknown;
 }
 
 export class PreviewHost {
   readonly follower: Follower;
+  private buttons: readonly Button[] = [];
+  private result: Result | null = null;
   /** Resolves the pending capture. */
   private captured: ((png: string) => void) | undefined;
 
@@ -22,7 +34,7 @@ export class PreviewHost {
     private readonly post: (message: ToPage) => void,
     private readonly actions: Actions,
   ) {
-    this.follower = new Follower(request, post);
+    this.follower = new Follower(request, (message) => this.show(message));
   }
 
   /** The server's notification; others than those about paths are ignored. */
@@ -36,7 +48,24 @@ export class PreviewHost {
     const message = fromPage(data);
     switch (message?.type) {
       case "ready":
+        if (this.result) this.post({ type: "result", result: this.result });
         await this.follower.resend();
+        break;
+      case "place": {
+        const location = this.follower.problem?.location;
+        if (location) this.actions.reveal(location);
+        break;
+      }
+      case "fix": {
+        const { location, fix } = this.follower.problem ?? {};
+        if (location && fix !== undefined) this.actions.fix?.(location, fix);
+        break;
+      }
+      case "run":
+        if (this.follower.shown) this.actions.run?.(this.follower.shown);
+        break;
+      case "press":
+        await this.buttons[message.button]?.press();
         break;
       case "select":
         await this.follower.select(message.environment);
@@ -56,6 +85,25 @@ export class PreviewHost {
     }
   }
 
+  /** Shows how a run ended, until the next one starts. */
+  setResult(message: string, isError: boolean, buttons: readonly Button[]): void {
+    this.buttons = buttons;
+    this.result = { message, isError, buttons: buttons.map(({ label }) => label) };
+    this.post({ type: "result", result: this.result });
+  }
+
+  clearResult(): void {
+    this.buttons = [];
+    this.result = null;
+    this.post({ type: "result", result: null });
+  }
+
+  private show(message: ToPage): void {
+    if (message.type === "environments" && this.actions.run) this.post({ ...message, canRun: true });
+    else if (message.type === "problem" && !this.actions.fix) this.post(withoutFix(message));
+    else this.post(message);
+  }
+
   /** The page's picture as a data URI. */
   capture(): Promise<string> {
     return new Promise((resolve) => {
@@ -68,4 +116,9 @@ export class PreviewHost {
     const location = await this.follower.locate(action);
     if (location) this.actions.reveal(location);
   }
+}
+
+function withoutFix(problem: Extract<ToPage, { type: "problem" }>): ToPage {
+  const { fix, ...rest } = problem;
+  return fix === undefined ? problem : rest;
 }

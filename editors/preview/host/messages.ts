@@ -5,13 +5,23 @@ import type { DrivenPath, NumberedAction, PlannedPath } from "./protocol";
 export type ToPage =
   | { type: "path"; uri: string; path: PlannedPath }
   /** The program has no path now, and why. The page keeps its last path. */
-  | { type: "problem"; uri: string | null; message: string; suggestion?: Suggestion }
-  | { type: "environments"; uri: string; names: string[]; shown: string | null }
+  | { type: "problem"; uri: string | null; message: string; suggestion?: Suggestion; place?: string; fix?: string }
+  /** How the latest run ended; null when another one starts. */
+  | { type: "result"; result: Result | null }
+  | { type: "environments"; uri: string; names: string[]; shown: string | null; canRun?: boolean }
   | { type: "cursor"; action: NumberedAction | null }
   /** The latest run, if there was one, and whether it has just ended. */
   | { type: "driven"; uri: string; environment: string; driven: DrivenPath | null; isNew: boolean }
   /** Requests the picture as PNG. */
   | { type: "capture" };
+
+/** What the host says of a run, so that nothing covers the picture. */
+export interface Result {
+  message: string;
+  isError: boolean;
+  /** Labels of buttons, in order. */
+  buttons: string[];
+}
 
 /** What the user can do about a problem. */
 export type Suggestion = "addEnvironment";
@@ -23,6 +33,12 @@ export type FromPage =
   | { type: "select"; environment: string }
   | { type: "reveal"; action: NumberedAction }
   | { type: "accept"; suggestion: Suggestion }
+  /** Show the place of the problem, or apply its fix. */
+  | { type: "place" }
+  | { type: "fix" }
+  | { type: "run" }
+  /** A button of the result. */
+  | { type: "press"; button: number }
   | { type: "export" }
   /** The picture as a data URI. */
   | { type: "captured"; png: string };
@@ -41,7 +57,12 @@ export function fromPage(message: unknown): FromPage | undefined {
   if (!isRecord(message)) return undefined;
   switch (message.type) {
     case "ready":
-      return { type: "ready" };
+    case "place":
+    case "fix":
+    case "run":
+      return { type: message.type };
+    case "press":
+      return typeof message.button === "number" ? { type: "press", button: message.button } : undefined;
     case "select":
       return typeof message.environment === "string"
         ? { type: "select", environment: message.environment }

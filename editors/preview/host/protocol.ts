@@ -120,6 +120,16 @@ export interface PlannedAt {
   using: string[];
   /** The action there; it includes the space beside it on its line. */
   action: NumberedAction | null;
+  /** The program's URI, if the position is in the scene of one of its environments. */
+  program?: string;
+}
+
+/** The `data` of the error that says why there is no path, where the user can do something about it. */
+export interface ErrorData {
+  /** Where the first error is. */
+  location?: Location | null;
+  /** The title of the code action there that fixes it. */
+  fix?: string;
 }
 
 /** The path of the latest run. */

@@ -12,6 +12,8 @@ import { download } from "./download";
 const CURSOR_MOVED = "pydslrep/cursorMoved";
 /** The request to show a location in the editor. */
 const REVEAL = "pydslrep/reveal";
+/** The request to apply a fix in the editor; the server names none where the editor cannot. */
+const APPLY_FIX = "pydslrep/applyFix";
 
 interface Cursor {
   textDocument: { uri: string };
@@ -24,7 +26,7 @@ interface Cursor {
 
 interface Response {
   result?: unknown;
-  error?: { message: string };
+  error?: { message: string; data?: unknown };
 }
 
 let receive: (message: ToPage) => void = () => undefined;
@@ -37,7 +39,7 @@ const send: Request = async (method, params, signal) => {
   const answer = await fetch("messages", { method: "POST", headers: { "content-type": "application/json" }, body, signal });
   if (!answer.ok) throw new Error(GONE);
   const { result, error } = (await answer.json()) as Response;
-  if (error) throw new Error(error.message);
+  if (error) throw Object.assign(new Error(error.message), { data: error.data });
   return result;
 };
 
@@ -46,6 +48,7 @@ const GONE = "The editor's session has ended, or its language server was restart
 const host = new PreviewHost(send, (message) => receive(withoutSuggestion(message)), {
   reveal: (location) => void send(REVEAL, location, new AbortController().signal),
   accept: () => undefined,
+  fix: (location, fix) => void send(APPLY_FIX, { location, fix }, new AbortController().signal),
   export: () => void host.capture().then((png) => download(png, `${host.follower.shown?.environment ?? "path"}.png`)),
 });
 
@@ -84,5 +87,7 @@ async function moved(cursor: Cursor | null): Promise<void> {
 
 /** The page cannot edit the program. */
 function withoutSuggestion(message: ToPage): ToPage {
-  return message.type === "problem" ? { type: message.type, uri: message.uri, message: message.message } : message;
+  if (message.type !== "problem") return message;
+  const { suggestion, ...rest } = message;
+  return suggestion === undefined ? message : rest;
 }

@@ -31,7 +31,8 @@ export class Legend {
     if (!model) return;
     const robots = model.robots.map((robot) => this.entry(robot, content));
     const parts: HTMLElement[] = [element("ul", { class: "robots", "aria-label": "Robots" }, ...robots)];
-    if (driven) parts.push(this.run(content.isRunShown));
+    // A run that failed at once has nothing to show.
+    if (driven && hasPath(driven)) parts.push(this.run(content.isRunShown));
     if (model.collisions.length > 0) parts.push(this.collisions(model.collisions));
     parts.push(key(content));
     this.panel.replaceChildren(...parts);
@@ -75,10 +76,14 @@ export class Legend {
   }
 }
 
+function hasPath(driven: Driven): boolean {
+  return [...driven.robots.values()].some(({ line, nodes }) => line.length > 1 || nodes.length > 0);
+}
+
 /** Samples of the lines and shapes in the picture. */
 function key({ model, driven, isRunShown }: LegendContent): HTMLElement {
   const samples = [["planned", "planned path"]];
-  if (driven && isRunShown) samples.push(["driven", "driven path"]);
+  if (driven && isRunShown && hasPath(driven)) samples.push(["driven", "driven path"]);
   samples.push(["start", "start"]);
   if (model?.robots.some(({ legs }) => legs.length > 0)) samples.push(["end", "planned end"]);
   if (driven && isRunShown && [...driven.robots.values()].some(({ nodes }) => nodes.length > 0)) samples.push(["map", "map"]);

@@ -64,6 +64,10 @@ export class Preview {
       export: () => host.post({ type: "export" }),
       help: () => this.help.toggle(),
       accept: (suggestion) => host.post({ type: "accept", suggestion }),
+      place: () => host.post({ type: "place" }),
+      fix: () => host.post({ type: "fix" }),
+      run: () => host.post({ type: "run" }),
+      press: (button) => host.post({ type: "press", button }),
     });
     this.controls = new Controls({
       toggle: () => this.toggle(),
@@ -93,6 +97,7 @@ export class Preview {
       "main",
       { class: "preview", "data-state": "empty", "data-drawn": "0", "data-steps": "0" },
       this.toolbar.bar,
+      this.toolbar.result,
       element("div", { class: "middle" }, element("div", { class: "stage" }, this.surface, this.toolbar.banner, this.help.box), this.legend.panel),
       this.controls.bar,
       this.announcement,
@@ -112,8 +117,11 @@ export class Preview {
       case "problem":
         this.showProblem(message);
         break;
+      case "result":
+        this.toolbar.showResult(message.result);
+        break;
       case "environments":
-        this.toolbar.setEnvironments(message.names, message.shown);
+        this.toolbar.setEnvironments(message.names, message.shown, message.canRun);
         this.environmentsUri = message.uri;
         this.save({ uri: message.uri, ...(message.shown === null ? {} : { environment: message.shown }) });
         break;
@@ -153,12 +161,13 @@ export class Preview {
     this.root.dataset.drawn = `${Number(this.root.dataset.drawn) + 1}`;
   }
 
-  private showProblem({ uri, message, suggestion }: Extract<ToPage, { type: "problem" }>): void {
+  private showProblem(problem: Extract<ToPage, { type: "problem" }>): void {
+    const { uri } = problem;
     if (uri !== this.pathUri) this.clear();
     if (uri !== this.environmentsUri) this.toolbar.setEnvironments([], null);
     const hasPath = this.model !== undefined;
     this.root.dataset.state = hasPath ? "stale" : "empty";
-    this.toolbar.showProblem(message, hasPath, suggestion);
+    this.toolbar.showProblem(problem, hasPath);
   }
 
   /** Clears the picture when another program is to be shown. */

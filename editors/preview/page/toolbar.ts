@@ -1,5 +1,5 @@
 // The bar above the picture: the environment, the scale and buttons; and the banner that shows problems.
-import type { Suggestion } from "../host/messages";
+import type { Result, Suggestion, ToPage } from "../host/messages";
 import { withFullStop } from "../host/sentence";
 import { element, icon, ICONS } from "./elements";
 import { ZOOM_STEP } from "./view";
@@ -11,6 +11,11 @@ export interface ToolbarEvents {
   export: () => void;
   help: () => void;
   accept: (suggestion: Suggestion) => void;
+  /** The place of the problem, its fix, a run, a button of the result of a run. */
+  place: () => void;
+  fix: () => void;
+  run: () => void;
+  press: (button: number) => void;
 }
 
 const SUGGESTION_LABELS: Record<Suggestion, string> = { addEnvironment: "Add Environment" };
@@ -18,17 +23,24 @@ const SUGGESTION_LABELS: Record<Suggestion, string> = { addEnvironment: "Add Env
 export class Toolbar {
   readonly bar: HTMLElement;
   readonly banner: HTMLElement;
+  /** What the latest run said; beside the picture, which it must not cover. */
+  readonly result = element("p", { class: "result", role: "status", "data-part": "result" });
+  private readonly run: HTMLElement;
   private readonly title = element("h1", { "data-part": "environment" });
   private readonly scale = element("span", { class: "scale", "aria-hidden": "true", "data-part": "scale" });
   private readonly picker = element("select", { "aria-label": "Environment", "data-part": "picker" });
 
   constructor(private readonly events: ToolbarEvents) {
     this.picker.addEventListener("change", () => events.select(this.picker.value));
+    this.run = button("Run in the simulator", ICONS.play, "run", events.run);
+    this.run.hidden = true;
+    this.result.hidden = true;
     this.bar = element(
       "header",
       { class: "toolbar" },
       this.title,
       this.picker,
+      this.run,
       element("span", { class: "space" }),
       this.scale,
       button("Zoom out (−)", ICONS.minus, "zoom-out", () => events.zoom(1 / ZOOM_STEP)),
@@ -43,7 +55,8 @@ export class Toolbar {
   }
 
   /** Shows one environment as a title, several as a picker. */
-  setEnvironments(names: readonly string[], shown: string | null): void {
+  setEnvironments(names: readonly string[], shown: string | null, canRun = false): void {
+    this.run.hidden = !canRun || shown === null;
     const isChoice = names.length > 1;
     this.picker.hidden = !isChoice;
     this.title.hidden = isChoice;
@@ -58,24 +71,37 @@ export class Toolbar {
     this.scale.textContent = length;
   }
 
-  showProblem(message: string, hasPath: boolean, suggestion?: Suggestion): void {
-    const text = hasPath ? `${withFullStop(message)} Showing the last valid path.` : withFullStop(message);
-    // Backquotes mark code.
-    const parts = text.split("`").map((part, index) => (index % 2 === 1 ? element("code", {}, part) : part));
-    this.banner.replaceChildren(...parts);
-    if (suggestion) this.banner.append(" ", this.suggestionButton(suggestion));
+  showProblem({ message, suggestion, place, fix }: Extract<ToPage, { type: "problem" }>, hasPath: boolean): void {
+    this.banner.replaceChildren(...withCode(withFullStop(message)));
+    if (place !== undefined) this.banner.append(" ", textButton(place, "place", this.events.place, "link"));
+    if (hasPath) this.banner.append(place === undefined ? " " : " — ", "Showing the last valid path.");
+    if (suggestion) this.banner.append(" ", textButton(SUGGESTION_LABELS[suggestion], "suggestion", () => this.events.accept(suggestion)));
+    if (fix !== undefined) this.banner.append(" ", textButton(fix, "fix", this.events.fix));
     this.banner.hidden = false;
+  }
+
+  showResult(result: Result | null): void {
+    this.result.hidden = result === null;
+    if (!result) return;
+    this.result.classList.toggle("error", result.isError);
+    const buttons = result.buttons.flatMap((label, index) => [" ", textButton(label, `result-${index}`, () => this.events.press(index), "link")]);
+    this.result.replaceChildren(...withCode(withFullStop(result.message)), ...buttons);
   }
 
   hideProblem(): void {
     this.banner.hidden = true;
   }
+}
 
-  private suggestionButton(suggestion: Suggestion): HTMLElement {
-    const created = element("button", { type: "button", class: "suggestion", "data-part": "suggestion" }, SUGGESTION_LABELS[suggestion]);
-    created.addEventListener("click", () => this.events.accept(suggestion));
-    return created;
-  }
+/** A text whose backquotes mark code. */
+function withCode(text: string): (HTMLElement | string)[] {
+  return text.split("`").map((part, index) => (index % 2 === 1 ? element("code", {}, part) : part));
+}
+
+function textButton(label: string, part: string, pressed: () => void, kind = "suggestion"): HTMLElement {
+  const created = element("button", { type: "button", class: kind, "data-part": part }, ...withCode(label));
+  created.addEventListener("click", pressed);
+  return created;
 }
 
 export function button(label: string, shape: string, part: string, pressed: () => void): HTMLButtonElement {

@@ -3,7 +3,7 @@ import { spawnSync } from "node:child_process";
 import { readdirSync, rmSync } from "node:fs";
 import path from "node:path";
 
-/** Ends the process as the tests end. The packages and `options` of the bundle are those of the folder. */
+/** Ends the process as the tests end. Arguments are options for Node's test runner. The packages and `options` of the bundle are those of the folder. */
 export async function runTests(esbuild, root, options = {}) {
   const out = path.join(root, "dist", "tests");
 
@@ -27,7 +27,7 @@ export async function runTests(esbuild, root, options = {}) {
   const files = readdirSync(out, { recursive: true }).filter((file) => file.endsWith(".test.js"));
   const { status } = spawnSync(
     process.execPath,
-    ["--enable-source-maps", "--test", "--test-reporter=spec", ...files.map((file) => path.join(out, file))],
+    ["--enable-source-maps", "--test", "--test-reporter=spec", ...process.argv.slice(2), ...files.map((file) => path.join(out, file))],
     { stdio: "inherit" },
   );
   process.exit(status ?? 1);

@@ -14,6 +14,7 @@ interface PendingRequest {
   signal: AbortSignal;
   resolve: (value: unknown) => void;
   reject: (message: string) => void;
+  fail: (error: Error) => void;
 }
 
 /** A follower with its pending requests and the messages that it sent. */
@@ -23,7 +24,7 @@ function setUp() {
   const follower = new Follower(
     (method, params, signal) =>
       new Promise((resolve, reject) => {
-        requests.push({ method, params, signal, resolve, reject: (message) => reject(new Error(message)) });
+        requests.push({ method, params, signal, resolve, reject: (message) => reject(new Error(message)), fail: reject });
       }),
     (message) => shown.push(message),
   );
@@ -84,6 +85,39 @@ test("the failure of an older request is not shown", async () => {
   (await next(PLANNED_PATH)).resolve(plan());
   await Promise.all(both);
   assert.deepEqual(shown.map(({ type }) => type), ["path"]);
+});
+
+test("a problem has its place and its fix", async () => {
+  const { follower, shown, requests, next } = await opened(at(["yard"]));
+  shown.length = 0;
+  const location = { uri: "file:///a.pyr", range: { start: { line: 6, character: 2 }, end: { line: 6, character: 4 } } };
+  for (const [message, data] of [["first", { location, fix: "Change to `move`" }], ["second", { location: { ...location, uri: "file:///b%20c.pyr" } }]] as const) {
+    const changed = follower.pathChanged({ uri: "file:///a.pyr", environment: "yard" });
+    (await next(PLANNED_PATH)).fail(Object.assign(new Error(message), { data }));
+    await changed;
+    assert.equal(follower.problem, data);
+  }
+  assert.deepEqual(shown, [
+    { type: "problem", uri: "file:///a.pyr", message: "first", place: "line 7", fix: "Change to `move`" },
+    { type: "problem", uri: "file:///a.pyr", message: "second", place: "b c.pyr, line 7" },
+  ]);
+  assert.equal(requests.length, 0);
+});
+
+test("a scene leads to its environment, which stays where it is", async () => {
+  const { follower, shown, next } = await opened(at(["yard"]));
+  const scene = follower.followScene("file:///hall.scene.toml");
+  (await next(PLANNED_AT)).resolve({ ...at(["hall"], ["hall"]), program: "file:///a.pyr" });
+  (await next(PLANNED_AT)).resolve(at([]));
+  (await next(PLANNED_PATH)).resolve(plan());
+  (await next(DRIVEN_PATH)).resolve(null);
+  await scene;
+  assert.equal(follower.shown?.environment, "hall");
+  shown.length = 0;
+  const again = follower.followScene("file:///hall.scene.toml");
+  (await next(PLANNED_AT)).resolve({ ...at(["hall"], ["hall"]), program: "file:///a.pyr" });
+  await again;
+  assert.deepEqual(shown, []);
 });
 
 test("the reason for a missing path is shown", async () => {

@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
+import { degrees } from "../page/format";
 import { countUpTo, poseAt, trackOf, turnBetween } from "../page/time";
 
 const track = trackOf([
@@ -23,6 +24,10 @@ test("the first and the last pose hold before and after the track", () => {
 
 test("of two poses at the same time the later one holds", () => {
   assert.equal(poseAt(track, 2)?.theta, -3);
+});
+
+test("a heading has one sign for 180", () => {
+  assert.deepEqual([-Math.PI, -3.14159, Math.PI, -0.0001, -0.5].map(degrees), ["180°", "180°", "180°", "0°", "-28.6°"]);
 });
 
 test("a turn is the shorter one", () => {
