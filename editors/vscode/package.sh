@@ -46,7 +46,8 @@ if [ -n "$has_command" ]; then
   package=pydslrep-$target.vsix
   for_target=(--target "$target")
 elif [ "$target" = web ]; then
-  ../web/build.sh >&2
+  # $PYDSLREP_WEB: it is built already.
+  [ -n "${PYDSLREP_WEB:-}" ] || ../web/build.sh >&2
   package=pydslrep-web.vsix
   for_target=(--target web)
   web=--web

@@ -16,6 +16,7 @@ const production = process.argv.includes("--production");
 /** Files from elsewhere in the repository that the extension ships. */
 const copies = [
   ["grammar/textmate/pydslrep.tmLanguage.json", "dist/pydslrep.tmLanguage.json"],
+  ["grammar/textmate/toml.tmLanguage.json", "dist/toml.tmLanguage.json"],
   ["editors/preview/page/style.css", "dist/preview.css"],
   ["docs/images/square.svg", "dist/square.svg"],
   ["LICENSE", "LICENSE"],

@@ -7,6 +7,9 @@ import { codeOf } from "./explain";
 import { showInformation, showWarning } from "./notifications";
 import { PLANNED_AT, type EnvironmentId, type PlannedAt } from "../../preview/host/protocol";
 
+/** So many programs are offered. */
+const MOST_PROGRAMS = 1000;
+
 export const OPEN_A_PROGRAM = "Open a program (a .pyr file) first.";
 
 /** A command on the environment at the cursor of a program. */
@@ -22,9 +25,8 @@ export async function chooseEnvironment(
   client: BaseLanguageClient | undefined,
   document: vscode.Uri | undefined,
 ): Promise<EnvironmentId | undefined> {
-  const program = await openProgram(document);
+  const program = await chooseProgram(document);
   if (program === undefined) {
-    showInformation(OPEN_A_PROGRAM);
     return undefined;
   }
   if (client?.isRunning() !== true) {
@@ -37,12 +39,16 @@ export async function chooseEnvironment(
   const position = client.code2ProtocolConverter.asPosition(editor?.selection.active ?? new vscode.Position(0, 0));
   const found = await client.sendRequest<PlannedAt | null>(PLANNED_AT, { textDocument: { uri }, position });
   const names = candidates(found);
+  if (names.length === 0 && isScene(program)) {
+    showInformation("No program beside this scene has an environment of its name.");
+    return undefined;
+  }
   if (names.length === 0) {
     offerToAddEnvironment(program);
     return undefined;
   }
   const environment = names.length === 1 ? names[0] : await vscode.window.showQuickPick(names, { placeHolder: "Which environment?" });
-  return environment === undefined ? undefined : { uri, environment };
+  return environment === undefined ? undefined : { uri: found?.program ?? uri, environment };
 }
 
 /** The environments that use what is at the cursor, or all if none does. */
@@ -58,7 +64,10 @@ function offerToAddEnvironment(program: vscode.TextDocument): void {
   showInformation(message, { label: "Add Environment", press: () => addEnvironment(program) });
 }
 
-/** Adds the environment that the server's quick fix offers, with all robots and movements, or else a snippet. */
+/**
+ * Adds the environment that the server's quick fix offers, with all robots and movements, or else a snippet. Its name is
+ * selected, to be changed at once; what the editor shows stays where it is.
+ */
 export async function addEnvironment(program: vscode.TextDocument): Promise<void> {
   // The button may be in the preview, which must not be covered.
   const visible = vscode.window.visibleTextEditors.find(({ document }) => document === program);
@@ -70,7 +79,8 @@ export async function addEnvironment(program: vscode.TextDocument): Promise<void
     const edit = actions.find(({ title, edit }) => edit !== undefined && title.includes("environment"))?.edit;
     if (edit !== undefined) {
       await vscode.workspace.applyEdit(edit);
-      editor.revealRange(new vscode.Range(program.lineCount, 0, program.lineCount, 0));
+      const name = nameOfLastEnvironment(program);
+      if (name) editor.selection = new vscode.Selection(name.start, name.end);
       return;
     }
   }
@@ -80,8 +90,48 @@ export async function addEnvironment(program: vscode.TextDocument): Promise<void
   await editor.insertSnippet(new vscode.SnippetString(text), end);
 }
 
-/** The program with this URI, or the one in the active editor. */
-async function openProgram(uri: vscode.Uri | undefined): Promise<vscode.TextDocument | undefined> {
-  const document = uri instanceof vscode.Uri ? await vscode.workspace.openTextDocument(uri) : vscode.window.activeTextEditor?.document;
-  return document?.languageId === "pydslrep" ? document : undefined;
+function nameOfLastEnvironment(program: vscode.TextDocument): vscode.Range | undefined {
+  const match = [...program.getText().matchAll(/^environment +(\^?\w+)/gm)].at(-1);
+  if (!match) return undefined;
+  const [whole, name = ""] = match;
+  const end = match.index + whole.length;
+  return new vscode.Range(program.positionAt(end - name.length), program.positionAt(end));
+}
+
+export function isProgram(document: vscode.TextDocument): boolean {
+  return document.languageId === "pydslrep";
+}
+
+/** Whether a document is the scene of an environment. */
+export function isScene(document: vscode.TextDocument): boolean {
+  return document.uri.path.endsWith(".scene.toml");
+}
+
+/**
+ * The program or scene with this URI, or the one in the active editor. Commands also come from elsewhere, such as the
+ * walkthrough: then the one that is visible, or the one that the user picks; undefined if there is none, which the user is
+ * told.
+ */
+export async function chooseProgram(uri: vscode.Uri | undefined): Promise<vscode.TextDocument | undefined> {
+  const isOurs = (document: vscode.TextDocument) => isProgram(document) || isScene(document);
+  if (uri instanceof vscode.Uri) {
+    const document = await vscode.workspace.openTextDocument(uri);
+    if (isOurs(document)) return document;
+  }
+  const { activeTextEditor, visibleTextEditors } = vscode.window;
+  if (activeTextEditor && isOurs(activeTextEditor.document)) return activeTextEditor.document;
+  const visible = visibleTextEditors.map(({ document }) => document).find(isProgram);
+  return visible ?? (await pickProgram());
+}
+
+async function pickProgram(): Promise<vscode.TextDocument | undefined> {
+  const found = await vscode.workspace.findFiles("**/*.pyr", undefined, MOST_PROGRAMS);
+  if (found.length === 0) {
+    showInformation(OPEN_A_PROGRAM);
+    return undefined;
+  }
+  const items = found.map((uri) => ({ label: vscode.workspace.asRelativePath(uri), uri })).sort((a, b) => a.label.localeCompare(b.label));
+  const picked = items.length === 1 ? items[0] : await vscode.window.showQuickPick(items, { placeHolder: "Which program?" });
+  if (!picked) return undefined;
+  return (await vscode.window.showTextDocument(picked.uri)).document;
 }

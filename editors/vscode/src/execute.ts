@@ -10,13 +10,15 @@ import {
 } from "vscode-languageclient";
 
 import { failureOf } from "./failure";
-import { showError, showWarning } from "./notifications";
+import { type Button, showError, showWarning } from "./notifications";
 import type { EnvironmentId, Location } from "../../preview/host/protocol";
 
 /** The connection to the server and the channel for details. */
 export interface Connection {
   client: BaseLanguageClient | undefined;
   output: vscode.LogOutputChannel;
+  /** Marks the action that failed in a run. */
+  markFailure?: (location: Location, message: string) => void;
 }
 
 let requests = 0;
@@ -38,13 +40,14 @@ export async function executeWithProgress(
   environment: EnvironmentId,
   cancellation: vscode.CancellationTokenSource,
   title = `Running ${environment.environment}`,
+  report: Report = showError,
 ): Promise<unknown> {
   const progress = new ProgressNotification(title, cancellation);
   try {
     return await request(connection.client, command, environment, (value) => progress.follow(value), cancellation.token);
   } catch (error) {
     progress.end();
-    reportFailure(connection, command, environment, error);
+    reportFailure(connection, command, environment, error, report);
     return undefined;
   } finally {
     progress.end();
@@ -112,7 +115,10 @@ async function request(
   }
 }
 
-function reportFailure(connection: Connection, command: string, environment: EnvironmentId, error: unknown): void {
+/** Tells the user of a failure, and what to do about it; an action that failed in a run has a location. */
+export type Report = (message: string, ...buttons: Button[]) => void;
+
+function reportFailure(connection: Connection, command: string, environment: EnvironmentId, error: unknown, report: Report = showError): void {
   const retry = (which = environment) => vscode.commands.executeCommand(command, which);
   const failure = failureOf(error);
   switch (failure.kind) {
@@ -124,17 +130,24 @@ function reportFailure(connection: Connection, command: string, environment: Env
       }
       return;
     case "unsaved":
-      showError(failure.message, { label: "Save As…", press: () => saveAs(environment, retry) });
+      report(failure.message, { label: "Save As…", press: () => saveAs(environment, retry) });
       return;
     case "errors": {
       const { location } = failure;
       const show = location && { label: "Show Problem", press: () => showProblem(location) };
-      showError(failure.message, ...(show ? [show] : []));
+      // A warning closes by itself; an error with a button would stay when the program has long been corrected.
+      (report === showError ? showWarning : report)(failure.message, ...(show ? [show] : []));
+      return;
+    }
+    case "run": {
+      const { location, message } = failure;
+      connection.markFailure?.(location, message);
+      report(message, { label: "Show Action", press: () => showProblem(location) });
       return;
     }
     case "other":
       connection.output.error(failure.details);
-      showError(failure.message, { label: "Show Output", press: () => connection.output.show() });
+      report(failure.message, { label: "Show Output", press: () => connection.output.show() });
   }
 }
 

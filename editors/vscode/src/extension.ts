@@ -2,6 +2,7 @@
 import * as vscode from "vscode";
 
 import { registerCommands } from "./commands";
+import { closeAtWholeWords } from "./completion";
 import { registerExplanations } from "./explain";
 import { registerGhostText } from "./ghost";
 import { registerIndentation } from "./indentation";
@@ -19,6 +20,7 @@ export function activate(context: vscode.ExtensionContext): void {
     registerCommands(session),
     registerProcessCommands(session),
     registerIndentation(),
+    closeAtWholeWords(),
     registerGhostText(),
     registerMilestones(),
     registerExplanations(() => session.client),

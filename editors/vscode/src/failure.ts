@@ -10,6 +10,8 @@ export type Failure =
   | { kind: "unsaved"; message: string }
   /** The program has errors; the location is that of the first. */
   | { kind: "errors"; message: string; location?: Location }
+  /** An action failed in a run; this is where it is. */
+  | { kind: "run"; message: string; location: Location }
   /** Anything else; the details belong in the output channel. */
   | { kind: "other"; message: string; details: string };
 
@@ -36,6 +38,8 @@ export function failureOf(error: unknown): Failure {
       return { kind: "unsaved", message };
     case "errors":
       return location ? { kind: "errors", message, location } : { kind: "errors", message };
+    case "failed-run":
+      return location ? { kind: "run", message, location } : { kind: "other", message, details };
     default:
       return { kind: "other", message, details };
   }

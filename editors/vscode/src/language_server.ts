@@ -1,10 +1,11 @@
 // What the extension needs of a language server, whether it is a process or a worker.
-import type * as vscode from "vscode";
+import * as vscode from "vscode";
 import { type BaseLanguageClient, type LanguageClientOptions, RevealOutputChannelOn, State } from "vscode-languageclient";
 
 import type { Executable } from "./executables";
 import type { Connection } from "./execute";
 import { PAGE_SCHEME } from "./explain";
+import { HeldDiagnostics } from "./held_diagnostics";
 import { CLIENT_COMMANDS, middleware } from "./middleware";
 import type { Runs } from "./run";
 
@@ -37,6 +38,10 @@ export function clientOptions(server: LanguageServer): LanguageClientOptions {
     // Failures are shown by the code that can explain them.
     revealOutputChannelOn: RevealOutputChannelOn.Never,
     diagnosticPullOptions: { onChange: true, onSave: true },
+    diagnosticCollectionProvider: {
+      create: (name) => new HeldDiagnostics(vscode.languages.createDiagnosticCollection(name)),
+      dispose: (collection) => collection.dispose(),
+    },
   };
 }
 

@@ -3,6 +3,7 @@ import * as vscode from "vscode";
 import type { Middleware } from "vscode-languageclient";
 
 import manifest from "../package.json";
+import { filteredHere } from "./completion";
 import { execute, type Connection } from "./execute";
 import { explainActions } from "./explain";
 import { reached } from "./milestones";
@@ -68,21 +69,4 @@ export function middleware(connection: Connection, runs: Runs | undefined): Midd
         params.external === true && params.uri.endsWith(".svg") ? { success: true } : next(params, token),
     },
   };
-}
-
-/**
- * Items that the editor filters itself, so that an answer that is late changes nothing: while the editor waits for one, Enter
- * would accept an item of the list before. An item disappears with the last letter of its first word, and Enter ends the line.
- */
-function filteredHere(found: vscode.CompletionItem[] | vscode.CompletionList): vscode.CompletionList {
-  const items = Array.isArray(found) ? found : found.items;
-  for (const item of items) {
-    const label = typeof item.label === "string" ? item.label : item.label.label;
-    const text = item.filterText ?? label;
-    // The names of files may have blanks; in other labels, what follows the first word is not typed as part of it.
-    const word = item.kind === vscode.CompletionItemKind.File ? text : (text.split(" ", 1)[0] ?? "");
-    // An empty text would count as none.
-    item.filterText = word.slice(0, -1) || " ";
-  }
-  return new vscode.CompletionList(items, false);
 }

@@ -4,8 +4,8 @@ import * as vscode from "vscode";
 import { type Connection, executeWithProgress } from "./execute";
 import { type Figures, summary } from "./figures";
 import { reached } from "./milestones";
-import { showInformation, showWarning } from "./notifications";
-import { type EnvironmentId, keyOf } from "../../preview/host/protocol";
+import { type Button, showError, showInformation, showWarning } from "./notifications";
+import { type EnvironmentId, keyOf, type Location } from "../../preview/host/protocol";
 
 /** The server's answer to `pydslrep.run`. */
 interface RunResult {
@@ -20,13 +20,26 @@ interface RunResult {
 /** The pictures of the latest run of an environment. */
 export type Pictures = Pick<RunResult, "picture" | "replay">;
 
+/** How a run ended, in words, and what to do next. */
+export interface Outcome {
+  message: string;
+  isError: boolean;
+  buttons: Button[];
+}
+
 /** The runs of this window. */
 export class Runs implements vscode.Disposable {
   private readonly running = new Set<vscode.CancellationTokenSource>();
   private readonly pictures = new Map<string, Pictures>();
   private readonly tables = vscode.window.createOutputChannel("PyDSLRep Runs");
+  /** The actions that failed in the latest run. */
+  private readonly failures = vscode.languages.createDiagnosticCollection("pydslrep-run");
+  /** Shows what a run said in a place that covers nothing; false where there is none, and a notification has to. */
+  show: ((outcome: Outcome | undefined, environment: EnvironmentId) => boolean) | undefined;
 
-  constructor(private readonly connection: Connection) {}
+  constructor(private readonly connection: Connection) {
+    connection.markFailure = (location, message) => this.markFailure(location, message);
+  }
 
   /** Runs an environment and shows the driven path. */
   async run(environment: EnvironmentId): Promise<unknown> {
@@ -37,10 +50,13 @@ export class Runs implements vscode.Disposable {
     const cancellation = new vscode.CancellationTokenSource();
     this.running.add(cancellation);
     this.updateContext();
+    this.failures.clear();
+    this.show?.(undefined, environment);
+    const report = (message: string, ...buttons: Button[]) => this.tell({ message, isError: true, buttons }, environment);
     try {
-      const result = await executeWithProgress(this.connection, "pydslrep.run", environment, cancellation);
+      const result = await executeWithProgress(this.connection, "pydslrep.run", environment, cancellation, undefined, report);
       if (isRunResult(result)) {
-        this.showResult(environment, result);
+        await this.showResult(environment, result);
       }
       return result;
     } finally {
@@ -70,20 +86,39 @@ export class Runs implements vscode.Disposable {
   dispose(): void {
     this.stop();
     this.tables.dispose();
+    this.failures.dispose();
   }
 
   private updateContext(): void {
     void vscode.commands.executeCommand("setContext", "pydslrep.isRunning", this.running.size > 0);
   }
 
-  private showResult(environment: EnvironmentId, result: RunResult): void {
+  private async showResult(environment: EnvironmentId, result: RunResult): Promise<void> {
     reached("run");
     this.pictures.set(keyOf(environment), result);
     this.tables.appendLine(`${result.output.trimEnd()}\n`);
-    const showPath = () => vscode.commands.executeCommand("pydslrep.showPreview", vscode.Uri.parse(environment.uri), environment.environment);
-    showInformation(summary(result.figures), { label: "Show Path", press: showPath }, { label: "Show Table", press: () => this.tables.show(true) });
-    void showPath();
+    await showPath(environment);
+    this.tell({ message: summary(result.figures), isError: false, buttons: [{ label: "Show Table", press: () => this.tables.show(true) }] }, environment);
   }
+
+  /** Says how a run ended: in the preview if that is visible, where it covers neither legend nor slider. */
+  private tell(outcome: Outcome, environment: EnvironmentId): void {
+    if (this.show?.(outcome, environment)) return;
+    const { message, isError, buttons } = outcome;
+    if (isError) showError(message, ...buttons);
+    else showInformation(message, { label: "Show Path", press: () => showPath(environment) }, ...buttons);
+  }
+
+  private markFailure({ uri, range: { start, end } }: Location, message: string): void {
+    const range = new vscode.Range(start.line, start.character, end.line, end.character);
+    const diagnostic = new vscode.Diagnostic(range, message, vscode.DiagnosticSeverity.Error);
+    diagnostic.source = "pydslrep run";
+    this.failures.set(vscode.Uri.parse(uri), [diagnostic]);
+  }
+}
+
+function showPath(environment: EnvironmentId): Thenable<unknown> {
+  return vscode.commands.executeCommand("pydslrep.showPreview", vscode.Uri.parse(environment.uri), environment.environment);
 }
 
 export function askForTrust(): void {

@@ -17,6 +17,15 @@ test("the data of the error says what the user can do", () => {
   assert.equal(failureOf(answered(-32803, "no", { reason: "errors", location: null })).kind, "errors");
 });
 
+test("a run that failed says where", () => {
+  const message = "robot rover, movement trip, action 2: no progress for 5 s (a.pyr, line 4)";
+  assert.deepEqual(failureOf(answered(-32803, message, { reason: "failed-run", location })), {
+    kind: "run",
+    message: `R${message.slice(1)}.`,
+    location,
+  });
+});
+
 test("cancelled requests and lost connections are told apart from failures", () => {
   assert.equal(failureOf(answered(-32800, "the run was cancelled")).kind, "cancelled");
   assert.equal(failureOf(answered(-32097, "Pending response rejected since connection got disposed")).kind, "disconnected");

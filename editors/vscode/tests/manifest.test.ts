@@ -39,18 +39,28 @@ test("menus, keys and the walkthrough refer to existing commands", () => {
   const known = new Set(commands.map(({ command: name }) => name));
   const called = [
     ...Object.values(menus).flat().map(({ command: name }) => name),
-    ...keybindings.map(({ command: name }) => name),
+    // A key runs two commands of the editor.
+    ...keybindings.map(({ command: name }) => name).filter((name) => name !== "runCommands"),
     ...[...JSON.stringify(walkthroughs).matchAll(/(?:command|onCommand):(pydslrep\.\w+)/g)].map(([, name]) => name),
   ];
   assert.deepEqual(called.filter((name) => name !== undefined && !known.has(name)), []);
 });
 
-test("only the server suggests, and Enter accepts only suggestions that change the text", () => {
+test("only the server suggests, Enter accepts what the user has selected, and Tab the first suggestion", () => {
   const defaults = manifest.contributes.configurationDefaults["[pydslrep]"];
   assert.equal(defaults["editor.acceptSuggestionOnEnter"], "smart");
+  assert.equal(defaults["editor.suggest.selectionMode"], "never");
+  const tab = manifest.contributes.keybindings.find(({ key }) => key === "tab");
+  assert.deepEqual(tab?.args?.commands, ["selectNextSuggestion", "acceptSelectedSuggestion"]);
   assert.equal(defaults["editor.wordBasedSuggestions"], "off");
   // A snippet with a prefix is suggested after any word.
   assert.deepEqual(Object.entries(snippets).filter(([, snippet]) => "prefix" in snippet), []);
+});
+
+test("ports of the simulator are not forwarded", () => {
+  const [[pattern, attributes] = ["", undefined]] = Object.entries(manifest.contributes.configurationDefaults["remote.portsAttributes"]);
+  assert.equal(attributes?.onAutoForward, "ignore");
+  for (const command of ["/usr/bin/pydslrep run a.pyr", "python3 /tmp/pydslrep-job-1/yard.py"]) assert.match(command, new RegExp(pattern));
 });
 
 test("the manifest has the project's URLs if there are any, and says that nothing is collected", () => {

@@ -2,6 +2,7 @@
 import * as vscode from "vscode";
 
 import { registerCommands } from "../src/commands";
+import { closeAtWholeWords } from "../src/completion";
 import { registerExplanations } from "../src/explain";
 import { registerGhostText } from "../src/ghost";
 import { registerIndentation } from "../src/indentation";
@@ -19,6 +20,7 @@ export function activate(context: vscode.ExtensionContext): void {
     registerCommands(session),
     registerUnavailableCommands(),
     registerIndentation(),
+    closeAtWholeWords(),
     registerGhostText(),
     registerMilestones(),
     registerExplanations(() => session.client),

@@ -2,14 +2,14 @@
 import * as vscode from "vscode";
 import type { BaseLanguageClient } from "vscode-languageclient";
 
-import { chooseEnvironment, OPEN_A_PROGRAM } from "../environments";
+import { chooseEnvironment, chooseProgram, isScene } from "../environments";
 import { execute } from "../execute";
-import { showInformation } from "../notifications";
 import type { LanguageServer } from "../language_server";
 import type { Draw, Drawings } from "./export";
 import type { Request } from "../../../preview/host/follower";
 import { pageState } from "../../../preview/host/messages";
-import { isProgram, PANEL_TYPE, PreviewPanel } from "./panel";
+import type { Outcome } from "../run";
+import { PANEL_TYPE, PreviewPanel } from "./panel";
 import { DRIVEN_PATH_CHANGED, type EnvironmentId, PLANNED_PATH_CHANGED } from "../../../preview/host/protocol";
 
 /**
@@ -18,6 +18,7 @@ import { DRIVEN_PATH_CHANGED, type EnvironmentId, PLANNED_PATH_CHANGED } from ".
  */
 export function registerPreview(context: vscode.ExtensionContext, session: LanguageServer): vscode.Disposable {
   const preview = new Preview(context.extensionUri, session);
+  if (session.runs) session.runs.show = (outcome, environment) => preview.showOutcome(outcome, environment);
   return vscode.Disposable.from(
     // A restarted server does not know which paths are shown.
     session.onDidChangeState((state) => {
@@ -42,20 +43,24 @@ class Preview implements vscode.WebviewPanelSerializer {
   ) {}
 
   async open(uri: unknown, environment: unknown): Promise<void> {
-    const active = vscode.window.activeTextEditor?.document;
     const given = uri instanceof vscode.Uri ? uri : typeof uri === "string" ? vscode.Uri.parse(uri) : undefined;
-    const program = given ?? (active && isProgram(active) ? active.uri : undefined);
-    if (!program) {
-      showInformation(OPEN_A_PROGRAM);
-      return;
-    }
+    const isChosen = given !== undefined && typeof environment === "string";
+    const document = isChosen ? undefined : await chooseProgram(given);
+    const program = isChosen ? given : document?.uri;
+    if (!program) return;
     if (this.panel) {
       this.panel.reveal();
     } else {
       const column = { viewColumn: vscode.ViewColumn.Beside, preserveFocus: true };
       this.attach(vscode.window.createWebviewPanel(PANEL_TYPE, "Path", column));
     }
-    await this.panel?.follow(program, typeof environment === "string" ? environment : undefined);
+    if (document && isScene(document)) await this.panel?.followScene(program);
+    else await this.panel?.follow(program, typeof environment === "string" ? environment : undefined);
+  }
+
+  /** Shows how a run ended in the panel; false if nobody would see it there. */
+  showOutcome(outcome: Outcome | undefined, environment: EnvironmentId): boolean {
+    return this.panel?.showOutcome(outcome, environment) ?? false;
   }
 
   async deserializeWebviewPanel(panel: vscode.WebviewPanel, state: unknown): Promise<void> {
@@ -79,7 +84,7 @@ class Preview implements vscode.WebviewPanelSerializer {
   }
 
   private attach(panel: vscode.WebviewPanel): PreviewPanel {
-    const attached = new PreviewPanel(panel, this.extension, this.request, this.draw());
+    const attached = new PreviewPanel(panel, this.extension, this.request, this.draw(), this.session.runs !== undefined);
     this.panel = attached;
     panel.onDidDispose(() => {
       if (this.panel === attached) this.panel = undefined;

@@ -1,21 +1,18 @@
 // The preview's panel: passes messages between the preview's host, the editor and the page.
 import * as vscode from "vscode";
 
-import { addEnvironment } from "../environments";
+import { addEnvironment, isProgram, isScene } from "../environments";
 import { reached } from "../milestones";
 import { type Draw, exportPath } from "./export";
 import type { Request } from "../../../preview/host/follower";
 import { PreviewHost } from "../../../preview/host/host";
 import type { ToPage } from "../../../preview/host/messages";
+import type { Outcome } from "../run";
 import { page } from "./page";
-import type { EnvironmentId, Location, Position } from "../../../preview/host/protocol";
+import { type EnvironmentId, keyOf, type Location, type Position } from "../../../preview/host/protocol";
 
 /** VS Code restores panels by their type. */
 export const PANEL_TYPE = "pydslrep.preview";
-
-export function isProgram(document: vscode.TextDocument): boolean {
-  return document.languageId === "pydslrep";
-}
 
 export class PreviewPanel {
   private readonly host: PreviewHost;
@@ -26,8 +23,13 @@ export class PreviewPanel {
     extension: vscode.Uri,
     request: Request,
     private readonly draw: Draw | undefined,
+    canRun: boolean,
   ) {
+    const images = vscode.Uri.joinPath(extension, "images");
+    panel.iconPath = { light: vscode.Uri.joinPath(images, "file-light.svg"), dark: vscode.Uri.joinPath(images, "file-dark.svg") };
     this.host = new PreviewHost(request, (message) => this.post(message), {
+      fix: (location, title) => void applyFix(location, title),
+      ...(canRun ? { run: (environment) => void vscode.commands.executeCommand("pydslrep.run", environment) } : {}),
       reveal: (location) => void this.showLocation(location),
       accept: (_, program) => void addEnvironmentTo(program),
       export: () => void this.export(),
@@ -56,9 +58,30 @@ export class PreviewPanel {
 
   /** Shows a program. */
   async follow(uri: vscode.Uri, environment?: string): Promise<void> {
-    this.panel.title = `Path: ${uri.path.slice(uri.path.lastIndexOf("/") + 1)}`;
+    this.nameAfter(uri.toString());
     const cursor = cursorOf(visibleEditor(uri));
     await this.host.follower.follow(uri.toString(), cursor, environment);
+  }
+
+  /** Shows the environment of a scene. */
+  async followScene(uri: vscode.Uri): Promise<void> {
+    await this.host.follower.followScene(uri.toString());
+    this.nameAfter(this.host.follower.program);
+  }
+
+  /** Shows how a run ended, or that another one has begun; false if the panel is hidden or shows something else. */
+  showOutcome(outcome: Outcome | undefined, environment: EnvironmentId): boolean {
+    const { shown } = this;
+    if (!outcome) this.host.clearResult();
+    if (!outcome || !this.panel.visible || !shown || keyOf(shown) !== keyOf(environment)) return false;
+    this.host.setResult(outcome.message, outcome.isError, outcome.buttons);
+    return true;
+  }
+
+  private nameAfter(program: string | undefined): void {
+    if (program === undefined) return;
+    const { path } = vscode.Uri.parse(program);
+    this.panel.title = `Path: ${path.slice(path.lastIndexOf("/") + 1)}`;
   }
 
   reveal(): void {
@@ -92,6 +115,7 @@ export class PreviewPanel {
   }
 
   private cursorMoved(editor: vscode.TextEditor): void {
+    if (isScene(editor.document) && editor === vscode.window.activeTextEditor) void this.followScene(editor.document.uri);
     if (!isProgram(editor.document)) return;
     const uri = editor.document.uri;
     if (uri.toString() !== this.host.follower.program) {
@@ -119,6 +143,18 @@ export class PreviewPanel {
       preserveFocus: true,
     });
   }
+}
+
+/** Applies the quick fix of this title, if it is still offered. */
+async function applyFix({ uri, range: { start, end } }: Location, title: string): Promise<void> {
+  const document = vscode.Uri.parse(uri);
+  const range = new vscode.Range(start.line, start.character, end.line, end.character);
+  // The provider answers for open documents only.
+  await vscode.workspace.openTextDocument(document);
+  const kind = vscode.CodeActionKind.QuickFix.value;
+  const actions = await vscode.commands.executeCommand<vscode.CodeAction[]>("vscode.executeCodeActionProvider", document, range, kind);
+  const edit = actions.find((action) => action.title === title)?.edit;
+  if (edit) await vscode.workspace.applyEdit(edit);
 }
 
 async function addEnvironmentTo(program: string): Promise<void> {
