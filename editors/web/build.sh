@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Builds dist/: the language server and the simulator as WebAssembly (pydslrep_bg.wasm), the JavaScript module around it
 # (pydslrep.js), and the worker of the language server (worker.js). Prints what a browser loads, compressed.
-# CARGO_PROFILE: the profile (default: wasm; `dev` builds quicker).
+# CARGO_PROFILE: the profile (default: wasm, for publishing). `dev` is for tests: larger and slower, but compiled in a fraction of
+# the time, with the macros and build scripts of other builds in the same target directory.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)

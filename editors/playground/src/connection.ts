@@ -6,7 +6,7 @@ interface Message {
   method?: string;
   params?: unknown;
   result?: unknown;
-  error?: { code: number; message: string };
+  error?: { code: number; message: string; data?: unknown };
 }
 
 /** An error that the server answers. */
@@ -14,6 +14,7 @@ export class ServerError extends Error {
   constructor(
     readonly code: number,
     message: string,
+    readonly data?: unknown,
   ) {
     super(message);
   }
@@ -103,7 +104,7 @@ export class Connection implements Transport {
   private settle(id: string, { result, error }: Message): void {
     const request = this.pending.get(id);
     this.pending.delete(id);
-    if (error) request?.reject(new ServerError(error.code, error.message));
+    if (error) request?.reject(new ServerError(error.code, error.message, error.data));
     else request?.resolve(result);
   }
 

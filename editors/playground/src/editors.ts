@@ -7,8 +7,9 @@ import { LSPPlugin } from "@codemirror/lsp-client";
 
 import type { Connection } from "./connection";
 import { FOLDER, programUri, sceneUri, SETTINGS_URI, type Project } from "./documents";
-import { applyEdit } from "./editor/actions";
+import { applyAction, applyEdit, requestActions } from "./editor/actions";
 import { diagnostics } from "./editor/diagnostics";
+import { inlayHints, refreshHints } from "./editor/inlay_hints";
 import { sanitize } from "./editor/markup";
 import { semanticColours } from "./editor/semantic";
 import { ScriptView, TextView } from "./editor/text_view";
@@ -62,6 +63,7 @@ export class Editors {
         signatureHelp(),
         diagnostics((uri, errors, warnings) => this.count(uri, errors, warnings)),
         semanticColours(),
+        inlayHints(),
         { clientCapabilities: CAPABILITIES },
       ],
     });
@@ -165,6 +167,19 @@ export class Editors {
 
   apply(edit: WorkspaceEdit): void {
     applyEdit(this.views.program.view, edit);
+  }
+
+  /** Applies the quick fix of this title in the program, if it is still offered. */
+  async fix(range: Range, title: string): Promise<void> {
+    const { view } = this.views.program;
+    const offered = await requestActions(view, range, [], ["quickfix"]);
+    const action = offered.find((one) => one.title === title);
+    if (action) applyAction(view, action);
+  }
+
+  /** Shows the hints of all texts anew. */
+  refreshHints(): void {
+    for (const { view } of Object.values(this.views)) refreshHints(view);
   }
 
   /** Sends what was typed. */

@@ -25,5 +25,6 @@ declare module "virtual:pydslrep" {
     request(connection: number, ticket: number, now: number, message: Uint8Array): [number, Uint8Array][];
     disconnect(connection: number): [number, Uint8Array][];
     tick(): [number, Uint8Array][];
+    free(): void;
   }
 }

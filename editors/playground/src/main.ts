@@ -4,6 +4,9 @@ import type { WorkspaceEdit } from "vscode-languageserver-protocol";
 
 import { Connection } from "./connection";
 import { FOLDER, type Project } from "./documents";
+import { DraftKeeper, isFree } from "./draft_keeper";
+import { DraftList } from "./draft_list";
+import type { Draft } from "./drafts";
 import { Editors, NAMES, type Name } from "./editors";
 import { byId, element } from "./elements";
 import { Outline } from "./outline";
@@ -12,6 +15,8 @@ import { Preview } from "./preview";
 import { RunPanel } from "./run/panel";
 import { Tabs } from "./tabs";
 import { followTheme } from "./theme";
+
+const UNSTORED = "This browser does not keep your changes. Copy the program or press Share before you leave the page.";
 
 const fallback = groups[0]?.projects[0] ?? { name: "program", program: "", settings: "", scenes: {} };
 
@@ -22,6 +27,9 @@ const connection = new Connection(server, (method, params) => {
     case "workspace/applyEdit":
       editors.apply((params as { edit: WorkspaceEdit }).edit);
       return { applied: true };
+    case "workspace/inlayHint/refresh":
+      editors.refreshHints();
+      return null;
     case "client/registerCapability":
     case "window/workDoneProgress/create":
       return null;
@@ -34,8 +42,15 @@ const connection = new Connection(server, (method, params) => {
 connection.on("pydslrep/crashed", ({ message }: { message: string }) => announce(`${message}. Reload the page to go on.`));
 const importedFiles = Object.fromEntries(Object.entries(imported).map(([path, text]) => [FOLDER + path, text]));
 
-const editors = new Editors(byId("editor"), connection, (await projectIn(location.hash)) ?? fallback, importedFiles, {
+const linked = await projectIn(location.hash);
+const firstDraft = await DraftKeeper.first(linked === "damaged" ? undefined : linked);
+const first = firstDraft?.project ?? (linked === "damaged" ? undefined : linked) ?? fallback;
+
+const editors = new Editors(byId("editor"), connection, first, importedFiles, {
   changed: (name, isNew) => {
+    if (isNew) keeper.changed();
+    // They decide which hints there are.
+    if (isNew && name === "settings") editors.refreshHints();
     if (isNew && name === "program") outline.update(editors.programUri);
     if (isNew) runs.textChanged();
     if (name === "program") {
@@ -53,6 +68,9 @@ const preview = new Preview(byId("preview"), connection, {
     editors.reveal(range);
   },
   addEnvironment: () => editors.focus("program"),
+  fix: ({ uri, range }, title) => {
+    if (uri === editors.programUri) void editors.fix(range, title);
+  },
   shown: (id) => {
     editors.setEnvironment(id?.environment, preview.environments);
     runs.setEnvironment(id);
@@ -74,9 +92,36 @@ const tabs = new Tabs(byId("tabs"), (name) => {
   if (name === "script") void runs.showScript();
 });
 
-function open(project: Project): void {
+const keeper = new DraftKeeper(() => editors.project, {
+  stored: (isStored) => {
+    forgetLink();
+    if (!isStored) announce(UNSTORED);
+    else if (byId("announcement").textContent === UNSTORED) announce("");
+  },
+});
+keeper.opened(firstDraft);
+
+new DraftList(byId<HTMLButtonElement>("drafts"), {
+  opening: () => keeper.store(),
+  open: (draft) => void openDraft(draft),
+  delete: (id) => keeper.delete(id),
+  shown: () => keeper.shown,
+});
+
+/** Opens a draft; a copy of it, if another tab shows it. */
+async function openDraft(draft: Draft): Promise<void> {
+  if (draft.id === keeper.shown) return;
+  const isOurs = await isFree(draft.id);
+  open(draft.project, isOurs ? draft : undefined);
+  if (!isOurs) announce("Another tab shows this draft: your changes here become a new one.");
+}
+
+function open(project: Project, draft?: Draft): void {
+  keeper.store();
+  announce("");
   runs.stop();
   editors.open(project);
+  keeper.opened(draft);
   tabs.choose("program");
   start();
 }
@@ -86,7 +131,13 @@ function start(): void {
   outline.update(editors.programUri);
 }
 
+/** The address is no longer that of what is shown. */
+function forgetLink(): void {
+  if (location.hash !== "") history.replaceState(null, "", location.pathname + location.search);
+}
+
 async function share(): Promise<void> {
+  keeper.store();
   history.replaceState(null, "", await fragmentOf(editors.project));
   try {
     await navigator.clipboard.writeText(location.href);
@@ -94,6 +145,10 @@ async function share(): Promise<void> {
   } catch {
     announce("The address in the address bar now contains the program.");
   }
+}
+
+function announceDamage(): void {
+  announce("This link is damaged: the program in it cannot be read. Ask for the link again; part of it may have been cut off.");
 }
 
 function announce(text: string): void {
@@ -106,14 +161,20 @@ for (const { label, projects } of groups) {
 }
 examples.addEventListener("change", () => {
   const project = groups.flatMap(({ projects }) => projects).find(({ name }) => name === examples.value);
-  if (project) open(project);
+  if (project) {
+    open(project);
+    forgetLink();
+  }
   examples.value = "";
 });
 
 byId("share").addEventListener("click", () => void share());
 byId("format").addEventListener("click", () => editors.format(tabs.shown as Name));
 window.addEventListener("hashchange", () => {
-  void projectIn(location.hash).then((project) => project && open(project));
+  void projectIn(location.hash).then((project) => {
+    if (project === "damaged") announceDamage();
+    else if (project) open(project);
+  });
 });
 window.addEventListener("keydown", (event) => {
   // As in VS Code; Alt+1 to Alt+4 lead to the editors.
@@ -127,3 +188,4 @@ window.addEventListener("keydown", (event) => {
 });
 followTheme(byId("theme"), (theme) => preview.setTheme(theme));
 start();
+if (linked === "damaged") announceDamage();

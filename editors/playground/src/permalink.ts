@@ -14,15 +14,15 @@ export async function fragmentOf(project: Project): Promise<string> {
   return KEY + btoa(binary).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
 }
 
-/** The project of a fragment; undefined if it has none that can be read. */
-export async function projectIn(fragment: string): Promise<Project | undefined> {
+/** The project of a fragment: undefined if the fragment is no link to one, "damaged" if it is one that cannot be read. */
+export async function projectIn(fragment: string): Promise<Project | "damaged" | undefined> {
   if (!fragment.startsWith(KEY)) return undefined;
   try {
     const binary = atob(fragment.slice(KEY.length).replaceAll("-", "+").replaceAll("_", "/"));
     const bytes = Uint8Array.from(binary, (character) => character.charCodeAt(0));
-    return projectOf(JSON.parse(await inflate(bytes)));
+    return projectOf(JSON.parse(await inflate(bytes))) ?? "damaged";
   } catch {
-    return undefined;
+    return "damaged";
   }
 }
 

@@ -18,6 +18,8 @@ import type { Theme } from "./theme";
 export interface PreviewEvents {
   reveal: (location: Location) => void;
   addEnvironment: () => void;
+  /** Applies the code action of this title at a location. */
+  fix: (location: Location, title: string) => void;
   /** Another environment is shown. */
   shown: (environment: EnvironmentId | undefined) => void;
 }
@@ -42,6 +44,7 @@ export class Preview {
       {
         reveal: events.reveal,
         accept: events.addEnvironment,
+        fix: events.fix,
         export: () => void this.download(),
       },
     );

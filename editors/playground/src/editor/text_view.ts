@@ -1,16 +1,19 @@
 // One text of the playground in an editor: what all of them share, and the connection to the server.
-import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap } from "@codemirror/autocomplete";
+import { closeBrackets, closeBracketsKeymap } from "@codemirror/autocomplete";
 import { defaultKeymap, history, historyKeymap, indentWithTab } from "@codemirror/commands";
 import { bracketMatching, StreamLanguage } from "@codemirror/language";
 import { python } from "@codemirror/legacy-modes/mode/python";
 import { toml } from "@codemirror/legacy-modes/mode/toml";
-import { lintKeymap } from "@codemirror/lint";
+import { openLintPanel } from "@codemirror/lint";
 import type { LSPClient } from "@codemirror/lsp-client";
 import { searchKeymap, highlightSelectionMatches } from "@codemirror/search";
 import { Compartment, EditorState, Transaction, type Extension } from "@codemirror/state";
 import { drawSelection, EditorView, highlightActiveLine, highlightActiveLineGutter, highlightSpecialChars, keymap, lineNumbers, tooltips } from "@codemirror/view";
 
 import { actions, showActions } from "./actions";
+import { completion } from "./completion";
+import { nextProblem } from "./next_problem";
+import { formatOnType } from "./on_type";
 import { theme } from "./theme";
 
 const COMMON: Extension = [
@@ -31,12 +34,12 @@ const COMMON: Extension = [
 const WRITING: Extension = [
   closeBrackets(),
   actions,
-  autocompletion({ icons: false }),
+  nextProblem,
+  completion,
   keymap.of([
     { key: "Mod-.", run: showActions },
     ...closeBracketsKeymap,
-    ...completionKeymap,
-    ...lintKeymap,
+    { key: "Mod-Shift-m", run: openLintPanel, preventDefault: true },
     ...searchKeymap,
     ...historyKeymap,
     ...defaultKeymap,
@@ -73,7 +76,7 @@ export class TextView {
         extensions: [
           COMMON,
           WRITING,
-          language === "toml" ? StreamLanguage.define(toml) : [EditorState.languageData.of(() => [{ commentTokens: { line: "//" } }])],
+          language === "toml" ? StreamLanguage.define(toml) : [formatOnType, EditorState.languageData.of(() => [{ commentTokens: { line: "//" } }])],
           EditorView.contentAttributes.of({ "aria-label": label, "aria-multiline": "true", tabindex: "0" }),
           EditorView.updateListener.of(({ docChanged, selectionSet }) => {
             if (docChanged || selectionSet) events.changed({ isNew: docChanged });

@@ -62,6 +62,7 @@ const view = EditorView.theme({
     padding: "2px 8px",
     cursor: "pointer",
   },
+  ".hint": { color: "var(--quiet)", fontSize: "12px", userSelect: "none" },
   ".actions": { display: "flex", flexDirection: "column", minWidth: "16em", padding: "4px" },
   ".actions p": { margin: "4px 8px", outline: "none" },
   ".actions button": {

@@ -1,7 +1,7 @@
 // Runs: the button, the worker, progress, output, and what a run wrote.
 import type { DrivenPath, EnvironmentId, PlannedPath } from "../../../preview/host/protocol";
 import { PLANNED_PATH } from "../../../preview/host/protocol";
-import { fixed } from "../../../preview/page/format";
+import { degrees, fixed } from "../../../preview/page/format";
 import type { Connection } from "../connection";
 import type { Editors } from "../editors";
 import { button, byId, element } from "../elements";
@@ -35,8 +35,9 @@ export class RunPanel {
   private readonly status = byId("status");
   private readonly progress = byId<HTMLProgressElement>("progress");
   private readonly downloads = byId("downloads");
-  /** The worker of the next run or of the current one. */
+  /** The worker of the next run or of the current one. It outlives runs, because it takes seconds to load Python. */
   private worker: Worker | undefined;
+  private isPythonReady = false;
   private run: Run | undefined;
   private environment: EnvironmentId | undefined;
   /** Counts what the user asked for, so that late answers are ignored. */
@@ -70,7 +71,13 @@ export class RunPanel {
   stop(): void {
     if (this.toggleButton.dataset.running !== "true") return;
     this.asked += 1;
+    const isBusy = this.run !== undefined;
     this.end();
+    // Nothing else stops a script. The next run need not wait for Python.
+    if (isBusy) {
+      this.discard();
+      this.prepare();
+    }
     this.say("Stopped");
   }
 
@@ -90,8 +97,8 @@ export class RunPanel {
     this.downloads.replaceChildren();
     this.setRunning(true);
     this.progress.removeAttribute("value");
-    this.say("Loading Python …");
     const worker = this.prepare();
+    this.say(this.isPythonReady ? "Starting …" : "Loading Python …");
     try {
       const script = await this.script();
       const id = this.environment;
@@ -100,7 +107,7 @@ export class RunPanel {
       if (asked !== this.asked) return;
       await preview.setDriven(id, undefined);
       this.run = { id, script, planned, begin: performance.now(), driven: { environment: id.environment, robots: [] } };
-      worker.addEventListener("message", ({ data }: MessageEvent<FromRun>) => asked === this.asked && this.receive(data));
+      if (this.isPythonReady) this.say("Running …");
       const world = { environment: id.environment, program: id.uri, files: { ...this.parts.imported, ...editors.files } };
       worker.postMessage({ file: `${fileName(id.environment)}.py`, script, world, arguments: slamArguments(planned) } satisfies Task);
     } catch (error) {
@@ -110,12 +117,19 @@ export class RunPanel {
 
   private receive(message: FromRun): void {
     const { run } = this;
-    if (!run) return;
+    if (message.type === "ready") {
+      this.isPythonReady = true;
+      if (!run) return;
+      this.say("Running …");
+      run.begin = performance.now();
+      return;
+    }
+    if (!run) {
+      // Without Python, the next run has to load it again.
+      if (message.type === "failed") this.discard();
+      return;
+    }
     switch (message.type) {
-      case "ready":
-        this.say("Running …");
-        run.begin = performance.now();
-        break;
       case "output":
         this.print(message.text, message.isError);
         break;
@@ -128,6 +142,8 @@ export class RunPanel {
         this.finish(run, message.code, message.results);
         break;
       case "failed":
+        // The simulator, or Python itself: neither can go on.
+        this.discard();
         this.fail(message.message);
         break;
     }
@@ -182,14 +198,19 @@ export class RunPanel {
 
   /** A worker with Python, loaded or being loaded. */
   private prepare(): Worker {
-    this.worker ??= new Worker("run.js", { type: "module", name: "run" });
-    return this.worker;
+    if (this.worker) return this.worker;
+    const worker = (this.worker = new Worker("run.js", { type: "module", name: "run" }));
+    worker.addEventListener("message", ({ data }: MessageEvent<FromRun>) => worker === this.worker && this.receive(data));
+    return worker;
   }
 
-  /** Ends the run and everything that belongs to it. */
-  private end(): void {
+  private discard(): void {
     this.worker?.terminate();
     this.worker = undefined;
+    this.isPythonReady = false;
+  }
+
+  private end(): void {
     this.run = undefined;
     this.setRunning(false);
   }
@@ -225,7 +246,7 @@ function seconds(value: number): string {
 
 function pose(found: { x: number; y: number; theta: number } | undefined): string {
   if (!found) return "—";
-  return `${fixed(found.x, 3)} m, ${fixed(found.y, 3)} m, ${fixed((found.theta * 180) / Math.PI, 1)}°`;
+  return `${fixed(found.x, 3)} m, ${fixed(found.y, 3)} m, ${degrees(found.theta)}`;
 }
 
 function messageOf(error: unknown): string {

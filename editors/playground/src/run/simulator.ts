@@ -33,6 +33,11 @@ export class Simulated {
     return this.replies(this.simulator.disconnect(connection));
   }
 
+  /** Ends the simulation: nothing may be requested any more. */
+  end(): void {
+    this.simulator.free();
+  }
+
   private replies(answers: [number, Uint8Array][]): Reply[] {
     return answers.flatMap(([ticket, message]): Reply[] => {
       const connection = this.waiting.get(ticket);

@@ -1,5 +1,4 @@
-// The worker that runs a script: Python as WebAssembly, and the simulator that answers it at once. It runs one script; its end
-// is the end of everything in it.
+// The worker that runs scripts, one after another: Python as WebAssembly, and a simulator for each that answers it at once.
 import { files as python } from "virtual:python";
 import { loadPyodide, type PyodideAPI } from "pyodide";
 
@@ -46,6 +45,7 @@ self.addEventListener("message", (event: MessageEvent<Task>) => {
 async function run(task: Task): Promise<void> {
   const [pyodide, simulated] = await Promise.all([prepared, Simulated.start(task.world)]);
   const watch = new Watch(pyodide);
+  empty(pyodide);
   pyodide.registerJsModule("_pydslrep_simulator", bridge(pyodide, simulated, watch));
   pyodide.FS.writeFile(`${HOME}/${task.file}`, task.script);
   const { start } = pyodide.pyimport("_pydslrep_start") as { start: (...values: unknown[]) => number };
@@ -57,7 +57,16 @@ async function run(task: Task): Promise<void> {
     (text: string) => post({ type: "output", text, isError: true }),
   );
   watch.look(true);
+  simulated.end();
   post({ type: "ended", code, results: results(pyodide) });
+}
+
+/** Removes what an earlier script has written. */
+function empty({ FS }: PyodideAPI): void {
+  for (const name of FS.readdir(HOME)) {
+    const path = `${HOME}/${name}`;
+    if (FS.isFile(FS.stat(path).mode)) FS.unlink(path);
+  }
 }
 
 /** What the stand-in for the client's sockets calls: it gets replies, each with the connection that it is for. */

@@ -1,6 +1,7 @@
-"""Runs a script in Pyodide as a process of its own would run it."""
+"""Runs a script in Pyodide as a process of its own would run it: it finds no module as an earlier script has left it."""
 
 import asyncio
+import gc
 import io
 import runpy
 import selectors
@@ -70,6 +71,16 @@ class Lines(io.TextIOBase):
             self._line = ""
 
 
+def forget_modules() -> None:
+    """Unloads the modules of an earlier script: those beside this one, and the simulator, of which each run has its own."""
+    folder = __file__.rpartition("/")[0]
+    for name, module in list(sys.modules.items()):
+        file = getattr(module, "__file__", None) or ""
+        if name != __name__ and file.startswith(f"{folder}/"):
+            del sys.modules[name]
+    sys.modules.pop("_pydslrep_simulator", None)
+
+
 def start(
     script: str,
     arguments: list[str],
@@ -77,6 +88,7 @@ def start(
     show_error: Callable[[str], object],
 ) -> int:
     """Runs a script; the exit code."""
+    forget_modules()
     selectors.DefaultSelector = Idle  # type: ignore[misc,assignment]
     socket.socketpair = lambda *_: (Wakeup(1 << 20), Wakeup(1 + (1 << 20)))  # type: ignore[assignment,return-value]
     # Pyodide runs this in an event loop of its own.
@@ -91,4 +103,6 @@ def start(
     finally:
         out.finish()
         error.finish()
+        # While its simulator is there: what is left of the script may still close its connections.
+        gc.collect()
     return 0

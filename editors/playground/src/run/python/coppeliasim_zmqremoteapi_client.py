@@ -30,25 +30,20 @@ class RemoteAPIClient:
 
     def call(self, function: str, arguments: list[Any]) -> Any:
         """The result of a function, or a tuple of its results; raises an exception if it fails."""
-        self._send(function, arguments)
+        self._send({"func": function, "args": arguments})
         while "func" in (reply := cbor.loads(self.socket.recv())):
             if reply["func"] == WAIT:
                 function, arguments = EXECUTED, []
             elif reply["func"] != REPEAT:
                 raise RuntimeError(f"unknown reply {reply['func']}")
-            self._send(function, arguments)
+            self._send({"func": function, "args": arguments})
         if "err" in reply:
             raise RuntimeError(reply["err"])
         results = reply.get("ret", [])
         return results[0] if len(results) == 1 else tuple(results) or None
 
-    def _send(self, function: str, arguments: list[Any]) -> None:
-        request = {
-            "func": function,
-            "args": arguments,
-            "argsL": len(arguments),
-            "uuid": self.uuid,
-        }
+    def _send(self, request: dict[str, Any]) -> None:
+        request |= {"argsL": len(request["args"]), "uuid": self.uuid}
         if not self._is_known:
             self._is_known = True
             request |= {"ver": 2, "lang": "python", "timeout": self.timeout}
