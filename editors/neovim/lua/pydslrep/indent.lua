@@ -9,7 +9,15 @@ local LONGEST_COMMENT = 200
 ---@param line string
 ---@return string
 local function code(line)
-  return (line:gsub('/%*.-%*/', ''):gsub('//.*', ''):gsub('/%*.*', ''):gsub('^.*%*/', ''))
+  return (line:gsub('/%*.-%*/', ''):gsub('//.*', ''):gsub('/%*.*', ''))
+end
+
+--- The rest of a line that begins inside a block comment, without its comments.
+---@param line string
+---@return string
+local function after_comment(line)
+  local _, last = line:find('*/', 1, true)
+  return last and code(line:sub(last + 1)) or ''
 end
 
 --- The first line of the block comment that a line starts in, if any.
@@ -26,19 +34,49 @@ local function enclosing_comment(number)
   end
 end
 
---- How many more braces a line opens than it closes, and how many of them it closes first.
----@param line string
----@return integer, integer
-local function braces(line)
-  local depth, lowest = 0, 0
-  for brace in code(line):gmatch('[{}]') do
-    depth = depth + (brace == '{' and 1 or -1)
-    lowest = math.min(lowest, depth)
+--- The words that begin a declaration.
+local DECLARATIONS = {
+  import = true,
+  wheel = true,
+  wheelH = true,
+  sensor = true,
+  ip = true,
+  robot = true,
+  parallel = true,
+  movement = true,
+  environment = true,
+}
+
+--- How many lines to search for the start of a declaration.
+local LONGEST_DECLARATION = 2000
+
+--- The line that begins the declaration before a line: only what follows it counts, whatever was forgotten before.
+---@param number integer
+---@return integer
+local function declaration_before(number)
+  for before = number - 1, math.max(1, number - LONGEST_DECLARATION), -1 do
+    if DECLARATIONS[vim.fn.getline(before):match('^%s*([%a_][%w_]*)') or ''] and not enclosing_comment(before) then
+      return before
+    end
   end
-  return depth, -lowest
+  return number
 end
 
---- For 'indentexpr': the indentation of a line, in columns.
+--- How many braces are open at the start of a line.
+---@param number integer
+---@return integer
+local function depth_before(number)
+  local depth = 0
+  for before = declaration_before(number), number - 1 do
+    local line = vim.fn.getline(before)
+    for brace in (enclosing_comment(before) and after_comment(line) or code(line)):gmatch('[{}]') do
+      depth = math.max(0, depth + (brace == '{' and 1 or -1))
+    end
+  end
+  return depth
+end
+
+--- For 'indentexpr': the indentation of a line, in columns: the canonical one, whatever the lines before look like.
 ---@param number integer Starts at 1.
 ---@return integer -1 keeps the indentation.
 function M.of_line(number)
@@ -47,18 +85,8 @@ function M.of_line(number)
   if comment then
     return line:match('^%s*%*') and vim.fn.indent(comment) + 1 or -1
   end
-  local before = vim.fn.prevnonblank(number - 1)
-  if before == 0 then
-    return 0
-  end
-  local depth, closed_first = braces(vim.fn.getline(before))
-  -- A brace closed at the start of a line has already moved that line.
-  local starts_closing = code(vim.fn.getline(before)):match('^%s*}') and 1 or 0
-  local steps = depth + math.min(closed_first, starts_closing)
-  if line:match('^%s*}') then
-    steps = steps - 1
-  end
-  return math.max(0, vim.fn.indent(enclosing_comment(before) or before) + steps * vim.fn.shiftwidth())
+  local steps = depth_before(number) - (line:match('^%s*}') and 1 or 0)
+  return math.max(0, steps) * vim.fn.shiftwidth()
 end
 
 return M

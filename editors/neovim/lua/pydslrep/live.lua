@@ -27,9 +27,12 @@ function M.open(environment)
   tell_cursor()
   local shown = { uri = vim.uri_from_bufnr(buffer), environment = environment }
   local params = { command = 'pydslrep.openPreview', arguments = { shown } }
-  server.request(client, 'workspace/executeCommand', params, function(problem)
+  server.request(client, 'workspace/executeCommand', params, function(problem, opened)
     if problem then
       notify.error(problem.message)
+    elseif type(opened) == 'table' and opened.address then
+      -- Whether a browser opens it, nobody can tell: the system's opener may find none, or one on another screen.
+      notify.info('path preview: ' .. opened.address)
     end
   end, buffer)
   vim.api.nvim_create_autocmd({ 'BufEnter', 'CursorMoved', 'CursorMovedI' }, {

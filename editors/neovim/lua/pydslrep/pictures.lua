@@ -32,7 +32,9 @@ function M.show_document(problem, params, context, ...)
   if params.external and vim.startswith(params.uri, 'file:') then
     return { success = open('the picture', vim.uri_to_fname(params.uri), config.get().open) }
   elseif params.external then
-    return { success = open('the preview', params.uri) }
+    -- The command that opens the preview prints the address, whatever comes of this.
+    pcall(vim.ui.open, params.uri)
+    return { success = true }
   end
   return vim.lsp.handlers['window/showDocument'](problem, params, context, ...)
 end

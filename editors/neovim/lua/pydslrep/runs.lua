@@ -56,6 +56,31 @@ local function show(name, result)
   end
 end
 
+--- The marks of actions that failed in the latest run.
+local failures = vim.api.nvim_create_namespace('pydslrep-run')
+
+--- Marks the action that made a run fail, until the next run.
+---@param client vim.lsp.Client
+---@param problem lsp.ResponseError
+local function mark(client, problem)
+  local data = type(problem.data) == 'table' and problem.data or {}
+  if data.reason ~= 'failed-run' or type(data.location) ~= 'table' then
+    return
+  end
+  local buffer = vim.uri_to_bufnr(data.location.uri)
+  vim.fn.bufload(buffer)
+  local place = vim.lsp.util.locations_to_items({ data.location }, client.offset_encoding)[1]
+  vim.diagnostic.set(failures, buffer, { {
+    lnum = place.lnum - 1,
+    col = place.col - 1,
+    end_lnum = place.end_lnum and place.end_lnum - 1,
+    end_col = place.end_col and place.end_col - 1,
+    severity = vim.diagnostic.severity.ERROR,
+    source = 'pydslrep run',
+    message = problem.message,
+  } })
+end
+
 ---@param run pydslrep.Run
 ---@param status 'success'|'failed'|'cancel'
 ---@param message string
@@ -92,12 +117,14 @@ function M.execute(client, buffer, command, id)
   local run = { client = client, token = 'pydslrep-' .. count, progress = { title = name }, stopping = false }
   params.workDoneToken = run.token
   current = run
+  vim.diagnostic.reset(failures)
   notify.progress(run.progress, 'running', 'starting')
   server.request(client, 'workspace/executeCommand', params, function(problem, result)
     if problem and run.stopping then
       finish(run, 'cancel', 'stopped')
     elseif problem then
       finish(run, 'failed', 'failed')
+      mark(client, problem)
       notify.error(problem.message)
     else
       finish(run, 'success', 'done')
