@@ -14,8 +14,37 @@ import pytest
 ROOT = pathlib.Path(__file__).parents[1]
 DEBUG = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "debug"
 
-# In the background of a shell, tests would otherwise pass an ignored SIGINT on to the processes they start.
+# Tests would otherwise pass on to the processes that they start that a signal is ignored: in the background of a shell SIGINT
+# and SIGQUIT, with nohup SIGHUP.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+for name in ("SIGHUP", "SIGQUIT"):
+    if hasattr(signal, name):
+        signal.signal(getattr(signal, name), signal.SIG_DFL)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--long", action="store_true", help="Run everything at full length."
+    )
+
+
+def pytest_collection_modifyitems(
+    config: pytest.Config, items: list[pytest.Item]
+) -> None:
+    """Leaves out tests marked `long`, of which others are the short subset; at full length, no test counts as hung."""
+    if config.getoption("long"):
+        for item in items:
+            item.add_marker(pytest.mark.timeout(0))
+    if not config.getoption("long"):
+        left_out = [item for item in items if item.get_closest_marker("long")]
+        items[:] = [item for item in items if not item.get_closest_marker("long")]
+        config.hook.pytest_deselected(items=left_out)
+
+
+@pytest.fixture(scope="session")
+def long(pytestconfig: pytest.Config) -> bool:
+    """Whether tests run at full length: by default, those that need more than 20 s run a short subset."""
+    return bool(pytestconfig.getoption("long"))
 
 
 @pytest.fixture
