@@ -17,7 +17,7 @@ pub(crate) fn read(tokens: &[Token], end: usize) -> Option<Program> {
 /// The keywords and punctuation expected at the end of the tokens; `None` if no program begins like this.
 pub(crate) fn expected(tokens: &[Token], end: usize) -> Option<BTreeSet<&'static str>> {
     let mut reader = Reader::new(tokens, end);
-    if reader.entities().is_some() {
+    if reader.imports().and_then(|_| reader.entities()).is_some() {
         // The next entity.
         let _ = reader.entity();
     }
@@ -122,14 +122,21 @@ impl Reader<'_> {
 
     // Program = { Import } { Entity } ;
     fn program(mut self) -> Option<Program> {
+        let imports = self.imports()?;
         let entities = self.entities()?;
-        Some(Program { entities, older_spellings: self.older_spellings })
+        Some(Program { imports, entities, older_spellings: self.older_spellings })
+    }
+
+    fn imports(&mut self) -> Option<Vec<Name>> {
+        let mut imports = Vec::new();
+        while self.contextual("import").is_some() {
+            let token = self.next(Kind::Text)?;
+            imports.push(Name { text: token.text.trim_matches('"').to_owned(), range: token.range });
+        }
+        Some(imports)
     }
 
     fn entities(&mut self) -> Option<Vec<Entity>> {
-        while self.contextual("import").is_some() {
-            self.next(Kind::Text)?;
-        }
         let mut entities = Vec::new();
         while self.at < self.tokens.len() {
             entities.push(self.entity()?);

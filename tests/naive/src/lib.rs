@@ -9,6 +9,7 @@ mod check;
 mod generate;
 mod grammar;
 mod program;
+mod project;
 mod tokens;
 
 #[cfg(test)]
@@ -16,6 +17,8 @@ mod tests;
 
 use std::collections::BTreeSet;
 use std::ops::Range;
+
+use project::{File, Project, Scope};
 
 pub use generate::{Recipe, program, programs};
 
@@ -43,8 +46,7 @@ pub struct Verdict {
     pub grammatical: bool,
     /// In text order; only lexical errors if the program is not grammatical.
     ///
-    /// Excludes the codes that need more than one program: `planned-collision` needs a scene, `unresolved-import` and
-    /// `ambiguous-import` other files, `duplicate-port` the other target.
+    /// Excludes `planned-collision`, which needs a scene and geometry.
     pub findings: Vec<Finding>,
     /// Optional findings, likely caused by others: an unused declaration that a misspelt reference may have meant.
     pub excused: Vec<Finding>,
@@ -57,20 +59,52 @@ impl Verdict {
     }
 }
 
-/// Checks a program.
+/// A file of a project.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Source {
+    /// Relative to the folder of the project, with `/` between folders.
+    pub path: &'static str,
+    /// Its text.
+    pub text: String,
+    /// Whether its scripts are for V-REP, not for `CoppeliaSim`.
+    pub for_vrep: bool,
+}
+
+/// Checks a program for `CoppeliaSim`. Its imports are not looked at: the names that it uses must be its own.
 pub fn check(text: &str) -> Verdict {
-    let (tokens, lexical) = tokens::read(text);
-    let mut findings = lexical;
-    let lexically_sound = findings.is_empty();
-    let program = if lexically_sound { grammar::read(&tokens, text.len()) } else { None };
-    if let Some(program) = &program {
-        findings.extend(check::check(program));
-    }
+    let (program, lexical) = read(text);
+    let Some(mut program) = program else {
+        return Verdict { grammatical: false, findings: lexical, excused: Vec::new() };
+    };
+    program.imports.clear();
+    let project = Project { files: vec![File { path: String::new(), for_vrep: false, program }] };
+    verdict(Scope::new(&project, 0))
+}
+
+/// Checks files that import each other; `None` if one of them is not grammatical. An import that leads to none of them leads
+/// nowhere.
+pub fn check_project(sources: &[Source]) -> Option<Vec<Verdict>> {
+    let file = |source: &Source| {
+        let program = read(&source.text).0?;
+        Some(File { path: source.path.to_owned(), for_vrep: source.for_vrep, program })
+    };
+    let project = Project { files: sources.iter().map(file).collect::<Option<_>>()? };
+    Some((0..sources.len()).map(|file| verdict(Scope::new(&project, file))).collect())
+}
+
+/// The program, if it is grammatical, and its lexical errors.
+fn read(text: &str) -> (Option<program::Program>, Vec<Finding>) {
+    let (tokens, mut lexical) = tokens::read(text);
+    lexical.sort();
+    let program = if lexical.is_empty() { grammar::read(&tokens, text.len()) } else { None };
+    (program, lexical)
+}
+
+fn verdict(scope: Scope<'_>) -> Verdict {
+    let mut findings = check::check(scope);
     findings.sort();
-    let excused =
-        |finding: &Finding| program.as_ref().is_some_and(|program| check::is_excused(program, finding));
-    let (excused, findings) = findings.into_iter().partition(excused);
-    Verdict { grammatical: program.is_some(), findings, excused }
+    let (excused, findings) = findings.into_iter().partition(|finding| check::is_excused(scope, finding));
+    Verdict { grammatical: true, findings, excused }
 }
 
 /// The keywords and punctuation that can follow the beginning of a program; `None` if the text is not the beginning of a

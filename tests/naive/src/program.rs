@@ -5,45 +5,14 @@ use std::ops::Range;
 use crate::Finding;
 
 pub(crate) struct Program {
+    /// The paths of its imports, without quotes.
+    pub(crate) imports: Vec<Name>,
     pub(crate) entities: Vec<Entity>,
     /// Deprecated spellings found by the parser.
     pub(crate) older_spellings: Vec<Finding>,
 }
 
 impl Program {
-    /// Resolves a reference: the first declaration with that kind and name.
-    pub(crate) fn find(&self, kind: &str, name: &str) -> Option<&Entity> {
-        self.entities.iter().find(|entity| entity.kind() == kind && entity.name.text == name)
-    }
-
-    pub(crate) fn wheel(&self, name: &str) -> Option<&Wheel> {
-        match &self.find("wheel", name)?.body {
-            Body::Wheel(wheel) => Some(wheel),
-            _ => None,
-        }
-    }
-
-    pub(crate) fn sensor(&self, name: &str) -> Option<&Sensor> {
-        match &self.find("sensor", name)?.body {
-            Body::Sensor(sensor) => Some(sensor),
-            _ => None,
-        }
-    }
-
-    pub(crate) fn robot(&self, name: &str) -> Option<&Robot> {
-        match &self.find("robot", name)?.body {
-            Body::Robot(robot) => Some(robot),
-            _ => None,
-        }
-    }
-
-    pub(crate) fn movement(&self, name: &str) -> Option<&Movement> {
-        match &self.find("movement", name)?.body {
-            Body::Movement(movement) => Some(movement),
-            _ => None,
-        }
-    }
-
     pub(crate) fn environments(&self) -> impl Iterator<Item = (&Entity, &Environment)> {
         self.entities.iter().filter_map(|entity| match &entity.body {
             Body::Environment(environment) => Some((entity, environment)),
@@ -58,6 +27,11 @@ impl Program {
     /// Every reference of the program with its kind.
     pub(crate) fn references(&self) -> Vec<(&'static str, &Name)> {
         self.entities.iter().flat_map(Entity::references).collect()
+    }
+
+    /// The first declaration with that kind and name in this file.
+    pub(crate) fn declaration(&self, kind: &str, name: &str) -> Option<&Entity> {
+        self.entities.iter().find(|entity| entity.kind() == kind && entity.name.text == name)
     }
 }
 

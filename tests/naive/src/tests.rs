@@ -1,8 +1,10 @@
 //! Tests of the generator and the checker: every code is reached, and small programs have the expected findings.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use expect_test::{Expect, expect};
+use proptest::strategy::{Strategy, ValueTree};
+use proptest::test_runner::TestRunner;
 
 use super::*;
 
@@ -18,20 +20,49 @@ fn expect_findings(text: &str, expected: &Expect) {
     expected.assert_eq(&findings(text));
 }
 
+/// How many of a hundred programs have a code at least.
+const LEAST_SHARE: u32 = 3;
+
 #[test]
-fn programs_are_grammatical_and_reach_every_code() {
-    let mut reached = BTreeSet::new();
-    let mut clean = 0;
-    for seed in 0..1_000 {
-        let text = program(seed, 40);
+fn programs_are_grammatical_and_every_code_is_in_many_of_them() {
+    const PROGRAMS: u32 = 600;
+    let mut counts: BTreeMap<&str, u32> = BTreeMap::new();
+    let (mut clean, mut sound) = (0, 0);
+    for seed in 0..PROGRAMS {
+        let text = program(u64::from(seed), 40);
         let verdict = check(&text);
         assert!(verdict.grammatical, "seed {seed}:\n{text}");
         clean += u32::from(verdict.is_clean());
-        reached.extend(verdict.findings.iter().map(|finding| finding.code));
+        let codes: BTreeSet<&str> = verdict.findings.iter().map(|finding| finding.code).collect();
+        sound += u32::from(codes.iter().all(|code| HARMLESS.contains(code)));
+        for code in codes {
+            *counts.entry(code).or_default() += 1;
+        }
     }
-    assert_eq!(reached.into_iter().collect::<Vec<_>>(), MEANING);
-    assert!(clean > 100, "only {clean} programs are clean");
+    assert_eq!(counts.keys().copied().collect::<Vec<_>>(), MEANING);
+    let rare: Vec<_> = counts.iter().filter(|(_, count)| **count * 100 < PROGRAMS * LEAST_SHARE).collect();
+    assert!(rare.is_empty(), "of {PROGRAMS} programs too few have {rare:?}");
+    assert!(clean * 100 > PROGRAMS * 8, "only {clean} of {PROGRAMS} programs are clean");
+    assert!(sound * 100 > PROGRAMS * 44, "only {sound} of {PROGRAMS} programs have no errors");
 }
+
+/// The warnings and hints among them: a program that has no others can be run.
+const HARMLESS: [&str; 14] = [
+    "deprecated-ip-clause",
+    "empty-environment",
+    "empty-movement",
+    "idle-robot",
+    "implausible-radius",
+    "misplaced-type",
+    "mixed-radii",
+    "port-of-other-target",
+    "repeated-robot",
+    "repeated-sensor",
+    "script-name",
+    "single-parallel",
+    "unused-declaration",
+    "wheel-order",
+];
 
 /// Every code that a single grammatical program can have.
 const MEANING: [&str; 32] = [
@@ -146,6 +177,87 @@ fn lexical_errors_have_their_codes() {
         not grammatical
     "#]],
     );
+}
+
+/// What is found in each file of a project: its path, its text, and whether its scripts are for V-REP.
+fn project_findings(files: &[(&'static str, &str, bool)]) -> String {
+    let source = |&(path, text, for_vrep): &(&'static str, &str, bool)| Source {
+        path,
+        text: text.to_owned(),
+        for_vrep,
+    };
+    let sources: Vec<Source> = files.iter().map(source).collect();
+    let verdicts = check_project(&sources).expect("grammatical files");
+    let mut out = String::new();
+    for (source, verdict) in sources.iter().zip(verdicts) {
+        for finding in verdict.findings {
+            out +=
+                &format!("{} {} {:?}\n", source.path, finding.code, &source.text[finding.start..finding.end]);
+        }
+    }
+    out
+}
+
+#[test]
+fn files_import_each_other() {
+    const PARTS: &str = "wheel a with radius 4 wheel b with radius 4 robot r with port 7 has { a b } wheels movement m of r { slam }";
+    let main = "import \"parts/x.pyr\" environment e has { r } robots with { m } moves";
+    expect![[r#"
+        parts/x.pyr slam-sensors "slam"
+    "#]]
+    .assert_eq(&project_findings(&[("main.pyr", main, false), ("parts/x.pyr", PARTS, false)]));
+    // A name means what it means in the file that uses it: `m` drives the robot of its own file.
+    let own = format!(
+        "{main} wheel a with radius 4 wheel b with radius 4 robot r with port 7 has {{ a b }} wheels"
+    );
+    expect![[r#"
+        main.pyr idle-robot "r"
+        main.pyr movement-robot-missing "m"
+        parts/x.pyr slam-sensors "slam"
+    "#]]
+    .assert_eq(&project_findings(&[("main.pyr", &own, false), ("parts/x.pyr", PARTS, false)]));
+    expect![[r#"
+        main.pyr unresolved-import "\"../z.pyr\""
+        main.pyr ambiguous-import "a"
+    "#]]
+    .assert_eq(&project_findings(&[
+        (
+            "main.pyr",
+            "import \"x.pyr\" import \"y.pyr\" import \"../z.pyr\" robot r with port 7 has { a c } wheels",
+            false,
+        ),
+        ("x.pyr", "wheel a with radius 4", false),
+        ("y.pyr", "wheel a with radius 4", false),
+    ]));
+    let two = "import \"x.pyr\" environment e has { q r } robots";
+    let robots = "robot r with port 19997 has { a b } wheels robot q with port 19997 has { a b } wheels wheel a with radius 4 wheel b with radius 4";
+    expect![[r#"
+        main.pyr idle-robot "q"
+        main.pyr duplicate-port "r"
+        main.pyr idle-robot "r"
+        x.pyr port-of-other-target "19997"
+        x.pyr port-of-other-target "19997"
+    "#]]
+    .assert_eq(&project_findings(&[("main.pyr", two, true), ("x.pyr", robots, false)]));
+}
+
+#[test]
+fn projects_have_what_takes_several_files() {
+    const PROJECTS: usize = 300;
+    let mut runner = TestRunner::deterministic();
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for _ in 0..PROJECTS {
+        let sources = Recipe::default().projects().new_tree(&mut runner).expect("a project").current();
+        let verdicts = check_project(&sources).expect("grammatical files");
+        let codes = verdicts.iter().flat_map(|verdict| verdict.findings.iter().map(|finding| finding.code));
+        for code in codes.collect::<BTreeSet<_>>() {
+            *counts.entry(code).or_default() += 1;
+        }
+    }
+    for code in ["ambiguous-import", "unresolved-import", "duplicate-port"] {
+        let count = counts.get(code).copied().unwrap_or_default();
+        assert!(count * 100 >= PROJECTS * 5, "only {count} of {PROJECTS} projects have {code}: {counts:?}");
+    }
 }
 
 #[test]

@@ -1,58 +1,83 @@
 //! Group "environment": the schedule.
 
-use super::{is_among, repeated};
+use super::repeated;
+use super::value::port_number;
 use crate::Finding;
-use crate::program::{Body, Entity, Environment, Movement, Name, Program};
+use crate::program::{Body, Entity, Environment, Movement, Name, Program, Robot};
+use crate::project::{Declared, Scope};
 
-pub(super) fn check(program: &Program, findings: &mut Vec<Finding>) {
-    for (entity, environment) in program.environments() {
+pub(super) fn check(scope: Scope<'_>, findings: &mut Vec<Finding>) {
+    for (entity, environment) in scope.program().environments() {
         if environment.robots.is_empty() {
             findings.push(Finding::new("empty-environment", &environment.robot_list));
         }
         for robot in repeated(&environment.robots) {
             findings.push(Finding::new("repeated-robot", &robot.range));
         }
-        movement_robot_missing(program, environment, findings);
-        idle_robot(program, environment, findings);
-        parallel_conflict(program, environment, findings);
-        script_name(program, entity, findings);
+        movement_robot_missing(scope, environment, findings);
+        idle_robot(scope, environment, findings);
+        parallel_conflict(scope, environment, findings);
+        if scope.file().for_vrep {
+            duplicate_port(scope, environment, findings);
+        }
+        script_name(scope.program(), entity, findings);
     }
-    single_parallel(program, findings);
+    if !scope.is_imported() {
+        single_parallel(scope, findings);
+    }
 }
 
 /// Lists a movement but not its robot. An unknown robot is an error of the movement itself.
-fn movement_robot_missing(program: &Program, environment: &Environment, findings: &mut Vec<Finding>) {
+fn movement_robot_missing(scope: Scope<'_>, environment: &Environment, findings: &mut Vec<Finding>) {
+    let listed: Vec<_> = environment.robots.iter().filter_map(|name| scope.robot(&name.text)).collect();
     for name in &environment.movements {
-        let Some(movement) = program.movement(&name.text) else { continue };
-        let exists = program.robot(&movement.robot.text).is_some();
-        if exists && !is_among(&movement.robot, &environment.robots) {
+        let Some(robot) = driven_robot(scope, name) else { continue };
+        if !listed.iter().any(|other| other.is(&robot)) {
             findings.push(Finding::new("movement-robot-missing", &name.range));
         }
     }
 }
 
 /// Lists a robot without a listed movement. An unknown movement may be for any robot.
-fn idle_robot(program: &Program, environment: &Environment, findings: &mut Vec<Finding>) {
-    let driven: Option<Vec<&str>> =
-        environment.movements.iter().map(|name| driven_robot(program, name)).collect();
+fn idle_robot(scope: Scope<'_>, environment: &Environment, findings: &mut Vec<Finding>) {
+    let driven: Option<Vec<_>> = environment.movements.iter().map(|name| driven_robot(scope, name)).collect();
     let Some(driven) = driven else { return };
-    for robot in &environment.robots {
-        if program.robot(&robot.text).is_some() && !driven.contains(&robot.text.as_str()) {
-            findings.push(Finding::new("idle-robot", &robot.range));
+    for name in &environment.robots {
+        let robot = scope.robot(&name.text);
+        if robot.is_some_and(|robot| !driven.iter().any(|other| other.is(&robot))) {
+            findings.push(Finding::new("idle-robot", &name.range));
         }
     }
 }
 
-fn driven_robot<'a>(program: &'a Program, movement: &Name) -> Option<&'a str> {
-    let robot = &program.movement(&movement.text)?.robot.text;
-    program.robot(robot).map(|_| robot.as_str())
+/// The robot that a movement means where that is declared.
+fn driven_robot<'a>(scope: Scope<'a>, movement: &Name) -> Option<Declared<'a, Robot>> {
+    let movement = scope.movement(&movement.text)?;
+    movement.home.robot(&movement.robot.text)
+}
+
+/// Two robots share a port, and V-REP serves one on each. Robots without a port, and those listed twice, are other
+/// problems.
+fn duplicate_port(scope: Scope<'_>, environment: &Environment, findings: &mut Vec<Finding>) {
+    let mut earlier: Vec<Declared<'_, Robot>> = Vec::new();
+    for name in &environment.robots {
+        let Some(robot) = scope.robot(&name.text) else { continue };
+        let Some(port) = port_number(&robot.port).filter(|_| !earlier.iter().any(|other| other.is(&robot)))
+        else {
+            continue;
+        };
+        if earlier.iter().any(|other| port_number(&other.port) == Some(port)) {
+            findings.push(Finding::new("duplicate-port", &name.range));
+        }
+        earlier.push(robot);
+    }
 }
 
 /// Maximal runs of consecutive `parallel` movements. Unknown movements separate them.
-fn parallel_groups<'a>(program: &Program, environment: &'a Environment) -> Vec<Vec<&'a Name>> {
+fn parallel_groups<'a>(scope: Scope<'_>, environment: &'a Environment) -> Vec<Vec<&'a Name>> {
     let mut groups = vec![Vec::new()];
     for name in &environment.movements {
-        let is_parallel = program.movement(&name.text).is_some_and(|movement| movement.parallel.is_some());
+        let is_parallel = scope.movement(&name.text).is_some_and(|movement| movement.parallel.is_some());
         match groups.last_mut() {
             Some(group) if is_parallel => group.push(name),
             _ => groups.push(Vec::new()),
@@ -62,12 +87,12 @@ fn parallel_groups<'a>(program: &Program, environment: &'a Environment) -> Vec<V
 }
 
 /// Two movements of one robot in the same parallel group.
-fn parallel_conflict(program: &Program, environment: &Environment, findings: &mut Vec<Finding>) {
-    for group in parallel_groups(program, environment) {
+fn parallel_conflict(scope: Scope<'_>, environment: &Environment, findings: &mut Vec<Finding>) {
+    for group in parallel_groups(scope, environment) {
         for (index, name) in group.iter().enumerate() {
-            let robot = driven_robot(program, name);
-            let is_busy = group[..index].iter().any(|earlier| driven_robot(program, earlier) == robot);
-            if robot.is_some() && is_busy {
+            let Some(robot) = driven_robot(scope, name) else { continue };
+            let mut earlier = group[..index].iter().filter_map(|earlier| driven_robot(scope, earlier));
+            if earlier.any(|other| other.is(&robot)) {
                 findings.push(Finding::new("parallel-conflict", &name.range));
             }
         }
@@ -76,11 +101,12 @@ fn parallel_conflict(program: &Program, environment: &Environment, findings: &mu
 
 /// A `parallel` movement that never runs in parallel with another. A movement that never runs is unused instead, and an
 /// unknown one may be parallel.
-fn single_parallel(program: &Program, findings: &mut Vec<Finding>) {
+fn single_parallel(scope: Scope<'_>, findings: &mut Vec<Finding>) {
+    let program = scope.program();
     for entity in &program.entities {
         let Body::Movement(Movement { parallel: Some(parallel), .. }) = &entity.body else { continue };
         let may_be_parallel = |name: Option<&Name>| {
-            let movement = name.map(|name| program.movement(&name.text));
+            let movement = name.map(|name| scope.movement(&name.text));
             movement.is_some_and(|movement| movement.is_none_or(|movement| movement.parallel.is_some()))
         };
         let (mut listed, mut accompanied) = (false, false);

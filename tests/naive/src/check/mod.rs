@@ -1,6 +1,7 @@
 //! "Diagnostics" of the specification: one file per group, one function per code.
 
 mod environment;
+mod file;
 mod movement;
 mod name;
 mod robot;
@@ -9,16 +10,18 @@ mod value;
 pub(crate) use name::is_excused;
 
 use crate::Finding;
-use crate::program::{Name, Program};
+use crate::program::Name;
+use crate::project::Scope;
 
-/// The findings of a grammatical program.
-pub(crate) fn check(program: &Program) -> Vec<Finding> {
-    let mut findings = program.older_spellings.clone();
-    value::check(program, &mut findings);
-    name::check(program, &mut findings);
-    robot::check(program, &mut findings);
-    movement::check(program, &mut findings);
-    environment::check(program, &mut findings);
+/// The findings of a grammatical file.
+pub(crate) fn check(scope: Scope<'_>) -> Vec<Finding> {
+    let mut findings = scope.program().older_spellings.clone();
+    value::check(scope.file(), &mut findings);
+    file::check(scope, &mut findings);
+    name::check(scope, &mut findings);
+    robot::check(scope, &mut findings);
+    movement::check(scope, &mut findings);
+    environment::check(scope, &mut findings);
     findings
 }
 

@@ -3,26 +3,27 @@
 use super::is_among;
 use super::robot::{distance_sensors, is_four_wheeled};
 use crate::Finding;
-use crate::program::{ActionKind, Body, Program};
+use crate::program::{ActionKind, Body};
+use crate::project::Scope;
 
-pub(super) fn check(program: &Program, findings: &mut Vec<Finding>) {
-    for entity in &program.entities {
+pub(super) fn check(scope: Scope<'_>, findings: &mut Vec<Finding>) {
+    for entity in &scope.program().entities {
         let Body::Movement(movement) = &entity.body else { continue };
         if movement.actions.is_empty() {
             findings.push(Finding::new("empty-movement", &movement.body));
         }
-        let Some(robot) = program.robot(&movement.robot.text) else { continue };
+        let Some(robot) = scope.robot(&movement.robot.text) else { continue };
         for action in &movement.actions {
             for sensor in action.until() {
-                if program.sensor(&sensor.text).is_some() && !is_among(sensor, &robot.sensors) {
+                if scope.sensor(&sensor.text).is_some() && !is_among(sensor, &robot.sensors) {
                     findings.push(Finding::new("sensor-not-on-robot", &sensor.range));
                 }
             }
             if matches!(action.kind, ActionKind::Slam) {
-                if is_four_wheeled(robot) {
+                if is_four_wheeled(&robot) {
                     findings.push(Finding::new("slam-robot", &action.range));
                 }
-                if distance_sensors(program, robot).is_some_and(|count| count < 5) {
+                if distance_sensors(&robot).is_some_and(|count| count < 5) {
                     findings.push(Finding::new("slam-sensors", &action.range));
                 }
             }

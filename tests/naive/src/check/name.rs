@@ -1,12 +1,14 @@
-//! Groups "name" and "file": declarations and references.
+//! Group "name": declarations and references.
 
 use crate::Finding;
-use crate::program::{Entity, Name, Program};
+use crate::program::{Entity, Name};
+use crate::project::Scope;
 
-pub(super) fn check(program: &Program, findings: &mut Vec<Finding>) {
+pub(super) fn check(scope: Scope<'_>, findings: &mut Vec<Finding>) {
+    let program = scope.program();
     let references = program.references();
     for (kind, name) in &references {
-        if program.find(kind, &name.text).is_none() {
+        if scope.find(kind, &name.text).is_none() && !scope.lacks_imports() {
             findings.push(Finding::new("unresolved-reference", &name.range));
         }
     }
@@ -14,11 +16,10 @@ pub(super) fn check(program: &Program, findings: &mut Vec<Finding>) {
         if program.entities[..index].iter().any(|earlier| is_same(earlier, entity)) {
             findings.push(Finding::new("duplicate-name", &entity.name.range));
         }
-        if program.has_any("environment") && !is_used(&references, entity) {
+        if program.has_any("environment") && !scope.is_imported() && !is_used(&references, entity) {
             findings.push(Finding::new("unused-declaration", &entity.name.range));
         }
     }
-    no_environment(program, findings);
 }
 
 fn is_same(one: &Entity, other: &Entity) -> bool {
@@ -31,17 +32,10 @@ fn is_used(references: &[(&str, &Name)], entity: &Entity) -> bool {
         || references.iter().any(|(kind, name)| *kind == entity.kind() && name.text == entity.name.text)
 }
 
-/// Robots and movements but no environment; reported at the last entity.
-fn no_environment(program: &Program, findings: &mut Vec<Finding>) {
-    if program.has_any("robot") && program.has_any("movement") && !program.has_any("environment") {
-        let last = program.entities.last();
-        findings.extend(last.map(|entity| Finding::new("no-environment", &entity.name.range)));
-    }
-}
-
 /// Whether a declaration may be unused because of an unresolved reference: it is the only one of its kind, or its name is
 /// similar.
-pub(crate) fn is_excused(program: &Program, finding: &Finding) -> bool {
+pub(crate) fn is_excused(scope: Scope<'_>, finding: &Finding) -> bool {
+    let program = scope.program();
     let declares = |entity: &&Entity| entity.name.range == (finding.start..finding.end);
     let Some(unused) =
         program.entities.iter().find(declares).filter(|_| finding.code == "unused-declaration")
@@ -53,7 +47,7 @@ pub(crate) fn is_excused(program: &Program, finding: &Finding) -> bool {
         .iter()
         .any(|other| other.kind() == unused.kind() && other.name.text != unused.name.text);
     program.references().iter().any(|(kind, name)| {
-        let is_unresolved = *kind == unused.kind() && program.find(kind, &name.text).is_none();
+        let is_unresolved = *kind == unused.kind() && scope.find(kind, &name.text).is_none();
         is_unresolved && (is_only_one || is_similar(&name.text, &unused.name.text))
     })
 }

@@ -2,12 +2,13 @@
 
 use super::{is_among, repeated};
 use crate::Finding;
-use crate::program::{ActionKind, Body, Entity, Name, Program, Robot};
+use crate::program::{ActionKind, Body, Entity, Name, Robot};
+use crate::project::{Declared, Scope};
 
-pub(super) fn check(program: &Program, findings: &mut Vec<Finding>) {
-    for entity in &program.entities {
+pub(super) fn check(scope: Scope<'_>, findings: &mut Vec<Finding>) {
+    for entity in &scope.program().entities {
         match &entity.body {
-            Body::Robot(robot) => check_robot(program, entity, robot, findings),
+            Body::Robot(robot) => check_robot(scope, entity, robot, findings),
             Body::Movement(movement) => {
                 for action in &movement.actions {
                     if let ActionKind::TurnUntil { sensors } = &action.kind {
@@ -20,10 +21,10 @@ pub(super) fn check(program: &Program, findings: &mut Vec<Finding>) {
     }
 }
 
-fn check_robot(program: &Program, entity: &Entity, robot: &Robot, findings: &mut Vec<Finding>) {
+fn check_robot(scope: Scope<'_>, entity: &Entity, robot: &Robot, findings: &mut Vec<Finding>) {
     wheel_count(robot, findings);
-    wheel_kind_mismatch(program, entity, robot, findings);
-    mixed_radii(program, robot, findings);
+    wheel_kind_mismatch(scope, entity, robot, findings);
+    mixed_radii(scope, robot, findings);
     for wheel in repeated(&robot.wheels) {
         findings.push(Finding::new("repeated-wheel", &wheel.range));
     }
@@ -54,11 +55,11 @@ fn has_right_count(robot: &Robot) -> bool {
 /// Warning: `fw` with four `wheelH`. Error: `fwh` with any `wheel`, `tw` with `wheelH`, mixed kinds.
 ///
 /// A wrong number of wheels is a single error and does not imply one about their kinds.
-fn wheel_kind_mismatch(program: &Program, entity: &Entity, robot: &Robot, findings: &mut Vec<Finding>) {
+fn wheel_kind_mismatch(scope: Scope<'_>, entity: &Entity, robot: &Robot, findings: &mut Vec<Finding>) {
     if !has_right_count(robot) {
         return;
     }
-    let kinds = mecanum(program, robot);
+    let kinds = mecanum(scope, robot);
     let any_mecanum = kinds.contains(&true);
     let any_standard = kinds.contains(&false);
     let mismatch = match robot.drive.as_ref().map(|drive| drive.text.as_str()) {
@@ -74,15 +75,15 @@ fn wheel_kind_mismatch(program: &Program, entity: &Entity, robot: &Robot, findin
 }
 
 /// Whether each known wheel is a `wheelH`.
-fn mecanum(program: &Program, robot: &Robot) -> Vec<bool> {
-    robot.wheels.iter().filter_map(|name| program.wheel(&name.text)).map(|wheel| wheel.mecanum).collect()
+fn mecanum(scope: Scope<'_>, robot: &Robot) -> Vec<bool> {
+    robot.wheels.iter().filter_map(|name| scope.wheel(&name.text)).map(|wheel| wheel.mecanum).collect()
 }
 
 /// The wheels of one robot differ in radius: reported at the first that differs from the previous ones.
 #[allow(clippy::float_cmp, reason = "the specification requires exact comparison")]
-fn mixed_radii(program: &Program, robot: &Robot, findings: &mut Vec<Finding>) {
+fn mixed_radii(scope: Scope<'_>, robot: &Robot, findings: &mut Vec<Finding>) {
     let radius = |name: &Name| {
-        let radius = program.wheel(&name.text)?.radius.value();
+        let radius = scope.wheel(&name.text)?.radius.value();
         radius.is_finite().then_some(radius)
     };
     let radii: Vec<(&Name, f64)> =
@@ -116,10 +117,10 @@ pub(super) fn is_four_wheeled(robot: &Robot) -> bool {
 }
 
 /// The number of distinct distance sensors; `None` if a sensor is unknown.
-pub(super) fn distance_sensors(program: &Program, robot: &Robot) -> Option<usize> {
+pub(super) fn distance_sensors(robot: &Declared<'_, Robot>) -> Option<usize> {
     let mut count = 0;
     for (index, name) in robot.sensors.iter().enumerate() {
-        let is_distance = !program.sensor(&name.text)?.bumper;
+        let is_distance = !robot.home.sensor(&name.text)?.bumper;
         if is_distance && !is_among(name, &robot.sensors[..index]) {
             count += 1;
         }

@@ -1,13 +1,14 @@
 //! Group "value": single numbers.
 
 use crate::Finding;
-use crate::program::{ActionKind, Body, Number, Program};
+use crate::program::{ActionKind, Body, Number};
+use crate::project::File;
 
-pub(super) fn check(program: &Program, findings: &mut Vec<Finding>) {
-    for entity in &program.entities {
+pub(super) fn check(file: &File, findings: &mut Vec<Finding>) {
+    for entity in &file.program.entities {
         match &entity.body {
             Body::Wheel(wheel) => findings.extend(radius(&wheel.radius)),
-            Body::Robot(robot) => findings.extend(port(&robot.port)),
+            Body::Robot(robot) => findings.extend(port(&robot.port, file.for_vrep)),
             Body::Ip(ip) if ip.address.text.split('.').any(|octet| !is_octet(octet)) => {
                 findings.push(Finding::new("invalid-ip", &ip.address.range));
             }
@@ -45,15 +46,20 @@ fn radius(number: &Number) -> Option<Finding> {
 }
 
 /// A port may have any number of digits.
-fn port(number: &Number) -> Option<Finding> {
-    let digits = number.text.trim_start_matches('0');
-    let code = match digits.parse().ok().filter(|_| digits.len() <= 5) {
+fn port(number: &Number, for_vrep: bool) -> Option<Finding> {
+    let code = match port_number(number) {
         // V-REP's ports, although scripts are for CoppeliaSim.
-        Some(19997..=19999) => "port-of-other-target",
-        Some(1..=65535_u32) => return None,
-        _ => "invalid-port",
+        Some(19997..=19999) if !for_vrep => "port-of-other-target",
+        Some(_) => return None,
+        None => "invalid-port",
     };
     Some(Finding::new(code, &number.range))
+}
+
+/// `None` if it is no port.
+pub(super) fn port_number(number: &Number) -> Option<u32> {
+    let digits = number.text.trim_start_matches('0');
+    digits.parse().ok().filter(|port| digits.len() <= 5 && (1..=65535).contains(port))
 }
 
 fn is_octet(digits: &str) -> bool {

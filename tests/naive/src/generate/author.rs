@@ -5,6 +5,8 @@ use super::choices::Choices;
 use super::layout;
 use super::words::{self, ADDRESSES, ANGLES, DISTANCES, ENDLESS, Numbers, PORTS, RADII, SPEEDS};
 
+use crate::Source;
+
 /// The properties of a robot that its users depend on.
 struct Robot {
     name: String,
@@ -43,7 +45,7 @@ pub(super) struct Author {
 
 impl Author {
     pub(super) fn new(recipe: Recipe, mut choices: Choices) -> Self {
-        let careless = choices.pick(&[None, Some(40), Some(12)]).filter(|_| recipe.mistakes);
+        let careless = choices.pick(&[None, None, Some(200), Some(40), Some(12)]).filter(|_| recipe.mistakes);
         let radius = choices.below(RADII.usual.len());
         Self {
             recipe,
@@ -80,10 +82,43 @@ impl Author {
     pub(super) fn text(mut self) -> String {
         if self.recipe.imports {
             let count = self.choices.below(3);
-            let paths = ["\"lib.pyr\"", "\"parts/more.pyr\""];
-            let imports = paths[..count].iter().map(|path| vec!["import".to_owned(), (*path).to_owned()]);
+            let imports = ["lib.pyr", "parts/more.pyr"][..count].iter().map(|path| import(path));
             self.entities.splice(..0, imports);
         }
+        self.lay_out()
+    }
+
+    /// The same program in several files, of which each imports some others. Some entities are in two files, and some imports
+    /// lead nowhere.
+    pub(super) fn files(mut self, dealing: Choices) -> Vec<Source> {
+        self.choices = dealing;
+        let mut dealt: [Vec<Vec<String>>; 3] = Default::default();
+        for (from, entities) in dealt.iter_mut().enumerate() {
+            for (to, path) in PATHS.iter().enumerate() {
+                let once_in = if from == 0 { 8 } else { 3 };
+                if to != from && self.choices.once_in(once_in) != (from == 0) {
+                    entities.push(import(&relative(PATHS[from], path)));
+                }
+            }
+            if self.slips() {
+                entities.push(import("missing.pyr"));
+            }
+        }
+        for entity in std::mem::take(&mut self.entities) {
+            let file = self.choices.pick(&[0, 0, 0, 1, 1, 2]);
+            if self.slips() {
+                dealt[(file + 1) % PATHS.len()].push(entity.clone());
+            }
+            dealt[file].push(entity);
+        }
+        let files = PATHS.iter().zip(dealt).map(|(path, entities)| {
+            self.entities = entities;
+            Source { path, text: self.lay_out(), for_vrep: self.choices.once_in(2) }
+        });
+        files.collect()
+    }
+
+    fn lay_out(&mut self) -> String {
         if self.recipe.odd_layout && self.choices.once_in(2) {
             layout::odd(&mut self.choices, &self.entities)
         } else {
@@ -93,6 +128,11 @@ impl Author {
 
     fn slips(&mut self) -> bool {
         self.careless.is_some_and(|times| self.choices.once_in(times))
+    }
+
+    /// An error that few programs would have if it were as rare as others, because few have the place for it.
+    fn slips_in(&mut self, times: usize) -> bool {
+        self.careless.is_some() && self.choices.once_in(times)
     }
 
     fn push(&mut self, tokens: Vec<String>) {
@@ -167,8 +207,12 @@ impl Author {
     }
 
     fn wheel(&mut self, mecanum: bool) -> String {
+        self.wheel_called(mecanum, &words::NAMES)
+    }
+
+    fn wheel_called(&mut self, mecanum: bool, names: &[&'static str]) -> String {
         let taken = self.wheels.clone();
-        let name = self.new_name(&taken, &words::NAMES);
+        let name = self.new_name(&taken, names);
         let mecanum = mecanum != self.slips();
         let radius = if self.careless.is_some() && self.choices.once_in(6) {
             self.number(&RADII)
@@ -204,7 +248,7 @@ impl Author {
     fn ip(&mut self) -> String {
         let taken = self.ips.clone();
         let name = self.new_name(&taken, &words::NAMES);
-        let is_doubtful = self.slips();
+        let is_doubtful = self.slips() || self.slips_in(4);
         let address = self.choices.pick(if is_doubtful { ADDRESSES.doubtful } else { ADDRESSES.usual });
         self.push(words(&["ip", &name, address]));
         self.ips.push(name.clone());
@@ -263,7 +307,7 @@ impl Author {
 
     /// A port, possibly with leading zeros.
     fn port(&mut self) -> String {
-        let is_doubtful = self.slips();
+        let is_doubtful = self.slips() || self.slips_in(40);
         let port = self.choices.pick(if is_doubtful { PORTS.doubtful } else { PORTS.usual });
         let zeros = if self.recipe.odd_layout && self.choices.once_in(20) { "00" } else { "" };
         format!("{zeros}{port}")
@@ -276,7 +320,16 @@ impl Author {
         {
             return wheels;
         }
-        (0..count).map(|_| self.wheel(mecanum)).collect()
+        if !self.recipe.mistakes || !self.choices.once_in(3) {
+            return (0..count).map(|_| self.wheel(mecanum)).collect();
+        }
+        // By their sides; some in another order, which is only a hint.
+        let names: &[&'static str] = if count == 2 { &words::TWO_SIDES } else { &words::FOUR_CORNERS };
+        let mut wheels: Vec<String> = names.iter().map(|name| self.wheel_called(mecanum, &[name])).collect();
+        if self.choices.once_in(3) {
+            self.choices.shuffle(&mut wheels);
+        }
+        wheels
     }
 
     fn some_sensors(&mut self) -> Vec<String> {
@@ -331,7 +384,7 @@ impl Author {
     fn action(&mut self, sensors: &[String], explores: bool) -> Vec<String> {
         match self.choices.below(8) {
             6 if !sensors.is_empty() => self.turn_until(sensors),
-            7 if explores || self.slips() => words(&["slam"]),
+            7 if explores || self.slips() || self.slips_in(80) => words(&["slam"]),
             4..=6 => self.turn(),
             _ => self.move_(),
         }
@@ -401,6 +454,13 @@ impl Author {
         let all: Vec<String> = self.robots.iter().map(|robot| robot.name.clone()).collect();
         let mut robots: Vec<String> = all.into_iter().filter(|_| !self.slips()).collect();
         self.mangle(&mut robots);
+        if self.recipe.mistakes && self.choices.once_in(12) {
+            // Both are only warnings.
+            match robots.first().cloned().filter(|_| self.choices.once_in(2)) {
+                Some(first) => robots.push(first),
+                None => robots.clear(),
+            }
+        }
         robots
     }
 
@@ -422,9 +482,50 @@ impl Author {
                 }
             }
         }
+        if self.recipe.mistakes && self.choices.once_in(6) {
+            self.leave_one_idle(robots, &mut listed);
+        }
+        if self.slips_in(5) {
+            self.start_one_twice(&mut listed);
+        }
         self.mangle(&mut listed);
         listed
     }
+
+    /// Removes all movements of a robot that is not the only one.
+    fn leave_one_idle(&mut self, robots: &[String], listed: &mut Vec<String>) {
+        if robots.len() > 1 {
+            let idle = &robots[self.choices.below(robots.len())];
+            let is_of_idle = |movement: &&Movement| movement.robot == *idle;
+            let movements: Vec<&str> =
+                self.movements.iter().filter(is_of_idle).map(|movement| movement.name.as_str()).collect();
+            listed.retain(|name| !movements.contains(&name.as_str()));
+        }
+    }
+
+    /// Lists a parallel movement twice in a row.
+    fn start_one_twice(&self, listed: &mut Vec<String>) {
+        let is_parallel =
+            |name: &String| self.movements.iter().any(|movement| movement.name == *name && movement.parallel);
+        if let Some(place) = listed.iter().position(is_parallel) {
+            listed.insert(place, listed[place].clone());
+        }
+    }
+}
+
+/// The paths of a project's files.
+const PATHS: [&str; 3] = ["main.pyr", "lib.pyr", "parts/more.pyr"];
+
+fn import(path: &str) -> Vec<String> {
+    vec!["import".to_owned(), format!("\"{path}\"")]
+}
+
+/// A path as the file at another one names it.
+fn relative(from: &str, to: &str) -> String {
+    let up = "../".repeat(from.matches('/').count());
+    let in_same_folder =
+        from.rsplit_once('/').map(|(folder, _)| folder) == to.rsplit_once('/').map(|(folder, _)| folder);
+    if in_same_folder { to.rsplit('/').next().unwrap_or(to).to_owned() } else { format!("{up}{to}") }
 }
 
 fn plain(name: &str) -> &str {

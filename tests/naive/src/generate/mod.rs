@@ -10,6 +10,8 @@ use proptest::prelude::{Strategy, any};
 use author::Author;
 use choices::Choices;
 
+use crate::Source;
+
 /// The options of generated programs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(clippy::struct_excessive_bools, reason = "they are independent")]
@@ -37,21 +39,32 @@ impl Default for Recipe {
 impl Recipe {
     /// The program of a seed.
     pub fn seeded(self, seed: u64) -> String {
-        self.write(Choices::seeded(seed))
+        self.author(Choices::seeded(seed)).text()
     }
 
     /// A strategy for property tests: failures shrink to smaller programs with simpler choices.
     pub fn strategy(self) -> impl Strategy<Value = String> {
+        self.tapes().prop_map(move |tape| self.author(Choices::recorded(tape)).text())
+    }
+
+    /// A strategy for projects of several files; `imports` has no meaning here.
+    pub fn projects(self) -> impl Strategy<Value = Vec<Source>> {
+        let dealing = proptest::collection::vec(any::<u16>(), 100..400);
+        (self.tapes(), dealing).prop_map(move |(tape, dealing)| {
+            self.author(Choices::recorded(tape)).files(Choices::recorded(dealing))
+        })
+    }
+
+    fn tapes(self) -> impl Strategy<Value = Vec<u16>> {
         // More than a program of this size needs, so that most reach their length.
         let longest = self.lines.saturating_mul(12) + 12;
         proptest::collection::vec(any::<u16>(), 0..longest)
-            .prop_map(move |tape| self.write(Choices::recorded(tape)))
     }
 
-    fn write(self, choices: Choices) -> String {
+    fn author(self, choices: Choices) -> Author {
         let mut author = Author::new(self, choices);
         author.write();
-        author.text()
+        author
     }
 }
 

@@ -46,6 +46,10 @@ pub(super) const NAMES: [&str; 40] = [
     "AREA_1",
 ];
 
+/// Names of the wheels of one robot, by their sides.
+pub(super) const TWO_SIDES: [&str; 2] = ["wheelL", "wheelR"];
+pub(super) const FOUR_CORNERS: [&str; 4] = ["wheelL0", "wheelL1", "wheelR0", "wheelR1"];
+
 /// Names whose script would shadow a module, or almost.
 pub(super) const SCRIPTS: [&str; 12] =
     ["json", "Json", "zmq", "con", "COM1", "nul", "cbor", "threading", "json_env", "com10", "aux_1", "vrep"];
