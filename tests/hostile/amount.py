@@ -22,8 +22,11 @@ def dice(test: str) -> random.Random:
     return random.Random(f"{SEED} {test}")
 
 
-def report(test: str, **injected: int) -> None:
-    """Notes what a test has injected."""
+def report(test: str, happened: int, tried: int | None = None) -> None:
+    """Notes how many faults have happened; of those that were tried, which may be more, at least a third must have."""
+    tried = happened if tried is None else tried
+    assert 3 * happened >= tried > 0, f"{test}: of {tried} faults, {happened} happened"
     if REPORT:
+        found = {"test": test, "seed": SEED, "happened": happened, "tried": tried}
         with pathlib.Path(REPORT).open("a", encoding="utf-8") as file:
-            print(json.dumps({"test": test, "seed": SEED, **injected}), file=file)
+            print(json.dumps(found), file=file)

@@ -46,7 +46,7 @@ def test_a_full_disk(command: str, tmp_path: pathlib.Path, name: str) -> None:
     written = [file for file in complete if before.get(file) != complete[file]]
     largest = max(len(complete[file]) for file in written)
     refused = 0
-    for number in range(times(4)):
+    for number in range(times(case.few // 2)):
         place = Workplace(command, tmp_path / str(number), case)
         done = run_with_limit(place, die.randrange(largest))
         assert done.returncode == 2, done.stderr
@@ -57,4 +57,4 @@ def test_a_full_disk(command: str, tmp_path: pathlib.Path, name: str) -> None:
                 f"{file} is neither"
             )
             assert not is_leftover(file)
-    report(f"limits {name}", refused=refused)
+    report(f"limits {name}", refused)

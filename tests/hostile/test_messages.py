@@ -5,15 +5,18 @@ from __future__ import annotations
 import pathlib
 import random
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
+import pytest
 from amount import dice, report, times
 from conversation import Conversation, Refused
 from mutation import mutated
-from questions import PARTS, PROGRAM, REQUESTS, Buffer
+from questions import OPTIONS, PARTS, PROGRAM, REQUESTS, Buffer
 from raw import SERVER, RawServer, frame, notification, request
+from until import until
+from use import is_at_rest
 
 # Requests are sent in batches that the pipes can hold.
 BATCH = 10
@@ -173,25 +176,131 @@ def test_hostile_messages(tmp_path: pathlib.Path) -> None:
             if number % 200 == 199:
                 assert control(talk, buffer, number) == before
         assert control(talk, buffer, 1001) == before
-    report("messages", sent=sent, refused=refused)
+    assert 0 < refused < sent, "some are wrong, some are not"
+    report("messages", sent)
 
 
+# A document about which a request is under way for long: most answers are larger than a megabyte.
+WHEELS = 8_000
+
+# Requests about all of it that are answered beside the message loop.
+WHOLE = (
+    "textDocument/documentSymbol",
+    "textDocument/foldingRange",
+    "textDocument/semanticTokens/full",
+    "textDocument/formatting",
+    "textDocument/codeLens",
+    "textDocument/inlayHint",
+)
+LARGE = "textDocument/documentSymbol"
+
+# The protocol's code for a request that was cancelled.
+CANCELLED = -32800
+
+
+def error_code(talk: Conversation, ident: int) -> int | None:
+    """The error that a request is answered with."""
+    try:
+        talk.answer(ident)
+    except Refused as refused:
+        return refused.code
+    return None
+
+
+class Cancelling:
+    """Requests that are under way, and what became of them when they were cancelled."""
+
+    def __init__(self, talk: Conversation, folder: pathlib.Path) -> None:
+        self.talk = talk
+        self.tried = self.cancelled = 0
+        wheels = "".join(f"wheel   w{n} with radius 4.5\n" for n in range(WHEELS))
+        uri = (folder / "long.pyr").as_uri()
+        self.long = Buffer(uri, wheels, "utf-16")
+        talk.server.send(notification("textDocument/didOpen", item(self.long, 1)))
+
+    def close(self) -> None:
+        """Closes the long document."""
+        document = {"textDocument": self.long.document()}
+        self.talk.server.send(notification("textDocument/didClose", document))
+
+    def requests(self, methods: Sequence[str]) -> list[int]:
+        """Sends requests about the long document."""
+        document = {"textDocument": self.long.document()}
+        whole = {"range": self.long.everything(), "options": OPTIONS}
+        found = [self.talk.request(name, {**document, **whole}) for name in methods]
+        self.talk.server.send(*(message for _, message in found))
+        return [ident for ident, _ in found]
+
+    def cancel(self, idents: Sequence[int]) -> None:
+        """Cancels requests."""
+        self.talk.server.send(
+            *(notification("$/cancelRequest", {"id": ident}) for ident in idents)
+        )
+
+    def collect(self, idents: Sequence[int]) -> int:
+        """Waits for the answers; returns how many of the requests were cancelled."""
+        codes = [error_code(self.talk, ident) for ident in idents]
+        assert set(codes) <= {None, CANCELLED}
+        count = codes.count(CANCELLED)
+        self.tried += len(idents)
+        self.cancelled += count
+        return count
+
+    def while_they_wait(self) -> None:
+        """Diagnostics of the workspace wait for a change."""
+        method = "workspace/diagnostic"
+        reports = self.talk.ask(method, {"previousResultIds": []})["items"]
+        known = [{"uri": one["uri"], "value": one["resultId"]} for one in reports]
+        asked = [
+            self.talk.request(method, {"previousResultIds": known})
+            for _ in range(BATCH)
+        ]
+        self.talk.server.send(*(message for _, message in asked))
+        idents = [ident for ident, _ in asked]
+        self.cancel(idents)
+        assert self.collect(idents) == BATCH
+
+    def while_they_compute(self, die: random.Random) -> None:
+        """One after the other is computed while their cancellations come."""
+        idents = self.requests([die.choice(WHOLE) for _ in range(BATCH)])
+        self.cancel(die.sample(idents, len(idents)))
+        self.collect(idents)
+
+    def while_nobody_reads(self) -> None:
+        """So many answers are not read that the others are not even computed; then they are cancelled."""
+        idents = self.requests([LARGE] * 4 * BATCH)
+        pid = self.talk.server.process.pid
+        until("the server waits for its client to read", lambda: is_at_rest(pid))
+        self.cancel(idents)
+        until("the cancellations are read", lambda: is_at_rest(pid))
+        assert self.collect(idents) >= 2 * BATCH
+
+
+def assert_late_and_early_cancellations_change_nothing(
+    talk: Conversation, buffer: Buffer
+) -> None:
+    """Those of requests that are answered, and of others that were never sent."""
+    for name, make in REQUESTS.items():
+        ident, message = talk.request(name.partition("#")[0], make(buffer))
+        cancel = notification("$/cancelRequest", {"id": ident})
+        talk.server.send(cancel, message)
+        assert error_code(talk, ident) != CANCELLED, name
+        talk.server.send(cancel)
+
+
+@pytest.mark.skipif(not pathlib.Path("/proc").exists(), reason="looks into /proc")
 def test_everything_is_cancelled(tmp_path: pathlib.Path) -> None:
-    die, cancelled = dice("cancels"), 0
+    die = dice("cancels")
     with session(tmp_path / "it") as (talk, buffer):
         before = control(talk, buffer, 1)
-        for _ in range(times(20)):
-            idents = []
-            for _ in range(BATCH):
-                name, make = die.choice(list(REQUESTS.items()))
-                ident, message = talk.request(name.partition("#")[0], make(buffer))
-                cancel = notification("$/cancelRequest", {"id": ident})
-                talk.server.send(*die.choice([(message, cancel), (cancel, message)]))
-                idents.append(ident)
-            for ident in idents:
-                try:
-                    talk.answer(ident)
-                except Refused:
-                    cancelled += 1
+        assert_late_and_early_cancellations_change_nothing(talk, buffer)
+        work = Cancelling(talk, tmp_path / "it")
+        talk.checks = False
+        for _ in range(times(1)):
+            work.while_they_wait()
+            work.while_they_compute(die)
+            work.while_nobody_reads()
+        work.close()
+        talk.checks = True
         assert control(talk, buffer, 2) == before
-    report("cancels", sent=times(20) * BATCH, cancelled=cancelled)
+    report("cancels", work.cancelled, work.tried)

@@ -25,3 +25,23 @@ class Use:
             sum(1 for _ in (folder / "fd").iterdir()),
             sum(1 for _ in (folder / "task").iterdir()),
         )
+
+
+def is_at_rest(process: int) -> bool:
+    """Whether every thread of a process waits for something, and none has had anything to do between two looks."""
+
+    def states() -> list[tuple[str, str, str]]:
+        found = []
+        for task in sorted(pathlib.Path(f"/proc/{process}/task").iterdir()):
+            status = dict(
+                line.split(":\t", 1)
+                for line in (task / "status").read_text().splitlines()
+                if ":\t" in line
+            )
+            found.append(
+                (task.name, status["State"][:1], status["voluntary_ctxt_switches"])
+            )
+        return found
+
+    before = states()
+    return all(state == "S" for _, state, _ in before) and states() == before
