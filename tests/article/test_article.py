@@ -10,6 +10,7 @@ import os
 import pathlib
 import re
 import subprocess
+from collections.abc import Sequence
 
 import evaluation
 import line_counts
@@ -24,11 +25,13 @@ from driven import (
     runs_table,
     simulator,
 )
+from ports import free_ports
 
 PAGE = ROOT / "docs" / "article.md"
 PICTURES = ROOT / "docs" / "images" / "article"
-# Without its sign: a heading of 180 degrees may be one of -180, and 0 may be -0.
-NUMBER = re.compile("[-\N{MINUS SIGN}]?(\\d+(?:\\.\\d+)?)")
+NUMBER = re.compile("([-\N{MINUS SIGN}]?\\d+(?:\\.\\d+)?)(?= ?(mm|m|°)?)")
+# How far apart runs may be: how robots drive improves more often than the page is written.
+METRES, MILLIMETRES, DEGREES = 0.02, 0.5, 1.0
 TEXT = re.compile(r">([^<>]+)</text>")
 IS_UPDATE = bool(os.environ.get("UPDATE_EXPECT"))
 
@@ -56,12 +59,51 @@ def expect_picture(path: pathlib.Path, picture: str) -> None:
 
 
 def assert_alike(found: str, expected: str) -> None:
-    """Numbers of runs may differ by 5 % or 0.2: how robots drive improves more often than the page is written."""
+    """The texts are equal but for small differences of numbers."""
     message = f"run it with UPDATE_EXPECT=1: {found} is now {expected}"
     assert NUMBER.sub("", found) == NUMBER.sub("", expected), message
-    numbers = (map(float, NUMBER.findall(text)) for text in (found, expected))
-    for one, other in zip(*numbers, strict=True):
-        assert math.isclose(one, other, rel_tol=0.05, abs_tol=0.2), message
+    for one, other in zip(NUMBER.findall(found), NUMBER.findall(expected), strict=True):
+        assert is_near(number(one[0]), number(other[0]), one[1]), message
+
+
+def number(text: str) -> float:
+    return float(text.replace("\N{MINUS SIGN}", "-"))
+
+
+def is_near(one: float, other: float, unit: str) -> bool:
+    """Whether two numbers of runs are alike; those without a length or an angle (times, counts) to 5 %."""
+    match unit:
+        case "°":
+            return abs(math.remainder(one - other, 360.0)) <= DEGREES
+        case "m":
+            return abs(one - other) <= METRES
+        case "mm":
+            return abs(one - other) <= MILLIMETRES
+        case _:
+            return math.isclose(one, other, rel_tol=0.05, abs_tol=0.2)
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "is_alike"),
+    [
+        ("at 1.00 m, -4.000 m, 180.0°", "at 1.01 m, -4.010 m, -179.9°", True),
+        ("at -4.000 m", "at 4.000 m", False),
+        ("at \N{MINUS SIGN}4.0 m", "at -4.0 m", True),
+        ("at 4.000 m", "at 4.050 m", False),
+        ("0.1 mm, 0.00°", "0.9 mm, 0.00°", False),
+        ("90.0°", "-90.0°", False),
+        ("140.2 s", "145.0 s", True),
+        ("140.2 s", "150.0 s", False),
+        ("-3", "3", False),
+        ("4 m", "4 cm", False),
+    ],
+)
+def test_numbers_have_signs_and_units(one: str, other: str, *, is_alike: bool) -> None:
+    if is_alike:
+        assert_alike(one, other)
+    else:
+        with pytest.raises(AssertionError):
+            assert_alike(one, other)
 
 
 def test_lines(command: str) -> None:
@@ -101,11 +143,11 @@ def test_programs_drive(command: str, tmp_path: pathlib.Path) -> None:
     expect_on_page("runs", runs_table(results), is_driven=True)
 
 
-def serve(program: pathlib.Path, first: int) -> str:
-    """A program whose robots have ports of their own, from that one on."""
-    ports = itertools.count(first)
+def serve(program: pathlib.Path, ports: Sequence[int]) -> str:
+    """A program whose robots have these ports."""
+    found = iter(ports)
     text = program.read_text(encoding="utf-8")
-    return re.sub(r"port \d+", lambda _: f"port {next(ports)}", text)
+    return re.sub(r"port \d+", lambda _: f"port {next(found)}", text)
 
 
 def assert_near(
@@ -116,7 +158,7 @@ def assert_near(
 
 
 def test_environment_1_by_hand(command: str, tmp_path: pathlib.Path) -> None:
-    program = serve(line_counts.PROGRAMS[1], 47351)
+    program = serve(line_counts.PROGRAMS[1], free_ports(1))
     with simulator(command, tmp_path, program) as port:
         ends = drive_by_hand(1, port, tmp_path)
     assert list(ends) == ["robot_1"]
@@ -130,7 +172,7 @@ def test_environment_2_by_hand(command: str, tmp_path: pathlib.Path) -> None:
     )
     [plan] = json.loads(planned.stdout)
     scene = example.with_suffix(".scene.toml").read_text(encoding="utf-8")
-    with simulator(command, tmp_path, serve(example, 47352), scene) as port:
+    with simulator(command, tmp_path, serve(example, free_ports(4)), scene) as port:
         ends = drive_by_hand(2, port, tmp_path)
     assert len(ends) == 4
     for robot in plan["robots"]:
@@ -141,7 +183,7 @@ def test_environment_2_by_hand(command: str, tmp_path: pathlib.Path) -> None:
 
 
 def test_environment_3_by_hand(command: str, tmp_path: pathlib.Path) -> None:
-    program = serve(line_counts.PROGRAMS[3], 47356)
+    program = serve(line_counts.PROGRAMS[3], free_ports(1))
     with simulator(command, tmp_path, program, area()) as port:
         drive_by_hand(3, port, tmp_path)
     found = json.loads((tmp_path / "map.json").read_text(encoding="utf-8"))

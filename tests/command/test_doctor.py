@@ -28,6 +28,7 @@ movement go of one {{ turn left until {{ eye }} move 1 meters }}
 environment lab has {{ one }} robots with {{ go }} moves
 """
 UP = [0, 0, -1, 0, 0, 1, 0, 0, 1, 0, 0, 0.1]  # x up
+LEVEL = [0, 0, 1, 0.15, 0, 1, 0, 0, -1, 0, 0, 0]  # z ahead
 AHEAD = [0, 0, 1, 0, 0, 1, 0, 0.15, -1, 0, 0, 0.045]  # z along the body's x
 
 Spoil = Callable[[Any], object]
@@ -117,6 +118,13 @@ def slow_down(sim: Any) -> None:
     sim.setFloatParam(sim.floatparam_simulation_time_step, 0.1)
 
 
+def lay_a_carpet(sim: Any) -> None:
+    """A floor that sensors see, and a sensor that is level."""
+    carpet = sim.createPrimitiveShape(sim.primitiveshape_cuboid, [9.0, 9.0, 0.01])
+    sim.setObjectMatrix(handle(sim, "/one/eye"), LEVEL, handle(sim, "/one"))
+    sim.setObjectAlias(carpet, "carpet")
+
+
 def push_against_a_box(sim: Any) -> None:
     box = sim.createPrimitiveShape(sim.primitiveshape_cuboid, [0.1, 1.0, 0.2])
     sim.setObjectInt32Param(box, sim.shapeintparam_static, 1)
@@ -142,6 +150,8 @@ BROKEN: dict[str, Spoil] = {
     "paused": pause,
     "time-held": hold,
     "time-step": slow_down,
+    "physics-step": lambda sim: sim.setFloatParam(sim.floatparam_physicstimestep, 0.05),
+    "sensor-sees-floor": lay_a_carpet,
     "wheels-spin": push_against_a_box,
     "robot-missing": alias("/one", "Pioneer"),
     "robot-kind": be_a_joint,
@@ -170,13 +180,16 @@ BROKEN: dict[str, Spoil] = {
     "sensor-kind": instead("/one/eye", "eye"),
 }
 
-# What is no matter of calls, or what this simulator cannot be made to be: old. See python/tests/test_scene_checks.py.
+# What is no matter of calls, or what this simulator cannot be made to be: old; robots do not fall in it. See
+# python/tests/test_scene_checks.py and test_scene_pull.py.
 ELSEWHERE = {
     "no-connection",
     "legacy-port",
     "no-reply",
     "old-version",
     "wheel-radius",
+    "fallen",
+    "rollers-collide",
 }
 
 

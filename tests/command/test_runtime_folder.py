@@ -15,12 +15,11 @@ import venv
 from collections.abc import Iterator
 
 import pytest
+from ports import free_ports
 
 ROOT = pathlib.Path(__file__).parents[2]
 TABLE_2 = ROOT / "tests" / "paper" / "table2_two_wheels.pyr"
 NAME = "pydslrep_runtime"
-# Any program of the article, with a port that no other test uses.
-PORT = 47331
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +41,8 @@ def client_only(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
 def built(command: str, tmp_path: pathlib.Path) -> pathlib.Path:
     """A folder with a program, its script and the package."""
     program = TABLE_2.read_text(encoding="utf-8")
-    program = re.sub(r"port \d+", f"port {PORT}", program)
+    [port] = free_ports(1)
+    program = re.sub(r"port \d+", f"port {port}", program)
     folder = tmp_path / "built"
     folder.mkdir()
     (folder / "table2.pyr").write_text(program, encoding="utf-8")

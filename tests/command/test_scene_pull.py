@@ -5,11 +5,15 @@ from __future__ import annotations
 import json
 import math
 import subprocess
+import tomllib
 from pathlib import Path
 
 import pytest
+from pydslrep_runtime import RobotSpec
 from pydslrep_runtime.remote_api import Connection
+from pydslrep_runtime.scene import robot_parts
 from pydslrep_runtime.scene.description import read_scene
+from pydslrep_runtime.scene.doctor import examine
 from pydslrep_runtime.scene.pull import pull
 from pydslrep_runtime.scene.push import push
 from test_scene_description import OBSTACLES, ROBOT
@@ -38,6 +42,47 @@ def test_what_is_pushed_comes_back(port: int) -> None:
     connection.close()
     assert unclear == []
     assert rounded(found.as_json()) == rounded(described.as_json())
+
+
+@pytest.mark.parametrize("model", ["of today", "of version 0.2"])
+def test_mecanum_robots_of_both_models_are_known(
+    port: int, model: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Those of version 0.2 drive badly: their rollers collide."""
+    is_old = model != "of today"
+    if is_old:
+        monkeypatch.setattr(robot_parts, "ROLLERS", 12)
+        monkeypatch.setattr(robot_parts, "ROLLER_SIZE", 0.25)
+        monkeypatch.setattr(robot_parts, "ROLLER_MASK", 0xFF02)
+    places = {"a": (0.1, 0.2), "b": (-0.1, 0.2), "c": (0.1, -0.2), "d": (-0.1, -0.2)}
+    wheels = [
+        {"name": name, "radius": 0.05, "x": x, "y": y, "mirrored": False}
+        for name, (x, y) in places.items()
+    ]
+    robot = {**ROBOT, "type": "fwh", "grip": 0.05, "wheels": wheels, "heading": 0.0}
+    described = read_scene({"environment": "e", "robots": [robot], "obstacles": []})
+    connection = Connection("127.0.0.1", port)
+    push(connection, described, replace=False)
+    found, unclear = pull(connection, "e")
+    connection.close()
+    assert unclear == []
+    assert rounded(found.as_json()) == rounded(described.as_json())
+    spec = RobotSpec("robot_1", "127.0.0.1", port, dict.fromkeys(places, 0.05), ["eye"])
+    codes = {each.rule.code for each in examine([spec])}
+    assert codes == ({"rollers-collide"} if is_old else set())
+    with client(port) as sim:
+        sim.setStepping(True)
+        sim.startSimulation()
+        for name, rate in zip("abcd", (2.0, -2.0, -2.0, 2.0), strict=True):
+            joint = sim.getObject(f"/robot_1/{name}")
+            sim.setJointTargetVelocity(joint, rate)
+        for _ in range(40):
+            sim.step()
+        # It drives sideways, which no other robot does.
+        x, y, _ = sim.getObjectPosition(sim.getObject("/robot_1"))
+        sim.stopSimulation()
+    assert abs(x - 1.0) < 0.01
+    assert abs(y + 2.0) > 0.1
 
 
 def test_a_pulled_program_is_clean_and_drives(
@@ -79,3 +124,36 @@ def test_what_is_not_understood_is_listed(
     assert "/tricycle has 0 wheels" in refused.stderr
     assert "no robot" in refused.stderr
     assert not (tmp_path / "hall").exists()
+
+
+def test_meshes_are_pulled_as_they_stand(
+    command: str, port: int, program: Path, tmp_path: Path
+) -> None:
+    """The bounding box of a mesh has axes of its own: only its vertices tell where it is."""
+    scene(command, "push", program, port=port)
+    corners = [(3.5, -2.1), (4.2, -2.0), (4.1, -1.2), (3.7, -1.1), (3.5, -1.5)]
+    low, high = ([[x, y, z] for x, y in corners] for z in (0.0, 0.3))
+    top = [0, 1, 2, 0, 2, 3, 0, 3, 4]
+    sides: list[int] = []
+    for start in range(5):
+        end = (start + 1) % 5
+        sides += [start, end, end + 5, start, end + 5, start + 5]
+    faces = [i + 5 for i in top] + [*reversed(top), *sides]
+    with client(port) as sim:
+        rock = sim.createShape(
+            0, 0.0, [number for each in low + high for number in each], faces
+        )
+        sim.setObjectAlias(rock, "rock")
+        sim.setObjectInt32Param(rock, sim.shapeintparam_respondable, 1)
+    done = scene(command, "pull", tmp_path / "hall", port=port)
+    assert "2 robots and 8 obstacles" in done.stdout
+    assert done.stderr == ""
+    (file,) = (tmp_path / "hall").glob("*.scene.toml")
+    text = file.read_text()
+    (found,) = [
+        each["corners"]
+        for each in tomllib.loads(text)["polygon"]
+        if each["name"] == "rock"
+    ]
+    points = {(round(x, 3), round(y, 3)) for x, y in found}
+    assert points == set(corners)

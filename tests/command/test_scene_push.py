@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,6 +18,7 @@ from pydslrep_runtime.api_calls import CALLS
 from pydslrep_runtime.errors import SimulatorError
 from pydslrep_runtime.remote_api import Connection
 from pydslrep_runtime.scene.description import read_scene
+from pydslrep_runtime.scene.pull import pull
 from pydslrep_runtime.scene.push import push
 from test_scene_description import ROBOT
 
@@ -150,21 +152,202 @@ def test_objects_are_as_scripts_expect_them(
         assert sim.getObjectInt32Param(wheel, sim.shapeintparam_respondable) == 1
         kind = sim.getObjectType(sim.getObject(sensor))
         assert kind == sim.object_proximitysensor_type
-        # A mecanum wheel has rollers at 45° to its axis.
-        rollers = sim.getObjectsInTree(
-            sim.getObject("/two/a"), sim.object_joint_type, 1
-        )
-        across = [
-            sim.getObjectMatrix(roller, sim.getObject("/two/a"))[10]
-            for roller in rollers
-        ]
-        assert len(rollers) >= 8
-        assert across == pytest.approx([0.5**0.5] * len(rollers))
         post = sim.getObject("/my_post")
         assert sim.getObjectInt32Param(post, sim.shapeintparam_static) == 1
         for handle in objects(sim):
             mark = json.loads(sim.readCustomDataBlock(handle, "PyDSLRep"))
             assert mark["environment"] == "yard"
+
+
+def test_mecanum_wheels_are_as_they_were_measured(
+    command: str, port: int, program: Path
+) -> None:
+    """The model that drives in CoppeliaSim's engine: R is 5 cm, and only ratios of masses matter."""
+    scene(command, "push", program, port=port)
+    with client(port) as sim:
+        body, joint = sim.getObject("/two"), sim.getObject("/two/a")
+        shapes = sim.getObjectsInTree(body, sim.object_shape_type, 0)
+        masses = [sim.getShapeMass(shape) for shape in shapes]
+        heavy = sim.getShapeMass(body)
+        _, _, size = sim.getShapeGeomInfo(body)
+        assert sum(masses) == pytest.approx(40.0 * size[0] * size[1])
+        hub, *rollers = sim.getObjectsInTree(joint, sim.object_shape_type, 1)
+        assert sim.getObjectInt32Param(hub, sim.shapeintparam_respondable) == 0
+        _, kind, size = sim.getShapeGeomInfo(hub)
+        assert kind == sim.primitiveshape_cylinder
+        assert size[:3] == pytest.approx([0.09, 0.09, 0.025])
+        assert sim.getShapeMass(hub) == pytest.approx(heavy / 8.0)
+        assert len(rollers) == 8
+        lowest = []
+        for roller in rollers:
+            _, kind, size = sim.getShapeGeomInfo(roller)
+            assert kind == sim.primitiveshape_spheroid
+            assert size[:3] == pytest.approx([0.08] * 3)
+            assert sim.getShapeMass(roller) == pytest.approx(heavy / 20.0)
+            mask = sim.shapeintparam_respondable_mask
+            assert sim.getObjectInt32Param(roller, mask) == 0xFF00
+            friction = sim.getEngineFloatParam(sim.bullet_body_oldfriction, roller)
+            assert friction == 1.0
+            pin = sim.getObjectParent(roller)
+            matrix = sim.getObjectMatrix(pin, joint)
+            assert math.hypot(matrix[3], matrix[7]) == pytest.approx(0.01)
+            # The axis is along the rim by t = 1.026, and along the axle by 1.
+            along = math.hypot(matrix[2], matrix[6])
+            assert along / matrix[10] == pytest.approx(1.0262, abs=1e-4)
+            lowest.append(sim.getObjectMatrix(roller)[11] - 0.04)
+        assert min(lowest) == pytest.approx(0.0, abs=1e-9), "one is on the floor"
+
+
+def test_the_floor_covers_the_plan(
+    command: str, port: int, small_program: Path
+) -> None:
+    program = small_program.read_text()
+    small_program.write_text(program.replace("move 1 meters", "move 25 meters"))
+    scene(command, "push", small_program, port=port)
+    with client(port) as sim:
+        floor = sim.getObject("/floor")
+        middle = sim.getObjectMatrix(floor)[3]
+        _, _, size = sim.getShapeGeomInfo(floor)
+        assert middle + size[0] / 2.0 >= 35.0
+        assert middle - size[0] / 2.0 <= -10.0
+
+
+@pytest.mark.parametrize(
+    ("height", "reach", "degrees"),
+    [(0.045, 1.0, 20.0), (0.03, 3.0, 30.0), (0.1, 0.5, 60.0), (0.05, 5.0, 10.0)],
+)
+def test_sensors_look_above_a_floor_that_they_see(
+    port: int, height: float, reach: float, degrees: float
+) -> None:
+    cone = math.radians(degrees)
+    eye = {**ROBOT["sensors"][0], "kind": "distance", "range": reach, "cone": cone}  # type: ignore[index]
+    wheels = [{**wheel, "radius": height} for wheel in ROBOT["wheels"]]  # type: ignore[attr-defined]
+    robot = {**ROBOT, "wheels": wheels, "sensors": [eye]}
+    described = read_scene({"environment": "e", "robots": [robot], "obstacles": []})
+    connection = Connection("127.0.0.1", port)
+    assert push(connection, described, replace=False) == []
+    pulled, unclear = pull(connection, "e")
+    connection.close()
+    (found,) = pulled.robots[0].sensors
+    assert unclear == []
+    assert found.range == reach
+    assert found.cone == pytest.approx(cone)
+    assert found.bearing == pytest.approx(0.0)
+    with client(port) as sim:
+        carpet = sim.createPrimitiveShape(sim.primitiveshape_cuboid, [20, 20, 0.1])
+        sim.setObjectPosition(carpet, [0, 0, -0.05])
+        sensor = sim.getObject("/robot_1/eye")
+        assert sim.checkProximitySensor(sensor, carpet)[0] == 0
+        # A level one would see it, unless it is high above the floor for its range.
+        if math.sin(cone / 2.0) * reach > height:
+            level = [0, 0, 1, 0.15, 0, 1, 0, 0, -1, 0, 0, 0]
+            sim.setObjectMatrix(sensor, level, sim.getObject("/robot_1"))
+            state, distance, *_ = sim.checkProximitySensor(sensor, carpet)
+            assert state == 1
+            assert distance == pytest.approx(height / math.sin(cone / 2.0))
+
+
+def test_a_long_step_of_the_physics_engine_is_noted(
+    command: str, port: int, small_program: Path
+) -> None:
+    with client(port) as sim:
+        sim.setFloatParam(sim.floatparam_physicstimestep, 0.05)
+    done = scene(command, "push", small_program, port=port)
+    assert "takes steps of 50 ms" in done.stderr
+    assert "set Dynamics dt to 5 ms in [Simulation > Simulation settings]" in " ".join(
+        done.stderr.split()
+    )
+
+
+def run_there(
+    command: str, program: Path, port: int, *options: str
+) -> subprocess.CompletedProcess[str]:
+    """Runs a program in a simulator."""
+    return subprocess.run(
+        [
+            *(command, "run", str(program), "--no-progress", *options),
+            *("--host", "127.0.0.1", "--port", str(port)),
+        ],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+
+
+def test_a_run_that_goes_on_from_the_middle_says_so(
+    command: str, port: int, small_program: Path
+) -> None:
+    scene(command, "push", small_program, port=port)
+    with client(port) as sim:
+        sim.setStepping(True)
+        sim.startSimulation()
+        for joint in ("/one/l", "/one/r"):
+            sim.setJointTargetVelocity(sim.getObject(joint), 2.0)
+        for _ in range(40):
+            sim.step()
+        sim.setStepping(False)
+        for joint in ("/one/l", "/one/r"):
+            sim.setJointTargetVelocity(sim.getObject(joint), 0.0)
+        sim.setStepping(True)
+        # It leaves without stopping the simulation, as after a kill.
+    with client(port) as sim:
+        assert sim.getSimulationState() != sim.simulation_stopped
+    on = run_there(command, small_program, port)
+    assert "note: the simulation is running already" in on.stderr
+    assert "one at x 0." in on.stderr
+    again = run_there(
+        command,
+        small_program,
+        port,
+        "--restart",
+        "--figures",
+        str(small_program.with_suffix(".json")),
+    )
+    assert again.returncode == 0, again.stderr
+    assert "running already" not in again.stderr
+    figures = json.loads(small_program.with_suffix(".json").read_text())
+    assert figures["robots"][0]["driven"]["x"] == pytest.approx(1.0, abs=0.01)
+
+
+SLAM = """
+wheel l with radius 4.5
+wheel r with radius 4.5
+sensor f1
+sensor f2
+sensor l1
+sensor r1
+sensor b1
+robot one type tw with port 23000 has { l r } wheels with sensors { f1 f2 l1 r1 b1 }
+movement go of one { slam }
+environment yard has { one } robots with { go } moves
+"""
+
+
+def test_a_slam_that_explores_nothing_fails(
+    command: str, port: int, small_program: Path, tmp_path: Path
+) -> None:
+    """All sensors see the floor wherever the robot is."""
+    small_program.write_text(SLAM)
+    scene(command, "push", small_program, port=port)
+    with client(port) as sim:
+        sim.setObjectSpecialProperty(
+            sim.getObject("/floor"), sim.objectspecialproperty_detectable
+        )
+        body = sim.getObject("/one")
+        for name in ("f1", "f2", "l1", "r1", "b1"):
+            sensor = sim.getObject(f"/one/{name}")
+            x, y, _ = sim.getObjectMatrix(sensor, body)[2::4]
+            flat = math.hypot(x, y)
+            cos, sin = x / flat, y / flat
+            at = sim.getObjectMatrix(sensor, body)[3::4]
+            level = [0, -sin, cos, at[0], 0, cos, sin, at[1], -1, 0, 0, at[2]]
+            sim.setObjectMatrix(sensor, level, body)
+    done = run_there(command, small_program, port, "--map", str(tmp_path / "map.json"))
+    assert done.returncode == 1, done.stdout + done.stderr
+    said = " ".join(done.stderr.split())
+    assert "it has explored nothing" in said
+    assert "Its sensors see something 0.2" in said
 
 
 def test_nothing_is_changed_that_others_made(
@@ -213,7 +396,8 @@ def test_a_push_that_fails_leaves_nothing(
         monkeypatch.setattr(connection, "call", fail)
 
     with client(port) as other:
-        for name in ("setObjectMatrix", "setJointTargetForce", "createForceSensor"):
+        made = ("setObjectMatrix", "setJointTargetForce", "createForceSensor")
+        for name in (*made, "getScript"):
             fail_at(name)
             with pytest.raises(SimulatorError):
                 push(connection, described, replace=False)
@@ -221,10 +405,13 @@ def test_a_push_that_fails_leaves_nothing(
         monkeypatch.undo()
         push(connection, described, replace=False)
         earlier = objects(other)
-        fail_at("createProximitySensor")
-        with pytest.raises(SimulatorError):
-            push(connection, described, replace=True)
-        assert objects(other) == earlier
+        other.removeScript(other.getScript(other.scripttype_mainscript))
+        for name in ("createProximitySensor", "setScriptStringParam", "removeObjects"):
+            fail_at(name)
+            with pytest.raises(SimulatorError):
+                push(connection, described, replace=True)
+            assert objects(other) == earlier
+            assert other.getScript(other.scripttype_mainscript) == -1
     connection.close()
 
 

@@ -26,7 +26,7 @@ environment yard has { a } robots with { m } moves
 BAD = GOOD.replace("{ l r }", "{ l x }")
 
 # Reached only if something is broken.
-LIMIT = 30
+LIMIT = 60
 
 
 class Watcher:

@@ -263,7 +263,7 @@ def test_full_text_changes_count_as_typing(editor: Editor) -> None:
 #### Lenses ####
 
 OF_YARD = [
-    f"environment yard: {title}" for title in ("Generate script", "Run", "Preview")
+    f"environment yard: {title}" for title in ("Run", "Preview", "Generate script")
 ]
 OF_OTHERS = [
     "robot rover: 3 references",

@@ -7,6 +7,7 @@ import json
 import pathlib
 import re
 import socket
+import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -15,6 +16,7 @@ from urllib.parse import urlsplit
 import pytest
 from raw import RawServer, answer, frame, notification, request
 
+ROOT = pathlib.Path(__file__).parents[2]
 URI = "file:///tmp/yard.pyr"
 OTHER = "file:///tmp/other.pyr"
 PROGRAM = """wheel l with radius 4
@@ -30,7 +32,7 @@ COMMAND = "workspace/executeCommand"
 SHOWS = {"window": {"showDocument": {"support": True}}}
 
 # Reached only if something is broken.
-LIMIT = 30
+LIMIT = 60
 
 
 class Page:
@@ -500,13 +502,46 @@ def test_what_is_too_slow_is_dropped(page: Page) -> None:
             assert b"200" not in received
 
 
-def test_many_connections_do_not_keep_others_out(page: Page) -> None:
+def most_connections() -> int:
+    """How many connections the server keeps open at a time."""
+    text = (ROOT / "crates/server/src/web.rs").read_text(encoding="utf-8")
+    found = re.search(r"const MOST_CONNECTIONS: usize = (\d+);", text)
+    assert found
+    return int(found[1])
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
+def test_more_connections_than_may_be_open_keep_nobody_out(
+    raw: RawServer, page: Page
+) -> None:
+    """Those that say nothing are dropped, and then others have their turn."""
+    files = pathlib.Path(f"/proc/{raw.process.pid}/fd")
+    most = len([*files.iterdir()]) + most_connections()
     idle = [
         socket.create_connection(("127.0.0.1", page.port), timeout=LIMIT)
-        for _ in range(100)
+        for _ in range(most_connections() + 50)
     ]
+    # Comes after the others.
     assert page.fetch()[0] == 200
+    assert len([*files.iterdir()]) <= most
+    assert idle[0].recv(1) == b"", "the first was dropped without an answer"
     for stream in idle:
+        stream.close()
+
+
+def test_one_page_too_many_is_told_so(page: Page) -> None:
+    head = f"GET {page.path}events HTTP/1.1\r\nHost: 127.0.0.1:{page.port}\r\n\r\n"
+    pages = []
+    for _ in range(128):
+        stream = socket.create_connection(("127.0.0.1", page.port), timeout=LIMIT)
+        stream.sendall(head.encode())
+        assert stream.recv(12) == b"HTTP/1.1 200"
+        pages.append(stream)
+    status, body, _ = page.fetch()
+    assert (status, b"close some" in body) == (503, True)
+    pages.pop().close()
+    assert page.fetch()[0] == 200
+    for stream in pages:
         stream.close()
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pathlib
+import re
 from typing import Any
 
 import pytest
@@ -14,6 +15,8 @@ from meta_model import faults_of_message
 from pygls.capabilities import ServerCapabilitiesBuilder
 from questions import PARTS, PROGRAM, REQUESTS, Buffer, script
 from raw import RawServer, notification, request
+
+FEATURES = pathlib.Path(__file__).parents[2] / "docs" / "editor-features.md"
 
 # The protocol's code for methods that there are not.
 UNKNOWN_METHOD = -32601
@@ -107,6 +110,7 @@ def test_every_message_of_a_session_matches_the_meta_model(
         use_everything(talk, tmp_path)
         assert talk.leave() == 0
     said = {message["method"] for message in talk.heard if "method" in message}
+    pushed = set() if pulling else {"textDocument/publishDiagnostics"}
     expected = {
         "client/registerCapability",
         "workspace/configuration",
@@ -118,9 +122,11 @@ def test_every_message_of_a_session_matches_the_meta_model(
         "workspace/inlayHint/refresh",
         "pydslrep/plannedPathChanged",
     }
-    assert said == expected | (
-        set() if pulling else {"textDocument/publishDiagnostics"}
-    )
+    assert said == expected | pushed
+    documented = set(re.findall(r"`(\w+(?:/\w+)+)`", FEATURES.read_text("utf-8")))
+    assert len(documented) > 30, "the page lists messages"
+    exchanged = said | set(talk.methods.values()) | {"textDocument/publishDiagnostics"}
+    assert documented - exchanged == set(), "on the page, but never sent"
 
 
 FRAMING = {"initialize", "initialized", "shutdown", "exit"}

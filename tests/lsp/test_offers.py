@@ -24,10 +24,11 @@ ESCAPES = {r"\r": "\r", r"\n": "\n", r"\t": "\t", r"\u{feff}": "\ufeff"}
 def programs(page: pathlib.Path) -> list[str]:
     """The programs of a page, each with the common text after them."""
     found = list(FENCE.finditer(page.read_text(encoding="utf-8")))
-    after = "".join(match["text"] for match in found if match["kind"] == " behind")
-    programs = [match for match in found if match["kind"] != " behind"]
+    after = "".join(match["text"] for match in found if match["kind"] == " following")
+    programs = [match for match in found if match["kind"] != " following"]
     return [
-        (unescaped(match["text"]) if match["kind"] else match["text"]) + after
+        (unescaped(match["text"]) if match["kind"] == " escaped" else match["text"])
+        + after
         for match in programs
     ]
 

@@ -135,12 +135,14 @@ async def test_declarations_have_lenses(
         for lens in shown
         if lens.command
     ]
-    assert titles[:3] == [
+    assert titles[:5] == [
         ("rover", "2 references"),
         ("patrol", "2 references"),
+        ("area", "Run"),
+        ("area", "Preview"),
         ("area", "Generate script"),
     ]
-    script = shown[2].command
+    script = shown[4].command
     assert script
     assert script.command == "pydslrep.generateScript"
     assert list(script.arguments or []) == [{"uri": uri, "environment": "area"}]

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import os
 import pathlib
+import re
 import shutil
 from collections.abc import Iterator
 from typing import Any
 from urllib.parse import unquote, urlsplit
 
+import jsonschema  # type: ignore[import-untyped]
 import pytest
 from raw import RawServer, answer, notification, request
 
@@ -33,7 +36,7 @@ ENDLESS = """\
 trap 'echo interrupted >&2; exit 130' INT
 cat "$2" "$(dirname "$2")/parts.pyr" > "$(dirname "$0")/seen"
 echo "$@" > "$(dirname "$0")/arguments"
-echo begun >&2
+echo '{"event": "progress", "t": null, "robot": null, "text": "begun"}'
 while :; do sleep 0.01; done
 """
 
@@ -117,6 +120,16 @@ class Session:
             if "run" in str(token):
                 return token
 
+    def next_progress(self) -> dict[str, Any]:
+        """What is said next of any progress; accepts those that begin meanwhile."""
+        while (message := self.raw.read()) is not None:
+            if message.get("method") == "window/workDoneProgress/create":
+                self.raw.send(answer(message["id"], None))
+            elif message.get("method") == "$/progress":
+                params: dict[str, Any] = message["params"]
+                return params
+        raise AssertionError("the server left")
+
 
 @pytest.fixture
 def session(server: str, tmp_path: pathlib.Path) -> Iterator[Session]:
@@ -148,6 +161,44 @@ def test_a_preview_draws_what_the_editor_shows(session: Session, command: str) -
     assert "rover" in done["result"]["output"]
     picture.unlink()
     replay.unlink()
+
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def read_by_editors() -> dict[str, set[str]]:
+    """What the editors read of the answer to a run. They know runs from these answers alone."""
+    code = (ROOT / "editors/vscode/src/run.ts").read_text(encoding="utf-8")
+    _, _, answer = code.partition("interface RunResult {")
+    lua = (ROOT / "editors/neovim/lua/pydslrep/runs.lua").read_text(encoding="utf-8")
+    _, _, result = lua.partition("---@class pydslrep.Result")
+    return {
+        "TypeScript": {*re.findall(r"^  (\w+)\??:", answer.partition("}")[0], re.M)},
+        "Lua": {*re.findall(r"^---@field (\w+)", result.partition("\n\n")[0], re.M)},
+    }
+
+
+def test_a_run_answers_with_what_editors_read(session: Session, command: str) -> None:
+    assert pathlib.Path(command).exists()
+    session.execute(1, "pydslrep.run", session.area)
+    session.accept_progress()
+    result = session.raw.answer(1)["result"]
+    for language, fields in read_by_editors().items():
+        assert {"picture", "output"} <= fields <= result.keys(), language
+    assert "rover" in result["output"]
+    assert (result["figures"]["environment"], result["figures"]["complete"]) == (
+        "area",
+        True,
+    )
+    schema = json.loads(
+        (ROOT / "editors/run-events.schema.json").read_text(encoding="utf-8")
+    )
+    event = {
+        "event": "figures",
+        "figures": result["figures"],
+        "table": result["output"],
+    }
+    jsonschema.validate(event, schema)
 
 
 def test_the_command_runs_itself_whatever_it_is_called(
@@ -188,18 +239,17 @@ def test_errors_elsewhere_do_not_prevent_a_path(session: Session, wrong: str) ->
 
 def test_a_run_can_be_cancelled(endless: Session, tmp_path: pathlib.Path) -> None:
     endless.execute(1, "pydslrep.run", endless.area)
-    token = endless.accept_progress()
     while True:
-        progress = endless.raw.read_until("$/progress")["params"]
+        progress = endless.next_progress()
         if progress["value"].get("message") == "begun":
             break
-    assert progress["token"] == token
+    token = progress["token"]
     assert (tmp_path / "bin" / "seen").read_text(encoding="utf-8") == PROGRAM + PARTS
     arguments = (tmp_path / "bin" / "arguments").read_text(encoding="utf-8").split()
     assert arguments[0] == "run"
     assert arguments[2:5] == ["--environment", "area", "--picture"]
-    assert arguments[6:13:2] == ["--replay", "--trace", "--map", "--figures"]
-    assert arguments[14] == "--until-input-ends"
+    assert arguments[6:13:2] == ["--replay", "--trace", "--map", "--events"]
+    assert arguments[13:] == ["-", "--until-input-ends"]
     endless.raw.send(notification("window/workDoneProgress/cancel", {"token": token}))
     assert endless.raw.answer(1)["error"]["code"] == -32800
     assert not pathlib.Path(arguments[1]).exists(), "what was run is tidied up"
@@ -282,7 +332,7 @@ while [ $# -gt 0 ]; do
   case "$1" in
     --trace) cat "$beside/trace" > "$2" ;;
     --map) cat "$beside/map" > "$2" ;;
-    --picture) echo "<svg/>" > "$2"; echo "picture: $2" >&2 ;;
+    --picture) echo "<svg/>" > "$2" ;;
   esac
   shift
 done
@@ -326,6 +376,73 @@ def test_driven_paths_and_their_changes_are_sent(
     assert error["message"] == "rover does not move"
     raw.send(request(5, "pydslrep/drivenPath", endless.area))
     assert raw.answer(5)["result"]["robots"][0]["poses"][0]["x"] == 7
+
+
+# Fails as `pydslrep run` does where a collision was planned.
+FAILING = """\
+#!/bin/sh
+cat >&2 << END
+warning[planned-collision]: \\`rover\\` runs into \\`crate\\` here after 7.6 s
+ --> $2:3:3
+
+1 warning in 1 file.
+error: robot rover, movement patrol, action 2: turn left 90: no progress for 5 s
+picture: $5
+END
+cat << END
+{"event": "started", "environment": "area", "robots": ["rover"], "version": "0.2.0"}
+{"event": "failed", "class": "$(cat "$(dirname "$0")/class")", "message": "robot rover, movement patrol, action 2: turn left 90: no progress for 5 s", "robot": "rover", "movement": "patrol", "action": $(cat "$(dirname "$0")/action"), "help": null, "output": "Traceback"}
+END
+exit 1
+"""
+
+
+def fails(folder: pathlib.Path, kind: str, action: str) -> None:
+    """Replaces the command by one that fails."""
+    (folder / "pydslrep").write_text(FAILING, encoding="utf-8")
+    (folder / "class").write_text(kind, encoding="utf-8")
+    (folder / "action").write_text(action, encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("kind", "message"),
+    [
+        (
+            "setup",
+            "error: robot rover, movement patrol, action 2: turn left 90: no progress for 5 s",
+        ),
+        ("crash", "Traceback"),
+        ("later", "error: robot rover, movement patrol, action 2"),
+    ],
+)
+def test_a_failure_has_its_reason(
+    endless: Session, tmp_path: pathlib.Path, kind: str, message: str
+) -> None:
+    fails(tmp_path / "bin", kind, "null")
+    endless.execute(1, "pydslrep.run", endless.area)
+    endless.accept_progress()
+    error = endless.raw.answer(1)["error"]
+    assert error["message"].startswith(message)
+    assert "data" not in error
+
+
+def test_a_failed_action_has_its_place(
+    endless: Session, tmp_path: pathlib.Path
+) -> None:
+    fails(tmp_path / "bin", "action", "2")
+    endless.execute(1, "pydslrep.run", endless.area)
+    endless.accept_progress()
+    error = endless.raw.answer(1)["error"]
+    assert error["message"] == (
+        "robot rover, movement patrol, action 2: turn left 90: no progress for 5 s"
+        " (program.pyr, line 4)"
+    )
+    assert error["data"]["reason"] == "failed-run"
+    assert error["data"]["location"]["uri"] == endless.uri
+    assert error["data"]["location"]["range"] == {
+        "start": {"line": 3, "character": 2},
+        "end": {"line": 3, "character": 11},
+    }
 
 
 def test_an_environment_with_errors_does_not_run(session: Session) -> None:

@@ -196,7 +196,7 @@ def test_scenes_have_completion_hover_and_fixes(yard: Yard) -> None:
         "range": scene.span("rovr"),
         "context": {"diagnostics": []},
     }
-    [action] = yard.question("textDocument/codeAction", asked)["result"]
+    action, _ = yard.question("textDocument/codeAction", asked)["result"]
     assert action["title"] == "Change to `rover`"
     [edits] = action["edit"]["changes"].values()
     assert edits == [{"range": scene.span("rovr"), "newText": "rover"}]

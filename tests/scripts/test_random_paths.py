@@ -1,7 +1,7 @@
 """In random programs, robots end every action where planned: in an ideal world, with noise, and as in CoppeliaSim.
 
 One to six robots of all types drive in the embedded simulator, in any order and in parallel, turn by any angle and move
-at any speed. `PYDSLREP_RANDOM_PATHS` sets the number of programs.
+at any speed. A few of these programs run without `--long`.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from __future__ import annotations
 import itertools
 import json
 import math
-import os
 import pathlib
 import random
 import subprocess
@@ -17,7 +16,7 @@ from dataclasses import dataclass
 
 import pytest
 
-COUNT = int(os.environ.get("PYDSLREP_RANDOM_PATHS", "25"))
+ALL, FEW = 100, 8
 
 WHEELS = {"tw": ("wheel", 2), "fw": ("wheel", 4), "fwh": ("wheelH", 4)}
 
@@ -149,7 +148,13 @@ def run(
     )
 
 
-@pytest.mark.parametrize("seed", range(COUNT))
+@pytest.mark.parametrize(
+    "seed",
+    [
+        pytest.param(seed, marks=() if seed < FEW else pytest.mark.long)
+        for seed in range(ALL)
+    ],
+)
 def test_every_action_ends_where_it_is_planned(
     command: str, tmp_path: pathlib.Path, seed: int
 ) -> None:

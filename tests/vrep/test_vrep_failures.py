@@ -7,6 +7,7 @@ import socket
 
 import pytest
 import sim
+from ports import free_ports
 from stage import (
     BLOCKING,
     CLIENT,
@@ -15,7 +16,6 @@ from stage import (
     assert_near,
     ends,
     finish,
-    free_ports,
     interrupt,
     note,
     onlooker,
@@ -23,6 +23,9 @@ from stage import (
     wait_for_motion,
     wait_for_rest,
 )
+
+# Whatever is done to a script on this path is done in the middle of it.
+LONG = "move 200 meters"
 
 
 @pytest.fixture(name="ports")
@@ -32,7 +35,7 @@ def fixture_ports() -> list[int]:
 
 @pytest.fixture(name="stage")
 def fixture_stage(command: str, tmp_path: pathlib.Path, ports: list[int]) -> Stage:
-    program = PROGRAM.format(*ports, actions="move 2 meters")
+    program = PROGRAM.format(*ports, actions=LONG)
     return Stage(command, tmp_path / "stage", program)
 
 
@@ -69,6 +72,7 @@ def test_objects_with_other_names_are_found_by_their_paths(
 ) -> None:
     text = stage.program.read_text(encoding="utf-8")
     renamed = text.replace("rover", "rovers").replace("wheelL", "wheel_x")
+    renamed = renamed.replace(LONG, "move 2 centimeters")
     script = Stage(command, tmp_path / "other", renamed).build("vrep")
     objects = {"rovers": "rover", "wheel_x": "/rover/wheelL", "wheelR": "/rover/wheelR"}
     page = script.read_text(encoding="utf-8")
@@ -76,7 +80,7 @@ def test_objects_with_other_names_are_found_by_their_paths(
     script.write_text(page, encoding="utf-8")
     with stage.simulator():
         out, _ = finish(start(script), 0)
-    assert "move 2 m" in out
+    assert "move 0.02 m" in out
 
 
 def test_ctrl_c_stops_everything(stage: Stage, ports: list[int]) -> None:
@@ -100,7 +104,7 @@ def test_a_simulator_that_dies(stage: Stage, ports: list[int]) -> None:
         simulator.kill()
         _, err = finish(process, 1)
     assert err == (
-        "error: robot rover, movement trip, action 1: move 2 m: "
+        "error: robot rover, movement trip, action 1: move 200 m: "
         f"lost connection to 127.0.0.1:{ports[0]}\n"
     )
 

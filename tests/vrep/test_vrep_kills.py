@@ -14,23 +14,22 @@ import signal
 import socket
 import sys
 import threading
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
 import pytest
+from ports import free_ports
 from stage import (
-    LIMIT,
     PROGRAM,
     TARGETS,
     Stage,
     finish,
-    free_ports,
     handle,
     onlooker,
     start,
     wait_for_rest,
 )
+from until import LIMIT, until
 
 KILLS = int(os.environ.get("PYDSLREP_KILLS", "6"))
 
@@ -132,9 +131,11 @@ def test_scripts_that_end_at_any_moment(
                 wait_for_rest(eye, wheel)
                 process.kill()
                 process.communicate()
-            deadline = time.monotonic() + LIMIT
-            while resources(simulator.pid) != before:
-                assert time.monotonic() < deadline, (how, resources(simulator.pid))
+            until(
+                f"after `{how}` the simulator has as many threads and files as before",
+                lambda: resources(simulator.pid) == before,
+                lambda: resources(simulator.pid),
+            )
         finish(start(last, "--trace", str(tmp_path / "trace")))
         rows = (tmp_path / "trace").read_text(encoding="utf-8").splitlines()
         first, last_row = (json.loads(rows[index])["theta"] for index in (0, -1))

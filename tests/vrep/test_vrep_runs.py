@@ -8,9 +8,11 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 from collections.abc import Sequence
 
 import pytest
+from ports import free_ports
 from stage import (
     HERE,
     PROGRAM,
@@ -19,7 +21,6 @@ from stage import (
     assert_near,
     ends,
     finish,
-    free_ports,
     interrupt,
     onlooker,
     start,
@@ -36,6 +37,15 @@ size = [2.4, 1.8]
 
 [robots.robot_1]
 start = [-0.6, 0, 0]
+"""
+
+CORRIDOR = """\
+[world]
+size = [1.8, 1.0]
+corner = [0, 0]
+
+[robots.robot_1]
+start = [0.4, 0.5]
 """
 
 PAPER = ROOT / "tests" / "paper"
@@ -125,6 +135,28 @@ def test_table_7_explores(command: str, tmp_path: pathlib.Path) -> None:
     assert len(vrep["edges"]) == len(coppeliasim["edges"])
     for one, other in zip(vrep["nodes"], coppeliasim["nodes"], strict=True):
         assert math.dist((one["x"], one["y"]), (other["x"], other["y"])) < 0.01
+
+
+@pytest.mark.parametrize("target", ["vrep", "coppeliasim"])
+def test_table_7_explores_by_odometry(
+    command: str, tmp_path: pathlib.Path, target: str
+) -> None:
+    """Where it believes that it is, from its wheels and scans, is where it is."""
+    program = tmp_path / "table7_slam.pyr"
+    shutil.copy(PAPER / program.name, program)
+    (tmp_path / "area_1.scene.toml").write_text(CORRIDOR, encoding="utf-8")
+    trace, figures = tmp_path / "trace", tmp_path / "figures.json"
+    map_file = tmp_path / "map.json"
+    files = ["--map", str(map_file), "--figures", str(figures)]
+    options = ["--odometry", "--python", sys.executable, *files]
+    run(command, program, trace, target, options)
+    [robot] = json.loads(figures.read_text(encoding="utf-8"))["robots"]
+    there = robot["driven"]
+    real = there["x"], there["y"], math.degrees(there["theta"])
+    [believed] = ends(trace).values()
+    assert_near(believed, real, 0.03, 2.0)
+    assert math.dist(believed[:2], real[:2]) > 1e-4, "that is the simulator's pose"
+    assert len(json.loads(map_file.read_text(encoding="utf-8"))["nodes"]) == 3
 
 
 def test_a_run_can_be_repeated(command: str, tmp_path: pathlib.Path) -> None:

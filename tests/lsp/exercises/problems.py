@@ -111,6 +111,23 @@ async def scripts_are_written_on_save(s: Session) -> None:
 
 
 @exercises(
+    "codeActionProvider.codeActionKinds[scene]",
+    "codeActionProvider.codeActionKinds[script]",
+)
+async def a_menu_at_an_environment_has_its_script_and_scene(s: Session) -> None:
+    context = types.CodeActionContext([])
+    params = types.CodeActionParams(s.document, s.span("environment"), context)
+    found = await s.client.text_document_code_action_async(params)
+    kinds = {
+        action.title: action.kind
+        for action in found or []
+        if isinstance(action, types.CodeAction)
+    }
+    assert kinds["Generate script yard.py"] == "script"
+    assert kinds["Create scene yard.scene.toml"] == "scene"
+
+
+@exercises(
     "codeActionProvider.codeActionKinds[source.generateScript]",
     "codeActionProvider.resolveProvider",
 )

@@ -43,7 +43,7 @@ async def lenses_above_declarations(s: Session) -> None:
         assert shown.command
         titles.setdefault(s.text(shown.range), []).append(shown.command.title)
     assert titles["lap"] == ["2 references"]
-    assert titles["yard"][0] == "Generate script"
+    assert titles["yard"] == ["Run", "Preview", "Generate script"]
 
 
 @exercises("documentSymbolProvider")
