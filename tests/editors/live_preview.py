@@ -17,7 +17,7 @@ printf %s "$1" > "{file}.part" && mv "{file}.part" "{file}"
 """
 
 # Reached only if something is broken.
-LIMIT = 15
+LIMIT = 60
 
 
 class LivePreview:

@@ -17,7 +17,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 SIZE = (100, 24)
-PATIENCE = 30.0
+PATIENCE = 60.0
 SEQUENCE = re.compile(r"\x1b\[([0-9;:]*)m|\x1b\][^\x1b]*\x1b\\|\x1b\(B|[\x0e\x0f]")
 
 BACKGROUND, FOREGROUND = "#1e1e1e", "#d4d4d4"

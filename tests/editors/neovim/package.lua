@@ -204,10 +204,14 @@ local function live_preview()
   local open_outside, address = vim.ui.open, nil
   vim.ui.open = function(path)
     address = path
-    return {}
+    return nil, 'there is no browser'
   end
+  vim.cmd('messages clear')
   vim.cmd('PydslrepPreview area_1')
   wait(function() return address end)
+  becomes('and without a browser, its address is printed', true, function()
+    return vim.fn.execute('messages'):find('path preview: ' .. address, 1, true) ~= nil
+  end)
   vim.ui.open = open_outside
   check('the live preview is opened', address and address:find('^http://127%.0%.0%.1:%d+/%x+/$'), address)
   local received = ''
@@ -260,6 +264,22 @@ local function run()
   check('its progress is shown', vim.iter(pairs(seen)):any(function(token) return token:find('^pydslrep%-') end), seen)
   check('its picture is opened', _G.opened and _G.opened:find('driven', 1, true), _G.opened)
   becomes('its end is reported', true, function() return messages():find('done', 1, true) ~= nil end)
+end
+
+local function failed_run()
+  harness.write('blocked.scene.toml', '[[box]]\nname = "crate"\nat = [0.6, 0]\nsize = [0.2, 2]\n')
+  open_program('blocked.pyr', (PROGRAM:gsub('area_1', 'blocked')))
+  local function marks()
+    return vim.iter(vim.diagnostic.get(0)):filter(function(one) return one.source == 'pydslrep run' end):totable()
+  end
+  vim.cmd('Pydslrep run')
+  local place = wait(function() return marks()[1] end)
+  local marked = place and vim.fn.getline(place.lnum + 1)
+  check('the action that failed is marked', marked and marked:find('move', 1, true), marked or messages())
+  vim.cmd('Pydslrep run')
+  becomes('until the next run', 0, function() return #marks() end)
+  vim.cmd('Pydslrep stop')
+  becomes('and that run is stopped', true, function() return messages():find('stopped', 1, true) ~= nil end)
 end
 
 local function stop()
@@ -356,6 +376,6 @@ local function help()
 end
 
 harness.run({
-  before_the_server, file_type, indentation, command, options, generate, preview, live_preview, run, stop, lenses, help,
-  life,
+  before_the_server, file_type, indentation, command, options, generate, preview, live_preview, run, failed_run, stop,
+  lenses, help, life,
 })

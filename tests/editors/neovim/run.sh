@@ -62,7 +62,7 @@ session() { # name, Neovim, file; reads init.lua from standard input
     export XDG_CONFIG_HOME="$home/config" XDG_DATA_HOME="$home/data" XDG_STATE_HOME="$home/state"
     # Keeps what the first run installs.
     export XDG_CACHE_HOME="$cache/cache"
-    timeout 180 "$2" --headless -S "$tests/$3" 2> "$home/messages"
+    timeout 600 "$2" --headless -S "$tests/$3" 2> "$home/messages"
   ) || failed=1
   local server_id
   server_id=$(cat "$home/server.pid" 2>/dev/null || true)

@@ -2,7 +2,6 @@
 -- says whether all passed.
 
 local harness = dofile(vim.env.TESTS .. '/harness.lua')
-local sleep = harness.sleep
 local wait = harness.wait
 local check = harness.check
 local becomes = harness.becomes
@@ -141,7 +140,7 @@ local function beside_the_program()
       end
       return table.concat(found, ', ')
     end
-    local wanted = 'Generate script, Run, Preview'
+    local wanted = 'Run, Preview, Generate script'
     check('lenses above an environment', wait(function() return titles():find(wanted) end), titles())
     check('a lens above a robot', wait(function() return titles():find('2 references') end), titles())
     vim.lsp.codelens.enable(false, { bufnr = 0 })
@@ -253,9 +252,15 @@ local function settings_file()
   vim.uv.fs_unlink('yard.scene.toml')
   write('other.toml', 'x = 1\n')
   vim.cmd.edit('other.toml')
-  sleep(100)
-  check('other TOML is ignored', not client())
+  local other = vim.api.nvim_get_current_buf()
+  -- What is opened after it has its client first.
+  write('pydslrep.toml', '')
+  open('pydslrep.toml')
+  becomes('a file that is opened later has the client', true, function() return client() ~= nil end)
+  check('other TOML is ignored', #vim.lsp.get_clients({ bufnr = other }) == 0)
   vim.cmd('bwipeout!')
+  vim.cmd.bwipeout({ args = { tostring(other) }, bang = true })
+  vim.uv.fs_unlink('pydslrep.toml')
 end
 
 local function quick_fix()
@@ -276,7 +281,8 @@ local function script()
     return buffer > 0 and text(buffer) or nil
   end
   local titles = act('Generate script')
-  check('Generate script is offered', vim.deep_equal(titles, { 'Generate script area_1.py' }), titles)
+  local offered = { 'Generate script area_1.py', 'Create scene area_1.scene.toml' }
+  check('Generate script is offered', vim.deep_equal(titles, offered), titles)
   becomes('the script is generated', built, shown)
   vim.cmd.wall()
   check('it is identical to what the command builds', read('area_1.py') == built)

@@ -8,10 +8,11 @@ import { after, before, test } from "node:test";
 
 import { launch, PICTURES, Playground, ROOT, serve } from "./stage.mjs";
 
-/** Five rooms to explore: the run takes minutes. */
-const LONG = ["rooms"];
-const PROGRAMS = ["convoy", "crossing", "horseshoe", "mecanum", "patrol", "square", "table2_two_wheels", "table3_four_wheels", "table4_holonomic", "table6_sensors", "table7_slam"];
-const ALL = process.env.PLAYGROUND_ALL ? [...PROGRAMS, ...LONG] : PROGRAMS;
+/** Each kind of robot, several of them, and a condition. */
+const FEW = ["crossing", "square", "table6_sensors"];
+/** The others; the five rooms alone take minutes. */
+const MORE = ["convoy", "horseshoe", "mecanum", "patrol", "table2_two_wheels", "table3_four_wheels", "table4_holonomic", "table7_slam", "rooms"];
+const PROGRAMS = process.env.LONG ? [...FEW, ...MORE] : FEW;
 
 let browser;
 let site;
@@ -29,6 +30,13 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
+/** Waits for something that the page does by itself. */
+async function until(condition, message) {
+  for (const end = Date.now() + 60_000; !condition(); await new Promise((resolve) => setTimeout(resolve, 50))) {
+    assert.ok(Date.now() < end, message);
+  }
+}
+
 /** What `pydslrep run` writes, and its exit code. */
 function natively(name) {
   const program = ["examples", "tests/paper"].map((place) => path.join(ROOT, place, `${name}.pyr`)).find(existsSync);
@@ -43,7 +51,7 @@ function natively(name) {
   return { code, trace: readFileSync(trace), map: existsSync(map) ? readFileSync(map) : undefined, figures };
 }
 
-for (const name of ALL) {
+for (const name of PROGRAMS) {
   test(`${name} drives as on the command line`, async () => {
     const playground = await Playground.open(browser, site.address);
     await playground.choose(name);
@@ -71,7 +79,7 @@ test("a run shows output, progress and the driven path, and offers what it wrote
   assert.equal(await playground.ended(), 0);
   const log = await page.locator("#log").innerText();
   assert.match(log, /scout +left_square +1: move 1 m/);
-  assert.match(await page.locator("#log table").innerText(), /scout\s+0\.000 m, 0\.000 m, 0\.0°\s+0\.000 m, 0\.000 m, 0\.0°/);
+  assert.match(await page.locator("#log table").innerText(), /scout\s+0\.000 m, 0\.000 m, 0°\s+0\.000 m, 0\.000 m, 0°/);
   await playground.preview.getByText("Latest run").waitFor();
   const script = await playground.download("Script");
   assert.equal(script.name, "yard.py");
@@ -84,15 +92,53 @@ test("a run shows output, progress and the driven path, and offers what it wrote
   await playground.close();
 });
 
-test("a run can be stopped, and another one started", async () => {
+test("Python is loaded once, and a run finds nothing of the one before", async () => {
   const playground = await Playground.open(browser, site.address);
   const { page } = playground;
+  const loads = () => playground.requests.filter((address) => address.endsWith("pyodide.asm.wasm")).length;
+  const runToEnd = async () => {
+    await playground.run();
+    await page.locator('#output[data-running="true"]').waitFor();
+    assert.equal(await playground.ended(), 0, await page.locator("#log").innerText());
+    return (await playground.download("Trace")).content;
+  };
+  const open = async (example) => {
+    await playground.choose(example);
+    await playground.pathShown(/^environment (\w+)/m.exec(await playground.text())[1]);
+  };
+  await open("convoy");
+  const first = await runToEnd();
+  assert.equal(loads(), 1);
+  // An error in the program does not cost Python either.
+  await open("square");
+  const program = await playground.text();
+  await playground.write(program.replace("turn left", "trun left"));
+  await playground.editor.locator(".cm-lintRange-error").first().waitFor();
+  await playground.run();
+  assert.equal(await playground.ended(), 2);
+  await playground.write(program);
+  await playground.editor.locator(".cm-lintRange-error").waitFor({ state: "detached" });
+  await playground.pathShown("yard");
+  assert.ok(!(await runToEnd()).equals(first));
+  await open("convoy");
+  assert.ok((await runToEnd()).equals(first), "the same program drives the same path");
+  assert.equal(loads(), 1);
+  assert.deepEqual(playground.errors, []);
+  await playground.close();
+});
+
+test("a run can be stopped, and another one started, for which Python is loaded meanwhile", async () => {
+  const playground = await Playground.open(browser, site.address);
+  const { page } = playground;
+  const workers = [];
+  page.on("worker", (worker) => worker.url().endsWith("run.js") && workers.push(worker));
   await playground.choose("rooms");
   await playground.pathShown("rooms");
   await playground.run();
   await page.getByText(/simulated/).first().waitFor({ timeout: 60_000 });
   await page.getByRole("button", { name: "Stop" }).click();
   await page.getByText("Stopped").waitFor();
+  await until(() => workers.length === 2, "no worker for the next run");
   await playground.choose("square");
   await playground.pathShown("yard");
   await page.keyboard.press("F5");

@@ -1,4 +1,5 @@
 // The playground in a browser, from a server of static files.
+import assert from "node:assert/strict";
 import { createReadStream, existsSync, mkdirSync, readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import path from "node:path";
@@ -55,10 +56,14 @@ export class Playground {
   requests = [];
 
   static async open(browser, address, { colorScheme = "light", width = 1280, height = 800, fragment = "", ...options } = {}) {
+    return Playground.openIn(await browser.newContext({ viewport: { width, height }, colorScheme, ...options }), address, { fragment });
+  }
+
+  /** Opens the playground in a new tab of a browser that may have others. */
+  static async openIn(context, address, { fragment = "" } = {}) {
     const playground = new Playground();
-    const context = await browser.newContext({ viewport: { width, height }, colorScheme, ...options });
     const page = (playground.page = await context.newPage());
-    page.setDefaultTimeout(Number(process.env.PATIENCE ?? 30_000));
+    page.setDefaultTimeout(Number(process.env.PATIENCE ?? 60_000));
     page.on("pageerror", (error) => playground.errors.push(String(error)));
     page.on("console", (message) => {
       if (message.type() === "error") playground.errors.push(message.text());
@@ -84,6 +89,14 @@ export class Playground {
   /** The text of the shown editor. */
   text() {
     return this.content.evaluate((content) => content.cmTile.root.view.state.doc.toString());
+  }
+
+  /** Waits until the shown editor has a text. */
+  async becomes(expected) {
+    await this.page.waitForFunction((text) => {
+      const content = document.querySelector("#editor").shadowRoot.querySelector(".cm-editor:not([hidden]) .cm-content");
+      return content.cmTile.root.view.state.doc.toString() === text;
+    }, expected).catch(async () => assert.equal(await this.text(), expected));
   }
 
   /** Replaces the text, as pasting it does. */

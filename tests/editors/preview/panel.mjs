@@ -43,6 +43,7 @@ export class Panel {
     const panel = new Panel();
     const context = await browser.newContext({ viewport: { width, height }, deviceScaleFactor: 2, ...options });
     panel.page = await context.newPage();
+    panel.page.setDefaultTimeout(60_000);
     const { page } = panel;
     page.on("pageerror", (error) => panel.errors.push(String(error)));
     page.on("console", (message) => {
@@ -103,7 +104,7 @@ export class Panel {
   }
 
   async until(name, value) {
-    await this.page.locator(`main[data-${name}="${value}"]`).waitFor({ state: "attached", timeout: 15_000 });
+    await this.page.locator(`main[data-${name}="${value}"]`).waitFor({ state: "attached" });
   }
 
   /** Waits for a message of this type; messages leave the browser asynchronously. */

@@ -16,4 +16,6 @@ if [ ! -x "$PYDSLREP_LSP" ] || [ ! -x "$(dirname "$PYDSLREP_LSP")/pydslrep" ]; t
 fi
 "$root/tests/install/npm.sh" "$root/editors/vscode" "$here"
 npm run --silent --prefix "$root/editors/vscode" build
-exec node --test --test-reporter=spec "$here"/*.test.mjs
+cd "$here"
+[ $# -gt 0 ] || set -- *.test.mjs
+exec node --test --test-timeout=1200000 --test-reporter=spec "$@"

@@ -34,6 +34,11 @@ export class Server {
     });
   }
 
+  /** Moves the cursor to the first line, as an editor reports it: what has been typed elsewhere is judged. */
+  leaveLine(uri) {
+    return this.request("textDocument/documentHighlight", { textDocument: { uri }, position: { line: 0, character: 0 } });
+  }
+
   request(method, params) {
     return this.connection.sendRequest(method, params);
   }

@@ -1,8 +1,9 @@
-"""The programs to type: the article's, the examples, generated ones, and one with comments."""
+"""The programs to type: the article's, the examples, generated ones, one with comments, and some with similar names."""
 
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import tempfile
 from collections.abc import Iterable
@@ -14,16 +15,40 @@ DEBUG = ROOT / "target" / "debug"
 GENERATED = 50
 # The approximate number of entities and actions of a generated program.
 SIZE = 8
-# The programs for continuous integration: table 2, an example, generated ones.
-FEW = ("table2_two_wheels", "mecanum", "comments", "generated_05", "generated_12")
+# The programs for continuous integration: table 2, an example, generated ones, similar names, one as the article prints it.
+FEW = (
+    "table2_two_wheels",
+    "mecanum",
+    "comments",
+    "generated_05",
+    "generated_12",
+    "names_00",
+    "names_00_tab",
+    "table6_sensors_printed",
+)
+# How many programs have similar names.
+SIMILAR = 6
+STEP = 2
 
 
 @dataclass(frozen=True)
 class Program:
-    """A formatted program."""
+    """A program."""
 
     name: str
     text: str
+    # Whether Tab follows each word of a list: it accepts the first item of a menu, or is a blank.
+    tabs: bool = False
+    # Whether it is typed as written, with its own line breaks and braces, although it is not formatted.
+    is_printed: bool = False
+
+    def matches(self, typed: str) -> bool:
+        """Whether a text is what was typed. The editor formats programs that are not."""
+        if self.tabs:
+            return _without_blanks(typed) == _without_blanks(self.text)
+        if self.is_printed:
+            return formatted(typed) == formatted(self.text) and not ragged(typed)
+        return typed == self.text
 
 
 def programs() -> list[Program]:
@@ -33,10 +58,87 @@ def programs() -> list[Program]:
         file for folder in folders for file in sorted((ROOT / folder).glob("*.pyr"))
     ]
     texts = {file.stem: file.read_text() for file in files}
+    texts |= {f"names_{seed:02}": similar_names(seed) for seed in range(SIMILAR)}
+    printed = [
+        Program(f"{file.stem}_printed", file.read_text(), is_printed=True)
+        for file in sorted((ROOT / "tests/paper").glob("*.pyr"))
+    ]
     for number, text in enumerate(_generated()):
         texts[f"generated_{number:02}"] = text
     with tempfile.TemporaryDirectory(prefix="pydslrep-") as folder:
-        return _formatted(texts, Path(folder))
+        typed = _formatted(texts, Path(folder))
+    tabs = [
+        Program(f"{program.name}_tab", program.text, tabs=True)
+        for program in typed
+        if program.name.startswith("names_")
+    ]
+    return [*typed, *tabs, *printed]
+
+
+def other_files() -> dict[str, str]:
+    """The programs that are in the folder while others are typed."""
+    return {
+        f"others/{program.name}.pyr": program.text
+        for program in programs()
+        if not program.tabs and not program.is_printed
+    }
+
+
+def similar_names(seed: int) -> str:
+    """A program with names that begin like others, in lists on one line and over several."""
+    letters = [chr(ord("a") + (seed * 4 + place) % 26) for place in range(6)]
+    sensors = [name for letter in letters for name in _family(letter, letters[0])]
+    names = _family(letters[0], letters[1])
+    rotated = [*names[seed % 4 :], *names[: seed % 4]]
+    lines = [f"wheel {name} with radius 4.5" for name in names]
+    lines += [f"sensor {name}" for name in sensors]
+    robot = (
+        f"robot {names[1]} type fw with port 23000 has {{ {' '.join(rotated)} }} wheels"
+    )
+    lines.append(f"{robot} with sensors {{ {', '.join(reversed(sensors))} }}")
+    for name in names:
+        until = "{ " + ", ".join(rotated) + " }"
+        action = f"turn left until {until}"
+        lines.append(f"movement {name} of {names[1]} {{ {action} move 2 meters }}")
+    moves = " ".join(rotated[place % 4] for place in range(26))
+    lines.append(
+        f"environment {names[0]} has {{ {names[1]} }} robots with {{ {moves} }} moves"
+    )
+    return "\n".join(lines) + "\n"
+
+
+def _family(first: str, second: str) -> list[str]:
+    """Four names of which some begin like others: `a`, `ab`, `abc`, `a2`."""
+    third = chr(ord("a") + (ord(second) - ord("a") + 1) % 26)
+    return [first, first + second, first + second + third, first + "2"]
+
+
+def ragged(text: str) -> list[str]:
+    """The lines that are not indented by their depth, as far as they begin outside comments."""
+    found, depth = [], 0
+    for line in text.splitlines():
+        code = re.sub(r"//.*|/\*.*?\*/", "", line)
+        leading = len(line) - len(line.lstrip(" "))
+        if code.strip() and leading != STEP * (depth - code.lstrip().startswith("}")):
+            found.append(line)
+        depth += code.count("{") - code.count("}")
+    return found
+
+
+def formatted(text: str) -> str:
+    """A text in canonical layout, as far as it has no errors."""
+    done = subprocess.run(
+        [_pydslrep(), "fmt", "-"],
+        input=text,
+        check=False,
+        capture_output=True,
+        text=True,
+    )
+    return done.stdout
+
+
+def _without_blanks(text: str) -> str:
+    return "\n".join(" ".join(line.split()) for line in text.strip().splitlines())
 
 
 def few() -> list[Program]:
@@ -64,9 +166,12 @@ def _formatted(texts: dict[str, str], folder: Path) -> list[Program]:
     return [Program(name, file.read_text()) for name, file in files.items()]
 
 
+def _pydslrep() -> str:
+    return os.environ.get("PYDSLREP", str(DEBUG / "pydslrep"))
+
+
 def _run(action: str, files: Iterable[Path]) -> None:
-    pydslrep = os.environ.get("PYDSLREP", str(DEBUG / "pydslrep"))
-    command = [pydslrep, action, *map(str, files)]
+    command = [_pydslrep(), action, *map(str, files)]
     done = subprocess.run(command, check=False, capture_output=True, text=True)
     if done.returncode != 0:
         raise SystemExit(f"pydslrep {action}:\n{done.stdout}{done.stderr}")

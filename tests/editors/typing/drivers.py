@@ -14,7 +14,7 @@ from typing import Any, cast
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from keyboard import Keyboard
 from keystrokes import Behaviour, same_leader, usual_leader
-from session import MESSAGE, PROGRAM, ROOT, Session
+from session import MESSAGE, ROOT, Session
 from terminal import Terminal
 
 HERE = Path(__file__).resolve().parent
@@ -36,6 +36,8 @@ class Editor:
 
     behaviour: Behaviour
     work: Path
+    # Whether keys wait for an editor that is behind. Only VS Code needs that: the others handle keys in turn.
+    is_patient = False
 
     def open(self, file: Path) -> None:
         """Opens an empty file and puts the cursor in it."""
@@ -260,7 +262,7 @@ class VsCode(Editor):
 
     def __init__(
         self,
-        _: Session,
+        session: Session,
         settings: dict[str, object] | None = None,
         indents: bool = True,
     ) -> None:
@@ -273,9 +275,14 @@ class VsCode(Editor):
             text=True,
         )
         self.found: list[str] = []
-        self.work = Path(
-            self.request("start", program=PROGRAM, settings=settings or {})["folder"]
-        )
+        folder = session.program.parent
+        files = {
+            str(file.relative_to(folder)): file.read_text()
+            for file in folder.rglob("*")
+            if file.is_file()
+        }
+        started = self.request("start", files=files, settings=settings or {})
+        self.work = Path(started["folder"])
 
     def request(self, action: str, **details: object) -> dict[str, Any]:
         """Sends an action to vscode.mjs and returns its answer."""
@@ -295,7 +302,8 @@ class VsCode(Editor):
     def type(self, keys: list[str], pace: float) -> float:
         kept = os.environ.get("FRAMES")
         frames = str(Path(kept, self.file)) if kept else None
-        typed = self.request("type", keys=keys, pace=pace, frames=frames)
+        details = {"pace": pace, "frames": frames, "patient": self.is_patient}
+        typed = self.request("type", keys=keys, **details)
         self.found = typed["covered"]
         return float(typed["seconds"])
 

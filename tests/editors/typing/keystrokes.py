@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 STEP = 2
 COMMENT = re.compile(r"//.*|/\*.*?\*/")
@@ -50,8 +50,41 @@ class Stroke:
     line: int
 
 
-def strokes(program: str, behaviour: Behaviour) -> list[Stroke]:
-    """The keys for a program, starting from an empty file. Its comments must be on one line."""
+def strokes(
+    program: str, behaviour: Behaviour, *, tabs: bool = False, as_written: bool = False
+) -> list[Stroke]:
+    """The keys for a program, starting from an empty file. Its comments must be on one line.
+
+    `tabs` presses Tab after each word of a list that is on one line. `as_written` types every brace, whether or not the
+    editor inserts it.
+    """
+    if as_written:
+        behaviour = replace(behaviour, closes_braces=False)
+    typed = _typed(program, behaviour)
+    return _with_tabs(typed) if tabs else typed
+
+
+def _with_tabs(typed: list[Stroke]) -> list[Stroke]:
+    """Adds Tab after each word of a list."""
+    found: list[Stroke] = []
+    depth, is_word = 0, False
+    for stroke in typed:
+        if is_word and stroke.key == " ":
+            found.append(Stroke("Tab", stroke.line))
+        is_word = depth > 0 and (stroke.key.isalnum() and len(stroke.key) == 1)
+        depth = _depth_on_line(found, depth, stroke)
+        found.append(stroke)
+    return found
+
+
+def _depth_on_line(before: list[Stroke], depth: int, stroke: Stroke) -> int:
+    """How many lists are open on the line after a key."""
+    if before and before[-1].line != stroke.line:
+        depth = 0
+    return depth + (stroke.key == "{") - (stroke.key == "}")
+
+
+def _typed(program: str, behaviour: Behaviour) -> list[Stroke]:
     lines = program.split("\n")
     if behaviour.ends_last_line and lines[-1] == "":
         lines.pop()

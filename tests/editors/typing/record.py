@@ -16,7 +16,7 @@ from fnmatch import fnmatch
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from corpus import FEW, Program, programs
+from corpus import FEW, Program, other_files, programs, ragged
 from drivers import EDITORS, Editor
 from keystrokes import Stroke, strokes
 from session import ROOT, open_session
@@ -65,7 +65,9 @@ def main() -> None:
     chosen = list(tasks(options))
     shares = [chosen[number :: options.jobs] for number in range(options.jobs)]
     with ThreadPoolExecutor(options.jobs) as pool:
-        shared = pool.map(lambda share: record(options.editor, share), shares)
+        shared = pool.map(
+            lambda share: record(options.editor, share, options.patient), shares
+        )
         outcomes = [outcome for share in shared for outcome in share]
     failed = [outcome for outcome in outcomes if outcome.problems]
     for pace in sorted({outcome.task.pace for outcome in outcomes}):
@@ -84,6 +86,11 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--programs", metavar="GLOB", help="programs whose names match")
     parser.add_argument(
         "--pace", type=int, action="append", help="milliseconds per key"
+    )
+    parser.add_argument(
+        "--patient",
+        action="store_true",
+        help="wait for an editor that is behind, so that the machine's speed does not matter",
     )
     parser.add_argument("--jobs", type=int, default=1, help="editors at the same time")
     return parser.parse_args()
@@ -107,13 +114,16 @@ def tasks(options: argparse.Namespace) -> Iterator[Task]:
                 yield Task(program, pace)
 
 
-def record(name: str, share: list[Task]) -> list[Outcome]:
+def record(name: str, share: list[Task], patient: bool = False) -> list[Outcome]:
     """Types programs one after the other into an editor, which is restarted after a failure."""
     outcomes: list[Outcome] = []
     left = list(share)
     while left:
         with open_session(name.partition("-")[0]) as session:
+            # Its settings file makes the folder a project, in which all programs are read.
+            write(session.program.parent, {**other_files(), "pydslrep.toml": ""})
             editor = EDITORS[name](session)
+            editor.is_patient = patient
             try:
                 prepare(editor.work, left)
                 while left:
@@ -126,6 +136,13 @@ def record(name: str, share: list[Task]) -> list[Outcome]:
     return outcomes
 
 
+def write(folder: Path, files: dict[str, str]) -> None:
+    """Writes files into a folder."""
+    for name, text in files.items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(text)
+
+
 def prepare(work: Path, left: list[Task]) -> None:
     """Creates empty files and the imports of programs."""
     shutil.copytree(ROOT / "examples" / "parts", work / "parts")
@@ -136,27 +153,32 @@ def prepare(work: Path, left: list[Task]) -> None:
 def typed(editor: Editor, task: Task) -> Outcome:
     """Types a program into its file and compares."""
     file = editor.work / task.file
-    all_strokes = strokes(task.program.text, editor.behaviour)
+    program = task.program
+    all_strokes = strokes(
+        program.text, editor.behaviour, tabs=program.tabs, as_written=program.is_printed
+    )
     keys = [stroke.key for stroke in all_strokes]
     editor.open(file)
     outcome = Outcome(task, len(keys), editor.type(keys, task.pace / 1000))
     outcome.problems += editor.covered()
     editor.save()
-    text = saved(file, task.program.text)
-    if text != task.program.text:
-        outcome.problems.append(difference(task.program.text, text, all_strokes))
+    text = saved(file, program)
+    if not program.matches(text):
+        outcome.problems.append(difference(program.text, text, all_strokes))
+        if program.is_printed:
+            outcome.problems += [f"ragged: {line}" for line in ragged(text)]
         if not text:
             outcome.problems.append(editor.screen())
     return outcome
 
 
-def saved(file: Path, expected: str) -> str:
-    """The text of a saved file; waits for the expected text."""
+def saved(file: Path, program: Program) -> str:
+    """The text of a saved file; waits for that of the program."""
     until = time.monotonic() + PATIENCE
     while True:
         # Helix moves the file while it writes.
         text = file.read_text() if file.exists() else ""
-        if text == expected or time.monotonic() > until:
+        if program.matches(text) or time.monotonic() > until:
             return text
         time.sleep(0.02)
 

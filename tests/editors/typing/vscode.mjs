@@ -9,8 +9,8 @@ import { Stage } from "../vscode/stage.mjs";
 let stage;
 
 const ACTIONS = {
-  async start({ program, settings }) {
-    stage = await Stage.open({ files: { "patrol.pyr": program }, open: "patrol.pyr", settings });
+  async start({ files, settings }) {
+    stage = await Stage.open({ files, open: "patrol.pyr", settings });
     // The server is running once the error is shown.
     await stage.page.locator(".squiggly-error").first().waitFor();
     await stage.page.evaluate(watch);
@@ -19,12 +19,14 @@ const ACTIONS = {
 
   async open({ name }) {
     await stage.openFile(name);
-    await stage.page.locator(".editor-instance .monaco-editor.focused").waitFor();
     return {};
   },
 
-  /** Presses keys, one each `pace` seconds. `frames` is a folder for ten screenshots. */
-  async type({ keys, pace, frames }) {
+  /**
+   * Presses keys, one each `pace` seconds. `frames` is a folder for ten screenshots. If it is `patient`, the next key is pressed
+   * when the editor has drawn the one before, and after those that it formats when what they change has been drawn, too.
+   */
+  async type({ keys, pace, frames, patient }) {
     await stage.page.evaluate(() => {
       globalThis.covered = {};
     });
@@ -36,6 +38,9 @@ const ACTIONS = {
         await new Promise((resolve) => setTimeout(resolve, wait));
       }
       await press(key);
+      if (patient) {
+        await stage.page.evaluate(drawn, STILL[key] ?? 1);
+      }
       if (frames && Math.floor((number * 10) / keys.length) < Math.floor(((number + 1) * 10) / keys.length)) {
         await takeFrame(frames, Math.floor(((number + 1) * 10) / keys.length));
       }
@@ -49,6 +54,25 @@ const ACTIONS = {
     return {};
   },
 };
+
+/** Frames without a change after which nothing more is expected from the server, after the keys that make it format. */
+const STILL = { Enter: 12, "}": 60 };
+
+/** In the page: waits until the text has been the same for some frames. A slow editor draws fewer. */
+function drawn(frames) {
+  return new Promise((resolve) => {
+    let before;
+    let still = -1;
+    const look = () => {
+      const text = document.querySelector(".monaco-editor.focused .view-lines")?.textContent;
+      still = text === before ? still + 1 : 0;
+      before = text;
+      if (still >= frames) resolve();
+      else requestAnimationFrame(look);
+    };
+    look();
+  });
+}
 
 const NAMES = { Down: "ArrowDown", End: "End", Enter: "Enter", Tab: "Tab" };
 

@@ -48,7 +48,10 @@ test("the path follows an edited number", async () => {
 
 test("an error keeps the last picture and says so", async () => {
   await stage.page.keyboard.press("Backspace");
+  // Until the line is left, the next key may settle it.
+  await stage.page.keyboard.press("ArrowUp");
   await until("the path is stale", async () => (await frame.locator("main.preview").getAttribute("data-state")) === "stale");
+  await stage.page.keyboard.press("ArrowDown");
   await stage.type("2");
   await until("the path is valid", async () => (await frame.locator("main.preview").getAttribute("data-state")) === "ready");
 });

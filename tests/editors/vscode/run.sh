@@ -36,4 +36,4 @@ if [ "${1:-}" = --then ]; then
   exec "${@:2}"
 fi
 step "Tests"
-exec node --test --test-concurrency=1 --test-reporter=spec "${@:-*.test.mjs}"
+exec node --test --test-timeout=1200000 --test-concurrency=1 --test-reporter=spec "${@:-*.test.mjs}"

@@ -172,7 +172,7 @@ export class Stage {
     renameSync(`${file}.new`, file);
   }
 
-  /** Opens a file of the workspace with Quick Open. */
+  /** Opens a file of the workspace with Quick Open, and waits until keys arrive in it. */
   async openFile(name) {
     await this.page.keyboard.press("Control+P");
     const input = this.page.locator(".quick-input-widget input").first();
@@ -180,6 +180,7 @@ export class Stage {
     await this.page.locator(".quick-input-widget .monaco-list-row.focused", { hasText: path.basename(name) }).waitFor();
     await this.page.keyboard.press("Enter");
     await this.page.locator(`.tab.active[data-resource-name="${path.basename(name)}"]`).waitFor();
+    await this.page.locator(".editor-instance .monaco-editor.focused").waitFor();
   }
 
   /** The URI of a file in the browser. It needs the authority, or else decorations are not drawn. */
@@ -218,9 +219,14 @@ export class Stage {
     const row = this.page.locator(".quick-input-widget .monaco-list-row", { hasText: title.split(": ").at(-1) }).first();
     await until(`the palette lists ${title}`, async () => {
       await this.page.keyboard.press("F1");
-      await input.waitFor();
-      await input.fill(`>${title}`);
-      const isListed = await row.waitFor({ timeout: 10_000 }).then(() => true, () => false);
+      // Whatever takes the focus closes the palette again.
+      const limit = { timeout: 10_000 };
+      const look = async () => {
+        await input.waitFor(limit);
+        await input.fill(`>${title}`, limit);
+        await row.waitFor(limit);
+      };
+      const isListed = await look().then(() => true, () => false);
       if (!isListed) {
         await this.page.keyboard.press("Escape");
       }

@@ -24,7 +24,10 @@ test("problems come while typing, and completion", async () => {
   await stage.clickWord("turn left", "turn");
   await stage.page.keyboard.press("End");
   await stage.type("x");
+  // Until the line is left, the next key may settle it.
+  await stage.page.keyboard.press("ArrowUp");
   await squiggles().first().waitFor();
+  await stage.page.keyboard.press("ArrowDown");
   await stage.page.keyboard.press("Backspace");
   await squiggles().first().waitFor({ state: "detached" });
   await stage.page.keyboard.press("Enter");

@@ -160,18 +160,19 @@ test("the script is generated from the palette and opened", async () => {
   await stage.tab("yard.pyr").click();
 });
 
-test("the program runs in the simulator, and a message sums up the run", async () => {
+test("the program runs in the simulator, and the preview sums up the run without covering the path", async () => {
   await stage.line("movement patrol").first().waitFor();
   await stage.page.locator(".codelens-decoration a", { hasText: /^Run$/ }).first().click();
-  const message = runMessage();
-  await message.waitFor();
-  // A message stays while the pointer is over it.
-  await message.hover();
+  const message = await runMessage();
   assert.match(spaced(await message.innerText()), /yard: [\d.]+ s \(planned: [\d.]+ s\) simulated in [\d.]+ s/);
-});
-
-test("the message offers the path and the table", async () => {
-  assert.deepEqual(await runMessage().getByRole("button").filter({ hasText: "Show" }).allInnerTexts(), ["Show Path", "Show Table"]);
+  assert.deepEqual(await message.getByRole("button").allInnerTexts(), ["Show Table"]);
+  const frame = await stage.webview("main.preview");
+  const covered = await frame.evaluate(() => {
+    const box = (part) => document.querySelector(`[data-part="${part}"]`).getBoundingClientRect();
+    const [result, legend, picture] = ["result", "legend", "picture"].map(box);
+    return result.bottom > legend.top + 0.5 || result.bottom > picture.top + 0.5;
+  });
+  assert.equal(covered, false);
 });
 
 test("the preview shows the driven path", async () => {
@@ -181,8 +182,7 @@ test("the preview shows the driven path", async () => {
 });
 
 test("the message opens the table of the run", async () => {
-  await runMessage().getByRole("button", { name: "Show Table" }).click();
-  await runMessage().waitFor({ state: "detached" });
+  await (await runMessage()).getByRole("button", { name: "Show Table" }).click();
   const table = stage.page.locator(".panel .view-lines");
   await until("the table is shown", async () => /rover planned .* driven /.test(spaced(await table.innerText())));
   await stage.call("Notifications: Clear All Notifications");
@@ -194,7 +194,10 @@ test("the steps of the walkthrough are ticked off once done", async () => {
   assert.deepEqual(await stage.walkthrough(), ["Write a program", "Preview the path", "Run it", "Export the script"]);
 });
 
-/** The message at the end of a run. */
-function runMessage() {
-  return stage.page.locator(".notification-toast", { hasText: "simulated in" });
+/** What the preview says at the end of a run. */
+async function runMessage() {
+  const frame = await stage.webview("main.preview");
+  const message = frame.locator('[data-part="result"]', { hasText: "simulated in" });
+  await message.waitFor();
+  return message;
 }

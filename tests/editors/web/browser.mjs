@@ -37,6 +37,7 @@ export async function openPage() {
     args: ["--no-sandbox", "--disable-gpu", "--no-first-run"],
   });
   const page = await browser.newPage();
+  page.setDefaultTimeout(60_000);
   const errors = [];
   page.on("pageerror", (error) => errors.push(String(error)));
   page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
@@ -70,6 +71,11 @@ function installClient() {
       client.initialized = await client.request("initialize", { processId: null, rootUri: null, workspaceFolders, capabilities });
       client.notify("initialized", {});
       return client;
+    }
+
+    /** Moves the cursor to the first line, as an editor reports it: what has been typed elsewhere is judged. */
+    leaveLine(uri) {
+      return this.request("textDocument/documentHighlight", { textDocument: { uri }, position: { line: 0, character: 0 } });
     }
 
     receive(message) {

@@ -8,6 +8,8 @@ CHROMIUM=$("$root/tests/install/chromium.sh")
 PATH=$("$root/tests/install/node.sh"):$PATH
 export CHROMIUM
 "$root/tests/install/npm.sh" "$root/editors/preview" "$root/editors/web" "$here"
-if [ -z "${PYDSLREP_WEB:-}" ]; then "$root/editors/web/build.sh"; fi
+if [ -z "${PYDSLREP_WEB:-}" ]; then CARGO_PROFILE=${CARGO_PROFILE:-dev} "$root/editors/web/build.sh"; fi
 npm run --silent --prefix "$root/editors/web" check
-exec node --test --test-reporter=spec "$here"/*.test.mjs
+cd "$here"
+[ $# -gt 0 ] || set -- *.test.mjs
+exec node --test --test-timeout=1200000 --test-reporter=spec "$@"

@@ -29,6 +29,7 @@ for (const fromBlob of [false, true]) {
         const items = (await client.request("textDocument/completion", at)).items.map((item) => item.label);
         const hover = JSON.stringify((await client.request("textDocument/hover", at)).contents);
         client.change(uri, at.position.line, 2, "x");
+        await client.leaveLine(uri);
         const broken = await client.problems(uri, (problems) => problems.length > 0);
         await client.request("shutdown");
         client.worker.terminate();
@@ -167,6 +168,7 @@ test("figures, which no test depends on", async (context) => {
     for (let round = 0; round < 20; round += 1) {
       const begin = performance.now();
       client.change(uri, 500, 2, "x");
+      await client.leaveLine(uri);
       await client.problems(uri, (problems) => problems.length > 0);
       times.push(performance.now() - begin);
       client.change(uri, 500, 2, "", 1);

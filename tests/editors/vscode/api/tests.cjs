@@ -54,6 +54,9 @@ const tests = {
     await vscode.workspace.applyEdit(edit);
     await until("the problem is gone", () => problems("broken.pyr").length === 0);
     await vscode.commands.executeCommand("undo");
+    // On the line of the cursor, it would be held back until the line is left.
+    const end = new vscode.Position(document.lineCount - 1, 0);
+    vscode.window.activeTextEditor.selection = new vscode.Selection(end, end);
     await until("the problem is back", () => problems("broken.pyr").length > 0);
   },
 
@@ -85,6 +88,7 @@ const tests = {
     for (const title of ["Generate script", "Run", "Preview"]) {
       assert.ok(titles.includes(title), titles.join());
     }
+    assert.equal(titles[titles.indexOf("Run") + 1], "Preview");
     const references = lenses.find(({ command }) => /references?$/.test(command?.title ?? ""));
     assert.equal(references.command.command, "pydslrep.showReferences");
   },

@@ -1,0 +1,72 @@
+// A scene belongs to its program: what is renamed in one is renamed in the other, and the scene runs its environment.
+import assert from "node:assert/strict";
+import { existsSync } from "node:fs";
+import path from "node:path";
+import { after, afterEach, before, test } from "node:test";
+
+import { Stage, spaced, until } from "./stage.mjs";
+
+const PROGRAM = `wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+
+robot rover type tw with port 23000 has { wheelL wheelR } wheels
+
+movement patrol of rover {
+  move 50 centimeters
+}
+
+environment yard has { rover } robots with { patrol } moves
+`;
+const SCENE = `# The yard.
+[robots.rover]
+start = [0, 1, 0]
+`;
+
+let stage;
+before(async () => {
+  stage = await Stage.open({ files: { "yard.pyr": PROGRAM, "yard.scene.toml": SCENE }, open: "yard.scene.toml" });
+});
+afterEach((t) => t.passed || stage?.keepPicture());
+after(() => stage?.close());
+
+test("a scene has colours and actions", async () => {
+  await stage.page.locator(".codelens-decoration a", { hasText: /^Run$/ }).first().waitFor();
+  const colours = await stage.line("start =").first().locator("span span").evaluateAll((parts) => new Set(parts.map((part) => getComputedStyle(part).color)).size);
+  assert.ok(colours > 1, `${colours} colours`);
+  await stage.picture("scene");
+});
+
+test("F5 in a scene runs its environment", async () => {
+  await stage.line("start =").first().click();
+  await stage.page.keyboard.press("F5");
+  const frame = await stage.webview("main.preview");
+  await frame.locator('[data-part="result"]', { hasText: /yard: .* simulated in/ }).waitFor();
+  await frame.locator('main.preview[data-driven="yard"]').waitFor();
+});
+
+test("a robot that is renamed in its program is renamed in the scene", async () => {
+  await stage.openFile("yard.pyr");
+  await rename("robot rover", "rover", "guard");
+  await stage.openFile("yard.scene.toml");
+  await stage.line("[robots.guard]").first().waitFor();
+});
+
+test("a scene follows when its environment is renamed", async () => {
+  await stage.openFile("yard.pyr");
+  await rename("environment yard", "yard", "hall");
+  await stage.call("File: Save All Files");
+  await until("the scene has the new name", () => existsSync(path.join(stage.folder, "hall.scene.toml")) && !existsSync(path.join(stage.folder, "yard.scene.toml")));
+  assert.match(stage.read("hall.scene.toml"), /\[robots\.guard\]/);
+  assert.match(stage.read("yard.pyr"), /environment hall has \{ guard \}/);
+});
+
+async function rename(line, word, name) {
+  await stage.line(line).first().waitFor();
+  await stage.clickWord(line, word);
+  await stage.page.keyboard.press("F2");
+  const input = stage.page.locator(".rename-box input");
+  await input.waitFor();
+  await input.fill(name);
+  await stage.page.keyboard.press("Enter");
+  await until("the name is changed", async () => spaced(await stage.text()).includes(`${line.split(" ")[0]} ${name}`));
+}
