@@ -97,3 +97,26 @@ def test_the_server_and_the_package_have_one_version(
     version = "import pydslrep_runtime as package; print(package.__version__)"
     package = run([programs / "python", "-c", version], tmp_path).strip()
     assert command == server == package
+
+
+@pytest.mark.long
+def test_the_source_distribution_builds_in_an_empty_environment(
+    tmp_path: pathlib.Path,
+) -> None:
+    run(
+        [sys.executable, "-m", "hatchling", "build", "-t", "sdist", "-d", tmp_path],
+        ROOT,
+    )
+    (source,) = tmp_path.glob("*.tar.gz")
+    home = tmp_path / "environment"
+    run([sys.executable, "-m", "venv", home], tmp_path)
+    programs = home / ("Scripts" if os.name == "nt" else "bin")
+    # Without the commands and builds of this repository.
+    ours = ("PYDSLREP", "CARGO_TARGET_DIR")
+    clean = {
+        key: value for key, value in os.environ.items() if not key.startswith(ours)
+    }
+    pip = str(programs / "pip")
+    subprocess.run([pip, "install", "--quiet", source], env=clean, check=True)
+    for name in ("pydslrep", "pydslrep-lsp"):
+        assert run([programs / name, "--version"], tmp_path).startswith(f"{name} ")

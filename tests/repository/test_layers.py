@@ -11,9 +11,10 @@ ROOT = Path(__file__).resolve().parents[2]
 # Lowest first. A crate may know those named here and nothing else of ours.
 MAY_KNOW: dict[str, set[str]] = {
     "text": set(),
-    "syntax": {"text"},
+    "robots": set(),
+    "syntax": {"text", "robots"},
     "schema": {"text"},
-    "kinematics": set(),
+    "kinematics": {"robots"},
     "scene": {"text", "schema", "kinematics"},
     "analysis": {"text", "syntax", "schema", "kinematics", "scene"},
     "config": {"text", "schema", "kinematics", "analysis"},
@@ -91,6 +92,7 @@ ONLY_IN: dict[str, set[str]] = {
 # Files, clocks, threads and sockets stay out of what is to run in a browser.
 PURE = [
     "text",
+    "robots",
     "syntax",
     "schema",
     "kinematics",

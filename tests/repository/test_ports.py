@@ -33,26 +33,38 @@ def test_each_target_has_its_port() -> None:
     assert default_ports() == {"CoppeliaSim": 23000, "VRep": 19999}
 
 
-@pytest.mark.parametrize(
-    "path", TO_COPY, ids=lambda path: path.relative_to(ROOT).as_posix()
-)
-def test_robots_to_copy_are_found_by_coppeliasim(path: Path) -> None:
-    text = path.read_text(encoding="utf-8")
-    if any(target == "vrep" for target in configured(path)):
-        return
-    written = re.findall(r"with port (?:\$\{\d:)?(\d+)", text)
-    first = default_ports()["CoppeliaSim"]
-    assert sorted(set(map(int, written))) == list(
-        range(first, first + len(set(written)))
-    )
-
-
-def configured(path: Path) -> list[str]:
+def configured(path: Path) -> str:
     """The target in the settings file next to a program."""
     settings = path.parent / "pydslrep.toml"
     if not settings.is_file():
-        return []
-    return [str(tomllib.loads(settings.read_text(encoding="utf-8")).get("target"))]
+        return "coppeliasim"
+    found = tomllib.loads(settings.read_text(encoding="utf-8"))
+    return str(found.get("target", "coppeliasim"))
+
+
+def ports(path: Path) -> set[int]:
+    """The ports of the robots in a file."""
+    text = path.read_text(encoding="utf-8")
+    return set(map(int, re.findall(r"with port (?:\$\{\d:)?(\d+)", text)))
+
+
+# Most pages name none.
+WITH_PORTS = {path: found for path in TO_COPY if (found := ports(path))}
+
+
+def test_examples_pages_snippets_and_new_programs_have_robots() -> None:
+    assert len(WITH_PORTS) >= 14
+    areas = {path.relative_to(ROOT).parts[0] for path in WITH_PORTS}
+    assert areas == {"examples", "README.md", "crates", "editors", "docs"}
+
+
+@pytest.mark.parametrize(
+    "path", WITH_PORTS, ids=lambda path: path.relative_to(ROOT).as_posix()
+)
+def test_robots_to_copy_are_found_by_coppeliasim(path: Path) -> None:
+    first = default_ports()["VRep" if configured(path) == "vrep" else "CoppeliaSim"]
+    written = WITH_PORTS[path]
+    assert sorted(written) == list(range(first, first + len(written)))
 
 
 def test_the_script_names_the_same_ports() -> None:

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Tests the documentation site in a browser. CHROMIUM: the browser (default: the system's). Leaves screenshots in `out`.
+# Tests the documentation site in a browser; arguments are options and files for Node's test runner. CHROMIUM: the browser (default: the system's). Leaves screenshots in `out`.
 set -euo pipefail
 cd "$(dirname "$0")"
 CHROMIUM=$(../install/chromium.sh)
@@ -8,4 +8,5 @@ export CHROMIUM
 
 ../install/npm.sh .
 "${PYTHON:-../../.venv/bin/python}" ../../docs/site/build.py
-exec node --test --test-reporter=spec site.test.mjs
+[ $# -gt 0 ] || set -- site.test.mjs
+exec node --test --test-timeout=1200000 --test-reporter=spec "$@"
