@@ -8,11 +8,14 @@ it needs neither the network nor scripts. A linked file that is not a page is pa
 from __future__ import annotations
 
 import argparse
+import base64
+import json
 import os
 import re
 import shutil
 import subprocess
 import sys
+import zlib
 from pathlib import Path, PurePosixPath
 
 from latex2mathml.converter import convert
@@ -27,6 +30,9 @@ SITE = ROOT / "target" / "site"
 SOURCE = SITE / "src"
 HTML = SITE / "html"
 
+PLAYGROUND = ROOT / "editors" / "playground" / "dist"
+OPEN_IN_PLAYGROUND = "Open in the playground"
+
 # The entry of the summary whose pages are listed below it, in the order of its table.
 CATALOGUE = DOCS / "diagnostics" / "README.md"
 
@@ -36,6 +42,7 @@ FENCE = re.compile(
 )
 INLINE_CODE = re.compile(r"(`+)(?!`).*?(?<!`)\1(?!`)", re.S)
 INLINE_MATH = re.compile(r"\$`([^`]+)`\$")
+IMPORT = re.compile(r"^\s*import\b", re.M)
 FUNCTION = re.compile(r"(?<!<msup>)<mi>(?:sin|cos)</mi>")
 
 # What browsers show by itself; the names of others get `.txt`.
@@ -183,7 +190,29 @@ class Page:
         shown = (
             mathml(code, "block") if language == "math" else coloured(language, code)
         )
+        if language == "pydslrep" and is_whole(info, code) and PLAYGROUND.exists():
+            page = os.path.relpath("playground/index.html", place(self.path).parent)
+            shown += playground_link(page, code)
         return re.sub(r"^(?=.)", indent, shown, flags=re.M)
+
+
+def is_whole(info: list[str], code: str) -> bool:
+    """Whether a block is a whole program: neither a part of one, nor with parts in other files."""
+    return "fragment" not in info and not IMPORT.search(code)
+
+
+def playground_link(page: str, program: str) -> str:
+    """A paragraph with a link that opens a program in the playground."""
+    target = f"{page}{fragment_of(program)}"
+    return f'\n<p class="in-playground"><a href="{target}">{OPEN_IN_PLAYGROUND}</a></p>'
+
+
+def fragment_of(program: str) -> str:
+    """The fragment of a link to a program, as `editors/playground/src/permalink.ts` reads it."""
+    project = {"name": "program", "program": program, "settings": "", "scenes": {}}
+    packer = zlib.compressobj(9, wbits=-zlib.MAX_WBITS)
+    packed = packer.compress(json.dumps(project).encode()) + packer.flush()
+    return f"#project={base64.urlsafe_b64encode(packed).decode().rstrip('=')}"
 
 
 def mathml(latex: str, display: str) -> str:
@@ -222,9 +251,8 @@ def build() -> int:
     if done.returncode or re.search(r"\b(WARN|ERROR)\b", done.stderr):
         print(done.stderr, end="", file=sys.stderr)
         return 1
-    playground = ROOT / "editors" / "playground" / "dist"
-    if playground.exists():
-        shutil.copytree(playground, HTML / "playground", dirs_exist_ok=True)
+    if PLAYGROUND.exists():
+        shutil.copytree(PLAYGROUND, HTML / "playground", dirs_exist_ok=True)
     print(f"{HTML.relative_to(ROOT)}/index.html")
     return 0
 
@@ -232,6 +260,8 @@ def build() -> int:
 def check_links() -> int:
     """Checks that every link within the site leads to a page, and to a heading of it."""
     options = ["--offline", "--include-fragments", "--no-progress"]
+    # What follows `#` is a program, not a heading.
+    options += ["--exclude", r"/playground/index\.html#project="]
     command = [tool("lychee"), *options, str(HTML)]
     return subprocess.run(command, check=False).returncode  # noqa: S603
 
