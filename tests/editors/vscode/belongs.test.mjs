@@ -56,8 +56,9 @@ test("a scene follows when its environment is renamed", async () => {
   await rename("environment yard", "yard", "hall");
   await stage.call("File: Save All Files");
   await until("the scene has the new name", () => existsSync(path.join(stage.folder, "hall.scene.toml")) && !existsSync(path.join(stage.folder, "yard.scene.toml")));
+  // The files are saved one after the other.
+  await until("the program is saved", () => /environment hall has \{ guard \}/.test(stage.read("yard.pyr")));
   assert.match(stage.read("hall.scene.toml"), /\[robots\.guard\]/);
-  assert.match(stage.read("yard.pyr"), /environment hall has \{ guard \}/);
 });
 
 async function rename(line, word, name) {

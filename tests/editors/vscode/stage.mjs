@@ -77,7 +77,24 @@ export class Stage {
   async keepPicture() {
     const file = path.join(repository, "target", "editors", `vscode-failed-${Date.now()}.png`);
     await this.page.screenshot({ path: file });
-    console.log(`screenshot: ${file}`);
+    console.log(`screenshot: ${file}\n${await this.#inWords()}`);
+  }
+
+  /** What a screenshot shows, for those who only have the output: dialogues, messages, lists, and where the focus is. */
+  async #inWords() {
+    const texts = async (selector) => (await this.page.locator(selector).allInnerTexts()).map(spaced).join(" | ");
+    const focus = await this.page.evaluate(() => {
+      const { tagName, className } = document.activeElement ?? document.body;
+      return `${tagName.toLowerCase()}.${String(className)}`;
+    });
+    const [dialogues, messages, lists, tabs] = [".monaco-dialog-box", ".notification-toast", ".quick-input-widget", ".tab.active"];
+    return [
+      `dialogues: ${await texts(dialogues)}`,
+      `messages: ${await texts(messages)}`,
+      `lists: ${await texts(lists)}`,
+      `active: ${await texts(tabs)}`,
+      `focus: ${focus}`,
+    ].join("\n");
   }
 
   async #start({ files, settings = {}, trusted = true, env = {}, open, virtual, testsPath, prepare, size }) {
