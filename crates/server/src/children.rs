@@ -6,6 +6,7 @@ use std::fs;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdout, Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
@@ -90,6 +91,7 @@ impl Children {
 #[derive(Debug, Clone)]
 pub(crate) struct Running {
     child: Arc<Mutex<Child>>,
+    interrupted: Arc<AtomicBool>,
     folder: Arc<Path>,
 }
 
@@ -124,7 +126,8 @@ impl Running {
         let piped = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = piped.spawn()?;
         let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
-        let running = Self { child: Arc::new(Mutex::new(child)), folder: folder.path().into() };
+        let child = Arc::new(Mutex::new(child));
+        let running = Self { child, interrupted: Arc::default(), folder: folder.path().into() };
         let (sender, events) = unbounded();
         let followed = running.clone();
         let follow = move || {
@@ -144,10 +147,11 @@ impl Running {
         !matches!(child.try_wait(), Ok(None))
     }
 
-    /// Interrupts it, as Ctrl-C does.
+    /// Interrupts it, as Ctrl-C does. Only once, however many reasons there are: a second interrupt would reach it while it
+    /// stops its robots.
     pub(crate) fn interrupt(&self) {
         let mut child = self.child.lock().unwrap_or_else(PoisonError::into_inner);
-        if matches!(child.try_wait(), Ok(None)) {
+        if matches!(child.try_wait(), Ok(None)) && !self.interrupted.swap(true, Ordering::Relaxed) {
             interrupt(&mut child);
         }
     }
