@@ -11,7 +11,9 @@ import subprocess
 
 import pytest
 import sim
-from coppeliasim_zmqremoteapi_client import RemoteAPIClient
+from coppeliasim_zmqremoteapi_client import (  # type: ignore[import-untyped]
+    RemoteAPIClient,
+)
 from ports import free_ports
 from stage import (
     BLOCKING,
@@ -143,8 +145,9 @@ def test_a_script_waits_until_a_client_that_is_gone_is_forgotten(scene: Scene) -
         gone.setStepping(True)
         script = start(scene.script)
         note(script, "another client holds the simulation's time")
-        # The simulator hears from it for the last time, and forgets it as soon as it may.
-        gone.timeout = 0
+        # The simulator hears from it for the last time, and forgets it as soon as it may: a client states its timeout in
+        # what it takes for its first message.
+        gone.timeout, gone.sendCnt = 0, 0
         gone.setStepping(True)
         finish(script)
 
