@@ -275,8 +275,10 @@ fn what_is_cancelled_ends_while_the_client_does_not_read() {
     assert!(*has_ended.lock().unwrap(), "the request goes on although it was cancelled");
     let messages = messages(&output);
     assert_eq!(error_code(&messages, 1000), -32800);
-    let place = |id| messages.iter().position(|message| message["id"] == id).unwrap();
-    assert!(place(1000) < place(REQUESTS), "the last requests are answered when there is room");
+    // Whoever leaves may get no answer to the last ones at all.
+    let place = messages.iter().position(|message| message["id"] == 1000).unwrap();
+    let is_last = |message: &Value| message["id"] == REQUESTS;
+    assert!(!messages[..place].iter().any(is_last), "the last requests are answered when there is room");
 }
 
 fn frame(body: impl AsRef<[u8]>) -> Vec<u8> {
