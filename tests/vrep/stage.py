@@ -35,6 +35,23 @@ environment world has {{ rover other }} robots
 
 BLOCKING = sim.simx_opmode_blocking
 
+# Appended to a script's module that writes the trace: at one of its steps, the script waits for the test.
+MEETING = """
+
+class HaltingTrace(Trace):
+    steps = 0
+
+    def add(self, *values: object) -> None:
+        super().add(*values)
+        self.steps += 1
+        if self.steps == {step}:
+            with open({place!r}, "rb") as meeting:
+                meeting.read()
+
+
+Trace = HaltingTrace
+"""
+
 Pose = tuple[float, float, float]
 
 
@@ -97,6 +114,31 @@ def start(script: pathlib.Path, *options: str) -> subprocess.Popen[str]:
         cwd=script.parent,
         env={key: value for key, value in os.environ.items() if key != "PYTHONPATH"},
     )
+
+
+class Halt:
+    """A step of a script at which it waits for the test, however fast or slow either of them is."""
+
+    def __init__(self, script: pathlib.Path, step: int = 20) -> None:
+        self._place = script.parent / "meeting"
+        os.mkfifo(self._place)
+        module = script.parent / "pydslrep_runtime" / "trace.py"
+        with module.open("a", encoding="utf-8") as file:
+            file.write(MEETING.format(step=step, place=str(self._place)))
+
+    @contextmanager
+    def reached(self, script: subprocess.Popen[str]) -> Iterator[None]:
+        """Waits until the script is there, and lets it go on afterwards."""
+
+        def meet() -> int:
+            assert script.poll() is None, script.communicate()
+            try:
+                return os.open(self._place, os.O_WRONLY | os.O_NONBLOCK)
+            except OSError:
+                return 0  # nobody reads yet
+
+        with os.fdopen(until("the script is in the middle of its path", meet), "wb"):
+            yield
 
 
 def note(script: subprocess.Popen[str], words: str) -> None:

@@ -18,6 +18,7 @@ from ports import free_ports
 from stage import (
     BLOCKING,
     PROGRAM,
+    Halt,
     Stage,
     assert_near,
     ends,
@@ -85,14 +86,14 @@ def test_wheels_that_slip_hardly_cost_time(
 def test_a_script_waits_while_the_simulation_is_paused(
     scene: Scene, engine: str
 ) -> None:
-    trace = scene.stage.folder / "trace"
+    trace, halt = scene.stage.folder / "trace", Halt(scene.script)
     with (
         scene.stage.simulator("--engine", engine),
         onlooker(scene.ports[1]) as eye,
     ):
         script = start(scene.script, "--trace", str(trace))
-        wait_for_motion(eye, script)
-        assert sim.simxPauseSimulation(eye, BLOCKING) == 0
+        with halt.reached(script):
+            assert sim.simxPauseSimulation(eye, BLOCKING) == 0
         note(script, "paused")
         assert sim.simxStartSimulation(eye, BLOCKING) == 0
         _, err = finish(script)
@@ -102,14 +103,14 @@ def test_a_script_waits_while_the_simulation_is_paused(
 
 def test_a_pause_may_outlast_the_timeout_of_a_script(scene: Scene) -> None:
     hurry(scene.script, CLIENT_TIMEOUT=0.1)
-    trace = scene.stage.folder / "trace"
+    trace, halt = scene.stage.folder / "trace", Halt(scene.script)
     with (
         scene.stage.simulator("--engine", "coppeliasim-4.6"),
         onlooker(scene.ports[1]) as eye,
     ):
         script = start(scene.script, "--trace", str(trace))
-        wait_for_motion(eye, script)
-        assert sim.simxPauseSimulation(eye, BLOCKING) == 0
+        with halt.reached(script):
+            assert sim.simxPauseSimulation(eye, BLOCKING) == 0
         note(script, "paused")
         assert sim.simxStartSimulation(eye, BLOCKING) == 0
         finish(script)
@@ -120,13 +121,15 @@ def test_a_pause_may_outlast_the_timeout_of_a_script(scene: Scene) -> None:
 def test_an_interrupt_during_a_pause_stops_every_wheel(
     scene: Scene, engine: str
 ) -> None:
+    halt = Halt(scene.script)
     with (
         scene.stage.simulator("--engine", engine),
         onlooker(scene.ports[1]) as eye,
     ):
         script = start(scene.script)
-        left = wait_for_motion(eye, script)
-        assert sim.simxPauseSimulation(eye, BLOCKING) == 0
+        with halt.reached(script):
+            left = wait_for_motion(eye, script)
+            assert sim.simxPauseSimulation(eye, BLOCKING) == 0
         note(script, "paused")
         interrupt(script)
         finish(script, 130)
@@ -153,15 +156,16 @@ def test_a_script_waits_until_a_client_that_is_gone_is_forgotten(scene: Scene) -
 
 
 def test_a_client_that_holds_the_time_is_named(scene: Scene) -> None:
+    halt = Halt(scene.script)
     with (
         scene.stage.simulator("--engine", "coppeliasim-4.6"),
-        onlooker(scene.ports[1]) as eye,
+        onlooker(scene.ports[1]),
     ):
         hurry(scene.script, CLIENT_TIMEOUT=600.0, HOLD_LIMIT=1.0)
         killed = start(scene.script)
-        wait_for_motion(eye, killed)
-        killed.kill()
-        killed.communicate()
+        with halt.reached(killed):
+            killed.kill()
+            killed.communicate()
         _, err = finish(start(scene.script), 1)
         assert (
             "move 2 m: another client holds the simulation's time: it is in stepping mode and takes no step, for 1 s. "

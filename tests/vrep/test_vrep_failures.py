@@ -12,6 +12,7 @@ from stage import (
     BLOCKING,
     CLIENT,
     PROGRAM,
+    Halt,
     Stage,
     assert_near,
     ends,
@@ -126,10 +127,11 @@ def test_a_script_waits_while_the_simulation_is_paused(
     short = PROGRAM.format(*ports, actions="move 10 centimeters turn left")
     stage.program.write_text(short, encoding="utf-8")
     script, trace = stage.build("vrep"), stage.folder / "trace"
+    halt = Halt(script)
     with stage.simulator(), onlooker(ports[1]) as eye:
         process = start(script, "--trace", str(trace), *options)
-        wait_for_motion(eye, process)
-        assert sim.simxPauseSimulation(eye, BLOCKING) == 0
+        with halt.reached(process):
+            assert sim.simxPauseSimulation(eye, BLOCKING) == 0
         note(process, "paused")
         assert sim.simxStartSimulation(eye, BLOCKING) == 0
         _, err = finish(process)
