@@ -67,6 +67,8 @@ pub struct Key {
     pub values: Values,
     /// Whether its table makes no sense without it.
     pub required: bool,
+    /// A key of the same table that can stand in for it, if it is required.
+    pub unless: Option<&'static str>,
     /// What it means, in Markdown.
     pub summary: &'static str,
     /// What applies if it is not set, in Markdown; a value in backticks, or words.
@@ -77,13 +79,18 @@ pub struct Key {
 
 /// An optional key without default or example.
 pub const fn key(name: &'static str, values: Values, summary: &'static str) -> Key {
-    Key { name, values, required: false, summary, default: "", example: "" }
+    Key { name, values, required: false, unless: None, summary, default: "", example: "" }
 }
 
 impl Key {
     /// The same, but required.
     pub const fn required(self) -> Self {
         Self { required: true, ..self }
+    }
+
+    /// The same, but required where another key is not set.
+    pub const fn required_unless(self, other: &'static str) -> Self {
+        Self { required: true, unless: Some(other), ..self }
     }
 
     /// The same with a default.
@@ -99,6 +106,12 @@ impl Key {
     /// The same with another summary.
     pub const fn summary(self, summary: &'static str) -> Self {
         Self { summary, ..self }
+    }
+
+    /// In place of a default if it is required: that it is, in Markdown.
+    pub fn requirement(&self) -> Option<String> {
+        let unless = self.unless.map_or_else(String::new, |other| format!(" without `{other}`"));
+        self.required.then(|| format!("required{unless}"))
     }
 
     /// Its default as TOML, if it is a value.

@@ -16,7 +16,7 @@ impl Schema {
                 table.summary
             );
             for key in table.keys {
-                let default = if key.required { "required" } else { key.default };
+                let default = key.requirement().unwrap_or_else(|| key.default.to_owned());
                 out +=
                     &format!("| `{}` | {} | {default} | {} |\n", key.name, key.values.words(), key.summary);
             }
@@ -83,9 +83,13 @@ impl Table {
         for key in self.keys {
             object["properties"][key.name] = key.json_schema();
         }
-        let required: Vec<&str> = self.keys.iter().filter(|key| key.required).map(|key| key.name).collect();
+        let always = self.keys.iter().filter(|key| key.required && key.unless.is_none());
+        let required: Vec<&str> = always.map(|key| key.name).collect();
         if !required.is_empty() {
             object["required"] = json!(required);
+        }
+        for (key, other) in self.keys.iter().filter_map(|key| Some((key, key.unless?))) {
+            object["anyOf"] = json!([{ "required": [key.name] }, { "required": [other] }]);
         }
         if self.kind == TableKind::Each {
             *object = json!({ "type": "array", "items": object.take() });
@@ -99,8 +103,10 @@ impl Table {
 impl Key {
     /// What an editor shows of it, in Markdown.
     pub fn markdown(&self) -> String {
-        let default =
-            if self.required { "Required".to_owned() } else { format!("Default: {}", self.default) };
+        let default = match self.requirement() {
+            Some(required) => required.replacen('r', "R", 1),
+            None => format!("Default: {}", self.default),
+        };
         // The values of the others are listed above.
         let example = match self.values {
             Values::Flag | Values::Words(_) => String::new(),

@@ -5,7 +5,7 @@ use pydslrep_text::{Span, closest};
 use crate::keys::{Key, NAME, Names, Schema, Table, TableKind, dotted};
 use crate::suggestions::{did_you_mean, suggestions};
 use crate::toml::{Entry, Node, Value, from_json, parse};
-use crate::values::{Refusal, numbers, point};
+use crate::values::{Refusal, numbers, rows};
 use crate::{Problem, ProblemKind, as_key};
 
 /// What a file contains.
@@ -33,6 +33,8 @@ pub struct Section {
     /// Whether it has all required keys.
     pub is_complete: bool,
     values: Vec<(&'static str, Value, Option<Span>)>,
+    /// The keys whose values are wrong.
+    wrong: Vec<&'static str>,
 }
 
 impl Section {
@@ -72,10 +74,20 @@ impl Section {
         Some(numbers.into())
     }
 
-    /// The points of a key.
-    pub fn points(&self, key: &str) -> Option<Vec<(f64, f64)>> {
+    /// The lists of so many numbers that a key has.
+    pub fn rows<const WIDTH: usize>(&self, key: &str) -> Option<Vec<[f64; WIDTH]>> {
         let Value::List(nodes) = self.get(key)? else { return None };
-        nodes.iter().map(|node| point(node).map(Into::into)).collect()
+        rows(nodes)?.into_iter().map(|row| row.try_into().ok()).collect()
+    }
+
+    /// Where an item of a key's list is.
+    pub fn item_span(&self, key: &str, index: usize) -> Option<Span> {
+        if let Value::List(nodes) = self.get(key)? { nodes.get(index)?.span } else { None }
+    }
+
+    /// Whether a key is set to something that is wrong.
+    pub fn is_wrong(&self, key: &str) -> bool {
+        self.wrong.contains(&key)
     }
 
     fn get(&self, key: &str) -> Option<&Value> {
@@ -189,9 +201,16 @@ impl Reader<'_> {
             }
         }
         if let Some(table) = table {
-            let is_set = |key: &&Key| values.iter().any(|(name, ..)| *name == key.name);
-            let missing: Vec<&Key> = table.keys.iter().filter(|key| key.required && !is_set(key)).collect();
-            for key in missing.iter().filter(|key| !wrong.contains(&key.name)) {
+            let stands_in =
+                |key: &Key, names: &[&str]| key.unless.is_some_and(|other| names.contains(&other));
+            let set: Vec<&str> = values.iter().map(|(name, ..)| *name).collect();
+            let missing: Vec<&Key> = table
+                .keys
+                .iter()
+                .filter(|key| key.required && !set.contains(&key.name) && !stands_in(key, &set))
+                .collect();
+            let is_told = |key: &Key| wrong.contains(&key.name) || stands_in(key, &wrong);
+            for key in missing.iter().filter(|key| !is_told(key)) {
                 let message = format!("`{}` is missing in this `{}`", key.name, at.written);
                 let problem = Problem::new(ProblemKind::MissingKey, &*at.written, span, message);
                 let help = format!("write, for example, `{} = {}`", key.name, key.example);
@@ -207,6 +226,7 @@ impl Reader<'_> {
                 name_span,
                 is_complete,
                 values,
+                wrong,
             });
         }
         for (inside, entry) in inner {

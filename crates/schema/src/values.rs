@@ -19,8 +19,8 @@ pub enum Values {
     Number(&'static str, Range),
     /// A list of numbers in a range, with the least and the greatest count of them.
     Numbers(&'static str, Range, (usize, usize)),
-    /// A list of at least so many `[x, y]`.
-    Points(&'static str, usize),
+    /// A list of lists of numbers, such as points: the least count of them, and how many numbers each has.
+    Rows(&'static str, usize, usize),
 }
 
 /// A word with what it means.
@@ -106,7 +106,7 @@ impl Values {
             Self::Text(words, ..)
             | Self::Number(words, _)
             | Self::Numbers(words, ..)
-            | Self::Points(words, _) => (*words).to_owned(),
+            | Self::Rows(words, ..) => (*words).to_owned(),
         }
     }
 
@@ -128,7 +128,7 @@ impl Values {
             Self::Text(_, pattern, _) => json!({ "type": "string", "pattern": pattern }),
             Self::Number(_, range) => range.json_schema(),
             Self::Numbers(_, range, count) => numbers(range, *count),
-            Self::Points(_, least) => list(numbers(&Range::ANY, (2, 2)), *least),
+            Self::Rows(_, least, width) => list(numbers(&Range::ANY, (*width, *width)), *least),
         }
     }
 }
@@ -155,11 +155,13 @@ impl Key {
                     return Err(limits().into());
                 }
             }
-            (Values::Points(_, least), Value::List(nodes)) => {
-                let points: Vec<[f64; 2]> =
-                    nodes.iter().map(point).collect::<Option<_>>().ok_or_else(limits)?;
-                points.as_flattened().iter().try_for_each(|number| within(Range::ANY, *number))?;
-                if points.len() < least {
+            (Values::Rows(_, least, width), Value::List(nodes)) => {
+                let rows = rows(nodes).ok_or_else(limits)?;
+                if rows.iter().any(|row| row.len() != width) {
+                    return Err(limits().into());
+                }
+                rows.iter().flatten().try_for_each(|number| within(Range::ANY, *number))?;
+                if rows.len() < least {
                     return Err(limits().into());
                 }
             }
@@ -190,8 +192,8 @@ pub(crate) fn numbers(nodes: &[Node]) -> Option<Vec<f64>> {
     nodes.iter().map(number).collect()
 }
 
-/// A list of two numbers.
-pub(crate) fn point(node: &Node) -> Option<[f64; 2]> {
-    let Value::List(nodes) = &node.value else { return None };
-    numbers(nodes)?.try_into().ok()
+/// The numbers of a list of lists; `None` if there is anything else in it.
+pub(crate) fn rows(nodes: &[Node]) -> Option<Vec<Vec<f64>>> {
+    let row = |node: &Node| if let Value::List(nodes) = &node.value { numbers(nodes) } else { None };
+    nodes.iter().map(row).collect()
 }

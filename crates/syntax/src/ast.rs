@@ -4,7 +4,7 @@
 pub use pydslrep_robots::Drive;
 use smol_str::SmolStr;
 
-use crate::{EntityKind, Span};
+use crate::{EntityKind, Span, TokenKind};
 
 /// One top-level piece of a program.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,9 +62,14 @@ impl Entity {
             }
             Self::Movement(movement) => {
                 found.extend(movement.robot.iter().map(|name| (EntityKind::Robot, name)));
-                for action in &movement.actions {
-                    extend(&mut found, EntityKind::Sensor, action.until());
+                for action in nested(&movement.actions) {
+                    for condition in action.conditions() {
+                        extend(&mut found, EntityKind::Sensor, Some(&condition.sensors));
+                    }
+                    found.extend(action.done().map(|name| (EntityKind::Movement, name)));
                 }
+                // The condition of an `else if` comes after the block before it.
+                found.sort_by_key(|(_, name)| name.span.start);
             }
             Self::Environment(environment) => {
                 let ip = environment.ip.as_ref().and_then(|clause| clause.name.as_ref());
@@ -212,57 +217,196 @@ pub struct Movement {
     pub actions: Vec<Action>,
 }
 
+impl Movement {
+    /// Where each statement is, in the order of the text; that of an `else if` is one of its own. The place in this list is
+    /// what numbers of actions count.
+    pub fn statements(&self) -> Vec<Span> {
+        let mut spans = Vec::new();
+        for action in self.all_actions() {
+            spans.push(action.span);
+            if let ActionKind::If(choice) = &action.kind {
+                spans.extend(choice.branches.iter().skip(1).map(|branch| branch.span));
+            }
+        }
+        // The branches come after what is in the blocks before them.
+        spans.sort_by_key(|span| span.start);
+        spans
+    }
+
+    /// All its actions, those in blocks too, in the order of the text.
+    pub fn all_actions(&self) -> Nested<'_> {
+        nested(&self.actions)
+    }
+}
+
 /// One action and the text it covers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Action {
     /// What to do.
     pub kind: ActionKind,
-    /// From its keyword to its last word.
+    /// From its keyword to its last word or brace.
     pub span: Span,
 }
 
 impl Action {
-    /// The sensors of a `turn … until`.
-    pub fn until(&self) -> Option<&References> {
+    /// What decides when it ends: the condition of an `until`.
+    pub fn until(&self) -> Option<&Condition> {
         match &self.kind {
-            ActionKind::Turn(Turn { extent: Some(TurnExtent::Until(sensors)), .. }) => Some(sensors),
+            ActionKind::Move(Move { until, .. })
+            | ActionKind::Turn(Turn { until, .. })
+            | ActionKind::Wait(Wait { until, .. }) => until.as_ref().map(|clause| &clause.condition),
+            ActionKind::Repeat(Repeat { rounds: Some(Rounds::Until(clause)), .. }) => Some(&clause.condition),
+            ActionKind::Repeat(_) | ActionKind::If(_) | ActionKind::Do(_) | ActionKind::Slam => None,
+        }
+    }
+
+    /// The conditions in it, in the order of the text; those of the actions in its blocks are not among them.
+    pub fn conditions(&self) -> impl Iterator<Item = &Condition> {
+        let branches = match &self.kind {
+            ActionKind::If(choice) => choice.branches.as_slice(),
+            _ => &[],
+        };
+        self.until().into_iter().chain(branches.iter().filter_map(|branch| branch.condition.as_ref()))
+    }
+
+    /// The blocks in it, in the order of the text.
+    pub fn blocks(&self) -> impl Iterator<Item = &Block> {
+        let (one, branches, last) = match &self.kind {
+            ActionKind::Repeat(repeat) => (repeat.block.as_ref(), [].as_slice(), None),
+            ActionKind::If(choice) => (None, choice.branches.as_slice(), choice.otherwise.as_ref()),
+            ActionKind::Move(_)
+            | ActionKind::Turn(_)
+            | ActionKind::Wait(_)
+            | ActionKind::Do(_)
+            | ActionKind::Slam => (None, [].as_slice(), None),
+        };
+        one.into_iter().chain(branches.iter().filter_map(|branch| branch.block.as_ref())).chain(last)
+    }
+
+    /// The numbers in it, in the order of the text; those of conditions and of the actions in its blocks are not among
+    /// them.
+    pub fn numbers(&self) -> impl Iterator<Item = &Number> {
+        fn value(clause: Option<&SpeedClause>) -> Option<&Number> {
+            clause?.value.as_ref()
+        }
+        let numbers = match &self.kind {
+            ActionKind::Move(step) => [step.distance.as_ref(), value(step.speed.as_ref()), None],
+            ActionKind::Turn(turn) => {
+                let radius = turn.circle.as_ref().and_then(|circle| circle.radius.as_ref());
+                [turn.angle.as_ref(), radius, value(turn.speed.as_ref())]
+            }
+            ActionKind::Wait(wait) => [wait.seconds.as_ref(), None, None],
+            ActionKind::Repeat(Repeat { rounds: Some(Rounds::Times(count)), .. }) => {
+                [Some(count), None, None]
+            }
+            ActionKind::Repeat(_) | ActionKind::If(_) | ActionKind::Do(_) | ActionKind::Slam => [None; 3],
+        };
+        numbers.into_iter().flatten()
+    }
+
+    /// The movement that a `do` names.
+    pub fn done(&self) -> Option<&Name> {
+        match &self.kind {
+            ActionKind::Do(call) => call.movement.as_ref(),
             _ => None,
         }
     }
 
-    /// The numbers in it.
-    pub fn numbers(&self) -> impl Iterator<Item = &Number> {
-        let [one, other] = match &self.kind {
-            ActionKind::Move(step) => {
-                [step.distance.as_ref(), step.speed.as_ref().and_then(|clause| clause.value.as_ref())]
-            }
-            ActionKind::Turn(Turn { extent: Some(TurnExtent::Angle(angle)), .. }) => [Some(angle), None],
-            ActionKind::Turn(_) | ActionKind::Slam => [None, None],
-        };
-        one.into_iter().chain(other)
+    /// The keyword that it begins with.
+    pub fn keyword(&self) -> TokenKind {
+        match &self.kind {
+            ActionKind::Move(_) => TokenKind::Move,
+            ActionKind::Turn(_) => TokenKind::Turn,
+            ActionKind::Wait(_) => TokenKind::Wait,
+            ActionKind::Repeat(_) => TokenKind::Repeat,
+            ActionKind::If(_) => TokenKind::If,
+            ActionKind::Do(_) => TokenKind::Do,
+            ActionKind::Slam => TokenKind::Slam,
+        }
     }
 }
 
-/// The three actions.
+/// The actions of a block with those in their blocks, in the order of the text.
+#[derive(Debug, Clone)]
+pub struct Nested<'a> {
+    /// What is left of each block, the outermost first.
+    open: Vec<std::slice::Iter<'a, Action>>,
+    /// The blocks of the latest action that are not entered yet, the last one first.
+    blocks: Vec<(usize, &'a Block)>,
+}
+
+/// All actions of `actions` and of their blocks.
+pub fn nested(actions: &[Action]) -> Nested<'_> {
+    Nested { open: vec![actions.iter()], blocks: Vec::new() }
+}
+
+impl<'a> Iterator for Nested<'a> {
+    type Item = &'a Action;
+
+    fn next(&mut self) -> Option<&'a Action> {
+        loop {
+            if let Some(action) = self.open.last_mut()?.next() {
+                let depth = self.open.len();
+                let first = self.blocks.len();
+                self.blocks.extend(action.blocks().map(|block| (depth, block)));
+                self.blocks[first..].reverse();
+                self.enter(depth);
+                return Some(action);
+            }
+            self.open.pop();
+            self.enter(self.open.len());
+        }
+    }
+}
+
+impl Nested<'_> {
+    /// Goes on with the next block of the action at this depth, if there is one.
+    fn enter(&mut self, depth: usize) {
+        if let Some((_, block)) = self.blocks.pop_if(|(owner, _)| *owner == depth) {
+            self.open.push(block.actions.iter());
+        }
+    }
+}
+
+/// The kinds of action.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ActionKind {
     /// `move 4.0 meters at 9.0`
     Move(Move),
     /// `turn left 90`
     Turn(Turn),
+    /// `wait 2 seconds`
+    Wait(Wait),
+    /// `repeat 4 times { … }`
+    Repeat(Repeat),
+    /// `if { … } clear { … } else { … }`
+    If(If),
+    /// `do side`
+    Do(Do),
     /// `slam`
     Slam,
+}
+
+/// `{ … }` around actions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Block {
+    /// In order.
+    pub actions: Vec<Action>,
+    /// From brace to brace.
+    pub span: Span,
 }
 
 /// `move`
 #[derive(Debug, Clone, PartialEq)]
 pub struct Move {
-    /// How far, in `unit`.
+    /// How far, in `unit`; it may be absent beside `until`.
     pub distance: Option<Number>,
     /// `meters` or `centimeters`.
     pub unit: Option<(Unit, Span)>,
     /// `at 9.0`, in centimetres per second.
     pub speed: Option<SpeedClause>,
+    /// `until { … } detect`
+    pub until: Option<Until>,
 }
 
 /// `at 9.0`
@@ -271,6 +415,48 @@ pub struct SpeedClause {
     /// In centimetres per second.
     pub value: Option<Number>,
     /// From `at` to the number.
+    pub span: Span,
+}
+
+/// `until { … } clear`
+#[derive(Debug, Clone, PartialEq)]
+pub struct Until {
+    /// What ends the action.
+    pub condition: Condition,
+    /// From `until` to the end of the condition.
+    pub span: Span,
+}
+
+/// `{ front } detect within 40 centimeters`
+#[derive(Debug, Clone, PartialEq)]
+pub struct Condition {
+    /// The sensors that it asks.
+    pub sensors: References,
+    /// `clear` or `detect`; only a `turn … until` of the article's form may do without.
+    pub state: Option<(SensorState, Span)>,
+    /// `within 40 centimeters`
+    pub within: Option<Within>,
+    /// From the first brace to the last word.
+    pub span: Span,
+}
+
+/// What a condition asks of its sensors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SensorState {
+    /// None of them detects anything.
+    Clear,
+    /// At least one of them detects something.
+    Detect,
+}
+
+/// `within 40 centimeters`
+#[derive(Debug, Clone, PartialEq)]
+pub struct Within {
+    /// Only what is nearer counts, in `unit`.
+    pub distance: Option<Number>,
+    /// `meters` or `centimeters`.
+    pub unit: Option<(Unit, Span)>,
+    /// From `within` to the unit.
     pub span: Span,
 }
 
@@ -298,8 +484,42 @@ impl Unit {
 pub struct Turn {
     /// `left` or `right`.
     pub direction: Option<(Direction, Span)>,
-    /// How far; 90° where nothing is written.
-    pub extent: Option<TurnExtent>,
+    /// How far, in degrees; 90 where neither that nor `until` is written.
+    pub angle: Option<Number>,
+    /// `with radius 1.5 meters`: on a circle instead of in place.
+    pub circle: Option<Circle>,
+    /// `at 9.0`, in centimetres per second.
+    pub speed: Option<SpeedClause>,
+    /// `in reverse`
+    pub reverse: Option<Span>,
+    /// `until { … } clear`
+    pub until: Option<Until>,
+}
+
+impl Turn {
+    /// Whether it has the article's form `turn left until { … }` and nothing that the article does not have.
+    pub fn is_of_article(&self) -> bool {
+        let plain = self.circle.is_none() && self.speed.is_none() && self.reverse.is_none();
+        plain && (self.until.as_ref()).is_none_or(|until| self.angle.is_none() && until.condition.is_bare())
+    }
+}
+
+impl Condition {
+    /// Whether it names its sensors and nothing else.
+    pub fn is_bare(&self) -> bool {
+        self.state.is_none() && self.within.is_none()
+    }
+}
+
+/// `with radius 1.5 meters`
+#[derive(Debug, Clone, PartialEq)]
+pub struct Circle {
+    /// In `unit`.
+    pub radius: Option<Number>,
+    /// `meters` or `centimeters`.
+    pub unit: Option<(Unit, Span)>,
+    /// From `with` to the unit.
+    pub span: Span,
 }
 
 /// Ways to turn.
@@ -311,13 +531,58 @@ pub enum Direction {
     Right,
 }
 
-/// How far to turn.
+/// `wait`
 #[derive(Debug, Clone, PartialEq)]
-pub enum TurnExtent {
-    /// In degrees.
-    Angle(Number),
-    /// Until none of these sensors detects an obstacle.
-    Until(References),
+pub struct Wait {
+    /// How long; it may be absent beside `until`.
+    pub seconds: Option<Number>,
+    /// `until { … } clear`
+    pub until: Option<Until>,
+}
+
+/// `repeat`
+#[derive(Debug, Clone, PartialEq)]
+pub struct Repeat {
+    /// How often.
+    pub rounds: Option<Rounds>,
+    /// What is done in each round.
+    pub block: Option<Block>,
+}
+
+/// How often a block is repeated.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Rounds {
+    /// `4 times`
+    Times(Number),
+    /// `until { … } detect`, asked before each round.
+    Until(Until),
+}
+
+/// `if … else if … else …`
+#[derive(Debug, Clone, PartialEq)]
+pub struct If {
+    /// The `if`, and each `else if` after it. Only the block of the first whose condition holds is done.
+    pub branches: Vec<Branch>,
+    /// The block of `else`, which is done if no condition holds.
+    pub otherwise: Option<Block>,
+}
+
+/// `if { … } clear { … }`
+#[derive(Debug, Clone, PartialEq)]
+pub struct Branch {
+    /// When its block is done.
+    pub condition: Option<Condition>,
+    /// What is done.
+    pub block: Option<Block>,
+    /// From `if` to the closing brace.
+    pub span: Span,
+}
+
+/// `do`
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Do {
+    /// Another movement of the same robot.
+    pub movement: Option<Name>,
 }
 
 /// `environment`

@@ -134,6 +134,10 @@ pub enum Quantity {
     Speed,
     /// How far to turn.
     Angle,
+    /// How long to wait.
+    Time,
+    /// How often to repeat.
+    Count,
 }
 
 impl Quantity {
@@ -144,6 +148,8 @@ impl Quantity {
             Self::Distance => "a distance",
             Self::Speed => "a speed in centimetres per second",
             Self::Angle => "an angle in degrees",
+            Self::Time => "a time in seconds",
+            Self::Count => "a number of times",
         }
     }
 
@@ -154,6 +160,8 @@ impl Quantity {
             Self::Distance => "DISTANCE",
             Self::Speed => "SPEED",
             Self::Angle => "DEGREES",
+            Self::Time => "SECONDS",
+            Self::Count => "COUNT",
         }
     }
 }

@@ -56,7 +56,8 @@ fn push(text: &str, tokens: &mut Vec<Token>, token: TokenKind, span: Span) {
 
 /// What no number follows, so that one right after it is meant to be a part of the name. (`move-4` is a move.)
 fn may_begin_name(token: TokenKind) -> bool {
-    token.is_name() || token.entity_kind().is_some()
+    let before_number = matches!(token, TokenKind::Wait | TokenKind::Repeat | TokenKind::Within);
+    token.is_name() && !before_number || token.entity_kind().is_some()
 }
 
 #[cfg(test)]

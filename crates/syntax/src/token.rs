@@ -157,15 +157,51 @@ pub enum TokenKind {
     /// `import`, a word only at the start of an import.
     #[token("import")]
     Import,
+    /// `wait`, a word only where an action can begin.
+    #[token("wait")]
+    Wait,
+    /// `seconds`, a word only after the number of a `wait`.
+    #[token("seconds")]
+    Seconds,
+    /// `repeat`, a word only where an action can begin.
+    #[token("repeat")]
+    Repeat,
+    /// `times`, a word only after the number of a `repeat`.
+    #[token("times")]
+    Times,
+    /// `if`, a word only where an action can begin.
+    #[token("if")]
+    If,
+    /// `else`, a word only after the block of an `if`.
+    #[token("else")]
+    Else,
+    /// `do`, a word only where an action can begin.
+    #[token("do")]
+    Do,
+    /// `in`, a word only before `reverse`.
+    #[token("in")]
+    In,
+    /// `reverse`, a word only after `in`.
+    #[token("reverse")]
+    Reverse,
+    /// `clear`, a word only after the sensors of a condition.
+    #[token("clear")]
+    Clear,
+    /// `detect`, a word only after the sensors of a condition.
+    #[token("detect")]
+    Detect,
+    /// `within`, a word only in a condition.
+    #[token("within")]
+    Within,
     /// Characters no token starts with; adjacent ones are one token.
     Invalid,
     /// Never in a text: fits nowhere, so that the parser says what would. See [`crate::expected_after`].
     Cursor,
 }
 
-/// Every word with a meaning of its own, in the order of the language's contract; the last three are contextual:
-/// they stay usable as names.
-pub const KEYWORDS: [(TokenKind, &str); 33] = [
+/// Every word with a meaning of its own, in the order of the language's contract; those of [`TokenKind::CONTEXTUAL`]
+/// stay usable as names.
+pub const KEYWORDS: [(TokenKind, &str); 45] = [
     (TokenKind::Wheel, "wheel"),
     (TokenKind::WheelH, "wheelH"),
     (TokenKind::With, "with"),
@@ -199,7 +235,30 @@ pub const KEYWORDS: [(TokenKind, &str); 33] = [
     (TokenKind::Distance, "distance"),
     (TokenKind::Bumper, "bumper"),
     (TokenKind::Import, "import"),
+    (TokenKind::Wait, "wait"),
+    (TokenKind::Seconds, "seconds"),
+    (TokenKind::Repeat, "repeat"),
+    (TokenKind::Times, "times"),
+    (TokenKind::If, "if"),
+    (TokenKind::Else, "else"),
+    (TokenKind::Do, "do"),
+    (TokenKind::In, "in"),
+    (TokenKind::Reverse, "reverse"),
+    (TokenKind::Clear, "clear"),
+    (TokenKind::Detect, "detect"),
+    (TokenKind::Within, "within"),
 ];
+
+/// The keywords that cannot be names unless escaped by `^`.
+const RESERVED: TokenSet = {
+    let mut words = TokenSet(0);
+    let mut i = 0;
+    while i < KEYWORDS.len() {
+        words = words.or(TokenSet::of(&[KEYWORDS[i].0]));
+        i += 1;
+    }
+    words.without(TokenSet::of(&TokenKind::CONTEXTUAL))
+};
 
 /// A name as a program has to write it: keywords need their `^`. So does `import`, although it can do without in
 /// most places: after `} wheel` it would be taken for the next entity.
@@ -211,7 +270,31 @@ pub fn escape(name: &str) -> String {
 
 impl TokenKind {
     /// The keywords that begin an action.
-    pub const ACTIONS: [Self; 3] = [Self::Move, Self::Turn, Self::Slam];
+    pub const ACTIONS: [Self; 7] =
+        [Self::Move, Self::Turn, Self::Wait, Self::Repeat, Self::If, Self::Do, Self::Slam];
+
+    /// The keywords that are names wherever a name can be.
+    pub const CONTEXTUAL: [Self; 15] = [
+        Self::Distance,
+        Self::Bumper,
+        Self::Import,
+        Self::Wait,
+        Self::Seconds,
+        Self::Repeat,
+        Self::Times,
+        Self::If,
+        Self::Else,
+        Self::Do,
+        Self::In,
+        Self::Reverse,
+        Self::Clear,
+        Self::Detect,
+        Self::Within,
+    ];
+
+    /// What can be where a name is wanted.
+    pub(crate) const NAMES: TokenSet =
+        TokenSet::of(&[Self::Name, Self::MalformedName]).or(TokenSet::of(&Self::CONTEXTUAL));
 
     /// The keywords for types of robots.
     pub const DRIVES: [Self; 3] = [Self::Tw, Self::Fw, Self::Fwh];
@@ -245,6 +328,10 @@ impl TokenKind {
         match self {
             Self::Move => &["move 4.0 meters", "move 40 centimeters at 9.0"],
             Self::Turn => &["turn left 90", "turn right until { SENSORS }"],
+            Self::Wait => &["wait 2 seconds", "wait until { SENSORS } clear"],
+            Self::Repeat => &["repeat 4 times { ACTIONS }", "repeat until { SENSORS } detect { ACTIONS }"],
+            Self::If => &["if { SENSORS } detect { ACTIONS }"],
+            Self::Do => &["do MOVEMENT"],
             Self::Slam => &["slam"],
             _ => &[],
         }
@@ -284,12 +371,12 @@ impl TokenKind {
 
     /// Whether it is a word that cannot be a name unless escaped by `^`.
     pub fn is_keyword(self) -> bool {
-        (self as u8) >= (Self::Wheel as u8) && (self as u8) <= (Self::Moves as u8)
+        RESERVED.has(self)
     }
 
     /// Whether it can be where a name is wanted.
     pub fn is_name(self) -> bool {
-        matches!(self, Self::Name | Self::MalformedName | Self::Distance | Self::Bumper | Self::Import)
+        Self::NAMES.has(self)
     }
 
     /// Whether the parser passes over it.
@@ -385,7 +472,7 @@ impl EntityKind {
 
 /// A set of tokens.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct TokenSet(u64);
+pub struct TokenSet(u128);
 
 impl TokenSet {
     /// The set of these tokens.
@@ -433,7 +520,7 @@ mod tests {
     fn every_keyword_is_lexed_as_itself() {
         for (token, word) in KEYWORDS {
             assert_eq!(TokenKind::lexer(word).next(), Some(Ok(token)), "{word}");
-            let contextual = matches!(token, TokenKind::Distance | TokenKind::Bumper | TokenKind::Import);
+            let contextual = TokenKind::CONTEXTUAL.contains(&token);
             assert_eq!(token.is_keyword(), !contextual, "{word}");
             assert_eq!(token.is_name(), contextual, "{word}");
         }
@@ -453,6 +540,6 @@ mod tests {
         let listed: Vec<u8> = KEYWORDS.iter().map(|(token, _)| *token as u8).collect();
         let all: Vec<u8> = (first..TokenKind::Invalid as u8).collect();
         assert_eq!(listed, all);
-        assert!((TokenKind::Cursor as u8) < 64, "a token set is one word");
+        assert!((TokenKind::Cursor as u8) < 128, "a token set is one word");
     }
 }

@@ -27,6 +27,14 @@ fn the_grammar_has_every_keyword_and_no_other() {
     assert_eq!(quoted_words(), keywords);
 }
 
+#[test]
+fn the_grammar_names_the_contextual_words() {
+    let (_, tokens) = GRAMMAR.split_once("(* Tokens.").unwrap();
+    let (comment, _) = tokens.split_once("*)").unwrap();
+    let named: Vec<&str> = comment.split('"').skip(1).step_by(2).collect();
+    assert_eq!(named, words(|kind| !kind.is_keyword()));
+}
+
 /// The words for types of robots, quoted, with `separator` between them.
 fn drives(separator: &str) -> String {
     Drive::ALL.map(|drive| format!("\"{}\"", drive.word())).join(separator)

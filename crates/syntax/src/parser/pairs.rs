@@ -36,6 +36,13 @@ fn misplaced(stray: &SyntaxError, gap: &SyntaxError, tokens: &[Token]) -> Option
     };
     let SyntaxErrorKind::Missing { expected, .. } = &gap.kind else { return None };
     let (token, _) = tokens.iter().find(|(_, span)| *span == stray.span)?;
+    let between = stray.span.start.min(gap.span.start)..stray.span.start.max(gap.span.start);
+    if tokens
+        .iter()
+        .any(|(token, span)| token.is_action() && between.contains(&span.start) && *span != stray.span)
+    {
+        return None;
+    }
     let kind = SyntaxErrorKind::Misplaced { written: written.clone(), to: gap.span.start, inside: *inside };
     expected.iter().any(|expected| fills(*token, *expected)).then_some(SyntaxError { span: stray.span, kind })
 }

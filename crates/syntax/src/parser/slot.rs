@@ -88,8 +88,32 @@ pub(super) fn slot<'s, O: 's>(
     first: TokenSet,
     later: TokenSet,
 ) -> Rule<'s, Option<O>> {
-    // `with { … }` begins the next clause and is not passed over for its brace.
-    let passed = ANY.without(later.and(TokenSet::of(&[TokenKind::With])));
+    // `with { … }` begins the next clause and is not passed over for its brace, nor is the `wait` of `wait 2 seconds` for
+    // its number.
+    slot_passing(
+        ANY.without(later.and(ACTION_WORDS.or(TokenSet::of(&[TokenKind::With])))),
+        part,
+        first,
+        later,
+    )
+}
+
+/// Like [`slot`], but what can follow is never passed over: a clause that is only begun leaves the next action whole.
+pub(super) fn slot_before<'s, O: 's>(
+    part: impl Parser<'s, Input<'s>, O, Extra<'s>> + Clone + 's,
+    first: TokenSet,
+    later: TokenSet,
+) -> Rule<'s, Option<O>> {
+    slot_passing(ANY.without(later), part, first, later)
+}
+
+/// The one token before the content that can be passed over for it is in `passed`.
+fn slot_passing<'s, O: 's>(
+    passed: TokenSet,
+    part: impl Parser<'s, Input<'s>, O, Extra<'s>> + Clone + 's,
+    first: TokenSet,
+    later: TokenSet,
+) -> Rule<'s, Option<O>> {
     let stray = skip_before(passed, first).ignore_then(part.clone());
     part.clone()
         .map(Some)
@@ -118,7 +142,7 @@ pub(super) fn keyword<'s>(word: TokenKind, next: TokenSet, later: TokenSet) -> R
 }
 
 /// A word that is nearly `word`.
-fn misspelling<'s>(word: TokenKind) -> impl Parser<'s, Input<'s>, Span, Extra<'s>> + Clone {
+pub(super) fn misspelling<'s>(word: TokenKind) -> impl Parser<'s, Input<'s>, Span, Extra<'s>> + Clone {
     take(move |token, span, text| looks_like(token, span, text, word).then_some(span)).validate(
         move |span, _, emitter| {
             emitter.emit(Fault::TakenForKeyword(span, word));
@@ -148,8 +172,21 @@ pub(super) fn skip_some<'s>(until: TokenSet) -> impl Parser<'s, Input<'s>, (), E
 
 /// Like [`skip_some`], but a list in braces is passed over whole: its closing brace closes nothing else.
 pub(super) fn skip_statement<'s>(until: TokenSet) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
+    skip_lists_and(until, until)
+}
+
+/// Like [`skip_statement`], but an opening brace that begins no list is not passed over.
+pub(super) fn skip_to_block<'s>(until: TokenSet) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
+    skip_lists_and(until, until.or(TokenSet::of(&[TokenKind::OpenBrace])))
+}
+
+/// Passes over lists without anything of `outside`, and other tokens that are not in `until`.
+fn skip_lists_and<'s>(
+    outside: TokenSet,
+    until: TokenSet,
+) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
     const BRACES: TokenSet = TokenSet::of(&[TokenKind::OpenBrace, TokenKind::CloseBrace]);
-    let inside = any().filter(move |token: &TokenKind| !until.or(CURSOR).or(BRACES).has(*token)).repeated();
+    let inside = any().filter(move |token: &TokenKind| !outside.or(CURSOR).or(BRACES).has(*token)).repeated();
     let list =
         just(TokenKind::OpenBrace).ignore_then(inside).then_ignore(just(TokenKind::CloseBrace)).ignored();
     let other = any().filter(move |token: &TokenKind| !until.or(CURSOR).has(*token)).ignored();
@@ -191,13 +228,11 @@ const SIGNS: TokenSet =
 const CURSOR: TokenSet = TokenSet::of(&[TokenKind::Cursor]);
 
 /// The first tokens of a name.
-pub(super) const NAME: TokenSet = TokenSet::of(&[
-    TokenKind::Name,
-    TokenKind::MalformedName,
-    TokenKind::Distance,
-    TokenKind::Bumper,
-    TokenKind::Import,
-]);
+pub(super) const NAME: TokenSet = TokenKind::NAMES;
+
+/// The keywords that begin an action wherever one can begin, and are names elsewhere.
+const ACTION_WORDS: TokenSet =
+    TokenSet::of(&[TokenKind::Wait, TokenKind::Repeat, TokenKind::If, TokenKind::Do]);
 
 /// The first tokens of a number.
 pub(super) const NUMBER: TokenSet =
@@ -227,8 +262,16 @@ fn name<'s>(kind: EntityKind, label: Expected, next: TokenSet, later: TokenSet) 
         .boxed()
 }
 
-fn plain_name<'s>() -> impl Parser<'s, Input<'s>, Name, Extra<'s>> + Clone {
+pub(super) fn plain_name<'s>() -> impl Parser<'s, Input<'s>, Name, Extra<'s>> + Clone {
     take(|token, span, text| token.is_name().then(|| name_at(span, text)))
+}
+
+/// Before what is more than a name: the keyword of an action and what only that action has after it.
+pub(super) fn action_ahead<'s>() -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
+    const UNTIL: TokenSet = TokenSet::of(&[TokenKind::Until]);
+    const OPEN: TokenSet = TokenSet::of(&[TokenKind::OpenBrace]);
+    let waits = one_in(TokenSet::of(&[TokenKind::Wait, TokenKind::Repeat])).then(one_in(NUMBER.or(UNTIL)));
+    choice((waits.ignored(), just(TokenKind::If).then(one_in(OPEN)).ignored()))
 }
 
 fn keyword_for_name<'s>(
@@ -273,6 +316,7 @@ pub(super) fn references<'s>(
         slot(just(TokenKind::OpenBrace).ignored(), TokenSet::of(&[TokenKind::OpenBrace]), inside.or(later));
     let stop = TokenSet::of(&[TokenKind::CloseBrace]).or(later);
     let item = plain_name()
+        .and_is(action_ahead().not())
         .labelled(Expected::ReferenceTo(kind))
         .map(Some)
         .recover_with(via_parser(keyword_for_name(kind, stop).map(Some)))

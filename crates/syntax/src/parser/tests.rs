@@ -4,12 +4,50 @@ use expect_test::{Expect, expect};
 use proptest::prelude::*;
 
 use super::*;
-use crate::ast::{ActionKind, References};
+use crate::ast::{Action, ActionKind, Block, Condition, References, Within};
 
 fn list(refs: Option<&References>) -> String {
     let Some(refs) = refs else { return "-".to_owned() };
     let names: Vec<&str> = refs.names.iter().map(|name| name.text.as_str()).collect();
     format!("{{{}}}{}", names.join(" "), if refs.broken { "?" } else { "" })
+}
+
+fn gist_of_block(block: Option<&Block>) -> String {
+    let Some(block) = block else { return "-".to_owned() };
+    let actions: Vec<String> = block.actions.iter().map(gist_of_action).collect();
+    format!("[{}]", actions.join(" "))
+}
+
+fn gist_of_condition(condition: &Condition) -> String {
+    let state = condition.state.map(|(state, _)| format!(" {state:?}").to_lowercase()).unwrap_or_default();
+    let length = |within: &Within| within.distance.as_ref().and_then(|number| number.value);
+    let within = condition.within.as_ref().map(|within| format!(" within {:?}", length(within)));
+    format!("{}{state}{}", list(Some(&condition.sensors)), within.unwrap_or_default())
+}
+
+fn gist_of_action(action: &Action) -> String {
+    let until = action.until().map(|condition| format!(" until {}", gist_of_condition(condition)));
+    let until = until.unwrap_or_default();
+    let rest = match &action.kind {
+        ActionKind::Move(_) | ActionKind::Wait(_) | ActionKind::Slam => until,
+        ActionKind::Turn(turn) => {
+            let circle = if turn.circle.is_some() { " with radius" } else { "" };
+            let reverse = if turn.reverse.is_some() { " in reverse" } else { "" };
+            format!("{circle}{reverse}{until}")
+        }
+        ActionKind::Repeat(repeat) => format!("{until} {}", gist_of_block(repeat.block.as_ref())),
+        ActionKind::If(choice) => {
+            let branches = choice.branches.iter().map(|branch| {
+                let condition = branch.condition.as_ref().map(gist_of_condition).unwrap_or_default();
+                format!(" {condition} {}", gist_of_block(branch.block.as_ref()))
+            });
+            let otherwise =
+                choice.otherwise.as_ref().map(|block| format!(" else {}", gist_of_block(Some(block))));
+            format!("{}{}", branches.collect::<String>(), otherwise.unwrap_or_default())
+        }
+        ActionKind::Do(call) => format!(" {}", call.movement.as_ref().map_or("-", |name| name.text.as_str())),
+    };
+    format!("{}{rest}", action.keyword().spelling().unwrap_or_default())
 }
 
 fn gist(entity: &Entity) -> String {
@@ -27,15 +65,7 @@ fn gist(entity: &Entity) -> String {
             list(robot.sensors.as_ref())
         ),
         Entity::Movement(movement) => {
-            let actions: Vec<String> = movement
-                .actions
-                .iter()
-                .map(|action| match &action.kind {
-                    ActionKind::Move(_) => "move".to_owned(),
-                    ActionKind::Turn(_) => "turn".to_owned(),
-                    ActionKind::Slam => "slam".to_owned(),
-                })
-                .collect();
+            let actions: Vec<String> = movement.actions.iter().map(gist_of_action).collect();
             format!("{:?} [{}]", movement.robot.as_ref().map(|name| &name.text), actions.join(" "))
         }
         Entity::Environment(environment) => format!(
@@ -98,7 +128,7 @@ environment f with ip here has { r q } robots with { m m } moves"#,
             ip here Some("127.0.0.1")
             robot r Some(TwoWheel) Some(Some(1)) {a b} -
             robot q None Some(None) {a b c d} {s t}
-            movement m Some("r") [move turn turn turn slam]
+            movement m Some("r") [move turn turn turn until {s} slam]
             environment e Some("here") {r} -
             environment f Some("here") {r q} {m m}
         "#]],
@@ -161,7 +191,7 @@ weel v with radius 3 environment e has { r } robot with { m } move",
               43..47 Misspelt { written: "prot", keyword: Port }
               62..67 Misspelt { written: "wheel", keyword: Wheels }
               73..79 Misspelt { written: "sensor", keyword: Sensors }
-            movement m Some("r") [turn]
+            movement m Some("r") [turn until {s}]
               97..99 Misspelt { written: "fo", keyword: Of }
               104..108 Misspelt { written: "mvoe", keyword: Move }
               123..128 Misspelt { written: "lefft", keyword: Left }
@@ -196,7 +226,7 @@ movement m of r { move 4 4 meters turn 90 left turn left right , }
             movement m Some("r") [move turn turn]
               112..113 Unexpected { expected: [Word(Meters), Word(Centimeters)], found: Text("4"), inside: Some(Movement) }
               126..128 Unexpected { expected: [Word(Left), Word(Right)], found: Text("90"), inside: Some(Movement) }
-              144..149 Unexpected { expected: [Word(Until), Number(Angle), Action], found: Text("right"), inside: Some(Movement) }
+              144..149 Unexpected { expected: [Word(With), Word(At), Word(Until), Word(In), Number(Angle), Action], found: Text("right"), inside: Some(Movement) }
               154..155 Unexpected { expected: [Declaration], found: Text("}"), inside: Some(Movement) }
             environment e None {r} -
               174..175 InvalidCharacter { written: "(" }
@@ -215,7 +245,7 @@ environment e has {{ r }} robots with moves { m }",
               8..14 Misplaced { written: "radius", to: 19, inside: Some(Wheel) }
             robot r None Some(Some(1)) {a b} -
               45..45 Unbraced { close: 27, inside: Some(Robot) }
-            movement m None [move turn]
+            movement m None [move turn until {}]
               68..69 Misplaced { written: "r", to: 15, inside: Some(Movement) }
               80..86 Misplaced { written: "meters", to: 31, inside: Some(Movement) }
               104..104 Missing { expected: [Word(OpenBrace)], found: Text("}"), inside: Some(Movement) }
@@ -268,7 +298,7 @@ fn numbers_that_are_none() {
             robot r None Some(None) {a}? -
               41..44 PortNotWhole { written: "3.5" }
               53..54 Unexpected { expected: [Word(Comma), ReferenceTo(Wheel)], found: Text("3"), inside: Some(Robot) }
-            movement m Some("r") [move turn turn]
+            movement m Some("r") [move turn turn until {}]
               87..92 MalformedNumber { written: "1.2.3" }
               110..117 MalformedNumber { written: "1.2.3.4" }
               134..137 EmptyList { of: Sensor }
@@ -284,7 +314,7 @@ fn an_open_end_is_reported_at_its_own_entity() {
             robot r None Some(Some(1)) {a b} -
               29..29 Missing { expected: [Word(CloseBrace), Word(Comma), ReferenceTo(Wheel)], found: End, inside: Some(Robot) }
             movement m Some("r") [move]
-              64..64 Missing { expected: [Word(CloseBrace), Word(At), Action], found: End, inside: Some(Movement) }
+              64..64 Missing { expected: [Word(CloseBrace), Word(At), Word(Until), Action], found: End, inside: Some(Movement) }
             wheel w Some(3.0)
         "#]],
     );
@@ -340,10 +370,13 @@ fn the_grammar_says_what_can_follow() {
     check_expected("movement m of", &expect!["[ReferenceTo(Robot)]"]);
     check_expected("movement m of r {", &expect!["[Word(CloseBrace), Action]"]);
     check_expected("movement m of r { move 4", &expect!["[Word(Meters), Word(Centimeters)]"]);
-    check_expected("movement m of r { move 4 meters", &expect!["[Word(CloseBrace), Word(At), Action]"]);
+    check_expected(
+        "movement m of r { move 4 meters",
+        &expect!["[Word(CloseBrace), Word(At), Word(Until), Action]"],
+    );
     check_expected(
         "movement m of r { turn left",
-        &expect!["[Word(CloseBrace), Word(Until), Number(Angle), Action]"],
+        &expect!["[Word(CloseBrace), Word(With), Word(At), Word(Until), Word(In), Number(Angle), Action]"],
     );
     check_expected(
         "movement m of r { turn left until { s",
@@ -397,4 +430,99 @@ fn any_text() -> impl Strategy<Value = String> {
         1 => ".{0,4}",
     ];
     proptest::collection::vec(word, 0..40).prop_map(|words| words.join(" "))
+}
+
+#[test]
+fn blocks_and_conditions() {
+    check(
+        "movement m of r { repeat 4 times { move 1 meters repeat until { a b } detect within 40 centimeters { } }
+  if { a } clear { turn left 6 with radius 80 centimeters at 9 in reverse until { b } detect } else if { b } detect { do m } else { slam }
+  move until { a } detect move at 9 until { a } clear move 1 meters at 9 until { a } clear
+  wait 2 seconds wait until { a } clear wait 2 seconds until { a } clear turn left until { a } do if wait 1 seconds }",
+        &expect![[r#"
+            movement m Some("r") [repeat [move repeat until {a b} detect within Some(40.0) []] if {a} clear [turn with radius in reverse until {b} detect] {b} detect [do m] else [slam] move until {a} detect move until {a} clear move until {a} clear wait wait until {a} clear wait until {a} clear turn until {a} do if wait]
+        "#]],
+    );
+}
+
+#[test]
+fn one_mistake_in_a_block() {
+    for text in [
+        "repaet 4 times { move 1 meters } turn left",
+        "repeat 4 tiems { move 1 meters } turn left",
+        "repeat times { move 1 meters } turn left",
+        "repeat 4 { move 1 meters } turn left",
+        "repeat 4 times move 1 meters } turn left",
+        "loop 4 times { move 1 meters } turn left",
+        "repeat until a } detect { move 1 meters } turn left",
+        "repeat until { a detect { move 1 meters } turn left",
+        "repeat until { a } detected { move 1 meters } turn left",
+        "repeat until { a } free { move 1 meters } turn left",
+        "if { a } clear move 1 meters } turn left",
+        "fi { a } clear { move 1 meters } turn left",
+        "while { a } clear { move 1 meters } turn left",
+        "if { a } clear { move 1 meters } esle { move 1 meters } turn left",
+        "if { a } clear { move 1 meters } else move 1 meters } turn left",
+        "else { move 1 meters } turn left",
+        "wait 2 secs turn left",
+        "wait 2 turn left",
+        "wait seconds turn left",
+        "wiat 2 seconds turn left",
+        "do wait 1 seconds turn left",
+        "do repeat 2 times { move 1 meters } turn left",
+        "do do side turn left",
+        "turn left until { a repeat 2 times { move 1 meters } turn left",
+        "turn left until { a wait until { a } clear turn left",
+        "move until { a } clear within 4 turn left",
+        "move until { a } clear within meters turn left",
+        "turn left with 4 meters turn left",
+        "turn left with radius 4 turn left",
+        "turn left with radius meters turn left",
+        "turn left in turn left",
+        "turn left in revers turn left",
+        "turn left until turn left",
+    ] {
+        let rendered = render(&format!("movement m of r {{ {text} }} sensor a"));
+        assert_eq!(rendered.matches("\n  ").count(), 1, "{text}\n{rendered}");
+        assert!(rendered.contains("turn") && rendered.contains("sensor a None"), "{text}\n{rendered}");
+    }
+}
+
+#[test]
+fn mistakes_in_two_actions_stay_two() {
+    check(
+        "movement m of r { wait 2 secs do wait 1 seconds }",
+        &expect![[r#"
+        movement m Some("r") [wait do - wait]
+          25..29 Unexpected { expected: [Word(Seconds)], found: Text("secs"), inside: Some(Movement) }
+          32..32 Missing { expected: [ReferenceTo(Movement)], found: Text("wait"), inside: Some(Movement) }
+    "#]],
+    );
+}
+
+#[test]
+fn blocks_of_any_depth_are_parsed() {
+    for count in [39, 40, 41, 100_000] {
+        let open = "repeat 2 times { ".repeat(count);
+        let text = format!("movement m of r {{ {open} slam {} }} sensor a", "} ".repeat(count));
+        let pieces = parse(&text);
+        assert_eq!(pieces.len(), 2);
+        assert!(pieces.iter().all(|(_, parse)| parse.errors.is_empty()), "{count}");
+        let unclosed = parse(&format!("movement m of r {{ {open} sensor a"));
+        assert_eq!(unclosed.iter().map(|(_, parse)| parse.errors.len()).sum::<usize>(), 1, "{count}");
+    }
+}
+
+#[test]
+fn every_contextual_word_is_a_name() {
+    for word in TokenKind::CONTEXTUAL {
+        let word = word.spelling().unwrap();
+        let text = format!(
+            "wheel {word} with radius 1 sensor {word} ip {word} 1.2.3.4 robot {word} with port 1 has {{ {word} {word} }} wheels with sensors {{ {word} a }}
+movement {word} of {word} {{ do {word} turn left until {{ {word}, a }} do {word} move 1 meters until {{ a {word} }} clear do {word} wait 1 seconds do {word} }}
+environment {word} with ip {word} has {{ {word} }} robots with {{ {word} {word} }} moves"
+        );
+        let errors: Vec<_> = parse(&text).into_iter().flat_map(|(_, parse)| parse.errors).collect();
+        assert_eq!(errors, [], "{text}");
+    }
 }

@@ -1,0 +1,240 @@
+//! The rules for actions and the blocks that they are in.
+
+use chumsky::IterParser;
+use chumsky::prelude::{Parser, choice, just, recursive, via_parser};
+
+use super::condition::{UNTIL, condition, until};
+use super::slot::{
+    NAME, NUMBER, action_ahead, keyword, misspelling, number, one_in, plain_name, skip_before,
+    skip_statement, skip_to_block, slot, slot_before,
+};
+use super::{Extra, Input, Rule};
+use crate::ast::{
+    Action, ActionKind, Block, Branch, Circle, Direction, Do, If, Move, Number, Repeat, Rounds, SpeedClause,
+    Turn, Unit, Wait,
+};
+use crate::{EntityKind, Expected, Quantity, Span, TokenKind, TokenSet};
+
+pub(super) const OPEN: TokenSet = TokenSet::of(&[TokenKind::OpenBrace]);
+pub(super) const CLOSE: TokenSet = TokenSet::of(&[TokenKind::CloseBrace]);
+pub(super) const ACTIONS: TokenSet = TokenSet::of(&TokenKind::ACTIONS);
+pub(super) const UNITS: TokenSet = TokenSet::of(&[TokenKind::Meters, TokenKind::Centimeters]);
+const AT: TokenSet = TokenSet::of(&[TokenKind::At]);
+const DIRECTIONS: TokenSet = TokenSet::of(&[TokenKind::Left, TokenKind::Right]);
+const WITH: TokenSet = TokenSet::of(&[TokenKind::With]);
+const IN: TokenSet = TokenSet::of(&[TokenKind::In]);
+const IF: TokenSet = TokenSet::of(&[TokenKind::If]);
+
+/// What can follow an action.
+const NEXT: TokenSet = ACTIONS.or(CLOSE);
+
+/// What can follow the angle of a turn.
+const TURN_CLAUSES: TokenSet = WITH.or(AT).or(IN).or(UNTIL);
+
+type Actions<'s> = Rule<'s, Vec<Action>>;
+
+/// `{ … }` around actions.
+pub(super) fn block<'s>() -> Rule<'s, Block> {
+    let actions = recursive(|actions| {
+        let item = action(&block_of(actions.boxed()));
+        item.repeated().collect::<Vec<_>>().map(|actions| actions.into_iter().flatten().collect())
+    });
+    block_of(actions.boxed())
+}
+
+fn block_of(actions: Actions<'_>) -> Rule<'_, Block> {
+    let open = slot(just(TokenKind::OpenBrace).ignored(), OPEN, ACTIONS.or(CLOSE));
+    let close = slot(just(TokenKind::CloseBrace).ignored(), CLOSE, TokenSet::default());
+    open.ignore_then(actions)
+        .then_ignore(close)
+        .map_with(|actions, extra| Block { actions, span: extra.span() })
+        .boxed()
+}
+
+/// One action; several where a block belongs to nothing that is known, and none where nothing was understood.
+fn action<'s>(block: &Rule<'s, Block>) -> Actions<'s> {
+    let kinds = choice((
+        move_action(),
+        turn_action(),
+        wait_action(just(TokenKind::Wait).ignored().boxed()),
+        repeat_action(just(TokenKind::Repeat).ignored().boxed(), block),
+        if_action(just(TokenKind::If).ignored().boxed(), block),
+        do_action(),
+        just(TokenKind::Slam).to(ActionKind::Slam).boxed(),
+    ));
+    let known = spanned(kinds).labelled(Expected::Action);
+    let misspelt = spanned(choice((
+        wait_action(misspelt_before(TokenKind::Wait, NUMBER.or(UNTIL))),
+        repeat_action(misspelt_before(TokenKind::Repeat, NUMBER.or(UNTIL)), block),
+        if_action(misspelt_before(TokenKind::If, OPEN), block),
+    )));
+    known
+        .map(|action| vec![action])
+        .recover_with(via_parser(misspelt.map(|action| vec![action])))
+        .recover_with(via_parser(unknown_block(block)))
+        .recover_with(via_parser(skip_statement(NEXT).to(Vec::new())))
+        .boxed()
+}
+
+fn spanned<'s>(
+    kind: impl Parser<'s, Input<'s>, ActionKind, Extra<'s>> + Clone + 's,
+) -> impl Parser<'s, Input<'s>, Action, Extra<'s>> + Clone {
+    kind.map_with(|kind, extra| Action { kind, span: extra.span() })
+}
+
+/// A slip for a keyword, right before one of `next`.
+fn misspelt_before<'s>(word: TokenKind, next: TokenSet) -> Rule<'s, ()> {
+    misspelling(word).then_ignore(one_in(next).rewind()).ignored().boxed()
+}
+
+/// The actions in a block that follows something else than an action: they are understood, and it is not.
+fn unknown_block<'s>(block: &Rule<'s, Block>) -> Actions<'s> {
+    let inside = choice((one_in(OPEN.or(HARD_ACTIONS)).ignored(), action_ahead()));
+    let ahead = just(TokenKind::OpenBrace).then(inside).rewind();
+    skip_to_block(NEXT).then_ignore(ahead).ignore_then(block.clone()).map(|block| block.actions).boxed()
+}
+
+/// The keywords that are no names and begin an action.
+const HARD_ACTIONS: TokenSet = ACTIONS.without(NAME);
+
+fn unit<'s>() -> impl Parser<'s, Input<'s>, (Unit, Span), Extra<'s>> + Clone {
+    choice((just(TokenKind::Meters).to(Unit::Meters), just(TokenKind::Centimeters).to(Unit::Centimeters)))
+        .map_with(|unit, extra| (unit, extra.span()))
+}
+
+type Length = (Option<Number>, Option<(Unit, Span)>);
+
+/// A length with its unit in a clause, where `later` can follow it.
+pub(super) fn length<'s>(later: TokenSet) -> Rule<'s, Length> {
+    let number = slot_before(number(Quantity::Distance), NUMBER, UNITS.or(later));
+    number.then(slot(unit(), UNITS, later)).boxed()
+}
+
+/// How far a move goes.
+fn distance<'s>() -> Rule<'s, Length> {
+    let later = AT.or(UNTIL).or(NEXT);
+    let number = slot(number(Quantity::Distance), NUMBER, UNITS.or(later));
+    number.then(slot(unit(), UNITS, later)).boxed()
+}
+
+fn speed<'s>() -> Rule<'s, SpeedClause> {
+    just(TokenKind::At)
+        .ignore_then(slot(number(Quantity::Speed), NUMBER, NEXT.or(UNTIL).or(IN)))
+        .map_with(|value, extra| SpeedClause { value, span: extra.span() })
+        .boxed()
+}
+
+fn move_action<'s>() -> Rule<'s, ActionKind> {
+    let far = distance()
+        .then(speed().or_not())
+        .then(until(NEXT).or_not())
+        .map(|(((distance, unit), speed), until)| Move { distance, unit, speed, until });
+    // Where the question is what follows `at`, it is a speed, and not the `until` after one that is missing.
+    let asked = just(TokenKind::At).then(just(TokenKind::Cursor)).ignored();
+    let open_ended = asked.not().ignore_then(speed().or_not()).then(until(NEXT)).map(|(speed, until)| Move {
+        distance: None,
+        unit: None,
+        speed,
+        until: Some(until),
+    });
+    just(TokenKind::Move).ignore_then(choice((open_ended, far))).map(ActionKind::Move).boxed()
+}
+
+fn turn_action<'s>() -> Rule<'s, ActionKind> {
+    let direction =
+        choice((just(TokenKind::Left).to(Direction::Left), just(TokenKind::Right).to(Direction::Right)))
+            .map_with(|direction, extra| (direction, extra.span()));
+    // `turn 90 left`: the angle comes last.
+    let swapped = skip_before(NUMBER, DIRECTIONS).ignore_then(direction);
+    let direction = direction.recover_with(via_parser(swapped));
+    just(TokenKind::Turn)
+        .ignore_then(slot(direction, DIRECTIONS, NUMBER.or(TURN_CLAUSES).or(NEXT)))
+        .then(number(Quantity::Angle).or_not())
+        .then(circle().or_not())
+        .then(speed().or_not())
+        .then(in_reverse().or_not())
+        .then(until(NEXT).or_not())
+        .map(|(((((direction, angle), circle), speed), reverse), until)| {
+            ActionKind::Turn(Turn { direction, angle, circle, speed, reverse, until })
+        })
+        .boxed()
+}
+
+/// `with radius 1.5 meters`
+fn circle<'s>() -> Rule<'s, Circle> {
+    let later = AT.or(IN).or(UNTIL).or(NEXT);
+    just(TokenKind::With)
+        .ignore_then(keyword(TokenKind::Radius, NUMBER, UNITS.or(later)))
+        .ignore_then(length(later))
+        .map_with(|(radius, unit), extra| Circle { radius, unit, span: extra.span() })
+        .boxed()
+}
+
+/// `in reverse`
+fn in_reverse<'s>() -> Rule<'s, Span> {
+    just(TokenKind::In)
+        .ignore_then(keyword(TokenKind::Reverse, NEXT.or(UNTIL), NEXT.or(UNTIL)))
+        .map_with(|_, extra| extra.span())
+        .boxed()
+}
+
+fn wait_action(word: Rule<'_, ()>) -> Rule<'_, ActionKind> {
+    let long =
+        slot_before(number(Quantity::Time), NUMBER, TokenSet::of(&[TokenKind::Seconds]).or(UNTIL).or(NEXT))
+            .then_ignore(keyword(TokenKind::Seconds, NEXT.or(UNTIL), NEXT.or(UNTIL)))
+            .then(until(NEXT).or_not())
+            .map(|(seconds, until)| Wait { seconds, until });
+    let open_ended = until(NEXT).map(|until| Wait { seconds: None, until: Some(until) });
+    word.ignore_then(choice((open_ended, long))).map(ActionKind::Wait).boxed()
+}
+
+fn repeat_action<'s>(word: Rule<'s, ()>, block: &Rule<'s, Block>) -> Rule<'s, ActionKind> {
+    let later = OPEN.or(NEXT);
+    let times = slot_before(number(Quantity::Count), NUMBER, TokenSet::of(&[TokenKind::Times]).or(later))
+        .then_ignore(keyword(TokenKind::Times, OPEN, NEXT))
+        .map(|count| count.map(Rounds::Times));
+    let open_ended = until(later).map(|until| Some(Rounds::Until(until)));
+    word.ignore_then(choice((open_ended, times)))
+        .then(block.clone())
+        .map(|(rounds, block)| ActionKind::Repeat(Repeat { rounds, block: Some(block) }))
+        .boxed()
+}
+
+fn if_action<'s>(word: Rule<'s, ()>, block: &Rule<'s, Block>) -> Rule<'s, ActionKind> {
+    let exact = just(TokenKind::Else).ignored();
+    let other = choice((exact, misspelt_before(TokenKind::Else, OPEN.or(IF)))).boxed();
+    let more = other.clone().ignore_then(branch(just(TokenKind::If).ignored().boxed(), block));
+    branch(word, block)
+        .map(|first| vec![first])
+        .foldl(more.repeated(), |mut branches, branch| {
+            branches.push(branch);
+            branches
+        })
+        .then(other.ignore_then(block.clone()).or_not())
+        .map(|(branches, otherwise)| ActionKind::If(If { branches, otherwise }))
+        .boxed()
+}
+
+fn branch<'s>(word: Rule<'s, ()>, block: &Rule<'s, Block>) -> Rule<'s, Branch> {
+    word.ignore_then(condition(OPEN.or(NEXT)))
+        .then(block.clone())
+        .map_with(|(condition, block), extra| Branch {
+            condition: Some(condition),
+            block: Some(block),
+            span: extra.span(),
+        })
+        .boxed()
+}
+
+/// `do side`: a keyword that only begins an action where something follows that only it has after it, or a plain name.
+fn do_action<'s>() -> Rule<'s, ActionKind> {
+    const PLAIN: TokenSet = TokenSet::of(&[TokenKind::Name, TokenKind::MalformedName]);
+    let next_do = just(TokenKind::Do).then(one_in(PLAIN)).ignored();
+    let name = plain_name()
+        .and_is(choice((action_ahead(), next_do)).not())
+        .labelled(Expected::ReferenceTo(EntityKind::Movement));
+    just(TokenKind::Do)
+        .ignore_then(slot(name, PLAIN, NEXT))
+        .map(|movement| ActionKind::Do(Do { movement }))
+        .boxed()
+}
