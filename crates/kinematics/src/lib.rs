@@ -16,20 +16,34 @@
 //! | the pose after turning about it by ωΔt | [`Pose::advance`] |
 //! | `v_r` = v + ω d/2, `v_l` = v − ω d/2, wheel rate v/r | [`Model::inverse`] |
 
+mod action;
+mod block;
+mod leg;
 mod model;
 pub mod motion;
+mod path;
 mod per_wheel;
 mod plan;
 mod pose;
 mod profile;
+mod step;
+mod summary;
+#[cfg(test)]
+mod testing;
 mod traction;
+mod walk;
 
+pub use action::{Action, LegKind};
+pub use leg::{ActionIndex, Call, Leg, Place};
 pub use model::{Geometry, Model, ModelError, Settable, Setting, Turning};
+pub use path::{RobotPath, TimedPose};
 pub use per_wheel::PerWheel;
 pub use plan::{
-    Action, ActionIndex, Leg, Plan, PlanError, RobotPath, RobotPlan, Run, TimedPose, plan, plan_movement,
+    MOST_ACTIONS, Plan, PlanError, RobotPlan, Run, plan, plan_movement, plan_schedule, plan_steps,
 };
 pub use pose::{Pose, Twist, angle_between, heading_degrees, wrap_angle};
 pub use profile::SpeedProfile;
 pub use pydslrep_robots::Drive;
+pub use step::{Movement, Step, StepKind};
+pub use summary::{LONGEST_PLAN, Motion, Summary, too_long};
 pub use traction::{SCRIPT_TRACK_FACTOR, Traction, scrub_factor};

@@ -3,28 +3,15 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use crate::{Model, PerWheel, Pose, SpeedProfile, Twist, motion};
+use crate::block::Block;
+use crate::path::RobotPath;
+use crate::walk::Walk;
+use crate::{Action, Model, Movement, Pose, Step};
 
-/// What a robot is to do next, in numbers.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Action {
-    /// Straight ahead along the heading.
-    Move {
-        /// Metres; negative is backwards.
-        distance: f64,
-        /// Rim speed in metres per second, above zero.
-        speed: f64,
-    },
-    /// As the robot turns ([`crate::Turning`]), at [`motion::RIM_SPEED`].
-    Turn {
-        /// Radians; positive is left (counter-clockwise).
-        angle: f64,
-    },
-    /// Something whose end only the world decides (`turn … until`, `slam`).
-    Unknown,
-}
+/// The most actions that a plan lists.
+pub const MOST_ACTIONS: u64 = 100_000;
 
-/// One movement of one robot within a schedule.
+/// One movement of one robot within a schedule: actions without statements around them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
     /// Which robot.
@@ -42,58 +29,6 @@ pub struct RobotPlan {
     pub start: Pose,
 }
 
-/// The place of an action in a schedule.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct ActionIndex {
-    /// Which group of the schedule.
-    pub group: usize,
-    /// Which run of the group.
-    pub run: usize,
-    /// Which action of the run.
-    pub action: usize,
-}
-
-/// The drive of one action, from rest to rest.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Leg {
-    /// Which action.
-    pub index: ActionIndex,
-    /// The pose it starts from.
-    pub from: Pose,
-    /// The pose it ends at.
-    pub to: Pose,
-    /// When it starts, seconds; `None` when some earlier action takes an unknown time.
-    pub start: Option<f64>,
-    /// How long it takes, seconds, with ramps and [`motion::REST`].
-    pub duration: f64,
-    /// Wheel rates at the highest speed it reaches, rad/s, in the order of the robot's wheels.
-    pub rates: PerWheel,
-    /// Rim speed over time.
-    pub profile: SpeedProfile,
-    /// Body motion per metre of rim travel; times whole rim travel it leads from `from` to `to`.
-    twist_per_rim: Twist,
-}
-
-/// Where a robot is, and when.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TimedPose {
-    /// Seconds; `None` where that is not known.
-    pub time: Option<f64>,
-    /// Where it is.
-    pub pose: Pose,
-}
-
-/// All that is known of one robot's drives.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RobotPath {
-    /// Where the robot starts.
-    pub start: Pose,
-    /// The drive of each action up to the first unknown one, in order.
-    pub legs: Vec<Leg>,
-    /// The action whose outcome is unknown and, with it, every later pose of this robot.
-    pub unknown_after: Option<ActionIndex>,
-}
-
 /// The planned paths of an environment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
@@ -101,6 +36,13 @@ pub struct Plan {
     pub robots: Vec<RobotPath>,
     /// Seconds until the last movement ends; `None` when an action takes an unknown time.
     pub duration: Option<f64>,
+}
+
+impl Plan {
+    /// Whether it has more actions than it lists.
+    pub fn is_truncated(&self) -> bool {
+        self.robots.iter().any(|path| path.truncated)
+    }
 }
 
 /// Why there is no plan.
@@ -111,6 +53,11 @@ pub enum PlanError {
         /// The index it names.
         robot: usize,
     },
+    /// The schedule names a movement that is not there.
+    NoSuchMovement {
+        /// The index it names.
+        movement: usize,
+    },
 }
 
 impl fmt::Display for PlanError {
@@ -119,143 +66,120 @@ impl fmt::Display for PlanError {
             Self::NoSuchRobot { robot } => {
                 write!(f, "a run of the schedule names robot {robot}, which is not there")
             }
+            Self::NoSuchMovement { movement } => {
+                write!(f, "the schedule names movement {movement}, which is not there")
+            }
         }
     }
 }
 
 impl std::error::Error for PlanError {}
 
-impl Leg {
-    /// When it ends, seconds; `None` when some earlier action takes an unknown time.
-    pub fn end(&self) -> Option<f64> {
-        Some(self.start? + self.duration)
-    }
-
-    /// The highest speed that any point within `reach` metres of the robot's middle may have, metres per second.
-    pub fn top_speed(&self, reach: f64) -> f64 {
-        let Twist { vx, vy, omega } = self.twist_per_rim;
-        (vx.hypot(vy) + omega.abs() * reach) * self.profile.peak()
-    }
-
-    /// The pose `seconds` after the leg's start.
-    pub fn pose_at(&self, seconds: f64) -> Pose {
-        if seconds >= self.duration {
-            return self.to;
-        }
-        self.from.advance(self.twist_per_rim, self.profile.distance_at(seconds))
-    }
-}
-
-impl RobotPath {
-    /// The last pose that is known.
-    pub fn end(&self) -> Pose {
-        self.legs.last().map_or(self.start, |leg| leg.to)
-    }
-
-    /// The known path, the start first, then `per_leg` poses (at least one) for each leg at equal intervals of time; the
-    /// last of them is the leg's end.
-    pub fn sample(&self, per_leg: u32) -> Vec<TimedPose> {
-        let mut poses = vec![TimedPose { time: Some(0.0), pose: self.start }];
-        for leg in &self.legs {
-            let at = |seconds: f64| leg.start.map(|start| start + seconds);
-            if poses.last().is_some_and(|last| last.time < leg.start) {
-                // It waited for others.
-                poses.push(TimedPose { time: leg.start, pose: leg.from });
-            }
-            let inner = (1..per_leg).map(|i| leg.duration * f64::from(i) / f64::from(per_leg));
-            poses.extend(inner.map(|seconds| TimedPose { time: at(seconds), pose: leg.pose_at(seconds) }));
-            poses.push(TimedPose { time: at(leg.duration), pose: leg.to });
-        }
-        poses
-    }
-}
-
-/// The path of one movement alone: from `start` at time 0.
+/// The path of some actions alone: from `start` at time 0.
 pub fn plan_movement(model: &Model, start: Pose, actions: &[Action]) -> RobotPath {
-    let mut path = RobotPath { start, legs: Vec::new(), unknown_after: None };
-    drive(&mut path, model, actions, ActionIndex { group: 0, run: 0, action: 0 }, Some(0.0));
-    path
+    plan_steps(model, start, &Step::flat(actions), &[])
 }
 
-/// The paths of a whole environment.
-///
-/// `schedule` is groups one after the other; the runs of a group start together and the next group starts when
-/// all of them have ended. An [`Action::Unknown`] makes all later poses of its robot unknown, and the start
-/// times of every later group. Two runs of one robot in the same group follow one another.
+/// The path of some steps alone: from `start` at time 0. They may call the movements of `called`, and each of those the
+/// ones before it.
+pub fn plan_steps(model: &Model, start: Pose, steps: &[Step], called: &[Vec<Step>]) -> RobotPath {
+    let called: Vec<(usize, &[Step])> = called.iter().map(|steps| (0, steps.as_slice())).collect();
+    let blocks = blocks(&called, &[model]);
+    let block = Block::new(model, steps, &|other| blocks.get(other).map(|block| block.summary));
+    let mut walk = Walk::new(&blocks, RobotPath::new(start), MOST_ACTIONS);
+    walk.run(&block, 0, 0, Some(0.0));
+    walk.into_path()
+}
+
+/// The paths of a whole environment of runs without statements that have others inside; see [`plan_schedule`].
 ///
 /// # Errors
 /// When a run names a robot that is not there.
 pub fn plan(robots: &[RobotPlan], schedule: &[Vec<Run>]) -> Result<Plan, PlanError> {
-    let mut paths: Vec<RobotPath> = robots
+    let runs = schedule.iter().flatten();
+    let movements: Vec<Movement> =
+        runs.map(|run| Movement { robot: run.robot, steps: Step::flat(&run.actions) }).collect();
+    let mut numbers = 0..movements.len();
+    let schedule: Vec<Vec<usize>> =
+        schedule.iter().map(|group| numbers.by_ref().take(group.len()).collect()).collect();
+    plan_schedule(robots, &movements, &schedule)
+}
+
+/// The paths of a whole environment.
+///
+/// `schedule` is groups one after the other, each of movements by their indices; those of a group start together and the
+/// next group starts when all of them have ended. A step whose end is unknown makes all later poses of its robot unknown, and
+/// the start times of every later group. Two movements of one robot in the same group follow one another. A movement that
+/// others call is listed before them.
+///
+/// It takes as long as the movements and what is listed of them are, however often they are repeated: at most
+/// [`MOST_ACTIONS`] legs, all robots together. Poses and times at the end are right nevertheless.
+///
+/// # Errors
+/// When the schedule names a movement that is not there, or one of a robot that is not there.
+pub fn plan_schedule(
+    robots: &[RobotPlan],
+    movements: &[Movement],
+    schedule: &[Vec<usize>],
+) -> Result<Plan, PlanError> {
+    for &movement in schedule.iter().flatten() {
+        let robot = movements.get(movement).ok_or(PlanError::NoSuchMovement { movement })?.robot;
+        robots.get(robot).ok_or(PlanError::NoSuchRobot { robot })?;
+    }
+    let models: Vec<&Model> = robots.iter().map(|robot| &robot.model).collect();
+    let steps: Vec<(usize, &[Step])> =
+        movements.iter().map(|movement| (movement.robot, movement.steps.as_slice())).collect();
+    let blocks = blocks(&steps, &models);
+    let mut wanted = vec![0_u64; robots.len()];
+    for &movement in schedule.iter().flatten() {
+        let want = &mut wanted[movements[movement].robot];
+        *want = want.saturating_add(blocks[movement].summary.entries);
+    }
+    let mut walks: Vec<Walk> = robots
         .iter()
-        .map(|robot| RobotPath { start: robot.start, legs: Vec::new(), unknown_after: None })
+        .zip(shares(&wanted))
+        .map(|(robot, most)| Walk::new(&blocks, RobotPath::new(robot.start), most))
         .collect();
     let mut clock = Some(0.0);
     for (group, runs) in schedule.iter().enumerate() {
         let mut free_at: BTreeMap<usize, Option<f64>> = BTreeMap::new();
-        for (run, Run { robot, actions }) in runs.iter().enumerate() {
-            let (Some(path), Some(plan)) = (paths.get_mut(*robot), robots.get(*robot)) else {
-                return Err(PlanError::NoSuchRobot { robot: *robot });
-            };
-            let index = ActionIndex { group, run, action: 0 };
-            let free = free_at.entry(*robot).or_insert(clock);
-            *free = drive(path, &plan.model, actions, index, *free);
+        for (run, &movement) in runs.iter().enumerate() {
+            let robot = movements[movement].robot;
+            let free = free_at.entry(robot).or_insert(clock);
+            *free = walks[robot].run(&blocks[movement], group, run, *free);
         }
         let all_free =
             |from: f64| free_at.into_values().try_fold(from, |latest, time| Some(latest.max(time?)));
         clock = clock.and_then(all_free);
     }
-    Ok(Plan { robots: paths, duration: clock })
+    Ok(Plan { robots: walks.into_iter().map(Walk::into_path).collect(), duration: clock })
 }
 
-/// Drives `actions` from the end of `path`; returns when they end.
-fn drive(
-    path: &mut RobotPath,
-    model: &Model,
-    actions: &[Action],
-    first: ActionIndex,
-    mut clock: Option<f64>,
-) -> Option<f64> {
-    for (number, &action) in actions.iter().enumerate() {
-        let index = ActionIndex { action: number, ..first };
-        // Once the pose is lost the legs would start from nowhere, but how long they take is still plain.
-        if let Some(leg) = leg(model, action, index, path.end(), clock) {
-            clock = leg.end();
-            if path.unknown_after.is_none() {
-                path.legs.push(leg);
-            }
-        } else {
-            clock = None;
-            path.unknown_after.get_or_insert(index);
-        }
+/// What each movement comes to: pairs of a robot and its steps. One of a robot without a model comes to nothing.
+fn blocks(movements: &[(usize, &[Step])], models: &[&Model]) -> Vec<Block> {
+    let mut blocks: Vec<Block> = Vec::with_capacity(movements.len());
+    for (robot, steps) in movements {
+        let called = |other: usize| {
+            let (block, (of, _)) = (blocks.get(other)?, movements.get(other)?);
+            (of == robot).then_some(block.summary)
+        };
+        let block = models.get(*robot).map(|model| Block::new(model, steps, &called));
+        blocks.push(block.unwrap_or_default());
     }
-    clock
+    blocks
 }
 
-fn leg(model: &Model, action: Action, index: ActionIndex, from: Pose, start: Option<f64>) -> Option<Leg> {
-    let (unit, amount, speed) = match action {
-        Action::Move { distance, speed } => {
-            (Twist { vx: distance.signum(), ..Twist::default() }, distance, speed)
-        }
-        Action::Turn { angle } => (model.turning().twist(angle), angle, motion::RIM_SPEED),
-        Action::Unknown => return None,
-    };
-    let rim_per_unit = model.fastest_rim(unit);
-    let profile = SpeedProfile::new(amount.abs() * rim_per_unit, speed, motion::RIM_ACCELERATION);
-    let twist_per_rim = Twist { vx: unit.vx / rim_per_unit, vy: 0.0, omega: unit.omega / rim_per_unit };
-    let peak =
-        Twist { vx: twist_per_rim.vx * profile.peak(), vy: 0.0, omega: twist_per_rim.omega * profile.peak() };
-    let rest = if amount == 0.0 { 0.0 } else { motion::REST };
-    Some(Leg {
-        index,
-        from,
-        to: from.advance(unit, amount.abs()),
-        start,
-        duration: profile.duration() + rest,
-        rates: model.inverse(peak).rates,
-        profile,
-        twist_per_rim,
-    })
+/// How many actions of each robot are listed, given how many it has: all of them if there is room; otherwise who has few may
+/// list them, and the others alike.
+fn shares(wanted: &[u64]) -> Vec<u64> {
+    let mut order: Vec<usize> = (0..wanted.len()).collect();
+    order.sort_by_key(|&robot| wanted[robot]);
+    let (mut shares, mut left) = (vec![0; wanted.len()], MOST_ACTIONS);
+    for (robot, robots) in order.into_iter().zip((1..=wanted.len() as u64).rev()) {
+        shares[robot] = wanted[robot].min(left / robots);
+        left -= shares[robot];
+    }
+    shares
 }
 
 #[cfg(test)]
@@ -264,7 +188,7 @@ mod tests {
 
     use super::*;
     use crate::model::tests::turning_on_a_circle;
-    use crate::{Drive, Geometry};
+    use crate::{ActionIndex, Drive, Geometry, TimedPose, motion};
 
     fn robot(start: Pose) -> RobotPlan {
         let geometry = Geometry { track: 0.30, wheelbase: 0.25 };
@@ -273,6 +197,10 @@ mod tests {
 
     fn forward(distance: f64) -> Action {
         Action::Move { distance, speed: 0.09 }
+    }
+
+    fn turn(angle: f64) -> Action {
+        Action::Turn { angle, speed: motion::RIM_SPEED }
     }
 
     const METRE: f64 = 1.0 / 0.09 + 0.18 + motion::REST;
@@ -284,7 +212,7 @@ mod tests {
 
     #[test]
     fn a_square_comes_home() {
-        let side = [forward(1.0), Action::Turn { angle: FRAC_PI_2 }];
+        let side = [forward(1.0), turn(FRAC_PI_2)];
         let path = plan_movement(&robot(Pose::default()).model, Pose::default(), &side.repeat(4));
         assert_eq!(path.legs.len(), 8);
         assert!(path.end().distance(&Pose::default()) < 1e-12 && path.end().theta.abs() < 1e-12);
@@ -296,7 +224,7 @@ mod tests {
 
     #[test]
     fn backwards_and_right() {
-        let actions = [forward(-1.0), Action::Turn { angle: -FRAC_PI_2 }, forward(2.0)];
+        let actions = [forward(-1.0), turn(-FRAC_PI_2), forward(2.0)];
         let path = plan_movement(&robot(Pose::default()).model, Pose::default(), &actions);
         let end = path.end();
         assert!(end.distance(&Pose::new(-1.0, -2.0, 0.0)) < 1e-12 && (end.theta + FRAC_PI_2).abs() < 1e-12);
@@ -308,7 +236,7 @@ mod tests {
         let RobotPlan { model, start } = robot(Pose::default());
         let model = turning_on_a_circle(&model, 1.0);
         for (angle, side) in [(PI, 2.0), (-PI, -2.0)] {
-            let path = plan_movement(&model, start, &[Action::Turn { angle }]);
+            let path = plan_movement(&model, start, &[turn(angle)]);
             let leg = &path.legs[0];
             assert!(leg.to.distance(&Pose::new(0.0, side, 0.0)) < 1e-12, "{leg:?}");
             assert!(close(leg.end(), PI * (1.0 + 0.15) / 0.09 + 0.18 + motion::REST), "{leg:?}");
@@ -354,7 +282,7 @@ mod tests {
 
     #[test]
     fn samples_follow_the_profile() {
-        let actions = [forward(0.5), Action::Turn { angle: PI }];
+        let actions = [forward(0.5), turn(PI)];
         let path = plan_movement(&robot(Pose::default()).model, Pose::default(), &actions);
         let poses = path.sample(100);
         let most = 0.09 * path.legs[0].duration / 100.0 + 1e-12;
@@ -380,7 +308,7 @@ mod tests {
 
     #[test]
     fn an_action_of_nothing_takes_no_time() {
-        let nothing = [forward(0.0), Action::Turn { angle: 0.0 }, forward(1.0)];
+        let nothing = [forward(0.0), turn(0.0), forward(1.0)];
         let path = plan_movement(&robot(Pose::default()).model, Pose::default(), &nothing);
         assert!(close(path.legs[2].start, 0.0) && close(path.legs[2].end(), METRE), "{path:?}");
         assert_eq!((path.legs[0].to, path.legs[1].to), (Pose::default(), Pose::default()));
@@ -400,8 +328,7 @@ mod tests {
 
     #[test]
     fn no_point_of_a_robot_is_faster_than_its_top_speed_and_some_are_as_fast() {
-        let actions =
-            [forward(-1.0), Action::Turn { angle: -PI }, Action::Move { distance: 0.2, speed: 0.4 }];
+        let actions = [forward(-1.0), turn(-PI), Action::Move { distance: 0.2, speed: 0.4 }];
         let path = plan_movement(&robot(Pose::default()).model, Pose::default(), &actions);
         for leg in &path.legs {
             let (mut fastest, count) = (0.0_f64, 4_000);

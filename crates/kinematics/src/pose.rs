@@ -31,6 +31,21 @@ impl Twist {
     pub fn turning_radius(&self) -> Option<f64> {
         (self.omega != 0.0).then(|| self.vx / self.omega)
     }
+
+    /// The twist that leads from the origin to a pose in so many seconds, above zero, by the shorter turn.
+    ///
+    /// It undoes [`Pose::advance`]: the logarithm of SE(2) (Lynch and Park, "Modern Robotics", 3.3.3). The displacement
+    /// there is a rotation by a/2 of the velocity, sin(a/2)/(a/2) times as long, with a the whole turn.
+    pub fn towards(pose: &Pose, seconds: f64) -> Self {
+        let half = pose.theta / 2.0;
+        let (sin, cos) = half.sin_cos();
+        let rate = 1.0 / (sinc(half) * seconds);
+        Self {
+            vx: (cos * pose.x + sin * pose.y) * rate,
+            vy: (cos * pose.y - sin * pose.x) * rate,
+            omega: pose.theta / seconds,
+        }
+    }
 }
 
 impl Pose {
@@ -200,6 +215,12 @@ mod tests {
                 euler.theta += twist.omega * dt;
             }
             assert_close(start.advance(twist, t), euler, 2e-3);
+        }
+
+        #[test]
+        fn a_twist_towards_a_pose_gets_there(start in poses(), pose in poses(), seconds in 0.1..100.0) {
+            let twist = Twist::towards(&pose, seconds);
+            assert_close(start.advance(twist, seconds), start.compose(&pose), 1e-12);
         }
 
         #[test]

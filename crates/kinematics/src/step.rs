@@ -1,0 +1,60 @@
+//! What a movement consists of: actions, and statements with actions inside.
+
+use crate::Action;
+
+/// A statement of a movement.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// Its place in its movement, from 0, in text order; statements with blocks count, and so do those inside.
+    pub number: usize,
+    /// What it does.
+    pub kind: StepKind,
+}
+
+/// What a statement does.
+#[derive(Debug, Clone, PartialEq)]
+pub enum StepKind {
+    /// An action.
+    Action(Action),
+    /// An action that the world may end before its time.
+    Until {
+        /// The action up to its bound.
+        most: Action,
+    },
+    /// Its body, so many times.
+    Repeat {
+        /// How many times.
+        count: u32,
+        /// What is repeated.
+        body: Vec<Step>,
+    },
+    /// One of several ways; the world decides which. A way that does nothing is empty. A chain of `else if` is one step with
+    /// many ways, so that it is as deep as it looks.
+    Branch {
+        /// The ways.
+        ways: Vec<Vec<Step>>,
+    },
+    /// What another movement of the same robot does.
+    Call {
+        /// Which one, by the list that the plan is made with. Nobody can plan a call of a movement that is not listed before
+        /// the one that calls it: its end is unknown.
+        movement: usize,
+    },
+}
+
+/// What a robot can be told to do.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Movement {
+    /// Which robot.
+    pub robot: usize,
+    /// What it does, in order.
+    pub steps: Vec<Step>,
+}
+
+impl Step {
+    /// Actions without any statement around them.
+    pub fn flat(actions: &[Action]) -> Vec<Self> {
+        let step = |(number, &action)| Self { number, kind: StepKind::Action(action) };
+        actions.iter().enumerate().map(step).collect()
+    }
+}
