@@ -1,13 +1,13 @@
 //! Collisions of planned paths.
 
-use pydslrep_kinematics::{ActionIndex, Leg, Plan, Pose, RobotPath};
+use pydslrep_kinematics::{ActionIndex, Leg, LegKind, Place, Plan, Pose, RobotPath};
 
-use crate::{Body, Scene, Space, Thing, distance_between};
+use crate::{Body, Scene, Space, Thing, Trajectory, distance_between};
 
 /// Bodies nearer to each other than this collide, metres: in a run, contact stops robots there.
 const TOUCH: f64 = 0.001;
 
-/// The most distances computed for one robot, or for two; collisions after them are not found. A path takes some for each
+/// The most distances computed for one robot, or for two things that move; collisions after them are not found. A path takes some for each
 /// metre, and more only along something that it nearly touches.
 const MOST_STEPS: u32 = 20_000;
 
@@ -18,6 +18,8 @@ pub struct Collision {
     pub robot: usize,
     /// What it is doing.
     pub action: ActionIndex,
+    /// In which rounds and calls that is.
+    pub place: Place,
     /// Seconds since the start of the run; `None` if the duration of an earlier action is unknown.
     pub time: Option<f64>,
     /// Where it is.
@@ -26,21 +28,26 @@ pub struct Collision {
     pub with: Thing,
     /// What the other robot is doing; `None` if it stands still, or if it is not a robot.
     pub other_action: Option<ActionIndex>,
+    /// In which rounds and calls that is.
+    pub other_place: Place,
 }
 
 /// Where the robots of a plan would collide with obstacles or each other: for each robot the first obstacle on its path,
 /// and for each two robots their first collision. What follows from the first is not reported. In the order of robots;
 /// none if the scene has collisions switched off.
+///
+/// Obstacles that move are met where they are at that time: in actions that start at a known one. Those that run into a
+/// robot between its actions are not found.
 pub fn collisions(scene: &Scene, plan: &Plan) -> Vec<Collision> {
     if !scene.collisions {
         return Vec::new();
     }
-    let space = Space::of(scene);
+    let obstacles = Obstacles::of(scene);
     let robots: Vec<(Body, &RobotPath)> =
         scene.robots.iter().zip(&plan.robots).map(|(robot, path)| (robot.body, path)).collect();
     let mut found = Vec::new();
     for (index, &(body, path)) in robots.iter().enumerate() {
-        found.extend(with_obstacle(&space, index, body, path));
+        found.extend(with_obstacle(&obstacles, index, body, path));
         let others = robots.iter().enumerate().skip(index + 1);
         found.extend(others.filter_map(|(other, &at)| of_two((index, body, path), (other, at.0, at.1))));
     }
@@ -52,26 +59,104 @@ fn reach(body: Body) -> f64 {
     body.length.hypot(body.width) / 2.0
 }
 
-/// The first obstacle on a robot's path. Each step covers the distance to the nearest thing, since nothing can be hit
-/// earlier; so nothing is too thin to be found.
-fn with_obstacle(space: &Space, robot: usize, body: Body, path: &RobotPath) -> Option<Collision> {
+/// The obstacles of a scene.
+struct Obstacles {
+    fixed: Space,
+    moving: Vec<Moving>,
+}
+
+/// An obstacle that moves.
+#[derive(Clone)]
+struct Moving {
+    /// Its index in the scene.
+    obstacle: usize,
+    trajectory: Trajectory,
+    /// The obstacle alone.
+    space: Space,
+    /// How many distances to it have been computed for the robot.
+    steps: u32,
+}
+
+impl Obstacles {
+    fn of(scene: &Scene) -> Self {
+        let moving = scene.obstacles.iter().enumerate().filter_map(|(index, obstacle)| {
+            let (trajectory, space) = (obstacle.trajectory.clone()?, Space::of_one(scene, index));
+            Some(Moving { obstacle: index, trajectory, space, steps: 0 })
+        });
+        Self { fixed: Space::of_fixed(scene), moving: moving.collect() }
+    }
+}
+
+/// The first obstacle on a robot's path.
+fn with_obstacle(obstacles: &Obstacles, robot: usize, body: Body, path: &RobotPath) -> Option<Collision> {
     let mut steps = 0;
-    for leg in &path.legs {
-        let speed = leg.top_speed(reach(body));
-        let mut seconds = 0.0;
-        while seconds < leg.duration && steps < MOST_STEPS {
-            steps += 1;
-            let pose = leg.pose_at(seconds);
-            let left = speed * (leg.duration - seconds);
-            let Some(near) = space.nearest(body, pose, left + TOUCH) else { break };
-            if near.distance < TOUCH {
-                let (with, time) = (Thing::Obstacle(near.obstacle), leg.start.map(|start| start + seconds));
-                return Some(Collision { robot, action: leg.index, time, pose, with, other_action: None });
+    let mut moving = obstacles.moving.clone();
+    // Which way leads through the whole of an `if`, nobody knows.
+    for leg in path.legs.iter().filter(|leg| leg.kind != LegKind::Whole) {
+        let mut first = with_fixed(&obstacles.fixed, body, leg, &mut steps);
+        if let Some(start) = leg.start {
+            let way = Way { start, speed: leg.top_speed(reach(body)), pose: |seconds| leg.pose_at(seconds) };
+            for other in &mut moving {
+                let until = first.map_or(leg.duration, |(seconds, _)| seconds);
+                first = other.meet(body, &way, until).map(|seconds| (seconds, other.obstacle)).or(first);
             }
-            seconds += step(near.distance, speed);
+        }
+        if let Some((seconds, obstacle)) = first {
+            let (with, time) = (Thing::Obstacle(obstacle), leg.start.map(|start| start + seconds));
+            let (action, place, pose) = (leg.index, leg.place.clone(), leg.pose_at(seconds));
+            let (other_action, other_place) = (None, Place::default());
+            return Some(Collision { robot, action, place, time, pose, with, other_action, other_place });
         }
     }
     None
+}
+
+/// The first obstacle on a leg that does not move, and the seconds until it is met. Each step covers the distance to the
+/// nearest one, since nothing can be hit earlier; so nothing is too thin to be found.
+fn with_fixed(space: &Space, body: Body, leg: &Leg, steps: &mut u32) -> Option<(f64, usize)> {
+    let speed = leg.top_speed(reach(body));
+    let mut seconds = 0.0;
+    while seconds < leg.duration && *steps < MOST_STEPS {
+        *steps += 1;
+        let left = speed * (leg.duration - seconds);
+        let near = space.nearest(body, leg.pose_at(seconds), left + TOUCH)?;
+        if near.distance < TOUCH {
+            return Some((seconds, near.obstacle));
+        }
+        seconds += step(near.distance, speed);
+    }
+    None
+}
+
+/// How a body moves for some time.
+struct Way<P: Fn(f64) -> Pose> {
+    /// Seconds since the start of the run.
+    start: f64,
+    /// The highest speed of any of its points.
+    speed: f64,
+    /// Where it is, by the seconds since the start of the way.
+    pose: P,
+}
+
+impl Moving {
+    /// The seconds of a way after which a body and the obstacle meet, if they do before `until`: the same search with the
+    /// speeds of both, piece by piece of the obstacle's path. A body at rest is met, too.
+    fn meet(&mut self, body: Body, way: &Way<impl Fn(f64) -> Pose>, until: f64) -> Option<f64> {
+        let mut seconds = 0.0;
+        while seconds < until && self.steps < MOST_STEPS {
+            self.steps += 1;
+            let piece = self.trajectory.piece(way.start + seconds);
+            let (end, speed) = ((piece.until - way.start).min(until), way.speed + piece.speed);
+            self.space.move_to(way.start + seconds);
+            let reachable = speed * (end - seconds).max(0.0) + TOUCH;
+            seconds = match self.space.nearest(body, (way.pose)(seconds), reachable) {
+                Some(near) if near.distance < TOUCH => return Some(seconds),
+                Some(near) => (seconds + step(near.distance, speed)).min(end),
+                None => end,
+            };
+        }
+        None
+    }
 }
 
 /// The time before things at this distance can touch, and a little more so that the steps come to an end.
@@ -98,17 +183,18 @@ fn of_two(a: (usize, Body, &RobotPath), b: (usize, Body, &RobotPath)) -> Option<
         let distance = distance_between((a.1, one.pose), (b.1, two.pose));
         if distance < TOUCH {
             // At least one of them moves; it collides with the other.
-            let index = |moment: &Moment<'_>| moment.leg.map(|leg| leg.index);
             let (robot, other, me, you) =
-                if one.leg.is_some() { (a.0, b.0, one, two) } else { (b.0, a.0, two, one) };
-            let (action, with) = (index(&me)?, Thing::Robot(other));
+                if one.drives() { (a.0, b.0, one, two) } else { (b.0, a.0, two, one) };
+            let leg = me.leg?;
             return Some(Collision {
                 robot,
-                action,
+                action: leg.index,
+                place: leg.place.clone(),
                 time: Some(time),
                 pose: me.pose,
-                with,
-                other_action: index(&you),
+                with: Thing::Robot(other),
+                other_action: you.leg.map(|leg| leg.index),
+                other_place: you.leg.map(|leg| leg.place.clone()).unwrap_or_default(),
             });
         }
         time = (time + step(distance, speed)).min(change);
@@ -134,9 +220,10 @@ struct Moment<'a> {
 
 impl<'a> Timetable<'a> {
     fn of(path: &'a RobotPath) -> Self {
-        let timed = path.legs.iter().map_while(|leg| Some((leg.start?, leg)));
+        let known = path.legs.iter().take_while(|leg| leg.kind != LegKind::Whole);
+        let timed = known.map_while(|leg| Some((leg.start?, leg)));
         let legs: Vec<(f64, &Leg)> = timed.collect();
-        let is_whole = legs.len() == path.legs.len() && path.unknown_after.is_none();
+        let is_whole = legs.len() == path.legs.len() && path.unknown_after.is_none() && !path.truncated;
         let end = legs.last().map_or(0.0, |(start, leg)| start + leg.duration);
         Self { start: path.start, legs, known_until: if is_whole { f64::INFINITY } else { end } }
     }
@@ -162,6 +249,10 @@ impl Moment<'_> {
     fn speed(&self, body: Body) -> f64 {
         self.leg.map_or(0.0, |leg| leg.top_speed(reach(body)))
     }
+
+    fn drives(&self) -> bool {
+        self.leg.is_some_and(|leg| leg.kind == LegKind::Drive)
+    }
 }
 
 #[cfg(test)]
@@ -173,10 +264,10 @@ mod tests {
     use pydslrep_kinematics::{Action, Drive, RobotPlan, Run, motion, plan};
 
     use super::*;
-    use crate::{Obstacle, Robot, Shape, Wheel};
+    use crate::{Obstacle, Robot, Shape, Waypoint, Wheel};
 
     const AHEAD: Action = Action::Move { distance: 2.0, speed: 0.1 };
-    const LEFT: Action = Action::Turn { angle: FRAC_PI_2 };
+    const LEFT: Action = Action::Turn { angle: FRAC_PI_2, speed: motion::RIM_SPEED };
 
     fn scene(starts: &[Pose], obstacles: Vec<Obstacle>) -> Scene {
         let robot = |(index, start): (usize, &Pose)| {
@@ -299,6 +390,77 @@ mod tests {
         assert_eq!(found(&scene, &[&[(0, &[Action::Unknown, AHEAD])]]), [], "nor is its path");
     }
 
+    /// A post of 10 cm that moves.
+    fn post(rows: &[[f64; 3]], repeats: bool) -> Obstacle {
+        let points = rows.iter().map(|&[time, x, y]| Waypoint { time, x, y }).collect();
+        let shape = Shape::Cylinder { radius: 0.1 };
+        Obstacle::moving("post", 0.0, shape, Trajectory::new(points, repeats).unwrap())
+    }
+
+    #[test]
+    fn an_obstacle_that_moves_is_met_where_it_is_at_that_time() {
+        let met = |rows: &[[f64; 3]], repeats| {
+            let scene = scene(&[Pose::default()], vec![post(rows, repeats)]);
+            found(&scene, &[&[(0, &[AHEAD, AHEAD])]])
+        };
+        // It steps aside before the robot, which is there after 7.6 s, or after that.
+        assert_eq!(met(&[[0.0, 1.0, 0.0], [4.0, 1.0, 0.0], [6.0, 1.0, 1.0]], false), []);
+        let found = met(&[[0.0, 1.0, 0.0], [9.0, 1.0, 0.0], [11.0, 1.0, 1.0]], false);
+        let [collision] = found.as_slice() else { panic!("{found:?}") };
+        assert!((collision.pose.x - 0.75).abs() < 0.002, "{collision:?}");
+        assert!(collision.time.is_some_and(|time| (time - 7.6).abs() < 0.02), "{collision:?}");
+        // It comes back into the way of the second move, which ends at 4 m.
+        let aside = [[0.0, 3.0, 0.0], [5.0, 3.0, 1.0]];
+        assert_eq!(met(&aside, false), []);
+        let found = met(&aside, true);
+        assert!(found.len() == 1 && found[0].action.action == 1, "{found:?}");
+        // It meets the robot from the front: their speeds add up.
+        let found = met(&[[0.0, 2.1, 0.0], [10.0, 0.1, 0.0]], false);
+        let [collision] = found.as_slice() else { panic!("{found:?}") };
+        assert!(
+            collision.time.is_some_and(|time| (time - (1.85 + 0.01) / 0.3).abs() < 0.03),
+            "{collision:?}"
+        );
+        // However fast, it does not pass through.
+        let found = met(&[[0.0, 0.5, 50.0], [5.0, 0.5, 50.0], [5.001, 0.5, -50.0]], false);
+        assert!(
+            found.len() == 1 && found[0].time.is_some_and(|time| (5.0..5.001).contains(&time)),
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn the_nearer_obstacle_is_met_first_whether_it_moves_or_not() {
+        let wall = |x| Obstacle::wall("w", (x, -1.0), (x, 1.0), 0.1);
+        for (x, first) in [(0.9, 0), (1.5, 1)] {
+            let scene = scene(&[Pose::default()], vec![wall(x), post(&[[0.0, 1.2, 0.0]], false)]);
+            let met = found(&scene, &[&[(0, &[AHEAD])]]);
+            assert!(met.len() == 1 && met[0].with == Thing::Obstacle(first), "{x}: {met:?}");
+        }
+    }
+
+    #[test]
+    fn where_a_moving_obstacle_is_at_an_unknown_time_is_not_known() {
+        let scene = scene(
+            &[Pose::default(), Pose::new(-5.0, -1.0, FRAC_PI_2)],
+            vec![post(&[[0.0, 1.0, 0.0], [9e5, 1.0, 0.0]], true)],
+        );
+        assert_eq!(found(&scene, &[&[(1, &[Action::Unknown])], &[(0, &[AHEAD])]]), []);
+        assert_eq!(found(&scene, &[&[(0, &[AHEAD])]]).len(), 1);
+    }
+
+    #[test]
+    fn a_body_at_rest_is_met_by_an_obstacle_that_comes() {
+        let scene = scene(&[], vec![post(&[[0.0, 3.0, 0.0], [10.0, 3.0, 0.0], [40.0, 0.0, 0.0]], false)]);
+        let mut obstacles = Obstacles::of(&scene);
+        let body = Body { length: 0.3, width: 0.3 };
+        let way = |start| Way { start, speed: 0.0, pose: |_: f64| Pose::default() };
+        let seconds = obstacles.moving[0].meet(body, &way(5.0), 90.0).unwrap();
+        assert!((seconds - (5.0 + 27.5)).abs() < 0.02, "{seconds}");
+        assert_eq!(obstacles.moving[0].meet(body, &way(5.0), 30.0), None);
+        assert_eq!(obstacles.moving[0].meet(body, &way(50.0), 1.0), Some(0.0), "it has come before");
+    }
+
     #[test]
     fn a_bay_is_free_up_to_its_bottom() {
         // A U that opens to the left, with 0.8 m between its arms: narrower than the hull of its corners is long.
@@ -313,8 +475,7 @@ mod tests {
             (0.5, -0.4),
         ];
         for corners in [corners.to_vec(), corners.into_iter().rev().collect()] {
-            let bay =
-                Obstacle { name: "u".to_owned(), pose: Pose::default(), shape: Shape::Polygon(corners) };
+            let bay = Obstacle::fixed("u", Pose::default(), Shape::Polygon(corners));
             let scene = scene(&[Pose::default()], vec![bay]);
             let met = found(&scene, &[&[(0, &[AHEAD])]]);
             assert!(met.len() == 1 && (met[0].pose.x - 1.65).abs() < 0.001, "{met:?}");
@@ -329,7 +490,7 @@ mod tests {
     prop_compose! {
         fn actions()(moves in prop::collection::vec((0..3, -2.0..2.0, 0.05..0.5), 1..5)) -> Vec<Action> {
             let action = |&(which, amount, speed): &(i32, f64, f64)| match which {
-                0 => Action::Turn { angle: amount },
+                0 => Action::Turn { angle: amount, speed: motion::RIM_SPEED },
                 _ => Action::Move { distance: amount, speed },
             };
             moves.iter().map(action).collect()
@@ -343,16 +504,14 @@ mod tests {
         #[test]
         fn collisions_are_those_that_a_close_look_finds(
             first in actions(), second in actions(), together: bool,
-            x in -1.0..1.0, y in -1.0..1.0, theta in -3.0..3.0,
+            x in -1.0..1.0, y in -1.0..1.0, theta in -3.0..3.0, goal in (-1.0..1.0, -1.0..1.0), repeats: bool,
         ) {
             let corners = [(0.0, 0.0), (0.6, 0.0), (0.6, 0.5), (0.5, 0.5), (0.5, 0.1), (0.0, 0.1)];
-            let hook = Obstacle {
-                name: "hook".to_owned(),
-                pose: Pose::new(0.6, 0.7, theta),
-                shape: Shape::Polygon(corners.to_vec()),
-            };
+            let hook = Obstacle::fixed("hook", Pose::new(0.6, 0.7, theta), Shape::Polygon(corners.to_vec()));
             let wall = Obstacle::wall("w", (-1.0, -0.9), (0.5, -1.2), 0.02);
-            let scene = scene(&[Pose::default(), Pose::new(x, y, theta)], vec![hook, wall]);
+            let way = [[2.0, 1.5, -1.5], [9.0, goal.0, goal.1], [14.0, -1.5, 1.0]];
+            let scene =
+                scene(&[Pose::default(), Pose::new(x, y, theta)], vec![hook, wall, post(&way, repeats)]);
             prop_assume!(scene.overlaps().is_empty());
             let groups: Vec<Vec<(usize, &[Action])>> = if together {
                 vec![vec![(0, &first), (1, &second)]]
@@ -368,9 +527,9 @@ mod tests {
                 group.iter().map(|&(robot, actions)| Run { robot, actions: actions.to_vec() }).collect()
             };
             let plan = plan(&robots, &groups.iter().map(runs).collect::<Vec<Vec<Run>>>()).unwrap();
-            let (space, end, step) = (Space::of(&scene), plan.duration.unwrap(), 0.004);
+            let (mut space, end, step) = (Space::of(&scene), plan.duration.unwrap(), 0.004);
             // What is nearer than it moves in two steps may be met between them.
-            let doubt = 2.0 * step * 0.6;
+            let doubt = 2.0 * step * 1.3;
             let mut looked: BTreeMap<(usize, usize), (f64, f64)> = BTreeMap::new();
             let mut time = 0.0;
             while time < end + step {
@@ -387,7 +546,12 @@ mod tests {
                         *met = met.min(time);
                     }
                 };
+                space.move_to(time);
                 for (robot, &(body, pose)) in bodies.iter().enumerate() {
+                    // What comes to a robot between its actions is not looked for.
+                    if !acts(&plan.robots[robot], time) {
+                        continue;
+                    }
                     see((robot, 9), space.nearest(body, pose, 9.0).map_or(9.0, |near| near.distance));
                 }
                 see((0, 1), distance_between(bodies[0], bodies[1]));
@@ -408,6 +572,13 @@ mod tests {
                 }
             }
         }
+    }
+
+    fn acts(path: &RobotPath, time: f64) -> bool {
+        path.legs.iter().any(|leg| {
+            let start = leg.start.unwrap();
+            (start..start + leg.duration).contains(&time)
+        })
     }
 
     /// The pose of a robot at a time, looked up leg by leg.

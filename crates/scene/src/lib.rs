@@ -5,6 +5,7 @@
 //!
 //! * [`Scene`] is the value. [`read`] makes one from a scene file; [`SCHEMA`] is the list of what it can contain.
 //! * [`Space`] computes distances and what a sensor sees; [`collisions`] finds those of planned paths.
+//! * [`Trajectory`] says where an obstacle that moves is at which time.
 
 mod collision;
 pub mod defaults;
@@ -13,6 +14,7 @@ mod mount;
 mod obstacle;
 mod robot;
 mod space;
+mod trajectory;
 
 pub use collision::{Collision, collisions};
 pub use file::{ENDING, SCHEMA, json_schema, manual, problems, read};
@@ -20,6 +22,7 @@ pub use mount::{Mount, mounts_by_name};
 pub use obstacle::{Obstacle, Shape};
 pub use robot::{Body, Frame, Objects, Robot, Sensor, SensorKind, Wheel};
 pub use space::{Near, Sighting, Space, Thing, distance_between, triangulate};
+pub use trajectory::{Piece, Trajectory, TrajectoryError, Waypoint};
 
 /// A world: robots on a floor with obstacles.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,18 +1,20 @@
-//! Fixed obstacles on the floor.
+//! Obstacles on the floor: fixed ones, and those that move as they like.
 
 use pydslrep_kinematics::Pose;
 
-use crate::Body;
+use crate::{Body, Trajectory};
 
 /// Something that robots cannot drive through.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Obstacle {
     /// Its name, also for clients of the remote API.
     pub name: String,
-    /// The frame of its shape.
+    /// The frame of its shape; where it starts if it moves.
     pub pose: Pose,
     /// Its outline.
     pub shape: Shape,
+    /// Where its middle is at which time, if it moves; its heading stays.
+    pub trajectory: Option<Trajectory>,
 }
 
 /// The outline of an obstacle, in its own frame.
@@ -30,14 +32,28 @@ pub enum Shape {
 }
 
 impl Obstacle {
+    /// One that does not move.
+    pub fn fixed(name: impl Into<String>, pose: Pose, shape: Shape) -> Self {
+        Self { name: name.into(), pose, shape, trajectory: None }
+    }
+
+    /// One that moves and keeps its heading, radians.
+    pub fn moving(name: impl Into<String>, heading: f64, shape: Shape, trajectory: Trajectory) -> Self {
+        let (x, y) = trajectory.at(0.0);
+        Self { name: name.into(), pose: Pose::new(x, y, heading), shape, trajectory: Some(trajectory) }
+    }
+
+    /// Its pose at a time, seconds since the start of the simulation.
+    pub fn pose_at(&self, time: f64) -> Pose {
+        let place = self.trajectory.as_ref().map(|trajectory| trajectory.at(time));
+        place.map_or(self.pose, |(x, y)| Pose { x, y, ..self.pose })
+    }
+
     /// A straight wall between two points, `thickness` metres thick.
     pub fn wall(name: impl Into<String>, from: (f64, f64), to: (f64, f64), thickness: f64) -> Self {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-        Self {
-            name: name.into(),
-            pose: Pose::new(f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1), dy.atan2(dx)),
-            shape: Shape::Box(Body { length: dx.hypot(dy), width: thickness }),
-        }
+        let pose = Pose::new(f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1), dy.atan2(dx));
+        Self::fixed(name, pose, Shape::Box(Body { length: dx.hypot(dy), width: thickness }))
     }
 
     /// The corners of its outline on the floor, in order; for a circle, those of a regular polygon with `sides` corners.
@@ -66,7 +82,7 @@ mod tests {
     #[test]
     fn outlines_go_once_around() {
         let pose = Pose::new(1.0, 2.0, FRAC_PI_2);
-        let outline = |shape| Obstacle { name: String::new(), pose, shape }.outline(4);
+        let outline = |shape| Obstacle::fixed("", pose, shape).outline(4);
         let cases = [
             (Shape::Cylinder { radius: 0.5 }, [(1.0, 2.5), (0.5, 2.0), (1.0, 1.5), (1.5, 2.0)]),
             (Shape::Box(Body { length: 2.0, width: 1.0 }), [(0.5, 3.0), (0.5, 1.0), (1.5, 1.0), (1.5, 3.0)]),

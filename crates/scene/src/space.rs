@@ -5,12 +5,25 @@ use parry2d_f64::query::{self, Ray};
 use parry2d_f64::shape::{Ball, Cuboid, TriMesh, Triangle};
 use pydslrep_kinematics::Pose;
 
-use crate::{Body, Mount, Obstacle, Scene, Shape};
+use crate::{Body, Mount, Obstacle, Scene, Shape, Trajectory};
 
-/// The obstacles of a scene, cut into convex parts.
+/// The obstacles of a scene, cut into convex parts, at a moment.
 #[derive(Debug, Clone, Default)]
 pub struct Space {
     parts: Vec<ConvexPart>,
+    movers: Vec<Mover>,
+}
+
+/// What makes a part move.
+#[derive(Debug, Clone)]
+struct Mover {
+    /// Its index among the parts.
+    part: usize,
+    /// The centre of the part, in the obstacle's frame.
+    centre: Vector,
+    /// Radians.
+    heading: f64,
+    trajectory: Trajectory,
 }
 
 /// A convex part of an obstacle, or a robot, on the floor.
@@ -65,10 +78,49 @@ pub enum Thing {
 }
 
 impl Space {
-    /// The obstacles of a scene. A polygon that crosses itself is replaced by the hull of its corners.
+    /// The obstacles of a scene at its start. A polygon that crosses itself is replaced by the hull of its corners.
     pub fn of(scene: &Scene) -> Self {
-        let parts = scene.obstacles.iter().enumerate();
-        Self { parts: parts.flat_map(|(owner, obstacle)| parts_of(owner, obstacle)).collect() }
+        Self::of_those(scene, |_, _| true)
+    }
+
+    /// The obstacles of a scene that do not move.
+    pub fn of_fixed(scene: &Scene) -> Self {
+        Self::of_those(scene, |_, obstacle| obstacle.trajectory.is_none())
+    }
+
+    /// A single obstacle of a scene, by its index, at its start; nothing if there is no such obstacle.
+    pub fn of_one(scene: &Scene, obstacle: usize) -> Self {
+        Self::of_those(scene, |index, _| index == obstacle)
+    }
+
+    fn of_those(scene: &Scene, is_wanted: impl Fn(usize, &Obstacle) -> bool) -> Self {
+        let mut space = Self::default();
+        for (owner, obstacle) in scene.obstacles.iter().enumerate() {
+            if !is_wanted(owner, obstacle) {
+                continue;
+            }
+            let first = space.parts.len();
+            space.parts.extend(parts_of(owner, obstacle));
+            let Some(trajectory) = &obstacle.trajectory else { continue };
+            let heading = obstacle.pose.theta;
+            let mover = |(part, found): (usize, &ConvexPart)| {
+                let centre = found.placement.inverse_transform_point(found.centre);
+                Mover { part, centre, heading, trajectory: trajectory.clone() }
+            };
+            space.movers.extend(space.parts.iter().enumerate().skip(first).map(mover));
+        }
+        space
+    }
+
+    /// Moves the obstacles that move to where they are at a time, seconds since the start of the simulation.
+    pub fn move_to(&mut self, time: f64) {
+        for mover in &self.movers {
+            let (x, y) = mover.trajectory.at(time);
+            if let Some(part) = self.parts.get_mut(mover.part) {
+                part.placement = placement(Pose { x, y, theta: mover.heading });
+                part.centre = part.placement.transform_point(mover.centre);
+            }
+        }
     }
 
     /// The obstacle nearest to a body, if it is nearer than `within` metres; the first of several equally near.
@@ -266,7 +318,7 @@ mod tests {
     }
 
     fn obstacle(pose: Pose, shape: Shape) -> Obstacle {
-        Obstacle { name: String::new(), pose, shape }
+        Obstacle::fixed("", pose, shape)
     }
 
     fn looking(range: f64, degrees: f64) -> Mount {
@@ -318,6 +370,28 @@ mod tests {
             assert!(close(near.distance, 0.2), "{near:?}");
             corners.reverse();
         }
+    }
+
+    #[test]
+    fn obstacles_that_move_are_where_they_are_at_the_time() {
+        let points = [(0.0, 1.0), (10.0, 3.0)].map(|(time, x)| crate::Waypoint { time, x, y: 0.0 });
+        let shape = || Shape::Box(Body { length: 1.0, width: 0.6 });
+        let cart =
+            Obstacle::moving("cart", FRAC_PI_2, shape(), Trajectory::new(points.to_vec(), false).unwrap());
+        let scene =
+            Scene { obstacles: vec![obstacle(Pose::new(9.0, 0.0, 0.0), shape()), cart], ..Scene::default() };
+        let mut space = Space::of(&scene);
+        let fixed = Space::of_fixed(&scene);
+        let distance = |space: &Space| space.nearest(BODY, Pose::default(), 20.0).unwrap();
+        for (time, x) in [(0.0, 1.0), (5.0, 2.0), (20.0, 3.0), (0.0, 1.0)] {
+            space.move_to(time);
+            let near = distance(&space);
+            assert!(near.obstacle == 1 && close(near.distance, x - 0.3 - 0.2), "{time}: {near:?}");
+            let seen = space.sight(Pose::default(), &looking(9.0, 20.0), &[]).unwrap();
+            assert!(seen.what == Thing::Obstacle(1) && close(seen.distance, x - 0.3 - 0.2), "{seen:?}");
+        }
+        assert_eq!(distance(&fixed).obstacle, 0);
+        assert_eq!(distance(&Space::of_one(&scene, 1)), distance(&space), "it keeps its index");
     }
 
     #[test]

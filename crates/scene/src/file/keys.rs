@@ -80,6 +80,8 @@ const TABLES: [Table; 9] = [
                 .required()
                 .example("[0.6, 0.4]"),
             HEADING,
+            TRAJECTORY,
+            REPEAT,
             NAME,
         ],
     },
@@ -87,7 +89,13 @@ const TABLES: [Table; 9] = [
         name: "cylinder",
         kind: TableKind::Each,
         summary: "A circle.",
-        keys: &[AT, key("radius", Values::ABOVE_ZERO, "Its radius.").required().example("0.25"), NAME],
+        keys: &[
+            AT,
+            key("radius", Values::ABOVE_ZERO, "Its radius.").required().example("0.25"),
+            TRAJECTORY,
+            REPEAT,
+            NAME,
+        ],
     },
     Table {
         name: "polygon",
@@ -197,7 +205,24 @@ const NAME: Key = key("name", TEXT, "Its name in messages and for clients of the
     .default("the table's name and a number: `box_1`")
     .example("\"crate\"");
 
-const AT: Key = key("at", POINT, "Its middle.").required().example("[1.0, 0.5]");
+const AT: Key = key("at", POINT, "Its middle.").required_unless("path").example("[1.0, 0.5]");
+
+const TRAJECTORY: Key = key(
+    "path",
+    WAYPOINTS,
+    "Where its middle is at which time: `t` is in seconds since the start of the simulation, from 0, and grows. Between two \
+     points it moves straight; before the first and after the last it stands still.",
+)
+.default("it does not move")
+.example("[[0.0, 1.0, 0.5], [20.0, 1.0, 2.5]]");
+
+const REPEAT: Key = key(
+    "repeat",
+    Values::Flag,
+    "Whether it goes back to the first point of its `path` in the same times, and there and back again and again.",
+)
+.default("`false`")
+.example("true");
 
 const HEADING: Key =
     key("heading", ANGLE, "Its rotation about its middle, counter-clockwise.").default("`0`").example("30");
@@ -222,7 +247,8 @@ const OPENING: Values =
 const POINT: Values = Values::Numbers("a point `[x, y]`", Range::ANY, (2, 2));
 const SIZE: Values = Values::Numbers("a size `[length, width]`, both above zero", Range::ABOVE_ZERO, (2, 2));
 const POSE: Values = Values::Numbers("a pose `[x, y, heading]`", Range::ANY, (2, 3));
-const POINTS: Values = Values::Points("a list of at least three points `[x, y]`", 3);
+const POINTS: Values = Values::Rows("a list of at least three points `[x, y]`", 3, 2);
+const WAYPOINTS: Values = Values::Rows("a list of at least one `[t, x, y]`", 1, 3);
 const PATH: Values = Values::Text("the path of an object", r"^(/[^/]*[^/\s][^/]*)+$", path);
 const TEXT: Values = Values::Text("a string", r"^[^/]*\S[^/]*$", name);
 

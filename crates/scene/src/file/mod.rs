@@ -20,6 +20,13 @@ pub fn manual() -> String {
         Lengths are in metres, angles in degrees and counter-clockwise, x points ahead of a robot with heading 0 and y to its\n\
         left. Unknown keys, wrong values, names of robots or sensors that the program does not have, and robots that start\n\
         inside something are reported with their location, and nothing is driven.\n\n\
+        Boxes and cylinders may move, so that there is something to wait for. Somebody stands in the way for half a minute and\n\
+        then steps aside:\n\n\
+        ```toml\n{MOVING}```\n\n\
+        What moves pushes nothing and is stopped by nothing, and its heading stays. If it runs into a robot, the robot cannot\n\
+        move until it has passed: one that stands still gets a warning at the end of the run; one that drives stays there until\n\
+        its wheels stop, too, so that its action fails. In CoppeliaSim nothing moves: `pydslrep scene push` places such an\n\
+        obstacle at its first point and says so.\n\n\
         Editors that support JSON schemas complete and check the file with [scene.schema.json](../editors/scene.schema.json).\n"
     );
     intro + &SCHEMA.page_of_tables()
@@ -47,6 +54,13 @@ track = 0.28
 [robots.robot_1.sensors.fSensor]
 range = 0.6
 cone = 30
+";
+
+const MOVING: &str = "\
+[[cylinder]]
+name = \"person\"
+radius = 0.2
+path = [[0, 2, 0], [30, 2, 0], [35, 2, -2]]
 ";
 
 /// The JSON schema of scene files, for editors that check TOML by one.
@@ -108,5 +122,7 @@ mod tests {
         let robot = Robot::new("robot_1", Drive::TwoWheel, wheels, sensors);
         let (scene, problems) = read(EXAMPLE, Scene::empty_floor(vec![robot]));
         assert_eq!((scene.obstacles.len(), problems), (6, vec![]));
+        let (scene, problems) = read(MOVING, Scene::default());
+        assert_eq!((scene.obstacles.len(), problems), (1, vec![]));
     }
 }

@@ -4,7 +4,10 @@ use pydslrep_kinematics::Pose;
 use pydslrep_schema::{Contents, Names, Problem, ProblemKind, Section, Span};
 
 use super::keys::SCHEMA;
-use crate::{Body, Frame, Noise, Obstacle, Robot, Scene, Shape, Thing, defaults, mounts_by_name, space};
+use crate::{
+    Body, Frame, Noise, Obstacle, Robot, Scene, Shape, Thing, Trajectory, TrajectoryError, Waypoint,
+    defaults, mounts_by_name, space,
+};
 
 /// Reads a scene file for robots on an empty floor. What is wrong is left out; if the text is not TOML, everything.
 /// Problems are in the order of the text. In a scene, robots are stopped by what they touch.
@@ -102,8 +105,9 @@ impl Reader {
     fn obstacle(&mut self, section: &Section) {
         let number = || format!("{}_{}", section.table.name, section.index + 1);
         let name = section.text("name").map_or_else(number, str::to_owned);
+        let trajectory = self.trajectory(section);
         let whole = Some(section).filter(|section| section.is_complete);
-        let Some(obstacle) = whole.and_then(|section| obstacle(name, section)) else { return };
+        let Some(obstacle) = whole.and_then(|section| obstacle(name, section, trajectory)) else { return };
         match &obstacle.shape {
             Shape::Polygon(corners) if space::triangles(corners).is_empty() => {
                 let message = "the outline of the polygon crosses itself or has no area";
@@ -115,6 +119,39 @@ impl Reader {
             }
             _ => self.scene.obstacles.push(obstacle),
         }
+    }
+
+    /// How an obstacle moves; `None` if it does not, or if what the file says of it is wrong.
+    fn trajectory(&mut self, section: &Section) -> Option<Trajectory> {
+        let Some(rows) = section.rows("path") else {
+            if section.flag("repeat") == Some(true) && !section.is_wrong("path") {
+                let message = format!("`{}.repeat` is for obstacles that have a `path`", section.written);
+                let problem =
+                    refusal(section, "repeat", &message).help("add its times and points, or remove `repeat`");
+                self.problems.push(Problem { kind: ProblemKind::MissingKey, ..problem });
+            }
+            return None;
+        };
+        let points = rows.into_iter().map(|[time, x, y]| Waypoint { time, x, y }).collect::<Vec<_>>();
+        let (first, repeats) = (points.first().copied(), section.flag("repeat").unwrap_or(false));
+        let trajectory = Trajectory::new(points.clone(), repeats);
+        if let Err(error) = &trajectory {
+            let problem = refusal(section, "path", &unordered(&section.written, &points, *error));
+            let item = match error {
+                TrajectoryError::NotLater(index) | TrajectoryError::NotFinite(index) => *index,
+                TrajectoryError::Empty | TrajectoryError::TooEarly => 0,
+            };
+            let span = section.item_span("path", item).or(problem.span);
+            let help = "a path is a list of `[t, x, y]`, whose times begin at 0 or later and grow";
+            self.problems.push(Problem { span, ..problem }.help(help));
+        } else if let (Some((x, y)), Some(first)) = (section.pair("at"), first)
+            && (x, y) != (first.x, first.y)
+        {
+            let message = format!("`{}.at` is not the first point of its `path`", section.written);
+            self.problems
+                .push(refusal(section, "at", &message).help("leave it out: the path says where it starts"));
+        }
+        trajectory.ok()
     }
 
     fn robot(&mut self, index: usize, section: &Section) {
@@ -185,8 +222,30 @@ fn refusal(section: &Section, key: &str, message: &str) -> Problem {
     Problem::new(ProblemKind::InvalidValue, name, section.span(key), message.to_owned())
 }
 
+/// Why the points of a path are wrong.
+fn unordered(written: &str, points: &[Waypoint], error: TrajectoryError) -> String {
+    let time = |index: usize| points.get(index).map_or(0.0, |point| point.time);
+    match error {
+        TrajectoryError::TooEarly => {
+            format!("`{written}.path` begins at {} s, but the simulation starts at 0 s", time(0))
+        }
+        TrajectoryError::NotLater(index) => {
+            format!(
+                "the times of `{written}.path` do not grow: {} s follows {} s",
+                time(index),
+                time(index - 1)
+            )
+        }
+        TrajectoryError::Empty | TrajectoryError::NotFinite(_) => format!("`{written}.path`: {error}"),
+    }
+}
+
 fn radians(section: &Section, key: &str) -> Option<f64> {
     section.number(key).map(f64::to_radians)
+}
+
+fn points(section: &Section, key: &str) -> Option<Vec<(f64, f64)>> {
+    Some(section.rows::<2>(key)?.into_iter().map(Into::into).collect())
 }
 
 fn body(section: &Section, key: &str) -> Option<Body> {
@@ -201,19 +260,25 @@ fn mount_by_name(robot: &mut Robot) {
     }
 }
 
-fn obstacle(name: String, section: &Section) -> Option<Obstacle> {
+fn obstacle(name: String, section: &Section, trajectory: Option<Trajectory>) -> Option<Obstacle> {
     if section.table.name == "wall" {
         let thickness = section.number("thickness").unwrap_or(defaults::WALL_THICKNESS);
         return Some(Obstacle::wall(name, section.pair("from")?, section.pair("to")?, thickness));
     }
-    let (x, y) = section.pair("at").unwrap_or_default();
-    let pose = Pose::new(x, y, radians(section, "heading").unwrap_or_default());
+    let heading = radians(section, "heading").unwrap_or_default();
     let shape = match section.table.name {
         "box" => Shape::Box(body(section, "size")?),
         "cylinder" => Shape::Cylinder { radius: section.number("radius")? },
-        _ => Shape::Polygon(section.points("corners")?),
+        _ => {
+            return Some(Obstacle::fixed(name, Pose::default(), Shape::Polygon(points(section, "corners")?)));
+        }
     };
-    Some(Obstacle { name, pose, shape })
+    if let Some(trajectory) = trajectory {
+        return Some(Obstacle::moving(name, heading, shape, trajectory));
+    }
+    // Without a place it has a path that is wrong.
+    let (x, y) = section.pair("at")?;
+    Some(Obstacle::fixed(name, Pose::new(x, y, heading), shape))
 }
 
 /// Walls around a rectangle, outside of it and without gaps at its corners.
@@ -443,6 +508,76 @@ mod tests {
     }
 
     #[test]
+    fn obstacles_may_move() {
+        let scene = check(
+            "[[cylinder]]\nname = \"person\"\nat = [2, 0]\nradius = 0.2\npath = [[0, 2, 0], [30, 2, 0], [35, 2, -2]]\n\
+             [[box]]\nsize = [1, 0.5]\nheading = 90\npath = [[1, 0, 1], [3, 4, 1]]\nrepeat = true\n\
+             [[box]]\nsize = [1, 1]\nat = [9, 9]\nrepeat = false\n",
+            &expect![""],
+        );
+        let [person, cart, crate_] = scene.obstacles.as_slice() else { panic!("{:?}", scene.obstacles) };
+        assert_eq!((person.pose_at(20.0), person.pose_at(99.0)), (person.pose, Pose::new(2.0, -2.0, 0.0)));
+        let heading = std::f64::consts::FRAC_PI_2;
+        assert_eq!(cart.pose, Pose::new(0.0, 1.0, heading));
+        assert_eq!(
+            (cart.pose_at(2.0), cart.pose_at(4.5)),
+            (Pose::new(2.0, 1.0, heading), Pose::new(1.0, 1.0, heading))
+        );
+        assert_eq!((crate_.pose_at(7.0), &crate_.trajectory), (Pose::new(9.0, 9.0, 0.0), &None));
+    }
+
+    #[test]
+    fn wrong_paths_are_told_with_what_fits() {
+        let scene = check(
+            "[[box]]\nsize = [1, 1]\npath = []\n[[box]]\nsize = [1, 1]\npath = [[0, 1]]\n\
+             [[box]]\nsize = [1, 1]\npath = [[0, 1, \"2\"]]\n[[box]]\nsize = [1, 1]\npath = [[0, 1, inf]]\n\
+             [[box]]\nsize = [1, 1]\npath = 3\n[[box]]\nsize = [1, 1]\nat = [4, 4]\npath = [[0, 1, 2], [5.5, 1, 1], [5, 2, 2]]\n",
+            &expect![[r#"
+                invalid-value `[]`: `box.path` must be a list of at least one `[t, x, y]`
+                  help: write, for example, `[[0.0, 1.0, 0.5], [20.0, 1.0, 2.5]]`
+                invalid-value `[[0, 1]]`: `box.path` must be a list of at least one `[t, x, y]`
+                  help: write, for example, `[[0.0, 1.0, 0.5], [20.0, 1.0, 2.5]]`
+                invalid-value `[[0, 1, "2"]]`: `box.path` must be a list of at least one `[t, x, y]`
+                  help: write, for example, `[[0.0, 1.0, 0.5], [20.0, 1.0, 2.5]]`
+                invalid-value `[[0, 1, inf]]`: `box.path` is beyond 1000 km, or not finite
+                  help: write, for example, `[[0.0, 1.0, 0.5], [20.0, 1.0, 2.5]]`
+                invalid-value `3`: `box.path` must be a list of at least one `[t, x, y]`, not a number
+                  help: write, for example, `[[0.0, 1.0, 0.5], [20.0, 1.0, 2.5]]`
+                invalid-value `[5, 2, 2]`: the times of `box.path` do not grow: 5 s follows 5.5 s
+                  help: a path is a list of `[t, x, y]`, whose times begin at 0 or later and grow
+            "#]],
+        );
+        let poses: Vec<Pose> = scene.obstacles.iter().map(|obstacle| obstacle.pose).collect();
+        assert_eq!(poses, [Pose::new(4.0, 4.0, 0.0)], "what is fine holds");
+        check(
+            "[[cylinder]]\nradius = 1\npath = [[-1, 5, 5]]\n[[cylinder]]\nradius = 1\nat = [5, 5]\npath = [[0, 5, 6]]\n\
+             [[cylinder]]\nradius = 1\nat = [5, 5]\nrepeat = true\n[[cylinder]]\nradius = 1\nrepeat = 1\n",
+            &expect![[r#"
+                invalid-value `[-1, 5, 5]`: `cylinder.path` begins at -1 s, but the simulation starts at 0 s
+                  help: a path is a list of `[t, x, y]`, whose times begin at 0 or later and grow
+                invalid-value `[5, 5]`: `cylinder.at` is not the first point of its `path`
+                  help: leave it out: the path says where it starts
+                missing-key `true`: `cylinder.repeat` is for obstacles that have a `path`
+                  help: add its times and points, or remove `repeat`
+                missing-key `[[cylinder]]`: `at` is missing in this `cylinder`
+                  help: write, for example, `at = [1.0, 0.5]`
+                invalid-value `1`: `cylinder.repeat` must be `true` or `false`, not a number
+                  help: write, for example, `true`
+            "#]],
+        );
+        check(
+            "[[wall]]\nfrom = [0, 4]\nto = [1, 4]\npath = [[0, 0, 0]]\n\
+             [[polygon]]\ncorners = [[5, 5], [6, 5], [5, 6]]\nrepeat = true\n",
+            &expect![[r#"
+                unknown-key `path`: there is no key `wall.path`
+                  help: the keys here are from, to, thickness, name
+                unknown-key `repeat`: there is no key `polygon.repeat`
+                  help: the keys here are corners, name
+            "#]],
+        );
+    }
+
+    #[test]
     fn nobody_starts_in_something() {
         check(
             "[[box]]\nat = [0.2, 0.1]\nsize = [1, 1]\n[robots.robot_2]\nstart = [9, 9]\n",
@@ -469,8 +604,12 @@ mod tests {
             let header = table.header(&name);
             let with = |key: &Key, value: &str| {
                 let others = table.keys.iter().filter(|other| {
-                    // What there are walls around depends on these.
-                    let matters = other.required || (table.name == "world" && other.name == "size");
+                    // What there are walls around, and what is repeated.
+                    let is_needed = matches!(
+                        (table.name, other.name, key.name),
+                        ("world", "size", _) | (_, "path", "repeat")
+                    );
+                    let matters = other.required || is_needed;
                     matters && other.name != key.name
                 });
                 let others: Vec<String> =
@@ -500,7 +639,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_text_breaks_the_reader(text in "(\\[{0,2}(world|box|robots\\.robot_1|wall|polygon)\\]{0,2}\n|(at|size|corners|start|from|to) = (\\[[-0-9.,\\[\\]e ]{0,20}|1e400|nan|true)\n|.){0,30}") {
+        fn no_text_breaks_the_reader(text in "(\\[{0,2}(world|box|robots\\.robot_1|wall|polygon)\\]{0,2}\n|(at|size|corners|start|from|to|path|repeat) = (\\[[-0-9.,\\[\\]e ]{0,20}|1e400|nan|true)\n|.){0,30}") {
             let (scene, _) = read(&text, floor());
             for obstacle in &scene.obstacles {
                 prop_assert!(obstacle.outline(8).iter().all(|(x, y)| x.is_finite() && y.is_finite()));
