@@ -21,4 +21,4 @@ pub use edge::{Options, Simulator, StartError};
 pub use engine::Engine;
 pub use remote::{Answer, LegacyResponse, Malformed, Session};
 pub use sightings::Sightings;
-pub use world::{World, WorldError};
+pub use world::{Strike, World, WorldError};

@@ -1,6 +1,7 @@
 //! The simulated world: robots driven by their wheels in fixed time steps, with contacts.
 
 mod contact;
+mod movers;
 mod noise;
 
 use std::fmt;
@@ -9,10 +10,15 @@ use pydslrep_kinematics::{ModelError, PerWheel, Pose, Traction, Twist, motion};
 use pydslrep_scene::{Body, Scene, SensorKind, Sighting, Space};
 
 use contact::Surroundings;
+pub use movers::Strike;
+use movers::{Bystander, Mover};
 use noise::{Slip, body_error, reading_error};
 use pydslrep_trace::TraceRecord;
 
 use crate::engine::{Engine, Physics};
+
+/// The maximum number of strikes that are kept; nobody would read more.
+const MAX_STRIKES: usize = 10_000;
 
 /// The number of integration steps per simulation step, as in CoppeliaSim (5 ms in a step of 50 ms).
 const SUBSTEPS: u32 = 10;
@@ -24,8 +30,12 @@ pub struct World {
     scene: Scene,
     space: Space,
     robots: Vec<RobotState>,
+    movers: Vec<Mover>,
+    strikes: Vec<Strike>,
     step: f64,
     steps: u64,
+    /// Obstacles that move are where they are at this time, seconds.
+    obstacle_time: f64,
     physics: Option<Physics>,
 }
 
@@ -41,6 +51,8 @@ struct RobotState {
     /// Metres to the left per radian that it turns.
     drift: f64,
     joints: Vec<Joint>,
+    /// Whether something has run into it while it drove: it stays where it is until its wheels stand still.
+    is_struck: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -119,7 +131,17 @@ impl World {
         }
         let robots =
             (0..scene.robots.len()).map(|robot| robot_at_rest(&scene, robot)).collect::<Result<_, _>>()?;
-        Ok(Self { space: Space::of(&scene), scene, robots, step, steps: 0, physics: None })
+        Ok(Self {
+            space: Space::of(&scene),
+            movers: Mover::all(&scene),
+            strikes: Vec::new(),
+            scene,
+            robots,
+            step,
+            steps: 0,
+            obstacle_time: 0.0,
+            physics: None,
+        })
     }
 
     /// From now on steps take `step` seconds. What an engine does depends on it: see [`World::use_engine`].
@@ -170,6 +192,7 @@ impl World {
     /// Resets the world to the scene, at time 0 and at rest.
     pub fn reset(&mut self) {
         self.steps = 0;
+        self.strikes.clear();
         self.park();
         for (robot, state) in self.robots.iter_mut().enumerate() {
             for (wheel, joint) in state.joints.iter_mut().enumerate() {
@@ -178,12 +201,17 @@ impl World {
         }
     }
 
-    /// Returns the robots to their start poses, at rest; keeps the time.
+    /// Returns the robots to their start poses, at rest, and the obstacles that move to where they start; keeps the time and
+    /// the strikes.
     pub fn park(&mut self) {
+        self.obstacle_time = 0.0;
+        self.space.move_to(0.0);
+        self.movers.iter_mut().for_each(Mover::forget);
         for (state, robot) in self.robots.iter_mut().zip(&self.scene.robots) {
             state.pose = robot.start;
             state.jitter = [0.0; 3];
             state.twist = Twist::default();
+            state.is_struck = false;
             for joint in &mut state.joints {
                 (joint.target, joint.rate, joint.angle) = (0.0, 0.0, 0.0);
             }
@@ -193,6 +221,16 @@ impl World {
     /// The pose of a robot; the origin if there is no such robot.
     pub fn pose(&self, robot: usize) -> Pose {
         self.robots.get(robot).map_or_else(Pose::default, RobotState::seen_pose)
+    }
+
+    /// The pose of an obstacle, which may move; `None` if there is no such obstacle.
+    pub fn obstacle_pose(&self, obstacle: usize) -> Option<Pose> {
+        self.scene.obstacles.get(obstacle).map(|obstacle| obstacle.pose_at(self.obstacle_time))
+    }
+
+    /// The robots that moving obstacles have run into since the last [`World::reset`], in the order of time.
+    pub fn strikes(&self) -> &[Strike] {
+        &self.strikes
     }
 
     /// The twist of a robot in its own frame; zero if there is no such robot.
@@ -234,16 +272,17 @@ impl World {
         }
     }
 
-    /// Advances all robots by one step.
+    /// Advances all robots by one step, and the obstacles that move.
     pub fn step(&mut self) {
         for joint in self.robots.iter_mut().flat_map(|state| &mut state.joints) {
             joint.slip.advance(self.step);
         }
-        let seconds = self.step / f64::from(SUBSTEPS);
-        for _ in 0..SUBSTEPS {
+        let (begin, seconds) = (self.time(), self.step / f64::from(SUBSTEPS));
+        for substep in 1..=SUBSTEPS {
             for robot in 0..self.robots.len() {
                 self.advance(robot, seconds);
             }
+            self.move_obstacles(begin + self.step * f64::from(substep) / f64::from(SUBSTEPS));
         }
         self.steps += 1;
         if let Some(physics) = self.physics {
@@ -274,6 +313,28 @@ impl World {
         (distance <= part.mount.range).then_some(Sighting { distance, ..seen })
     }
 
+    /// Moves obstacles to where they are at a time, past the robots, which stand still meanwhile.
+    fn move_obstacles(&mut self, time: f64) {
+        if self.movers.is_empty() {
+            return;
+        }
+        if self.scene.collisions {
+            let robots: Vec<Bystander> = self.robots.iter().map(RobotState::as_bystander).collect();
+            let mut strikes: Vec<Strike> = Vec::new();
+            for mover in &mut self.movers {
+                strikes.extend(mover.advance(self.obstacle_time, time, &robots));
+            }
+            strikes.sort_by(|a, b| a.time.total_cmp(&b.time));
+            for strike in &strikes {
+                self.robots[strike.robot].is_struck |= strike.was_driving;
+            }
+            self.strikes.extend(strikes);
+            self.strikes.truncate(MAX_STRIKES);
+        }
+        self.obstacle_time = time;
+        self.space.move_to(time);
+    }
+
     /// Advances the motors and body of a robot. The body moves with the mean rates of the interval, so that the wheels'
     /// angles and the body's path agree.
     fn advance(&mut self, robot: usize, seconds: f64) {
@@ -289,6 +350,11 @@ impl World {
         let twist = state.drive(parts.motor_acceleration, parts.motor_speed, self.physics, seconds);
         if !self.scene.collisions {
             state.pose = state.pose.advance(twist, seconds);
+            return;
+        }
+        state.is_struck &= state.is_driving();
+        if state.is_struck || self.movers.iter().any(|mover| mover.covers(robot)) {
+            state.twist = Twist::default();
             return;
         }
         let around = Surroundings { space: &self.space, others: &others };
@@ -342,6 +408,7 @@ fn robot_at_rest(scene: &Scene, index: usize) -> Result<RobotState, WorldError> 
         twist: Twist::default(),
         drift: 0.0,
         joints,
+        is_struck: false,
     })
 }
 
@@ -350,6 +417,14 @@ impl RobotState {
     fn seen_pose(&self) -> Pose {
         let [x, y, theta] = self.jitter;
         Pose { x: self.pose.x + x, y: self.pose.y + y, theta: self.pose.theta + theta }
+    }
+
+    fn is_driving(&self) -> bool {
+        self.joints.iter().any(|joint| joint.rate.abs() > 0.0)
+    }
+
+    fn as_bystander(&self) -> Bystander {
+        Bystander { body: self.body, pose: self.pose, is_driving: self.is_driving() }
     }
 
     /// Runs the motors and returns the mean twist that the wheels give the body, ignoring contacts.
@@ -400,7 +475,7 @@ impl Joint {
 #[cfg(test)]
 mod tests {
     use pydslrep_kinematics::Drive;
-    use pydslrep_scene::{Noise, Obstacle, Robot, Thing, Wheel};
+    use pydslrep_scene::{Noise, Obstacle, Robot, Shape, Thing, Trajectory, Waypoint, Wheel};
 
     use super::*;
 
@@ -611,6 +686,114 @@ mod tests {
             ghost.step();
         }
         assert!(ghost.pose(0).x > 2.0);
+    }
+
+    /// A world with a robot at the origin, heading along x, and a person of 40 cm who walks.
+    fn with_person(rows: &[[f64; 3]], repeats: bool) -> World {
+        let points = rows.iter().map(|&[time, x, y]| Waypoint { time, x, y }).collect();
+        let trajectory = Trajectory::new(points, repeats).unwrap();
+        let person = Obstacle::moving("person", 0.0, Shape::Cylinder { radius: 0.2 }, trajectory);
+        let robots = vec![robot("r", 0.0, 0.0, 0.0)];
+        World::new(Scene { robots, obstacles: vec![person], ..Scene::default() }).unwrap()
+    }
+
+    fn run(world: &mut World, seconds: f64) {
+        let end = world.time() + seconds - world.step_length() / 2.0;
+        while world.time() < end {
+            world.step();
+        }
+    }
+
+    #[test]
+    fn sensors_see_an_obstacle_where_it_is_at_the_time() {
+        let mut world = with_person(&[[0.0, 0.9, 0.0], [2.0, 0.9, 0.0], [4.0, 0.9, 2.0]], true);
+        let seen = |world: &World| world.sight(0, 0).map(|seen| (seen.distance * 1e6).round() / 1e6);
+        assert_eq!(seen(&world), Some(0.55));
+        run(&mut world, 3.0);
+        assert_eq!((seen(&world), world.obstacle_pose(0)), (None, Some(Pose::new(0.9, 1.0, 0.0))));
+        run(&mut world, 3.0);
+        assert_eq!(seen(&world), Some(0.55), "it has come back");
+        run(&mut world, 5.0);
+        assert_eq!(seen(&world), None);
+        world.park();
+        assert_eq!((seen(&world), world.obstacle_pose(0)), (Some(0.55), Some(Pose::new(0.9, 0.0, 0.0))));
+        assert_eq!(world.obstacle_pose(1), None);
+    }
+
+    #[test]
+    fn a_robot_that_waits_is_struck_but_not_pushed() {
+        let mut world = with_person(&[[0.0, 2.0, 0.0], [10.0, -2.0, 0.0]], false);
+        run(&mut world, 4.0);
+        assert_eq!((world.strikes().len(), world.pose(0)), (0, Pose::default()));
+        run(&mut world, 1.0);
+        let [strike] = world.strikes() else { panic!("{:?}", world.strikes()) };
+        assert!((strike.time - 1.65 / 0.4).abs() < 0.01, "{strike:?}");
+        assert_eq!((strike.robot, strike.obstacle, strike.was_driving), (0, 0, false));
+        drive(&mut world, 0, [2.0, 2.0]);
+        run(&mut world, 0.5);
+        assert_eq!((world.pose(0), world.twist(0)), (Pose::default(), Twist::default()), "it is covered");
+        run(&mut world, 4.0);
+        assert!(world.pose(0).x > 0.1 && world.strikes().len() == 1, "it goes on: {:?}", world.pose(0));
+        world.reset();
+        assert_eq!(world.strikes(), []);
+    }
+
+    #[test]
+    fn a_robot_that_drives_and_is_struck_stays_until_its_wheels_stop() {
+        // The person crosses the way within half a second.
+        let mut world = with_person(&[[2.0, 0.5, 1.0], [3.0, 0.5, -3.0]], false);
+        drive(&mut world, 0, [4.0, 4.0]);
+        run(&mut world, 10.0);
+        let [strike] = *world.strikes() else { panic!("{:?}", world.strikes()) };
+        assert!(strike.was_driving && strike.time > 2.0 && strike.time < 3.0, "{strike:?}");
+        assert_eq!((world.pose(0), world.twist(0)), (strike.pose, Twist::default()));
+        assert!(world.angle(0, 0) * 0.05 > 1.8, "its wheels turn");
+        drive(&mut world, 0, [0.0, 0.0]);
+        run(&mut world, 1.0);
+        drive(&mut world, 0, [4.0, 4.0]);
+        run(&mut world, 1.0);
+        assert!(world.pose(0).x > strike.pose.x + 0.1, "{:?}", world.pose(0));
+    }
+
+    #[test]
+    fn a_robot_that_drives_into_an_obstacle_is_blocked_until_it_has_left() {
+        let mut world = with_person(&[[0.0, 1.0, 0.05], [10.0, 1.0, -0.05], [12.0, 1.0, -3.0]], false);
+        drive(&mut world, 0, [10.0, 10.0]);
+        run(&mut world, 5.0);
+        let reached = world.pose(0).x;
+        assert!(reached > 0.6 && reached < 0.66 && world.strikes().is_empty(), "{reached}");
+        run(&mut world, 15.0);
+        assert!(world.pose(0).x > 2.0, "{:?} {:?}", world.pose(0), world.strikes());
+    }
+
+    #[test]
+    fn nothing_is_struck_where_nothing_collides() {
+        let mut scene = with_person(&[[0.0, 2.0, 0.0], [10.0, -2.0, 0.0]], false).scene().clone();
+        scene.collisions = false;
+        let mut world = World::new(scene).unwrap();
+        drive(&mut world, 0, [1.0, 1.0]);
+        run(&mut world, 10.0);
+        assert!(world.strikes().is_empty() && (world.pose(0).x - 0.5).abs() < 0.01, "{:?}", world.pose(0));
+        assert_eq!(world.obstacle_pose(0), Some(Pose::new(-2.0, 0.0, 0.0)));
+    }
+
+    #[test]
+    fn worlds_with_moving_obstacles_repeat() {
+        let trace = || {
+            let mut scene = with_person(&[[0.5, 2.0, 0.3], [9.0, -2.0, -0.1]], true).scene().clone();
+            scene.noise = Some(Noise::default());
+            let mut world = World::new(scene).unwrap();
+            drive(&mut world, 0, [1.0, 1.2]);
+            let mut trace = Vec::new();
+            for _ in 0..400 {
+                world.step();
+                trace.push((world.pose(0), world.sight(0, 0), world.obstacle_pose(0)));
+            }
+            (trace, world.strikes().to_vec())
+        };
+        let first = trace();
+        assert!(!first.1.is_empty());
+        assert_eq!(trace(), first);
     }
 
     #[test]

@@ -16,7 +16,7 @@ use super::connection::listen;
 use super::shared_session::SharedSession;
 use pydslrep_trace::TraceRecord;
 
-use crate::{Engine, Session, Sightings, World, WorldError};
+use crate::{Engine, Session, Sightings, Strike, World, WorldError};
 
 /// The period of the clock while it runs in real time, and while it does not.
 const CLOCK_PERIOD: Duration = Duration::from_millis(2);
@@ -196,6 +196,12 @@ impl Simulator {
     /// The points that sensor readings have detected since the start.
     pub fn sightings(&self) -> Sightings {
         self.session.with(|session| session.sightings().clone())
+    }
+
+    /// The robots that moving obstacles have run into since the start of the simulation, in the order of time; by their
+    /// indices in the scene.
+    pub fn strikes(&self) -> Vec<Strike> {
+        self.session.with(|session| session.world().strikes().to_vec())
     }
 
     /// The trace since the start or the last call: every robot at the start of a simulation and after each step, in

@@ -386,7 +386,7 @@ impl Objects {
         let robot = match kind {
             Kind::Made => return None,
             Kind::Obstacle(obstacle) => {
-                return Some(planar(world.scene().obstacles.get(obstacle)?.pose, 0.0));
+                return Some(planar(world.obstacle_pose(obstacle)?, 0.0));
             }
             Kind::Robot(robot) | Kind::Wheel { robot, .. } | Kind::Sensor { robot, .. } => robot,
         };

@@ -187,7 +187,7 @@ fn add_obstacle(objects: &Objects, handle: Handle, shape: &ShapePart, found: &mu
     for (pose, shape) in outlines(&frame, &shape.form) {
         if found.scene.obstacles.len() < MAX_OBSTACLES {
             found.roles.push((handle, Kind::Obstacle(found.scene.obstacles.len())));
-            found.scene.obstacles.push(Obstacle { name: name.clone(), pose, shape });
+            found.scene.obstacles.push(Obstacle::fixed(name.clone(), pose, shape));
         }
     }
 }

@@ -102,12 +102,13 @@ fn sight_of(context: &CallContext, sensor: &Sensor, other: Handle) -> Option<See
             return sensor.floor(&frame, &shape.form);
         }
         let outlines = outlines(&frame, &shape.form).into_iter();
-        return sensor
-            .obstacle(outlines.map(|(pose, shape)| Obstacle { name: String::new(), pose, shape }).collect());
+        return sensor.obstacle(outlines.map(|(pose, shape)| Obstacle::fixed("", pose, shape)).collect());
     }
     match context.objects.get(other)?.kind {
         Kind::Obstacle(index) => {
-            sensor.obstacle(context.world.scene().obstacles.get(index).cloned().into_iter().collect())
+            let obstacle = context.world.scene().obstacles.get(index)?;
+            let (pose, shape) = (context.world.obstacle_pose(index)?, obstacle.shape.clone());
+            sensor.obstacle(vec![Obstacle::fixed("", pose, shape)])
         }
         _ => None,
     }

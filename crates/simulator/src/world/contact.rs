@@ -4,7 +4,7 @@ use pydslrep_kinematics::{Pose, Twist};
 use pydslrep_scene::{Body, Space, distance_between};
 
 /// The gap at which bodies stop, metres.
-const GAP: f64 = 0.001;
+pub(super) const GAP: f64 = 0.001;
 
 /// The tolerance for rounding when a body moves along something, metres.
 const TOLERANCE: f64 = 1e-9;
@@ -274,7 +274,7 @@ mod tests {
             vx in -20.0..20.0, vy in -20.0..20.0, omega in -20.0..20.0,
         ) {
             let corners = vec![(0.0, 0.0), (0.9, 0.1), (0.3, 0.3), (0.2, 0.9)];
-            let star = Obstacle { name: String::new(), pose: Pose::default(), shape: pydslrep_scene::Shape::Polygon(corners) };
+            let star = Obstacle::fixed("", Pose::default(), pydslrep_scene::Shape::Polygon(corners));
             let space = space(vec![star, Obstacle::wall("w", (-1.0, -1.0), (1.0, -0.7), 0.01)]);
             let around = Surroundings { space: &space, others: &[] };
             let start = Pose::new(x, y, theta);
