@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (number, robot) in (0..).zip(Scene::empty_floor(robots.collect()).robots) {
         let sign = if number % 2 == 0 { -1.0 } else { 1.0 };
         let forward = Action::Move { distance: 1.0 + 0.5 * f64::from(number), speed: 0.09 };
-        let turn = Action::Turn { angle: sign * FRAC_PI_2 };
+        let turn = Action::Turn { angle: sign * FRAC_PI_2, speed: 0.09 };
         let path = plan_movement(&robot.model()?, robot.start, &[forward, turn, forward, turn]);
         let planned = path.sample(100);
         let drift = |(i, TimedPose { time, pose }): (u32, &TimedPose)| {

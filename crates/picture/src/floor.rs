@@ -1,9 +1,11 @@
 //! The floor: grid, obstacles and planned collisions.
 
 use pydslrep_scene::Obstacle;
-use svg::node::element::{Group, Path, Polygon, Rectangle};
+use svg::node::element::{Group, Path, Polygon, Polyline, Rectangle};
 
-use crate::style::{ALARM, AXIS, GRID, OBSTACLE, OBSTACLE_EDGE, PAPER, QUIET, line, list, pixels, text};
+use crate::style::{
+    ALARM, AXIS, FINE_DASHES, GRID, OBSTACLE, OBSTACLE_EDGE, PAPER, QUIET, line, list, pixels, text,
+};
 use crate::view::View;
 
 /// The number of corners of circles.
@@ -54,9 +56,10 @@ fn tick_label(tick: f64, step: f64) -> String {
     if tick < 0.0 { format!("−{label}") } else { label }
 }
 
-/// The outlines of obstacles.
-pub(crate) fn obstacles(view: &View, obstacles: &[Obstacle]) -> Group {
-    if obstacles.is_empty() {
+/// The outlines of obstacles; those that move are at their first point.
+pub(crate) fn obstacles<'a>(view: &View, obstacles: impl Iterator<Item = &'a Obstacle>) -> Group {
+    let mut obstacles = obstacles.peekable();
+    if obstacles.peek().is_none() {
         return Group::new();
     }
     let shape = |obstacle: &Obstacle| {
@@ -69,7 +72,18 @@ pub(crate) fn obstacles(view: &View, obstacles: &[Obstacle]) -> Group {
         .set("stroke", OBSTACLE_EDGE)
         .set("stroke-width", 1)
         .set("stroke-linejoin", "round");
-    obstacles.iter().fold(look, |group, obstacle| group.add(shape(obstacle)))
+    obstacles.fold(look, |group, obstacle| group.add(shape(obstacle)))
+}
+
+/// The paths of the obstacles that move.
+pub(crate) fn obstacle_paths(view: &View, obstacles: &[Obstacle]) -> Group {
+    let paths = obstacles.iter().filter_map(|obstacle| obstacle.trajectory.as_ref());
+    paths.fold(Group::new(), |group, path| {
+        let points: Vec<_> = path.points().iter().map(|point| view.place(point.x, point.y)).collect();
+        let line = Polyline::new().set("points", list(&points)).set("fill", "none");
+        let line = line.set("stroke", OBSTACLE_EDGE).set("stroke-width", 1);
+        group.add(line.set("stroke-dasharray", FINE_DASHES))
+    })
 }
 
 /// Marks for planned collisions.

@@ -6,7 +6,9 @@ use svg::node::element::{Circle, Group, Line, Rectangle};
 use crate::floor::cross;
 use crate::robots::{DRIVEN_OPACITY, DRIVEN_WIDTH, END_FILL, MAP_WIDTH, SIGHTING, map_node};
 use crate::route::{Picture, Route, is_drawable};
-use crate::style::{DASHES, INK, OBSTACLE, OBSTACLE_EDGE, QUIET, colour, line, pixels, shorten, text};
+use crate::style::{
+    DASHES, FINE_DASHES, INK, OBSTACLE, OBSTACLE_EDGE, QUIET, colour, line, pixels, shorten, text,
+};
 use crate::time_marks::arrowhead;
 
 /// Pixels.
@@ -89,6 +91,10 @@ fn samples(picture: &Picture<'_>, key: Key) -> Vec<(String, Group)> {
     if !picture.obstacles.is_empty() {
         let obstacle = outline(1.0, 1.0).set("fill", OBSTACLE).set("stroke", OBSTACLE_EDGE);
         add("obstacle", Group::new().add(obstacle));
+    }
+    if picture.movers().next().is_some() {
+        let path = stroke(1.0).set("stroke", OBSTACLE_EDGE).set("stroke-dasharray", FINE_DASHES);
+        add("path of an obstacle", Group::new().add(path));
     }
     if !picture.collisions.is_empty() {
         add("planned collision", cross((18.0, 0.0)));

@@ -3,13 +3,14 @@
 //! The animation is declarative (SMIL), so every browser plays it without scripts.
 
 use pydslrep_kinematics::{TimedPose, angle_between};
+use pydslrep_scene::Obstacle;
 use svg::node::element::{Animate, AnimateTransform, Circle, Group, Polyline, Text};
 
 use crate::legend::Key;
 use crate::route::{Picture, Route, duration};
 use crate::style::{AXIS, INK, QUIET, line, list, pixels, text};
 use crate::view::View;
-use crate::{legend, robots};
+use crate::{floor, legend, robots};
 
 /// The maximum duration of a replay, seconds; longer drives are sped up.
 const MAX_DURATION: f64 = 16.0;
@@ -26,17 +27,21 @@ const TOLERANCE: f64 = 0.4;
 /// The opacity of the complete path.
 const TRAIL_OPACITY: f64 = 0.25;
 
+/// The maximum number of key frames of an obstacle; nobody could follow more.
+const MAX_FRAMES: usize = 2000;
+
 /// The height of the timeline below the floor, pixels.
 const TIME_HEIGHT: f64 = 44.0;
 
 impl Picture<'_> {
-    /// Draws an animated SVG: robots move along their driven paths, or along the planned ones if nothing was driven. Without
-    /// known times it is a still picture.
+    /// Draws an animated SVG: robots move along their driven paths, or along the planned ones if nothing was driven, and
+    /// obstacles along theirs. Without known times it is a still picture.
     pub fn replay(&self) -> String {
         let Some(seconds) = duration(self.routes) else { return self.svg() };
         let clock = Clock::of(seconds);
         let (view, sheet) = self.sheet(TIME_HEIGHT);
-        sheet
+        self.movers()
+            .fold(sheet, |sheet, mover| sheet.add(obstacle(&view, mover, &clock)))
             .add(self.each(|route, colour| robots::planned(&view, route, colour)))
             .add(self.each(|route, colour| trail(&view, route, colour, &clock)))
             .add(self.each(|route, colour| body(&view, route, colour, &clock)))
@@ -159,6 +164,32 @@ fn transformation(clock: &Clock, kind: &str, values: String, times: &str) -> Ani
         .set("repeatCount", "indefinite")
 }
 
+/// An obstacle that moves.
+fn obstacle(view: &View, obstacle: &Obstacle, clock: &Clock) -> Group {
+    let drawn = floor::obstacles(view, std::iter::once(obstacle));
+    let frames = obstacle_frames(view, obstacle, clock);
+    let Some(last) = frames.last() else { return drawn };
+    let times = clock.key_times(frames.iter().map(|frame| frame.seconds));
+    let places = values(&frames, |frame| format!("{},{}", pixels(frame.x), pixels(frame.y)));
+    Group::new()
+        .set("transform", format!("translate({} {})", pixels(last.x), pixels(last.y)))
+        .add(transformation(clock, "translate", places, &times))
+        .add(drawn)
+}
+
+/// How far an obstacle is from where it starts, at each change of its velocity: pixels.
+fn obstacle_frames(view: &View, obstacle: &Obstacle, clock: &Clock) -> Vec<Frame> {
+    let Some(trajectory) = &obstacle.trajectory else { return Vec::new() };
+    let start = view.place(obstacle.pose.x, obstacle.pose.y);
+    let times = trajectory.changes().take_while(|time| *time < clock.seconds).take(MAX_FRAMES);
+    let frame = |seconds: f64| {
+        let (x, y) = trajectory.at(seconds);
+        let place = view.place(x, y);
+        Frame { seconds, x: place.0 - start.0, y: place.1 - start.1, degrees: 0.0 }
+    };
+    thin(&times.chain([clock.seconds]).map(frame).collect::<Vec<_>>())
+}
+
 /// The complete path, and the driven part of it.
 fn trail(view: &View, route: &Route, colour: &str, clock: &Clock) -> Group {
     let frames = frames(view, route);
@@ -254,6 +285,30 @@ mod tests {
         assert_eq!(frames(&view, &routes[0]).len(), 2);
         let rests = [route(along(&[(0.0, 0.0), (10.0, 1.0), (20.0, 1.0), (30.0, 2.0)]))];
         assert_eq!(frames(&view, &rests[0]).len(), 4, "a pause is visible");
+    }
+
+    #[test]
+    fn obstacles_are_where_they_are_at_the_time() {
+        use pydslrep_scene::{Shape, Trajectory, Waypoint};
+        let points = [(2.0, 1.0), (4.0, 2.0), (5.0, 2.0)].map(|(time, x)| Waypoint { time, x, y: 1.0 });
+        let person = |repeats| {
+            let trajectory = Trajectory::new(points.to_vec(), repeats).unwrap();
+            Obstacle::moving("person", 0.0, Shape::Cylinder { radius: 0.2 }, trajectory)
+        };
+        let routes = [route(along(&[(0.0, 0.0), (8.0, 1.0)]))];
+        let obstacles = [person(true)];
+        let (view, clock) = (View::of(&routes, &obstacles, 0.0, 0.0), Clock::of(8.0));
+        let moved = |obstacle: &Obstacle| -> Vec<(f64, f64)> {
+            let frames = obstacle_frames(&view, obstacle, &clock);
+            frames.iter().map(|frame| (frame.seconds, (frame.x / view.scale * 1e6).round() / 1e6)).collect()
+        };
+        assert_eq!(moved(&person(false)), [(0.0, 0.0), (2.0, 0.0), (4.0, 1.0), (8.0, 1.0)]);
+        assert_eq!(moved(&obstacles[0]), [(0.0, 0.0), (2.0, 0.0), (4.0, 1.0), (6.0, 1.0), (8.0, 0.0)]);
+        let drawn = Picture { title: "t", routes: &routes, obstacles: &obstacles, collisions: &[] }.replay();
+        let still = Picture { title: "t", routes: &routes, obstacles: &[], collisions: &[] }.replay();
+        let count = |text: &str| text.matches("<animateTransform").count();
+        assert_eq!(count(&drawn), count(&still) + 1);
+        assert!(drawn.contains("path of an obstacle"), "{drawn}");
     }
 
     #[test]

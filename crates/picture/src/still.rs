@@ -1,5 +1,6 @@
 //! Still pictures.
 
+use pydslrep_scene::Obstacle;
 use svg::Document;
 use svg::node::Comment;
 use svg::node::element::{Group, Rectangle};
@@ -20,12 +21,16 @@ const RIGHT: f64 = 24.0;
 const TITLE_LETTER: f64 = 12.0;
 
 impl Picture<'_> {
-    /// Draws an SVG: the floor with a grid in metres, planned paths (dashed) and driven paths (solid) with time marks, bodies
+    /// Draws an SVG: the floor with a grid in metres, obstacles where they start with the paths of those that move, planned paths (dashed) and driven paths (solid) with time marks, bodies
     /// at start and end, sensor detections, maps, planned collisions, and a legend with the end of each route and its
     /// deviation from the plan.
     pub fn svg(&self) -> String {
         let (view, sheet) = self.sheet(0.0);
         let step = time_marks::step(self.routes);
+        let sheet = match self.movers().next() {
+            Some(_) => sheet.add(floor::obstacles(&view, self.movers())),
+            None => sheet,
+        };
         let sheet = sheet
             .add(self.each(|route, colour| robots::lines(&view, route, colour)))
             .add(self.each(|route, colour| robots::bodies(&view, route, colour)))
@@ -36,7 +41,12 @@ impl Picture<'_> {
         sheet.add(legend::draw(self, Key::Still(step), Picture::beside(&view))).to_string()
     }
 
-    /// A sheet with the title and the floor, and `below` pixels of space under it.
+    /// The obstacles that move.
+    pub(crate) fn movers(&self) -> impl Iterator<Item = &Obstacle> {
+        self.obstacles.iter().filter(|obstacle| obstacle.trajectory.is_some())
+    }
+
+    /// A sheet with the title and the floor without what moves, and `below` pixels of space under it.
     pub(crate) fn sheet(&self, below: f64) -> (View, Document) {
         let view = View::of(self.routes, self.obstacles, LEFT, TOP);
         let width = view.left + view.width + RIGHT + legend::WIDTH + RIGHT;
@@ -44,6 +54,7 @@ impl Picture<'_> {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a width in pixels
         let title = shorten(self.title, ((width - LEFT - RIGHT) / TITLE_LETTER) as usize);
         let paper = Rectangle::new().set("width", "100%").set("height", "100%").set("fill", PAPER);
+        let fixed = self.obstacles.iter().filter(|obstacle| obstacle.trajectory.is_none());
         let sheet = Document::new()
             .set("viewBox", (0, 0, pixels(width), pixels(height)))
             .set("width", pixels(width))
@@ -53,7 +64,11 @@ impl Picture<'_> {
             .add(paper)
             .add(text(&title, LEFT, 32.0, 18).set("font-weight", "bold"))
             .add(floor::grid(&view))
-            .add(floor::obstacles(&view, self.obstacles));
+            .add(floor::obstacles(&view, fixed));
+        let sheet = match self.movers().next() {
+            Some(_) => sheet.add(floor::obstacle_paths(&view, self.obstacles)),
+            None => sheet,
+        };
         (view, sheet)
     }
 
@@ -72,11 +87,11 @@ impl Picture<'_> {
 #[cfg(test)]
 mod tests {
     use pydslrep_kinematics::{Action, Drive, Geometry, Model, Pose, TimedPose, plan_movement};
-    use pydslrep_scene::Obstacle;
+    use pydslrep_scene::{Body, Shape, Trajectory, Waypoint};
     use pydslrep_trace::Map;
 
     use super::*;
-    use crate::style::OBSTACLE;
+    use crate::style::{FINE_DASHES, OBSTACLE, list};
     use crate::testing::route;
 
     fn draw(title: &str, routes: &[Route], obstacles: &[Obstacle]) -> String {
@@ -86,7 +101,7 @@ mod tests {
     fn square() -> Route {
         let geometry = Geometry { track: 0.3, wheelbase: 0.25 };
         let model = Model::new(Drive::TwoWheel, &[0.035, 0.035], geometry).unwrap();
-        let turn = Action::Turn { angle: std::f64::consts::FRAC_PI_2 };
+        let turn = Action::Turn { angle: std::f64::consts::FRAC_PI_2, speed: 0.09 };
         let side = [Action::Move { distance: 1.0, speed: 0.09 }, turn];
         let planned = plan_movement(&model, Pose::default(), &side.repeat(3)).sample(50);
         let off =
@@ -165,6 +180,29 @@ mod tests {
         assert!(!without.contains(OBSTACLE) && !without.contains("obstacle"));
         let view = View::of(&[square()], &[wall], 0.0, 0.0);
         assert!(view.place(3.05, 0.0).0 < view.width, "the picture contains all of it");
+    }
+
+    #[test]
+    fn obstacles_that_move_are_where_they_start_with_their_path() {
+        let points = [(0.0, 3.0, 0.5), (4.0, 5.0, 0.5)].map(|(time, x, y)| Waypoint { time, x, y });
+        let cart = Obstacle::moving(
+            "cart",
+            0.0,
+            Shape::Box(Body { length: 0.4, width: 0.2 }),
+            Trajectory::new(points.to_vec(), true).unwrap(),
+        );
+        let fixed = Obstacle { trajectory: None, ..cart.clone() };
+        let dashes = format!("stroke-dasharray=\"{FINE_DASHES}\"");
+        let obstacles = [cart];
+        let with = draw("m", &[square()], &obstacles);
+        assert!(with.contains(&dashes) && with.contains("path of an obstacle"), "{with}");
+        assert!(!draw("m", &[square()], &[fixed]).contains(&dashes));
+        let view = View::of(&[square()], &obstacles, LEFT, TOP);
+        let at = |x: f64, y: f64| list(&[view.place(x, y)]);
+        for (corner, is_drawn) in [(at(2.8, 0.4), true), (at(4.8, 0.4), false), (at(5.0, 0.5), true)] {
+            assert_eq!(with.contains(&corner), is_drawn, "{corner} in {with}");
+        }
+        assert!(view.place(5.2, 0.5).0 < LEFT + view.width, "the picture contains all of its path");
     }
 
     #[test]

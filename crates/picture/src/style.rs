@@ -18,6 +18,9 @@ pub(crate) const FONT: &str = "'Helvetica Neue', Arial, 'Liberation Sans', 'Deja
 /// Dash and gap of planned paths, pixels.
 pub(crate) const DASHES: &str = "6 4";
 
+/// Dash and gap of the paths of obstacles, pixels.
+pub(crate) const FINE_DASHES: &str = "3 3";
+
 pub(crate) fn colour(index: usize) -> &'static str {
     COLOURS[index % COLOURS.len()]
 }
