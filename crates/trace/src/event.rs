@@ -70,8 +70,16 @@ pub struct Moment {
     pub robot: String,
     /// The movement's name.
     pub movement: String,
-    /// The number of the action in its movement, from 1.
+    /// The number of the action's statement in its movement, in text order from 1.
     pub action: usize,
+    /// The line of the program that it is on, if the script says it.
+    pub line: Option<usize>,
+    /// The rounds of the loops that it is in, outermost first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rounds: Vec<u32>,
+    /// The statements that do other movements and lead to it, outermost first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub calls: Vec<Call>,
     /// The action, in the words of the script.
     pub text: String,
     /// Metres.
@@ -80,6 +88,15 @@ pub struct Moment {
     pub y: f64,
     /// Radians.
     pub theta: f64,
+}
+
+/// A statement that does another movement.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Call {
+    /// The movement that the statement is in.
+    pub movement: String,
+    /// The number of the statement in that movement, from 1.
+    pub action: usize,
 }
 
 /// What a file of results is.
@@ -113,6 +130,14 @@ pub struct RunFailure {
     pub movement: Option<String>,
     /// The number of that action in its movement, from 1.
     pub action: Option<usize>,
+    /// The line of the program that it is on, if the script says it.
+    pub line: Option<usize>,
+    /// The rounds of the loops that it is in, outermost first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rounds: Vec<u32>,
+    /// The statements that do other movements and lead to it, outermost first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub calls: Vec<Call>,
     /// What to do about it.
     pub help: Option<String>,
     /// What else the script wrote to standard error.
@@ -156,7 +181,18 @@ impl RunFailure {
     /// A failure that is none of an action.
     pub fn new(class: FailureClass, message: impl Into<String>) -> Self {
         let message = message.into();
-        Self { class, message, robot: None, movement: None, action: None, help: None, output: None }
+        Self {
+            class,
+            message,
+            robot: None,
+            movement: None,
+            action: None,
+            line: None,
+            rounds: Vec::new(),
+            calls: Vec::new(),
+            help: None,
+            output: None,
+        }
     }
 }
 
@@ -199,11 +235,13 @@ mod tests {
             assert_eq!(names, example.as_object().unwrap().keys().collect(), "{name}");
             for (field, property) in definition["properties"].as_object().unwrap() {
                 let may_be_null = property["type"].as_array().is_some();
+                let may_be_missing =
+                    !definition["required"].as_array().unwrap().contains(&field.as_str().into());
                 let mut without = example.clone();
                 without.as_object_mut().unwrap().remove(field);
                 assert_eq!(
                     RunEvent::parse(&without.to_string()).is_some(),
-                    may_be_null,
+                    may_be_null || may_be_missing,
                     "{name} without {field}"
                 );
             }

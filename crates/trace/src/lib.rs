@@ -12,7 +12,7 @@ mod map;
 mod record;
 mod track;
 
-pub use event::{FailureClass, FileKind, Moment, RunEvent, RunFailure};
+pub use event::{Call, FailureClass, FileKind, Moment, RunEvent, RunFailure};
 pub use map::{Map, MapFile};
 pub use record::{TraceRecord, lines};
 pub use track::Track;
