@@ -7,7 +7,7 @@ use serde_json::Value as Json;
 
 use crate::keys::{DEFAULTS, SCHEMA, Settings};
 use crate::severities::{self, Level, Severities};
-use crate::{Problem, SECTION, Target};
+use crate::{Edition, Problem, SECTION, Target};
 
 /// What one place sets: a file, an editor, or the options of a command.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -55,6 +55,12 @@ impl Config {
     /// The options of a command that chooses a target.
     pub fn of_target(target: Option<Target>) -> Self {
         let value = target.map(|target| (("", "target"), Value::Text(target.word().to_owned())));
+        Self { values: value.into_iter().collect(), ..Self::default() }
+    }
+
+    /// The options of a command that chooses an edition.
+    pub fn of_edition(edition: Option<Edition>) -> Self {
+        let value = edition.map(|edition| (("", "edition"), Value::Text(edition.word().to_owned())));
         Self { values: value.into_iter().collect(), ..Self::default() }
     }
 
@@ -148,7 +154,7 @@ mod tests {
                 unknown-key 24 `wheel-count`: there is no setting `wheel-count`
                   help: it belongs in the table `severity`
                 unknown-key 44 `"機"`: there is no setting `機`
-                  help: the keys here are target, output, generate-on-save, write-runtime, default-speed, severity, coppeliasim, inlay-hints, code-lens
+                  help: the keys here are target, edition, output, generate-on-save, write-runtime, default-speed, severity, coppeliasim, inlay-hints, code-lens
                 unknown-key 54 `generateOnSave`: there is no setting `generateOnSave`
                   help: did you mean `generate-on-save`?
                   write: generate-on-save
@@ -161,7 +167,7 @@ mod tests {
                 unknown-key 163 `xyz`: there is no diagnostic `xyz`
                   help: `pydslrep explain` lists all diagnostics
                 unknown-key 176 `tool`: there is no setting `tool`
-                  help: the keys here are target, output, generate-on-save, write-runtime, default-speed, severity, coppeliasim, inlay-hints, code-lens
+                  help: the keys here are target, edition, output, generate-on-save, write-runtime, default-speed, severity, coppeliasim, inlay-hints, code-lens
             "#]],
         );
         assert_eq!(config.settings().target, Target::VRep, "the rest applies");
@@ -292,7 +298,7 @@ mod tests {
             &json!({"inlayHints": {"poses": 1, "pose": "x"}, "severity": {"wheelCount": "off", "wheel-order": 1}, "x": {}}),
             &expect![[r#"
                 unknown-key at `x`: there is no setting `x`
-                  help: the keys here are target, output, generate-on-save, write-runtime, default-speed, severity, coppeliasim, inlay-hints, code-lens
+                  help: the keys here are target, edition, output, generate-on-save, write-runtime, default-speed, severity, coppeliasim, inlay-hints, code-lens
                 invalid-value at `inlayHints.pose`: `inlayHints.pose` must be `true` or `false`, not a string
                   help: write, for example, `false`
                 unknown-key at `inlayHints.poses`: there is no setting `inlayHints.poses`
@@ -306,7 +312,7 @@ mod tests {
             &json!(["vrep"]),
             &expect![[r#"
                 invalid-value at ``: the settings must be a table, not a list
-                  help: the keys here are target, output, generate-on-save, write-runtime, default-speed, severity, coppeliasim, inlay-hints, code-lens
+                  help: the keys here are target, edition, output, generate-on-save, write-runtime, default-speed, severity, coppeliasim, inlay-hints, code-lens
             "#]],
         );
     }

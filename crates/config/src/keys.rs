@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use pydslrep_schema::{Key, Range, Schema, Table, TableKind, Value, Values, Word, key};
 
 use crate::severities::{CODES, Severities};
-use crate::{Config, Target, folder, host};
+use crate::{Config, Edition, Target, folder, host};
 
 /// All settings.
 pub static SCHEMA: Schema = Schema {
@@ -75,6 +75,8 @@ settings! {
     struct Settings in "" {
         /// The simulator that scripts are for.
         target: Target = key("target", Values::Words(&TARGETS), "").default("`\"coppeliasim\"`").example("\"vrep\""),
+        /// Which statements a program may have: those of the article are a part of what this version has.
+        edition: Edition = key("edition", Values::Words(&EDITIONS), "").default("`\"current\"`").example("\"article\""),
         /// The folder that scripts are written to, relative to the folder of this file and inside of it; created if
         /// missing.
         output: Option<String> = key("output", folder::FOLDER, "").default("beside each program").example("\"scripts\""),
@@ -156,6 +158,14 @@ const TARGETS: [Word; Target::ALL.len()] = {
     ]
 };
 
+const EDITIONS: [Word; Edition::ALL.len()] = {
+    let [first, second] = Edition::ALL;
+    [
+        Word { word: first.word(), summary: first.summary() },
+        Word { word: second.word(), summary: second.summary() },
+    ]
+};
+
 const PORT: Values = Values::Number(
     "a whole number from 1 to 65535",
     Range { min: 1.0, max: 65535.0, is_whole: true, ..Range::ANY },
@@ -205,6 +215,12 @@ impl Setting for Option<String> {
 }
 
 impl Setting for Target {
+    fn read(value: Option<&Value>) -> Self {
+        value.and_then(Value::text).and_then(Self::from_word).unwrap_or_default()
+    }
+}
+
+impl Setting for Edition {
     fn read(value: Option<&Value>) -> Self {
         value.and_then(Value::text).and_then(Self::from_word).unwrap_or_default()
     }

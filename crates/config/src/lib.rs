@@ -15,7 +15,7 @@ mod severities;
 
 pub use config::Config;
 pub use keys::{CodeLens, InlayHints, SCHEMA, Settings, SimulatorAddress};
-pub use pydslrep_analysis::Target;
+pub use pydslrep_analysis::{Edition, Target};
 pub use pydslrep_schema::{Problem, ProblemKind};
 pub use pydslrep_text::file_names::SETTINGS_FILE as FILE_NAME;
 pub use severities::{Level, Severities, UnknownWord, find_rule};
