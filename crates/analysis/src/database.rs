@@ -32,7 +32,7 @@ use crate::file::File;
 use crate::names::Names;
 use crate::reads::Reads;
 use crate::slots::EntitySlot;
-use crate::{Diagnostic, Target, check_cancelled};
+use crate::{Diagnostic, Edition, Target, check_cancelled};
 
 /// A file of the database; the same for the same path, also after closing and opening it again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -88,6 +88,8 @@ struct EntityData {
     reads: Reads,
     /// Who looked at this one's signature.
     readers: SmallVec<[EntityId; 4]>,
+    /// Who looked at this one's summary.
+    summary_readers: SmallVec<[EntityId; 4]>,
 }
 
 /// Documents and everything known about them. A clone shares texts and trees, so that something can be tried on it.
@@ -108,6 +110,8 @@ pub struct Database {
     absences: Absences,
     /// What scripts are made for, where it is not the usual target. Kept while a file is closed.
     targets: FxHashMap<FileId, Target>,
+    /// Which statements a file may have, where it is not the usual edition. Kept while a file is closed.
+    editions: FxHashMap<FileId, Edition>,
     /// Scenes of environments by their names. Kept while a file is closed.
     scenes: BTreeMap<FileId, Scenes>,
     /// How many more declarations a name of an environment has than when this was last asked for; never none.
@@ -174,6 +178,11 @@ impl Database {
     /// What the scripts of a file are made for.
     pub fn target(&self, file: FileId) -> Target {
         self.targets.get(&file).copied().unwrap_or_default()
+    }
+
+    /// Which statements a file may have.
+    pub fn edition(&self, file: FileId) -> Edition {
+        self.editions.get(&file).copied().unwrap_or_default()
     }
 
     /// How much the latest edit (or opening) cost.

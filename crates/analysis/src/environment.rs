@@ -2,7 +2,7 @@
 
 use std::net::Ipv4Addr;
 
-use pydslrep_kinematics::Drive;
+use pydslrep_kinematics::{ActionIndex, Drive, Place};
 pub use pydslrep_scene::{Objects, SensorKind};
 
 /// One environment, ready to run. Indices refer to the vectors of this struct.
@@ -17,12 +17,56 @@ pub struct Environment {
     pub host: Option<Ipv4Addr>,
     /// The robots in listed order, each once.
     pub robots: Vec<Robot>,
-    /// The movements that are listed, each once, in order of first listing.
+    /// The movements that are listed, each once, in order of first listing; before each of them those that it does and that
+    /// are not there yet.
     pub movements: Vec<Movement>,
     /// What runs when: groups one after the other; the members of a group (indices into `movements`) start together.
     pub schedule: Vec<Vec<usize>>,
     /// Where it is declared.
     pub source: Source,
+}
+
+/// Where an action of a plan is in the program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ActionPlace<'a> {
+    /// The movement that the environment lists.
+    pub movement: &'a str,
+    /// The number of its statement ([`Action::number`]) in its own movement, which is the listed one or the last that is done.
+    pub number: usize,
+    /// The rounds of the repetitions that it is in, from 1, the outermost first.
+    pub rounds: Vec<u32>,
+    /// The statements that lead to it by `do`, the outermost first.
+    pub calls: Vec<CallPlace<'a>>,
+    /// The statement as the program writes it.
+    pub text: &'a str,
+    /// Where that is.
+    pub source: &'a Source,
+}
+
+/// A statement that does another movement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CallPlace<'a> {
+    /// The movement that it is in.
+    pub movement: &'a str,
+    /// Its number there.
+    pub number: usize,
+}
+
+impl Environment {
+    /// Where an action of a plan is.
+    pub fn place(&self, index: ActionIndex, place: &Place) -> Option<ActionPlace<'_>> {
+        let listed = self.movements.get(*self.schedule.get(index.group)?.get(index.run)?)?;
+        let mut inner = listed;
+        let mut calls = Vec::with_capacity(place.calls().len());
+        for call in place.calls() {
+            calls.push(CallPlace { movement: &inner.name, number: call.action + 1 });
+            inner = self.movements.get(call.movement)?;
+        }
+        let number = index.action + 1;
+        let (text, source) = inner.statement(number)?;
+        let rounds = place.rounds().to_vec();
+        Some(ActionPlace { movement: &listed.name, number, rounds, calls, text, source })
+    }
 }
 
 /// A robot with its parts.
@@ -75,12 +119,15 @@ pub struct Movement {
     pub source: Source,
 }
 
-/// One step of a movement.
+/// One statement of a movement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Action {
+    /// Its place in its movement in the order of the text, from 1; statements in blocks count, too, and so do the blocks' own.
+    pub number: usize,
     /// What to do.
     pub kind: ActionKind,
-    /// The statement as the program writes it, on one line, white space folded, without comments.
+    /// The statement as the program writes it, on one line, white space folded, without comments; of one with blocks, what is
+    /// before its first block.
     pub text: String,
     /// Its span.
     pub source: Source,
@@ -91,25 +138,164 @@ pub struct Action {
 pub enum ActionKind {
     /// Straight ahead along the heading.
     Move {
-        /// Metres; negative is backwards.
-        distance: f64,
+        /// Metres; negative is backwards. `None`: as far as it takes until the condition holds.
+        distance: Option<f64>,
         /// Metres per second at the rim, above zero.
         speed: f64,
+        /// What ends it before that.
+        until: Option<Condition>,
     },
-    /// In place.
+    /// In place, or on a circle.
     Turn {
-        /// Degrees; positive is left (counter-clockwise).
-        degrees: f64,
+        /// Counter-clockwise when true.
+        left: bool,
+        /// Degrees to that side, negative to the other one. `None`: as far as it takes until the condition holds.
+        degrees: Option<f64>,
+        /// The circle; `None` in place.
+        circle: Option<Circle>,
+        /// Metres per second at the rim, above zero.
+        speed: f64,
+        /// What ends it before that.
+        until: Option<Condition>,
     },
-    /// In place until none of the sensors detects anything.
+    /// In place until none of the sensors detects anything, as the article has it.
     TurnUntil {
         /// Counter-clockwise when true.
         left: bool,
         /// Indices into [`Robot::sensors`] of the movement's robot, in listed order, each once.
         sensors: Vec<usize>,
     },
+    /// Stays where it is.
+    Wait {
+        /// Seconds. `None`: as long as it takes until the condition holds.
+        seconds: Option<f64>,
+        /// What ends it before that.
+        until: Option<Condition>,
+    },
+    /// A block, so many times.
+    Repeat {
+        /// From 1 to 10 000.
+        count: u32,
+        /// What is done in each round.
+        body: Vec<Action>,
+    },
+    /// A block, until a condition holds before a round.
+    RepeatUntil {
+        /// When to end.
+        until: Condition,
+        /// What is done in each round.
+        body: Vec<Action>,
+    },
+    /// The block of the first branch whose condition holds.
+    If {
+        /// In the order of the text; the first is that of the action itself.
+        branches: Vec<Branch>,
+        /// What is done if no condition holds.
+        otherwise: Vec<Action>,
+    },
+    /// Another movement of the same robot.
+    Do {
+        /// Index into [`Environment::movements`].
+        movement: usize,
+    },
     /// Explores a closed environment and maps it.
     Slam,
+}
+
+/// An `if`, or an `else if` after it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Branch {
+    /// As [`Action::number`].
+    pub number: usize,
+    /// When its block is done.
+    pub condition: Condition,
+    /// What is done.
+    pub body: Vec<Action>,
+    /// As [`Action::text`].
+    pub text: String,
+    /// Its span.
+    pub source: Source,
+}
+
+/// A circle that a robot drives on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Circle {
+    /// Metres, above zero: that of the robot's reference point.
+    pub radius: f64,
+    /// Whether it drives backwards.
+    pub reverse: bool,
+}
+
+/// What a condition asks of the sensors of the movement's robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Condition {
+    /// Indices into [`Robot::sensors`], in listed order, each once.
+    pub sensors: Vec<usize>,
+    /// At least one of them detects something; else none of them does.
+    pub detect: bool,
+    /// Only what is nearer counts, metres.
+    pub within: Option<f64>,
+}
+
+impl Action {
+    /// The actions in its blocks, block by block.
+    pub fn blocks(&self) -> Vec<&[Action]> {
+        match &self.kind {
+            ActionKind::Repeat { body, .. } | ActionKind::RepeatUntil { body, .. } => vec![body],
+            ActionKind::If { branches, otherwise } => {
+                branches.iter().map(|branch| branch.body.as_slice()).chain([otherwise.as_slice()]).collect()
+            }
+            ActionKind::Move { .. }
+            | ActionKind::Turn { .. }
+            | ActionKind::TurnUntil { .. }
+            | ActionKind::Wait { .. }
+            | ActionKind::Do { .. }
+            | ActionKind::Slam => Vec::new(),
+        }
+    }
+
+    /// The conditions that it asks itself.
+    pub fn conditions(&self) -> Vec<&Condition> {
+        match &self.kind {
+            ActionKind::Move { until, .. }
+            | ActionKind::Turn { until, .. }
+            | ActionKind::Wait { until, .. } => until.iter().collect(),
+            ActionKind::RepeatUntil { until, .. } => vec![until],
+            ActionKind::If { branches, .. } => branches.iter().map(|branch| &branch.condition).collect(),
+            ActionKind::TurnUntil { .. }
+            | ActionKind::Repeat { .. }
+            | ActionKind::Do { .. }
+            | ActionKind::Slam => Vec::new(),
+        }
+    }
+}
+
+/// All actions of a row and of their blocks, in the order of the text.
+pub fn nested(actions: &[Action]) -> Vec<&Action> {
+    let mut all = Vec::new();
+    let mut open = vec![actions.iter()];
+    while let Some(row) = open.last_mut() {
+        let Some(action) = row.next() else {
+            open.pop();
+            continue;
+        };
+        all.push(action);
+        open.extend(action.blocks().into_iter().rev().map(<[Action]>::iter));
+    }
+    all
+}
+
+impl Movement {
+    /// What a number stands for: the text and the place of that statement.
+    pub fn statement(&self, number: usize) -> Option<(&str, &Source)> {
+        nested(&self.actions).into_iter().find_map(|action| {
+            if let ActionKind::If { branches, .. } = &action.kind {
+                let branch = branches.iter().find(|branch| branch.number == number)?;
+                return Some((branch.text.as_str(), &branch.source));
+            }
+            (action.number == number).then_some((action.text.as_str(), &action.source))
+        })
+    }
 }
 
 /// A place in a program.

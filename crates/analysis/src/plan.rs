@@ -3,7 +3,12 @@
 use pydslrep_kinematics as kinematics;
 use pydslrep_scene as scenery;
 
-use crate::environment::{ActionKind, Environment, Movement, Robot};
+use kinematics::StepKind;
+
+use crate::environment::{Action, ActionKind, Circle, Condition, Environment, Movement, Robot};
+
+/// How far a robot drives until a condition holds, metres: a `move` fails after that, and loops hardly go farther.
+const OPEN_ENDED_EXTENT: f64 = 100.0;
 
 /// How far from its start a robot explores, metres, unless the user says otherwise.
 const SLAM_EXTENT: f64 = 20.0;
@@ -16,6 +21,15 @@ pub fn scene(environment: &Environment) -> scenery::Scene {
 pub(crate) fn floor(robots: &[Robot]) -> scenery::Scene {
     scenery::Scene::empty_floor(robots.iter().map(robot).collect())
 }
+
+/// A model of a robot of default size.
+pub(crate) fn default_model(drive: kinematics::Drive) -> Option<kinematics::Model> {
+    let wheels = drive.row().wheels.iter().map(|place| scenery::Wheel::new(place.identifier, DEFAULT_RADIUS));
+    scenery::Robot::new("", drive, wheels.collect(), Vec::new()).model().ok()
+}
+
+/// Metres. Times do not depend on it: speeds are those of rims.
+const DEFAULT_RADIUS: f64 = 0.045;
 
 fn robot(robot: &Robot) -> scenery::Robot {
     let wheels = robot.wheels.iter().map(|wheel| scenery::Wheel::new(&wheel.name, wheel.radius));
@@ -37,11 +51,9 @@ pub fn plan(
         .iter()
         .map(|robot| Ok(kinematics::RobotPlan { model: robot.model()?, start: robot.start }));
     let robots: Vec<_> = robots.collect::<Result<_, _>>()?;
-    let run = |index: &usize| environment.movements.get(*index).map(self::run);
-    let schedule: Vec<Vec<kinematics::Run>> =
-        environment.schedule.iter().map(|group| group.iter().filter_map(run).collect()).collect();
-    // Robots are listed by the environment itself, so no run can name another one.
-    Ok(kinematics::plan(&robots, &schedule)
+    let movements: Vec<kinematics::Movement> = environment.movements.iter().map(movement).collect();
+    // Robots are listed by the environment itself, so no movement can name another one.
+    Ok(kinematics::plan_schedule(&robots, &movements, &environment.schedule)
         .unwrap_or(kinematics::Plan { robots: Vec::new(), duration: None }))
 }
 
@@ -74,33 +86,81 @@ pub fn reach(
 
 /// How far a robot drives at most, metres.
 fn way(environment: &Environment, robot: usize) -> f64 {
-    let movements =
-        environment.schedule.iter().flatten().filter_map(|index| environment.movements.get(*index));
-    let actions = movements.filter(|movement| movement.robot == robot).flat_map(|movement| &movement.actions);
-    actions
-        .map(|action| match action.kind {
-            ActionKind::Move { distance, .. } => distance.abs(),
-            ActionKind::Slam => SLAM_EXTENT,
-            ActionKind::Turn { .. } | ActionKind::TurnUntil { .. } => 0.0,
-        })
-        .sum()
+    let mut ways: Vec<f64> = Vec::with_capacity(environment.movements.len());
+    for movement in &environment.movements {
+        // Movements that are done come first.
+        let way = way_of_all(&movement.actions, &ways);
+        ways.push(way);
+    }
+    let listed = environment.schedule.iter().flatten();
+    let own = listed.filter(|index| environment.movements.get(**index).is_some_and(|run| run.robot == robot));
+    own.filter_map(|index| ways.get(*index)).sum()
 }
 
-/// The path of one movement alone, from the origin at time 0, with a robot of default size.
+fn way_of_all(actions: &[Action], done: &[f64]) -> f64 {
+    actions.iter().map(|action| way_of(action, done)).sum()
+}
+
+fn way_of(action: &Action, done: &[f64]) -> f64 {
+    match &action.kind {
+        ActionKind::Move { distance, .. } => distance.map_or(OPEN_ENDED_EXTENT, f64::abs),
+        ActionKind::Turn { degrees, circle: Some(circle), .. } => {
+            degrees.unwrap_or(360.0).abs().to_radians() * circle.radius
+        }
+        ActionKind::Slam => SLAM_EXTENT,
+        ActionKind::Repeat { count, body } => f64::from(*count) * way_of_all(body, done),
+        ActionKind::RepeatUntil { body, .. } => {
+            OPEN_ENDED_EXTENT.min(way_of_all(body, done) * *crate::resolve::COUNTS.end())
+        }
+        ActionKind::If { branches, otherwise } => {
+            let branches = branches.iter().map(|branch| branch.body.as_slice());
+            branches.chain([otherwise.as_slice()]).map(|body| way_of_all(body, done)).fold(0.0, f64::max)
+        }
+        ActionKind::Do { movement } => done.get(*movement).copied().unwrap_or_default(),
+        ActionKind::Turn { circle: None, .. } | ActionKind::TurnUntil { .. } | ActionKind::Wait { .. } => 0.0,
+    }
+}
+
+/// The path of the last of some movements alone, from the origin at time 0, with a robot of default size. The others are those
+/// that it does, each after those that it does itself.
 ///
 /// # Errors
 /// When the robot cannot drive, because a radius is not above zero.
 pub fn plan_movement(
     driven: &Robot,
-    movement: &Movement,
+    movements: &[Movement],
 ) -> Result<kinematics::RobotPath, kinematics::ModelError> {
     let model = robot(driven).model()?;
-    Ok(kinematics::plan_movement(&model, kinematics::Pose::default(), &run(movement).actions))
+    let mut done: Vec<Vec<kinematics::Step>> = movements.iter().map(movement_steps).collect();
+    let steps = done.pop().unwrap_or_default();
+    Ok(kinematics::plan_steps(&model, kinematics::Pose::default(), &steps, &done))
+}
+
+/// What the last of some movements comes to, with a robot of default size; the others are as for [`plan_movement`].
+///
+/// # Errors
+/// When the robot cannot drive, because a radius is not above zero.
+pub fn summary_of_movement(
+    driven: &Robot,
+    movements: &[Movement],
+) -> Result<kinematics::Summary, kinematics::ModelError> {
+    let model = robot(driven).model()?;
+    let mut summaries: Vec<kinematics::Summary> = Vec::with_capacity(movements.len());
+    for movement in movements {
+        let called = |index: usize| summaries.get(index).copied();
+        let summary = kinematics::Summary::of(&model, &movement_steps(movement), &called);
+        summaries.push(summary);
+    }
+    Ok(summaries.pop().unwrap_or_default())
 }
 
 /// A robot of default size, to be driven one action at a time.
 #[derive(Debug)]
-pub struct Driver(kinematics::Model);
+pub struct Driver {
+    model: kinematics::Model,
+    /// The steps of the movements that it may do.
+    done: Vec<Vec<kinematics::Step>>,
+}
 
 impl Driver {
     /// One of a robot.
@@ -108,25 +168,79 @@ impl Driver {
     /// # Errors
     /// When the robot cannot drive, because a radius is not above zero.
     pub fn new(driven: &Robot) -> Result<Self, kinematics::ModelError> {
-        robot(driven).model().map(Self)
+        Ok(Self { model: robot(driven).model()?, done: Vec::new() })
     }
 
-    /// The drive of one action; `None` where only the world decides when it ends.
+    /// The same, of a robot that may do some movements, each after those that it does itself.
+    #[must_use]
+    pub fn with_done(mut self, movements: &[Movement]) -> Self {
+        self.done = movements.iter().map(movement_steps).collect();
+        self
+    }
+
+    /// The drive of one action, one with blocks as a whole; `None` where only the world decides when it ends.
     pub fn drive(&self, from: kinematics::Pose, action: &ActionKind) -> Option<kinematics::Leg> {
-        kinematics::plan_movement(&self.0, from, &[step(action)]).legs.pop()
+        let step = kinematics::Step { number: 0, kind: step_kind(action) };
+        let kind = match step.kind {
+            StepKind::Repeat { .. } | StepKind::Call { .. } => StepKind::Branch { ways: vec![vec![step]] },
+            kind => kind,
+        };
+        let step = kinematics::Step { number: 0, kind };
+        kinematics::plan_steps(&self.model, from, &[step], &self.done).legs.pop()
     }
 }
 
-fn run(movement: &Movement) -> kinematics::Run {
-    let actions = movement.actions.iter().map(|action| step(&action.kind)).collect();
-    kinematics::Run { robot: movement.robot, actions }
+fn movement(movement: &Movement) -> kinematics::Movement {
+    kinematics::Movement { robot: movement.robot, steps: movement_steps(movement) }
 }
 
-fn step(kind: &ActionKind) -> kinematics::Action {
-    match *kind {
-        ActionKind::Move { distance, speed } => kinematics::Action::Move { distance, speed },
-        ActionKind::Turn { degrees } => kinematics::Action::Turn { angle: degrees.to_radians() },
-        ActionKind::TurnUntil { .. } | ActionKind::Slam => kinematics::Action::Unknown,
+fn movement_steps(movement: &Movement) -> Vec<kinematics::Step> {
+    steps(&movement.actions)
+}
+
+fn steps(actions: &[Action]) -> Vec<kinematics::Step> {
+    let step =
+        |action: &Action| kinematics::Step { number: action.number - 1, kind: step_kind(&action.kind) };
+    actions.iter().map(step).collect()
+}
+
+fn step_kind(kind: &ActionKind) -> StepKind {
+    match kind {
+        ActionKind::Move { distance, speed, until } => {
+            let drive = distance.map(|distance| kinematics::Action::Move { distance, speed: *speed });
+            ended(drive, until.as_ref())
+        }
+        ActionKind::Turn { left, degrees, circle, speed, until } => {
+            let angle = degrees.map(|degrees| if *left { degrees } else { -degrees }.to_radians());
+            let turn = |angle| match *circle {
+                Some(Circle { radius, reverse }) => {
+                    kinematics::Action::Arc { angle, radius, speed: *speed, reverse }
+                }
+                None => kinematics::Action::Turn { angle, speed: *speed },
+            };
+            ended(angle.map(turn), until.as_ref())
+        }
+        ActionKind::Wait { seconds, until } => {
+            ended(seconds.map(|seconds| kinematics::Action::Wait { seconds }), until.as_ref())
+        }
+        ActionKind::Repeat { count, body } => StepKind::Repeat { count: *count, body: steps(body) },
+        ActionKind::If { branches, otherwise } => {
+            let branches = branches.iter().map(|branch| steps(&branch.body));
+            StepKind::Branch { ways: branches.chain([steps(otherwise)]).collect() }
+        }
+        ActionKind::Do { movement } => StepKind::Call { movement: *movement },
+        ActionKind::TurnUntil { .. } | ActionKind::RepeatUntil { .. } | ActionKind::Slam => {
+            StepKind::Action(kinematics::Action::Unknown)
+        }
+    }
+}
+
+/// An action that a condition may end; without a bound nobody knows how far it leads.
+fn ended(action: Option<kinematics::Action>, until: Option<&Condition>) -> StepKind {
+    match (action, until) {
+        (Some(action), None) => StepKind::Action(action),
+        (Some(most), Some(_)) => StepKind::Until { most },
+        (None, _) => StepKind::Action(kinematics::Action::Unknown),
     }
 }
 

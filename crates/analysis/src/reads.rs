@@ -15,6 +15,8 @@ pub(crate) struct Reads {
     names: Vec<Key>,
     /// Entities whose [signatures](crate::signature::Signature) were looked at.
     entities: SmallVec<[EntityId; 4]>,
+    /// Movements whose [summaries](crate::summary::Summary) were looked at.
+    summaries: SmallVec<[EntityId; 4]>,
     /// Kinds of which all names in sight were iterated over.
     kinds: Kinds,
 }
@@ -28,6 +30,10 @@ impl Reads {
         self.entities.push(id);
     }
 
+    pub(crate) fn add_summary(&mut self, id: EntityId) {
+        self.summaries.push(id);
+    }
+
     pub(crate) fn add_kind(&mut self, kind: EntityKind) {
         self.kinds = self.kinds.with(kind);
     }
@@ -38,6 +44,8 @@ impl Reads {
         self.names.dedup();
         self.entities.sort_unstable();
         self.entities.dedup();
+        self.summaries.sort_unstable();
+        self.summaries.dedup();
         self
     }
 
@@ -49,6 +57,10 @@ impl Reads {
         &self.entities
     }
 
+    pub(crate) fn summaries(&self) -> &[EntityId] {
+        &self.summaries
+    }
+
     pub(crate) fn kinds(&self) -> Kinds {
         self.kinds
     }
@@ -56,6 +68,7 @@ impl Reads {
     /// Removes an entity that is no longer there.
     pub(crate) fn forget(&mut self, id: EntityId) {
         self.entities.retain(|other| *other != id);
+        self.summaries.retain(|other| *other != id);
     }
 }
 

@@ -6,11 +6,14 @@ use std::sync::Arc;
 
 use pydslrep_kinematics::{Drive, motion};
 use pydslrep_scene::{Scene, SensorKind};
-use pydslrep_syntax::ast::{self, ActionKind as Statement, Entity, Name, TurnExtent};
+use pydslrep_syntax::ast::{self, ActionKind as Statement, Entity, Name};
 use pydslrep_syntax::{EntityKind, Parse, Span, TokenKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::environment::{Action, ActionKind, Environment, Movement, Objects, Robot, Sensor, Source, Wheel};
+use crate::environment::{
+    Action, ActionKind, Branch, Circle, Condition, Environment, Movement, Objects, Robot, Sensor, Source,
+    Wheel,
+};
 use crate::{
     Database, Diagnostic, EntityId, EntityRef, FileId, Severity, check_cancelled, diagnostics, plan,
 };
@@ -143,27 +146,34 @@ impl Database {
         Parts { database: self, file: self.file_of(id) }.robot(id)
     }
 
-    /// A movement with its robot, whose index in it is 0; `None` where something is missing or broken.
-    pub fn movement(&self, id: EntityId) -> Option<(Robot, Movement)> {
-        let parts = Parts { database: self, file: self.file_of(id) };
-        let Entity::Movement(tree) = self.tree(id)? else { return None };
-        let robot = parts.resolve(id, EntityKind::Robot, tree.robot.as_ref()?)?;
-        let robot = parts.robot(robot)?;
-        let movement = parts.movement(id, |_| Some((0, &robot)))?;
-        Some((robot, movement))
+    /// A movement after those that it does, with its robot, whose index in all of them is 0; `None` where something is
+    /// missing or broken.
+    pub fn movement(&self, id: EntityId) -> Option<(Robot, Vec<Movement>)> {
+        self.movement_start(id, usize::MAX).filter(|(_, movements)| {
+            let Some(Entity::Movement(tree)) = self.tree(id) else { return false };
+            movements.last().is_some_and(|movement| movement.actions.len() == tree.actions.len())
+        })
     }
 
     /// The same with the first `count` actions at most, and of those only the ones before the first that is broken: what
     /// is known of a movement while it is being written.
-    pub fn movement_start(&self, id: EntityId, count: usize) -> Option<(Robot, Movement)> {
+    pub fn movement_start(&self, id: EntityId, count: usize) -> Option<(Robot, Vec<Movement>)> {
         let parts = Parts { database: self, file: self.file_of(id) };
         let Entity::Movement(tree) = self.tree(id)? else { return None };
         let robot = parts.robot(parts.resolve(id, EntityKind::Robot, tree.robot.as_ref()?)?)?;
         let entity = self.entity(id)?;
-        let actions = tree.actions.iter().take(count);
-        let actions = actions.map_while(|action| parts.action(&entity, action, &robot.sensors)).collect();
+        let mut ids = parts.with_done(&[id])?;
+        ids.pop();
+        let places = indices_of(&ids);
+        let done = ids.iter().map(|done| parts.movement(*done, |_| Some((0, &robot)), &places));
+        let mut movements: Vec<Movement> = done.collect::<Option<_>>()?;
+        let mut statements =
+            Statements { parts: &parts, entity, sensors: &robot.sensors, places: &places, number: 0 };
+        let actions = tree.actions.iter().take(count).map_while(|action| statements.action(action)).collect();
         let name = tree.name.as_ref().map_or_else(String::new, |name| name.text.to_string());
-        Some((robot, Movement { name, robot: 0, actions, source: parts.source(&entity, 0)? }))
+        let source = parts.source(&self.entity(id)?, 0)?;
+        movements.push(Movement { name, robot: 0, actions, source });
+        Some((robot, movements))
     }
 
     /// The robot that a movement names; `None` where it is missing or broken.
@@ -173,10 +183,35 @@ impl Database {
         parts.robot(parts.resolve(movement, EntityKind::Robot, tree.robot.as_ref()?)?)
     }
 
-    /// What each action of a movement does, of a robot with these sensors; `None` where one is broken.
-    pub fn action_kinds(&self, movement: EntityId, sensors: &[Sensor]) -> Vec<Option<ActionKind>> {
-        let Some(Entity::Movement(tree)) = self.tree(movement) else { return Vec::new() };
-        tree.actions.iter().map(|action| action_kind(&action.kind, sensors)).collect()
+    /// What each action of a movement does, driven by this robot; `None` where one is broken, or does what is. The movements
+    /// that they do are indices into those beside them, each of which is after those that it does itself.
+    pub fn known_actions(
+        &self,
+        movement: EntityId,
+        robot: Option<&Robot>,
+    ) -> (Vec<Option<ActionKind>>, Vec<Movement>) {
+        let parts = Parts { database: self, file: self.file_of(movement) };
+        let (Some(Entity::Movement(tree)), Some(entity)) = (self.tree(movement), self.entity(movement))
+        else {
+            return (Vec::new(), Vec::new());
+        };
+        let done = robot.map(|robot| parts.known_done(movement, tree, robot)).unwrap_or_default();
+        let places = indices_of(&done);
+        let sensors = robot.map_or(&[][..], |robot| &robot.sensors);
+        let mut statements = Statements { parts: &parts, entity, sensors, places: &places, number: 0 };
+        let kinds = tree.actions.iter().map(|action| statements.action(action).map(|action| action.kind));
+        let kinds = kinds.collect();
+        (kinds, robot.and_then(|robot| self.done_movements(&done, robot)).unwrap_or_default())
+    }
+
+    /// Movements of one robot, each after those that it does; `None` where something is missing or broken.
+    fn done_movements(&self, ids: &[EntityId], robot: &Robot) -> Option<Vec<Movement>> {
+        let places = indices_of(ids);
+        let movement = |id: &EntityId| {
+            let parts = Parts { database: self, file: self.file_of(*id) };
+            parts.movement(*id, |_| Some((0, robot)), &places)
+        };
+        ids.iter().map(movement).collect()
     }
 
     /// An action as the program writes it, on one line, without comments; its place counts from its entity's start.
@@ -255,26 +290,81 @@ impl<'a> Parts<'a> {
         let robot_ids = without_repeats(&robot_ids);
         let listed = tree.movements.as_ref().map_or(&[][..], |list| &list.names);
         let runs = self.resolve_all(id, EntityKind::Movement, listed)?;
-        let movement_ids = without_repeats(&runs);
+        let movement_ids = self.with_done(&without_repeats(&runs))?;
+        let places = indices_of(&movement_ids);
         let robots = robot_ids.iter().map(|id| self.robot(*id)).collect::<Option<Vec<_>>>()?;
-        let places = indices_of(&robot_ids);
-        let robot = |id| places.get(&id).map(|&index| (index, &robots[index]));
+        let robot_places = indices_of(&robot_ids);
+        let robot = |id| robot_places.get(&id).map(|&index| (index, &robots[index]));
         Some(Environment {
             name: name.text.to_string(),
             script: self.database.script_name(self.file?, &name.text)?.0.stem,
             host,
-            movements: movement_ids.iter().map(|id| self.movement(*id, robot)).collect::<Option<_>>()?,
-            schedule: self.schedule(&runs, &indices_of(&movement_ids)),
+            movements: movement_ids
+                .iter()
+                .map(|id| self.movement(*id, robot, &places))
+                .collect::<Option<_>>()?,
+            schedule: self.schedule(&runs, &places),
             source: self.source(&self.database.entity(id)?, 0)?,
             robots,
         })
     }
 
-    /// The movements that an environment runs, each once, in the order of first listing.
+    /// The movements of an environment, in its order.
     fn movements(&self, id: EntityId) -> Option<Vec<EntityId>> {
         let Entity::Environment(tree) = self.database.tree(id)? else { return None };
         let listed = tree.movements.as_ref().map_or(&[][..], |list| &list.names);
-        self.resolve_all(id, EntityKind::Movement, listed).map(|runs| without_repeats(&runs))
+        self.with_done(&without_repeats(&self.resolve_all(id, EntityKind::Movement, listed)?))
+    }
+
+    /// Movements, each after those that it does; `None` where one is unknown, or does itself.
+    fn with_done(&self, movements: &[EntityId]) -> Option<Vec<EntityId>> {
+        let mut ended: FxHashSet<EntityId> = FxHashSet::default();
+        let mut order = Vec::new();
+        for &movement in movements {
+            // The movements that are being looked at, each with what is left of those that it does.
+            let mut open = Vec::new();
+            if !ended.contains(&movement) {
+                open.push((movement, self.done_by(movement)?));
+            }
+            while let Some((id, left)) = open.last_mut() {
+                let (id, Some(next)) = (*id, left.pop()) else {
+                    ended.insert(*id);
+                    order.push(*id);
+                    open.pop();
+                    continue;
+                };
+                if id == next || open.iter().any(|(other, _)| *other == next) {
+                    return None;
+                }
+                if !ended.contains(&next) {
+                    open.push((next, self.done_by(next)?));
+                }
+            }
+        }
+        Some(order)
+    }
+
+    /// What a movement does of what nothing is missing or broken in: each after those that it does itself.
+    fn known_done(&self, movement: EntityId, tree: &ast::Movement, robot: &Robot) -> Vec<EntityId> {
+        let names = tree.all_actions().filter_map(ast::Action::done);
+        let named: Vec<EntityId> =
+            names.filter_map(|name| self.resolve(movement, EntityKind::Movement, name)).collect();
+        let is_known = |id: &EntityId| {
+            let done = self.with_done(&[*id]).filter(|done| !done.contains(&movement));
+            done.and_then(|done| self.database.done_movements(&done, robot)).is_some()
+        };
+        let known: Vec<EntityId> = without_repeats(&named).into_iter().filter(is_known).collect();
+        self.with_done(&known).unwrap_or_default()
+    }
+
+    /// The movements that one does, the first one last.
+    fn done_by(&self, movement: EntityId) -> Option<Vec<EntityId>> {
+        let Entity::Movement(tree) = self.database.tree(movement)? else { return None };
+        let names = tree.all_actions().filter_map(ast::Action::done);
+        let mut done: Vec<EntityId> =
+            names.map(|name| self.resolve(movement, EntityKind::Movement, name)).collect::<Option<_>>()?;
+        done.reverse();
+        Some(done)
     }
 
     fn host(&self, environment: EntityId, name: &Name) -> Option<std::net::Ipv4Addr> {
@@ -331,29 +421,18 @@ impl<'a> Parts<'a> {
         &self,
         id: EntityId,
         robot: impl Fn(EntityId) -> Option<(usize, &'r Robot)>,
+        places: &FxHashMap<EntityId, usize>,
     ) -> Option<Movement> {
         let Entity::Movement(tree) = self.database.tree(id)? else { return None };
         let (robot, Robot { sensors, .. }) =
             robot(self.resolve(id, EntityKind::Robot, tree.robot.as_ref()?)?)?;
         let entity = self.database.entity(id)?;
+        let mut statements = Statements { parts: self, entity, sensors, places, number: 0 };
         Some(Movement {
             name: tree.name.as_ref()?.text.to_string(),
             robot,
-            actions: tree
-                .actions
-                .iter()
-                .map(|action| self.action(&entity, action, sensors))
-                .collect::<Option<_>>()?,
-            source: self.source(&entity, 0)?,
-        })
-    }
-
-    fn action(&self, entity: &EntityRef<'_>, action: &ast::Action, sensors: &[Sensor]) -> Option<Action> {
-        check_cancelled();
-        Some(Action {
-            kind: action_kind(&action.kind, sensors)?,
-            text: self.folded_text(entity, action.span),
-            source: self.source(entity, action.span.start)?,
+            actions: statements.actions(&tree.actions)?,
+            source: self.source(&self.database.entity(id)?, 0)?,
         })
     }
 
@@ -390,37 +469,182 @@ impl<'a> Parts<'a> {
     }
 }
 
-fn action_kind(statement: &Statement, sensors: &[Sensor]) -> Option<ActionKind> {
-    Some(match statement {
-        Statement::Move(step) => ActionKind::Move {
-            distance: distance(step)?,
-            speed: match &step.speed {
-                Some(clause) => clause.value.as_ref()?.value? / 100.0,
-                None => motion::RIM_SPEED,
-            },
-        },
-        Statement::Turn(turn) => {
-            let left = turn.direction?.0 == ast::Direction::Left;
-            let sign = if left { 1.0 } else { -1.0 };
-            match &turn.extent {
-                None => ActionKind::Turn { degrees: sign * DEFAULT_ANGLE },
-                Some(TurnExtent::Angle(angle)) => ActionKind::Turn { degrees: sign * angle.value? },
-                Some(TurnExtent::Until(list)) => {
-                    ActionKind::TurnUntil { left, sensors: indices(&list.names, sensors)? }
-                }
+/// Turns the statements of one movement into actions, in the order of the text.
+struct Statements<'p, 'a> {
+    parts: &'p Parts<'a>,
+    entity: EntityRef<'a>,
+    sensors: &'p [Sensor],
+    /// Where the movements that it may do are.
+    places: &'p FxHashMap<EntityId, usize>,
+    /// How many statements there were.
+    number: usize,
+}
+
+impl Statements<'_, '_> {
+    fn actions(&mut self, actions: &[ast::Action]) -> Option<Vec<Action>> {
+        actions.iter().map(|action| self.action(action)).collect()
+    }
+
+    fn action(&mut self, action: &ast::Action) -> Option<Action> {
+        check_cancelled();
+        self.number += 1;
+        let number = self.number;
+        let head = head(action.span, action.blocks().next());
+        Some(Action {
+            number,
+            text: self.parts.folded_text(&self.entity, head),
+            source: self.parts.source(&self.entity, action.span.start)?,
+            kind: self.kind(&action.kind)?,
+        })
+    }
+
+    fn kind(&mut self, statement: &Statement) -> Option<ActionKind> {
+        match statement {
+            Statement::Repeat(repeat) => {
+                let rounds = repeat.rounds.as_ref()?;
+                let body = &repeat.block.as_ref()?.actions;
+                Some(match rounds {
+                    ast::Rounds::Times(number) => {
+                        ActionKind::Repeat { count: count(number)?, body: self.actions(body)? }
+                    }
+                    ast::Rounds::Until(clause) => ActionKind::RepeatUntil {
+                        until: condition(&clause.condition, self.sensors)?,
+                        body: self.actions(body)?,
+                    },
+                })
+            }
+            Statement::If(choice) => self.choice(choice),
+            Statement::Do(call) => {
+                let (parts, id) = (self.parts, self.entity.id);
+                let done = parts.resolve(id, EntityKind::Movement, call.movement.as_ref()?)?;
+                self.places.get(&done).map(|&movement| ActionKind::Do { movement })
+            }
+            Statement::Move(_) | Statement::Turn(_) | Statement::Wait(_) | Statement::Slam => {
+                simple_kind(statement, self.sensors)
             }
         }
+    }
+
+    /// The first branch has the number of the statement.
+    fn choice(&mut self, choice: &ast::If) -> Option<ActionKind> {
+        let mut branches = Vec::with_capacity(choice.branches.len());
+        for (index, branch) in choice.branches.iter().enumerate() {
+            self.number += usize::from(index > 0);
+            let block = branch.block.as_ref()?;
+            branches.push(Branch {
+                number: self.number,
+                condition: condition(branch.condition.as_ref()?, self.sensors)?,
+                text: self.parts.folded_text(&self.entity, head(branch.span, Some(block))),
+                source: self.parts.source(&self.entity, branch.span.start)?,
+                body: self.actions(&block.actions)?,
+            });
+        }
+        let otherwise =
+            choice.otherwise.as_ref().map_or(Some(Vec::new()), |block| self.actions(&block.actions))?;
+        Some(ActionKind::If { branches, otherwise })
+    }
+}
+
+/// What of a statement is before its block.
+fn head(statement: Span, block: Option<&ast::Block>) -> Span {
+    Span::new(statement.start, block.map_or(statement.end, |block| block.span.start))
+}
+
+/// How often a block is repeated.
+fn count(number: &ast::Number) -> Option<u32> {
+    let value = number.value.filter(|value| value.fract() == 0.0 && COUNTS.contains(value))?;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is whole and in range")]
+    Some(value as u32)
+}
+
+/// How often a block may be repeated.
+pub(crate) const COUNTS: std::ops::RangeInclusive<f64> = 1.0..=10_000.0;
+
+/// What a statement without blocks does that is no call.
+fn simple_kind(statement: &Statement, sensors: &[Sensor]) -> Option<ActionKind> {
+    let until = |clause: &Option<ast::Until>| match clause {
+        Some(clause) => condition(&clause.condition, sensors).map(Some),
+        None => Some(None),
+    };
+    Some(match statement {
+        Statement::Move(step) => ActionKind::Move {
+            distance: match &step.distance {
+                Some(number) => Some(length(number, step.unit)?),
+                None if step.until.is_some() && step.unit.is_none() => None,
+                None => return None,
+            },
+            speed: speed(step.speed.as_ref())?,
+            until: until(&step.until)?,
+        },
+        Statement::Turn(turn) => turn_kind(turn, sensors)?,
+        Statement::Wait(wait) => ActionKind::Wait {
+            seconds: match &wait.seconds {
+                Some(number) => Some(number.value?),
+                None => wait.until.as_ref().map(|_| None)?,
+            },
+            until: until(&wait.until)?,
+        },
         Statement::Slam => ActionKind::Slam,
+        Statement::Repeat(_) | Statement::If(_) | Statement::Do(_) => return None,
     })
+}
+
+fn turn_kind(turn: &ast::Turn, sensors: &[Sensor]) -> Option<ActionKind> {
+    let left = turn.direction?.0 == ast::Direction::Left;
+    if let Some(clause) = turn.until.as_ref().filter(|_| turn.is_of_article()) {
+        return Some(ActionKind::TurnUntil {
+            left,
+            sensors: indices(&clause.condition.sensors.names, sensors)?,
+        });
+    }
+    let circle = match &turn.circle {
+        Some(circle) => Some(Circle {
+            radius: length(circle.radius.as_ref()?, circle.unit)?,
+            reverse: turn.reverse.is_some(),
+        }),
+        None => None,
+    };
+    Some(ActionKind::Turn {
+        left,
+        degrees: match &turn.angle {
+            Some(angle) => Some(angle.value?),
+            None => turn.until.is_none().then_some(DEFAULT_ANGLE),
+        },
+        circle,
+        speed: speed(turn.speed.as_ref())?,
+        until: match &turn.until {
+            Some(clause) => Some(condition(&clause.condition, sensors)?),
+            None => None,
+        },
+    })
+}
+
+fn condition(condition: &ast::Condition, sensors: &[Sensor]) -> Option<Condition> {
+    Some(Condition {
+        sensors: indices(&condition.sensors.names, sensors)?,
+        detect: condition.state?.0 == ast::SensorState::Detect,
+        within: match &condition.within {
+            Some(within) => Some(length(within.distance.as_ref()?, within.unit)?),
+            None => None,
+        },
+    })
+}
+
+/// Metres per second at the rim.
+fn speed(clause: Option<&ast::SpeedClause>) -> Option<f64> {
+    match clause {
+        Some(clause) => Some(clause.value.as_ref()?.value? / 100.0),
+        None => Some(motion::RIM_SPEED),
+    }
 }
 
 /// How far a `turn` without an angle turns, in degrees.
 pub(crate) const DEFAULT_ANGLE: f64 = 90.0;
 
 /// Metres. Centimetres are divided, not multiplied, so that `400 centimeters` is exactly 4.
-fn distance(step: &ast::Move) -> Option<f64> {
-    let value = step.distance.as_ref()?.value?;
-    Some(match step.unit?.0 {
+fn length(number: &ast::Number, unit: Option<(ast::Unit, Span)>) -> Option<f64> {
+    let value = number.value?;
+    Some(match unit?.0 {
         ast::Unit::Meters => value,
         ast::Unit::Centimeters => value / 100.0,
     })
@@ -479,8 +703,15 @@ environment e with ip here has { ^left q q } robots with { m n o m } moves";
         assert_eq!(environment.robots[1].drive, Drive::TwoWheel);
         assert_eq!(environment.schedule, [vec![0, 1], vec![2], vec![0]]);
         let actions = &environment.movements[0].actions;
-        assert_eq!(actions[0].kind, ActionKind::Move { distance: -0.4, speed: 0.18 });
-        assert_eq!(actions[1].kind, ActionKind::Turn { degrees: -90.0 });
+        assert_eq!(actions[0].kind, ActionKind::Move { distance: Some(-0.4), speed: 0.18, until: None });
+        let right = ActionKind::Turn {
+            left: false,
+            degrees: Some(90.0),
+            circle: None,
+            speed: motion::RIM_SPEED,
+            until: None,
+        };
+        assert_eq!(actions[1].kind, right);
         assert_eq!(actions[2].kind, ActionKind::TurnUntil { left: true, sensors: vec![1, 0] });
         assert_eq!(actions[2].text, "turn left until { t, s t }");
         assert_eq!(actions[2].source, Source { file: None, line: 7 });

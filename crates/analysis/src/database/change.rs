@@ -13,13 +13,14 @@ use smol_str::SmolStr;
 
 use super::scenes::count_environment;
 use super::{Database, EditCounts, EntityData, EntityId, FileId};
-use crate::Target;
 use crate::diagnostics;
 use crate::file::{File, Window};
 use crate::names::Key;
 use crate::reads::{Kinds, Reads};
 use crate::signature::Signature;
 use crate::slots::{EntitySlot, EntitySlots};
+use crate::summary::Summary;
+use crate::{Edition, Target};
 
 /// The space between the orders of two neighbours in a fresh file.
 const ORDER_STEP: u64 = 1 << 32;
@@ -194,6 +195,10 @@ impl Database {
             if Signature::of(&data.parse) != Signature::of(&parse) {
                 invalidated.entities.extend(&data.readers);
             }
+            let summary = |parse: &Parse| parse.entity.as_ref().and_then(Summary::of);
+            if !data.summary_readers.is_empty() && summary(&data.parse) != summary(&parse) {
+                invalidated.entities.extend(&data.summary_readers);
+            }
             data.parse = Arc::new(parse);
         }
         self.register(id, file);
@@ -212,7 +217,7 @@ impl Database {
             if let Some(data) = self.data(id) {
                 invalidated.names.extend(visible_keys(file, &data.parse));
                 invalidated.uses.extend(used_keys(file, &data.parse));
-                invalidated.entities.extend(&data.readers);
+                invalidated.entities.extend(data.readers.iter().chain(&data.summary_readers));
             }
             self.remove(id);
         }
@@ -263,6 +268,7 @@ impl Database {
             problems: Vec::new(),
             reads: Reads::default(),
             readers: SmallVec::new(),
+            summary_readers: SmallVec::new(),
         });
         let id = if let Some(index) = self.free.pop() {
             self.entities[index as usize] = data;
@@ -329,6 +335,14 @@ impl Database {
     pub fn set_target(&mut self, file: FileId, target: Target) {
         if self.target(file) != target {
             self.targets.insert(file, target);
+            self.validate_file(file);
+        }
+    }
+
+    /// Allows a file the statements of another edition from now on.
+    pub fn set_edition(&mut self, file: FileId, edition: Edition) {
+        if self.edition(file) != edition {
+            self.editions.insert(file, edition);
             self.validate_file(file);
         }
     }

@@ -13,7 +13,8 @@ use crate::reads::Reads;
 use crate::resolve::drive;
 use crate::script_name::ScriptName;
 use crate::signature::{MovementSignature, Signature};
-use crate::{Absence, Database, EntityId, FileId, Resolution, Target};
+use crate::summary::Summary;
+use crate::{Absence, Database, Edition, EntityId, FileId, Resolution, Target};
 
 /// The entity that is checked, and all that a rule may look at beside it.
 ///
@@ -98,6 +99,11 @@ impl Context<'_> {
     /// What scripts of the file are made for.
     pub(super) fn target(&self) -> Target {
         self.database.target(self.file)
+    }
+
+    /// Which statements the file may have.
+    pub(super) fn edition(&self) -> Edition {
+        self.database.edition(self.file)
     }
 
     /// Whether the file has environments.
@@ -215,6 +221,21 @@ impl<'a> Context<'a> {
             self.reads.borrow_mut().add_entity(id);
         }
         self.database.parse(id).map(Signature::of)
+    }
+
+    /// What a movement adds up to.
+    pub(super) fn summary(&self, id: EntityId) -> Option<Summary> {
+        if id != self.id {
+            self.reads.borrow_mut().add_summary(id);
+        }
+        Summary::of(self.database.parse(id)?.entity.as_ref()?)
+    }
+
+    /// The movement that another one calls by a name.
+    pub(super) fn movement_of(&self, id: EntityId, name: &SmolStr) -> Option<EntityId> {
+        let file = self.database.file_of(id)?;
+        self.reads.borrow_mut().add_name((file, EntityKind::Movement, name.clone()));
+        self.database.resolve(file, EntityKind::Movement, name).entity()
     }
 
     /// The name that an entity declares.

@@ -1,7 +1,7 @@
 //! `invalid-angle`: an angle that is none, more than a turn, or the other way round.
 
 use pydslrep_syntax::Span;
-use pydslrep_syntax::ast::{Action, ActionKind, Direction, Entity, Number, Turn, TurnExtent};
+use pydslrep_syntax::ast::{Action, ActionKind, Direction, Entity, Number, Turn};
 
 use super::context::Context;
 use super::problem::Problem;
@@ -49,14 +49,18 @@ const FARTHEST: f64 = 100.0 * FULL_TURN;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
-    for action in &movement.actions {
+    for action in movement.all_actions() {
         let ActionKind::Turn(turn) = &action.kind else { continue };
-        let Some(TurnExtent::Angle(angle)) = &turn.extent else { continue };
+        let Some(angle) = &turn.angle else { continue };
         match angle.value.filter(|value| value.is_finite()) {
             Some(value) if value.abs() > FARTHEST => problems.push(beyond(context, angle)),
             Some(value) if value < 0.0 => problems.push(backwards(context, turn, angle)),
+            // `invalid-arc` says what is wrong with it.
+            Some(0.0) if turn.circle.is_some() => {}
             Some(0.0) => problems.push(nothing(context, action, angle)),
-            Some(value) if value > FULL_TURN => problems.push(too_far(context, action, angle, value)),
+            Some(value) if value > FULL_TURN && turn.circle.is_none() => {
+                problems.push(too_far(context, action, angle, value));
+            }
             _ => {}
         }
     }

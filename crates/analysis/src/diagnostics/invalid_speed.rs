@@ -1,7 +1,7 @@
 //! `invalid-speed`: a speed of nothing, backwards, or beyond every robot.
 
 use pydslrep_syntax::Span;
-use pydslrep_syntax::ast::{ActionKind, Entity, Move, Number};
+use pydslrep_syntax::ast::{ActionKind, Entity, Number};
 
 use super::context::Context;
 use super::problem::Problem;
@@ -48,12 +48,16 @@ const FASTEST: f64 = 10_000.0;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
-    for action in &movement.actions {
-        let ActionKind::Move(step) = &action.kind else { continue };
-        let speed = step.speed.as_ref().and_then(|clause| clause.value.as_ref());
+    for action in movement.all_actions() {
+        let (clause, distance) = match &action.kind {
+            ActionKind::Move(step) => (&step.speed, step.distance.as_ref()),
+            ActionKind::Turn(turn) => (&turn.speed, None),
+            _ => continue,
+        };
+        let speed = clause.as_ref().and_then(|clause| clause.value.as_ref());
         let Some(speed) = speed else { continue };
         match speed.value.filter(|value| value.is_finite()) {
-            Some(value) if value <= 0.0 => problems.push(problem(context, step, speed)),
+            Some(value) if value <= 0.0 => problems.push(problem(context, distance, speed)),
             Some(value) if !(SLOWEST..=FASTEST).contains(&value) => problems.push(beyond(context, speed)),
             _ => {}
         }
@@ -66,16 +70,16 @@ fn beyond(context: &Context<'_>, speed: &Number) -> Problem {
         .help("write how fast to drive, or leave out `at` and drive at 9.0 cm/s")
 }
 
-fn problem(context: &Context<'_>, step: &Move, speed: &Number) -> Problem {
+fn problem(context: &Context<'_>, distance: Option<&Number>, speed: &Number) -> Problem {
     let written = context.short_text(speed.span);
     let problem = RULE.problem(speed.span, format!("a speed must be above zero, not {written} cm/s"));
     let negative = speed.value.is_some_and(|value| value < 0.0);
-    let problem = problem.help(if negative {
+    let problem = problem.help(if negative && distance.is_some() {
         "to drive backwards, make the distance negative and the speed positive"
     } else {
         "write how fast to drive, or leave out `at` and drive at 9.0 cm/s"
     });
-    match &step.distance {
+    match distance {
         Some(distance) if negative => problem.suggestion(
             "negate the distance instead",
             [

@@ -4,8 +4,8 @@
 
 use pydslrep_scene::ENDING;
 
-use super::{CATALOGUE, Rule};
-use crate::{Absence, Database, Diagnostic, Target};
+use super::{CATALOGUE, Rule, not_in_article};
+use crate::{Absence, Database, Diagnostic, Edition, Target};
 
 /// What a rule tells a person who wants to know more than its message says.
 #[derive(Debug)]
@@ -47,10 +47,8 @@ impl Rule {
     /// The page in Markdown, with what the example gives rise to.
     pub fn manual(&self) -> String {
         let Page { what, why, imports, example, fixed } = &self.page;
-        let says: String = example_diagnostics(&self.page, example)
-            .iter()
-            .map(|diagnostic| said(example, diagnostic))
-            .collect();
+        let says: String =
+            example_diagnostics(self, example).iter().map(|diagnostic| said(example, diagnostic)).collect();
         let mut files = String::new();
         for (name, text) in *imports {
             let block = if name.ends_with(ENDING) { block("toml", text) } else { code(text) };
@@ -89,17 +87,18 @@ pub fn index() -> String {
     out
 }
 
-/// The problems that one of the page's programs has. There are no other files than those of the page. Where it has none
-/// with the usual target, those with the other one: some rules are of one target alone.
-fn example_diagnostics(page: &Page, program: &str) -> Vec<Diagnostic> {
-    let for_target = |target| target_diagnostics(page, program, target);
+/// The problems that one of the programs of a rule's page has. There are no other files than those of the page. Where it
+/// has none with the usual target, those with the other one: some rules are of one target alone.
+fn example_diagnostics(rule: &Rule, program: &str) -> Vec<Diagnostic> {
+    let for_target = |target| target_diagnostics(rule, program, target);
     Target::ALL.into_iter().map(for_target).find(|found| !found.is_empty()).unwrap_or_default()
 }
 
-fn target_diagnostics(page: &Page, program: &str, target: Target) -> Vec<Diagnostic> {
+fn target_diagnostics(rule: &Rule, program: &str, target: Target) -> Vec<Diagnostic> {
+    let of_article = rule.code == not_in_article::RULE.code;
     let mut database = Database::new();
     let file = database.open("program.pyr", program);
-    for (name, text) in page.imports {
+    for (name, text) in rule.page.imports {
         match name.strip_suffix(ENDING) {
             Some(environment) => database.set_scene(file, environment, Some(text)),
             None => {
@@ -108,6 +107,7 @@ fn target_diagnostics(page: &Page, program: &str, target: Target) -> Vec<Diagnos
         }
     }
     database.set_target(file, target);
+    database.set_edition(file, if of_article { Edition::Article } else { Edition::default() });
     for path in database.imports(file).to_vec() {
         if database.file(&path).is_none() {
             database.set_absence(file, &path, Some(Absence::Missing));
@@ -157,11 +157,11 @@ mod tests {
     #[test]
     fn every_example_has_its_problem_and_no_other() {
         for rule in CATALOGUE {
-            let found = example_diagnostics(&rule.page, rule.page.example);
+            let found = example_diagnostics(rule, rule.page.example);
             let codes: Vec<&str> = found.iter().map(Diagnostic::code).collect();
             assert_eq!(codes, [rule.code], "{}", rule.page.example);
             assert_eq!(found[0].severity, rule.severity, "{}", rule.code);
-            let fixed = example_diagnostics(&rule.page, rule.page.fixed);
+            let fixed = example_diagnostics(rule, rule.page.fixed);
             assert!(fixed.is_empty(), "{}: {fixed:#?}", rule.code);
         }
     }
@@ -169,12 +169,12 @@ mod tests {
     #[test]
     fn every_fix_of_an_example_mends_it() {
         for rule in CATALOGUE {
-            for diagnostic in example_diagnostics(&rule.page, rule.page.example) {
+            for diagnostic in example_diagnostics(rule, rule.page.example) {
                 let best = diagnostic.fixes.iter().map(applicability).max();
                 assert_eq!(best.unwrap_or(Applicability::Never), rule.applicability, "{}", rule.code);
                 for fix in &diagnostic.fixes {
                     let fixed = apply(rule.page.example, diagnostic.file, &fix.edits);
-                    let left = example_diagnostics(&rule.page, &fixed);
+                    let left = example_diagnostics(rule, &fixed);
                     assert!(left.is_empty(), "{}: {}\n{fixed}\n{left:#?}", rule.code, fix.title);
                 }
             }

@@ -7,26 +7,36 @@ mod deprecated_ip_clause;
 mod duplicate_name;
 mod duplicate_port;
 mod edits;
+mod empty_block;
 mod empty_environment;
 mod empty_movement;
 mod idle_robot;
 mod implausible_radius;
 mod invalid_angle;
+mod invalid_arc;
 mod invalid_character;
+mod invalid_count;
 mod invalid_ip;
 mod invalid_port;
 mod invalid_radius;
 mod invalid_speed;
+mod invalid_time;
+mod invalid_within;
 mod manual;
 mod misplaced_type;
+mod missing_condition_word;
 mod mixed_radii;
+mod movement_of_other_robot;
 mod movement_robot_missing;
+mod nested_too_deep;
 mod no_environment;
+mod not_in_article;
 mod number_out_of_range;
 mod parallel_conflict;
 mod planned_collision;
 mod port_of_other_target;
 mod problem;
+mod recursive_movement;
 mod repeated_robot;
 mod repeated_sensor;
 mod repeated_wheel;
@@ -107,7 +117,7 @@ impl Rule {
 }
 
 /// All rules, in the order of the language's contract.
-pub const CATALOGUE: [&Rule; 40] = [
+pub const CATALOGUE: [&Rule; 50] = [
     &syntax_error::RULE,
     &invalid_character::RULE,
     &unterminated_comment::RULE,
@@ -123,6 +133,10 @@ pub const CATALOGUE: [&Rule; 40] = [
     &invalid_speed::RULE,
     &zero_distance::RULE,
     &invalid_angle::RULE,
+    &invalid_count::RULE,
+    &invalid_time::RULE,
+    &invalid_within::RULE,
+    &invalid_arc::RULE,
     &unresolved_reference::RULE,
     &ambiguous_import::RULE,
     &unresolved_import::RULE,
@@ -135,9 +149,15 @@ pub const CATALOGUE: [&Rule; 40] = [
     &repeated_sensor::RULE,
     &wheel_order::RULE,
     &sensor_not_on_robot::RULE,
+    &missing_condition_word::RULE,
+    &movement_of_other_robot::RULE,
+    &recursive_movement::RULE,
     &slam_robot::RULE,
     &slam_sensors::RULE,
     &empty_movement::RULE,
+    &empty_block::RULE,
+    &nested_too_deep::RULE,
+    &not_in_article::RULE,
     &empty_environment::RULE,
     &repeated_robot::RULE,
     &movement_robot_missing::RULE,

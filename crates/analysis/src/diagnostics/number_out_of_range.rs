@@ -1,6 +1,6 @@
 //! `number-out-of-range`: a distance nobody drives, or digits without end.
 
-use pydslrep_syntax::ast::{ActionKind, Entity, Move, Number};
+use pydslrep_syntax::ast::{ActionKind, Entity, Move, Number, Within};
 
 use super::context::Context;
 use super::problem::Problem;
@@ -42,14 +42,18 @@ environment yard has { rover } robots with { trip } moves",
 };
 
 /// Metres.
-const FARTHEST: f64 = 1_000_000.0;
+pub(super) const FARTHEST: f64 = 1_000_000.0;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     match context.tree {
         Some(Entity::Wheel(wheel)) => problems.extend(wheel.radius.as_ref().and_then(infinite)),
         Some(Entity::Movement(movement)) => {
-            for action in &movement.actions {
-                problems.extend(action.numbers().filter_map(infinite));
+            for action in movement.all_actions() {
+                let within = action.conditions().filter_map(|condition| condition.within.as_ref());
+                let within: Vec<&Within> = within.collect();
+                let lengths = within.iter().filter_map(|within| within.distance.as_ref());
+                problems.extend(action.numbers().chain(lengths).filter_map(infinite));
+                problems.extend(within.into_iter().filter_map(too_far_within));
                 if let ActionKind::Move(step) = &action.kind {
                     problems.extend(too_far(step));
                 }
@@ -62,6 +66,13 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 fn infinite(number: &Number) -> Option<Problem> {
     let problem = || RULE.problem(number.span, "this number is too large to compute with");
     (!number.value?.is_finite()).then(|| problem().help("write fewer digits"))
+}
+
+fn too_far_within(within: &Within) -> Option<Problem> {
+    let distance = within.distance.as_ref()?;
+    let metres = distance.value? * within.unit.map_or(1.0, |(unit, _)| unit.in_metres());
+    let problem = || RULE.problem(distance.span, "no sensor sees farther than 1000 km (1000000 meters)");
+    (metres.is_finite() && metres > FARTHEST).then(|| problem().help("write a shorter distance"))
 }
 
 fn too_far(step: &Move) -> Option<Problem> {

@@ -1,6 +1,6 @@
 //! `planned-collision`: the planned path meets something.
 
-use pydslrep_kinematics::ActionIndex;
+use pydslrep_kinematics::{ActionIndex, Place};
 use pydslrep_scene::{Collision, ENDING, Scene, Thing, collisions};
 use pydslrep_syntax::ast::Entity;
 
@@ -25,7 +25,8 @@ const PAGE: Page = Page {
         robot that is there at the same time.",
     why: "Contact stops a robot: the action would fail after five seconds without progress, and everything after it \
         would not happen. The first obstacle on each robot's way is reported, and for each two robots the first time \
-        they meet. What depends on the world, `turn … until` and `slam`, is not predicted, nor is what comes after \
+        they meet. An obstacle that moves is looked for where it is at the time of the action; after an action of unknown \
+        duration, it is not looked for. What depends on the world, `turn … until` and `slam`, is not predicted, nor is what comes after \
         it.",
     imports: &[("yard.scene.toml", "[[box]]\nname = \"crate\"\nat = [1.5, 0]\nsize = [0.4, 0.4]")],
     example: "\
@@ -110,7 +111,7 @@ struct Located<'a> {
 
 impl Located<'_> {
     fn problem(&self, collision: &Collision) -> Option<Diagnostic> {
-        let place = self.place(collision.action, String::new())?;
+        let place = self.place(collision.action, &collision.place, String::new())?;
         let robot = self.run.name(Thing::Robot(collision.robot));
         let with = self.run.name(collision.with);
         let when = collision.time.map_or_else(String::new, |time| format!(" after {time:.1} s"));
@@ -118,7 +119,11 @@ impl Located<'_> {
         let centimetres = |metres: f64| (metres * 100.0).round() / 100.0 + 0.0;
         let (x, y) = (centimetres(collision.pose.x), centimetres(collision.pose.y));
         let other = collision.other_action;
-        let related = other.and_then(|action| self.place(action, format!("what `{with}` does then")));
+        let related = other.and_then(|action| {
+            self.place(action, &collision.other_place, format!("what `{with}` does then"))
+        });
+        let rounds = collision.place.rounds();
+        let when = if rounds.is_empty() { when } else { format!(" in round {}{when}", in_words(rounds)) };
         let environment = &self.run.environment.name;
         Some(Diagnostic {
             rule: &RULE,
@@ -134,13 +139,20 @@ impl Located<'_> {
     }
 
     /// Where an action is.
-    fn place(&self, index: ActionIndex, message: String) -> Option<Related> {
-        let movement = *self.run.environment.schedule.get(index.group)?.get(index.run)?;
+    fn place(&self, index: ActionIndex, place: &Place, message: String) -> Option<Related> {
+        let listed = *self.run.environment.schedule.get(index.group)?.get(index.run)?;
+        let movement = place.calls().last().map_or(listed, |call| call.movement);
         let entity = self.database.entity(*self.run.movements.get(movement)?)?;
         let Some(Entity::Movement(tree)) = &entity.parse.entity else { return None };
-        let span = tree.actions.get(index.action)?.span.shifted(entity.span.start);
+        let span = tree.statements().get(index.action)?.shifted(entity.span.start);
         Some(Related { file: entity.file, span, message })
     }
+}
+
+/// `2`, or `2 of round 1` where one repetition is in another.
+fn in_words(rounds: &[u32]) -> String {
+    let words: Vec<String> = rounds.iter().rev().map(u32::to_string).collect();
+    words.join(" of round ")
 }
 
 #[cfg(test)]
@@ -191,6 +203,28 @@ mod tests {
         );
         check(program, "[[box]]\nat = [1, 2]\nsize = [0.4, 0.4]", &expect![[""]]);
         check(program, "[[bxo]]", &expect![[""]]);
+    }
+
+    #[test]
+    fn an_obstacle_that_moves() {
+        let program = "movement m of r { move 1 meters move 1 meters turn left move 1 meters }\n\
+            environment e has { r } robots with { m } moves";
+        let person = |path: &str| format!("[[cylinder]]\nname = \"person\"\nradius = 0.2\npath = {path}");
+        check(program, &person("[[0, 1.5, 0], [5, 1.5, 0], [7, 1.5, -2]]"), &expect![[""]]);
+        check(
+            program,
+            &person("[[0, 1.5, 0], [15, 1.5, 0], [17, 1.5, -2]]"),
+            &expect![[r#"
+            move 1 meters: `r` runs into `person` here after 13.2 s, at x 1.15 m, y 0 m
+        "#]],
+        );
+        check(
+            program,
+            &person("[[0, 2, 3], [30, 2, 1]]"),
+            &expect![[r#"
+            move 1 meters: `r` runs into `person` here after 33.1 s, at x 2 m, y 0.65 m
+        "#]],
+        );
     }
 
     #[test]

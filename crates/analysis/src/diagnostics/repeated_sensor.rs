@@ -53,7 +53,12 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 fn lists(tree: Option<&Entity>) -> Vec<&References> {
     match tree {
         Some(Entity::Robot(robot)) => robot.sensors.iter().collect(),
-        Some(Entity::Movement(movement)) => movement.actions.iter().filter_map(Action::until).collect(),
+        Some(Entity::Movement(movement)) => {
+            let conditions = movement.all_actions().flat_map(Action::conditions);
+            let mut lists: Vec<&References> = conditions.map(|condition| &condition.sensors).collect();
+            lists.sort_by_key(|list| list.span.start);
+            lists
+        }
         _ => Vec::new(),
     }
 }

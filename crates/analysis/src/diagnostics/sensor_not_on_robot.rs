@@ -1,4 +1,4 @@
-//! `sensor-not-on-robot`: a turn waits for a sensor that its robot does not carry.
+//! `sensor-not-on-robot`: a condition asks a sensor that its robot does not carry.
 
 use pydslrep_syntax::ast::{Entity, Name, Robot};
 use pydslrep_syntax::{EntityKind, Span, escape};
@@ -12,7 +12,7 @@ use crate::{EntityId, Severity};
 pub(super) static RULE: Rule = Rule {
     code: "sensor-not-on-robot",
     severity: Severity::Error,
-    summary: "`turn … until` names a sensor that the robot does not carry",
+    summary: "a condition names a sensor that the robot does not carry",
     tag: None,
     applicability: Applicability::Suggested,
     page: PAGE,
@@ -20,9 +20,8 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "`turn … until` names a sensor that the movement's robot does not have.",
-    why: "The robot turns until that sensor no longer detects anything. A sensor that is not on the robot detects \
-        nothing for it.",
+    what: "A condition, such as that of `turn … until`, names a sensor that the movement's robot does not have.",
+    why: "Conditions ask sensors of the robot that acts. A sensor that is not on the robot detects nothing for it.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5
@@ -55,15 +54,14 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     if !context.is_sound(id) {
         return;
     }
-    for action in &movement.actions {
-        let Some(list) = action.until() else { continue };
+    for action in movement.all_actions() {
+        let names = action.conditions().flat_map(|condition| &condition.sensors.names);
         let carried = |name: &Name| {
             robot.sensors.iter().flat_map(|list| &list.names).any(|other| other.text == name.text)
         };
         let declared = |name: &Name| context.resolve(EntityKind::Sensor, name).entity().is_some();
         problems.extend(
-            list.names
-                .iter()
+            names
                 .filter(|name| declared(name) && !carried(name))
                 .map(|name| problem(context, id, robot, name)),
         );

@@ -6,8 +6,8 @@ use pydslrep_syntax::ast::{Entity, Environment, Name};
 use super::context::Context;
 use super::problem::Problem;
 use super::{Applicability, Page, Rule, Tag};
-use crate::Severity;
 use crate::signature::Signature;
+use crate::{EntityId, Severity};
 
 pub(super) static RULE: Rule = Rule {
     code: "single-parallel",
@@ -50,12 +50,14 @@ environment yard has { rover scout } robots with { go follow } moves",
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
     let (Some(parallel), Some(name)) = (movement.parallel, &movement.name) else { return };
-    let users = context.users(EntityKind::Movement, name);
+    // What another movement does runs as a part of that one: only the lists of environments count.
+    let listed = |user: &&EntityId| context.signature(**user).is_none_or(|user| user.movement().is_none());
+    let users: Vec<_> = context.users(EntityKind::Movement, name).iter().filter(listed).collect();
     if !context.errors.is_empty() || users.is_empty() || context.is_imported() {
         return;
     }
     let beside = users.iter().any(|user| {
-        let signature = context.signature(*user).filter(|user| user.is_sound());
+        let signature = context.signature(**user).filter(|user| user.is_sound());
         // With errors in it, the movement may run beside any other.
         let environment = signature.and_then(Signature::environment);
         environment.is_none_or(|environment| runs_beside_another(context, environment, name))

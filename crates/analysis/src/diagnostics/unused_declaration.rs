@@ -73,7 +73,9 @@ fn place_of(kind: EntityKind) -> Option<&'static str> {
         EntityKind::Sensor => Some("add it to a robot: `with sensors { … }`"),
         EntityKind::Ip => Some("add it to an environment: `with ip …`"),
         EntityKind::Robot => Some("list it among the robots of an environment"),
-        EntityKind::Movement => Some("list it among the moves of an environment"),
+        EntityKind::Movement => {
+            Some("list it among the moves of an environment, or do it in another movement")
+        }
         EntityKind::Environment => None,
     }
 }
@@ -84,7 +86,8 @@ fn users_of(kind: EntityKind) -> &'static [EntityKind] {
         EntityKind::Wheel => &[EntityKind::Robot],
         EntityKind::Sensor => &[EntityKind::Robot, EntityKind::Movement],
         EntityKind::Robot => &[EntityKind::Movement, EntityKind::Environment],
-        EntityKind::Ip | EntityKind::Movement => &[EntityKind::Environment],
+        EntityKind::Ip => &[EntityKind::Environment],
+        EntityKind::Movement => &[EntityKind::Environment, EntityKind::Movement],
         EntityKind::Environment => &[],
     }
 }
@@ -165,7 +168,7 @@ mod tests {
              movement rover of rovr { turn left }\nenvironment e has { rover } robots",
             &expect![[r#"
                 hint[unused-declaration] 4:10 "rover" nothing uses the movement `rover`
-                  help: list it among the moves of an environment, or leave it out
+                  help: list it among the moves of an environment, or do it in another movement, or leave it out
                 error[unresolved-reference] 4:19 "rovr" there is no robot called `rovr`
                   help: did you mean `rover`?
                   suggestion: change to `rover` -> movement rover of rover { turn left }

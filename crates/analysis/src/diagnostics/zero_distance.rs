@@ -41,7 +41,7 @@ environment yard has { rover } robots with { trip } moves",
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
-    for action in &movement.actions {
+    for action in movement.all_actions() {
         let ActionKind::Move(step) = &action.kind else { continue };
         if let Some(distance) = step.distance.as_ref().filter(|distance| distance.value == Some(0.0)) {
             problems.push(

@@ -24,7 +24,6 @@ pub(super) fn problem(
         .or_else(|| number_for_name(&place, expected, found))
         .or_else(|| way_of_moving(&place, expected, found))
         .or_else(|| angle_first(&place, found))
-        .or_else(|| until(&place, expected))
         .or_else(|| foreign_action(&place, expected, found))
         .or_else(|| needless_unit(&place, found))
         .or_else(|| decimal_comma(&place))
@@ -378,23 +377,7 @@ fn angle_first(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
     })
 }
 
-/// `turn left 90 until { … }`, `move 4 meters until { … }`
-fn until(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Problem> {
-    if place.here() != Some(TokenKind::Until) {
-        return None;
-    }
-    let turned = matches!(place.before(2), Some((TokenKind::Left | TokenKind::Right, _)));
-    if expected.contains(&Expected::Number(Quantity::Distance)) || !turned {
-        let problem = RULE.problem(place.span, "only a turn has `until`, and a move has its distance");
-        return Some(problem.help(words::action(TokenKind::Turn)));
-    }
-    Some(
-        RULE.problem(place.span, "a turn has either an angle or `until`, not both")
-            .help("leave the angle out, or all from `until` on"),
-    )
-}
-
-/// `go 4 meters`, `wait 5`
+/// `go 4 meters`, `sleep 5`
 fn foreign_action(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
     if !expected.contains(&Expected::Action) {
         return None;
@@ -403,21 +386,20 @@ fn foreign_action(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> 
     let meant = match found.to_lowercase().as_str() {
         "go" | "drive" | "forward" | "walk" | "run" | "advance" => "move",
         "rotate" | "spin" | "rotation" => "turn",
-        "wait" | "stop" | "sleep" | "pause" | "halt" => {
+        "sleep" | "pause" => "wait",
+        "when" => "if",
+        "loop" => "repeat",
+        "stop" | "halt" => {
             return Some(
                 problem.help("a robot stops by itself when its movement is over, and the next one follows"),
             );
         }
-        "repeat" | "for" | "while" | "loop" | "forever"
-            if place.before(1)?.0 != TokenKind::Left && place.before(1)?.0 != TokenKind::Right =>
+        "for" | "while" | "forever"
+            if !matches!(place.before(1), Some((TokenKind::Left | TokenKind::Right, _))) =>
         {
-            return Some(
-                problem.help("there are no loops; an environment may list a movement several times"),
-            );
+            return Some(problem.help(words::action(TokenKind::Repeat)));
         }
-        "if" | "when" | "else" => {
-            return Some(problem.help("there are no conditions but `turn right until { SENSORS }`"));
-        }
+        "else" => return Some(problem.help("`else` follows the block of an `if`")),
         _ => return None,
     };
     let edit = place.context.replace(place.span, meant);

@@ -1,6 +1,6 @@
 //! Words without a blank between them, such as `metersturn` or `robotr`: one problem each, which inserts the blanks.
 
-use pydslrep_syntax::{KEYWORDS, Span, Token};
+use pydslrep_syntax::{KEYWORDS, Span, Token, TokenKind};
 
 use super::{RULE, repair};
 use crate::diagnostics::context::Context;
@@ -36,7 +36,10 @@ pub(super) fn find(context: &Context<'_>) -> Vec<Glued> {
 
 /// The words that an error is at, and the one after it, before which something seems to be missing.
 fn words_near(context: &Context<'_>, error: Span) -> Vec<Span> {
-    let is_word = |(token, span): &&Token| token.is_name() && span.len() <= LONGEST;
+    // `repeat` ends with `at`, and is a word of its own.
+    let is_word = |(token, span): &&Token| {
+        token.is_name() && !TokenKind::CONTEXTUAL.contains(token) && span.len() <= LONGEST
+    };
     let touching =
         context.tokens.iter().filter(|(_, span)| span.touches(error.start) || span.touches(error.end));
     let after = context.tokens.iter().find(|(token, span)| !token.is_comment() && span.start >= error.end);
@@ -84,6 +87,7 @@ fn keywords_in(word: &str) -> Vec<Vec<&str>> {
     }
     let begun = KEYWORDS
         .iter()
+        .filter(|(token, _)| divides(*token))
         .filter_map(|(_, keyword)| word.strip_prefix(keyword).map(|rest| (keyword.len(), rest)));
     begun
         .flat_map(|(length, rest)| {
@@ -93,8 +97,14 @@ fn keywords_in(word: &str) -> Vec<Vec<&str>> {
         .collect()
 }
 
+/// Whether a word is divided after this keyword: after those that many names begin with, it is not.
+fn divides(token: TokenKind) -> bool {
+    use TokenKind::{Bumper, Distance, Import, Repeat, Seconds, Times, Wait};
+    token.is_keyword() || matches!(token, Bumper | Distance | Import | Repeat | Seconds | Times | Wait)
+}
+
 fn is_keyword(word: &str) -> bool {
-    KEYWORDS.iter().any(|(_, keyword)| *keyword == word)
+    KEYWORDS.iter().any(|(token, keyword)| *keyword == word && divides(*token))
 }
 
 fn is_number(word: &str) -> bool {
@@ -277,7 +287,7 @@ mod tests {
             &format!("{PARTS}movement format of r {{ turn left turnleft_2 }}"),
             &expect![[r#"
                 error[syntax-error] 5:34 "turnleft_2" unexpected `turnleft_2`: not an action
-                  help: an action is written `move 4.0 meters`, `move 40 centimeters at 9.0`, `turn left 90`, `turn right until { SENSORS }` or `slam`
+                  help: an action is written `move 4.0 meters`, `turn left 90`, `wait 2 seconds`, `repeat 4 times { ACTIONS }`, `if { SENSORS } detect { ACTIONS }`, `do MOVEMENT` or `slam`
                   suggestion: remove `turnleft_2` -> movement format of r { turn left }
             "#]],
         );

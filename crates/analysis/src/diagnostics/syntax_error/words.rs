@@ -7,7 +7,10 @@ use crate::diagnostics::context::Context;
 
 /// How all actions are written.
 pub(super) fn actions() -> String {
-    format!("an action is written {}", quoted(TokenKind::ACTIONS.iter().flat_map(|action| action.examples())))
+    format!(
+        "an action is written {}",
+        quoted(TokenKind::ACTIONS.iter().filter_map(|action| action.examples().first()))
+    )
 }
 
 /// How the action that a keyword begins is written.
@@ -35,6 +38,18 @@ pub(super) fn shape(
         return Some(action(TokenKind::Move));
     }
     let turns = [number(Quantity::Angle), Expected::ReferenceTo(EntityKind::Sensor)];
+    if expected == [word(TokenKind::Until)] {
+        return Some(action(TokenKind::Move));
+    }
+    if wants(&[number(Quantity::Time), word(TokenKind::Seconds)]) {
+        return Some(action(TokenKind::Wait));
+    }
+    if wants(&[number(Quantity::Count), word(TokenKind::Times)]) {
+        return Some(action(TokenKind::Repeat));
+    }
+    if wants(&[word(TokenKind::Clear), word(TokenKind::Detect)]) {
+        return Some("a condition is written `{ SENSORS } clear` or `{ SENSORS } detect`".to_owned());
+    }
     let in_turn =
         wants(&[word(TokenKind::Left), word(TokenKind::Right), word(TokenKind::Until)]) || wants(&turns);
     if in_turn && inside == Some(EntityKind::Movement) {
@@ -68,14 +83,24 @@ pub(super) fn telling(expected: &[Expected]) -> Vec<Expected> {
     let ends = expected.contains(&Expected::Declaration);
     let has = expected.contains(&Expected::Word(TokenKind::Has));
     let with = expected.contains(&Expected::Word(TokenKind::With));
+    let far = expected.contains(&Expected::Number(Quantity::Distance));
     let keep = |expected: &&Expected| match expected {
         Expected::Word(TokenKind::Comma) => !lists && !has,
         Expected::Word(TokenKind::Type) => !names && !with,
         Expected::Word(TokenKind::With | TokenKind::OpenBrace) if has => false,
+        Expected::Word(TokenKind::At | TokenKind::Until) if far => false,
         Expected::ReferenceTo(_)
         | Expected::Action
         | Expected::Number(Quantity::Angle)
-        | Expected::Word(TokenKind::At | TokenKind::Until) => !closes,
+        | Expected::Word(
+            TokenKind::At
+            | TokenKind::Until
+            | TokenKind::In
+            | TokenKind::Clear
+            | TokenKind::Detect
+            | TokenKind::Within,
+        ) => !closes,
+        Expected::Word(TokenKind::With) if closes => false,
         Expected::Word(_) => !ends,
         _ => true,
     };

@@ -1,0 +1,144 @@
+//! `empty-block`: a `repeat`, `if` or `else` without an action.
+
+use pydslrep_syntax::Span;
+use pydslrep_syntax::ast::{Action, ActionKind, Block, Entity, If, Repeat, Rounds};
+
+use super::context::Context;
+use super::problem::Problem;
+use super::{Applicability, Page, Rule};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "empty-block",
+    severity: Severity::Warning,
+    summary: "a `repeat`, `if` or `else` without an action",
+    tag: None,
+    applicability: Applicability::Suggested,
+    page: PAGE,
+    check,
+};
+
+const PAGE: Page = Page {
+    what: "There is nothing between the braces of a `repeat`, an `if` or an `else`.",
+    why: "Nothing is done there. Probably the actions are still missing. To let a robot stay where it is until \
+        a sensor says something else, write `wait until`.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+sensor front
+robot rover with port 23000 has { wheelL wheelR } wheels with sensors { front }
+
+movement trip of rover { repeat until { front } clear { } move 1 meters }
+
+environment yard has { rover } robots with { trip } moves",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+sensor front
+robot rover with port 23000 has { wheelL wheelR } wheels with sensors { front }
+
+movement trip of rover { wait until { front } clear move 1 meters }
+
+environment yard has { rover } robots with { trip } moves",
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Movement(movement)) = context.tree else { return };
+    for action in movement.all_actions() {
+        let empty = action.blocks().filter(|block| block.actions.is_empty() && is_understood(context, block));
+        problems.extend(empty.map(|block| problem(context, action, block)));
+    }
+}
+
+/// Whether nothing in the block was skipped, and both its braces are there.
+fn is_understood(context: &Context<'_>, block: &Block) -> bool {
+    let inside = |span: Span| block.span.start <= span.start && span.start <= block.span.end;
+    block.span.len() >= 2 && !context.errors.iter().any(|error| inside(error.span))
+}
+
+fn problem(context: &Context<'_>, action: &Action, block: &Block) -> Problem {
+    let problem = RULE
+        .problem(block.span, "this block has no actions, so nothing is done there")
+        .help("write actions between the braces, such as `move 1.0 meters` or `turn left`");
+    match &action.kind {
+        ActionKind::Repeat(Repeat { rounds: Some(Rounds::Until(until)), .. }) => {
+            let before = Span::new(action.span.start, until.span.start);
+            let after = Span::new(until.span.end, action.span.end);
+            let edits = [context.replace(before, "wait "), context.replace(after, "")];
+            problem.suggestion("wait until that is so", edits)
+        }
+        ActionKind::Repeat(_) => problem.suggestion("remove the `repeat`", [context.remove(action.span)]),
+        ActionKind::If(choice) => of_if(context, action, choice, block, problem),
+        _ => problem,
+    }
+}
+
+fn of_if(context: &Context<'_>, action: &Action, choice: &If, block: &Block, problem: Problem) -> Problem {
+    match (&choice.otherwise, choice.branches.as_slice()) {
+        (Some(last), [.., before]) if last.span == block.span => {
+            let end = before.block.as_ref().map_or(before.span.end, |before| before.span.end);
+            problem.suggestion("remove the `else`", [context.replace(Span::new(end, last.span.end), "")])
+        }
+        (None, [_]) => problem.suggestion("remove the `if`", [context.remove(action.span)]),
+        _ => problem,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nsensor s\nsensor t : bumper\n\
+        robot r with port 1 has { a b } wheels with sensors { s, t }\n";
+
+    fn program(actions: &str) -> String {
+        format!("{PARTS}movement m of r {{ {actions} }}")
+    }
+
+    #[test]
+    fn what_does_nothing_is_removed() {
+        check(
+            &program("turn left repeat 2 times { }"),
+            &expect![[r#"
+            warning[empty-block] 6:44 "{ }" this block has no actions, so nothing is done there
+              help: write actions between the braces, such as `move 1.0 meters` or `turn left`
+              suggestion: remove the `repeat` -> movement m of r { turn left }
+        "#]],
+        );
+        check(
+            &program("repeat until { s } clear { } turn left"),
+            &expect![[r#"
+            warning[empty-block] 6:44 "{ }" this block has no actions, so nothing is done there
+              help: write actions between the braces, such as `move 1.0 meters` or `turn left`
+              suggestion: wait until that is so -> movement m of r { wait until { s } clear turn left }
+        "#]],
+        );
+        check(
+            &program("turn left if { s } clear { }"),
+            &expect![[r#"
+            warning[empty-block] 6:44 "{ }" this block has no actions, so nothing is done there
+              help: write actions between the braces, such as `move 1.0 meters` or `turn left`
+              suggestion: remove the `if` -> movement m of r { turn left }
+        "#]],
+        );
+        check(
+            &program("if { s } clear { turn left } else { }"),
+            &expect![[r#"
+            warning[empty-block] 6:53 "{ }" this block has no actions, so nothing is done there
+              help: write actions between the braces, such as `move 1.0 meters` or `turn left`
+              suggestion: remove the `else` -> movement m of r { if { s } clear { turn left } }
+        "#]],
+        );
+        check(
+            &program("if { s } clear { } else { turn left }"),
+            &expect![[r#"
+            warning[empty-block] 6:34 "{ }" this block has no actions, so nothing is done there
+              help: write actions between the braces, such as `move 1.0 meters` or `turn left`
+        "#]],
+        );
+        check_clean(&program("repeat 2 times { turn left }"));
+    }
+}

@@ -1,0 +1,136 @@
+//! `invalid-count`: a block is repeated once, or no whole number of times from 1 to 10000.
+
+use pydslrep_syntax::Span;
+use pydslrep_syntax::ast::{Action, ActionKind, Block, Entity, Number, Repeat, Rounds};
+
+use super::context::Context;
+use super::problem::Problem;
+use super::{Applicability, Page, Rule};
+use crate::Severity;
+use crate::resolve::COUNTS;
+
+pub(super) static RULE: Rule = Rule {
+    code: "invalid-count",
+    severity: Severity::Warning,
+    summary: "a block is repeated once; an error if not a whole number of times from 1 to 10000",
+    tag: None,
+    applicability: Applicability::Safe,
+    page: PAGE,
+    check,
+};
+
+const PAGE: Page = Page {
+    what: "The number before `times` is 1, or it is an error: no whole number, or not from 1 to 10000.",
+    why: "A block cannot be done two and a half times. For more than 10000 rounds, put one `repeat` into \
+        another; there is no endless one. A block that is repeated once is done without `repeat` as well.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { repeat 1 times { move 1 meters turn left } }
+
+environment yard has { rover } robots with { trip } moves",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { move 1 meters turn left }
+
+environment yard has { rover } robots with { trip } moves",
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Movement(movement)) = context.tree else { return };
+    for action in movement.all_actions() {
+        let ActionKind::Repeat(Repeat { rounds: Some(Rounds::Times(count)), block }) = &action.kind else {
+            continue;
+        };
+        match count.value.filter(|value| value.is_finite()) {
+            Some(1.0) => problems.push(once(context, action, count, block.as_ref())),
+            Some(value) if value.fract() != 0.0 || !COUNTS.contains(&value) => {
+                problems.push(none(context, count));
+            }
+            _ => {}
+        }
+    }
+}
+
+fn none(context: &Context<'_>, count: &Number) -> Problem {
+    let written = context.short_text(count.span);
+    let (least, most) = (COUNTS.start(), COUNTS.end());
+    RULE.problem(
+        count.span,
+        format!("a block is repeated from {least} to {most} times, a whole number, not {written}"),
+    )
+    .severity(Severity::Error)
+    .help("write how often; for more rounds, put one `repeat` into another")
+}
+
+fn once(context: &Context<'_>, action: &Action, count: &Number, block: Option<&Block>) -> Problem {
+    let problem = RULE.problem(count.span, "a block that is repeated once is done without `repeat` as well");
+    let Some(block) = block.filter(|block| !block.actions.is_empty()) else { return problem };
+    let (start, end) = (block.actions[0].span.start, block.actions[block.actions.len() - 1].span.end);
+    let kept = |span: Span| {
+        context.tokens.iter().any(|(token, other)| token.is_comment() && span.touches(other.start))
+    };
+    let (before, after) = (Span::new(action.span.start, start), Span::new(end, block.span.end));
+    if kept(before) || kept(after) {
+        return problem;
+    }
+    problem.fix("remove `repeat`", [context.replace(before, ""), context.replace(after, "")])
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nsensor s\nsensor t : bumper\n\
+        robot r with port 1 has { a b } wheels with sensors { s, t }\n";
+
+    fn program(actions: &str) -> String {
+        format!("{PARTS}movement m of r {{ {actions} }}")
+    }
+
+    #[test]
+    fn counts_are_whole_and_not_too_large() {
+        for count in ["0", "-2", "2.5", "10001"] {
+            let text = program(&format!("repeat {count} times {{ turn left }}"));
+            let mut database = crate::Database::new();
+            let file = database.open("a.pyr", &text);
+            let codes: Vec<_> = database.diagnostics(file).iter().map(crate::Diagnostic::code).collect();
+            assert!(codes.contains(&"invalid-count"), "{count}: {codes:?}");
+        }
+        check(
+            &program("repeat 2.5 times { turn left }"),
+            &expect![[r#"
+            error[invalid-count] 6:26 "2.5" a block is repeated from 1 to 10000 times, a whole number, not 2.5
+              help: write how often; for more rounds, put one `repeat` into another
+        "#]],
+        );
+        check_clean(&program(
+            "repeat 2 times { turn left } repeat 3.0 times { turn left } repeat 10000 times { turn left }",
+        ));
+    }
+
+    #[test]
+    fn once_is_no_repetition() {
+        check(
+            &program("repeat 1 times { turn left move 1 meters }"),
+            &expect![[r#"
+            warning[invalid-count] 6:26 "1" a block that is repeated once is done without `repeat` as well
+              fix: remove `repeat` -> movement m of r { turn left move 1 meters }
+        "#]],
+        );
+        check(
+            &program("repeat 1 times { turn left // why\n }"),
+            &expect![[r#"
+            warning[invalid-count] 6:26 "1" a block that is repeated once is done without `repeat` as well
+        "#]],
+        );
+    }
+}

@@ -1,0 +1,119 @@
+//! `missing-condition-word`: a condition does not say what it asks of its sensors.
+
+use pydslrep_syntax::ast::{Action, ActionKind, Condition, Entity};
+
+use super::context::Context;
+use super::problem::Problem;
+use super::{Applicability, Page, Rule};
+use crate::Severity;
+
+pub(super) static RULE: Rule = Rule {
+    code: "missing-condition-word",
+    severity: Severity::Error,
+    summary: "a condition does not say what it asks of its sensors",
+    tag: None,
+    applicability: Applicability::Suggested,
+    page: PAGE,
+    check,
+};
+
+const PAGE: Page = Page {
+    what: "A condition names sensors, but says neither `clear` nor `detect` after them.",
+    why: "`clear` holds when none of the sensors detects anything, `detect` when at least one does. Only the \
+        form `turn left until { front }` can do without: there it has always been `clear`.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+sensor front
+robot rover with port 23000 has { wheelL wheelR } wheels with sensors { front }
+
+movement trip of rover { move 1 meters until { front } }
+
+environment yard has { rover } robots with { trip } moves",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+sensor front
+robot rover with port 23000 has { wheelL wheelR } wheels with sensors { front }
+
+movement trip of rover { move 1 meters until { front } detect }
+
+environment yard has { rover } robots with { trip } moves",
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    let Some(Entity::Movement(movement)) = context.tree else { return };
+    for action in movement.all_actions().filter(|action| !may_do_without(action)) {
+        let missing = action.conditions().filter(|condition| condition.state.is_none());
+        let sound = missing.filter(|condition| is_understood(context, condition));
+        problems.extend(sound.map(|condition| problem(context, condition)));
+    }
+}
+
+/// Whether it is the article's `turn left until { … }`.
+fn may_do_without(action: &Action) -> bool {
+    matches!(&action.kind, ActionKind::Turn(turn) if turn.is_of_article())
+}
+
+/// Whether its list and what follows that were read without a mistake, which may be the word.
+fn is_understood(context: &Context<'_>, condition: &Condition) -> bool {
+    let around = |at: u32| condition.span.start <= at && at <= condition.span.end + 1;
+    !condition.sensors.broken && !context.errors.iter().any(|error| around(error.span.start))
+}
+
+fn problem(context: &Context<'_>, condition: &Condition) -> Problem {
+    let list = condition.sensors.span;
+    let insert = |word: &str| [context.replace(pydslrep_syntax::Span::at(list.end), format!(" {word}"))];
+    RULE.problem(
+        list,
+        "this condition does not say whether its sensors are to be clear or to detect something",
+    )
+    .help("write `clear` or `detect` after the sensors")
+    .suggestion("add `detect`", insert("detect"))
+    .suggestion("add `clear`", insert("clear"))
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::diagnostics::testing::{check, check_clean};
+
+    const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nsensor s\nsensor t : bumper\n\
+        robot r with port 1 has { a b } wheels with sensors { s, t }\n";
+
+    fn program(actions: &str) -> String {
+        format!("{PARTS}movement m of r {{ {actions} }}")
+    }
+
+    #[test]
+    fn either_word_is_offered() {
+        check(
+            &program("if { s } { slam } turn left at 9 until { t } within 1 meters"),
+            &expect![[r#"
+            error[missing-condition-word] 6:22 "{ s }" this condition does not say whether its sensors are to be clear or to detect something
+              help: write `clear` or `detect` after the sensors
+              suggestion: add `detect` -> movement m of r { if { s } detect { slam } turn left at 9 until { t } within 1 meters }
+              suggestion: add `clear` -> movement m of r { if { s } clear { slam } turn left at 9 until { t } within 1 meters }
+            error[slam-sensors] 6:30 "slam" `slam` needs 5 distance sensors, and `r` has only 1
+              see 5:7 "r" `r` is declared here
+              help: declare more sensors, and add them to the robot: `with sensors { … }`
+              note: each sensor counts once, and a `bumper` does not count
+            error[missing-condition-word] 6:58 "{ t }" this condition does not say whether its sensors are to be clear or to detect something
+              help: write `clear` or `detect` after the sensors
+              suggestion: add `detect` -> movement m of r { if { s } { slam } turn left at 9 until { t } detect within 1 meters }
+              suggestion: add `clear` -> movement m of r { if { s } { slam } turn left at 9 until { t } clear within 1 meters }
+            warning[invalid-within] 6:71 "1" a bumper does not measure distances
+              help: leave out `within`, or ask a distance sensor
+        "#]],
+        );
+    }
+
+    #[test]
+    fn the_form_of_the_article_has_none() {
+        check_clean(&program(
+            "turn left until { s } move until { s } clear repeat until { t } detect { turn left }",
+        ));
+    }
+}

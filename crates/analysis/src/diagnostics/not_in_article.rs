@@ -1,0 +1,152 @@
+//! `not-in-article`: what the article does not have, in a program of its edition.
+
+use pydslrep_syntax::Span;
+use pydslrep_syntax::ast::{Action, ActionKind, Entity, Turn, Until};
+
+use super::context::Context;
+use super::problem::Problem;
+use super::{Applicability, Page, Rule};
+use crate::{Edition, Severity};
+
+pub(super) static RULE: Rule = Rule {
+    code: "not-in-article",
+    severity: Severity::Error,
+    summary: "a statement or clause that the article does not have, where the edition is the article's",
+    tag: None,
+    applicability: Applicability::Never,
+    page: PAGE,
+    check,
+};
+
+const PAGE: Page = Page {
+    what: "The edition is `article`, by `--edition article` or by `edition = \"article\"` in `pydslrep.toml`, and the \
+        program has a statement or a clause that the article of 2020 does not have.",
+    why: "The edition is for programs that other tools for the article's language must understand, too. They know \
+        moves, turns and `slam`, and nothing that came later.",
+    imports: &[],
+    example: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { repeat 2 times { move 1 meters turn left } }
+
+environment yard has { rover } robots with { trip } moves",
+    fixed: "\
+wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+robot rover with port 23000 has { wheelL wheelR } wheels
+
+movement trip of rover { move 1 meters turn left move 1 meters turn left }
+
+environment yard has { rover } robots with { trip } moves",
+};
+
+fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
+    if context.edition() != Edition::Article {
+        return;
+    }
+    match context.tree {
+        Some(Entity::Import(_)) => {
+            let keyword = context.tokens.iter().find(|(token, _)| !token.is_comment());
+            problems.extend(keyword.map(|(_, span)| problem(context, *span)));
+        }
+        Some(Entity::Movement(movement)) => {
+            let found = movement.all_actions().flat_map(|action| extensions(context, action));
+            problems.extend(found.map(|span| problem(context, span)));
+        }
+        _ => {}
+    }
+}
+
+fn problem(context: &Context<'_>, span: Span) -> Problem {
+    let written = context.short_text(span);
+    RULE.problem(span, format!("the article does not have `{written}`"))
+        .help("write it with moves, turns and `slam`, or leave out `edition`")
+}
+
+/// What an action has of it; the actions in its blocks are not looked at.
+fn extensions(context: &Context<'_>, action: &Action) -> Vec<Span> {
+    match &action.kind {
+        ActionKind::Move(step) => step.until.iter().map(|until| until.span).collect(),
+        ActionKind::Turn(turn) => in_turn(turn),
+        ActionKind::Slam => Vec::new(),
+        ActionKind::Wait(_) | ActionKind::Repeat(_) | ActionKind::If(_) | ActionKind::Do(_) => {
+            let keyword = context.tokens.iter().find(|(_, span)| span.start == action.span.start);
+            vec![keyword.map_or(action.span, |(_, span)| *span)]
+        }
+    }
+}
+
+/// An `until` is the article's where nothing else is said of the turn, but for what its condition says beside the sensors.
+fn in_turn(turn: &Turn) -> Vec<Span> {
+    let circle = turn.circle.as_ref().map(|circle| circle.span);
+    let clauses = circle.into_iter().chain(turn.speed.as_ref().map(|speed| speed.span)).chain(turn.reverse);
+    let mut found: Vec<Span> = clauses.collect();
+    let Some(Until { condition, span }) = &turn.until else { return found };
+    if turn.angle.is_some() || !found.is_empty() {
+        found.push(*span);
+    } else {
+        found.extend(condition.state.map(|(_, span)| span));
+        found.extend(condition.within.as_ref().map(|within| within.span));
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::{Expect, expect};
+
+    use crate::{Database, Edition};
+
+    fn check(program: &str, expected: &Expect) {
+        let parts = "import \"x.pyr\"\nwheel a with radius 4\nwheel b with radius 4\nsensor s : bumper\n\
+            robot r type tw with port 1 has { a b } wheels with sensors { s }\n";
+        let program = format!("{parts}movement m of r {{ {program} }}");
+        let mut database = Database::new();
+        let file = database.open("test.pyr", &program);
+        database.open("x.pyr", "");
+        let said = |database: &Database| {
+            let all = database.diagnostics(file);
+            let of_rule = all.into_iter().filter(|found| found.code() == "not-in-article");
+            of_rule.map(|found| found.span.text(&program).to_owned() + "\n").collect::<String>()
+        };
+        assert_eq!(said(&database), "");
+        database.set_edition(file, Edition::Article);
+        expected.assert_eq(&said(&database));
+        database.set_edition(file, Edition::Current);
+        assert_eq!(said(&database), "");
+    }
+
+    #[test]
+    fn every_extension_is_told() {
+        check(
+            "repeat 2 times { wait 1 seconds } if { s } clear { do m } else if { s } detect { slam } \
+             move 1 meters until { s } detect turn left 90 with radius 1 meters at 5 in reverse \
+             turn left 90 until { s } clear turn left until { s } clear within 1 meters turn left at 4",
+            &expect![[r#"
+                import
+                repeat
+                wait
+                if
+                do
+                until { s } detect
+                with radius 1 meters
+                at 5
+                in reverse
+                until { s } clear
+                clear
+                within 1 meters
+                at 4
+            "#]],
+        );
+    }
+
+    #[test]
+    fn what_the_article_has_is_allowed() {
+        check(
+            "move 1 meters at 5 move -1 centimeters turn left turn right 45 turn left until { s } slam",
+            &expect![["import\n"]],
+        );
+    }
+}

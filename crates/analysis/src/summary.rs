@@ -1,0 +1,122 @@
+//! What a movement shows to those that do it: which movements it does itself, and how long it takes.
+
+use pydslrep_kinematics::{Drive, Model, SpeedProfile, Twist, motion};
+use pydslrep_syntax::ast::{self, Action, ActionKind, Entity, Repeat, Rounds};
+use smol_str::SmolStr;
+
+use crate::resolve::DEFAULT_ANGLE;
+
+/// What a movement adds up to. As long as it stays what it was, nobody who does the movement is looked at again.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Summary {
+    /// The movements that it does, each once, in the order of the text.
+    pub(crate) does: Vec<SmolStr>,
+    /// How long it takes; `None` where only the world decides.
+    pub(crate) time: Option<Time>,
+}
+
+/// The time of a row of actions, with robots of default size.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Time {
+    /// Seconds for each type of robot, in the order of [`Drive::ALL`], without what is done.
+    pub(crate) seconds: [f64; Drive::ALL.len()],
+    /// The movements that are done, and how often.
+    pub(crate) calls: Vec<(SmolStr, f64)>,
+}
+
+impl Summary {
+    /// That of the movement that an entity is.
+    pub(crate) fn of(entity: &Entity) -> Option<Self> {
+        let Entity::Movement(movement) = entity else { return None };
+        let mut does: Vec<SmolStr> = Vec::new();
+        for name in movement.all_actions().filter_map(Action::done) {
+            if !does.contains(&name.text) {
+                does.push(name.text.clone());
+            }
+        }
+        Some(Self { does, time: Time::of(&movement.actions) })
+    }
+}
+
+impl Time {
+    /// That of a row of actions; `None` where a condition decides, or where something is missing.
+    pub(crate) fn of(actions: &[Action]) -> Option<Self> {
+        let mut time = Self::default();
+        for action in actions {
+            time.add(&Self::of_action(action)?, 1.0);
+        }
+        Some(time)
+    }
+
+    /// That of one action with all rounds of its blocks.
+    pub(crate) fn of_action(action: &Action) -> Option<Self> {
+        if action.until().is_some() {
+            return None;
+        }
+        match &action.kind {
+            ActionKind::Move(step) => {
+                let length = step.distance.as_ref()?.value? * step.unit?.0.in_metres();
+                Some(Self::driven(length, speed(step.speed.as_ref())?, |_| 1.0))
+            }
+            ActionKind::Turn(turn) => Self::of_turn(turn),
+            ActionKind::Wait(wait) => {
+                let seconds = [wait.seconds.as_ref()?.value?; Drive::ALL.len()];
+                Some(Self { seconds, calls: Vec::new() })
+            }
+            ActionKind::Repeat(Repeat { rounds: Some(Rounds::Times(count)), block: Some(block) }) => {
+                let mut time = Self::default();
+                time.add(&Self::of(&block.actions)?, count.value?);
+                Some(time)
+            }
+            ActionKind::Do(call) => {
+                let name = call.movement.as_ref()?.text.clone();
+                Some(Self { seconds: Default::default(), calls: vec![(name, 1.0)] })
+            }
+            ActionKind::Repeat(_) | ActionKind::If(_) | ActionKind::Slam => None,
+        }
+    }
+
+    fn of_turn(turn: &ast::Turn) -> Option<Self> {
+        let degrees = match &turn.angle {
+            Some(angle) => angle.value?,
+            None => DEFAULT_ANGLE,
+        };
+        let radius = match &turn.circle {
+            Some(circle) => circle.radius.as_ref()?.value? * circle.unit?.0.in_metres(),
+            None => 0.0,
+        };
+        let speed = speed(turn.speed.as_ref())?;
+        let twist = Twist { vx: radius, omega: 1.0, ..Twist::default() };
+        Some(Self::driven(degrees.to_radians(), speed, |model| model.fastest_rim(twist)))
+    }
+
+    /// A drive whose rims travel so far for each unit of `amount`.
+    fn driven(amount: f64, speed: f64, rim_per_unit: impl Fn(&Model) -> f64) -> Self {
+        let seconds = Drive::ALL.map(|drive| {
+            let rim = crate::plan::default_model(drive).map_or(0.0, |model| rim_per_unit(&model));
+            let rest = if amount == 0.0 { 0.0 } else { motion::REST };
+            SpeedProfile::new(amount.abs() * rim, speed, motion::RIM_ACCELERATION).duration() + rest
+        });
+        Self { seconds, calls: Vec::new() }
+    }
+
+    fn add(&mut self, other: &Self, times: f64) {
+        for (sum, more) in self.seconds.iter_mut().zip(other.seconds) {
+            *sum += more * times;
+        }
+        for (name, count) in &other.calls {
+            match self.calls.iter_mut().find(|(other, _)| other == name) {
+                Some((_, sum)) => *sum += count * times,
+                None => self.calls.push((name.clone(), count * times)),
+            }
+        }
+    }
+}
+
+/// Metres per second at the rim, above zero.
+fn speed(clause: Option<&ast::SpeedClause>) -> Option<f64> {
+    match clause {
+        Some(clause) => clause.value.as_ref()?.value.map(|speed| speed / 100.0).filter(|speed| *speed > 0.0),
+        None => Some(motion::RIM_SPEED),
+    }
+}
