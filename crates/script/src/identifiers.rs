@@ -1,16 +1,29 @@
 //! What robots, movements and the environment are called in a script: by their names where these are free identifiers.
 
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 
-use pydslrep_analysis::environment::Environment;
+use pydslrep_analysis::environment::{Action, Environment, nested};
 use pydslrep_kinematics::Drive;
 
 /// Everything that a script may import from the runtime, in the order of imports.
 pub(crate) fn imports() -> Vec<&'static str> {
     let mut names = Drive::ALL.map(|drive| drive.row().class).to_vec();
-    names.extend(["movement", "parallel", "run"]);
+    names.extend(["movement", "parallel", "run", CLEAR, DETECTS]);
     names.sort_unstable();
     names
+}
+
+/// What makes a condition: no sensor detects anything.
+pub(crate) const CLEAR: &str = "clear";
+
+/// What makes a condition: a sensor detects something.
+pub(crate) const DETECTS: &str = "detects";
+
+/// What the conditions of an environment are made with.
+pub(crate) fn conditions(environment: &Environment) -> BTreeSet<&'static str> {
+    let actions = environment.movements.iter().flat_map(|movement| nested(&movement.actions));
+    let conditions = actions.flat_map(Action::conditions);
+    conditions.map(|condition| if condition.detect { DETECTS } else { CLEAR }).collect()
 }
 
 /// Python's keywords and builtins, one per line; tests/repository compares them with Python's own.
@@ -33,8 +46,11 @@ pub(crate) struct Identifiers {
 impl Identifiers {
     /// Chooses them in the order of the script.
     pub(crate) fn new(environment: &Environment) -> Self {
+        let conditions = conditions(environment);
+        let is_free = |name: &&str| [CLEAR, DETECTS].contains(name) && !conditions.contains(name);
+        let imported = imports().into_iter().filter(|name| !is_free(name));
         let mut taken: HashSet<String> =
-            PYTHON.lines().chain(imports()).chain(AMBIGUOUS).map(str::to_owned).collect();
+            PYTHON.lines().chain(imported).chain(AMBIGUOUS).map(str::to_owned).collect();
         let mut choose = |name: &str, kind: &str, number| {
             let found = choose(name, kind, number, &taken);
             taken.insert(found.clone());

@@ -12,6 +12,7 @@ mod layout;
 mod page;
 pub mod runtime;
 mod signature;
+mod statements;
 
 use std::collections::HashSet;
 use std::fmt;

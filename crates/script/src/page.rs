@@ -5,15 +5,13 @@ use std::iter;
 use std::net::Ipv4Addr;
 
 use pydslrep_analysis::Target;
-use pydslrep_analysis::environment::{
-    Action, ActionKind, Environment, Movement, Robot, Sensor, SensorKind, Source,
-};
-use pydslrep_kinematics::motion::RIM_SPEED;
+use pydslrep_analysis::environment::{ActionKind, Environment, Movement, Robot, Sensor, SensorKind, nested};
 
-use crate::identifiers::{Identifiers, imports};
+use crate::identifiers::{CLEAR, DETECTS, Identifiers, conditions, imports};
 use crate::layout::Expression::{self, Atom, Call, Dict, List, Tuple};
-use crate::layout::{WIDTH, commented, float, literal};
+use crate::layout::{WIDTH, comment_text, float, literal};
 use crate::runtime;
+use crate::statements::Statements;
 
 /// The columns that the body of a function is indented by.
 const BODY: usize = 4;
@@ -49,10 +47,12 @@ fn docstring(environment: &Environment, target: Target, program: &str) -> String
 
 /// The import of the runtime. Its first line, which Python prints where there is no runtime, says what to do about it.
 fn import(environment: &Environment, target: Target, program: &str) -> String {
+    let conditions = conditions(environment);
     let is_used = |name: &str| match name {
         "movement" => !environment.movements.is_empty(),
         "parallel" => environment.schedule.iter().any(|group| group.len() > 1),
         "run" => true,
+        CLEAR | DETECTS => conditions.contains(name),
         class => environment.robots.iter().any(|robot| robot.drive.row().class == class),
     };
     let names: Vec<&str> = imports().into_iter().filter(|name| is_used(name)).collect();
@@ -117,7 +117,8 @@ pub fn used_sensors(environment: &Environment) -> Vec<BTreeSet<usize>> {
     let mut used = vec![BTreeSet::new(); environment.robots.len()];
     for movement in &environment.movements {
         let used = &mut used[movement.robot];
-        for action in &movement.actions {
+        for action in nested(&movement.actions) {
+            used.extend(action.conditions().into_iter().flat_map(|condition| &condition.sensors));
             match &action.kind {
                 ActionKind::TurnUntil { sensors, .. } => used.extend(sensors),
                 ActionKind::Slam => {
@@ -125,7 +126,13 @@ pub fn used_sensors(environment: &Environment) -> Vec<BTreeSet<usize>> {
                     let distances = sensors.filter(|(_, sensor)| sensor.kind == SensorKind::Distance);
                     used.extend(distances.map(|(index, _)| index));
                 }
-                ActionKind::Move { .. } | ActionKind::Turn { .. } => {}
+                ActionKind::Move { .. }
+                | ActionKind::Turn { .. }
+                | ActionKind::Wait { .. }
+                | ActionKind::Repeat { .. }
+                | ActionKind::RepeatUntil { .. }
+                | ActionKind::If { .. }
+                | ActionKind::Do { .. } => {}
             }
         }
     }
@@ -144,10 +151,8 @@ fn coroutine_of_movement(
         let name = Atom(format!("name={}", literal(&movement.name)));
         Call { head: "@movement".to_owned(), arguments: vec![name] }.lay_out(0, "")
     };
-    let robot = &environment.robots[movement.robot];
-    let actions = movement.actions.iter();
-    let actions = actions.map(|action| awaited_action(action, robot, &names.robots[movement.robot]));
-    format!("{decorator}\n{}", coroutine(identifier, actions.collect()))
+    let statements = Statements::new(environment, movement, names);
+    format!("{decorator}\n{}", coroutine(identifier, statements.of(&movement.actions, BODY)))
 }
 
 fn coroutine_of_environment(environment: &Environment, names: &Identifiers) -> String {
@@ -170,26 +175,6 @@ fn coroutine(identifier: &str, mut lines: Vec<String>) -> String {
     format!("async def {identifier}() -> None:\n{}", lines.join("\n"))
 }
 
-fn awaited_action(action: &Action, robot: &Robot, identifier: &str) -> String {
-    let (method, arguments) = match &action.kind {
-        ActionKind::Move { distance, speed } => {
-            // Converting from cm/s may round.
-            let speed = ((speed - RIM_SPEED).abs() > 1e-12).then(|| format!("speed={}", float(*speed)));
-            ("move", [Some(float(*distance)), speed].into_iter().flatten().collect())
-        }
-        ActionKind::Turn { degrees } => ("turn", vec![float(*degrees)]),
-        ActionKind::TurnUntil { left, sensors } => {
-            let side = literal(if *left { "left" } else { "right" });
-            let sensors = sensors.iter().map(|&sensor| literal(&robot.sensors[sensor].name));
-            ("turn_until_free", std::iter::once(side).chain(sensors).collect())
-        }
-        ActionKind::Slam => ("slam", Vec::new()),
-    };
-    let head = format!("await {identifier}.{method}");
-    let call = Call { head, arguments: arguments.into_iter().map(Atom).collect() };
-    commented(BODY, &call, &format!("{}: {}", place(&action.source), comment_text(&action.text)))
-}
-
 fn main(environment: &Environment, target: Target, names: &Identifiers) -> String {
     let robots = names.robots.iter().cloned().map(Atom).collect();
     let mut arguments = vec![Atom(names.environment.clone()), List { keyword: "robots", items: robots }];
@@ -206,21 +191,6 @@ fn main(environment: &Environment, target: Target, names: &Identifiers) -> Strin
     }
     let call = Call { head: "run".to_owned(), arguments };
     format!("if __name__ == \"__main__\":\n{}", call.lay_out(BODY, ""))
-}
-
-/// The location in the program, for a comment.
-fn place(source: &Source) -> String {
-    match &source.file {
-        Some(file) => format!("{}, line {}", comment_text(file), source.line),
-        None => format!("line {}", source.line),
-    }
-}
-
-/// A text for a comment: replaces all characters that could end it or change its appearance.
-fn comment_text(text: &str) -> String {
-    text.chars()
-        .map(|c| if c == ' ' || c.is_ascii_graphic() || c.is_alphanumeric() { c } else { '?' })
-        .collect()
 }
 
 /// The name of a file for a docstring: also replaces what could end that or be an escape.

@@ -34,42 +34,48 @@ pub(crate) fn with_sensors(mut robot: Robot, names: &[&str]) -> Robot {
     robot
 }
 
+/// An action; its movement numbers it.
+pub(crate) fn action(kind: ActionKind, text: String, at: u32) -> Action {
+    Action { number: 0, kind, text, source: line(at) }
+}
+
 /// `move D meters`, at the default speed.
 pub(crate) fn move_by(distance: f64, at: u32) -> Action {
-    Action {
-        kind: ActionKind::Move { distance, speed: 0.09 },
-        text: format!("move {distance:?} meters"),
-        source: line(at),
-    }
+    let kind = ActionKind::Move { distance: Some(distance), speed: 0.09, until: None };
+    action(kind, format!("move {distance:?} meters"), at)
 }
 
 /// `move D meters at V`, V in cm/s.
 pub(crate) fn move_at(distance: f64, speed: f64, at: u32) -> Action {
-    Action {
-        kind: ActionKind::Move { distance, speed: speed / 100.0 },
-        text: format!("move {distance:?} meters at {speed:?}"),
-        source: line(at),
-    }
+    let kind = ActionKind::Move { distance: Some(distance), speed: speed / 100.0, until: None };
+    action(kind, format!("move {distance:?} meters at {speed:?}"), at)
 }
 
 /// `turn left A` or `turn right A`, A in degrees.
 pub(crate) fn turn(degrees: f64, at: u32) -> Action {
     let side = if degrees < 0.0 { "right" } else { "left" };
     let text = format!("turn {side} {:?}", degrees.abs());
-    Action { kind: ActionKind::Turn { degrees }, text, source: line(at) }
+    let turn = ActionKind::Turn {
+        left: degrees >= 0.0,
+        degrees: Some(degrees.abs()),
+        circle: None,
+        speed: 0.09,
+        until: None,
+    };
+    action(turn, text, at)
 }
 
 /// `turn right until { … }`; `sensors` are indices and `names` their text.
 pub(crate) fn turn_until(sensors: &[usize], names: &str, at: u32) -> Action {
-    Action {
-        kind: ActionKind::TurnUntil { left: false, sensors: sensors.to_vec() },
-        text: format!("turn right until {{{names}}}"),
-        source: line(at),
-    }
+    let kind = ActionKind::TurnUntil { left: false, sensors: sensors.to_vec() };
+    action(kind, format!("turn right until {{{names}}}"), at)
 }
 
 /// A movement of the robot with that index.
-pub(crate) fn movement(name: &str, robot: usize, actions: Vec<Action>) -> Movement {
+pub(crate) fn movement(name: &str, robot: usize, mut actions: Vec<Action>) -> Movement {
+    for (action, number) in actions.iter_mut().zip(1..) {
+        action.number = number;
+    }
     Movement { name: name.to_owned(), robot, actions, source: line(6) }
 }
 
@@ -118,7 +124,7 @@ pub(crate) fn sensors() -> Environment {
 pub(crate) fn slam() -> Environment {
     let names = ["fSensor0", "fSensor1", "fSensor2", "lSensor", "rSensor"];
     let robot = with_sensors(robot("robot_1", Drive::TwoWheel, 19999), &names);
-    let explore = Action { kind: ActionKind::Slam, text: "slam".to_owned(), source: line(14) };
+    let explore = action(ActionKind::Slam, "slam".to_owned(), 14);
     environment("rooms", vec![robot], vec![movement("mov_1", 0, vec![explore])], vec![vec![0]])
 }
 
