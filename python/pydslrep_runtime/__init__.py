@@ -13,6 +13,8 @@ Scripts that PyDSLRep generates import this package, and it can be used by hand:
 
     run(square, robots=[rover])
 
+A `Robot` has further actions; `detects` and `clear` make conditions that end them, and that loops and `if` ask.
+
 Lengths are in metres and times in seconds. Angles are in radians, counter-clockwise seen from above, except in `turn`,
 which has degrees as programs have them. Wheel rates are in rad/s, forward if positive.
 """
@@ -24,6 +26,7 @@ if sys.version_info < (3, 11):  # noqa: UP036 (the check is for those who have a
     raise SystemExit(2)
 
 from .backend import Backend, Clock, RealTimeClock, RobotSpec, SensorCone
+from .conditions import Condition, clear, detects
 from .errors import MovementError, SetupError, SimulatorError
 from .movements import movement, parallel
 from .pose import Pose
@@ -34,6 +37,7 @@ from .version import __version__
 __all__ = [
     "Backend",
     "Clock",
+    "Condition",
     "FourWheelRobot",
     "MecanumRobot",
     "MovementError",
@@ -46,6 +50,8 @@ __all__ = [
     "SimulatorError",
     "TwoWheelRobot",
     "__version__",
+    "clear",
+    "detects",
     "movement",
     "parallel",
     "run",

@@ -1,8 +1,10 @@
 """Speed ramps, arrival and standstill."""
 
 import math
+from collections.abc import Callable
 
 from .facts import RIM_ACCELERATION
+from .pose import Pose
 from .settings import ARRIVAL_TOLERANCE, CLOSE_TOLERANCE, STALL_TIME
 
 # Near the goal, a robot that does not get to this share of its distance within so many steps has arrived: the motion is
@@ -85,3 +87,19 @@ class Approach:
         if abs(remaining) < self._nearest - least:
             self._nearest, self._progress_time = abs(remaining), time
         return time - self._progress_time > STALL_TIME - self.time_step / 2.0
+
+
+class Brake:
+    """Ends an action early: once it is on, the robot brakes until it stands."""
+
+    def __init__(self, should_stop: Callable[[Pose], bool]) -> None:
+        self._should_stop, self.is_on = should_stop, False
+
+    def next_speed(self, approach: Approach, here: Pose, remaining: float) -> float:
+        """The signed rim speed for the next step, with `remaining` metres to go."""
+        self.is_on = self.is_on or self._should_stop(here)
+        return approach.decelerate() if self.is_on else approach.next_speed(remaining)
+
+    def has_stopped(self, approach: Approach) -> bool:
+        """Whether the robot has braked to a stop."""
+        return self.is_on and approach.speed == 0.0

@@ -93,14 +93,24 @@ class Backend(Protocol):
         """Sets the rates of the wheels in rad/s, forward if positive. They hold until the next call."""
 
     def detects(self, sensor: str) -> bool:
-        """Whether a distance sensor or bumper detects an object. Needed for `turn_until_free`."""
+        """Whether a distance sensor or bumper detects an object. Needed for conditions and `turn_until_free`."""
         return self.distance(sensor) is not None
 
     def distance(self, sensor: str) -> float | None:
-        """The distance in metres that a sensor measures; None if it detects nothing. Needed for `slam`."""
+        """The distance in metres that a sensor measures; None if it detects nothing.
+
+        Needed for `slam`, and for conditions with `within`.
+        """
         raise SimulatorError(
             f"{type(self).__name__} does not read sensors, such as {sensor}"
         )
+
+    def reading_age(self, sensor: str) -> float:  # noqa: ARG002
+        """How old the reading of a sensor is, in seconds; infinite if it has none yet.
+
+        Conditions fail with one that is too old. Not needed where sensors measure when they are read, or in every step.
+        """
+        return 0.0
 
     def sensor_cone(self, sensor: str) -> SensorCone:
         """The mount and detection volume of a sensor. Needed for `slam`."""
@@ -131,10 +141,13 @@ class Backend(Protocol):
         return
 
 
+# What classes may lack that are not derived from Backend: it was not asked for in earlier versions.
+OPTIONAL = {"reading_age"}
+
 METHODS = tuple(
     name
     for name, value in vars(Backend).items()
-    if callable(value) and not name.startswith("_")
+    if callable(value) and not name.startswith("_") and name not in OPTIONAL
 )
 
 

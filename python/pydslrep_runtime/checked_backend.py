@@ -16,10 +16,14 @@ from .readings import (
     TIME_STEP,
     Form,
     check,
+    is_number,
     numbers,
     optional,
     shortened,
 )
+
+# Infinite if there is no reading yet.
+AGE = Form("seconds, 0 or more", lambda value: is_number(value) and value >= 0.0)
 
 
 class CheckedBackend(Backend):
@@ -78,6 +82,13 @@ class CheckedBackend(Backend):
         found = self._backend.distance(sensor)
         self._check("distance", found, optional(DISTANCE))
         return None if found is None else float(found)
+
+    def reading_age(self, sensor: str) -> float:
+        """How old the reading of a sensor is."""
+        age_of = getattr(self._backend, "reading_age", None)
+        age: Any = 0.0 if age_of is None else age_of(sensor)
+        self._check("reading_age", age, AGE)
+        return float(age)
 
     def sensor_cone(self, sensor: str) -> SensorCone:
         """The mount and detection volume of a sensor."""

@@ -254,6 +254,7 @@ class CoppeliaSimRobot(Backend):
         self._last_matrix: Sequence[float] = ()
         self._height = body[11]
         self._last_height = (math.inf, body[11])  # s, m
+        self._explicit: set[str] = set()  # sensors that the scene does not handle
         self._has_rival = False  # whether another program drives it, too
         self._steps = 0
         self._notes = Notes()
@@ -445,10 +446,13 @@ class CoppeliaSimRobot(Backend):
     def _read(self, sensor: str) -> Any:
         """State, distance and more of a proximity sensor."""
         handle = self._sensors[sensor]
-        reading = self._connection.read("sim.readProximitySensor", handle)
-        if reading[0] < 0:
-            # The scene requires explicit handling of this sensor.
-            reading = self._call(self._sim.handleProximitySensor, handle)
+        if sensor not in self._explicit:
+            reading = self._connection.read("sim.readProximitySensor", handle)
+            if reading[0] >= 0:
+                return reading
+        # The scene requires explicit handling of this sensor: what it reads else is what it detected when handled last.
+        reading = self._call(self._sim.handleProximitySensor, handle)
+        self._explicit.add(sensor)
         return reading
 
     def _find_objects(self) -> None:

@@ -12,7 +12,7 @@ from typing import Protocol
 from . import facts
 from .errors import SetupError
 from .pose import Pose
-from .steering import arc_speed, return_speed, steer
+from .steering import arc_speed, circling, return_speed, steer
 
 
 class Drive(Protocol):
@@ -22,8 +22,22 @@ class Drive(Protocol):
     radii: tuple[float, ...]  # of the wheels, in metres
     scrubs: bool  # whether wheels slide sideways in turns, which then take longer
 
-    def follow_line(self, speed: float, offset: Pose, remaining: float) -> list[float]:
-        """Wheel rates that drive along a line; `offset` is the pose relative to it."""
+    def follow(
+        self,
+        speed: float,
+        offset: Pose,
+        remaining: float,
+        curvature: float,
+        scrub: float = 1.0,
+    ) -> list[float]:
+        """Wheel rates that drive along a line or circle, with m/s and `remaining` metres to go.
+
+        `offset` is the pose relative to the nearest point of the path, whose curvature in 1/m is positive to the left.
+        `scrub` is how much wider than it is the track seems, 1 unless wheels slide sideways.
+        """
+
+    def turn_rate(self, rates: Sequence[float]) -> float:
+        """Forward kinematics: how fast wheels with these rates turn the robot if none slides, in rad/s."""
 
     def turn_in_place(
         self, rim_speed: float, offset: Pose, turn: float | None, drift: float
@@ -53,9 +67,21 @@ class SteeredDrive(ABC):
     def wheel_rates(self, speed: float, turn_rate: float) -> list[float]:
         """Inverse kinematics: wheel rates in rad/s for the body's m/s and rad/s."""
 
-    def follow_line(self, speed: float, offset: Pose, remaining: float) -> list[float]:
-        """Wheel rates that drive along a line; `offset` is the pose relative to it."""
-        return self.wheel_rates(speed, steer(speed, offset, remaining))
+    @abstractmethod
+    def turn_rate(self, rates: Sequence[float]) -> float:
+        """Forward kinematics: how fast wheels with these rates turn the robot if none slides, in rad/s."""
+
+    def follow(
+        self,
+        speed: float,
+        offset: Pose,
+        remaining: float,
+        curvature: float,
+        scrub: float = 1.0,
+    ) -> list[float]:
+        """Wheel rates that drive along a line or circle."""
+        turn_rate = steer(speed, offset, remaining, curvature)
+        return self.wheel_rates(speed, scrub * turn_rate)
 
     def turn_in_place(
         self, rim_speed: float, offset: Pose, turn: float | None, drift: float
@@ -90,6 +116,13 @@ class TwoWheelDrive(SteeredDrive):
         right = speed + turn_rate * self.track / 2.0
         return [left / self.radii[0], right / self.radii[1]]
 
+    def turn_rate(self, rates: Sequence[float]) -> float:
+        """Forward kinematics: how fast wheels with these rates turn the robot if none slides, in rad/s."""
+        left, right = (
+            rate * radius for rate, radius in zip(rates, self.radii, strict=True)
+        )
+        return (right - left) / self.track
+
 
 class FourWheelDrive(SteeredDrive):
     """Four standard wheels: left-front, left-rear, right-front, right-rear.
@@ -120,6 +153,14 @@ class FourWheelDrive(SteeredDrive):
         right = speed + turn_rate * self.track / 2.0
         rims = (left, left, right, right)
         return [rim / radius for rim, radius in zip(rims, self.radii, strict=True)]
+
+    def turn_rate(self, rates: Sequence[float]) -> float:
+        """Forward kinematics: how fast wheels with these rates turn the robot if none slides, in rad/s."""
+        left_front, left_rear, right_front, right_rear = (
+            rate * radius for rate, radius in zip(rates, self.radii, strict=True)
+        )
+        left, right = left_front + left_rear, right_front + right_rear
+        return (right - left) / 2.0 / self.track
 
 
 class FourMecanumDrive:
@@ -164,14 +205,25 @@ class FourMecanumDrive:
         )
         return [rim / radius for rim, radius in zip(rims, self.radii, strict=True)]
 
-    def follow_line(
+    def turn_rate(self, rates: Sequence[float]) -> float:
+        """Forward kinematics: how fast wheels with these rates turn the robot if none slides, in rad/s."""
+        left_front, left_rear, right_front, right_rear = (
+            rate * radius for rate, radius in zip(rates, self.radii, strict=True)
+        )
+        rims = right_front + right_rear - left_front - left_rear
+        return rims / 4.0 / self.turning_radius
+
+    def follow(
         self,
         speed: float,
         offset: Pose,
         remaining: float,  # noqa: ARG002
+        curvature: float,
+        scrub: float = 1.0,  # noqa: ARG002
     ) -> list[float]:
-        """Wheel rates that drive along a line; `offset` is the pose relative to it."""
+        """Wheel rates that drive along a line or circle."""
         turn_rate = -self.CORRECTION_RATE * offset.theta
+        turn_rate += circling(speed, offset, curvature)
         return self._along(offset.theta, speed, self._correction(offset.y), turn_rate)
 
     def turn_in_place(

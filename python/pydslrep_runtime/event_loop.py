@@ -62,6 +62,10 @@ class SimulationLoop(asyncio.SelectorEventLoop):
         """Sets the clock that `time` reads; without one, no clock advances any more."""
         self._clock = clock
 
+    def has_advanced(self, clock: Clock) -> bool:
+        """Whether a clock has taken a step in this run; before that, sensors have no readings."""
+        return clock in self._passed
+
     async def next_step(self, clock: Clock, order: int) -> None:
         """Returns after the clock's next step; raises what its `advance` raises."""
         wake_up = self.create_future()

@@ -15,6 +15,7 @@ from typing import Literal, TextIO
 
 from .errors import MovementError, SetupError, SimulatorError
 from .outputs import claimed, has_keys, output_path, start_of
+from .places import Place
 from .pose import Pose, heading_degrees
 from .readings import printable
 from .version import __version__
@@ -26,13 +27,12 @@ FileKind = Literal["trace", "map", "map-picture"]
 
 @dataclass(frozen=True)
 class Moment:
-    """Where a robot is at a time in seconds, and what it is doing; `number` is that of the action in its movement, from 1."""
+    """Where a robot is at a time in seconds, and what it is doing."""
 
     time: float
     robot: str
-    movement: str
-    number: int
-    text: str
+    place: Place
+    text: str  # the action in words
     here: Pose
 
 
@@ -104,10 +104,11 @@ class Reporter:
                 kind = "simulator"
             case _:
                 kind = "file"
-        place = error if isinstance(error, MovementError) else MovementError("")
         message = printable(str(error))
         self._say(f"error: {message}")
-        self._write_failure(kind, message, place.robot, place.movement, place.number)
+        self._write_failure(
+            kind, message, error if isinstance(error, MovementError) else None
+        )
 
     def interrupted(self) -> None:
         """The user has ended the run."""
@@ -127,18 +128,20 @@ class Reporter:
         self,
         kind: str,
         message: str,
-        robot: str | None = None,
-        movement: str | None = None,
-        number: int | None = None,
+        error: MovementError | None = None,
     ) -> None:
+        error = error or MovementError("")
+        place = Place(rounds=error.rounds, calls=error.calls)
         with suppress(OSError):
             self._write(
                 "failed",
                 **{"class": kind},
                 message=message,
-                robot=robot,
-                movement=movement,
-                action=number,
+                robot=error.robot,
+                movement=error.movement,
+                action=error.number,
+                line=error.line,
+                **place.parts(),
                 help=None,
                 output=None,
             )
@@ -149,8 +152,10 @@ class Reporter:
             event,
             t=round(moment.time, 6),
             robot=moment.robot,
-            movement=moment.movement,
-            action=moment.number,
+            movement=moment.place.movement,
+            action=moment.place.action,
+            line=moment.place.line,
+            **moment.place.parts(),
             text=moment.text,
             x=round(here.x, 6) + 0.0,  # no -0
             y=round(here.y, 6) + 0.0,
@@ -172,7 +177,7 @@ def line_of(moment: Moment) -> str:
     # Adding zero turns -0 into 0. The precision is that of the inlay hints in editors.
     x, y = round(here.x, 2) + 0.0, round(here.y, 2) + 0.0
     return (
-        f"{moment.time:8.2f} s  {moment.robot}  {moment.movement}  {moment.number}: {moment.text}  "
+        f"{moment.time:8.2f} s  {moment.robot}  {moment.place.movement}  {moment.place.way(moment.text)}  "
         f"at x {x:.2f} m, y {y:.2f} m, {heading_degrees(here.theta):g} deg"
     )
 

@@ -5,16 +5,20 @@ from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from . import events
-from .approach import Approach
+from .approach import Approach, Brake
 from .backend import Backend, RobotSpec
+from .circles import Circle
+from .conditions import Condition, Watch
 from .creep import Creep
 from .drives import Drive
 from .errors import MovementError
 from .event_loop import SimulationLoop
 from .facts import RIM_SPEED
 from .notes import Notes
+from .places import Place
 from .pose import Pose, wrap_angle
-from .settings import MAX_LATERAL_ERROR, STALL_TIME
+from .scrub import Scrub
+from .settings import MAX_IDLE_ACTIONS, MAX_IDLE_ROUNDS, MAX_LATERAL_ERROR, STALL_TIME
 from .steering import Drift
 from .trace import Trace
 
@@ -23,6 +27,27 @@ TREMOR = (
     3e-4  # m and radians that contacts move it, where a physics engine has them tremble
 )
 REST_STEPS = 20  # to wait for a robot to come to rest, at most
+
+StopsAt = Callable[[Pose], bool]
+"""Whether a motion has to end early, by the pose after a step."""
+
+
+def never(_here: Pose) -> bool:
+    """A motion that ends at its goal."""
+    return False
+
+
+class Instant:
+    """Counts what happens at one time."""
+
+    def __init__(self) -> None:
+        self._time, self._count = math.nan, 0
+
+    def count(self, now: float) -> int:
+        """How much has happened now, in seconds of simulation time, this included."""
+        self._count = self._count + 1 if now == self._time else 1
+        self._time = now
+        return self._count
 
 
 class Odometer(Protocol):
@@ -39,7 +64,7 @@ class Odometer(Protocol):
 
 
 class Motion:
-    """Moves a robot along lines and turns it in place.
+    """Moves a robot along lines and circles, and turns it in place.
 
     Every motion starts from the planned end of the last one, so errors do not accumulate.
     """
@@ -56,22 +81,26 @@ class Motion:
         """`order` is the robot's place among those that act in the same step."""
         self.spec, self.backend, self.drive = spec, backend, drive
         self.name = spec.name
-        self.movement = self.action_text = ""  # for messages, the trace and events
-        self.action_number = 0  # in its movement, from 1
+        # What it does, for messages, the trace and events.
+        self.place, self.action_text = Place(), ""
         self._loop, self._order, self._trace = loop, order, trace
         self._planned: Pose | None = None
         self._rates: Sequence[float] = ()
         self._odometer: Odometer | None = None
         self._on_pose: Callable[[Pose], object] | None = None
-        self._drift, self._creep = Drift(), Creep()
+        self._drift, self._creep, self._scrub = Drift(), Creep(), Scrub()
         self._notes = Notes()
-        self._crawling = ("", "")  # the movement and the action that this was said of
+        # The action of which it was said that it crawls.
+        self._crawling: tuple[Place, str] | None = None
+        # Actions and checks of conditions, and rounds of loops, since time has passed.
+        self._begun, self._rounds = Instant(), Instant()
         self._is_recorded = False  # whether the trace has the pose that it starts from
 
     @property
     def action(self) -> str:
         """The action that it does, with its number."""
-        return f"{self.action_number}: {self.action_text}" if self.action_number else ""
+        number = self.place.action
+        return f"{number}: {self.action_text}" if number else ""
 
     def pose(self) -> Pose:
         """The pose of the wheels' centre, by odometry if that is in use."""
@@ -93,20 +122,28 @@ class Motion:
 
     def failure(self, reason: object) -> MovementError:
         """An error with the robot, movement and action that it occurred in."""
+        place = self.place
         return MovementError(
-            f"robot {self.name}, movement {self.movement}, action {self.action}: {reason}",
+            f"{self._who()}: {reason}",
             self.name,
-            self.movement,
-            self.action_number,
+            place.movement,
+            place.action,
+            line=place.line,
+            rounds=place.rounds,
+            calls=place.calls,
         )
+
+    def _who(self) -> str:
+        """The robot and what it does, for messages."""
+        way = self.place.way(self.action_text, "action ")
+        return f"robot {self.name}, movement {self.place.movement}, {way}"
 
     def moment(self, here: Pose) -> events.Moment:
         """What it does now, for events."""
         return events.Moment(
             self.backend.clock.time,
             self.name,
-            self.movement,
-            self.action_number,
+            self.place,
             self.action_text,
             here,
         )
@@ -137,22 +174,84 @@ class Motion:
         self._planned = self._planned or here
         return here
 
-    async def move(self, distance: float, speed: float) -> Pose:
+    async def watch(self, condition: Condition | None) -> Watch:
+        """What reads a condition during an action; it has read it once."""
+        await self._let_others_act()
+        watch = Watch(condition, self.backend, self.spec.bumpers)
+        if condition is not None:
+            await self._read_sensors()
+            watch(self.pose())
+        return watch
+
+    async def check(self, condition: Condition) -> bool:
+        """Whether a condition holds; takes no time, but for the first one of a run."""
+        await self._let_others_act()
+        await self._read_sensors()
+        return condition.holds(self.backend, self.spec.bumpers)
+
+    def has_idled(self) -> bool:
+        """Counts a round of a loop; whether no time has passed in very many."""
+        return self._rounds.count(self.backend.clock.time) > MAX_IDLE_ROUNDS
+
+    async def _let_others_act(self) -> None:
+        """Loops of what takes no time must not hold up the other robots for ever: at some time a step passes."""
+        if self._begun.count(self.backend.clock.time) > MAX_IDLE_ACTIONS:
+            await self.wait()
+
+    async def _read_sensors(self) -> None:
+        """Sensors have readings from the first step of a run on."""
+        if not self._loop.has_advanced(self.backend.clock):
+            await self.wait()
+
+    async def hold(self, seconds: float, should_stop: StopsAt = never) -> Pose:
+        """Stays where it is for seconds of simulation time."""
+        clock, here = self.backend.clock, self.pose()
+        self._planned = self._start(here)
+        end = clock.time + seconds - clock.time_step / 2.0
+        is_over = clock.time >= end
+        while not is_over:
+            here = await self.step(self.zero_rates())
+            is_over = clock.time >= end or should_stop(here)
+        return here
+
+    async def move(
+        self, distance: float, speed: float, should_stop: StopsAt = never
+    ) -> Pose:
         """Drives straight, in metres (backwards if negative) and m/s."""
         here = self.pose()
         goal = self._start(here).ahead(distance)
-        approach = self._approach(speed)
-        while True:
-            offset = here.relative_to(goal)
-            remaining = -offset.x
-            if approach.arrived(remaining):
-                break
-            self._check_progress(approach, remaining)
-            rim_speed = approach.next_speed(remaining)
-            here = await self._follow_line(here, rim_speed, offset, remaining)
-        self._planned = goal
-        self._check_arrival(here.relative_to(goal).y)
+        brake, aside = Brake(should_stop), abs(here.relative_to(goal).y)
+        here = await self._drive_line(here, goal, speed, brake)
+        # On its way, a robot may not be back on its line yet.
+        self._check_arrival(here.relative_to(goal).y, aside if brake.is_on else 0.0)
         # Correct a residual rotation, and rest.
+        return await self._rotate(here, 0.0)
+
+    async def arc(
+        self,
+        angle: float,
+        radius: float,
+        speed: float,
+        *,
+        reverse: bool,
+        should_stop: StopsAt = never,
+    ) -> Pose:
+        """Drives along a circle until the heading has changed by radians, to the left if positive.
+
+        `radius` is that of the path of the wheels' centre in metres, `speed` that of the rims of the fastest wheel in m/s.
+        """
+        here = self.pose()
+        # In reverse, the robot turns to the left if the centre is to its right.
+        side = math.copysign(1.0, angle) * (-1.0 if reverse else 1.0)
+        start = self._start(here)
+        circle = Circle(start, side / radius)
+        brake, aside = Brake(should_stop), abs(here.relative_to(start).y)
+        here, turned = await self._drive_circle(here, circle, angle, speed, brake)
+        if brake.is_on:
+            here = await self._come_to_rest(here)
+            angle = circle.angle_at(here, turned)
+        self._planned = goal = circle.pose_at(angle)
+        self._check_arrival(here.relative_to(goal).y, aside if brake.is_on else 0.0)
         return await self._rotate(here, 0.0)
 
     async def rotate(
@@ -160,14 +259,20 @@ class Motion:
         angle: float,
         on_pose: Callable[[Pose], object] | None = None,
         speed: float = RIM_SPEED,
+        should_stop: StopsAt = never,
+        *,
+        may_end: bool = True,
     ) -> Pose:
         """Turns in place by radians, to the left if positive; may exceed a full turn.
 
-        `speed` is that of the rims in m/s; `on_pose` is called after every step.
+        `speed` is that of the rims in m/s; `on_pose` is called after every step. Without `may_end`, the robot will stop
+        somewhere on the way.
         """
         self._on_pose = on_pose
         try:
-            return await self._rotate(self.pose(), angle, speed)
+            return await self._rotate(
+                self.pose(), angle, speed, should_stop, may_end=may_end
+            )
         finally:
             self._on_pose = None
 
@@ -200,36 +305,71 @@ class Motion:
         self._planned = Pose(start.x, start.y, here.theta)
         return here
 
-    async def drive_to(self, goal: Pose, should_stop: Callable[[Pose], bool]) -> None:
+    async def drive_to(self, goal: Pose, should_stop: StopsAt) -> None:
         """Drives to a goal ahead or behind, or until `should_stop` returns True."""
-        here = self.pose()
-        approach = self._approach(RIM_SPEED)
-        is_stopping = False
+        here = await self._drive_line(self.pose(), goal, RIM_SPEED, Brake(should_stop))
+        await self._rotate(here, 0.0)
+
+    async def _drive_line(
+        self, here: Pose, goal: Pose, speed: float, brake: Brake
+    ) -> Pose:
+        """Drives to a goal ahead or behind, or brakes on the way there; the planned pose is on the line."""
+        approach = self._approach(speed)
         while True:
             offset = here.relative_to(goal)
             remaining = -offset.x
-            if approach.arrived(remaining) or (is_stopping and approach.speed == 0.0):
+            if approach.arrived(remaining) or brake.has_stopped(approach):
                 break
             self._check_progress(approach, remaining)
-            is_stopping = is_stopping or should_stop(here)
-            rim_speed = (
-                approach.decelerate() if is_stopping else approach.next_speed(remaining)
-            )
-            here = await self._follow_line(here, rim_speed, offset, remaining)
-        if is_stopping:
+            ahead = brake.next_speed(approach, here, remaining)
+            there = await self.step(self.drive.follow(ahead, offset, remaining, 0.0))
+            moved = there.relative_to(here).x
+            self._creep.observe(ahead, moved, self.backend.clock.time_step)
+            here = there
+        if brake.is_on:
             here = await self._come_to_rest(here)
-            self._planned = goal.ahead(here.relative_to(goal).x)
-        else:
-            self._planned = goal
-        await self._rotate(here, 0.0)
+            goal = goal.ahead(here.relative_to(goal).x)
+        self._planned = goal
+        return here
 
-    async def _follow_line(
-        self, here: Pose, speed: float, offset: Pose, remaining: float
+    async def _drive_circle(
+        self, here: Pose, circle: Circle, angle: float, speed: float, brake: Brake
+    ) -> tuple[Pose, float]:
+        """Drives along a circle to an angle, or brakes on the way there; returns the angle that it has got to, too."""
+        curvature = circle.curvature
+        # Distances are those of the fastest wheel, as it seems now: what is to go must not grow on the way.
+        rims = self._way_of_rims(curvature)
+        approach = self._approach(speed)
+        turned = circle.angle_at(here, 0.0)
+        while not brake.has_stopped(approach):
+            remaining = (angle - turned) * rims
+            if approach.arrived(remaining):
+                break
+            self._check_progress(approach, remaining)
+            rim_speed = brake.next_speed(approach, here, remaining)
+            ahead = rim_speed / self._way_of_rims(curvature) / curvature
+            offset = here.relative_to(circle.pose_at(turned))
+            to_go = (angle - turned) / curvature
+            here = await self._follow(here, ahead, offset, to_go, curvature)
+            before, turned = turned, circle.angle_at(here, turned)
+            moved = (turned - before) / curvature
+            self._creep.observe(ahead, moved, self.backend.clock.time_step)
+        return here, turned
+
+    def _way_of_rims(self, curvature: float) -> float:
+        """The way of the fastest wheel on a circle, in metres per radian."""
+        return 1.0 / abs(curvature) + self.drive.turning_radius * self._scrub.factor
+
+    async def _follow(
+        self, here: Pose, ahead: float, offset: Pose, to_go: float, curvature: float
     ) -> Pose:
-        """Takes a step along a line."""
-        there = await self.step(self.drive.follow_line(speed, offset, remaining))
-        moved = there.relative_to(here).x
-        self._creep.observe(speed, moved, self.backend.clock.time_step)
+        """Drives along a circle for one step."""
+        factor = self._scrub.factor
+        rates = self.drive.follow(ahead, offset, to_go, curvature, factor)
+        there = await self.step(rates)
+        if self.drive.scrubs:
+            asked = self.drive.turn_rate(rates) * self.backend.clock.time_step
+            self._scrub.observe(asked, wrap_angle(there.theta - here.theta))
         return there
 
     def _start(self, here: Pose) -> Pose:
@@ -242,24 +382,36 @@ class Motion:
     def _record(self, here: Pose, rates: Sequence[float]) -> None:
         self._is_recorded = True
         time = self.backend.clock.time
-        self._trace.add(time, self.name, here, rates, self.movement, self.action)
+        self._trace.add(time, self.name, here, rates, self.place, self.action)
 
     def _approach(self, speed: float) -> Approach:
         return Approach(speed, self.backend.clock.time_step)
 
-    async def _rotate(self, here: Pose, angle: float, speed: float = RIM_SPEED) -> Pose:
+    async def _rotate(
+        self,
+        here: Pose,
+        angle: float,
+        speed: float = RIM_SPEED,
+        should_stop: StopsAt = never,
+        *,
+        may_end: bool = True,
+    ) -> Pose:
         start = self._start(here)
         goal = start.turned(angle)
-        approach = self._approach(speed)
+        approach, brake = self._approach(speed), Brake(should_stop)
         turned = wrap_angle(here.theta - start.theta)
-        while not approach.arrived(
-            remaining := (angle - turned) * self.drive.turning_radius
-        ):
+        while not brake.has_stopped(approach):
+            remaining = (angle - turned) * self.drive.turning_radius
+            if approach.arrived(remaining):
+                break
             self._check_progress(approach, remaining)
-            rim_speed = approach.next_speed(remaining)
+            rim_speed = brake.next_speed(approach, here, remaining)
             offset, before = here.relative_to(goal), here
             rates = self.drive.turn_in_place(
-                rim_speed, offset, angle - turned, self._drift.left
+                rim_speed,
+                offset,
+                angle - turned if may_end else None,
+                self._drift.left,
             )
             here = await self.step(rates)
             step = wrap_angle(here.theta - before.theta)
@@ -270,8 +422,9 @@ class Motion:
                 self._creep.observe(rim_speed, moved, self.backend.clock.time_step)
             if self._on_pose is not None:
                 self._on_pose(here)
-        self._planned = goal
-        return await self._come_to_rest(here)
+        here = await self._come_to_rest(here)
+        self._planned = Pose(goal.x, goal.y, here.theta) if brake.is_on else goal
+        return here
 
     async def _come_to_rest(self, here: Pose) -> Pose:
         """Stops the wheels and waits for the robot to stop."""
@@ -299,20 +452,20 @@ class Motion:
 
     def _say_crawl(self) -> None:
         """Says once why an action takes so long: to find out takes calls."""
-        if self._crawling != (self.movement, self.action):
-            self._crawling = self.movement, self.action
+        if self._crawling != (self.place, self.action_text):
+            self._crawling = self.place, self.action_text
             why = self.backend.crawl_reason()
             self._notes.say(
-                f"robot {self.name}, movement {self.movement}, action {self.action}: takes more than twice as long "
-                f"as planned; {why}"
+                f"{self._who()}: takes more than twice as long as planned; {why}"
             )
 
     def _report_contact(self) -> None:
         if events.current.is_read:
             events.current.contact(self.moment(self.pose()))
 
-    def _check_arrival(self, lateral_error: float) -> None:
-        if abs(lateral_error) > MAX_LATERAL_ERROR:
+    def _check_arrival(self, lateral_error: float, before: float) -> None:
+        """Fails if a robot is far beside its path; `before` is how far it may have been before, in metres."""
+        if abs(lateral_error) > before + MAX_LATERAL_ERROR:
             self._report_contact()
             side = "left" if lateral_error > 0.0 else "right"
             raise self.failure(

@@ -1,19 +1,22 @@
 """Robots: what a program declares, and the actions that it asks for."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import AsyncIterator, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, ClassVar, Literal
 
-from . import events, movements
+from . import events
 from .backend import Backend, RobotSpec
+from .conditions import Condition, Watch
 from .drives import Drive, DriveType, FourMecanumDrive, FourWheelDrive, TwoWheelDrive
 from .errors import SetupError, SimulatorError
 from .event_loop import SimulationLoop
 from .facts import RIM_SPEED
+from .loops import Repeat, RepeatUntil
 from .motion import Motion
-from .movements import Movement
+from .movements import place_of
 from .pose import Pose
+from .settings import MAX_DISTANCE, MAX_IDLE_ROUNDS, MAX_ROUNDS, MAX_TURN, MAX_WAIT
 from .trace import Trace
 
 if TYPE_CHECKING:
@@ -27,6 +30,8 @@ Objects = Mapping[str, str | Sequence[str]]
 """Paths in a simulator's scene by name; several if a wheel and a sensor share a name."""
 
 NO_OBJECTS: Objects = {}
+
+Side = Literal["left", "right"]
 
 
 class Robot:
@@ -63,36 +68,152 @@ class Robot:
             raise ValueError(f"robot {name} has no part {min(unknown)}")
         self._motion: Motion | None = None
         self._slam_session: SlamSession | None = None
-        self._movement: Movement | None = None
-        self._actions = 0  # of the movement so far
         self._is_acting = False
 
-    async def move(self, distance: float, speed: float = RIM_SPEED) -> None:
-        """Drives straight, in metres (backwards if negative) and m/s."""
-        with self._action(f"move {distance:g} m") as motion:
-            self._report(await motion.move(distance, speed))
-
-    async def turn(self, degrees: float) -> None:
-        """Turns in place, to the left if positive."""
-        side = "left" if degrees >= 0.0 else "right"
-        with self._action(f"turn {side} {abs(degrees):g} deg") as motion:
-            self._report(await motion.rotate(math.radians(degrees)))
-
-    async def turn_until_free(
-        self, side: Literal["left", "right"], *sensors: str
+    async def move(
+        self,
+        distance: float | None = None,
+        speed: float = RIM_SPEED,
+        *,
+        until: Condition | None = None,
     ) -> None:
+        """Drives straight, in metres (backwards if negative) and m/s, and stops early when a condition holds.
+
+        Without a distance, it fails if the condition has not held after 100 m.
+        """
+        is_bounded = has_end(distance, until)
+        amount = "" if distance is None else f" {distance:g} m"
+        way = MAX_DISTANCE if distance is None else distance
+        with self._action(f"move{amount}{stop_text(until)}") as motion:
+            watch = await motion.watch(until)
+            here = motion.pose()
+            if not watch.is_met:
+                here = await motion.move(way, speed, watch)
+            self._end(here, watch, "" if is_bounded else f"{way:g} m")
+
+    async def turn(
+        self,
+        degrees: float | Side,
+        speed: float = RIM_SPEED,
+        *,
+        until: Condition | None = None,
+    ) -> None:
+        """Turns in place, to the left if positive, and stops early when a condition holds.
+
+        `speed` is that of the rims in m/s. With a side instead of an angle, it fails if the condition has not held after a
+        full turn.
+        """
+        is_bounded = has_end(None if isinstance(degrees, str) else degrees, until)
+        with self._action(f"turn {turn_text(degrees)}{stop_text(until)}") as motion:
+            watch = await motion.watch(until)
+            here = motion.pose()
+            if not watch.is_met:
+                angle = angle_of(degrees)
+                here = await motion.rotate(
+                    angle, None, speed, watch, may_end=is_bounded
+                )
+            self._end(here, watch, "" if is_bounded else "a full turn")
+
+    async def arc(
+        self,
+        degrees: float | Side,
+        *,
+        radius: float,
+        speed: float = RIM_SPEED,
+        reverse: bool = False,
+        until: Condition | None = None,
+    ) -> None:
+        """Drives along a circle until the heading has changed by an angle, and stops early when a condition holds.
+
+        The heading turns to the left if the angle is positive, in reverse as well. `radius` is that of the path of the
+        wheels' centre in metres, `speed` that of the rims of the fastest wheel in m/s. With a side instead of an angle, it
+        fails if the condition has not held after a full circle.
+        """
+        if radius <= 0.0:
+            raise ValueError(f"there is no circle with a radius of {radius:g} m")
+        is_bounded = has_end(None if isinstance(degrees, str) else degrees, until)
+        text = f"turn {turn_text(degrees)} with radius {radius:g} m"
+        text += " in reverse" if reverse else ""
+        with self._action(text + stop_text(until)) as motion:
+            watch = await motion.watch(until)
+            here = motion.pose()
+            if not watch.is_met:
+                angle = angle_of(degrees)
+                here = await motion.arc(
+                    angle, radius, speed, reverse=reverse, should_stop=watch
+                )
+            self._end(here, watch, "" if is_bounded else "a full circle")
+
+    async def wait(
+        self, seconds: float | None = None, *, until: Condition | None = None
+    ) -> None:
+        """Stays where it is for seconds of simulation time, or until a condition holds.
+
+        Without a time, it fails if the condition has not held after 600 s.
+        """
+        is_bounded = has_end(seconds, until)
+        amount = "" if seconds is None else f" {seconds:g} s"
+        time = MAX_WAIT if seconds is None else seconds
+        with self._action(f"wait{amount}{stop_text(until)}") as motion:
+            watch = await motion.watch(until)
+            here = motion.pose()
+            if not watch.is_met:
+                here = await motion.hold(time, watch)
+            self._end(here, watch, "" if is_bounded else f"{time:g} s")
+
+    async def check(self, condition: Condition) -> bool:
+        """Whether a condition holds. Takes no time, but for the first one of a run: sensors have no readings before."""
+        with self._action(f"if {condition}", is_reported=False) as motion:
+            return await motion.check(condition)
+
+    def repeat(self, count: int) -> Iterator[int]:
+        """Rounds of a loop, from 1: `for _ in rover.repeat(4)`. Messages, events and traces tell in which one it is.
+
+        Loops fail after a million rounds in which no time has passed: nobody else can act meanwhile.
+        """
+        motion = self._connected()
+
+        def on_round() -> None:
+            if not motion.has_idled():
+                return
+            with self._action(f"repeat {count} times", is_reported=False):
+                raise motion.failure(f"no time has passed in {MAX_IDLE_ROUNDS} rounds")
+
+        return Repeat(self, count, on_round)
+
+    def repeat_until(self, condition: Condition) -> AsyncIterator[int]:
+        """Rounds of a loop, from 1, until a condition holds: `async for _ in rover.repeat_until(clear("front"))`.
+
+        The condition is read before each round. The loop fails if it has not held after 10 000 of them; one in which no
+        time has passed takes a step.
+        """
+        began = math.nan
+
+        async def is_enough(done: int) -> bool:
+            nonlocal began
+            with self._action(f"repeat until {condition}", is_reported=False) as motion:
+                if motion.backend.clock.time == began:
+                    await motion.wait()
+                if await motion.check(condition):
+                    return True
+                if done >= MAX_ROUNDS:
+                    raise motion.failure(f"after {done} rounds {condition.unmet()}")
+                began = motion.backend.clock.time
+            return False
+
+        self._connected()
+        return RepeatUntil(self, is_enough)
+
+    async def turn_until_free(self, side: Side, *sensors: str) -> None:
         """Turns in place until none of the sensors and bumpers detects an object."""
-        names = ", ".join(sensors)
-        detect = "detects" if len(sensors) == 1 else "detect"
-        with self._action(f"turn {side} until {names} {detect} nothing") as motion:
+        free = Condition(sensors, detection=False)
+        with self._action(f"turn {side} until {free}") as motion:
             here = await motion.rotate_while(
                 1.0 if side == "left" else -1.0,
-                lambda: any(map(motion.backend.detects, sensors)),
+                lambda: not free.holds(motion.backend, self.bumpers),
             )
             if here is None:
-                raise motion.failure(
-                    f"after a full turn {names} still {detect} something"
-                )
+                raise motion.failure(f"after a full turn {free.unmet()}")
             self._report(here)
 
     async def slam(self) -> None:
@@ -171,15 +292,16 @@ class Robot:
         return self._motion
 
     @contextmanager
-    def _action(self, what: str) -> Iterator[Motion]:
-        """Names an action; after an error, its wheels stop."""
+    def _action(self, what: str, *, is_reported: bool = True) -> Iterator[Motion]:
+        """Names an action; after an error, its wheels stop. Not all are reported: conditions of statements are none."""
         motion = self._connected()
         if self._is_acting:
             raise motion.failure(f"cannot begin to {what} before this action has ended")
-        self._count(motion, what)
+        motion.place = place_of(self, is_action=is_reported)
+        motion.action_text = what
         self._is_acting = True
         try:
-            if events.current.is_read:
+            if is_reported and events.current.is_read:
                 events.current.action_begun(motion.moment(motion.pose()))
             yield motion
         except SimulatorError as error:
@@ -191,22 +313,47 @@ class Robot:
         finally:
             self._is_acting = False
 
-    def _count(self, motion: Motion, what: str) -> None:
-        movement = movements.current.get()
-        if movement is not self._movement:
-            self._movement, self._actions = movement, 0
-        self._actions += 1
-        motion.movement = movement.name
-        motion.action_number, motion.action_text = self._actions, what
-
     @staticmethod
     def _abort(motion: Motion) -> None:
         motion.forget_plan()
         with suppress(SimulatorError):
             motion.backend.stop()
 
+    def _end(self, here: Pose, watch: Watch, limit: str) -> None:
+        """Reports the end of an action; at its limit, the condition had to be met."""
+        if limit and watch.condition is not None and not watch(here):
+            raise self._connected().failure(f"after {limit} {watch.condition.unmet()}")
+        self._report(here)
+
     def _report(self, here: Pose) -> None:
         events.current.action_ended(self._connected().moment(here))
+
+
+def has_end(amount: float | None, until: Condition | None) -> bool:
+    """Whether an action ends by itself; raises ValueError if it never ends."""
+    if amount is None and until is None:
+        raise ValueError("an action ends by an amount, a condition, or both")
+    return amount is not None
+
+
+def angle_of(degrees: float | Side) -> float:
+    """An angle in radians; with a side, the largest one that is turned until a condition holds."""
+    if isinstance(degrees, str):
+        degrees = MAX_TURN if degrees == "left" else -MAX_TURN
+    return math.radians(degrees)
+
+
+def turn_text(degrees: float | Side) -> str:
+    """An angle in words."""
+    if isinstance(degrees, str):
+        return degrees
+    side = "left" if degrees >= 0.0 else "right"
+    return f"{side} {abs(degrees):g} deg"
+
+
+def stop_text(until: Condition | None) -> str:
+    """What ends an action early, in words."""
+    return "" if until is None else f" until {until}"
 
 
 class TwoWheelRobot(Robot):

@@ -42,4 +42,13 @@ SILENCE_LIMIT = limit(
 )  # s to wait for a simulator that answers nothing, perhaps because it is paused
 STANDSTILL_LIMIT = limit("STANDSTILL_LIMIT", 10.0)  # s during which steps take no time
 STANDSTILL_CHECKS = 10  # comparisons with the simulator's time that find it unchanged
+MAX_DISTANCE = 100.0  # m after which a move fails that ends by a condition only
+MAX_TURN = 360.0  # degrees after which such a turn or arc fails
+MAX_WAIT = 600.0  # s of simulation time after which such a wait fails
+MAX_ROUNDS = 10_000  # after which a loop fails whose condition has never held
+MAX_IDLE_ACTIONS = (
+    10_000  # and conditions at one time, after which the next one takes a step
+)
+MAX_IDLE_ROUNDS = 1_000_000  # at one time, after which a loop fails
+MAX_READING_AGE = 0.5  # s of simulation time that the reading of a condition may be old
 END_LIMIT = limit("END_LIMIT", 15.0)  # s for the end of a run that was interrupted

@@ -4,6 +4,7 @@ import math
 
 from .pose import Pose, wrap_angle
 
+REACH = 0.15  # m of path along which an error is corrected
 SOFTNESS = 0.01  # rad
 ARC_SPEED = 0.05  # m/s at which a turning robot drives back and forth, at most
 MAX_DRIFT = 0.05  # m per radian; a robot that slides further is pushed
@@ -11,18 +12,32 @@ DRIFT_DOUBT = 0.002  # rad² of observed steps at which half of a drift is belie
 DRIFT_MEMORY = 0.99  # the share of a step's weight that remains after another one
 
 
-def steer(speed: float, offset: Pose, remaining: float) -> float:
-    """The turn rate in rad/s that returns a moving robot to its line.
+def steer(
+    speed: float, offset: Pose, remaining: float, curvature: float = 0.0
+) -> float:
+    """The turn rate in rad/s that returns a moving robot to its line or circle.
 
-    `offset` is the robot's pose relative to the line, `remaining` the distance to its end.
-    The robot approaches the line at an angle that grows with its distance from it, up to
-    half a radian, and fades out at the end, where only the heading counts. At constant
-    speed this is a critically damped system in the distance driven.
+    `offset` is the robot's pose relative to the nearest point of the path, `remaining` the
+    distance to its end. The robot approaches the path at an angle that grows with its distance
+    from it, up to half a radian, and fades out at the end, where only the heading counts. At
+    constant speed this is a critically damped system in the distance driven. On a circle, what
+    keeps a robot on it is added; wheels that slip have more effect there, and so has the steering.
     """
-    reach = max(0.15, 0.4 * abs(speed))
+    shortest = min(REACH, 1.0 / (5.0 * abs(curvature))) if curvature else REACH
+    reach = max(shortest, 0.4 * abs(speed))
     fade = min(1.0, abs(remaining) / (2.0 * reach))
     aim = max(-0.5, min(0.5, -offset.y / (2.0 * reach))) * fade
-    return 2.0 / reach * (speed * aim - abs(speed) * offset.theta)
+    correction = 2.0 / reach * (speed * aim - abs(speed) * offset.theta)
+    return correction + circling(speed * math.cos(offset.theta), offset, curvature)
+
+
+def circling(speed: float, offset: Pose, curvature: float) -> float:
+    """The turn rate in rad/s of a path at its point nearest to a robot.
+
+    `speed` is the robot's along the path; `offset.y` its distance from it, to the left.
+    """
+    # The circle through the robot is smaller or larger; but the robot is never at its centre.
+    return curvature * speed / max(0.2, 1.0 - curvature * offset.y)
 
 
 def return_speed(offset: Pose) -> float:

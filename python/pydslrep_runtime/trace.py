@@ -4,6 +4,7 @@ import json
 from collections.abc import Sequence
 from typing import TextIO
 
+from .places import Place
 from .pose import Pose
 
 
@@ -19,20 +20,23 @@ class Trace:
         robot: str,
         pose: Pose,
         wheels: Sequence[float],
-        movement: str,
+        place: Place,
         action: str,
     ) -> None:
-        """Writes a line: seconds, metres, radians, and the wheels' rad/s."""
+        """Writes a line: seconds, metres, radians, the wheels' rad/s, and the action with its number."""
         if self._file is None:
             return
-        row = {
+        row: dict[str, object] = {
             "t": round(time, 6),
             "robot": robot,
             "x": round(pose.x, 6) + 0.0,  # no -0
             "y": round(pose.y, 6) + 0.0,
             "theta": round(pose.theta, 6) + 0.0,
             "wheels": [round(rate, 6) + 0.0 for rate in wheels],
-            "movement": movement,
+            "movement": place.movement,
             "action": action,
         }
+        if place.line is not None:
+            row["line"] = place.line
+        row |= place.parts()
         self._file.write(json.dumps(row) + "\n")

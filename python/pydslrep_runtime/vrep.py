@@ -336,15 +336,25 @@ class VRepRobot(Backend):
 
     def distance(self, sensor: str) -> float | None:
         """The distance that a proximity sensor measures, in metres; None if nothing."""
+        values, read = self._read(sensor), self._client.simxReadProximitySensor
+        if self._connection.read(read, values) <= 0:
+            return None
+        point = self._connection.read(read, values[1:], (LEGACY_POINT,))
+        return math.hypot(*point)
+
+    def reading_age(self, sensor: str) -> float:
+        """How old the reading of a proximity sensor is: the last one that has arrived stays readable for ever."""
+        self._read(sensor)
+        return max(0.0, self.clock.milliseconds - self._connection.milliseconds()) / 1e3
+
+    def _read(self, sensor: str) -> list[Any]:
+        """The latest reading of a proximity sensor: its state, the point, and more."""
         client, handle = self._client, self._sensors[sensor]
         self._connection.wait_for(self.clock.milliseconds)
         read = client.simxReadProximitySensor
         code, *values = read(self._connection.id, handle, client.simx_opmode_buffer)
         self._connection.check(code, "simxReadProximitySensor")
-        if self._connection.read(read, values) <= 0:
-            return None
-        point = self._connection.read(read, values[1:], (LEGACY_POINT,))
-        return math.hypot(*point)
+        return [*values]
 
     def sensor_cone(self, sensor: str) -> SensorCone:
         """The mount of a proximity sensor; the remote API does not report its volume."""

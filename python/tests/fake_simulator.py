@@ -46,6 +46,7 @@ class FakeRobot:
     motor_acceleration: float = 40.0  # rad/s²
     slip: float = 0.0  # standard deviation of each wheel's traction
     creep: float = 0.0  # how much less it moves than its wheels roll
+    scrub: float = 0.0  # how much less it turns than its wheels roll
     drift: float = 0.0  # m that it slides to its left per radian that it turns
     is_static: bool = False
     tremor: float = 0.0  # m and radians that contacts move it in every step
@@ -55,7 +56,8 @@ class FakeRobot:
     sinking: float = 0.0  # m/s
     tilt: float = 0.0  # radians about its x axis
     kerb: float = -math.inf  # it slides along this where y would fall below it
-    sensors: dict[str, Callable[["FakeRobot"], bool]] = field(default_factory=dict)
+    # Whether each detects something, or how far away that is.
+    sensors: dict[str, Callable[["FakeRobot"], Any]] = field(default_factory=dict)
     rate_history: list[list[float]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -90,6 +92,7 @@ class FakeRobot:
             joint.rate += max(-limit, min(limit, change))
             joint.angle += joint.rate * dt
         vx, vy, omega = self.twist(traction)
+        omega *= 1.0 - self.scrub
         middle = self.theta + omega * dt / 2.0
         if self.x + (vx * math.cos(middle) - vy * math.sin(middle)) * dt > self.wall:
             return
@@ -355,8 +358,10 @@ class FakeSim:
     def readProximitySensor(self, handle: int) -> tuple[Any, ...]:
         """State and more; no reading before the first step."""
         robot, sensor = self._world.object(handle)
-        state = -1 if self._world.steps == 0 else int(robot.sensors[sensor](robot))
-        return (state, 0.0, [0.0, 0.0, 0.0], -1, [0.0, 0.0, 0.0])
+        found = None if self._world.steps == 0 else robot.sensors[sensor](robot)
+        state = -1 if self._world.steps == 0 else int(found not in (None, False))
+        distance = found if isinstance(found, float) else 0.0
+        return (state, distance, [0.0, 0.0, 0.0], -1, [0.0, 0.0, 0.0])
 
     def handleProximitySensor(self, handle: int) -> tuple[Any, ...]:
         """Only for sensors with explicit handling."""

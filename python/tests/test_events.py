@@ -16,6 +16,7 @@ from driving import drive_alone, joints
 from fake_simulator import FakeRobot, FakeWorld
 from pydslrep_runtime import MovementError, Robot, SetupError, SimulatorError, events
 from pydslrep_runtime.events import Moment, Reporter
+from pydslrep_runtime.places import Place
 from pydslrep_runtime.pose import Pose
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -23,7 +24,8 @@ SCHEMA = json.loads(
     (ROOT / "editors" / "run-events.schema.json").read_text(encoding="utf-8")
 )
 FITS = jsonschema.Draft7Validator(SCHEMA)
-MOMENT = Moment(1.5, "rover", "trip", 2, "turn left 90 deg", Pose(1.0, -0.0, 1.5))
+PLACE = Place("trip", 2)
+MOMENT = Moment(1.5, "rover", PLACE, "turn left 90 deg", Pose(1.0, -0.0, 1.5))
 
 Event = dict[str, Any]
 

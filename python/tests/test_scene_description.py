@@ -3,6 +3,7 @@
 import json
 
 from pydslrep_runtime.scene.description import SceneDescription, read_scene
+from pydslrep_runtime.scene.push import standstill
 
 ROBOT = {
     "name": "robot_1",
@@ -67,3 +68,13 @@ def test_a_description_is_read() -> None:
 def test_what_is_written_is_read() -> None:
     scene = described()
     assert read_scene(json.loads(json.dumps(scene.as_json()))) == scene
+
+
+def test_what_moves_stays_at_its_first_point_and_says_so() -> None:
+    person = {"name": "person", "x": 2.0, "y": -0.5, "heading": 0.0, "radius": 0.2}
+    obstacles = [*OBSTACLES, {**person, "moves": True}]
+    scene = read_scene({"environment": "e", "robots": [], "obstacles": obstacles})
+    assert [each.moves for each in scene.obstacles] == [False, False, False, True]
+    assert standstill(scene.obstacles[-1]) == (
+        "obstacle `person` has a path, but does not move here: it stays at its first point, x 2 m, y -0.5 m"
+    )

@@ -16,6 +16,7 @@ from pydslrep_runtime.backend import Clock, RobotSpec, SensorCone
 from pydslrep_runtime.drives import TwoWheelDrive
 from pydslrep_runtime.errors import MovementError, SetupError, SimulatorError
 from pydslrep_runtime.motion import Motion
+from pydslrep_runtime.places import Place
 from pydslrep_runtime.pose import Pose
 from pydslrep_runtime.slam import exploration
 from pydslrep_runtime.slam.occupancy_grid import OccupancyGrid
@@ -95,7 +96,7 @@ def explore(body: Body, found: SlamSession) -> None:
     spec = RobotSpec("r", "127.0.0.1", 19999, {"l": 0.05, "r": 0.05}, SENSORS)
     drive = TwoWheelDrive([(0.0, 0.15), (0.0, -0.15)], [0.05, 0.05])
     motion = Motion(spec, backend, drive, loop, 0, Trace())
-    motion.movement, motion.action_number, motion.action_text = "m", 1, "slam"
+    motion.place, motion.action_text = Place("m", 1), "slam"
     at_once(exploration.explore(motion, found))
 
 

@@ -65,7 +65,7 @@ class RobotDescription:
 
 @dataclass(frozen=True)
 class ObstacleDescription:
-    """A fixed obstacle: a box, a cylinder or a polygon."""
+    """An obstacle: a box, a cylinder or a polygon, where it is at the start."""
 
     name: str
     x: float
@@ -75,6 +75,7 @@ class ObstacleDescription:
     radius: float | None = None  # of a cylinder
     corners: tuple[Point, ...] = ()  # of a polygon, in its own frame
     triangles: tuple[tuple[Point, ...], ...] = ()  # which the polygon consists of
+    moves: bool = False  # in the embedded simulator
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from dataclasses import replace as changed
 
 from ..remote_api import Connection
 from .checks import check_steps
-from .description import RobotDescription, SceneDescription
+from .description import ObstacleDescription, RobotDescription, SceneDescription
 from .main_script import add_main_script, undo_main_script
 from .maker import Maker
 from .marks import Marks
@@ -64,7 +64,16 @@ def push(
         raise
     if script is not None:
         notes.append("the scene had no main script, and has CoppeliaSim's own now")
+    notes += [standstill(each) for each in scene.obstacles if each.moves]
     return notes + [f"{each.message}: {each.help}" for each in steps]
+
+
+def standstill(obstacle: ObstacleDescription) -> str:
+    """What is worth knowing of an obstacle that moves in the embedded simulator."""
+    return (
+        f"obstacle `{obstacle.name}` has a path, but does not move here: it stays at its first point, "
+        f"x {obstacle.x:g} m, y {obstacle.y:g} m"
+    )
 
 
 def obstacle_aliases(scene: SceneDescription) -> Sequence[str]:
