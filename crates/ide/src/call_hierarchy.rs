@@ -1,8 +1,8 @@
-//! Call hierarchy: the movements an environment runs and the robot each of them drives; and back, from a robot to its
-//! movements and from those to their environments.
+//! Call hierarchy: the movements an environment runs, those that they do, and the robot each of them drives; and back, from a
+//! robot to its movements and from those to the movements and environments that run them.
 
 use pydslrep_analysis::{Database, EntityId, EntityRef, FileId, FileSpan};
-use pydslrep_syntax::ast::{Entity, Name};
+use pydslrep_syntax::ast::{Action, Entity, Name};
 use pydslrep_syntax::{EntityKind, Span};
 use smol_str::SmolStr;
 
@@ -59,17 +59,19 @@ pub fn call_item(
     (place < items.len()).then(|| items.swap_remove(place))
 }
 
-/// The movements of a robot, or the environments that run a movement, in all files.
+/// The movements of a robot, or the movements and environments that run a movement, in all files.
 pub fn incoming_calls(database: &Database, called: &CallItem) -> Vec<Call> {
-    let caller_kind = match called.kind {
-        EntityKind::Robot => EntityKind::Movement,
-        EntityKind::Movement => EntityKind::Environment,
+    let caller_kinds: &[EntityKind] = match called.kind {
+        EntityKind::Robot => &[EntityKind::Movement],
+        EntityKind::Movement => &[EntityKind::Movement, EntityKind::Environment],
         _ => return Vec::new(),
     };
     let places = database.references(called.file, called.kind, &SmolStr::new(&called.name));
     let mut calls = Vec::new();
     for uses in places.chunk_by(|a, b| a.file == b.file) {
-        calls.extend(callers(database, uses).into_iter().filter(|call| call.item.kind == caller_kind));
+        calls.extend(
+            callers(database, uses).into_iter().filter(|call| caller_kinds.contains(&call.item.kind)),
+        );
     }
     calls
 }
@@ -92,18 +94,22 @@ fn callers(database: &Database, mut places: &[FileSpan]) -> Vec<Call> {
     calls
 }
 
-/// The movements an environment runs, each once, or the robot a movement drives.
+/// The movements an environment runs or a movement does, each once, and the robot it drives.
 pub fn outgoing_calls(database: &Database, caller: &CallItem) -> Vec<Call> {
     let Some(entity) = database.entity(caller.id) else { return Vec::new() };
-    let (kind, names): (EntityKind, Vec<&Name>) = match &entity.parse.entity {
+    let movements = |name| (EntityKind::Movement, name);
+    let names: Vec<(EntityKind, &Name)> = match &entity.parse.entity {
         Some(Entity::Environment(environment)) => {
-            (EntityKind::Movement, environment.movements.iter().flat_map(|list| &list.names).collect())
+            environment.movements.iter().flat_map(|list| &list.names).map(movements).collect()
         }
-        Some(Entity::Movement(movement)) => (EntityKind::Robot, movement.robot.iter().collect()),
+        Some(Entity::Movement(movement)) => {
+            let robot = movement.robot.iter().map(|name| (EntityKind::Robot, name));
+            robot.chain(movement.all_actions().filter_map(Action::done).map(movements)).collect()
+        }
         _ => return Vec::new(),
     };
     let mut calls: Vec<Call> = Vec::new();
-    for name in names {
+    for (kind, name) in names {
         let Some(id) = database.resolve(entity.file, kind, &name.text).entity() else { continue };
         let range = name.span.shifted(entity.span.start);
         if let Some(known) = calls.iter_mut().find(|call| call.item.id == id) {
@@ -255,5 +261,27 @@ mod tests {
     #[test]
     fn parts_call_nobody() {
         check(&[("a.pyr", "wheel $0w with radius 4 robot r with port 1 has { w } wheels")], &expect![[""]]);
+    }
+
+    #[test]
+    fn movements_do_movements() {
+        check(
+            &[(
+                "a.pyr",
+                "robot r type tw with port 1\nmovement all of r { repeat 2 times { do side do side } }\n\
+                 movement si$0de of r { if { s } clear { do leg } else { do all } }\nmovement leg of r { slam }\n\
+                 environment e has { r } robots with { side } moves",
+            )],
+            &expect![[r#"
+                movement side at 94
+                 incoming
+                  movement all (of r, 3 actions) in a.pyr: 68 "side", 76 "side"
+                  environment e (1 robot, 1 movement) in a.pyr: 215 "side"
+                 outgoing
+                  robot r (tw, port 1) in a.pyr: 102 "r"
+                  movement leg (of r, 1 action) in a.pyr: 126 "leg"
+                  movement all (of r, 3 actions) in a.pyr: 142 "all"
+            "#]],
+        );
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! The parser itself says which keywords fit ([`expected_after`]), so completion cannot drift from the language.
 
+mod actions;
 mod context;
 mod defaults;
 mod documentation;
@@ -192,13 +193,14 @@ fn filter_at(
 
 fn items_for(context: &CursorContext<'_>, expected: Expected) -> Vec<Completion> {
     match expected {
-        Expected::Word(TokenKind::At) => {
-            snippets::speed(context).into_iter().chain(keywords::keyword(context, TokenKind::At)).collect()
+        Expected::Word(word) => {
+            let mut found = clauses(context, word);
+            found.extend(keywords::keyword(context, word));
+            found
         }
-        Expected::Word(word) => keywords::keyword(context, word).into_iter().collect(),
         Expected::ReferenceTo(kind) => names::names(context, kind),
         Expected::Action => {
-            let mut found = snippets::actions(context);
+            let mut found = actions::actions(context);
             found.extend(keywords::plain_keywords(context, &TokenKind::ACTIONS));
             found
         }
@@ -221,6 +223,18 @@ fn items_for(context: &CursorContext<'_>, expected: Expected) -> Vec<Completion>
         }
         Expected::Path => paths::quoted_paths(context),
         Expected::Number(_) | Expected::NameOf(_) => Vec::new(),
+    }
+}
+
+/// The clauses of actions that a keyword begins, with placeholders.
+fn clauses(context: &CursorContext<'_>, word: TokenKind) -> Vec<Completion> {
+    match word {
+        TokenKind::At => actions::speed(context),
+        TokenKind::With if context.movement().is_some() => actions::circle(context),
+        TokenKind::Until => actions::until(context),
+        TokenKind::Else => actions::otherwise(context),
+        TokenKind::Times => actions::rounds(context),
+        _ => Vec::new(),
     }
 }
 
@@ -390,17 +404,32 @@ mod tests {
             &expect![[r#"
                 at … [a speed (cm/s)] "" -> "at ${1:9.0}"
                 at [move DISTANCE meters | centimeters [at SPEED]] "" -> "at"
+                until … detect [until a sensor detects an obstacle] "" -> "until { ${1:front} } detect"
+                until … clear [until no sensor detects an obstacle] "" -> "until { ${1:front} } clear"
+                until [until { SENSORS } clear | detect [within DISTANCE meters | centimeters]] "" -> "until"
                 turn left [in place by 90 degrees] "" -> "turn left"
                 turn right [in place by 90 degrees] "" -> "turn right"
                 turn left … [in place by this angle (degrees)] "" -> "turn left ${1:90}"
                 turn right … [in place by this angle (degrees)] "" -> "turn right ${1:90}"
+                turn left … with radius … [on a circle] "" -> "turn left ${1:90} with radius ${2:1.0} meters"
+                turn right … with radius … [on a circle] "" -> "turn right ${1:90} with radius ${2:1.0} meters"
                 turn left until … [in place until no sensor detects an obstacle] "" -> "turn left until { ${1:front} }"
                 move … meters [straight ahead] "" -> "move ${1:4.0} meters"
                 move … meters at … [straight ahead at this speed (cm/s)] "" -> "move ${1:4.0} meters at ${2:9.0}"
                 move … centimeters [straight ahead] "" -> "move ${1:50} centimeters"
                 move … centimeters at … [straight ahead at this speed (cm/s)] "" -> "move ${1:50} centimeters at ${2:9.0}"
+                move until … detect [straight ahead until a sensor detects an obstacle] "" -> "move until { ${1:front} } detect"
+                repeat … times { … } [a number of times] "" -> "repeat ${1:4} times {\n  $0\n}"
+                repeat until … detect { … } [until a sensor detects an obstacle] "" -> "repeat until { ${1:front} } detect {\n  $0\n}"
+                wait … seconds [stands still] "" -> "wait ${1:2} seconds"
+                wait until … clear [stands still until no sensor detects an obstacle] "" -> "wait until { ${1:front} } clear"
+                if … detect { … } [only if a sensor detects an obstacle] "" -> "if { ${1:front} } detect {\n  $0\n}"
                 move [move DISTANCE meters | centimeters [at SPEED]] "" -> "move"
-                turn [turn left | right [DEGREES]] "" -> "turn"
+                turn [turn left | right [DEGREES] [with radius DISTANCE meters | centimeters] [at SPEED] [in reverse]] "" -> "turn"
+                wait [wait SECONDS seconds] "" -> "wait"
+                repeat [repeat COUNT times { ACTIONS }] "" -> "repeat"
+                if [if { SENSORS } clear | detect [within DISTANCE meters | centimeters] { ACTIONS } [else { ACTIONS }]] "" -> "if"
+                do [do MOVEMENT] "" -> "do"
                 slam [slam] "" -> "slam"
                 } [] "" -> "}"
             "#]],
@@ -751,5 +780,135 @@ mod tests {
             ```
             Two-wheel differential drive (`tw`), port 23000."#]]
         .assert_eq(&completion_documentation(&database, home, kind, &item.label.into()).unwrap_or_default());
+    }
+
+    /// The labels of the items in a movement of `rover`.
+    fn labels_in(action: &str) -> Vec<String> {
+        asked(&format!("{PARTS}movement side of rover {{ slam }}\nmovement m of rover {{\n  {action}"))
+    }
+
+    #[test]
+    fn each_clause_is_offered_in_its_place() {
+        let fixtures = [
+            "wait 2 $0",
+            "wait until { front } $0",
+            "wait until { front } clear within 2 $0",
+            "repeat 4 $0",
+            "repeat 4 $0\n}",
+            "repeat 4 $0 { slam }",
+            "repeat 4 times $0",
+            "if { front } $0",
+            "if { front } clear $0",
+            "turn left 90 with $0",
+            "turn left 90 with radius 2 meters in $0",
+            "wait $0",
+        ];
+        let shown = |fixture: &&str| format!("{fixture:?}: {:?}\n", labels_in(fixture));
+        let shown: String = fixtures.iter().map(shown).collect();
+        expect![[r#"
+            "wait 2 $0": ["seconds"]
+            "wait until { front } $0": ["clear", "detect", "within", "move … meters", "move … meters at …", "move … centimeters", "move … centimeters at …", "move until … detect", "turn left", "turn right", "turn left …", "turn right …", "turn left … with radius …", "turn right … with radius …", "turn left until …", "repeat … times { … }", "repeat until … detect { … }", "wait … seconds", "wait until … clear", "if … detect { … }", "do …", "move", "turn", "wait", "repeat", "if", "do", "slam", "}"]
+            "wait until { front } clear within 2 $0": ["meters", "centimeters"]
+            "repeat 4 $0": ["times { … }", "times"]
+            "repeat 4 $0\n}": ["times { … }", "times"]
+            "repeat 4 $0 { slam }": ["times"]
+            "repeat 4 times $0": ["{"]
+            "if { front } $0": ["clear", "detect", "within", "{"]
+            "if { front } clear $0": ["within", "{"]
+            "turn left 90 with $0": ["radius"]
+            "turn left 90 with radius 2 meters in $0": ["reverse"]
+            "wait $0": ["until … clear", "until … detect", "until { … }"]
+        "#]].assert_eq(&shown);
+    }
+
+    /// Those that are no actions of their own.
+    #[test]
+    fn clauses_come_before_the_next_action() {
+        let first =
+            |fixture: &str, count: usize| labels_in(fixture).into_iter().take(count).collect::<Vec<_>>();
+        assert_eq!(
+            first("turn left 90 $0", 8),
+            [
+                "with radius …",
+                "with radius",
+                "at …",
+                "at",
+                "until … clear",
+                "until … detect",
+                "until { … }",
+                "in reverse"
+            ]
+        );
+        assert_eq!(first("if { front } clear { slam } $0", 2), ["else { … }", "else"]);
+        assert_eq!(first("wait 2 seconds $0 }", 3), ["until … clear", "until … detect", "until"]);
+        assert_eq!(first("move until { front } $0", 3), ["clear", "detect", "within"]);
+    }
+
+    #[test]
+    fn do_offers_movements_of_the_same_robot_that_do_not_lead_back() {
+        let movements = format!(
+            "{PARTS}robot other type tw with port 1 has {{ wheelL wheelR }} wheels\n\
+             movement leg of rover {{ slam }}\nmovement back of rover {{ repeat 2 times {{ do m }} }}\n\
+             movement far of rover {{ do back }}\nmovement foreign of other {{ slam }}\n\
+             movement done of rover {{ do leg }}\n"
+        );
+        let inside = |actions: &str| format!("{movements}movement m of rover {{ {actions}");
+        assert_eq!(asked(&inside("do $0")), ["done", "leg"]);
+        assert_eq!(asked(&inside("do d$0 wait 1 seconds }")), ["done"]);
+        assert_eq!(opens(&inside("repeat 2 times { do $0 } }")), ["done", "leg"]);
+        assert_eq!(asked(&inside("if { front } clear { slam } else { do $0")), ["done", "leg"]);
+        // Names, not actions.
+        assert_eq!(opens(&inside("turn left until { do $0 }")), [""; 0]);
+        assert_eq!(opens(&inside("do leg $0 }")), [""; 0]);
+    }
+
+    #[test]
+    fn words_of_statements_are_offered_only_where_they_fit() {
+        for fixture in
+            ["turn left until { $0 } }", "turn left until { w$0 } }", "repeat $0", "do $0", "wait 2 s$0 x"]
+        {
+            let found = labels_in(fixture);
+            let words = ["wait", "repeat", "if", "do", "else", "clear", "detect", "times", "within"];
+            assert!(!found.iter().any(|label| words.contains(&label.as_str())), "{fixture}: {found:?}");
+        }
+        for fixture in ["sensor re$0", "wheel wai$0", "robot i$0", "movement d$0", "movement m of cl$0 {"] {
+            assert_eq!(asked(&format!("{PARTS}{fixture}")), [""; 0], "{fixture}");
+        }
+        let names = "sensor wait sensor clear robot r type tw with port 1 has { } wheels with sensors { wait clear }\n";
+        assert_eq!(
+            asked(&format!("{names}movement m of r {{ if {{ $0 }} clear {{ slam }} }}")),
+            ["wait", "clear"]
+        );
+    }
+
+    #[test]
+    fn no_list_opens_automatically_where_a_new_statement_may_be_complete() {
+        for action in [
+            "wait $0",
+            "wait 2 $0",
+            "wait 2 seconds $0",
+            "wait until { front } $0",
+            "wait until { front } clear $0",
+            "repeat $0",
+            "repeat 4 $0",
+            "repeat 4 times $0",
+            "repeat 4 times { $0 }",
+            "if { front } clear { slam } $0",
+            "if { front } clear { slam } else $0",
+            "turn left 90 with $0",
+            "move 1 meters until { front } detect within 2 $0",
+            "wait 2 seconds$0",
+            "repeat 4 times$0",
+            "if { front } clear$0",
+            "do side$0",
+            "if$0",
+            "do$0",
+            "wait$0",
+            "repeat$0",
+        ] {
+            let fixture =
+                format!("{PARTS}movement side of rover {{ slam }}\nmovement m of rover {{\n  {action}\n}}");
+            assert_eq!(opens(&fixture), [""; 0], "{action}");
+        }
     }
 }

@@ -140,4 +140,14 @@ mod tests {
             definition.targets.iter().map(|target| (target.file, target.focus.start)).collect();
         assert_eq!(focus, [(b, 28), (a, 6)]);
     }
+
+    #[test]
+    fn do_leads_to_its_movement() {
+        check(
+            &format!(
+                "{PARTS}movement side of rover {{ slam }}\nmovement m of rover {{ repeat 2 times {{ do side$0 }} }}"
+            ),
+            &expect![[r#"189..193 "side" in "movement side of rover { slam }""#]],
+        );
+    }
 }

@@ -3,7 +3,7 @@
 //! A region reaches from `// #region` (or `// region`) to its `// endregion`, with or without `#`; regions nest.
 
 use pydslrep_analysis::Snapshot;
-use pydslrep_syntax::ast::{Entity, Movement};
+use pydslrep_syntax::ast::{Action, Entity, Movement};
 use pydslrep_syntax::{Span, TokenKind};
 
 use crate::cursor::body;
@@ -43,8 +43,11 @@ pub fn folding_ranges(snapshot: &Snapshot) -> Vec<Fold> {
         }
         match &entity.parse.entity {
             Some(Entity::Import(_)) => folds.import(body(&entity)),
-            Some(Entity::Movement(Movement { body: Some(braces), .. })) => {
+            Some(Entity::Movement(movement @ Movement { body: Some(braces), .. })) => {
                 folds.entity(folds.inside(braces.shifted(start)));
+                for block in movement.all_actions().flat_map(Action::blocks) {
+                    folds.entity(folds.inside(block.span.shifted(start)));
+                }
             }
             Some(_) => folds.entity(folds.after_first_line(body(&entity))),
             None => {}
@@ -263,6 +266,19 @@ mod tests {
             "import \"a.pyr\"\n// why\nimport \"b.pyr\"\n\nwheel a with radius 3",
             &expect![[r#"
                 Imports: "import \"a.pyr\"\n// why\nimport \"b.pyr\""
+            "#]],
+        );
+    }
+
+    #[test]
+    fn blocks_fold() {
+        check(
+            "movement m of r {\n  repeat 2 times {\n    if { a } clear {\n      slam\n    } else {\n      do n\n    }\n    wait 2 seconds\n  }\n  repeat 2 times { slam }\n}",
+            &expect![[r#"
+                Entity, last line stays: "\n  repeat 2 times {\n    if { a } clear {\n      slam\n    } else {\n      do n\n    }\n    wait 2 seconds\n  }\n  repeat 2 times { slam }\n"
+                Entity, last line stays: "\n    if { a } clear {\n      slam\n    } else {\n      do n\n    }\n    wait 2 seconds\n  "
+                Entity, last line stays: "\n      slam\n    "
+                Entity, last line stays: "\n      do n\n    "
             "#]],
         );
     }

@@ -87,4 +87,27 @@ mod tests {
         );
         check(&[("a.pyr", "whe$0el a with radius 4")], &expect!["wheel a with radius 4"]);
     }
+
+    #[test]
+    fn movements_that_are_done_and_sensors_of_conditions() {
+        check(
+            &[(
+                "a.pyr",
+                "movement wait of r { repeat 2 times { do wa$0it wait 2 seconds do\nwait } }\nmovement n of r { do wait }",
+            )],
+            &expect![[r#"
+                movement write[wait] of r { repeat 2 times { do read[wait] wait 2 seconds do
+                read[wait] } }
+                movement n of r { do read[wait] }"#]],
+        );
+        check(
+            &[(
+                "a.pyr",
+                "sensor clear\nmovement m of r { if { clear } clear { wait until { cle$0ar } clear } else if { clear } detect { } }",
+            )],
+            &expect![[r#"
+                sensor write[clear]
+                movement m of r { if { read[clear] } clear { wait until { read[clear] } clear } else if { read[clear] } detect { } }"#]],
+        );
+    }
 }

@@ -6,7 +6,7 @@ pub(crate) mod motion;
 mod parts;
 
 use pydslrep_analysis::{Database, EntityId};
-use pydslrep_syntax::ast::Entity;
+use pydslrep_syntax::ast::{Entity, nested};
 use pydslrep_syntax::{EntityKind, Span};
 
 use crate::FilePosition;
@@ -50,18 +50,25 @@ pub(crate) fn describe(database: &Database, id: EntityId) -> Option<String> {
     }
 }
 
-/// The details of the action under the cursor.
+/// The details of the innermost action under the cursor.
 fn action(database: &Database, position: FilePosition) -> Option<Hover> {
     entities_at(database, position).into_iter().find_map(|entity| {
         let Some(Entity::Movement(movement)) = &entity.parse.entity else { return None };
         let touches = |span: Span| span.shifted(entity.span.start).touches(position.offset);
         let index = movement.actions.iter().position(|action| touches(action.span))?;
-        let span = movement.actions[index].span.shifted(entity.span.start);
-        Some(Hover { span, markdown: motion::action(database, entity.id, index)? })
+        let inside = nested(&movement.actions[index..=index]).filter(|action| touches(action.span));
+        let span = inside.min_by_key(|action| action.span.len())?.span;
+        let number = movement.statements().iter().position(|statement| *statement == span)? + 1;
+        let markdown = motion::action(database, entity.id, index, number)?;
+        Some(Hover { span: span.shifted(entity.span.start), markdown })
     })
 }
 
+/// The page of a keyword; a word that is a name has none.
 fn keyword(database: &Database, position: FilePosition) -> Option<Hover> {
+    if name_at(database, position).is_some() {
+        return None;
+    }
     let (token, span) = token_at(database, position)?;
     Some(Hover { span, markdown: keyword_page(token)?.markdown() })
 }
@@ -353,6 +360,114 @@ mod tests {
                 ```
                 Fix its errors to see details.
             "#]],
+        );
+    }
+
+    /// The hover texts at the marked places of a movement, which is done once.
+    fn shown(actions: &str) -> String {
+        let before =
+            format!("{PARTS}movement side of rover {{ move 1 meters turn left }}\nmovement m of rover {{\n");
+        let places = actions.match_indices("$0").map(|(at, _)| {
+            let cursor = format!("{}$0{}", actions[..at].replace("$0", ""), actions[at..].replace("$0", ""));
+            let (database, position) = at_cursor(&format!("{before}{cursor}\n}}"));
+            hover(&database, position).map_or_else(|| "nothing\n".to_owned(), |hover| hover.markdown + "\n")
+        });
+        places.collect::<Vec<_>>().join("----\n")
+    }
+
+    #[test]
+    fn an_action_in_a_block_has_its_own_details() {
+        expect![[r#"
+            ```pydslrep
+            repeat 4 times
+            ```
+            Takes 2 min 30.0 s. From (1 m, 0 m, 0°) to (1 m, 0 m, 0°), relative to the start of the movement.
+            ----
+            ```pydslrep
+            move 1 meters
+            ```
+            Takes 11.4 s. In the first round from (1 m, 0 m, 0°) to (2 m, 0 m, 0°), relative to the start of the movement.
+
+            Wheel rates: `wheelL` 2 rad/s, `wheelR` 2 rad/s.
+            ----
+            ```pydslrep
+            do side
+            ```
+            Takes 14.4 s. In the first round from (2 m, 0 m, 0°) to (3 m, 0 m, 90°), relative to the start of the movement.
+            ----
+            ```pydslrep
+            turn left 90 with radius 50 centimeters
+            ```
+            Takes 11.7 s. In the first round from (3 m, 0 m, 90°) to (2.5 m, 0.5 m, 180°), relative to the start of the movement.
+
+            Wheel rates: `wheelL` 1.08 rad/s, `wheelR` 2 rad/s.
+            ----
+            ```pydslrep
+            wait 2 seconds
+            ```
+            Takes 2.0 s. From (1 m, 0 m, 0°) to (1 m, 0 m, 0°), relative to the start of the movement.
+
+            Wheel rates: `wheelL` 0 rad/s, `wheelR` 0 rad/s.
+        "#]].assert_eq(&shown(
+            "  move 1 meters\n  rep$0eat 4 times {\n    mo$0ve 1 meters\n    d$0o side\n    turn $0left 90 with radius 50 centimeters\n  }\n  w$0ait 2 seconds",
+        ));
+    }
+
+    #[test]
+    fn what_depends_on_sensors_says_so() {
+        expect![[r#"
+            ```pydslrep
+            move 1 meters
+            ```
+            Takes 11.4 s. In the first round from (0 m, 0 m, 0°) to (1 m, 0 m, 0°), relative to the start of the movement.
+
+            Wheel rates: `wheelL` 2 rad/s, `wheelR` 2 rad/s.
+            ----
+            ```pydslrep
+            if { front } detect
+            ```
+            The end pose cannot be planned: what `if { front } detect` does depends on its sensors.
+            ----
+            ```pydslrep
+            wait 2 seconds
+            ```
+            Takes 2.0 s. The start pose cannot be planned: what `repeat 2 times` does depends on what sensors detect.
+
+            Wheel rates: `wheelL` 0 rad/s, `wheelR` 0 rad/s.
+            ----
+            ```pydslrep
+            slam
+            ```
+            The end pose cannot be planned: the path of `slam` depends on what it explores.
+            ----
+            ```pydslrep
+            move 2 meters
+            ```
+            Takes 22.6 s. The start pose cannot be planned: what `repeat 2 times` does depends on what sensors detect.
+
+            Wheel rates: `wheelL` 2 rad/s, `wheelR` 2 rad/s.
+        "#]].assert_eq(&shown(
+            "  repeat 2 times {\n    move 1 me$0ters\n    i$0f { front } detect {\n      w$0ait 2 seconds\n    }\n    sl$0am\n  }\n  mo$0ve 2 meters",
+        ));
+    }
+
+    #[test]
+    fn a_name_that_is_a_keyword_elsewhere_has_no_page() {
+        check("movement m of r { wait until { tim$0es } clear }", &expect!["nothing"]);
+        check(
+            "movement m of { wait until { times } cl$0ear",
+            &expect![[r#"
+            clear
+            ---
+            ```pydslrep
+            { SENSORS } clear [within DISTANCE meters | centimeters]
+            ```
+            The condition holds while none of its sensors detects an obstacle.
+
+            ```pydslrep
+            wait until { front } clear
+            ```
+        "#]],
         );
     }
 }

@@ -75,14 +75,17 @@ pub fn inlay_hints(
         .take_while(|entity| is_wanted && entity.span.start <= range.end);
     let mut hints = Vec::new();
     let mut errors = Vec::new();
+    let mut broken = Vec::new();
     for entity in entities {
         errors.extend(database.errors(&entity));
-        hints.extend(movement_hints(database, &entity, range, options, known).unwrap_or_default());
+        hints.extend(
+            movement_hints(database, &entity, range, options, known, &mut broken).unwrap_or_default(),
+        );
     }
     let (caused_by_edit, others): (Vec<Span>, Vec<Span>) =
         errors.into_iter().partition(|error| is_caused_by_edit(database, file, *error, typed));
     let line_of = |error: Span| lines(database, file, error);
-    let affected: Vec<Span> = caused_by_edit.into_iter().map(line_of).collect();
+    let affected: Vec<Span> = caused_by_edit.into_iter().chain(broken).map(line_of).collect();
     let others = others.into_iter().map(line_of).filter(|line| !affected.contains(line));
     let hidden: Vec<Span> = typed.iter().copied().chain(others).collect();
     hints.retain(|hint| !hidden.iter().any(|line| line.touches(hint.offset)));
@@ -117,12 +120,15 @@ pub(crate) fn lines(database: &Database, file: FileId, span: Span) -> Span {
     Span::new(offset(start), offset(end))
 }
 
+/// The hints of a movement. The ends of actions that are broken only because of what is in their blocks, or of what they
+/// do, are added to `broken`.
 fn movement_hints(
     database: &Database,
     entity: &EntityRef<'_>,
     range: Span,
     options: InlayHintOptions,
     known: &mut KnownMovements,
+    broken: &mut Vec<Span>,
 ) -> Option<Vec<InlayHint>> {
     let Some(Entity::Movement(tree)) = &entity.parse.entity else { return None };
     let end = |action: &ast::Action| action.span.end + entity.span.start;
@@ -133,14 +139,20 @@ fn movement_hints(
     }
     let name = tree.name.as_ref().map_or_else(SmolStr::default, |name| name.text.clone());
     let robot = database.robot_of(entity.id);
-    let sensors = robot.as_ref().or(known.robot(&name)).map_or(&[][..], |robot| &robot.sensors);
-    let actions = database.action_kinds(entity.id, sensors);
-    let (steps, step_of) = steps(entity, tree, &actions);
-    let route = known.plan(&name, robot, steps);
+    let (actions, done) = database.known_actions(entity.id, robot.as_ref().or(known.robot(&name)));
+    let text = |action: &ast::Action| database.action_text(entity, action.span);
+    let (steps, step_of) = steps(entity, tree, &actions, text);
+    let route = known.plan(&name, robot, steps, &done);
     let mut hints = Vec::new();
     for index in first..after {
-        let (written, Some(action)) = (&tree.actions[index], &actions[index]) else { continue };
+        let written = &tree.actions[index];
         let offset = end(written);
+        let Some(action) = &actions[index] else {
+            if calls(written) || written.blocks().next().is_some() {
+                broken.push(Span::at(offset));
+            }
+            continue;
+        };
         if options.defaults {
             hints.extend(default_clause(written, action).map(|(label, insert)| {
                 let tooltip = "Default value".to_owned();
@@ -167,6 +179,7 @@ fn steps(
     entity: &EntityRef<'_>,
     tree: &ast::Movement,
     actions: &[Option<ActionKind>],
+    text: impl Fn(&ast::Action) -> String,
 ) -> (Vec<Step>, Vec<usize>) {
     let body = tree.body.map_or(0, |body| body.start);
     let mut errors = entity.parse.errors.iter().map(|error| error.span).filter(|span| span.start >= body);
@@ -183,6 +196,7 @@ fn steps(
             steps.push(Step::Broken);
         }
         match kind {
+            Some(kind) if calls(action) => steps.push(Step::Calling(kind.clone(), text(action))),
             Some(kind) => steps.push(Step::Action(kind.clone())),
             None if steps.last() == Some(&Step::Broken) => {}
             None => steps.push(Step::Broken),
@@ -190,6 +204,12 @@ fn steps(
         step_of.push(steps.len() - 1);
     }
     (steps, step_of)
+}
+
+/// Whether an action does another movement, or an action in its blocks.
+fn calls(action: &ast::Action) -> bool {
+    matches!(action.kind, ast::ActionKind::Do(_))
+        || action.blocks().any(|block| block.actions.iter().any(calls))
 }
 
 /// The label and tooltip of a step.
@@ -227,11 +247,16 @@ fn step_hint<'a>(
 /// The clause that an action omits: the label, and the text to insert.
 fn default_clause(written: &ast::Action, action: &ActionKind) -> Option<(String, String)> {
     let text = match (&written.kind, action) {
-        (ast::ActionKind::Move(ast::Move { speed: None, .. }), ActionKind::Move { speed, .. }) => {
+        (
+            ast::ActionKind::Move(ast::Move { speed: None, until: None, .. }),
+            ActionKind::Move { speed, .. },
+        ) => {
             let speed = number(speed * 100.0, 3);
             if speed.contains('.') { format!("at {speed}") } else { format!("at {speed}.0") }
         }
-        (ast::ActionKind::Turn(ast::Turn { extent: None, .. }), ActionKind::Turn { degrees }) => {
+        (ast::ActionKind::Turn(turn), ActionKind::Turn { degrees: Some(degrees), until: None, .. })
+            if turn.angle.is_none() && turn.circle.is_none() && turn.speed.is_none() =>
+        {
             number(degrees.abs(), 3)
         }
         _ => return None,

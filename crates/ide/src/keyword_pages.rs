@@ -30,7 +30,24 @@ const MOVEMENT_SHAPE: &str = "[parallel] movement NAME of ROBOT { ACTIONS }";
 const ENVIRONMENT_SHAPE: &str =
     "environment NAME [with ip IP] has { ROBOTS } robots [with { MOVEMENTS } moves]";
 const MOVE: &str = "move DISTANCE meters | centimeters [at SPEED]";
+const TIMES: &str = "repeat COUNT times { ACTIONS }";
+const REVERSE: &str =
+    "turn left | right [DEGREES] with radius DISTANCE meters | centimeters [at SPEED] in reverse";
 const TYPE: &str = "type tw | fw | fwh";
+
+/// The form of a condition.
+macro_rules! condition {
+    () => {
+        "{ SENSORS } clear | detect [within DISTANCE meters | centimeters]"
+    };
+}
+
+/// The form of a turn, with what may follow `left` or `right`.
+macro_rules! turn {
+    () => {
+        "turn left | right [DEGREES] [with radius DISTANCE meters | centimeters] [at SPEED] [in reverse]"
+    };
+}
 
 /// The page of a keyword; `None` for other tokens.
 #[expect(clippy::too_many_lines, reason = "a table with one row per keyword")]
@@ -51,8 +68,8 @@ pub fn keyword_page(token: TokenKind) -> Option<KeywordPage> {
             page("with …", "Adds a clause: a radius, a port, sensors, an ip or movements.", ROBOT)
         }
         TokenKind::Radius => page(
-            "with radius CENTIMETRES",
-            "The wheel's radius in centimetres.",
+            "with radius CENTIMETRES\nturn left | right [DEGREES] with radius DISTANCE meters | centimeters",
+            "The wheel's radius in centimetres, or the radius of the circle that a robot turns on.",
             "wheel wheelL with radius 4.5",
         ),
         TokenKind::Sensor => page(
@@ -106,28 +123,90 @@ pub fn keyword_page(token: TokenKind) -> Option<KeywordPage> {
             "movement patrol of rover { slam }",
         ),
         TokenKind::Move => page(
-            MOVE,
-            "Drives straight ahead, or backwards if the distance is negative. The speed is in centimetres per second and defaults to 9.0.",
+            concat!(
+                "move DISTANCE meters | centimeters [at SPEED]\n",
+                "move [DISTANCE meters | centimeters] [at SPEED] until ",
+                condition!()
+            ),
+            "Drives straight ahead, or backwards if the distance is negative. The speed is in centimetres per second and defaults to 9.0. With `until` it ends early, and without a distance it fails after 100 m.",
             "move 4.0 meters at 12.5",
         ),
         TokenKind::Meters => page(MOVE, "The distance is in metres.", "move 4.0 meters"),
         TokenKind::Centimeters => {
             page("move DISTANCE centimeters", "The distance is in centimetres.", "move 40 centimeters")
         }
-        TokenKind::At => {
-            page(MOVE, "The rim speed of the wheels in centimetres per second.", "move 4.0 meters at 12.5")
-        }
+        TokenKind::At => page(
+            MOVE,
+            "The rim speed of the fastest wheel in centimetres per second.",
+            "move 4.0 meters at 12.5",
+        ),
         TokenKind::Turn => page(
-            "turn left | right [DEGREES]\nturn left | right until { SENSORS }",
-            "Turns in place, by 90° unless an angle is given; `left` is counter-clockwise seen from above.",
-            "turn left 45",
+            concat!(turn!(), "\nturn left | right until { SENSORS }\n", turn!(), " until ", condition!()),
+            "Turns in place, or on a circle of the given radius, by 90° unless an angle is given; `left` is counter-clockwise seen from above. With `until` it ends early, and without an angle it fails after 360°.",
+            "turn left 45\nturn left 90 with radius 1.5 meters",
         ),
         TokenKind::Left => page("turn left DEGREES", "Counter-clockwise seen from above.", "turn left 45"),
         TokenKind::Right => page("turn right DEGREES", "Clockwise seen from above.", "turn right 45"),
         TokenKind::Until => page(
-            "turn left | right until { SENSORS }",
-            "Turns until no listed sensor detects an obstacle; not at all if none does at the start.",
-            "turn right until { front }",
+            concat!("until ", condition!(), "\nturn left | right until { SENSORS }"),
+            "Ends the action as soon as the condition holds, at once if it does at the start; `repeat until` asks before each round. A turn without `clear` or `detect` turns until no listed sensor detects an obstacle.",
+            "turn right until { front }\nmove 3 meters until { front } detect",
+        ),
+        TokenKind::Wait => page(
+            concat!("wait SECONDS seconds\nwait [SECONDS seconds] until ", condition!()),
+            "Holds the robot for a time, or until the condition holds. Without a time it fails after 600 s.",
+            "wait 2 seconds\nwait until { front } clear",
+        ),
+        TokenKind::Seconds => page("wait SECONDS seconds", "The time is in seconds.", "wait 2.5 seconds"),
+        TokenKind::Repeat => page(
+            concat!("repeat COUNT times { ACTIONS }\nrepeat until ", condition!(), " { ACTIONS }"),
+            "Does its actions a number of times, or until the condition holds, which it asks before each round. `repeat until` fails after 10 000 rounds.",
+            "repeat 4 times {\n  move 1 meters\n  turn left\n}",
+        ),
+        TokenKind::Times => page(
+            TIMES,
+            "Ends the number of rounds, a whole number from 1 to 10 000.",
+            "repeat 4 times { turn left 45 }",
+        ),
+        TokenKind::If => page(
+            concat!("if ", condition!(), " { ACTIONS } [else { ACTIONS }]"),
+            "Does its actions if the condition holds, and those after `else` if it does not. It takes no time.",
+            "if { front } detect {\n  turn left\n} else {\n  move 1 meters\n}",
+        ),
+        TokenKind::Else => page(
+            concat!("else { ACTIONS }\nelse if ", condition!(), " { ACTIONS }"),
+            "What is done if the condition of the `if` before it does not hold; perhaps another `if`.",
+            "if { front } clear {\n  move 1 meters\n} else {\n  turn left\n}",
+        ),
+        TokenKind::Do => page(
+            "do MOVEMENT",
+            "Does another movement of the same robot, which the environment need not list.",
+            "do side",
+        ),
+        TokenKind::In => page(
+            REVERSE,
+            "Begins `in reverse`: on its circle, the robot drives backwards.",
+            "turn left 90 with radius 1 meters in reverse",
+        ),
+        TokenKind::Reverse => page(
+            REVERSE,
+            "On its circle, the robot drives backwards, still to the given side: `left` is counter-clockwise.",
+            "turn left 90 with radius 1 meters in reverse",
+        ),
+        TokenKind::Clear => page(
+            "{ SENSORS } clear [within DISTANCE meters | centimeters]",
+            "The condition holds while none of its sensors detects an obstacle.",
+            "wait until { front } clear",
+        ),
+        TokenKind::Detect => page(
+            "{ SENSORS } detect [within DISTANCE meters | centimeters]",
+            "The condition holds while at least one of its sensors detects an obstacle.",
+            "move 3 meters until { front } detect",
+        ),
+        TokenKind::Within => page(
+            condition!(),
+            "Only what is nearer to the sensor than this distance counts.",
+            "wait until { front } clear within 60 centimeters",
         ),
         TokenKind::Slam => page(
             "slam",
@@ -196,6 +275,21 @@ mod tests {
             let uses =
                 |text: &str| text.split(|c: char| !c.is_ascii_alphanumeric()).any(|other| other == word);
             assert!(uses(page.syntax) || uses(page.example), "the page of `{word}` does not show it");
+        }
+    }
+    #[test]
+    fn every_example_parses() {
+        for (token, word) in KEYWORDS {
+            let example = keyword_page(token).unwrap().example;
+            let begins = pydslrep_syntax::lex(example)[0].0;
+            let text = if TokenKind::DECLARATIONS.contains(&begins) {
+                example.to_owned()
+            } else {
+                format!("movement m of r {{ {example} }}")
+            };
+            for (_, parse) in pydslrep_syntax::parse(&text) {
+                assert_eq!(parse.errors, [], "the example of `{word}`");
+            }
         }
     }
 }

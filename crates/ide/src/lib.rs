@@ -29,6 +29,7 @@ mod rename;
 mod selection;
 mod semantic_tokens;
 mod signature;
+mod statements;
 mod symbols;
 mod toml;
 mod type_definition;
@@ -55,7 +56,7 @@ pub use inlay_hints::{InlayHint, InlayHintOptions, InlayHintPlaces, KnownMovemen
 pub use keyword_pages::{KeywordPage, keyword_page};
 pub use linked_editing::linked_editing_ranges;
 pub use on_type::{format_after_brace, format_after_line_break};
-pub use planned_action::{NumberedAction, PlannedAt, action_place, planned_at};
+pub use planned_action::{NumberedAction, PlannedAt, PlannedCall, action_place, planned_at};
 pub use planned_path::{
     BodySize, Met, NoPath, Obstacle, PlannedAction, PlannedCollision, PlannedLeg, PlannedPath, PlannedPose,
     PlannedRobot, SensorCone, planned_path,

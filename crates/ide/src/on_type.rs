@@ -1,4 +1,4 @@
-//! Formatting while typing: a closing brace formats its movement, list or action, and a new line is indented.
+//! Formatting while typing: a closing brace formats its movement, block, list or action, and a new line is indented.
 //!
 //! Other entities never change. Of an entity with errors, only the list that the brace closes is formatted.
 
@@ -6,10 +6,13 @@ use std::ops::Range;
 
 use pydslrep_analysis::{Database, EntityRef};
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{EntityKind, Span, TextEdit, Token, TokenKind, format_edits, parse};
+use pydslrep_syntax::{
+    EntityKind, Expected, Span, TextEdit, Token, TokenKind, expected_after, format_edits, parse,
+};
 
 use crate::FilePosition;
 use crate::cursor::body;
+use crate::statements::Statements;
 
 /// The width of one indentation level, in spaces.
 const INDENT: usize = 2;
@@ -58,7 +61,11 @@ fn inserted_brace(
             _ => {}
         }
     }
-    let (_, next) = tokens[typed + 1..closed].first().filter(|_| closed - typed - 1 > open)?;
+    // Behind the inserted one may be an `else` with its block.
+    let more = |token: TokenKind| tokens[typed + 1..].iter().filter(|(other, _)| *other == token).count();
+    let surplus = more(TokenKind::CloseBrace).saturating_sub(more(TokenKind::OpenBrace));
+    let is_surplus = closed - typed - 1 > open || surplus > open;
+    let (_, next) = tokens[typed + 1..closed].first().filter(|_| is_surplus)?;
     let between = database.slice(entity.file, Span::new(brace.end, next.start));
     between.trim().is_empty().then(|| Span::new(brace.end, next.end))
 }
@@ -88,8 +95,9 @@ fn closed_part(
     let whole = || Span::new(start, offset.max(start));
     let part = match &parse.entity {
         Some(Entity::Movement(movement)) => {
-            let mut actions = movement.actions.iter().map(|action| action.span.shifted(start));
-            actions.find(|span| span.touches(offset)).unwrap_or_else(whole)
+            let actions = movement.all_actions().map(|action| action.span.shifted(start));
+            // The innermost begins last.
+            actions.filter(|span| span.start < offset && offset <= span.end).last().unwrap_or_else(whole)
         }
         _ => whole(),
     };
@@ -115,8 +123,14 @@ fn format_list(
     if tokens[opening].0 != TokenKind::OpenBrace {
         return None;
     }
-    let is_of_sensors = tokens.first()?.0.entity_kind() != Some(EntityKind::Environment)
-        && matches!(tokens[opening.checked_sub(1)?].0, TokenKind::Until | TokenKind::Sensors);
+    let statements = Statements::read(&tokens[..closing]);
+    // `{do side}` is a block.
+    if statements.as_ref().is_some_and(|statements| !statements.in_list()) {
+        return None;
+    }
+    let is_of_sensors = statements.is_some()
+        || tokens.first()?.0.entity_kind() != Some(EntityKind::Environment)
+            && tokens[opening.checked_sub(1)?].0 == TokenKind::Sensors;
     let inside = Span::new(tokens[opening].1.end, tokens[closing].1.start);
     let written = database.slice(entity.file, inside);
     if written.contains(['\n', '\r', '/']) {
@@ -186,26 +200,27 @@ impl Line {
             return None;
         }
         let is_sign = |(token, span): &Token| !token.is_comment() && span.end <= self.blank.start;
-        let typed: Vec<TokenKind> = tokens().filter(is_sign).map(|(token, _)| token).collect();
-        let open = typed.iter().fold(0_usize, |open, token| match token {
+        let typed: Vec<Token> = tokens().filter(is_sign).collect();
+        let open = typed.iter().fold(0_usize, |open, (token, _)| match token {
             TokenKind::OpenBrace => open + 1,
             TokenKind::CloseBrace => open.saturating_sub(1),
             _ => open,
         });
-        let closes =
-            tokens().any(|(token, span)| token == TokenKind::CloseBrace && span.start == self.blank.end);
-        let is_movement = typed.first().and_then(|token| token.entity_kind()) == Some(EntityKind::Movement);
+        let begins = |brace| tokens().any(|(token, span)| token == brace && span.start == self.blank.end);
+        let closes = begins(TokenKind::CloseBrace);
         match open {
             0 if self.continues_entity(&entity, &typed) => None,
             0 => Some(0),
-            // Each line of a movement's body begins an action or continues one.
-            1 if is_movement && !closes && continues(&typed) => Some(2),
+            // Each line of a block begins an action or continues one; a brace alone on its line opens the block of one.
+            open if !closes && !begins(TokenKind::OpenBrace) && continues(database, &entity, &typed) => {
+                Some(open + 1)
+            }
             open => Some(open - usize::from(closes)),
         }
     }
 
     /// Whether the line goes on with an entity that is not complete before it: its clauses belong on one line.
-    fn continues_entity(&self, entity: &EntityRef<'_>, typed: &[TokenKind]) -> bool {
+    fn continues_entity(&self, entity: &EntityRef<'_>, typed: &[Token]) -> bool {
         let is_complete = entity.parse.entity.is_some()
             && entity.parse.errors.is_empty()
             && body(entity).end <= self.blank.start;
@@ -215,11 +230,16 @@ impl Line {
     }
 }
 
-/// Whether the last action is incomplete.
-fn continues(typed: &[TokenKind]) -> bool {
-    let last = typed.last().copied();
-    matches!(last, Some(TokenKind::Move | TokenKind::Turn | TokenKind::At | TokenKind::Until))
-        || matches!(typed, [.., TokenKind::Move, number] if number.is_number())
+/// Whether the last action before a line is incomplete.
+fn continues(database: &Database, entity: &EntityRef<'_>, typed: &[Token]) -> bool {
+    let start = entity.span.start;
+    let own: Vec<Token> =
+        typed.iter().map(|(token, span)| (*token, Span::new(span.start - start, span.end - start))).collect();
+    let Some(statements) = Statements::read(&own).filter(|statements| !statements.in_list()) else {
+        return false;
+    };
+    let text = database.slice(entity.file, entity.span);
+    !statements.latest().is_empty() && !expected_after(&text, &own).contains(&Expected::Action)
 }
 
 #[cfg(test)]
@@ -348,5 +368,69 @@ mod tests {
         line_break("robot r with port 1\n   $0has", "robot r with port 1\n   has");
         line_break("movement m of r { /*\n   $0*/", "movement m of r { /*\n   */");
         line_break("   $0wheel", "   wheel");
+    }
+
+    /// Text in two blocks of a movement.
+    fn nested(inside: &str) -> String {
+        format!("movement m of r {{\n  repeat 2 times {{\n    if {{ s }} clear {{\n{inside}")
+    }
+
+    #[test]
+    fn a_line_is_indented_by_the_blocks_around_it() {
+        for (line, expected) in [
+            ("$0", "      "),
+            ("  $0slam", "      slam"),
+            ("$0}", "    }"),
+            ("      slam\n    }\n$0", "      slam\n    }\n    "),
+            ("      slam\n    }\n  $0else {", "      slam\n    }\n    else {"),
+            ("    } else {\n$0", "    } else {\n      "),
+            ("    } else {\n    }\n  }\n$0", "    } else {\n    }\n  }\n  "),
+            ("      wait 2\n$0", "      wait 2\n        "),
+            ("      wait 2 seconds\n$0", "      wait 2 seconds\n      "),
+            ("      move until { s }\n$0", "      move until { s }\n      "),
+            ("      repeat 2 times\n$0", "      repeat 2 times\n        "),
+            ("      repeat 2 times\n$0{", "      repeat 2 times\n      {"),
+            ("      do\n$0", "      do\n        "),
+            ("      do wait\n$0", "      do wait\n      "),
+            ("      wait until {\n$0", "      wait until {\n        "),
+            ("      wait until {s,t}\n$0", "      wait until { s, t }\n      "),
+        ] {
+            line_break(&nested(line), &nested(expected));
+        }
+    }
+
+    #[test]
+    fn a_brace_formats_the_statement_whose_block_it_closes() {
+        let around = |inside: &str| format!("movement m of r {{\n  slam   slam\n{inside}\n  slam   slam\n}}");
+        brace(
+            &around("  repeat  2 times {slam   turn  left\n  }$0"),
+            &around("  repeat 2 times {\n    slam\n    turn left\n  }"),
+        );
+        brace(
+            &around("  repeat  2 times {\n    if {s,t}  clear {slam}$0 else  {\n}\n  }"),
+            &around("  repeat  2 times {\n    if { s, t } clear {\n      slam\n    } else  {\n}\n  }"),
+        );
+        brace(
+            &around("  repeat  2 times {\n  wait  until {s,t}$0 clear\n  }"),
+            &around("  repeat  2 times {\n  wait until { s, t } clear\n  }"),
+        );
+        // Not a list.
+        brace("movement m of {\n  repeat 2 times {do a}$0", "movement m of {\n  repeat 2 times {do a}");
+    }
+
+    #[test]
+    fn a_brace_typed_over_an_inserted_one_leaves_one_in_blocks() {
+        brace(
+            "movement m of r {\n  repeat 2 times {\n    slam\n  }$0\n  }\n}",
+            "movement m of r {\n  repeat 2 times {\n    slam\n  }\n}",
+        );
+        brace(
+            "movement m of r {\n  if { s } clear {\n    slam\n  }$0 } else {\n    slam\n  }\n}",
+            "movement m of r {\n  if { s } clear {\n    slam\n  } else {\n    slam\n  }\n}",
+        );
+        brace(
+            "movement m of r {\n  repeat 2 times {\n    slam\n  }$0\n}",
+            "movement m of r {\n  repeat 2 times {\n    slam\n  }\n}",
+        );
     }
 }

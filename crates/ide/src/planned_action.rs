@@ -1,7 +1,7 @@
 //! Actions of planned paths: the action and environments at the cursor, and the location of an action of a path.
 
 use pydslrep_analysis::{Database, EntityId, EntityRef, FileId};
-use pydslrep_syntax::ast::{Action, Entity};
+use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Span};
 use rustc_hash::FxHashSet;
 use serde::{Deserialize, Serialize};
@@ -26,7 +26,19 @@ pub struct PlannedAt {
 pub struct NumberedAction {
     /// The movement's name.
     pub movement: String,
-    /// From 0.
+    /// From 0, among the statements of its movement: this one, or the last that is done.
+    pub index: usize,
+    /// The statements that lead to it by `do`, the outermost first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub calls: Vec<PlannedCall>,
+}
+
+/// A statement that does another movement.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PlannedCall {
+    /// The movement that it is in.
+    pub movement: String,
+    /// From 0, among the statements of that.
     pub index: usize,
 }
 
@@ -50,13 +62,25 @@ pub fn planned_at(database: &Database, position: FilePosition) -> PlannedAt {
 pub fn action_place(
     database: &Database,
     environment: EntityId,
-    NumberedAction { movement, index }: &NumberedAction,
+    NumberedAction { movement, index, calls }: &NumberedAction,
 ) -> Option<(FileId, Span)> {
     let home = database.file_of(environment)?;
-    let declared = database.resolve(home, EntityKind::Movement, &movement.into()).entity()?;
+    let mut declared = database.resolve(home, EntityKind::Movement, &movement.into()).entity()?;
+    for call in calls {
+        declared = done_by(database, declared, call.index)?;
+    }
     let entity = database.entity(declared)?;
     let Entity::Movement(tree) = entity.parse.entity.as_ref()? else { return None };
-    Some((entity.file, tree.actions.get(*index)?.span.shifted(entity.span.start)))
+    Some((entity.file, tree.statements().get(*index)?.shifted(entity.span.start)))
+}
+
+/// The movement that a statement does.
+fn done_by(database: &Database, movement: EntityId, index: usize) -> Option<EntityId> {
+    let entity = database.entity(movement)?;
+    let Entity::Movement(tree) = entity.parse.entity.as_ref()? else { return None };
+    let span = *tree.statements().get(index)?;
+    let name = tree.all_actions().find(|action| action.span == span)?.done()?;
+    database.resolve(entity.file, EntityKind::Movement, &name.text).entity()
 }
 
 /// The environments of a file that use one of its entities, directly or indirectly; an environment uses itself.
@@ -77,22 +101,19 @@ fn users(database: &Database, entity: &EntityRef<'_>) -> FxHashSet<SmolStr> {
 
 fn action_in(database: &Database, entity: &EntityRef<'_>, offset: u32) -> Option<NumberedAction> {
     let Entity::Movement(tree) = entity.parse.entity.as_ref()? else { return None };
-    let place = |action: &Action| action.span.shifted(entity.span.start);
+    let statements: Vec<Span> =
+        tree.statements().into_iter().map(|span| span.shifted(entity.span.start)).collect();
     let is_one_line = |span: Span| !database.slice(entity.file, span).contains(['\n', '\r']);
-    let begun = tree.actions.partition_point(|action| place(action).start <= offset);
-    let before = begun.checked_sub(1).filter(|&index| {
-        let end = place(&tree.actions[index]).end;
-        offset <= end || is_one_line(Span::new(end, offset))
+    let begun = statements.partition_point(|span| span.start <= offset);
+    // Of those that contain the position, the innermost begins last.
+    let before = (0..begun).rev().find(|&index| {
+        offset <= statements[index].end || is_one_line(Span::new(statements[index].end, offset))
     });
-    let after = || {
-        tree.actions
-            .get(begun)
-            .filter(|next| is_one_line(Span::new(offset, place(next).start)))
-            .map(|_| begun)
-    };
+    let after =
+        || statements.get(begun).filter(|next| is_one_line(Span::new(offset, next.start))).map(|_| begun);
     let body = tree.body?.shifted(entity.span.start);
     let index = before.or_else(after).filter(|_| body.touches(offset))?;
-    Some(NumberedAction { movement: tree.name.as_ref()?.text.to_string(), index })
+    Some(NumberedAction { movement: tree.name.as_ref()?.text.to_string(), index, calls: Vec::new() })
 }
 
 #[cfg(test)]
@@ -164,7 +185,11 @@ environment second has { rover } robots with { go } moves
         let file = database.open("a.pyr", text);
         let id = database.environments(file)[0].0;
         let place = |movement: &str, index| {
-            action_place(&database, id, &NumberedAction { movement: movement.to_owned(), index })
+            action_place(
+                &database,
+                id,
+                &NumberedAction { movement: movement.to_owned(), index, calls: Vec::new() },
+            )
         };
         let (home, span) = place("go", 2).unwrap();
         assert_eq!((home, database.slice(home, span).as_str()), (parts, "move 2 meters"));

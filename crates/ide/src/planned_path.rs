@@ -7,10 +7,12 @@ use std::fmt;
 
 use pydslrep_analysis::environment::Environment;
 use pydslrep_analysis::{Blocked, Database, EntityId, check_cancelled, plan};
-use pydslrep_kinematics::{ActionIndex, Leg, ModelError, Plan, Pose, RobotPath};
+use pydslrep_kinematics::{ActionIndex, Leg, ModelError, Place, Plan, Pose, RobotPath};
 use pydslrep_scene::{self as scenery, Collision, ENDING, Mount, Robot, Scene, Shape, Thing};
 use pydslrep_schema::Problem;
 use serde::{Deserialize, Serialize};
+
+use crate::planned_action::PlannedCall;
 
 /// The planned path of an environment in its scene. Lengths are metres, angles radians, times seconds from the start.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -104,10 +106,19 @@ pub struct PlannedLeg {
 pub struct PlannedAction {
     /// The movement's name.
     pub movement: String,
-    /// The zero-based index among the movement's actions.
+    /// The zero-based index among the statements of its movement: the listed one, or the last that is done.
     pub index: usize,
     /// As the program writes it.
     pub text: String,
+    /// The rounds of the repetitions that it is in, from 1, the outermost first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rounds: Vec<u32>,
+    /// The statements that lead to it by `do`, the outermost first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub calls: Vec<PlannedCall>,
+    /// The movement whose statement it is, if that is one that others do.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub done: Option<String>,
 }
 
 /// An obstacle seen from above.
@@ -218,7 +229,7 @@ fn planned_robot(environment: &Environment, robot: &Robot, path: &RobotPath) -> 
         sensors: robot.sensors.iter().map(sensor).collect(),
         poses: poses(environment, path),
         legs: legs(environment, path),
-        unknown_after: path.unknown_after.and_then(|index| action(environment, index)),
+        unknown_after: path.unknown_after.and_then(|index| action(environment, index, &path.unknown_place)),
     }
 }
 
@@ -245,7 +256,7 @@ fn collisions(environment: &Environment, scene: &Scene, plan: &Plan) -> Vec<Plan
     };
     let named = |found: Collision| {
         let robot = scene.robots.get(found.robot)?.name.clone();
-        let (action, with) = (action(environment, found.action), met(found.with)?);
+        let (action, with) = (action(environment, found.action, &found.place), met(found.with)?);
         let Pose { x, y, theta } = found.pose;
         Some(PlannedCollision { robot, action, t: found.time, x, y, theta, with })
     };
@@ -262,7 +273,7 @@ fn poses(environment: &Environment, path: &RobotPath) -> Vec<PlannedPose> {
 
 fn on_leg(environment: &Environment, leg: &Leg) -> Vec<PlannedPose> {
     check_cancelled();
-    let action = action(environment, leg.index);
+    let action = action(environment, leg.index, &leg.place);
     let at = |number: u32| {
         let seconds = leg.duration * f64::from(number) / f64::from(POSES_PER_ACTION);
         planned_pose(leg.start.map(|start| start + seconds), leg.pose_at(seconds), action.clone())
@@ -277,16 +288,26 @@ fn planned_pose(t: Option<f64>, Pose { x, y, theta }: Pose, action: Option<Plann
 fn legs(environment: &Environment, path: &RobotPath) -> Vec<PlannedLeg> {
     let ends = (1..).map(|number| number * POSES_PER_ACTION as usize);
     let planned = |(leg, last): (&Leg, usize)| {
-        let action = action(environment, leg.index)?;
+        let action = action(environment, leg.index, &leg.place)?;
         Some(PlannedLeg { action, start: leg.start, duration: leg.duration, last })
     };
     path.legs.iter().zip(ends).filter_map(planned).collect()
 }
 
-fn action(environment: &Environment, at: ActionIndex) -> Option<PlannedAction> {
-    let movement = environment.movements.get(*environment.schedule.get(at.group)?.get(at.run)?)?;
-    let text = movement.actions.get(at.action)?.text.clone();
-    Some(PlannedAction { movement: movement.name.clone(), index: at.action, text })
+fn action(environment: &Environment, at: ActionIndex, place: &Place) -> Option<PlannedAction> {
+    let found = environment.place(at, place)?;
+    let calls = found.calls.iter();
+    let done = place.calls().last().and_then(|call| environment.movements.get(call.movement));
+    Some(PlannedAction {
+        movement: found.movement.to_owned(),
+        index: found.number - 1,
+        text: found.text.to_owned(),
+        calls: calls
+            .map(|call| PlannedCall { movement: call.movement.to_owned(), index: call.number - 1 })
+            .collect(),
+        rounds: found.rounds,
+        done: done.map(|movement| movement.name.clone()),
+    })
 }
 
 #[cfg(test)]
@@ -330,6 +351,28 @@ mod tests {
     }
 
     #[test]
+    fn actions_say_their_rounds_and_the_movements_that_lead_to_them() {
+        let path = path(
+            "movement m of rover { turn left repeat 2 times { do side } }
+            movement side of rover { move 1 meters }
+            environment e has { rover } robots with { m } moves",
+        )
+        .unwrap();
+        let actions: Vec<_> = path.robots[0].legs.iter().map(|leg| &leg.action).collect();
+        assert_eq!(
+            (&actions[0].rounds[..], &actions[0].calls[..], &actions[0].done),
+            (&[][..], &[][..], &None)
+        );
+        let call = PlannedCall { movement: "m".to_owned(), index: 2 };
+        for (round, action) in (1..).zip(&actions[1..]) {
+            assert_eq!((action.movement.as_str(), action.index), ("m", 0));
+            assert_eq!((&action.rounds[..], &action.calls[..]), (&[round][..], &[call.clone()][..]));
+            assert_eq!(action.done.as_deref(), Some("side"));
+        }
+        assert_eq!(actions.len(), 3);
+    }
+
+    #[test]
     fn collisions_say_when_and_with_what() {
         let mut database = Database::new();
         let rest = "movement m of rover { turn left move 3 meters }
@@ -369,7 +412,8 @@ mod tests {
     #[test]
     fn clients_know_the_shape() {
         let mut database = Database::new();
-        let rest = "movement m of rover { move 1 meters turn left until { front } }
+        let rest = "movement m of rover { repeat 2 times { do side } turn left until { front } }
+            movement side of rover { move 1 meters }
             environment e has { rover } robots with { m } moves";
         let file = database.open("a.pyr", &format!("{PARTS}{rest}"));
         let id = database.environments(file)[0].0;

@@ -170,4 +170,26 @@ mod tests {
         );
         check(&[("a.pyr", "wheel a with ra$0dius 4")], &expect!["nothing"]);
     }
+
+    #[test]
+    fn a_movement_is_referred_to_by_do() {
+        check(
+            &[
+                (
+                    "parts.pyr",
+                    "robot r\nmovement side of r { slam }\nmovement n of r { repeat 2 times { do side } }",
+                ),
+                (
+                    "main.pyr",
+                    "import \"parts.pyr\"\nmovement all of r { do si$0de if { side } clear { do side } else { do ^side } }",
+                ),
+            ],
+            &expect![[r#"
+                parts.pyr: robot r
+                movement =[side] of r { slam }
+                movement n of r { repeat 2 times { do [side] } }
+                main.pyr: import "parts.pyr"
+                movement all of r { do [side] if { side } clear { do [side] } else { do [^side] } }"#]],
+        );
+    }
 }

@@ -437,4 +437,23 @@ mod tests {
         let (database, position) = at_cursor_in(&[("a.pyr", "robot r $0with port 1")]);
         assert_eq!(prepare_rename(&database, position), Err(no_name()));
     }
+
+    #[test]
+    fn a_movement_is_renamed_where_it_is_done() {
+        let files = [(
+            "a.pyr",
+            "robot r\nmovement side of r { slam }\nmovement all of r { do si$0de\n  repeat 2 times { do side wait 2 seconds } }",
+        )];
+        check(
+            &files,
+            "wait",
+            &expect![[r#"
+            robot r
+            movement wait of r { slam }
+            movement all of r { do wait
+              repeat 2 times { do wait wait 2 seconds } }"#]],
+        );
+        check(&files, "turn", &expect!["invalid: `turn` is a keyword; write `^turn` to use it as a name"]);
+        check(&files, "all", &expect!["there is already a movement called `all` in a.pyr"]);
+    }
 }

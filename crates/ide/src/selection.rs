@@ -70,9 +70,7 @@ impl Ranges {
                 self.add_lists([environment.robots.as_ref(), environment.movements.as_ref()], start);
             }
             Some(Entity::Movement(movement)) => {
-                for action in &movement.actions {
-                    self.add_action(action, start, &tokens);
-                }
+                self.add_actions(&movement.actions, start, &tokens);
                 if let Some(body) = movement.body.map(|body| body.shifted(start)) {
                     if let (Some(first), Some(last)) = (movement.actions.first(), movement.actions.last()) {
                         self.add(first.span.to(last.span).shifted(start));
@@ -87,22 +85,45 @@ impl Ranges {
         self.add_clauses(&tokens);
     }
 
+    fn add_actions(&mut self, actions: &[Action], start: u32, tokens: &[Token]) {
+        for action in actions {
+            self.add_action(action, start, tokens);
+        }
+    }
+
     fn add_action(&mut self, action: &Action, start: u32, tokens: &[Token]) {
         let span = action.span.shifted(start);
         if !span.touches(self.offset) {
             return;
         }
-        self.add_lists([action.until()], start);
+        let blocks = action.blocks().map(|block| block.span.shifted(start));
+        let offset = self.offset;
+        for block in action.blocks().filter(|block| block.span.shifted(start).touches(offset)) {
+            self.add_actions(&block.actions, start, tokens);
+            if let (Some(first), Some(last)) = (block.actions.first(), block.actions.last()) {
+                self.add(first.span.to(last.span).shifted(start));
+            }
+            self.add(block.span.shifted(start));
+        }
+        for condition in action.conditions() {
+            self.add_lists([Some(&condition.sensors)], start);
+            self.add(condition.span.shifted(start));
+        }
+        if let ActionKind::If(choice) = &action.kind {
+            choice.branches.iter().for_each(|branch| self.add(branch.span.shifted(start)));
+        }
+        // The clauses of an action with blocks end before the first of them.
+        let head = blocks.map(|block| block.start).min().unwrap_or(span.end);
         if let ActionKind::Move(Move { distance: Some(distance), unit: Some((_, unit)), .. }) = &action.kind {
             self.add(distance.span.to(*unit).shifted(start));
         }
         let clause = |(token, place): &&Token| {
             matches!(token, TokenKind::At | TokenKind::Until)
                 && span.start <= place.start
-                && place.end <= span.end
+                && place.end <= head
         };
         if let Some((_, word)) = tokens.iter().find(clause) {
-            self.add(Span::new(word.start, span.end));
+            self.add(Span::new(word.start, head));
         }
         self.add(span);
     }
@@ -244,5 +265,37 @@ mod tests {
         assert_eq!(starts, [Span::new(6, 7), Span::new(0, 5), Span::new(0, 22)]);
         let empty = database.open("b.pyr", "");
         assert_eq!(selection_ranges(&database, empty, &[0, 5]), [[Span::at(0)], [Span::at(0)]]);
+    }
+
+    #[test]
+    fn an_action_in_blocks_grows_block_by_block() {
+        check(
+            "movement m of r {\n  slam\n  repeat 2 times {\n    if { a } clear {\n      slam\n    } else {\n      turn left\n      wait $02 seconds\n    }\n  }\n}",
+            &expect![[r#"
+                "2"
+                "wait 2 seconds"
+                "turn left\n      wait 2 seconds"
+                "{\n      turn left\n      wait 2 seconds\n    }"
+                "if { a } clear {\n      slam\n    } else {\n      turn left\n      wait 2 seconds\n    }"
+                "{\n    if { a } clear {\n      slam\n    } else {\n      turn left\n      wait 2 seconds\n    }\n  }"
+                "repeat 2 times {\n    if { a } clear {\n      slam\n    } else {\n      turn left\n      wait 2 seconds\n    }\n  }"
+                "slam\n  repeat 2 times {\n    if { a } clear {\n      slam\n    } else {\n      turn left\n      wait 2 seconds\n    }\n  }"
+                "{\n  slam\n  repeat 2 times {\n    if { a } clear {\n      slam\n    } else {\n      turn left\n      wait 2 seconds\n    }\n  }\n}"
+                "movement m of r {\n  slam\n  repeat 2 times {\n    if { a } clear {\n      slam\n    } else {\n      turn left\n      wait 2 seconds\n    }\n  }\n}"
+            "#]],
+        );
+        check(
+            "movement m of r {\n  if { a, b$0 } clear within 2 meters { slam }\n  slam\n}",
+            &expect![[r#"
+                "b"
+                "a, b"
+                "{ a, b }"
+                "{ a, b } clear within 2 meters"
+                "if { a, b } clear within 2 meters { slam }"
+                "if { a, b } clear within 2 meters { slam }\n  slam"
+                "{\n  if { a, b } clear within 2 meters { slam }\n  slam\n}"
+                "movement m of r {\n  if { a, b } clear within 2 meters { slam }\n  slam\n}"
+            "#]],
+        );
     }
 }

@@ -118,6 +118,9 @@ impl<'a> Names<'a> {
             TokenKind::Distance | TokenKind::Bumper if matches!(self.tree, Some(Entity::Sensor(_))) => {
                 HighlightKind::Keyword
             }
+            token if is_of_statements(token) && matches!(self.tree, Some(Entity::Movement(_))) => {
+                HighlightKind::Keyword
+            }
             token if token.is_comment() => HighlightKind::Comment,
             token if token.is_number() => HighlightKind::Number,
             token if token.is_keyword() => HighlightKind::Keyword,
@@ -126,6 +129,12 @@ impl<'a> Names<'a> {
         let old = self.deprecated.is_some_and(|old| old.start <= span.start && span.end <= old.end);
         Some((kind, if old { vec![Modifier::Deprecated] } else { Vec::new() }))
     }
+}
+
+/// Whether it is a keyword in the actions of a movement, where it is no name.
+fn is_of_statements(token: TokenKind) -> bool {
+    let elsewhere = [TokenKind::Import, TokenKind::Distance, TokenKind::Bumper];
+    TokenKind::CONTEXTUAL.contains(&token) && !elsewhere.contains(&token)
 }
 
 #[cfg(test)]
@@ -179,6 +188,28 @@ mod tests {
     }
 
     #[test]
+    fn words_of_actions_are_keywords_where_they_are_no_names() {
+        check(
+            "sensor wait\nmovement if of do { do do wait 1 seconds until { wait } clear }",
+            Some(Span::new(12, 80)),
+            &expect![[r#"
+                "movement" Keyword []
+                "if" Name(Movement) [Declaration]
+                "of" Keyword []
+                "do" Name(Robot) []
+                "do" Keyword []
+                "do" Name(Movement) []
+                "wait" Keyword []
+                "1" Number []
+                "seconds" Keyword []
+                "until" Keyword []
+                "wait" Name(Sensor) [Readonly]
+                "clear" Keyword []
+            "#]],
+        );
+    }
+
+    #[test]
     fn a_range_has_only_its_own_tokens() {
         check(
             "wheel a with radius 4\nwheel b with radius 5\n",
@@ -187,6 +218,34 @@ mod tests {
             "wheel" Keyword []
             "b" Name(Wheel) [Declaration, Readonly]
         "#]],
+        );
+    }
+
+    #[test]
+    fn the_words_of_statements_are_keywords_where_they_are_no_names() {
+        check(
+            "movement do of wait { do do repeat 2 times { wait until { clear, times } clear } do if if { in",
+            None,
+            &expect![[r#"
+                "movement" Keyword []
+                "do" Name(Movement) [Declaration]
+                "of" Keyword []
+                "wait" Name(Robot) []
+                "do" Keyword []
+                "do" Name(Movement) []
+                "repeat" Keyword []
+                "2" Number []
+                "times" Keyword []
+                "wait" Keyword []
+                "until" Keyword []
+                "clear" Name(Sensor) [Readonly]
+                "times" Name(Sensor) [Readonly]
+                "clear" Keyword []
+                "do" Keyword []
+                "if" Name(Movement) []
+                "if" Keyword []
+                "in" Name(Sensor) [Readonly]
+            "#]],
         );
     }
 }

@@ -12,6 +12,7 @@ use pydslrep_syntax::{EntityKind, Expected, Span, Token, TokenKind, expected_aft
 use self::shape::window;
 use crate::FilePosition;
 use crate::keyword_pages::keyword_page;
+use crate::statements::Statements;
 
 /// Why an editor asks for signature help.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,9 +62,11 @@ fn invoked(typed: &Typed, expected: &[Expected]) -> Option<SignatureHelp> {
     if ends && typed.on_new_line {
         return None;
     }
-    let action = typed.action().and_then(|action| signatures(action, expected));
-    action.filter(SignatureHelp::is_marked).or_else(|| {
-        let help = signatures(&typed.tokens, expected)?;
+    let statements = typed.statements();
+    let mut around = statements.iter().flat_map(Statements::inside_out);
+    let action = around.find_map(|action| signatures(action, expected).filter(SignatureHelp::is_marked));
+    action.or_else(|| {
+        let help = signatures(&typed.declaration(), expected)?;
         (help.is_marked() || !ends).then_some(help)
     })
 }
@@ -74,12 +77,11 @@ fn retriggered(typed: &Typed, expected: &[Expected]) -> Option<SignatureHelp> {
     if ends && typed.on_new_line {
         return None;
     }
-    let statement = match typed.action() {
-        Some(action) => action,
-        None if typed.is_in_body() => return None,
-        None => &typed.tokens,
+    let help = match typed.statements() {
+        Some(statements) => signatures(statements.latest(), expected),
+        None => signatures(&typed.declaration(), expected),
     };
-    signatures(statement, expected).filter(SignatureHelp::is_marked)
+    help.filter(SignatureHelp::is_marked)
 }
 
 impl SignatureHelp {
@@ -126,23 +128,25 @@ impl Typed {
         Some(Self { text, tokens, on_new_line })
     }
 
-    fn is_movement(&self) -> bool {
-        self.tokens.first().and_then(|(token, _)| token.entity_kind()) == Some(EntityKind::Movement)
+    /// The statements around the cursor; `None` outside the body of a movement.
+    fn statements(&self) -> Option<Statements> {
+        Statements::read(&self.tokens)
     }
 
-    /// Whether the cursor is among the actions of a movement.
-    fn is_in_body(&self) -> bool {
-        let count = |brace| self.tokens.iter().filter(|(token, _)| *token == brace).count();
-        self.is_movement() && count(TokenKind::OpenBrace) > count(TokenKind::CloseBrace)
+    /// The tokens of the entity up to its body, where keywords that can be names are names.
+    fn declaration(&self) -> Vec<Token> {
+        let body = self.statements().and_then(|_| self.tokens.iter().position(opens));
+        let written = body.map_or(&self.tokens[..], |body| &self.tokens[..=body]);
+        let name = |(kind, span): &Token| (if kind.is_name() { TokenKind::Name } else { *kind }, *span);
+        match written.split_first() {
+            Some((first, rest)) => std::iter::once(*first).chain(rest.iter().map(name)).collect(),
+            None => Vec::new(),
+        }
     }
+}
 
-    /// The tokens of the last action, in a movement's body.
-    fn action(&self) -> Option<&[Token]> {
-        let body = self.tokens.iter().position(|(token, _)| *token == TokenKind::OpenBrace)?;
-        let begins = |(token, _): &Token| token.is_action();
-        let last = self.tokens.iter().rposition(begins)?;
-        (self.is_movement() && last > body).then(|| &self.tokens[last..])
-    }
+fn opens((token, _): &Token) -> bool {
+    *token == TokenKind::OpenBrace
 }
 
 fn is_word(token: TokenKind) -> bool {
@@ -150,7 +154,7 @@ fn is_word(token: TokenKind) -> bool {
     token.is_name() || token.is_keyword() || token.is_number() || is_string || token == TokenKind::Invalid
 }
 
-/// The forms of the statement that begins with these tokens.
+/// The forms of the statement that begins with these tokens, in which no name is a keyword.
 fn signatures(typed: &[Token], expected: &[Expected]) -> Option<SignatureHelp> {
     // `parallel` has a page of its own with the same syntax.
     let page = keyword_page(typed.first()?.0).filter(|_| is_statement(typed[0].0))?;
@@ -178,12 +182,18 @@ struct Part {
     span: Span,
     /// Whether a brace opens before it.
     opens: bool,
+    /// Whether it may be left out.
+    optional: bool,
 }
 
 fn parts(label: &'static str) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     let (mut opens, mut joins) = (false, false);
+    let mut depth = 0;
     for word in label.split_whitespace() {
+        depth += word.matches('[').count();
+        let optional = depth > 0;
+        depth -= word.matches(']').count().min(depth);
         match word.trim_matches(['[', ']']) {
             "{" => opens = true,
             "|" => joins = true,
@@ -197,7 +207,7 @@ fn parts(label: &'static str) -> Vec<Part> {
                         last.span = last.span.to(span);
                         last.text = last.span.text(label);
                     }
-                    _ => parts.push(Part { text, span, opens }),
+                    _ => parts.push(Part { text, span, opens, optional }),
                 }
                 (opens, joins) = (false, false);
             }
@@ -206,19 +216,27 @@ fn parts(label: &'static str) -> Vec<Part> {
     parts
 }
 
-/// The next part: the first after the typed keywords that the parser would accept.
+/// The next part: the first after the typed keywords and braces that the parser would accept.
 fn current(parts: &[Part], typed: &[Token], expected: &[Expected]) -> Option<usize> {
+    let is_action = typed.first().is_some_and(|(token, _)| token.is_action());
     let mut next = 0;
     for (token, _) in typed {
-        let Some(word) = token.spelling().filter(|_| token.is_keyword() || *token == TokenKind::Colon) else {
-            continue;
-        };
-        let place = parts[next..].iter().position(|part| part.is_word(word));
-        match place {
-            Some(place) => next += place + 1,
-            // A keyword of another form, unless it is used as a name.
-            None if *token == TokenKind::Until => return None,
-            None => {}
+        let rest = &parts[next..];
+        match token {
+            TokenKind::OpenBrace => next += rest.iter().position(|part| part.opens).unwrap_or(0),
+            TokenKind::CloseBrace => {
+                next += rest.iter().position(|part| part.opens).map_or(0, |list| list + 1);
+            }
+            TokenKind::Name | TokenKind::Comma => {}
+            _ => match token.spelling().map(|word| rest.iter().position(|part| part.is_word(word))) {
+                // An action has no keyword of another form, nor leaves out one that must be there.
+                Some(None) if is_action => return None,
+                Some(Some(place)) if is_action && rest[..place].iter().any(Part::must_be_written) => {
+                    return None;
+                }
+                Some(Some(place)) => next += place + 1,
+                Some(None) | None => {}
+            },
         }
     }
     let accepted =
@@ -231,11 +249,17 @@ impl Part {
         self.text.split(" | ").any(|choice| choice == word)
     }
 
+    /// Whether it is a keyword, or one of several, that the form always has.
+    fn must_be_written(&self) -> bool {
+        !self.optional && self.text.starts_with(|first: char| first.is_ascii_lowercase())
+    }
+
     fn accepts(&self, expected: Expected) -> bool {
         match expected {
             Expected::Word(TokenKind::OpenBrace) => self.opens,
             Expected::Word(word) => word.spelling().is_some_and(|word| self.is_word(word)),
             Expected::ReferenceTo(EntityKind::Robot) => matches!(self.text, "ROBOT" | "ROBOTS"),
+            Expected::ReferenceTo(EntityKind::Movement) => matches!(self.text, "MOVEMENT" | "MOVEMENTS"),
             _ => placeholder(expected).is_some_and(|placeholder| self.text == placeholder),
         }
     }
@@ -248,7 +272,6 @@ fn placeholder(expected: Expected) -> Option<&'static str> {
         Expected::ReferenceTo(EntityKind::Wheel) => "WHEELS",
         Expected::ReferenceTo(EntityKind::Sensor) => "SENSORS",
         Expected::ReferenceTo(EntityKind::Ip) => "IP",
-        Expected::ReferenceTo(EntityKind::Movement) => "MOVEMENTS",
         Expected::Number(quantity) => quantity.placeholder(),
         Expected::Port => "PORT",
         Expected::Address => "127.0.0.1",
@@ -347,18 +370,92 @@ mod tests {
                 "movement m of r { turn left $0",
                 "movement m of r { turn left until { s $0",
                 "movement m of r { turn left 90 $0",
+                "movement m of r { slam $0",
             ],
             &expect![[r#"
-                move «DISTANCE» meters | centimeters [at SPEED] (1 of 1)
-                move DISTANCE «meters | centimeters» [at SPEED] (1 of 1)
-                move DISTANCE meters | centimeters [«at» SPEED] (1 of 1)
-                move DISTANCE meters | centimeters [at «SPEED»] (1 of 1)
-                turn «left | right» [DEGREES] (1 of 2)
-                turn left | right [«DEGREES»] (1 of 2)
-                turn left | right until { «SENSORS» } (2 of 2)
+                move «DISTANCE» meters | centimeters [at SPEED] (1 of 2)
+                move DISTANCE «meters | centimeters» [at SPEED] (1 of 2)
+                move DISTANCE meters | centimeters [«at» SPEED] (1 of 2)
+                move DISTANCE meters | centimeters [at «SPEED»] (1 of 2)
+                turn «left | right» [DEGREES] [with ... (1 of 3)
+                turn left | right [«DEGREES»] [with ... (1 of 3)
+                turn left | right until { «SENSORS» } (2 of 3)
+                turn left | right [DEGREES] [«with» ... (1 of 3)
                 [parallel] movement NAME of ROBOT { «ACTIONS» } (1 of 1)
             "#]],
         );
+    }
+
+    #[test]
+    fn each_clause_and_block_has_its_part() {
+        let fixtures = [
+            "wait $0",
+            "wait 2 $0",
+            "wait until $0",
+            "wait until { s $0",
+            "wait until { wait clear } $0",
+            "wait until { s } clear $0",
+            "wait until { s } clear within $0",
+            "wait 2 seconds until { s } detect within 3 $0",
+            "move at 5 $0",
+            "move until { s } detect within $0",
+            "turn left with $0",
+            "turn left with radius $0",
+            "turn left with radius 3 $0",
+            "turn left with radius 3 meters $0",
+            "turn left with radius 3 meters in $0",
+            "turn left until { s } $0",
+            "repeat $0",
+            "repeat 4 $0",
+            "repeat 4 times $0",
+            "repeat 4 times { $0",
+            "repeat 4 times { slam $0",
+            "repeat 4 times { slam } $0",
+            "repeat until { s } clear $0",
+            "repeat until { s } clear { $0 }",
+            "if $0",
+            "if { s } $0",
+            "if { s } clear { slam } $0",
+            "if { s } clear { slam } else $0",
+            "if { s } clear { slam } else if { $0",
+            "if { s } clear { slam } else if { s } clear { move 2 $0 }",
+            "do $0",
+        ];
+        let shown = |action: &&str| format!("{action}: {}\n", at(&format!("movement m of r {{ {action}")));
+        let shown: String = fixtures.iter().map(shown).collect();
+        expect![[r#"
+            wait $0: wait «SECONDS» seconds (1 of 2)
+            wait 2 $0: wait SECONDS «seconds» (1 of 2)
+            wait until $0: ... until { «SENSORS» } clear | detect ... (2 of 2)
+            wait until { s $0: ... until { «SENSORS» } clear | detect ... (2 of 2)
+            wait until { wait clear } $0: ... until { SENSORS } «clear | detect» ... (2 of 2)
+            wait until { s } clear $0: ... [«within» DISTANCE meters | centimeters] (2 of 2)
+            wait until { s } clear within $0: ... [within «DISTANCE» meters | centimeters] (2 of 2)
+            wait 2 seconds until { s } detect within 3 $0: ... [within DISTANCE «meters | centimeters»] (2 of 2)
+            move at 5 $0: ... «until» { SENSORS } clear | detect ... (2 of 2)
+            move until { s } detect within $0: ... [within «DISTANCE» meters | centimeters] (2 of 2)
+            turn left with $0: ... «radius» DISTANCE meters | centimeters] ... (1 of 3)
+            turn left with radius $0: ... radius «DISTANCE» meters | centimeters] ... (1 of 3)
+            turn left with radius 3 $0: ... radius DISTANCE «meters | centimeters»] ... (1 of 3)
+            turn left with radius 3 meters $0: ... [«at» SPEED] [in reverse] (1 of 3)
+            turn left with radius 3 meters in $0: ... [at SPEED] [in «reverse»] (1 of 3)
+            turn left until { s } $0: ... until { SENSORS } «clear | detect» ... (3 of 3)
+            repeat $0: repeat «COUNT» times { ACTIONS } (1 of 2)
+            repeat 4 $0: repeat COUNT «times» { ACTIONS } (1 of 2)
+            repeat 4 times $0: repeat COUNT times { «ACTIONS» } (1 of 2)
+            repeat 4 times { $0: repeat COUNT times { «ACTIONS» } (1 of 2)
+            repeat 4 times { slam $0: repeat COUNT times { «ACTIONS» } (1 of 2)
+            repeat 4 times { slam } $0: [parallel] movement NAME of ROBOT { «ACTIONS» } (1 of 1)
+            repeat until { s } clear $0: ... [«within» DISTANCE meters | centimeters] ... (2 of 2)
+            repeat until { s } clear { $0 }: ... { «ACTIONS» } (2 of 2)
+            if $0: if { «SENSORS» } clear | detect ... (1 of 1)
+            if { s } $0: if { SENSORS } «clear | detect» ... (1 of 1)
+            if { s } clear { slam } $0: ... { ACTIONS } [«else» { ACTIONS }] (1 of 1)
+            if { s } clear { slam } else $0: ... { ACTIONS } [else { «ACTIONS» }] (1 of 1)
+            if { s } clear { slam } else if { $0: if { «SENSORS» } clear | detect ... (1 of 1)
+            if { s } clear { slam } else if { s } clear { move 2 $0 }: move DISTANCE «meters | centimeters» [at SPEED] (1 of 2)
+            do $0: do «MOVEMENT» (1 of 1)
+        "#]].assert_eq(&shown);
     }
 
     #[test]
@@ -373,7 +470,7 @@ mod tests {
             &expect![[r#"
                 ... with port «PORT» has { WHEELS } wheels ... (1 of 1)
                 wheel NAME with «radius» CENTIMETRES (1 of 1)
-                move DISTANCE meters | centimeters [«at» SPEED] (1 of 1)
+                move DISTANCE meters | centimeters [«at» SPEED] (1 of 2)
                 ... [with ip IP] has { «ROBOTS» } robots ... (1 of 1)
             "#]],
         );
@@ -410,14 +507,14 @@ mod tests {
             "robot r with port 1 has { a } wheels\n$0": nothing
             "movement m of r $0": [parallel] movement NAME of ROBOT { «ACTIONS» } (1 of 1)
             "movement m of r { $0": nothing
-            "movement m of r { move 4 $0": move DISTANCE «meters | centimeters» [at SPEED] (1 of 1)
-            "movement m of r { move 4 meters $0": move DISTANCE meters | centimeters [«at» SPEED] (1 of 1)
+            "movement m of r { move 4 $0": move DISTANCE «meters | centimeters» [at SPEED] (1 of 2)
+            "movement m of r { move 4 meters $0": move DISTANCE meters | centimeters [«at» SPEED] (1 of 2)
             "movement m of r {\n  move 4 meters\n  $0": nothing
-            "movement m of r { move 4 meters at 9 $0": nothing
-            "movement m of r { turn left $0": turn left | right [«DEGREES»] (1 of 2)
-            "movement m of r { turn left 90 $0": nothing
-            "movement m of r { turn left until { s $0": turn left | right until { «SENSORS» } (2 of 2)
-            "movement m of r { turn left until { s } $0": nothing
+            "movement m of r { move 4 meters at 9 $0": ... «until» { SENSORS } clear | detect ... (2 of 2)
+            "movement m of r { turn left $0": turn left | right [«DEGREES»] [with ... (1 of 3)
+            "movement m of r { turn left 90 $0": turn left | right [DEGREES] [«with» ... (1 of 3)
+            "movement m of r { turn left until { s $0": turn left | right until { «SENSORS» } (2 of 3)
+            "movement m of r { turn left until { s } $0": ... until { SENSORS } «clear | detect» ... (3 of 3)
             "movement m of r { turn left } $0": nothing
         "#]]
         .assert_eq(&shown);
@@ -485,7 +582,7 @@ mod tests {
             words.join(" ")
         };
         let filled = |label: String| {
-            let number = ["CENTIMETRES", "PORT", "DISTANCE", "SPEED", "DEGREES"];
+            let number = ["CENTIMETRES", "PORT", "DISTANCE", "SPEED", "DEGREES", "SECONDS", "COUNT"];
             let fill = |word: &str| match word {
                 _ if number.contains(&word) => "7".to_owned(),
                 "ACTIONS" => "slam".to_owned(),

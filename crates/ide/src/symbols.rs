@@ -76,7 +76,7 @@ pub(crate) fn detail(tree: &Entity) -> String {
         Entity::Movement(movement) => {
             let parallel = if movement.parallel.is_some() { "parallel, " } else { "" };
             let robot = movement.robot.as_ref().map_or("", |robot| robot.text.as_str());
-            format!("{parallel}of {robot}, {}", counted(movement.actions.len(), "action"))
+            format!("{parallel}of {robot}, {}", counted(movement.all_actions().count(), "action"))
         }
         Entity::Environment(environment) => {
             let count = |list: &Option<References>| list.as_ref().map_or(0, |list| list.names.len());
@@ -96,9 +96,15 @@ fn children(snapshot: &Snapshot, entity: &EntityRef<'_>, tree: &Entity) -> Vec<S
     let Entity::Movement(movement) = tree else { return Vec::new() };
     // One slice for all actions: slicing the file for each would dominate the cost.
     let text = snapshot.slice(entity.span);
+    outline(entity, &text, &movement.actions)
+}
+
+/// Actions, with those in their blocks as children.
+fn outline(entity: &EntityRef<'_>, text: &str, actions: &[Action]) -> Vec<Symbol> {
     let child = |action: &Action| {
         let full = action.span.shifted(entity.span.start);
-        let mut words = action.span.text(&text).split_whitespace();
+        let end = action.blocks().next().map_or(action.span.end, |block| block.span.start);
+        let mut words = Span::new(action.span.start, end).text(text).split_whitespace();
         let name = words.next().unwrap_or_default().into();
         let mut detail = SmolStrBuilder::new();
         for (index, word) in words.enumerate() {
@@ -113,10 +119,10 @@ fn children(snapshot: &Snapshot, entity: &EntityRef<'_>, tree: &Entity) -> Vec<S
             kind: SymbolKind::Action,
             full,
             focus: keyword(entity, action).shifted(entity.span.start),
-            children: Vec::new(),
+            children: action.blocks().flat_map(|block| outline(entity, text, &block.actions)).collect(),
         }
     };
-    movement.actions.iter().map(child).collect()
+    actions.iter().map(child).collect()
 }
 
 /// Where the keyword of an action is in its entity.
@@ -176,6 +182,26 @@ mod tests {
               action move (4 meters at 9) 243..263 243..247
               action slam () 264..268 264..268
             environment e (1 robot, 0 movements) 271..305 283..284
+        "#]]
+        .assert_eq(&out);
+    }
+
+    #[test]
+    fn the_outline_nests_blocks() {
+        let mut database = pydslrep_analysis::Database::new();
+        let text = "movement m of r { repeat 2 times { if { a } clear { slam } else { do n wait 2 seconds } } turn left }";
+        let file = database.open("a.pyr", text);
+        let mut out = String::new();
+        let snapshot = database.snapshot(file, None).unwrap();
+        render(&document_symbols(&snapshot).collect::<Vec<_>>(), 0, &mut out);
+        expect![[r#"
+            movement m (of r, 6 actions) 0..101 9..10
+              action repeat (2 times) 18..89 18..24
+                action if ({ a } clear) 35..87 35..37
+                  action slam () 52..56 52..56
+                  action do (n) 66..70 66..68
+                  action wait (2 seconds) 71..85 71..75
+              action turn (left) 90..99 90..94
         "#]]
         .assert_eq(&out);
     }

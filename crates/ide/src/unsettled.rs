@@ -5,6 +5,7 @@ use pydslrep_syntax::ast::{Entity, References};
 use pydslrep_syntax::{Expected, Span, Token, TokenKind, expected_after};
 
 use crate::FilePosition;
+use crate::cursor::body;
 
 /// The statement being typed.
 #[derive(Debug)]
@@ -21,6 +22,8 @@ pub struct TypedStatement<'a> {
     is_sign_begun: bool,
     /// What follows the cursor and is read as part of the statement, because that is not complete.
     taken: Option<Span>,
+    /// The same if the word at the cursor is not the one that is meant.
+    taken_without_word: Option<Span>,
 }
 
 impl<'a> TypedStatement<'a> {
@@ -44,10 +47,11 @@ impl<'a> TypedStatement<'a> {
         };
         let opened = braces(TokenKind::OpenBrace, Span::new(begin, place));
         let is_list_open = opened > braces(TokenKind::CloseBrace, Span::new(begin, end));
-        let taken = taken_by_statement(database, &entity, place);
+        let taken = taken_by_statement(database, &entity, place, false);
+        let taken_without_word = taken_by_statement(database, &entity, place, true);
         let is_sign_begun =
             matches!(database.slice(position.file, Span::new(place - 1, place)).as_str(), "/" | "^");
-        Some(Self { position, entity, tokens, gap, is_list_open, is_sign_begun, taken })
+        Some(Self { position, entity, tokens, gap, is_list_open, is_sign_begun, taken, taken_without_word })
     }
 
     /// The offset of the cursor.
@@ -64,6 +68,8 @@ impl<'a> TypedStatement<'a> {
             || match problem.code() {
                 "syntax-error" => self.is_caused(problem.span),
                 "unresolved-reference" => self.takes(problem.span),
+                // It comes after the sensors.
+                "missing-condition-word" => self.gap.start == problem.span.end || self.takes(problem.span),
                 "invalid-character" => self.is_sign_begun && problem.span.end == self.position.offset,
                 "unterminated-comment" | "unterminated-string" => self.is_unterminated(problem.span),
                 "idle-robot" => self.may_list_movements(problem.span),
@@ -99,7 +105,14 @@ impl<'a> TypedStatement<'a> {
         let is_missing = error.is_empty() && self.gap.touches(error.start);
         let is_in_list =
             self.is_list_open && self.position.offset <= error.start && error.end <= self.entity.span.end;
-        is_missing || self.takes(error) || is_in_list || self.is_begun(error)
+        is_missing || self.takes(error) || is_in_list || self.is_begun(error) || self.lacks_taken_brace(error)
+    }
+
+    /// Whether an error is the absence of a brace that the statement has taken for its own block or list.
+    fn lacks_taken_brace(&self, error: Span) -> bool {
+        let is_brace = |taken: Span| self.tokens.contains(&(TokenKind::CloseBrace, taken));
+        let end = body(&self.entity).end;
+        error == Span::at(end) && self.taken.or(self.taken_without_word).is_some_and(is_brace)
     }
 
     fn takes(&self, span: Span) -> bool {
@@ -153,9 +166,16 @@ fn is_word(token: TokenKind) -> bool {
 
 /// What follows the cursor and is read as part of the statement being typed; `None` if the statement may be complete. In a
 /// movement that is one token, for actions begin anew.
-fn taken_by_statement(database: &Database, entity: &EntityRef<'_>, place: u32) -> Option<Span> {
+fn taken_by_statement(
+    database: &Database,
+    entity: &EntityRef<'_>,
+    place: u32,
+    without_word: bool,
+) -> Option<Span> {
     let start = entity.span.start;
+    let is_left_out = |(token, span): &Token| without_word && span.end + start == place && is_word(*token);
     let significant = entity.parse.tokens.iter().filter(|(token, _)| !token.is_comment());
+    let significant = significant.filter(|token| !is_left_out(token));
     let (before, after): (Vec<Token>, Vec<Token>) =
         significant.partition(|(_, span)| span.end + start <= place);
     let next = after.first()?.1.shifted(start);
@@ -257,6 +277,23 @@ mod tests {
         quiet("movement m of rover {\n  ", "move 2.5 meters at 9", "\n}");
         quiet("movement m of rover {\n  ", "turn left until { front }", "\n  turn left\n}");
         quiet("", "movement m of rover { turn left }", "\nsensor s");
+        for action in [
+            "move 2 meters at 9 until { front } detect within 40 centimeters",
+            "move until { front } clear",
+            "turn left 90 with radius 1.5 meters at 5 in reverse",
+            "wait 2 seconds until { front } clear",
+            "wait until { front } clear within 1 meters",
+            "repeat 4 times { slam }",
+            "repeat until { front } detect { wait 1 seconds }",
+            "if { front } detect { slam } else if { front } clear { turn left } else { wait 1 seconds }",
+            "do n",
+        ] {
+            let robot = "sensor a sensor b sensor c sensor d\n\
+                         robot q type tw with port 1 has { wheelL wheelR } wheels with sensors { front a b c d }\n\
+                         movement n of q { slam }\n";
+            quiet(&format!("{robot}movement m of q {{\n  "), action, "\n}");
+            quiet(&format!("{robot}movement m of q {{\n  repeat 2 times {{\n    "), action, "\n  }\n}");
+        }
         quiet(
             "parallel movement m of rover { turn left }\nparallel movement n of rover { turn left }\n",
             "environment e has { rover } robots with { m",

@@ -114,8 +114,9 @@ fn check_while_typed(text: &str, seen: &mut HashSet<(Vec<TokenKind>, bool)>) {
         for mut item in items.into_iter().filter(|item| !matches!(item.kind, CompletionKind::Reference(_))) {
             item.insert = filled_in(&item.insert);
             let whole = format!("{begun} {}", item.plain());
-            // Without a name after it, `} wheel` is a typo of `} wheels`.
-            assert!(is_beginning(&whole) || is_beginning(&format!("{whole} x")), "{whole:?}");
+            // Without a name after it, `} wheel` is a typo of `} wheels`; without `until`, `move at` lacks its distance.
+            let ends = ["", " x", " 9 until { x }"];
+            assert!(ends.iter().any(|end| is_beginning(&format!("{whole}{end}"))), "{whole:?}");
         }
     }
 }

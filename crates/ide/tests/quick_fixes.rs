@@ -16,7 +16,7 @@ const OF_INVALID_CODE: [&str; 4] =
     ["syntax-error", "invalid-character", "unterminated-comment", "unterminated-string"];
 
 /// Diagnostics related to another one: with the same cause, or caused by it.
-const RELATED: [(&str, &[&str]); 7] = [
+const RELATED: [(&str, &[&str]); 9] = [
     ("movement-robot-missing", &["movement-robot-missing", "empty-environment"]),
     ("unresolved-reference", &["unresolved-reference", "movement-robot-missing", "sensor-not-on-robot"]),
     ("sensor-not-on-robot", &["sensor-not-on-robot"]),
@@ -24,6 +24,9 @@ const RELATED: [(&str, &[&str]); 7] = [
     ("implausible-radius", &["mixed-radii"]),
     ("unused-declaration", &["duplicate-name"]),
     ("wheel-count", &["slam-robot"]),
+    // One block less.
+    ("invalid-count", &["nested-too-deep"]),
+    ("empty-block", &["nested-too-deep"]),
     // One brace of a pair; a name that others refer to.
     ("syntax-error", &["syntax-error", "unresolved-reference"]),
 ];

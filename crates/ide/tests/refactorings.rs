@@ -10,7 +10,7 @@ use pydslrep_analysis::{Database, Edit, FileId, plan, scene};
 use pydslrep_ide::{fix_all, has_safe_fix, refactorings};
 use pydslrep_naive::Recipe;
 use pydslrep_syntax::Span;
-use pydslrep_syntax::ast::Entity;
+use pydslrep_syntax::ast::{Action, Entity};
 
 fn opened(text: &str) -> (Database, FileId) {
     let mut database = Database::new();
@@ -29,7 +29,7 @@ fn applied(text: &str, edits: &[Edit]) -> String {
     text
 }
 
-/// Selections to try: entities, their names, actions, and pairs of adjacent actions.
+/// Selections to try: entities, their names, actions, and pairs of adjacent actions, in blocks too.
 fn selections(database: &Database, file: FileId) -> Vec<Span> {
     let mut found = Vec::new();
     for entity in database.entities(file) {
@@ -37,11 +37,14 @@ fn selections(database: &Database, file: FileId) -> Vec<Span> {
         let Some(tree) = &entity.parse.entity else { continue };
         found.extend(tree.name().map(|name| name.span.shifted(entity.span.start)));
         if let Entity::Movement(movement) = tree {
-            let spans: Vec<Span> =
-                movement.actions.iter().map(|action| action.span.shifted(entity.span.start)).collect();
-            found.extend(spans.iter().map(|span| Span::at(span.start)));
-            found.extend(&spans);
-            found.extend(spans.windows(2).map(|pair| pair[0].to(pair[1])));
+            let blocks = movement.all_actions().flat_map(Action::blocks).map(|block| &block.actions);
+            for actions in std::iter::once(&movement.actions).chain(blocks) {
+                let spans: Vec<Span> =
+                    actions.iter().map(|action| action.span.shifted(entity.span.start)).collect();
+                found.extend(spans.iter().map(|span| Span::at(span.start)));
+                found.extend(&spans);
+                found.extend(spans.windows(2).map(|pair| pair[0].to(pair[1])));
+            }
         }
     }
     found

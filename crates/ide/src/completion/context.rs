@@ -6,6 +6,7 @@ use pydslrep_syntax::{Expected, Span, Token, TokenKind};
 use smol_str::SmolStr;
 
 use crate::FilePosition;
+use crate::statements::Statements;
 
 /// The entity before the cursor, as far as it is typed.
 pub(super) struct CursorContext<'a> {
@@ -78,6 +79,9 @@ impl<'a> CursorContext<'a> {
 
     /// The names already in the list around the cursor, without the word at the cursor.
     pub(super) fn listed(&self) -> Vec<SmolStr> {
+        if self.is_after_do() {
+            return Vec::new();
+        }
         let in_list = |token: TokenKind| token == TokenKind::Comma || token.is_name();
         let before = self.before.iter().rev().take_while(|(token, _)| in_list(*token));
         let before = before.filter(|(token, _)| token.is_name()).map(|(_, span)| name(span.text(&self.text)));
@@ -97,13 +101,31 @@ impl<'a> CursorContext<'a> {
         }
     }
 
+    /// Whether the cursor is in an action that begins with one of these keywords.
+    pub(super) fn statement_begins_with(&self, keywords: &[TokenKind]) -> bool {
+        let statements = Statements::read(&self.before);
+        let first = statements.as_ref().and_then(|statements| statements.latest().first());
+        first.is_some_and(|(token, _)| keywords.contains(token))
+    }
+
+    /// Whether the cursor is where `do` names its movement.
+    pub(super) fn is_after_do(&self) -> bool {
+        let statements = Statements::read(&self.before);
+        matches!(statements.as_ref().map(Statements::latest), Some([.., (TokenKind::Do, _)]))
+    }
+
+    /// The first token after the word at the cursor.
+    pub(super) fn next_token(&self) -> Option<TokenKind> {
+        self.after.first().map(|(token, _)| *token)
+    }
+
     /// Whether the word at the cursor is the first on its line.
     pub(super) fn begins_line(&self) -> bool {
         let end = self.before.last().map_or(0, |(_, span)| self.start + span.end);
         self.database.slice(self.file, Span::new(end, self.word.start)).contains(['\n', '\r'])
     }
 
-    /// Whether only a name can come next: after `of` and `ip`, and in a list that is empty, ends with a comma, or has fewer
+    /// Whether only a name can come next: after `of`, `ip` and `do`, and in a list that is empty, ends with a comma, or has fewer
     /// wheels than its robot needs.
     pub(super) fn needs_name(&self) -> bool {
         let is_there = self.after.first().is_some_and(|(token, _)| token.is_name());
@@ -111,6 +133,7 @@ impl<'a> CursorContext<'a> {
         match last {
             TokenKind::Of | TokenKind::Ip | TokenKind::Comma => true,
             TokenKind::OpenBrace => self.listed().is_empty(),
+            TokenKind::Do if self.is_after_do() => true,
             token if token.is_name() => self.lacks_wheels(),
             _ => false,
         }

@@ -4,9 +4,10 @@
 
 use pydslrep_analysis::{Database, EntityId};
 use pydslrep_syntax::ast::{
-    Action, ActionKind, Direction, Drive, Entity, Movement, Robot, Turn, TurnExtent, Unit, Wheel,
+    Action, ActionKind, Direction, Drive, Entity, Move, Movement, Repeat, Robot, Rounds, Turn, Unit, Wheel,
+    nested,
 };
-use pydslrep_syntax::{EntityKind, Span, escape};
+use pydslrep_syntax::{EntityKind, Span, TokenKind, escape};
 use smol_str::SmolStr;
 
 use super::context::CursorContext;
@@ -40,6 +41,8 @@ pub(super) struct LastMove {
     pub(super) distance: Option<String>,
     pub(super) unit: Unit,
     pub(super) speed: Option<String>,
+    /// Whether it has no distance, but a condition.
+    pub(super) is_until: bool,
 }
 
 /// How the last `turn` was written.
@@ -47,6 +50,7 @@ pub(super) struct LastTurn {
     pub(super) direction: Direction,
     pub(super) angle: Option<String>,
     pub(super) is_until: bool,
+    pub(super) is_on_circle: bool,
 }
 
 impl<'a> Defaults<'a> {
@@ -208,7 +212,7 @@ impl<'a> Defaults<'a> {
     /// Whether the action before the cursor is a `move`.
     pub(super) fn follows_a_move(&self) -> bool {
         let actions = self.context.movement().map_or(&[][..], |movement| &movement.actions);
-        let before = actions.iter().rfind(|action| self.is_before(action));
+        let before = nested(actions).filter(|action| self.is_before(action)).last();
         matches!(before.map(|action| &action.kind), Some(ActionKind::Move(_)))
     }
 
@@ -223,15 +227,19 @@ impl<'a> Defaults<'a> {
     ) -> Option<T> {
         let own = self.context.movement().zip(self.context.entity);
         let own = own.and_then(|(movement, id)| {
-            let mut before = movement.actions.iter().rev().filter(|action| self.is_before(action));
-            before.find_map(|action| find(action, &|span| self.written(id, span)))
+            let before: Vec<&Action> =
+                movement.all_actions().filter(|action| self.is_before(action)).collect();
+            before.into_iter().rev().find_map(|action| find(action, &|span| self.written(id, span)))
         });
         own.or_else(|| {
             let mut before = self.of_kind(EntityKind::Movement).rev().filter(|near| near.is_before);
             before.find_map(|near| match near.tree {
                 Entity::Movement(movement) => {
-                    let mut actions = movement.actions.iter().rev();
-                    actions.find_map(|action| find(action, &|span| self.written(near.id, span)))
+                    let actions: Vec<&Action> = movement.all_actions().collect();
+                    actions
+                        .into_iter()
+                        .rev()
+                        .find_map(|action| find(action, &|span| self.written(near.id, span)))
                 }
                 _ => None,
             })
@@ -241,19 +249,26 @@ impl<'a> Defaults<'a> {
     pub(super) fn last_move(&self) -> LastMove {
         let last = self.last_action(|action, written| {
             let ActionKind::Move(move_) = &action.kind else { return None };
+            let is_until = move_.distance.is_none() && move_.until.is_some();
+            if !is_until && (move_.distance.is_none() || move_.unit.is_none()) {
+                return None;
+            }
             Some(LastMove {
-                distance: Some(written(move_.distance.as_ref()?.span)?),
-                unit: move_.unit?.0,
+                distance: move_.distance.as_ref().and_then(|distance| written(distance.span)),
+                unit: move_.unit.map_or(Unit::Meters, |(unit, _)| unit),
+                is_until,
                 speed: move_.speed.as_ref().and_then(|speed| written(speed.value.as_ref()?.span)),
             })
         });
-        last.unwrap_or(LastMove { distance: None, unit: Unit::Meters, speed: None })
+        last.unwrap_or(LastMove { distance: None, unit: Unit::Meters, speed: None, is_until: false })
     }
 
     /// The last written speed, or the default; in centimetres per second.
     pub(super) fn speed(&self) -> String {
         let last = self.last_action(|action, written| match &action.kind {
-            ActionKind::Move(move_) => written(move_.speed.as_ref()?.value.as_ref()?.span),
+            ActionKind::Move(Move { speed, .. }) | ActionKind::Turn(Turn { speed, .. }) => {
+                written(speed.as_ref()?.value.as_ref()?.span)
+            }
             _ => None,
         });
         last.unwrap_or_else(|| format!("{:?}", self.context.speed))
@@ -261,17 +276,50 @@ impl<'a> Defaults<'a> {
 
     pub(super) fn last_turn(&self) -> LastTurn {
         let last = self.last_action(|action, written| {
-            let ActionKind::Turn(Turn { direction: Some((direction, _)), extent }) = &action.kind else {
-                return None;
-            };
-            let angle = match extent {
-                Some(TurnExtent::Angle(angle)) => written(angle.span),
-                _ => None,
-            };
-            let is_until = matches!(extent, Some(TurnExtent::Until(_)));
-            Some(LastTurn { direction: *direction, angle, is_until })
+            let ActionKind::Turn(turn) = &action.kind else { return None };
+            let Turn { direction: Some((direction, _)), angle, circle, .. } = turn else { return None };
+            let is_until = turn.until.is_some() && turn.is_of_article();
+            let is_on_circle = circle.is_some();
+            let angle = angle.as_ref().and_then(|angle| written(angle.span));
+            Some(LastTurn { direction: *direction, angle, is_until, is_on_circle })
         });
-        last.unwrap_or(LastTurn { direction: Direction::Left, angle: None, is_until: false })
+        last.unwrap_or(LastTurn {
+            direction: Direction::Left,
+            angle: None,
+            is_until: false,
+            is_on_circle: false,
+        })
+    }
+
+    /// The radius of the last circle as written, and its unit.
+    pub(super) fn last_radius(&self) -> (String, &'static str) {
+        let last = self.last_action(|action, written| {
+            let ActionKind::Turn(Turn { circle: Some(circle), .. }) = &action.kind else { return None };
+            let unit = match circle.unit?.0 {
+                Unit::Meters => TokenKind::Meters,
+                Unit::Centimeters => TokenKind::Centimeters,
+            };
+            Some((written(circle.radius.as_ref()?.span)?, unit.spelling()?))
+        });
+        last.unwrap_or_else(|| ("1.0".to_owned(), TokenKind::Meters.spelling().unwrap_or_default()))
+    }
+
+    /// How often the last block is repeated, as written.
+    pub(super) fn last_count(&self) -> String {
+        let last = self.last_action(|action, written| match &action.kind {
+            ActionKind::Repeat(Repeat { rounds: Some(Rounds::Times(count)), .. }) => written(count.span),
+            _ => None,
+        });
+        last.unwrap_or_else(|| "4".to_owned())
+    }
+
+    /// How long the last `wait` takes, as written.
+    pub(super) fn last_time(&self) -> String {
+        let last = self.last_action(|action, written| match &action.kind {
+            ActionKind::Wait(wait) => written(wait.seconds.as_ref()?.span),
+            _ => None,
+        });
+        last.unwrap_or_else(|| "2".to_owned())
     }
 
     /// The sensors of the last `until` if the robot has all of them, or all sensors of the robot.
@@ -281,7 +329,8 @@ impl<'a> Defaults<'a> {
             .and_then(|robot| robot.sensors.as_ref())
             .map_or_else(Vec::new, |list| list.names.iter().map(|name| &name.text).collect());
         let last = self.last_action(|action, _| {
-            let names: Vec<SmolStr> = action.until()?.names.iter().map(|name| name.text.clone()).collect();
+            let names: Vec<SmolStr> =
+                action.conditions().next()?.sensors.names.iter().map(|name| name.text.clone()).collect();
             names.iter().all(|name| carried.contains(&name)).then_some(names)
         });
         match last.filter(|names| !names.is_empty()) {

@@ -35,6 +35,8 @@ pub(super) fn keyword(context: &CursorContext<'_>, word: TokenKind) -> Option<Co
     let page = keyword_page(if leads { last } else { word });
     let rank = match word {
         TokenKind::CloseBrace => Rank::Closing,
+        // A condition is more likely to go on.
+        TokenKind::OpenBrace if context.movement().is_some() => Rank::Closing,
         _ if matches_wheels(context, word) => Rank::Fitting,
         _ => Rank::Keyword,
     };
@@ -97,7 +99,8 @@ fn continuation(context: &CursorContext<'_>, word: TokenKind) -> Continuation {
     let mut before = context.before.clone();
     let spelling = word.spelling().unwrap_or_default().to_owned();
     let mut continued = Continuation { insert: spelling.clone(), label: spelling, last: word };
-    for _ in 0..if context.at_end { MAX_KEYWORDS } else { 0 } {
+    let most = if context.at_end { MAX_KEYWORDS } else { usize::from(leads_on(context, word)) };
+    for _ in 0..most {
         let end = Span::at(before.last().map_or(0, |(_, span)| span.end));
         before.push((continued.last, end));
         let mut expected = expected_after(&context.text, &before);
@@ -108,6 +111,8 @@ fn continuation(context: &CursorContext<'_>, word: TokenKind) -> Continuation {
             expected = expected_after(&context.text, &before);
         }
         match expected[..] {
+            // The block is a snippet of its own.
+            [Expected::Word(TokenKind::OpenBrace)] if continued.last == TokenKind::Times => break,
             [Expected::Word(word)] if word != TokenKind::Comma && word != TokenKind::CloseBrace => {
                 let spelling = word.spelling().unwrap_or_default();
                 continued.push(spelling, spelling);
@@ -117,6 +122,16 @@ fn continuation(context: &CursorContext<'_>, word: TokenKind) -> Continuation {
         }
     }
     continued
+}
+
+/// Whether a keyword of a statement brings the next one, although more of the movement follows.
+fn leads_on(context: &CursorContext<'_>, word: TokenKind) -> bool {
+    let next = match word {
+        TokenKind::With => TokenKind::Radius,
+        TokenKind::In => TokenKind::Reverse,
+        _ => return false,
+    };
+    context.movement().is_some() && context.next_token() != Some(next)
 }
 
 /// The kind of the references in a list that begins here.

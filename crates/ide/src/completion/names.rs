@@ -7,9 +7,9 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use pydslrep_analysis::{Database, EntityId, FileId};
-use pydslrep_syntax::ast::{Entity, Robot};
+use pydslrep_syntax::ast::{Action, Entity, Robot};
 use pydslrep_syntax::{EntityKind, TextEdit, escape};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use super::context::CursorContext;
@@ -33,7 +33,7 @@ pub(super) fn names(context: &CursorContext<'_>, kind: EntityKind) -> Vec<Comple
     let chosen = wanted.only(context).unwrap_or_else(|| visible(context, &wanted));
     let mut found: Vec<Completion> =
         chosen.iter().filter_map(|name| reference(context, kind, name)).collect();
-    if !matches!(wanted.for_, For::Turn(_)) && !begins_a_name(context, &wanted) {
+    if !matches!(wanted.for_, For::Condition(_) | For::Do) && !begins_a_name(context, &wanted) {
         found.extend(unimported(context, &wanted));
     }
     found
@@ -51,8 +51,10 @@ struct Wanted<'a> {
 enum For<'a> {
     /// The wheels of a robot: mecanum or not, and their radius.
     Robot(Option<bool>, Option<f64>),
-    /// `turn … until`, on this robot.
-    Turn(Option<&'a Robot>),
+    /// The condition of an action, on this robot.
+    Condition(Option<&'a Robot>),
+    /// `do`, in a movement.
+    Do,
     /// The movements of an environment with these robots, if known.
     Environment(Option<Vec<EntityId>>),
     /// Anything else.
@@ -64,7 +66,10 @@ impl<'a> Wanted<'a> {
         let listed = context.listed();
         let for_ = match (context.tree, kind) {
             (Some(Entity::Robot(robot)), EntityKind::Wheel) => wheels_of(context, robot, &listed),
-            (Some(Entity::Movement(movement)), EntityKind::Sensor) => For::Turn(robot_of(context, movement)),
+            (Some(Entity::Movement(movement)), EntityKind::Sensor) => {
+                For::Condition(robot_of(context, movement))
+            }
+            (Some(Entity::Movement(_)), EntityKind::Movement) => For::Do,
             (Some(Entity::Environment(environment)), EntityKind::Movement) => {
                 let ids = |name: &pydslrep_syntax::ast::Name| {
                     context.database.resolve(context.file, EntityKind::Robot, &name.text).entity()
@@ -82,7 +87,7 @@ impl<'a> Wanted<'a> {
         let seen =
             |name: &&SmolStr| context.database.resolve(context.file, self.kind, name).entity().is_some();
         match &self.for_ {
-            For::Turn(Some(robot)) => {
+            For::Condition(Some(robot)) => {
                 let carried = robot.sensors.iter().flat_map(|list| &list.names).map(|name| &name.text);
                 let mut names: Vec<SmolStr> =
                     carried.filter(seen).filter(|name| !self.listed.contains(name)).cloned().collect();
@@ -90,6 +95,7 @@ impl<'a> Wanted<'a> {
                 names.retain(|name| known.insert(name.clone()));
                 Some(names)
             }
+            For::Do => Some(to_do(context)),
             For::Environment(Some(robots)) => Some(self.movements_of(context, robots)),
             _ => None,
         }
@@ -157,6 +163,55 @@ impl<'a> Wanted<'a> {
     fn is_taken(&self, name: &SmolStr) -> bool {
         self.kind != EntityKind::Movement && self.listed.contains(name)
     }
+}
+
+/// The movements that the movement at the cursor can do: visible ones of the same robot that do not do it in turn, those
+/// that nothing does first.
+pub(super) fn to_do(context: &CursorContext<'_>) -> Vec<SmolStr> {
+    let robot = context.movement().and_then(|movement| movement.robot.as_ref());
+    let robot = robot
+        .and_then(|robot| context.database.resolve(context.file, EntityKind::Robot, &robot.text).entity());
+    let Some(robot) = robot else { return Vec::new() };
+    let wanted =
+        Wanted { kind: EntityKind::Movement, listed: Vec::new(), for_: For::Environment(Some(vec![robot])) };
+    let names = wanted.movements_of(context, &[robot]);
+    let id = |name: &SmolStr| context.database.resolve(context.file, EntityKind::Movement, name).entity();
+    let ids: Vec<Option<EntityId>> = names.iter().map(id).collect();
+    let excluded = context.entity.map(|own| doing(context.database, own, ids.iter().flatten().copied()));
+    let is_excluded =
+        |id: &Option<EntityId>| id.is_none_or(|id| excluded.iter().any(|all| all.contains(&id)));
+    let mut fitting: Vec<(bool, SmolStr)> = names
+        .into_iter()
+        .zip(&ids)
+        .filter(|(_, id)| !is_excluded(id))
+        .map(|(name, _)| {
+            (!context.database.users(context.file, EntityKind::Movement, &name).is_empty(), name)
+        })
+        .collect();
+    fitting.sort();
+    fitting.into_iter().map(|(_, name)| name).collect()
+}
+
+/// A movement, and those among others that do it, directly or by each other.
+fn doing(database: &Database, own: EntityId, others: impl Iterator<Item = EntityId>) -> FxHashSet<EntityId> {
+    let mut callers: FxHashMap<EntityId, Vec<EntityId>> = FxHashMap::default();
+    for id in others {
+        let (Some(Entity::Movement(movement)), Some(file)) = (database.tree(id), database.file_of(id)) else {
+            continue;
+        };
+        for done in movement.all_actions().filter_map(Action::done) {
+            if let Some(done) = database.resolve(file, EntityKind::Movement, &done.text).entity() {
+                callers.entry(done).or_default().push(id);
+            }
+        }
+    }
+    let mut found = FxHashSet::from_iter([own]);
+    let mut open = vec![own];
+    while let Some(done) = open.pop() {
+        let more = callers.get(&done).into_iter().flatten().filter(|caller| found.insert(**caller));
+        open.extend(more);
+    }
+    found
 }
 
 /// All wheels of a robot are of one kind: that of the listed ones, or that of its type.

@@ -1,8 +1,7 @@
-//! Snippets: complete entities and actions, and clauses that follow keywords. Their placeholders hold likely values
+//! Snippets: complete entities; those of actions are in [`super::actions`]. Their placeholders hold likely values
 //! ([`super::defaults`]).
 
-use pydslrep_syntax::ast::{Direction, Unit};
-use pydslrep_syntax::{EntityKind, TokenKind};
+use pydslrep_syntax::EntityKind;
 
 use super::context::CursorContext;
 use super::defaults::Defaults;
@@ -10,14 +9,14 @@ use super::keywords::port;
 use super::{Completion, CompletionKind, Documentation, Rank};
 
 /// An entity, action or clause with placeholders.
-struct Snippet {
+pub(super) struct Snippet {
     label: String,
     detail: &'static str,
     insert: String,
 }
 
 impl Snippet {
-    fn new(label: &str, detail: &'static str, insert: String) -> Self {
+    pub(super) fn new(label: &str, detail: &'static str, insert: String) -> Self {
         Self { label: label.to_owned(), detail, insert }
     }
 }
@@ -134,95 +133,13 @@ fn environment(defaults: &Defaults<'_>) -> Snippet {
     Snippet::new("environment …", "a complete environment declaration", insert)
 }
 
-/// Complete actions, those like the last action of their kind first.
-pub(super) fn actions(context: &CursorContext<'_>) -> Vec<Completion> {
-    let defaults = Defaults::for_part(context);
-    let (moves, turns) = (moves(&defaults), turns(&defaults));
-    // Moves and turns usually alternate.
-    let snippets = if defaults.follows_a_move() { [turns, moves] } else { [moves, turns] };
-    completions(context, snippets.into_iter().flatten().collect())
-}
-
-fn moves(defaults: &Defaults<'_>) -> Vec<Snippet> {
-    let last = defaults.last_move();
-    let mut shapes =
-        [(Unit::Meters, false), (Unit::Centimeters, false), (Unit::Meters, true), (Unit::Centimeters, true)];
-    shapes.sort_by_key(|(unit, with_speed)| (*unit != last.unit, *with_speed != last.speed.is_some()));
-    let speed = defaults.speed();
-    let snippet = |(unit, with_speed): (Unit, bool)| {
-        let (word, other) = match unit {
-            Unit::Meters => (TokenKind::Meters, "1.0"),
-            Unit::Centimeters => (TokenKind::Centimeters, "50"),
-        };
-        let word = word.spelling().unwrap_or_default();
-        let distance = last.distance.as_deref().filter(|_| unit == last.unit).unwrap_or(other);
-        let insert = format!("move ${{1:{distance}}} {word}");
-        if with_speed {
-            let label = format!("move … {word} at …");
-            Snippet::new(&label, "straight ahead at this speed (cm/s)", format!("{insert} at ${{2:{speed}}}"))
-        } else {
-            Snippet::new(&format!("move … {word}"), "straight ahead", insert)
-        }
-    };
-    shapes.map(snippet).into()
-}
-
-fn turns(defaults: &Defaults<'_>) -> Vec<Snippet> {
-    let last = defaults.last_turn();
-    let sensors = defaults.sensors_to_wait_for();
-    let shapes = [Direction::Left, Direction::Right]
-        .map(|direction| [(direction, false), (direction, true)])
-        .into_iter()
-        .flatten();
-    let mut shapes: Vec<(Direction, bool)> = shapes.collect();
-    let is_unlike = |(direction, with_angle): &(_, bool)| {
-        (*with_angle != last.angle.is_some(), *direction != last.direction)
-    };
-    shapes.sort_by_key(is_unlike);
-    let angle = last.angle.as_deref().unwrap_or("90");
-    let snippet = |(direction, with_angle)| {
-        let word = spelling(direction);
-        if with_angle {
-            let label = format!("turn {word} …");
-            Snippet::new(&label, "in place by this angle (degrees)", format!("turn {word} ${{1:{angle}}}"))
-        } else {
-            Snippet::new(&format!("turn {word}"), "in place by 90 degrees", format!("turn {word}"))
-        }
-    };
-    let mut snippets: Vec<Snippet> = shapes.into_iter().map(snippet).collect();
-    if sensors.is_empty() {
-        return snippets;
-    }
-    let word = spelling(last.direction);
-    let until = Snippet::new(
-        &format!("turn {word} until …"),
-        "in place until no sensor detects an obstacle",
-        format!("turn {word} until {{ {} }}", tab_stop(1, &sensors.join(", "))),
-    );
-    snippets.insert(if last.is_until { 0 } else { snippets.len() }, until);
-    snippets
-}
-
-fn spelling(direction: Direction) -> &'static str {
-    let token = match direction {
-        Direction::Left => TokenKind::Left,
-        Direction::Right => TokenKind::Right,
-    };
-    token.spelling().unwrap_or_default()
-}
-
-/// The optional speed clause of a `move`.
-pub(super) fn speed(context: &CursorContext<'_>) -> Vec<Completion> {
-    let insert = format!("at ${{1:{}}}", Defaults::for_part(context).speed());
-    completions(context, vec![Snippet::new("at …", "a speed (cm/s)", insert)])
-}
-
 /// A tab stop with a default, if any.
 pub(super) fn tab_stop(number: u32, default: &str) -> String {
     if default.is_empty() { format!("${number}") } else { format!("${{{number}:{default}}}") }
 }
 
-fn completions(context: &CursorContext<'_>, snippets: Vec<Snippet>) -> Vec<Completion> {
+/// The items of snippets.
+pub(super) fn completions(context: &CursorContext<'_>, snippets: Vec<Snippet>) -> Vec<Completion> {
     let completion = |snippet: Snippet| Completion {
         detail: snippet.detail.to_owned(),
         documentation: Documentation::Text(format!(
@@ -369,17 +286,62 @@ mod tests {
         let entity = PARTS.to_owned() + "$0";
         let action = format!("{PARTS}movement m of rover {{ $0 }}");
         let speed = format!("{PARTS}movement m of rover {{ move 2 meters $0 }}");
-        for fixture in [entity, action, speed] {
+        let rest = |action: &str| {
+            format!("{PARTS}movement side of rover {{ slam }}\nmovement m of rover {{ {action}")
+        };
+        let others =
+            ["$0", "turn left $0", "wait 2 seconds $0 }", "if { front } clear { slam } $0"].map(rest);
+        for fixture in [entity, action, speed].into_iter().chain(others) {
             let (database, position) = at_cursor(&fixture);
             let items = completions(&database, position, CompletionTrigger::Invoked, 9.0);
             let snippets: Vec<_> = items.iter().filter(|item| item.kind == CompletionKind::Snippet).collect();
             assert!(!snippets.is_empty());
             for snippet in snippets {
-                let text = fixture.replace("$0", &plain_text(&snippet.insert));
+                let mut text = fixture.replace("$0", &plain_text(&snippet.insert));
+                let braces = |brace| text.matches(brace).count();
+                text += &" }".repeat(braces('{').saturating_sub(braces('}')));
                 for (_, parse) in pydslrep_syntax::parse(&text) {
                     assert_eq!(parse.errors, [], "{text}");
                 }
             }
         }
+    }
+
+    #[test]
+    fn statements_resemble_the_previous_ones() {
+        let before = "movement side of rover { slam }\nmovement m of rover { repeat 8 times { wait 0.5 seconds turn right 45 with radius 30 centimeters at 7 }";
+        check(
+            &format!("{PARTS}{before} $0"),
+            &[
+                "repeat … times { … }",
+                "wait … seconds",
+                "turn right … with radius …",
+                "turn left … with radius …",
+                "move until … detect",
+                "wait until … clear",
+                "if … detect { … }",
+                "repeat until … detect { … }",
+                "do …",
+                "move … meters at …",
+            ],
+            &expect![[r#"
+                repeat ${1:8} times {
+                  $0
+                }
+                wait ${1:0.5} seconds
+                turn right ${1:45} with radius ${2:30} centimeters
+                turn left ${1:45} with radius ${2:30} centimeters
+                move until { ${1:front} } detect
+                wait until { ${1:front} } clear
+                if { ${1:front} } detect {
+                  $0
+                }
+                repeat until { ${1:front} } detect {
+                  $0
+                }
+                do ${1:side}
+                move ${1:1.0} meters at ${2:7}
+            "#]],
+        );
     }
 }

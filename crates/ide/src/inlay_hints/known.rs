@@ -3,7 +3,7 @@
 //! A movement is a list of steps: its actions, and invalid code between them. The first step after invalid code starts
 //! from its last known pose; the following ones are planned from there.
 
-use pydslrep_analysis::environment::{ActionKind, Robot};
+use pydslrep_analysis::environment::{ActionKind, Movement, Robot};
 use pydslrep_analysis::{Database, Driver, FileId};
 use pydslrep_kinematics::{Leg, Pose};
 use pydslrep_syntax::Span;
@@ -46,12 +46,26 @@ struct KnownStep {
 }
 
 /// A part of a movement's body.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(super) enum Step {
     /// A valid action.
     Action(ActionKind),
+    /// A valid action that does other movements. They have numbers that change with what else is done, so it is known again
+    /// by its text.
+    Calling(ActionKind, String),
     /// Invalid code.
     Broken,
+}
+
+impl PartialEq for Step {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Action(kind), Self::Action(other)) => kind == other,
+            (Self::Calling(_, text), Self::Calling(_, other)) => text == other,
+            (Self::Broken, Self::Broken) => true,
+            _ => false,
+        }
+    }
 }
 
 /// The plan of one step.
@@ -89,8 +103,15 @@ impl KnownMovements {
         self.by_name.get(name).map(|known| &known.robot)
     }
 
-    /// Plans a movement and remembers the result; `robot` is `None` while the current one is invalid.
-    pub(super) fn plan(&mut self, name: &SmolStr, robot: Option<Robot>, steps: Vec<Step>) -> Option<Route> {
+    /// Plans a movement and remembers the result; `robot` is `None` while the current one is invalid. `done` are the movements
+    /// that it does.
+    pub(super) fn plan(
+        &mut self,
+        name: &SmolStr,
+        robot: Option<Robot>,
+        steps: Vec<Step>,
+        done: &[Movement],
+    ) -> Option<Route> {
         let before = self.by_name.remove(name);
         let live = robot.and_then(|robot| Some((Driver::new(&robot).ok()?, robot, false)));
         let (driver, robot, is_old) = match (live, &before) {
@@ -98,6 +119,7 @@ impl KnownMovements {
             (None, Some(known)) => (Driver::new(&known.robot).ok()?, known.robot.clone(), true),
             (None, None) => return None,
         };
+        let driver = driver.with_done(done);
         let known = before.map_or_else(Vec::new, |known| known.steps);
         let planned = plan(&driver, &steps, &known, is_old);
         let remembered = steps.into_iter().zip(&planned).map(|(step, planned)| {
@@ -179,7 +201,7 @@ fn plan(driver: &Driver, steps: &[Step], known: &[KnownStep], is_old: bool) -> V
         let (leg, next) = match (step, start) {
             (Step::Broken, Start::At { .. } | Start::Broken) => (None, Start::Broken),
             (Step::Broken, Start::Open { .. }) => (None, start),
-            (Step::Action(action), _) => drive(driver, action, start, index),
+            (Step::Action(action) | Step::Calling(action, _), _) => drive(driver, action, start, index),
         };
         planned.push(Planned { leg, start });
         start = next;

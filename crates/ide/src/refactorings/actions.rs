@@ -13,10 +13,10 @@ impl<'a> Selection<'a> {
         }
     }
 
-    /// The selected `move` actions; a cursor between two selects both.
+    /// The selected `move` actions, those in blocks too; a cursor between two selects both.
     pub(super) fn selected_moves(&self) -> Vec<&'a Move> {
-        let actions = self.movement().map_or(&[][..], |movement| &movement.actions);
-        moves(actions.iter().filter(|action| self.touches(action.span))).collect()
+        let actions = self.movement().into_iter().flat_map(Movement::all_actions);
+        moves(actions.filter(|action| self.touches(action.span))).collect()
     }
 }
 

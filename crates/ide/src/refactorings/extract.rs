@@ -1,27 +1,18 @@
-//! Extract actions into a new movement of the same robot. Wherever the movement is listed, its parts are listed in order,
-//! so that the robot does the same as before.
+//! Extract actions into a new movement of the same robot, which is done in their place.
 
-use pydslrep_analysis::{Database, Edit, FileId, FileSpan};
-use pydslrep_syntax::ast::{Entity, Movement};
-use pydslrep_syntax::{EntityKind, Span, format};
+use pydslrep_analysis::{Database, Edit, FileId};
+use pydslrep_syntax::ast::{Action, Movement};
+use pydslrep_syntax::{EntityKind, Span, TokenKind, format};
 use smol_str::{SmolStr, format_smolstr};
 
 use super::{Refactoring, RefactoringKind, Selection};
-use crate::rename::is_separated;
 
 /// The refactoring for selected actions; a cursor selects none.
 pub(super) fn extract(selection: &Selection<'_>) -> Option<Refactoring> {
     if selection.range.is_empty() {
         return None;
     }
-    let movement = selection.movement()?;
-    let selected = |index: &usize| {
-        let span = movement.actions[*index].span;
-        span.start < selection.range.end && selection.range.start < span.end
-    };
-    let mut indices = (0..movement.actions.len()).filter(selected);
-    let first = indices.next()?;
-    let parts = Parts { selection, movement, first, end: indices.next_back().unwrap_or(first) + 1 };
+    let parts = Parts::find(selection)?;
     Some(match parts.edits() {
         Ok((name, edits)) => {
             Refactoring::new(format!("extract into new movement `{name}`"), RefactoringKind::Extract, edits)
@@ -32,72 +23,78 @@ pub(super) fn extract(selection: &Selection<'_>) -> Option<Refactoring> {
     })
 }
 
-/// A movement and its selected actions.
+/// The innermost block around the selection, and its selected actions.
 struct Parts<'a> {
     selection: &'a Selection<'a>,
     movement: &'a Movement,
+    /// From brace to brace.
+    block: Span,
+    actions: &'a [Action],
     first: usize,
     /// The index after the last selected action.
     end: usize,
 }
 
-impl Parts<'_> {
+impl<'a> Parts<'a> {
+    fn find(selection: &'a Selection<'_>) -> Option<Self> {
+        let (movement, range) = (selection.movement()?, selection.range);
+        let (mut block, mut actions) = (movement.body?, &movement.actions[..]);
+        loop {
+            let selected = |action: &&Action| action.span.start < range.end && range.start < action.span.end;
+            let mut inside = actions.iter().filter(selected).flat_map(Action::blocks);
+            match inside.find(|inner| inner.span.start < range.start && range.end < inner.span.end) {
+                Some(inner) => (block, actions) = (inner.span, &inner.actions),
+                None => break,
+            }
+        }
+        let selected = |index: &usize| {
+            let span = actions[*index].span;
+            span.start < range.end && range.start < span.end
+        };
+        let mut indices = (0..actions.len()).filter(selected);
+        let first = indices.next()?;
+        let end = indices.next_back().unwrap_or(first) + 1;
+        Some(Self { selection, movement, block, actions, first, end })
+    }
+
     fn edits(&self) -> Result<(SmolStr, Vec<Edit>), String> {
-        let (database, file) = (self.selection.database, self.selection.file);
         let broken = || "the movement is incomplete".to_owned();
         let name = self.movement.name.as_ref().ok_or_else(broken)?;
         let body = self.movement.body.ok_or_else(broken)?;
-        if self.first == 0 && self.end == self.movement.actions.len() {
+        if self.block == body && self.first == 0 && self.end == self.actions.len() {
             return Err(format!("these are all actions of `{}`; select only some of them", name.text));
         }
-        if self.movement.parallel.is_some() {
-            let reason = "is parallel: its parts would start together";
-            return Err(format!("`{}` {reason}", name.text));
-        }
-        if database.declarations(file, EntityKind::Movement, &name.text).len() != 1 {
-            return Err(format!("there are several movements called `{}`", name.text));
-        }
-        let mut free = free_names(database, file, &name.text);
-        let new = free.next().ok_or_else(broken)?;
-        let rest = (self.first > 0 && self.end < self.movement.actions.len()).then(|| free.next()).flatten();
-        let bounds = self.bounds(body);
-        let mut added =
-            self.entity(&new, Span::new(bounds[self.first], bounds[self.end])).ok_or_else(broken)?;
-        let cut_end = match &rest {
-            Some(rest) => {
-                let end = bounds[self.movement.actions.len()];
-                added += &self.entity(rest, Span::new(bounds[self.end], end)).ok_or_else(broken)?;
-                end
-            }
-            None => bounds[self.end],
-        };
-        let mut edits = vec![
-            self.selection
-                .edit(Span::new(bounds[self.first], cut_end), self.join(bounds[self.first], cut_end)),
+        let new = free_name(self.selection.database, self.selection.file, &name.text).ok_or_else(broken)?;
+        let bounds = self.bounds();
+        let cut = Span::new(bounds[self.first], bounds[self.end]);
+        let added = self.entity(&new, cut).ok_or_else(broken)?;
+        let edits = vec![
+            self.selection.edit(cut, self.call(&new, cut)),
             self.selection.edit(Span::at(self.entity_end(body)), added),
         ];
-        let is_before = self.first == 0;
-        let names: Vec<&str> = [Some(new.as_str()), rest.as_deref()].into_iter().flatten().collect();
-        for reference in database.references(file, EntityKind::Movement, &name.text) {
-            edits.push(list_movements(database, reference, &names, is_before));
-        }
         Ok((new, edits))
     }
 
-    /// The replacement for removed text: a line break if the text before it may end in a line comment.
-    fn join(&self, start: u32, end: u32) -> &'static str {
-        let begins = |at| self.selection.text(Span::new(at, at + 1)).starts_with(['\n', '\r']);
-        if begins(start) && !begins(end) {
-            self.selection.database.line_ending(self.selection.file)
-        } else {
+    /// What does the new movement, in the place of its actions.
+    fn call(&self, new: &str, cut: Span) -> String {
+        let removed = self.selection.text(cut);
+        let blank = &removed[..removed.len() - removed.trim_start().len()];
+        let after = self.selection.text(Span::new(cut.end, self.block.end));
+        // Nothing else would separate the name from the next word.
+        let gap = if after.starts_with(|next: char| next.is_whitespace() || "}/".contains(next)) {
             ""
-        }
+        } else {
+            " "
+        };
+        let before = if blank.is_empty() { " " } else { blank };
+        let word = TokenKind::Do.spelling().unwrap_or_default();
+        format!("{before}{word} {new}{gap}")
     }
 
     /// The offsets that separate the actions: before the first, between two, after the last. Text on the line of an action
     /// or on the lines before it belongs to the action.
-    fn bounds(&self, body: Span) -> Vec<u32> {
-        let actions = &self.movement.actions;
+    fn bounds(&self) -> Vec<u32> {
+        let (actions, body) = (self.actions, self.block);
         let ends = std::iter::once(body.start + 1).chain(actions.iter().map(|action| action.span.end));
         let starts = actions.iter().map(|action| action.span.start).chain([body.end.saturating_sub(1)]);
         let mut bounds: Vec<u32> = ends
@@ -150,39 +147,17 @@ impl Parts<'_> {
     }
 }
 
-/// Names for the parts of a movement that are unused in all files that can list the movement.
-fn free_names(database: &Database, file: FileId, name: &SmolStr) -> impl Iterator<Item = SmolStr> {
+/// A name for a part of a movement that is unused in all files that can see it.
+fn free_name(database: &Database, file: FileId, name: &SmolStr) -> Option<SmolStr> {
     let files: Vec<FileId> = std::iter::once(file).chain(database.importing(file)).collect();
-    let is_taken = move |name: &SmolStr| {
+    let is_taken = |name: &SmolStr| {
         files.iter().any(|file| {
             !database.candidates(*file, EntityKind::Movement, name).is_empty()
                 || !database.users(*file, EntityKind::Movement, name).is_empty()
                 || database.may_hide(*file, name)
         })
     };
-    (2_u32..).map(move |number| format_smolstr!("{name}_{number}")).filter(move |name| !is_taken(name))
-}
-
-/// The edit that lists more movements before or after a listed one.
-fn list_movements(database: &Database, reference: FileSpan, names: &[&str], is_before: bool) -> Edit {
-    let separator = if has_commas(database, reference) { ", " } else { " " };
-    let names = names.join(separator);
-    let (at, text) = if is_before {
-        let gap = if is_separated(database, reference) { "" } else { " " };
-        (reference.span.start, format!("{gap}{names}{separator}"))
-    } else {
-        (reference.span.end, format!("{separator}{names}"))
-    };
-    Edit { file: reference.file, span: Span::at(at), text }
-}
-
-fn has_commas(database: &Database, reference: FileSpan) -> bool {
-    let Some(entity) = database.entity_at(reference.file, reference.span.start) else { return false };
-    let Some(Entity::Environment(environment)) = &entity.parse.entity else { return false };
-    let list = environment.movements.as_ref();
-    list.is_some_and(|list| {
-        database.slice(reference.file, list.span.shifted(entity.span.start)).contains(',')
-    })
+    (2..u32::MAX).map(|number| format_smolstr!("{name}_{number}")).find(|name| !is_taken(name))
 }
 
 #[cfg(test)]
@@ -213,20 +188,17 @@ mod tests {
                     |   // back
                     |   move 1 meters at 9.0
                 Extract: extract into new movement `tour_2`
+                    |   do tour_2
+                    | 
+                    |   // back
+                    |   move 1 meters
+                    |   // done
                     | }
                     | 
                     | movement tour_2 of rover {
                     |   // around
                     |   turn left // ho
                     |   turn left
-                    | }
-                    | 
-                    | movement tour_3 of rover {
-                    |   // back
-                    |   move 1 meters
-                    |   // done
-                    | }
-                    | environment yard has { rover } robots with { tour tour_2 tour_3 } moves
             "#]],
         );
     }
@@ -249,14 +221,13 @@ mod tests {
                     |   turn left
                     |   move 1 meters at 9.0
                 Extract: extract into new movement `tour_2`
+                    |   do tour_2
                     |   move 1 meters
                     | }
                     | 
                     | movement tour_2 of rover {
                     |   move 4 meters
                     |   turn left
-                    | }
-                    | environment yard has { rover } robots with { tour_2 tour } moves
             "#]],
         );
         check(
@@ -273,13 +244,11 @@ mod tests {
                     |   move 4 meters at 9.0
                     |   turn left move 1 meters at 9.0
                 Extract: extract into new movement `tour_2`
-                    |   turn left
+                    |   turn left do tour_2
                     | }
                     | 
                     | movement tour_2 of rover {
                     |   move 1 meters
-                    | }
-                    | environment yard has { rover } robots with { tour tour_2 } moves
             "#]],
         );
     }
@@ -302,6 +271,40 @@ mod tests {
             &expect![[r#"
                 Rewrite: convert to centimeters
                     |   move 400 centimeters at 10
+            "#]],
+        );
+    }
+
+    #[test]
+    fn from_a_block() {
+        check(
+            "  repeat 4 times {\n    move 1 meters\n    $0turn left\n    wait 2 seconds$0\n    slam\n  }",
+            &expect![[r#"
+                Rewrite: convert all moves of `tour` to centimeters
+                    |     move 100 centimeters
+                Rewrite: make the default speed explicit in all moves of `tour`
+                    |     move 1 meters at 9.0
+                Extract: extract into new movement `tour_2`
+                    |     do tour_2
+                    |     slam
+                    |   }
+                    | }
+                    | 
+                    | movement tour_2 of rover {
+                    |   turn left
+                    |   wait 2 seconds
+            "#]],
+        );
+        check(
+            "  repeat 4 times {$0 turn left$0}\n  if { front } clear { slam } else { wait 1 seconds }",
+            &expect![[r#"
+                Extract: extract into new movement `tour_2`
+                    |   repeat 4 times { do tour_2}
+                    |   if { front } clear { slam } else { wait 1 seconds }
+                    | }
+                    | 
+                    | movement tour_2 of rover {
+                    |   turn left
             "#]],
         );
     }

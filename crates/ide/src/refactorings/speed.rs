@@ -13,7 +13,7 @@ pub(super) fn refactorings(selection: &Selection<'_>) -> Vec<Refactoring> {
     let Some(movement) = selection.movement() else { return Vec::new() };
     let name = movement.name.as_ref().map_or("", |name| name.text.as_str());
     let selected = selection.selected_moves();
-    let all: Vec<&Move> = moves(&movement.actions).collect();
+    let all: Vec<&Move> = moves(movement.all_actions()).collect();
     let offers = |title: &str, kind, edits: fn(&Selection<'_>, &[&Move]) -> Vec<Edit>| {
         let (here, everywhere) = (edits(selection, &selected), edits(selection, &all));
         let others = everywhere.len() > here.len();
@@ -36,8 +36,7 @@ fn omit_default(selection: &Selection<'_>, moves: &[&Move]) -> Vec<Edit> {
 /// Adds the default speed to moves without one.
 fn make_explicit(selection: &Selection<'_>, moves: &[&Move]) -> Vec<Edit> {
     let silent = moves.iter().filter(|step| step.speed.is_none());
-    let at_default = format!(" at {}", default_speed());
-    silent.filter_map(|step| Some(selection.edit(Span::at(step.unit?.1.end), at_default.clone()))).collect()
+    silent.filter_map(|step| with_speed(selection, step, &default_speed())).collect()
 }
 
 /// Uses the speed of the selected move for all others. This changes the duration of the movement.
@@ -52,7 +51,7 @@ fn share(selection: &Selection<'_>, name: &str, selected: &[&Move], all: &[&Move
             (!same(number.value, value)).then(|| selection.edit(number.span, text.clone()))
         }
         None if same(Some(RIM_SPEED * 100.0), value) => None,
-        None => Some(selection.edit(Span::at(other.unit?.1.end), format!(" at {text}"))),
+        None => with_speed(selection, other, &text),
     };
     let edits: Vec<Edit> = all.iter().filter_map(edit).collect();
     let title = format!("use {text} cm/s for all moves of `{name}`");
@@ -76,14 +75,28 @@ fn default_speed() -> String {
     format!("{:.1}", RIM_SPEED * 100.0)
 }
 
+/// The edit that adds a speed to a move without one: after its distance, or before its `until`.
+fn with_speed(selection: &Selection<'_>, step: &Move, speed: &str) -> Option<Edit> {
+    Some(match step.unit {
+        Some((_, unit)) => selection.edit(Span::at(unit.end), format!(" at {speed}")),
+        None => selection.edit(Span::at(step.until.as_ref()?.span.start), format!("at {speed} ")),
+    })
+}
+
 /// The edit that removes `at 9.0` and the white space before it; `None` if it contains a comment.
 fn without_speed(selection: &Selection<'_>, step: &Move) -> Option<Edit> {
-    let (unit, clause) = (step.unit?.1, step.speed.as_ref()?.span);
+    let clause = step.speed.as_ref()?.span;
     let is_blank = |text: String| text.trim().is_empty();
-    let (from, to) = (
-        if is_blank(selection.text(Span::new(unit.end, clause.start))) { unit.end } else { clause.start },
-        clause.end,
-    );
+    let (from, to) = match step.unit {
+        Some((_, unit)) if is_blank(selection.text(Span::new(unit.end, clause.start))) => {
+            (unit.end, clause.end)
+        }
+        Some(_) => (clause.start, clause.end),
+        None => {
+            let after = Span::new(clause.end, step.until.as_ref()?.span.start);
+            (clause.start, if is_blank(selection.text(after)) { after.end } else { clause.end })
+        }
+    };
     if selection.text(clause).contains('/') {
         return None;
     }

@@ -10,7 +10,7 @@ use super::{Refactoring, RefactoringKind, Selection};
 pub(super) fn convert(selection: &Selection<'_>) -> Vec<Refactoring> {
     let Some(movement) = selection.movement() else { return Vec::new() };
     let selected = selection.selected_moves();
-    let all: Vec<&Move> = moves(&movement.actions).collect();
+    let all: Vec<&Move> = moves(movement.all_actions()).collect();
     let name = movement.name.as_ref().map_or("", |name| name.text.as_str());
     let mut offers = Vec::new();
     for unit in [Unit::Centimeters, Unit::Meters] {

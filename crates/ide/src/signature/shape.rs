@@ -11,7 +11,10 @@ const WIDTH: usize = 48;
 const MORE: &str = "...";
 
 /// The keywords that begin a clause.
-const BEGINNINGS: [&str; 3] = ["type", "with", "has"];
+const BEGINNINGS: [&str; 9] = ["type", "with", "has", "radius", "at", "in", "until", "within", "else"];
+
+/// The block of a statement, a clause as well.
+const BLOCK: &str = "{ ACTIONS }";
 
 /// The clauses around the current part that fit on a line.
 pub(super) fn window(signature: &Signature) -> Signature {
@@ -51,11 +54,13 @@ fn current_start(signature: &Signature) -> u32 {
 fn clauses(label: &str) -> Vec<Span> {
     let mut clauses: Vec<Span> = Vec::new();
     let mut start = 0;
+    let is_block = |at: u32| label.get(at as usize..).is_some_and(|rest| rest.starts_with(BLOCK));
     for word in label.split(' ') {
         let span = Span::of(word).shifted(start);
         start = span.end + 1;
+        let begins = BEGINNINGS.contains(&word.trim_start_matches('[')) || is_block(span.start);
         match clauses.last_mut() {
-            Some(last) if !BEGINNINGS.contains(&word.trim_start_matches('[')) => *last = last.to(span),
+            Some(last) if !begins => *last = last.to(span),
             _ => clauses.push(span),
         }
     }

@@ -155,7 +155,7 @@ impl Offers {
             false => format!("{} = $0", key.name),
         };
         let default = || format!("default: {}", key.default.replace('`', ""));
-        let detail = if key.required { "required".to_owned() } else { default() };
+        let detail = key.requirement().map_or_else(default, |required| required.replace('`', ""));
         Completion { detail, ..self.offer(key.name, insert, key.markdown()) }
     }
 
@@ -245,6 +245,7 @@ mod tests {
             "output = 'a'\n$0\n[inlay-hints]\npose = true",
             &expect![[r#"
                 target | default: "coppeliasim" | "target = \"$0\""
+                edition | default: "current" | "edition = \"$0\""
                 generate-on-save | default: false | "generate-on-save = $0"
                 write-runtime | default: true | "write-runtime = $0"
                 default-speed | default: 9.0 | "default-speed = $0"
@@ -512,6 +513,8 @@ mod tests {
             &expect![[r#"
                 size | required | "size = $0"
                 heading | default: 0 | "heading = $0"
+                path | default: it does not move | "path = $0"
+                repeat | default: false | "repeat = $0"
                 name | default: the table's name and a number: box_1 | "name = \"$0\""
                 [world] | a table | "[world]\n$0"
                 [noise] | a table | "[noise]\n$0"

@@ -89,7 +89,7 @@ fn accepted(typed: &Typed, program: &str) -> Vec<(usize, usize)> {
         .filter_map(|(rank, item)| {
             let start = item.replace.start as usize;
             let (end, stops) = if item.is_snippet {
-                matched(&item.insert, program, start)?
+                matched(&indented(&item.insert, program, start), program, start)?
             } else {
                 (program[start..].starts_with(&item.insert).then_some(start + item.insert.len())?, Vec::new())
             };
@@ -98,6 +98,13 @@ fn accepted(typed: &Typed, program: &str) -> Vec<(usize, usize)> {
             (is_whole && end > typed.length).then(|| (end, open + rank + 1 + filled_in(&stops, ends_line)))
         })
         .collect()
+}
+
+/// A snippet with its lines indented as the line that it is accepted in, as editors do.
+fn indented(snippet: &str, program: &str, start: usize) -> String {
+    let line = &program[program[..start].rfind('\n').map_or(0, |end| end + 1)..];
+    let blank = &line[..line.len() - line.trim_start_matches(' ').len()];
+    snippet.replace('\n', &format!("\n{blank}"))
 }
 
 /// The keys to fill in the tab stops: matching defaults stay, everything else is typed.

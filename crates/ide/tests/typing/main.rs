@@ -55,7 +55,7 @@ fn in_folder(folder: &str) -> Vec<Program> {
 
 fn generated() -> Vec<Program> {
     let recipe =
-        Recipe { lines: 8, mistakes: false, odd_layout: false, older_spellings: false, imports: false };
+        Recipe { lines: 8, mistakes: false, odd_layout: false, older_spellings: false, ..Recipe::default() };
     let program = |seed: u64| Program {
         name: format!("generated_{seed:02}"),
         text: pydslrep_syntax::format(&recipe.seeded(seed)),

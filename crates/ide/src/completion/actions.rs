@@ -1,0 +1,224 @@
+//! Snippets of actions and of their clauses. Their placeholders hold what the last ones like them have
+//! ([`super::defaults`]).
+
+use pydslrep_syntax::TokenKind;
+use pydslrep_syntax::ast::{Direction, SensorState, Unit};
+
+use super::Completion;
+use super::context::CursorContext;
+use super::defaults::{Defaults, LastTurn};
+use super::names;
+use super::snippets::{Snippet, completions, tab_stop};
+
+/// A block with the last tab stop in it.
+const BLOCK: &str = "{\n  $0\n}";
+
+/// Complete actions, those like the last action of their kind first.
+pub(super) fn actions(context: &CursorContext<'_>) -> Vec<Completion> {
+    let defaults = Defaults::for_part(context);
+    let (moves, turns) = (moves(&defaults), turns(&defaults));
+    // Moves and turns usually alternate.
+    let moves_and_turns = if defaults.follows_a_move() { [turns, moves] } else { [moves, turns] };
+    let others = [repeats(&defaults), waits(&defaults), choices(&defaults), calls(context)];
+    completions(context, moves_and_turns.into_iter().chain(others).flatten().collect())
+}
+
+/// `{ front } detect`, for the robot's sensors; `None` if it has none.
+fn condition(defaults: &Defaults<'_>, stop: u32, state: SensorState) -> Option<String> {
+    let sensors = defaults.sensors_to_wait_for();
+    let list = tab_stop(stop, &sensors.join(", "));
+    (!sensors.is_empty()).then(|| format!("{{ {list} }} {}", state_word(state)))
+}
+
+fn state_word(state: SensorState) -> &'static str {
+    let token = match state {
+        SensorState::Clear => TokenKind::Clear,
+        SensorState::Detect => TokenKind::Detect,
+    };
+    token.spelling().unwrap_or_default()
+}
+
+fn repeats(defaults: &Defaults<'_>) -> Vec<Snippet> {
+    let count = defaults.last_count();
+    let times = Snippet::new(
+        "repeat … times { … }",
+        "a number of times",
+        format!("repeat ${{1:{count}}} times {BLOCK}"),
+    );
+    let until = condition(defaults, 1, SensorState::Detect).map(|condition| {
+        let label = "repeat until … detect { … }";
+        Snippet::new(label, "until a sensor detects an obstacle", format!("repeat until {condition} {BLOCK}"))
+    });
+    std::iter::once(times).chain(until).collect()
+}
+
+fn waits(defaults: &Defaults<'_>) -> Vec<Snippet> {
+    let seconds = defaults.last_time();
+    let timed = Snippet::new("wait … seconds", "stands still", format!("wait ${{1:{seconds}}} seconds"));
+    let until = condition(defaults, 1, SensorState::Clear).map(|condition| {
+        let detail = "stands still until no sensor detects an obstacle";
+        Snippet::new("wait until … clear", detail, format!("wait until {condition}"))
+    });
+    std::iter::once(timed).chain(until).collect()
+}
+
+fn choices(defaults: &Defaults<'_>) -> Vec<Snippet> {
+    let choice = condition(defaults, 1, SensorState::Detect).map(|condition| {
+        let label = "if … detect { … }";
+        Snippet::new(label, "only if a sensor detects an obstacle", format!("if {condition} {BLOCK}"))
+    });
+    choice.into_iter().collect()
+}
+
+/// The movement that is done, if there is one to do.
+fn calls(context: &CursorContext<'_>) -> Vec<Snippet> {
+    // To look at all movements takes time.
+    if !"do".starts_with(&context.typed) {
+        return Vec::new();
+    }
+    let first = names::to_do(context).into_iter().next();
+    let call = first.map(|name| {
+        let insert = format!("do ${{1:{}}}", pydslrep_syntax::escape(&name));
+        Snippet::new("do …", "another movement of the same robot", insert)
+    });
+    call.into_iter().collect()
+}
+
+fn moves(defaults: &Defaults<'_>) -> Vec<Snippet> {
+    let last = defaults.last_move();
+    let mut shapes =
+        [(Unit::Meters, false), (Unit::Centimeters, false), (Unit::Meters, true), (Unit::Centimeters, true)];
+    shapes.sort_by_key(|(unit, with_speed)| (*unit != last.unit, *with_speed != last.speed.is_some()));
+    let speed = defaults.speed();
+    let snippet = |(unit, with_speed): (Unit, bool)| {
+        let (word, other) = match unit {
+            Unit::Meters => (TokenKind::Meters, "1.0"),
+            Unit::Centimeters => (TokenKind::Centimeters, "50"),
+        };
+        let word = word.spelling().unwrap_or_default();
+        let distance = last.distance.as_deref().filter(|_| unit == last.unit).unwrap_or(other);
+        let insert = format!("move ${{1:{distance}}} {word}");
+        if with_speed {
+            let label = format!("move … {word} at …");
+            Snippet::new(&label, "straight ahead at this speed (cm/s)", format!("{insert} at ${{2:{speed}}}"))
+        } else {
+            Snippet::new(&format!("move … {word}"), "straight ahead", insert)
+        }
+    };
+    let mut snippets: Vec<Snippet> = shapes.map(snippet).into();
+    if let Some(condition) = condition(defaults, 1, SensorState::Detect) {
+        let detail = "straight ahead until a sensor detects an obstacle";
+        let until = Snippet::new("move until … detect", detail, format!("move until {condition}"));
+        snippets.insert(if last.is_until { 0 } else { snippets.len() }, until);
+    }
+    snippets
+}
+
+fn turns(defaults: &Defaults<'_>) -> Vec<Snippet> {
+    let last = defaults.last_turn();
+    let sensors = defaults.sensors_to_wait_for();
+    let shapes = [Direction::Left, Direction::Right]
+        .map(|direction| [(direction, false), (direction, true)])
+        .into_iter()
+        .flatten();
+    let mut shapes: Vec<(Direction, bool)> = shapes.collect();
+    let is_unlike = |(direction, with_angle): &(_, bool)| {
+        (*with_angle != last.angle.is_some(), *direction != last.direction)
+    };
+    shapes.sort_by_key(is_unlike);
+    let angle = last.angle.as_deref().unwrap_or("90");
+    let snippet = |(direction, with_angle)| {
+        let word = spelling(direction);
+        if with_angle {
+            let label = format!("turn {word} …");
+            Snippet::new(&label, "in place by this angle (degrees)", format!("turn {word} ${{1:{angle}}}"))
+        } else {
+            Snippet::new(&format!("turn {word}"), "in place by 90 degrees", format!("turn {word}"))
+        }
+    };
+    let mut snippets: Vec<Snippet> = shapes.into_iter().map(snippet).collect();
+    let arcs = arcs(defaults, &last, angle);
+    let place = if last.is_on_circle { 0 } else { snippets.len() };
+    snippets.splice(place..place, arcs);
+    if sensors.is_empty() {
+        return snippets;
+    }
+    let word = spelling(last.direction);
+    let until = Snippet::new(
+        &format!("turn {word} until …"),
+        "in place until no sensor detects an obstacle",
+        format!("turn {word} until {{ {} }}", tab_stop(1, &sensors.join(", "))),
+    );
+    snippets.insert(if last.is_until { 0 } else { snippets.len() }, until);
+    snippets
+}
+
+/// On a circle, first to the side of the last turn.
+fn arcs(defaults: &Defaults<'_>, last: &LastTurn, angle: &str) -> Vec<Snippet> {
+    let other = match last.direction {
+        Direction::Left => Direction::Right,
+        Direction::Right => Direction::Left,
+    };
+    let (radius, unit) = defaults.last_radius();
+    let arc = |direction| {
+        let word = spelling(direction);
+        let insert = format!("turn {word} ${{1:{angle}}} with radius ${{2:{radius}}} {unit}");
+        Snippet::new(&format!("turn {word} … with radius …"), "on a circle", insert)
+    };
+    [last.direction, other].map(arc).into()
+}
+
+fn spelling(direction: Direction) -> &'static str {
+    let token = match direction {
+        Direction::Left => TokenKind::Left,
+        Direction::Right => TokenKind::Right,
+    };
+    token.spelling().unwrap_or_default()
+}
+
+/// The optional speed clause of a `move` or `turn`.
+pub(super) fn speed(context: &CursorContext<'_>) -> Vec<Completion> {
+    let insert = format!("at ${{1:{}}}", Defaults::for_part(context).speed());
+    completions(context, vec![Snippet::new("at …", "a speed (cm/s)", insert)])
+}
+
+/// The circle of a `turn`.
+pub(super) fn circle(context: &CursorContext<'_>) -> Vec<Completion> {
+    let (radius, unit) = Defaults::for_part(context).last_radius();
+    let insert = format!("with radius ${{1:{radius}}} {unit}");
+    completions(context, vec![Snippet::new("with radius …", "on a circle", insert)])
+}
+
+/// What ends an action or a `repeat`.
+pub(super) fn until(context: &CursorContext<'_>) -> Vec<Completion> {
+    let defaults = Defaults::for_part(context);
+    let snippet = |state| {
+        let insert = format!("until {}", condition(&defaults, 1, state)?);
+        let (label, detail) = match state {
+            SensorState::Clear => ("until … clear", "until no sensor detects an obstacle"),
+            SensorState::Detect => ("until … detect", "until a sensor detects an obstacle"),
+        };
+        Some(Snippet::new(label, detail, insert))
+    };
+    let mut states = [SensorState::Detect, SensorState::Clear];
+    // A robot waits, and turns, until the way is free.
+    if context.statement_begins_with(&[TokenKind::Wait, TokenKind::Turn]) {
+        states.reverse();
+    }
+    completions(context, states.into_iter().filter_map(snippet).collect())
+}
+
+/// The rest of a `repeat`, if its block is not there yet.
+pub(super) fn rounds(context: &CursorContext<'_>) -> Vec<Completion> {
+    if context.next_token() == Some(TokenKind::OpenBrace) {
+        return Vec::new();
+    }
+    completions(context, vec![Snippet::new("times { … }", "what is repeated", format!("times {BLOCK}"))])
+}
+
+/// What is done if the condition does not hold.
+pub(super) fn otherwise(context: &CursorContext<'_>) -> Vec<Completion> {
+    let snippet =
+        Snippet::new("else { … }", "what is done if the condition does not hold", format!("else {BLOCK}"));
+    completions(context, vec![snippet])
+}
