@@ -96,6 +96,7 @@ impl Workspace {
         document.settings = Arc::clone(settings);
         if let Some(file) = document.file {
             self.database.set_target(file, settings.target);
+            self.database.set_edition(file, settings.edition);
         }
     }
 

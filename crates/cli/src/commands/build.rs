@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use pydslrep_analysis::FileId;
-use pydslrep_config::{Config, Target};
+use pydslrep_config::{Config, Edition, Target};
 use pydslrep_output::{
     Changed, RuntimeFolder, check_inside, check_script, has_runtime, write_runtime, write_script,
 };
@@ -17,7 +17,7 @@ use crate::failure::Failure;
 use crate::help::Help;
 use crate::inputs::Inputs;
 use crate::inputs::{lines, program};
-use crate::options::target_parser;
+use crate::options::{edition_parser, target_parser};
 use crate::report::output;
 
 const HELP: Help = Help {
@@ -50,6 +50,9 @@ pub(crate) struct Arguments {
     /// The simulator that the scripts are for [default: that of pydslrep.toml, else coppeliasim]
     #[arg(long, value_name = "TARGET", value_parser = target_parser())]
     target: Option<Target>,
+    /// Which statements a program may have [default: that of pydslrep.toml, else current]
+    #[arg(long, value_name = "EDITION", value_parser = edition_parser())]
+    edition: Option<Edition>,
     /// Only the environment of this name
     #[arg(long, value_name = "NAME")]
     environment: Option<String>,
@@ -81,7 +84,8 @@ struct Script {
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let here = [PathBuf::from(".")];
     let paths = if arguments.paths.is_empty() { &here } else { arguments.paths.as_slice() };
-    let (inputs, failures) = Inputs::open(paths, &Config::of_target(arguments.target));
+    let options = Config::of_target(arguments.target).merged_over(Config::of_edition(arguments.edition));
+    let (inputs, failures) = Inputs::open(paths, &options);
     inputs.check_settings()?;
     let mut scripts = Vec::new();
     let (mut has_errors, mut found) = (false, false);

@@ -7,14 +7,14 @@ use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
 use pydslrep_analysis::{Diagnostic, Severity};
-use pydslrep_config::Config;
+use pydslrep_config::{Config, Edition};
 
 use crate::failure::Failure;
 use crate::fixing::{self, Fixed};
 use crate::help::Help;
 use crate::inputs::scenes::{self, SceneProblem};
 use crate::inputs::{Inputs, count_files};
-use crate::options;
+use crate::options::{self, edition_parser};
 use crate::report::output::{self, count};
 use crate::report::{github, json, render, sarif, summary};
 
@@ -54,6 +54,9 @@ pub(crate) struct Arguments {
     /// Severity of a diagnostic: off, hint, information, warning or error; may be repeated
     #[arg(long, value_name = "CODE=LEVEL")]
     severity: Vec<String>,
+    /// Which statements a program may have [default: that of pydslrep.toml, else current]
+    #[arg(long, value_name = "EDITION", value_parser = edition_parser())]
+    edition: Option<Edition>,
     /// Exit with code 1 for these as well
     #[arg(long, value_enum, value_name = "WHAT")]
     deny: Option<Deny>,
@@ -83,7 +86,8 @@ pub(crate) enum Deny {
 /// # Errors
 /// If the arguments do not fit together, or nothing can be printed.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let options = Config::of_severities(options::severities(&arguments.severity)?);
+    let severities = Config::of_severities(options::severities(&arguments.severity)?);
+    let options = severities.merged_over(Config::of_edition(arguments.edition));
     let here = [PathBuf::from(".")];
     let paths = if arguments.paths.is_empty() { &here } else { arguments.paths.as_slice() };
     if arguments.watch {

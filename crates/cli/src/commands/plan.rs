@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use clap::Args;
 use comfy_table::{ColumnConstraint, ContentArrangement};
 use pydslrep_analysis::environment::Environment;
-use pydslrep_config::Config;
-use pydslrep_kinematics::{ActionIndex, Leg, Pose, RobotPath};
+use pydslrep_config::{Config, Edition};
+use pydslrep_kinematics::{ActionIndex, Leg, Place, Pose, RobotPath};
 use pydslrep_output::check_outputs;
 use pydslrep_scene::{Collision, Scene, Thing, collisions};
 use serde::Serialize;
@@ -16,6 +16,7 @@ use crate::failure::Failure;
 use crate::help::Help;
 use crate::inputs::Inputs;
 use crate::inputs::program;
+use crate::options::edition_parser;
 use crate::report::numbers::{fixed, heading};
 use crate::report::output;
 use crate::run::pictures::Pictures;
@@ -44,6 +45,9 @@ pub(crate) struct Arguments {
     /// Print JSON instead of a table
     #[arg(long)]
     json: bool,
+    /// Which statements a program may have [default: that of pydslrep.toml, else current]
+    #[arg(long, value_name = "EDITION", value_parser = edition_parser())]
+    edition: Option<Edition>,
     #[command(flatten)]
     pictures: Pictures,
     /// The scene to plan in [default: ENVIRONMENT.scene.toml next to the program, if it exists]
@@ -56,7 +60,7 @@ pub(crate) struct Arguments {
 /// # Errors
 /// If the program cannot be read or nothing can be written.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let (mut inputs, file) = Inputs::open_one(&arguments.program, &Config::default())?;
+    let (mut inputs, file) = Inputs::open_one(&arguments.program, &Config::of_edition(arguments.edition))?;
     let ids = program::environments(&inputs, file, arguments.environment.as_deref());
     if ids.is_empty() || arguments.pictures.are_wanted() || arguments.scene.is_some() {
         // A picture shows one environment, as a scene is of one; and where there is none, this says which there are.
@@ -152,8 +156,8 @@ fn rows(planned: &Planned, robot: &str, path: &RobotPath) -> Vec<Row> {
         |what: String| [what, String::new(), String::new(), String::new(), String::new(), String::new()];
     let mut rows = vec![row(robot.to_owned(), fixed(0.0, 2), path.start, String::new())];
     let mut run = None;
-    let mut begin = |rows: &mut Vec<Row>, index: ActionIndex| {
-        let (movement, action) = planned.words(index);
+    let mut begin = |rows: &mut Vec<Row>, index: ActionIndex, place: &Place| {
+        let (movement, action) = planned.words(index, place);
         if run.replace((index.group, index.run)) != Some((index.group, index.run)) {
             rows.push(title(format!("  {movement}")));
         }
@@ -167,12 +171,12 @@ fn rows(planned: &Planned, robot: &str, path: &RobotPath) -> Vec<Row> {
             rows.push(row("  (waits for others)".to_owned(), fixed(start, 2), leg.from, String::new()));
         }
         ended = leg.end();
-        let action = begin(&mut rows, leg.index);
+        let action = begin(&mut rows, leg.index, &leg.place);
         let rates: Vec<String> = leg.rates.iter().map(|rate| format!("{:>5}", fixed(*rate, 2))).collect();
         rows.push(row(format!("    {action}"), time(leg.end()), leg.to, rates.join(" ")));
     }
     if let Some(index) = path.unknown_after {
-        let action = begin(&mut rows, index);
+        let action = begin(&mut rows, index, &path.unknown_place);
         let [at, x, y, heading] = ["?"; 4].map(str::to_owned);
         rows.push([format!("    {action}"), at, x, y, heading, String::new()]);
     }
@@ -181,11 +185,11 @@ fn rows(planned: &Planned, robot: &str, path: &RobotPath) -> Vec<Row> {
 
 /// A collision in a sentence.
 fn meeting(planned: &Planned, collision: &Collision) -> String {
-    let (movement, action) = planned.words(collision.action);
+    let (movement, action) = planned.words(collision.action, &collision.place);
     let time = collision.time.map_or_else(String::new, |time| format!(" after {} s", fixed(time, 2)));
     let (x, y) = (fixed(collision.pose.x, 3), fixed(collision.pose.y, 3));
     let doing = collision.other_action.map_or_else(String::new, |index| {
-        let (movement, action) = planned.words(index);
+        let (movement, action) = planned.words(index, &collision.other_place);
         format!(" (`{action}` of `{movement}`)")
     });
     format!(
@@ -242,15 +246,38 @@ struct JsonRobot<'a> {
     name: &'a str,
     poses: Vec<JsonPose<'a>>,
     unknown_after: Option<JsonAction<'a>>,
+    /// Whether more actions are planned than are listed.
+    #[serde(skip_serializing_if = "is_false")]
+    truncated: bool,
 }
 
-/// The index of an action.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
+fn is_false(value: &bool) -> bool {
+    !value
+}
+
+/// Where an action is.
 #[derive(Serialize)]
 struct JsonAction<'a> {
     movement: &'a str,
     /// Among all movements that the environment runs, from 1, in the order it lists them.
     run: usize,
-    /// In the movement, from 1.
+    /// The number of its statement in its movement, from 1: the listed one, or the last that is done.
+    action: usize,
+    /// In the file of that movement, from 1.
+    line: u32,
+    /// Of the repetitions that it is in, from 1, the outermost first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    rounds: Vec<u32>,
+    /// The statements that lead to it by `do`, the outermost first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    calls: Vec<JsonCall<'a>>,
+}
+
+/// A statement that does another movement.
+#[derive(Serialize)]
+struct JsonCall<'a> {
+    movement: &'a str,
     action: usize,
 }
 
@@ -276,7 +303,8 @@ fn json_plan(planned: &Planned) -> JsonPlan<'_> {
     let robots = robots.map(|(robot, path)| JsonRobot {
         name: &robot.name,
         poses: path.legs.iter().map(|leg| json_pose(planned, leg)).collect(),
-        unknown_after: path.unknown_after.map(|index| json_action(planned, index)),
+        unknown_after: path.unknown_after.map(|index| json_action(planned, index, &path.unknown_place)),
+        truncated: path.truncated,
     });
     JsonPlan {
         environment: &planned.environment.name,
@@ -296,21 +324,26 @@ fn json_collision<'a>(planned: &'a Planned, collision: &Collision) -> JsonCollis
         Thing::Robot(_) => JsonThing::Robot(name),
     };
     let Pose { x, y, theta } = collision.pose;
-    let action = json_action(planned, collision.action);
+    let action = json_action(planned, collision.action, &collision.place);
     let robot = thing(&planned.scene, Thing::Robot(collision.robot));
     JsonCollision { robot, action, t: collision.time, x, y, theta, with }
 }
 
 fn json_pose<'a>(planned: &'a Planned, leg: &Leg) -> JsonPose<'a> {
-    let action = json_action(planned, leg.index);
+    let action = json_action(planned, leg.index, &leg.place);
     JsonPose { action, t: leg.end(), x: leg.to.x, y: leg.to.y, theta: leg.to.theta }
 }
 
-fn json_action(planned: &Planned, index: ActionIndex) -> JsonAction<'_> {
+fn json_action<'a>(planned: &'a Planned, index: ActionIndex, place: &Place) -> JsonAction<'a> {
     let before = planned.environment.schedule.iter().take(index.group).map(Vec::len).sum::<usize>();
+    let found = planned.environment.place(index, place);
+    let calls = found.iter().flat_map(|found| &found.calls);
     JsonAction {
-        movement: planned.movement(index).map_or("", |movement| &movement.name),
+        movement: found.as_ref().map_or("", |found| found.movement),
         run: before + index.run + 1,
         action: index.action + 1,
+        line: found.as_ref().map_or(0, |found| found.source.line),
+        calls: calls.map(|call| JsonCall { movement: call.movement, action: call.number }).collect(),
+        rounds: found.map(|found| found.rounds).unwrap_or_default(),
     }
 }

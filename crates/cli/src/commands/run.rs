@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use clap::Args;
 use pydslrep_analysis::environment::Robot;
-use pydslrep_config::{Config, Target};
+use pydslrep_config::{Config, Edition, Target};
 use pydslrep_output::{Kind, TemporaryFolder, check_outputs, provide_runtime, write_output};
 use pydslrep_scene::Scene;
 use pydslrep_script::{file_name, generate};
@@ -18,7 +18,7 @@ use pydslrep_trace::{FailureClass, FileKind, Map, RunEvent, RunFailure};
 use crate::failure::Failure;
 use crate::help::Help;
 use crate::inputs::{Inputs, paths, program};
-use crate::options::{above_zero, engine_parser, target_parser};
+use crate::options::{above_zero, edition_parser, engine_parser, target_parser};
 use crate::report::output;
 use crate::run::driven::Driven;
 use crate::run::interrupt::{self, Interrupts};
@@ -30,7 +30,7 @@ use crate::run::progress::Progress;
 use crate::run::python::{self, Packages, Watcher};
 use crate::run::reporter::{self, Reporter, is_standard_output};
 use crate::run::script::{Listener, Script, drive};
-use crate::run::{exploring, script, vrep_client};
+use crate::run::{exploring, script, strikes, vrep_client};
 
 const HELP: Help = Help {
     examples: &[
@@ -76,6 +76,9 @@ pub(crate) struct Arguments {
     /// The simulator that the script is for [default: that of pydslrep.toml, else coppeliasim]
     #[arg(long, value_name = "TARGET", value_parser = target_parser())]
     target: Option<Target>,
+    /// Which statements a program may have [default: that of pydslrep.toml, else current]
+    #[arg(long, value_name = "EDITION", value_parser = edition_parser())]
+    edition: Option<Edition>,
     #[command(flatten)]
     pictures: Pictures,
     /// Write every step to a file, as JSON lines
@@ -154,7 +157,8 @@ fn perform(arguments: &Arguments, reporter: &mut Reporter) -> Result<ExitCode, F
     if events.is_some_and(is_standard_output) {
         *reporter = Reporter::open(events)?;
     }
-    let (mut inputs, file) = Inputs::open_one(&arguments.program, &Config::of_target(arguments.target))?;
+    let options = Config::of_target(arguments.target).merged_over(Config::of_edition(arguments.edition));
+    let (mut inputs, file) = Inputs::open_one(&arguments.program, &options)?;
     if let Some(path) = events.filter(|path| !is_standard_output(path)) {
         check_outputs(&[(path, Kind::Events)], &inputs.read_paths())?;
         *reporter = Reporter::open(events)?;
@@ -269,6 +273,9 @@ impl Run<'_> {
             let others = output::count(strangers, "connection");
             let refused = format!("{others} of other programs to the simulator of this run refused");
             self.reporter.warn(&refused, None);
+        }
+        if let Some(simulator) = &simulator {
+            strikes::report(self.reporter, &self.simulated_scene(), &simulator.strikes());
         }
         drop(simulator);
         if let (Some(trace), true) = (&trace, self.needs_trace()) {

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use pydslrep_analysis::environment::{ActionKind, Environment};
+use pydslrep_analysis::environment::{ActionKind, Environment, nested};
 use pydslrep_scene::Scene;
 use pydslrep_trace::{Map, MapFile};
 
@@ -12,7 +12,7 @@ use crate::failure::Failure;
 
 /// Whether a movement of the environment explores.
 pub(crate) fn explores(environment: &Environment) -> bool {
-    let actions = environment.movements.iter().flat_map(|movement| &movement.actions);
+    let actions = environment.movements.iter().flat_map(|movement| nested(&movement.actions));
     actions.into_iter().any(|action| action.kind == ActionKind::Slam)
 }
 

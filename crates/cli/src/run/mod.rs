@@ -1,7 +1,8 @@
 //! Runs: from a Python interpreter to the result.
 //!
 //! [`python`] and [`vrep_client`] prepare what a script needs, [`script`] runs it and reads its events, [`progress`] shows
-//! them, [`reporter`] passes them on, and [`outcome`] compares [`driven`] with [`planned`]. [`scene_tasks`] reads and changes the scene of a simulator that runs elsewhere.
+//! them, [`reporter`] passes them on, [`outcome`] compares [`driven`] with [`planned`], and [`strikes`] warns of what moving obstacles ran into. [`scene_tasks`]
+//! reads and changes the scene of a simulator that runs elsewhere.
 
 pub(crate) mod driven;
 pub(crate) mod exploring;
@@ -16,4 +17,5 @@ pub(crate) mod reporter;
 pub(crate) mod scene_description;
 pub(crate) mod scene_tasks;
 pub(crate) mod script;
+pub(crate) mod strikes;
 pub(crate) mod vrep_client;

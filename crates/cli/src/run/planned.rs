@@ -1,7 +1,7 @@
 //! An environment with its plan, which `plan` shows and `run` compares with what was driven.
 
-use pydslrep_analysis::environment::{Environment, Movement};
-use pydslrep_kinematics::{ActionIndex, Plan};
+use pydslrep_analysis::environment::Environment;
+use pydslrep_kinematics::{ActionIndex, Place, Plan};
 use pydslrep_picture::{Picture, Route};
 use pydslrep_scene::{Scene, collisions};
 use pydslrep_trace::Map;
@@ -69,18 +69,10 @@ impl Planned {
         pictures.draw(&Picture { title, routes, obstacles, collisions: &collisions })
     }
 
-    pub(crate) fn movement(&self, index: ActionIndex) -> Option<&Movement> {
-        self.environment.movements.get(*self.environment.schedule.get(index.group)?.get(index.run)?)
-    }
-
-    /// The names of an action's movement and of the action, as the program writes them.
-    pub(crate) fn words(&self, index: ActionIndex) -> (String, String) {
-        let movement = self.movement(index);
-        let action = movement.and_then(|movement| movement.actions.get(index.action));
-        (
-            movement.map_or_else(String::new, |movement| movement.name.clone()),
-            action.map_or_else(String::new, |action| action.text.clone()),
-        )
+    /// The names of an action's listed movement and of the action, as the program writes them.
+    pub(crate) fn words(&self, index: ActionIndex, place: &Place) -> (String, String) {
+        let found = self.environment.place(index, place);
+        found.map_or_else(Default::default, |found| (found.movement.to_owned(), found.text.to_owned()))
     }
 }
 

@@ -1,9 +1,13 @@
 //! Progress of a run: simulated and wall time, and the current action of each robot.
 
 use std::collections::VecDeque;
+use std::ops::Range;
 use std::time::Duration;
 
 use indicatif::{MultiProgress, ProgressBar, ProgressState, ProgressStyle};
+
+use pydslrep_analysis::environment::{Action, ActionKind};
+use pydslrep_trace::Moment;
 
 use crate::report::numbers::fixed;
 use crate::report::output;
@@ -26,9 +30,26 @@ struct Tasks {
     left: VecDeque<Task>,
 }
 
+/// A statement of a listed movement, with all that is in its blocks and in the movements that it does.
 struct Task {
     group: usize,
+    movement: String,
+    /// The numbers of the statements in it.
+    numbers: Range<usize>,
     text: String,
+}
+
+impl Task {
+    /// Whether an action that a script reports is part of it.
+    fn includes(&self, moment: &Moment) -> bool {
+        let number = moment.calls.first().map_or(moment.action, |call| call.action);
+        self.movement == moment.movement && self.numbers.contains(&number)
+    }
+
+    /// Whether it ends with the first action that ends in it.
+    fn is_single(&self, moment: &Moment) -> bool {
+        self.numbers.len() == 1 && moment.calls.is_empty()
+    }
 }
 
 impl Progress {
@@ -57,9 +78,22 @@ impl Progress {
         self.time.tick();
     }
 
+    /// A robot begins an action: all before that is done.
+    pub(crate) fn begin_action(&mut self, moment: &Moment) {
+        if let Some(tasks) = self.tasks.iter_mut().find(|tasks| tasks.robot == moment.robot)
+            && let Some(place) = tasks.left.iter().position(|task| task.includes(moment))
+        {
+            tasks.left.drain(..place);
+        }
+        self.show_tasks();
+    }
+
     /// A robot has ended an action.
-    pub(crate) fn end_action(&mut self, robot: &str) {
-        if let Some(tasks) = self.tasks.iter_mut().find(|tasks| tasks.robot == robot) {
+    pub(crate) fn end_action(&mut self, moment: &Moment) {
+        let tasks = self.tasks.iter_mut().find(|tasks| tasks.robot == moment.robot);
+        if let Some(tasks) = tasks
+            && tasks.left.front().is_some_and(|task| task.includes(moment) && task.is_single(moment))
+        {
             tasks.left.pop_front();
         }
         self.show_tasks();
@@ -114,13 +148,29 @@ fn tasks(planned: &Planned) -> Vec<Tasks> {
         .collect();
     for (group, runs) in environment.schedule.iter().enumerate() {
         for movement in runs.iter().filter_map(|run| environment.movements.get(*run)) {
-            let texts = movement.actions.iter().map(|action| format!("{}: {}", movement.name, action.text));
-            if let Some(tasks) = all.get_mut(movement.robot) {
-                tasks.left.extend(texts.map(|text| Task { group, text }));
+            let after = movement.actions.iter().skip(1).map(|action| action.number).chain([usize::MAX]);
+            let tasks = movement.actions.iter().zip(after).map(|(action, after)| Task {
+                group,
+                movement: movement.name.clone(),
+                numbers: action.number..after.min(last_number(action) + 1),
+                text: format!("{}: {}", movement.name, action.text),
+            });
+            if let Some(robot) = all.get_mut(movement.robot) {
+                robot.left.extend(tasks);
             }
         }
     }
     all
+}
+
+/// The largest number of the statements in an action.
+fn last_number(action: &Action) -> usize {
+    let branches = match &action.kind {
+        ActionKind::If { branches, .. } => branches.last().map_or(0, |branch| branch.number),
+        _ => 0,
+    };
+    let inside = action.blocks().into_iter().filter_map(|block| block.last()).map(last_number);
+    inside.fold(action.number.max(branches), usize::max)
 }
 
 fn time_bar(duration: Option<f64>) -> ProgressBar {

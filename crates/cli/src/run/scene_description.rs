@@ -62,7 +62,7 @@ fn robot(robot: &Robot) -> Value {
 
 fn obstacle(obstacle: &Obstacle) -> Value {
     let mut described = json!({
-        "name": obstacle.name,
+        "name": obstacle.name, "moves": obstacle.trajectory.is_some(),
         "x": obstacle.pose.x, "y": obstacle.pose.y, "heading": obstacle.pose.theta,
     });
     match &obstacle.shape {
@@ -79,7 +79,7 @@ fn obstacle(obstacle: &Obstacle) -> Value {
 #[cfg(test)]
 mod tests {
     use pydslrep_kinematics::Drive;
-    use pydslrep_scene::Wheel;
+    use pydslrep_scene::{Trajectory, Waypoint, Wheel};
 
     use super::*;
 
@@ -90,11 +90,10 @@ mod tests {
         let mut scene = Scene::empty_floor(vec![Robot::new("r1", Drive::TwoWheel, wheels, sensors)]);
         let corners = vec![(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)];
         scene.obstacles.push(Obstacle::wall("wall", (0.0, 2.0), (4.0, 2.0), 0.1));
-        scene.obstacles.push(Obstacle {
-            name: "corner".to_owned(),
-            pose: Pose::new(3.0, 0.0, 0.0),
-            shape: Shape::Polygon(corners),
-        });
+        scene.obstacles.push(Obstacle::fixed("corner", Pose::new(3.0, 0.0, 0.0), Shape::Polygon(corners)));
+        let points = vec![Waypoint { time: 2.0, x: 1.0, y: 0.0 }, Waypoint { time: 3.0, x: 2.0, y: 0.0 }];
+        let trajectory = Trajectory::new(points, false).unwrap();
+        scene.obstacles.push(Obstacle::moving("person", 0.0, Shape::Cylinder { radius: 0.2 }, trajectory));
         let found = describe("area", &scene, [Pose::new(-1.0, 0.0, 0.0), Pose::new(2.0, 3.0, 0.0)]);
         assert_eq!(found["reach"], json!([[-1.0, 0.0], [2.0, 3.0]]));
         let robot = &found["robots"][0];
@@ -107,6 +106,9 @@ mod tests {
             (&json!("bumper"), &json!(0.05))
         );
         assert_eq!(found["obstacles"][0]["size"], json!([4.0, 0.1]));
+        assert_eq!(found["obstacles"][0]["moves"], json!(false));
+        let person = &found["obstacles"][2];
+        assert_eq!((&person["moves"], &person["x"]), (&json!(true), &json!(1.0)));
         assert_eq!(found["obstacles"][1]["triangles"].as_array().map(Vec::len), Some(1));
     }
 }

@@ -66,8 +66,9 @@ impl<'a> Listener<'a> {
     fn read(&mut self, line: &str) {
         let Some(event) = RunEvent::parse(line) else { return };
         match &event {
+            RunEvent::ActionBegun(moment) => self.progress.begin_action(moment),
             RunEvent::ActionEnded(moment) => {
-                self.progress.end_action(&moment.robot);
+                self.progress.end_action(moment);
                 if self.simulator.is_none() {
                     self.progress.pass(moment.t);
                     self.driven.time = moment.t;
@@ -82,10 +83,7 @@ impl<'a> Listener<'a> {
             }
             // Its files are temporary ones, and the result is of this program.
             RunEvent::File { .. } | RunEvent::Figures { .. } => return,
-            RunEvent::Started { .. }
-            | RunEvent::ActionBegun(_)
-            | RunEvent::Contact(_)
-            | RunEvent::Progress { .. } => {}
+            RunEvent::Started { .. } | RunEvent::Contact(_) | RunEvent::Progress { .. } => {}
         }
         self.reporter.write(&event);
     }

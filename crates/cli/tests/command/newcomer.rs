@@ -34,11 +34,15 @@ fn a_program_in_place_of_a_command_is_most_likely_to_be_run() {
 
 /// Every program of the article and the examples that can be planned.
 fn programs() -> Vec<String> {
-    let examples = ["convoy", "crossing", "horseshoe", "mecanum", "patrol", "rooms", "square"];
-    let examples = examples.map(|name| repository(&format!("examples/{name}.pyr")));
+    let examples = [
+        ["convoy", "crossing", "dock", "horseshoe", "junction", "lawn"],
+        ["mecanum", "museum", "patrol", "rooms", "square", "wall"],
+    ]
+    .concat();
+    let examples = examples.into_iter().map(|name| repository(&format!("examples/{name}.pyr")));
     let articles =
         ["table2_two_wheels", "table3_four_wheels", "table4_holonomic", "table6_sensors", "table7_slam"];
-    examples.into_iter().chain(articles.map(paper)).collect()
+    examples.chain(articles.map(paper)).collect()
 }
 
 #[test]

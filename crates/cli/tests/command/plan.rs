@@ -37,7 +37,7 @@ fn what_the_world_decides_is_not_guessed() {
     let robot = &plans[0]["robots"][0];
     assert_eq!(plans[0]["duration"], json!(null));
     assert_eq!(robot["poses"].as_array().unwrap().len(), 1);
-    assert_eq!(robot["unknown_after"], json!({"movement": "mov_1", "run": 1, "action": 2}));
+    assert_eq!(robot["unknown_after"], json!({"movement": "mov_1", "run": 1, "action": 2, "line": 14}));
 }
 
 #[test]

@@ -57,7 +57,16 @@ fn the_articles_programs_end_where_they_should() {
 
 #[test]
 fn every_example_ends_where_it_is_planned() {
-    for (name, robots) in [("square", 1), ("mecanum", 1), ("convoy", 4), ("patrol", 1), ("crossing", 4)] {
+    let known = [
+        ("square", 1),
+        ("mecanum", 1),
+        ("convoy", 4),
+        ("patrol", 1),
+        ("crossing", 4),
+        ("lawn", 1),
+        ("dock", 1),
+    ];
+    for (name, robots) in known {
         let program = repository(&format!("examples/{name}.pyr"));
         let plan: Value = serde_json::from_str(&Place::new().run(&["plan", "--json", &program]).out).unwrap();
         let ends = ends(&program);
@@ -69,6 +78,19 @@ fn every_example_ends_where_it_is_planned() {
             assert_near(ends[robot["name"].as_str().unwrap()], goal);
         }
     }
+}
+
+/// Their plans are unknown, but where their scenes lead them is not.
+#[test]
+fn examples_that_react_end_where_their_scenes_lead_them() {
+    let ends = |name: &str| ends(&repository(&format!("examples/{name}.pyr")));
+    assert_near(ends("museum")["guard"], (-1.5, -1.5, 0.0));
+    let junction = ends("junction");
+    assert_near(junction["tram"], (2.0, 0.0, 0.0));
+    assert_near(junction["cart"], (0.0, 2.0, 90.0));
+    // Once around the room, at half a metre from its walls, and back at the first corner.
+    let (x, y, heading) = ends("wall")["rover"];
+    assert!((x + 1.95).hypot(y + 1.45) < 0.1 && heading.abs() > 170.0, "{x} {y} {heading}");
 }
 
 #[test]
@@ -156,6 +178,45 @@ fn a_blocked_robot_fails_its_action() {
     let message = "action 1: move 2 m: no progress for 5 s, 1.201 m from the goal; its wheels turn, but the body does not move: an obstacle may be in the way";
     assert!(done.err.contains(message), "{}", done.err);
     assert!(done.out.contains("stopped  0.799  0.000"), "{}", done.out);
+}
+
+/// One robot drives and one stands still, while somebody walks fast through one of them.
+fn run_with_person(path: &str, options: &[&str]) -> Done {
+    let program = "\
+wheel a with radius 4.5 wheel b with radius 4.5
+robot guard with port 1 has { a b } wheels robot scout with port 2 has { a b } wheels
+movement ahead of scout { move 2 meters at 20 }
+environment hall has { guard scout } robots with { ahead } moves";
+    let place = Place::with("x.pyr", program);
+    let scene = "[robots.guard]\nstart = [0, 2, 0]\n[robots.scout]\nstart = [0, 0, 0]\n[[cylinder]]\nname = \"person\"\nradius = 0.2\n";
+    place.write("hall.scene.toml", format!("{scene}path = {path}\n"));
+    run(&place, &[&["x.pyr", "--no-progress"], options].concat())
+}
+
+#[test]
+fn a_robot_that_stands_still_and_is_struck_gets_a_warning() {
+    let path = "[[0, 0, 3], [3, 0, 3], [5, 0, 1], [6, -3, 1]]";
+    let done = run_with_person(path, &["--events", "-"]);
+    assert_eq!(done.code, Some(0), "{}", done.err);
+    let said = "`person` ran into `guard` after 3.6 s, where it stood still at x 0.00 m, y 2.00 m";
+    let found = events(&done.out);
+    let warning = |event: &&RunEvent| matches!(event, RunEvent::Warning { .. });
+    let warnings: Vec<&RunEvent> = found.iter().filter(warning).collect();
+    let [RunEvent::Warning { text, help: Some(help) }] = warnings[..] else { panic!("{found:?}") };
+    assert!(text == said && help.contains("`path` of `person`"), "{text} {help}");
+    let err = done.err.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(err.contains(said), "{}", done.err);
+}
+
+#[test]
+fn a_robot_that_drives_and_is_struck_fails() {
+    let done = run_with_person("[[0, 0.5, -3], [2, 0.5, -3], [4, 0.5, 3], [5, 5, 3]]", &[]);
+    assert_eq!(done.code, Some(1), "{}", done.err);
+    let err = done.err.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(err.contains("`person` ran into `scout` after 2.9 s, where it drove"), "{}", done.err);
+    assert!(err.contains("no progress for 5 s"), "{}", done.err);
+    let done = run_with_person("[[0, 0.5, -3], [9, 0.5, -3]]", &[]);
+    assert_eq!((done.code, done.err.contains("ran into")), (Some(0), false), "{}", done.err);
 }
 
 /// The events in a text: every line is one.

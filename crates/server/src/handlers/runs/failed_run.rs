@@ -1,7 +1,7 @@
 //! Why a run failed, and where in the user's program: scripts say which action of which movement it was.
 
-use pydslrep_ide::{NumberedAction, action_place};
-use pydslrep_trace::{FailureClass, RunFailure};
+use pydslrep_ide::{NumberedAction, PlannedCall, action_place};
+use pydslrep_trace::{Call, FailureClass, RunFailure};
 use tower_lsp::jsonrpc::Error;
 
 use super::{ERROR, cancelled, ended_badly};
@@ -32,7 +32,11 @@ fn words(failed: &RunFailure) -> String {
 /// The error with the place of the action that failed, if it is an action's failure.
 fn located(state: &State, which: &ChosenEnvironment, failed: &RunFailure) -> Option<Error> {
     let index = failed.action?.checked_sub(1)?;
-    let action = NumberedAction { movement: failed.movement.clone()?, index };
+    let call = |call: &Call| {
+        Some(PlannedCall { movement: call.movement.clone(), index: call.action.checked_sub(1)? })
+    };
+    let calls = failed.calls.iter().map(call).collect::<Option<_>>()?;
+    let action = NumberedAction { movement: failed.movement.clone()?, index, calls };
     let database = state.database();
     let (file, span) = action_place(database, environment(state, which).ok()?, &action)?;
     let location = state.location(file, span)?;
