@@ -1,13 +1,13 @@
 //! "Grammar" of the specification: one function per rule, in the same order. `None` means: not in the language.
 
+mod actions;
+
 use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
 use crate::Finding;
-use crate::program::{
-    Action, ActionKind, Body, Entity, Environment, Ip, Movement, Name, Number, Program, Robot, Sensor, Wheel,
-};
+use crate::program::{Body, Entity, Environment, Ip, Movement, Name, Number, Program, Robot, Sensor, Wheel};
 use crate::tokens::{Kind, Token};
 
 pub(crate) fn read(tokens: &[Token], end: usize) -> Option<Program> {
@@ -85,17 +85,17 @@ impl Reader<'_> {
         words.iter().copied().find(|word| self.word(word).is_some())
     }
 
-    /// A contextual keyword, which is also a valid name: `distance`, `bumper`, `import`, without `^`.
-    fn contextual(&mut self, word: &'static str) -> Option<()> {
+    /// A contextual keyword, which is also a valid name: `distance`, `repeat` and so on, without `^`.
+    fn contextual(&mut self, word: &'static str) -> Option<Range<usize>> {
         if self.peek().is_none() {
             self.expected.insert(word);
         }
         let plain = |token: &&Token| {
             token.kind == Kind::Name && token.text == word && token.range.len() == word.len()
         };
-        self.peek().filter(plain)?;
+        let range = self.peek().filter(plain)?.range.clone();
         self.at += 1;
-        Some(())
+        Some(range)
     }
 
     fn last_end(&self) -> usize {
@@ -216,7 +216,7 @@ impl Reader<'_> {
         let mut sensors = Vec::new();
         if self.word("with").is_some() {
             self.word("sensors")?;
-            sensors = self.some_braced_refs()?;
+            sensors = self.some_braced_refs()?.0;
         }
         Some((name, Body::Robot(Robot { drive, port, wheels, wheel_list, sensors })))
     }
@@ -240,41 +240,8 @@ impl Reader<'_> {
         let name = self.name()?;
         self.word("of")?;
         let robot = self.name()?;
-        let start = self.word("{")?.start;
-        let mut actions = Vec::new();
-        while !self.sees("}") {
-            actions.push(self.action()?);
-        }
-        let body = start..self.word("}")?.end;
-        Some((name, Body::Movement(Movement { parallel, robot, actions, body })))
-    }
-
-    // Action = Move | Turn | "slam" ;
-    fn action(&mut self) -> Option<Action> {
-        let start = self.start();
-        let kind = match self.one_of(&["move", "turn", "slam"])? {
-            "move" => self.move_()?,
-            "turn" => self.turn()?,
-            _ => ActionKind::Slam,
-        };
-        Some(Action { range: start..self.last_end(), kind })
-    }
-
-    // Move = "move" Number ( "meters" | "centimeters" ) [ "at" Number ] ;
-    fn move_(&mut self) -> Option<ActionKind> {
-        let distance = self.number()?;
-        let meters = self.one_of(&["meters", "centimeters"])? == "meters";
-        let speed = if self.word("at").is_some() { Some(self.number()?) } else { None };
-        Some(ActionKind::Move { distance, meters, speed })
-    }
-
-    // Turn = "turn" ( "left" | "right" ) [ Number | "until" "{" Refs(Sensor) "}" ] ;
-    fn turn(&mut self) -> Option<ActionKind> {
-        self.one_of(&["left", "right"])?;
-        if self.word("until").is_some() {
-            return self.some_braced_refs().map(|sensors| ActionKind::TurnUntil { sensors });
-        }
-        Some(ActionKind::Turn { angle: self.number() })
+        let block = self.block()?;
+        Some((name, Body::Movement(Movement { parallel, robot, actions: block.actions, body: block.range })))
     }
 
     // Environment = "environment" Name [ "with" "ip" Ref(Ip) ] "has" "{" [ Refs(Robot) ] "}" "robots"
@@ -303,11 +270,11 @@ impl Reader<'_> {
     }
 
     // "{" Refs(T) "}"
-    fn some_braced_refs(&mut self) -> Option<Vec<Name>> {
+    fn some_braced_refs(&mut self) -> Option<(Vec<Name>, Range<usize>)> {
         let start = self.word("{")?.start;
         // At least one name.
         self.peek().filter(|token| token.kind == Kind::Name)?;
-        self.refs_and_brace(start).map(|(names, _)| names)
+        self.refs_and_brace(start)
     }
 
     // "{" [ Refs(T) ] "}"

@@ -20,7 +20,7 @@ use std::ops::Range;
 
 use project::{File, Project, Scope};
 
-pub use generate::{Recipe, program, programs};
+pub use generate::{Recipe, Statements, mutated, program, programs};
 
 /// A diagnostic required by the specification.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -48,7 +48,8 @@ pub struct Verdict {
     ///
     /// Excludes `planned-collision`, which needs a scene and geometry.
     pub findings: Vec<Finding>,
-    /// Optional findings, likely caused by others: an unused declaration that a misspelt reference may have meant.
+    /// Optional findings: an unused declaration that a misspelt reference may have meant, and `invalid-time` of loops where the
+    /// measures of a robot or a condition decide whether the plan has more than 30 days.
     pub excused: Vec<Finding>,
 }
 
@@ -81,6 +82,16 @@ pub fn check(text: &str) -> Verdict {
     verdict(Scope::new(&project, 0))
 }
 
+/// Checks a program as [`check`] does, and finds what is not in the article.
+pub fn check_as_article(text: &str) -> Verdict {
+    let mut verdict = check(text);
+    if verdict.grammatical {
+        verdict.findings.extend(read(text).0.iter().flat_map(check::not_in_article));
+        verdict.findings.sort();
+    }
+    verdict
+}
+
 /// Checks files that import each other; `None` if one of them is not grammatical. An import that leads to none of them leads
 /// nowhere.
 pub fn check_project(sources: &[Source]) -> Option<Vec<Verdict>> {
@@ -103,7 +114,9 @@ fn read(text: &str) -> (Option<program::Program>, Vec<Finding>) {
 fn verdict(scope: Scope<'_>) -> Verdict {
     let mut findings = check::check(scope);
     findings.sort();
-    let (excused, findings) = findings.into_iter().partition(|finding| check::is_excused(scope, finding));
+    let (mut excused, findings): (Vec<_>, _) =
+        findings.into_iter().partition(|finding| check::is_excused(scope, finding));
+    excused.extend(check::doubtful(scope));
     Verdict { grammatical: true, findings, excused }
 }
 

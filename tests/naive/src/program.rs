@@ -58,8 +58,8 @@ impl Entity {
         match &self.body {
             Body::Robot(robot) => [all("wheel", &robot.wheels), all("sensor", &robot.sensors)].concat(),
             Body::Movement(movement) => {
-                let until = movement.actions.iter().flat_map(|action| all("sensor", action.until()));
-                std::iter::once(("robot", &movement.robot)).chain(until).collect()
+                let used = movement.statements().into_iter().flat_map(Action::references);
+                std::iter::once(("robot", &movement.robot)).chain(used).collect()
             }
             Body::Environment(environment) => {
                 let ip = environment.ip.iter().map(|name| ("ip", name)).collect();
@@ -132,25 +132,162 @@ pub(crate) struct Movement {
     pub(crate) body: Range<usize>,
 }
 
+impl Movement {
+    /// Every statement, also those in blocks, in text order.
+    pub(crate) fn statements(&self) -> Vec<&Action> {
+        flattened(&self.actions)
+    }
+
+    /// The movements that it does, in text order.
+    pub(crate) fn done(&self) -> Vec<&Name> {
+        self.statements().into_iter().filter_map(Action::done).collect()
+    }
+}
+
+/// Statements and all that they contain, in text order.
+pub(crate) fn flattened(actions: &[Action]) -> Vec<&Action> {
+    actions.iter().flat_map(|action| [vec![action], action.inner()].concat()).collect()
+}
+
 pub(crate) struct Action {
     pub(crate) range: Range<usize>,
+    /// Its first word.
+    pub(crate) keyword: Range<usize>,
     pub(crate) kind: ActionKind,
 }
 
 impl Action {
-    pub(crate) fn until(&self) -> &[Name] {
-        match &self.kind {
-            ActionKind::TurnUntil { sensors } => sensors,
-            _ => &[],
+    /// The statements in its blocks.
+    fn inner(&self) -> Vec<&Self> {
+        let mut inner: Vec<&Self> =
+            self.blocks().iter().flat_map(|block| flattened(&block.actions)).collect();
+        if let Some(other) = self.else_if() {
+            inner.push(other);
+            inner.extend(other.inner());
         }
+        inner
+    }
+
+    /// Its own blocks, without those of an `else if`.
+    pub(crate) fn blocks(&self) -> Vec<&Block> {
+        match &self.kind {
+            ActionKind::Repeat { body, .. } => vec![body],
+            ActionKind::If { then, otherwise: Some(Else::Block(block)), .. } => vec![then, block],
+            ActionKind::If { then, .. } => vec![then],
+            _ => Vec::new(),
+        }
+    }
+
+    /// The `if` after its `else`.
+    pub(crate) fn else_if(&self) -> Option<&Self> {
+        match &self.kind {
+            ActionKind::If { otherwise: Some(Else::If(other)), .. } => Some(other),
+            _ => None,
+        }
+    }
+
+    /// The condition that it stops at or asks.
+    pub(crate) fn condition(&self) -> Option<&Condition> {
+        match &self.kind {
+            ActionKind::Move { until, .. } | ActionKind::Wait { until, .. } => {
+                until.as_ref().map(|stop| &stop.value)
+            }
+            ActionKind::Turn(turn) => turn.until.as_ref().map(|stop| &stop.value),
+            ActionKind::Repeat { rounds: Rounds::Until(condition), .. }
+            | ActionKind::If { condition, .. } => Some(condition),
+            ActionKind::Repeat { .. } | ActionKind::Do { .. } | ActionKind::Slam => None,
+        }
+    }
+
+    /// The movement that it does.
+    pub(crate) fn done(&self) -> Option<&Name> {
+        match &self.kind {
+            ActionKind::Do { movement } => Some(movement),
+            _ => None,
+        }
+    }
+
+    /// Its own references, without those in blocks.
+    fn references(&self) -> Vec<(&'static str, &Name)> {
+        let sensors = self.condition().map_or(Vec::new(), |condition| all("sensor", &condition.sensors));
+        sensors.into_iter().chain(self.done().map(|name| ("movement", name))).collect()
     }
 }
 
 pub(crate) enum ActionKind {
-    Move { distance: Number, meters: bool, speed: Option<Number> },
-    Turn { angle: Option<Number> },
-    TurnUntil { sensors: Vec<Name> },
+    Move { distance: Option<Length>, speed: Option<Number>, until: Option<Stop> },
+    Turn(Turn),
+    Wait { seconds: Option<Number>, until: Option<Stop> },
+    Repeat { rounds: Rounds, body: Block },
+    If { condition: Condition, then: Block, otherwise: Option<Else> },
+    Do { movement: Name },
     Slam,
+}
+
+pub(crate) struct Length {
+    pub(crate) number: Number,
+    pub(crate) meters: bool,
+}
+
+impl Length {
+    /// Metres.
+    pub(crate) fn value(&self) -> f64 {
+        if self.meters { self.number.value() } else { self.number.value() / 100.0 }
+    }
+}
+
+/// A part of a statement, with the words that begin it.
+pub(crate) struct Clause<T> {
+    pub(crate) range: Range<usize>,
+    pub(crate) value: T,
+}
+
+pub(crate) struct Turn {
+    pub(crate) angle: Option<Number>,
+    /// `with radius …`
+    pub(crate) circle: Option<Clause<Length>>,
+    /// `at …`
+    pub(crate) speed: Option<Clause<Number>>,
+    /// The range of `in reverse`.
+    pub(crate) reverse: Option<Range<usize>>,
+    pub(crate) until: Option<Stop>,
+}
+
+impl Turn {
+    /// Whether it is `turn SIDE until {…}`, which has no other parts in the article.
+    pub(crate) fn is_until_free(&self) -> bool {
+        let alone =
+            self.angle.is_none() && self.circle.is_none() && self.speed.is_none() && self.reverse.is_none();
+        alone && self.until.is_some()
+    }
+}
+
+/// `until …`
+pub(crate) type Stop = Clause<Condition>;
+
+pub(crate) struct Condition {
+    pub(crate) sensors: Vec<Name>,
+    /// From brace to brace.
+    pub(crate) list: Range<usize>,
+    /// The range of `clear` or `detect`.
+    pub(crate) word: Option<Range<usize>>,
+    pub(crate) within: Option<Clause<Length>>,
+}
+
+pub(crate) enum Rounds {
+    Times(Number),
+    Until(Condition),
+}
+
+pub(crate) struct Block {
+    pub(crate) actions: Vec<Action>,
+    /// From brace to brace.
+    pub(crate) range: Range<usize>,
+}
+
+pub(crate) enum Else {
+    If(Box<Action>),
+    Block(Block),
 }
 
 pub(crate) struct Environment {

@@ -138,6 +138,11 @@ pub(crate) struct Declared<'a, T> {
 }
 
 impl<T> Declared<'_, T> {
+    /// Whether it is this entity.
+    pub(crate) fn is_entity(&self, entity: &Entity) -> bool {
+        std::ptr::eq(self.entity, entity)
+    }
+
     /// Whether two references mean the same declaration.
     pub(crate) fn is(&self, other: &Self) -> bool {
         std::ptr::eq(self.entity, other.entity)

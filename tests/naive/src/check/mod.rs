@@ -1,5 +1,10 @@
 //! "Diagnostics" of the specification: one file per group, one function per code.
 
+mod block;
+mod call;
+mod condition;
+mod duration;
+mod edition;
 mod environment;
 mod file;
 mod movement;
@@ -7,6 +12,8 @@ mod name;
 mod robot;
 mod value;
 
+pub(crate) use duration::doubtful;
+pub(crate) use edition::not_in_article;
 pub(crate) use name::is_excused;
 
 use crate::Finding;
@@ -21,6 +28,10 @@ pub(crate) fn check(scope: Scope<'_>) -> Vec<Finding> {
     name::check(scope, &mut findings);
     robot::check(scope, &mut findings);
     movement::check(scope, &mut findings);
+    condition::check(scope, &mut findings);
+    block::check(scope, &mut findings);
+    call::check(scope, &mut findings);
+    findings.extend(duration::certain(scope));
     environment::check(scope, &mut findings);
     findings
 }

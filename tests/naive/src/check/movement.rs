@@ -13,8 +13,8 @@ pub(super) fn check(scope: Scope<'_>, findings: &mut Vec<Finding>) {
             findings.push(Finding::new("empty-movement", &movement.body));
         }
         let Some(robot) = scope.robot(&movement.robot.text) else { continue };
-        for action in &movement.actions {
-            for sensor in action.until() {
+        for action in movement.statements() {
+            for sensor in action.condition().iter().flat_map(|condition| &condition.sensors) {
                 if scope.sensor(&sensor.text).is_some() && !is_among(sensor, &robot.sensors) {
                     findings.push(Finding::new("sensor-not-on-robot", &sensor.range));
                 }

@@ -2,7 +2,7 @@
 
 use super::{is_among, repeated};
 use crate::Finding;
-use crate::program::{ActionKind, Body, Entity, Name, Robot};
+use crate::program::{Action, Body, Entity, Name, Robot};
 use crate::project::{Declared, Scope};
 
 pub(super) fn check(scope: Scope<'_>, findings: &mut Vec<Finding>) {
@@ -10,10 +10,8 @@ pub(super) fn check(scope: Scope<'_>, findings: &mut Vec<Finding>) {
         match &entity.body {
             Body::Robot(robot) => check_robot(scope, entity, robot, findings),
             Body::Movement(movement) => {
-                for action in &movement.actions {
-                    if let ActionKind::TurnUntil { sensors } = &action.kind {
-                        repeated_sensor(sensors, findings);
-                    }
+                for condition in movement.statements().into_iter().filter_map(Action::condition) {
+                    repeated_sensor(&condition.sensors, findings);
                 }
             }
             _ => {}
@@ -43,7 +41,7 @@ fn wheel_count(robot: &Robot, findings: &mut Vec<Finding>) {
     }
 }
 
-fn has_right_count(robot: &Robot) -> bool {
+pub(super) fn has_right_count(robot: &Robot) -> bool {
     let needed: &[usize] = match robot.drive.as_ref().map(|drive| drive.text.as_str()) {
         Some("tw") => &[2],
         Some(_) => &[4],

@@ -1,7 +1,7 @@
 //! Group "value": single numbers.
 
 use crate::Finding;
-use crate::program::{ActionKind, Body, Number};
+use crate::program::{Action, ActionKind, Body, Condition, Length, Number, Rounds, Turn};
 use crate::project::File;
 
 pub(super) fn check(file: &File, findings: &mut Vec<Finding>) {
@@ -13,21 +13,39 @@ pub(super) fn check(file: &File, findings: &mut Vec<Finding>) {
                 findings.push(Finding::new("invalid-ip", &ip.address.range));
             }
             Body::Movement(movement) => {
-                for action in &movement.actions {
-                    match &action.kind {
-                        ActionKind::Move { distance, meters, speed } => {
-                            findings.extend(self::distance(distance, *meters));
-                            findings.extend(speed.as_ref().and_then(self::speed));
-                        }
-                        ActionKind::Turn { angle } => findings.extend(angle.as_ref().and_then(self::angle)),
-                        ActionKind::TurnUntil { .. } | ActionKind::Slam => {}
-                    }
-                }
+                movement.statements().iter().for_each(|action| statement(action, findings));
             }
             _ => {}
         }
     }
 }
+
+fn statement(action: &Action, findings: &mut Vec<Finding>) {
+    match &action.kind {
+        ActionKind::Move { distance, speed, .. } => {
+            findings.extend(distance.as_ref().and_then(self::distance));
+            findings.extend(speed.as_ref().and_then(self::speed));
+        }
+        ActionKind::Turn(turn) => self::turn(turn, findings),
+        ActionKind::Wait { seconds, .. } => findings.extend(seconds.as_ref().and_then(time)),
+        ActionKind::Repeat { rounds: Rounds::Times(count), .. } => findings.extend(self::count(count)),
+        _ => {}
+    }
+    findings.extend(action.condition().and_then(within));
+}
+
+fn turn(turn: &Turn, findings: &mut Vec<Finding>) {
+    let angle = if turn.circle.is_some() { angle_on_circle } else { angle_in_place };
+    findings.extend(turn.angle.as_ref().and_then(angle));
+    findings.extend(turn.circle.as_ref().and_then(|circle| radius_of_circle(&circle.value)));
+    findings.extend(turn.speed.as_ref().and_then(|clause| speed(&clause.value)));
+    if turn.circle.is_none() {
+        findings.extend(turn.reverse.as_ref().map(|place| Finding::new("invalid-arc", place)));
+    }
+}
+
+/// Metres: 1 000 km.
+pub(super) const FARTHEST: f64 = 1_000_000.0;
 
 /// Non-finite numbers are out of range and have no other finding.
 fn judge(number: &Number, code: impl Fn(f64) -> Option<&'static str>) -> Option<Finding> {
@@ -68,13 +86,24 @@ fn is_octet(digits: &str) -> bool {
 }
 
 /// Beyond 1 000 km, or zero.
-fn distance(number: &Number, meters: bool) -> Option<Finding> {
-    judge(number, |value| {
-        let metres = if meters { value } else { value / 100.0 };
-        if metres.abs() > 1_000_000.0 {
+fn distance(length: &Length) -> Option<Finding> {
+    judge(&length.number, |value| {
+        if length.value().abs() > FARTHEST {
             Some("number-out-of-range")
         } else {
             (value == 0.0).then_some("zero-distance")
+        }
+    })
+}
+
+/// Beyond 1 000 km, or not positive.
+fn within(condition: &Condition) -> Option<Finding> {
+    let length = &condition.within.as_ref()?.value;
+    judge(&length.number, |value| {
+        if length.value().abs() > FARTHEST {
+            Some("number-out-of-range")
+        } else {
+            (value <= 0.0).then_some("invalid-within")
         }
     })
 }
@@ -85,6 +114,34 @@ fn speed(number: &Number) -> Option<Finding> {
 }
 
 /// Degrees: zero, negative, or more than a full turn.
-fn angle(number: &Number) -> Option<Finding> {
+fn angle_in_place(number: &Number) -> Option<Finding> {
     judge(number, |degrees| (degrees <= 0.0 || degrees > 360.0).then_some("invalid-angle"))
+}
+
+/// Not positive, or beyond 1 000 km.
+fn radius_of_circle(length: &Length) -> Option<Finding> {
+    judge(&length.number, |value| (value <= 0.0 || length.value() > FARTHEST).then_some("invalid-arc"))
+}
+
+/// Degrees on a circle: zero, negative, or more than any robot turns. Several turns are possible there.
+fn angle_on_circle(number: &Number) -> Option<Finding> {
+    judge(number, |degrees| {
+        if degrees == 0.0 {
+            Some("invalid-arc")
+        } else {
+            (!(0.0..=36_000.0).contains(&degrees)).then_some("invalid-angle")
+        }
+    })
+}
+
+/// Seconds: zero, negative, or more than a day.
+fn time(number: &Number) -> Option<Finding> {
+    judge(number, |seconds| (seconds <= 0.0 || seconds > 86_400.0).then_some("invalid-time"))
+}
+
+/// No whole number from 1 to 10 000, or 1.
+fn count(number: &Number) -> Option<Finding> {
+    judge(number, |count| {
+        (count.fract() != 0.0 || !(2.0..=10_000.0).contains(&count)).then_some("invalid-count")
+    })
 }

@@ -1,8 +1,10 @@
 //! Writes a program bottom-up and tracks its declarations.
 
 use super::Recipe;
+use super::Statements;
 use super::choices::Choices;
 use super::layout;
+use super::statements::Piece;
 use super::words::{self, ADDRESSES, ANGLES, DISTANCES, ENDLESS, Numbers, PORTS, RADII, SPEEDS};
 
 use crate::Source;
@@ -17,39 +19,62 @@ struct Robot {
     explores: bool,
 }
 
-struct Movement {
-    name: String,
-    robot: String,
+pub(super) struct Movement {
+    pub(super) name: String,
+    pub(super) robot: String,
     parallel: bool,
+    /// The index of its entity.
+    entity: usize,
+    /// How much it does.
+    pub(super) seconds: f64,
+    pub(super) actions: f64,
+    /// Whether another movement does it.
+    pub(super) is_done: bool,
+}
+
+/// The properties of a robot that its statements depend on.
+pub(super) struct Performer {
+    pub(super) robot: String,
+    pub(super) sensors: Vec<String>,
+    /// Whether it may run `slam`.
+    pub(super) explores: bool,
 }
 
 pub(super) struct Author {
-    recipe: Recipe,
-    choices: Choices,
+    pub(super) recipe: Recipe,
+    pub(super) choices: Choices,
+    /// Whether there are statements with blocks, and those that came with them.
+    grows: bool,
     /// The inverse probability of an error.
     careless: Option<usize>,
-    lines: usize,
+    pub(super) lines: usize,
     /// The radius of most wheels, as an index of the usual ones.
     radius: usize,
     /// The tokens of each entity.
     entities: Vec<Vec<String>>,
     wheels: Vec<String>,
-    sensors: Vec<String>,
+    pub(super) sensors: Vec<String>,
     /// The distance sensors among them.
-    distance_sensors: Vec<String>,
+    pub(super) distance_sensors: Vec<String>,
     ips: Vec<String>,
     robots: Vec<Robot>,
-    movements: Vec<Movement>,
+    pub(super) movements: Vec<Movement>,
     environments: Vec<String>,
 }
 
 impl Author {
     pub(super) fn new(recipe: Recipe, mut choices: Choices) -> Self {
+        let grows = match recipe.statements {
+            Statements::Flat => false,
+            Statements::Any => choices.below(3) > 0,
+            Statements::Known => true,
+        };
         let careless = choices.pick(&[None, None, Some(200), Some(40), Some(12)]).filter(|_| recipe.mistakes);
         let radius = choices.below(RADII.usual.len());
         Self {
             recipe,
             choices,
+            grows,
             careless,
             lines: 0,
             radius,
@@ -76,6 +101,7 @@ impl Author {
         if !self.robots.is_empty() && !self.choices.once_in(8) {
             self.environment();
         }
+        self.close_a_circle();
         self.choices.shuffle(&mut self.entities);
     }
 
@@ -126,18 +152,22 @@ impl Author {
         }
     }
 
-    fn slips(&mut self) -> bool {
+    pub(super) fn slips(&mut self) -> bool {
         self.careless.is_some_and(|times| self.choices.once_in(times))
     }
 
     /// An error that few programs would have if it were as rare as others, because few have the place for it.
-    fn slips_in(&mut self, times: usize) -> bool {
+    pub(super) fn slips_in(&mut self, times: usize) -> bool {
         self.careless.is_some() && self.choices.once_in(times)
     }
 
     fn push(&mut self, tokens: Vec<String>) {
         self.lines += 1;
         self.entities.push(tokens);
+    }
+
+    fn names(&self) -> &'static [&'static str] {
+        if self.grows { &words::NEW_NAMES } else { &words::NAMES }
     }
 
     /// A new name for a declaration; a taken one by error.
@@ -153,15 +183,16 @@ impl Author {
     }
 
     /// A reference to a name; to another one by error.
-    fn reference(&mut self, name: &str) -> String {
+    pub(super) fn reference(&mut self, name: &str) -> String {
         if self.slips() {
-            return words::name(&mut self.choices, &words::NAMES);
+            let names = self.names();
+            return words::name(&mut self.choices, names);
         }
         let may_hide = self.recipe.odd_layout && !name.starts_with('^');
         if may_hide && self.choices.once_in(30) { format!("^{name}") } else { name.to_owned() }
     }
 
-    fn number(&mut self, numbers: &Numbers) -> String {
+    pub(super) fn number(&mut self, numbers: &Numbers) -> String {
         let is_doubtful = self.slips();
         let number = self.choices.pick(if is_doubtful { numbers.doubtful } else { numbers.usual });
         if number == ENDLESS {
@@ -172,7 +203,7 @@ impl Author {
     }
 
     /// `{ a, b c, }`
-    fn list(&mut self, names: &[String]) -> Vec<String> {
+    pub(super) fn list(&mut self, names: &[String]) -> Vec<String> {
         let mut tokens = vec!["{".to_owned()];
         let commas = self.choices.pick(&[0, 1, 2]);
         for name in names {
@@ -207,7 +238,7 @@ impl Author {
     }
 
     fn wheel(&mut self, mecanum: bool) -> String {
-        self.wheel_called(mecanum, &words::NAMES)
+        self.wheel_called(mecanum, self.names())
     }
 
     fn wheel_called(&mut self, mecanum: bool, names: &[&'static str]) -> String {
@@ -231,7 +262,7 @@ impl Author {
 
     fn sensor(&mut self) -> String {
         let taken = self.sensors.clone();
-        let name = self.new_name(&taken, &words::NAMES);
+        let name = self.new_name(&taken, self.names());
         let tokens: &[&str] = match self.choices.below(6) {
             0..=2 => &["sensor", &name],
             3..=4 => &["sensor", &name, ":", "distance"],
@@ -247,7 +278,7 @@ impl Author {
 
     fn ip(&mut self) -> String {
         let taken = self.ips.clone();
-        let name = self.new_name(&taken, &words::NAMES);
+        let name = self.new_name(&taken, self.names());
         let is_doubtful = self.slips() || self.slips_in(4);
         let address = self.choices.pick(if is_doubtful { ADDRESSES.doubtful } else { ADDRESSES.usual });
         self.push(words(&["ip", &name, address]));
@@ -268,7 +299,7 @@ impl Author {
         let wheels = self.some_wheels(count, mecanum);
         let sensors = self.some_sensors();
         let taken: Vec<String> = self.robots.iter().map(|robot| robot.name.clone()).collect();
-        let name = self.new_name(&taken, &words::NAMES);
+        let name = self.new_name(&taken, self.names());
         let eyes = sensors.iter().filter(|sensor| self.distance_sensors.contains(sensor)).count();
         let robot = Robot { name, wheels, mecanum, explores: count == 2 && eyes >= 5, sensors };
         self.declare_robot(&robot, drive);
@@ -361,24 +392,49 @@ impl Author {
 
     fn movement_of(&mut self, robot: usize, parallel: bool) {
         let parallel = parallel != self.slips();
-        let (name_of_robot, sensors, explores) = {
+        let performer = {
             let robot = &self.robots[robot];
-            (robot.name.clone(), robot.sensors.clone(), robot.explores)
+            Performer { robot: robot.name.clone(), sensors: robot.sensors.clone(), explores: robot.explores }
         };
         let taken: Vec<String> = self.movements.iter().map(|movement| movement.name.clone()).collect();
-        let name = self.new_name(&taken, &words::NAMES);
-        let of = self.reference(&name_of_robot);
+        let name = self.new_name(&taken, self.names());
+        let of = self.reference(&performer.robot);
         let mut tokens = words(if parallel { &["parallel", "movement"] } else { &["movement"] });
         tokens.extend(words(&[&name, "of", &of, "{"]));
         let count = if self.slips() { 0 } else { 1 + self.choices.below(5) };
+        let body = if self.grows {
+            self.statements(&name, &performer, count)
+        } else {
+            self.actions(&performer, count)
+        };
+        tokens.extend(body.tokens);
+        tokens.push("}".to_owned());
+        let entity = self.entities.len();
+        self.push(tokens);
+        let (seconds, actions) = (body.seconds, body.actions);
+        let robot = performer.robot;
+        self.movements.push(Movement { name, robot, parallel, entity, seconds, actions, is_done: false });
+    }
+
+    /// By error, a movement does one that does it, or any other.
+    fn close_a_circle(&mut self) {
+        if self.movements.is_empty() || !self.grows || !self.slips_in(8) {
+            return;
+        }
+        let entity = self.movements[self.choices.below(self.movements.len())].entity;
+        let done = self.movements[self.choices.below(self.movements.len())].name.clone();
+        let tokens = &mut self.entities[entity];
+        tokens.splice(tokens.len() - 1..tokens.len() - 1, ["do".to_owned(), done]);
+    }
+
+    /// The actions without blocks and what came with them.
+    fn actions(&mut self, performer: &Performer, count: usize) -> Piece {
+        let mut tokens = Vec::new();
         for _ in 0..count {
-            let action = self.action(&sensors, explores);
-            tokens.extend(action);
+            tokens.extend(self.action(&performer.sensors, performer.explores));
             self.lines += 1;
         }
-        tokens.push("}".to_owned());
-        self.push(tokens);
-        self.movements.push(Movement { name, robot: name_of_robot, parallel });
+        Piece { tokens, ..Piece::default() }
     }
 
     fn action(&mut self, sensors: &[String], explores: bool) -> Vec<String> {
@@ -470,6 +526,9 @@ impl Author {
         let mut busy: Vec<&str> = Vec::new();
         for movement in &self.movements {
             let times = self.careless.unwrap_or(usize::MAX);
+            if movement.is_done && self.choices.once_in(2) {
+                continue;
+            }
             let mut slips = || self.careless.is_some() && self.choices.once_in(times);
             if !movement.parallel {
                 busy.clear();
@@ -485,7 +544,7 @@ impl Author {
         if self.recipe.mistakes && self.choices.once_in(6) {
             self.leave_one_idle(robots, &mut listed);
         }
-        if self.slips_in(5) {
+        if self.slips_in(if self.grows { 3 } else { 5 }) {
             self.start_one_twice(&mut listed);
         }
         self.mangle(&mut listed);
@@ -528,10 +587,10 @@ fn relative(from: &str, to: &str) -> String {
     if in_same_folder { to.rsplit('/').next().unwrap_or(to).to_owned() } else { format!("{up}{to}") }
 }
 
-fn plain(name: &str) -> &str {
+pub(super) fn plain(name: &str) -> &str {
     name.trim_start_matches('^')
 }
 
-fn words(words: &[&str]) -> Vec<String> {
+pub(super) fn words(words: &[&str]) -> Vec<String> {
     words.iter().map(|word| (*word).to_owned()).collect()
 }

@@ -3,6 +3,8 @@
 mod author;
 mod choices;
 mod layout;
+mod mutation;
+mod statements;
 mod words;
 
 use proptest::prelude::{Strategy, any};
@@ -10,7 +12,21 @@ use proptest::prelude::{Strategy, any};
 use author::Author;
 use choices::Choices;
 
+pub use mutation::mutated;
+
 use crate::Source;
+
+/// Which statements generated programs have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Statements {
+    /// Only those of language 0.2; and names that are no words of later versions.
+    Flat,
+    /// All. A third of the programs has only those of 0.2.
+    Any,
+    /// All whose planned path is known: no `until`, `if` and `slam`. Without [`Recipe::mistakes`], a movement has at most about
+    /// 300 actions and 2 000 s when its loops are unrolled, and no circle is smaller than 10 cm.
+    Known,
+}
 
 /// The options of generated programs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,11 +44,20 @@ pub struct Recipe {
     pub older_spellings: bool,
     /// Whether there may be imports (of `lib.pyr` and `parts/more.pyr`).
     pub imports: bool,
+    /// Which statements there may be.
+    pub statements: Statements,
 }
 
 impl Default for Recipe {
     fn default() -> Self {
-        Self { lines: 60, mistakes: true, odd_layout: true, older_spellings: true, imports: false }
+        Self {
+            lines: 60,
+            mistakes: true,
+            odd_layout: true,
+            older_spellings: true,
+            imports: false,
+            statements: Statements::Any,
+        }
     }
 }
 
@@ -57,7 +82,7 @@ impl Recipe {
 
     fn tapes(self) -> impl Strategy<Value = Vec<u16>> {
         // More than a program of this size needs, so that most reach their length.
-        let longest = self.lines.saturating_mul(12) + 12;
+        let longest = self.lines.saturating_mul(24) + 24;
         proptest::collection::vec(any::<u16>(), 0..longest)
     }
 

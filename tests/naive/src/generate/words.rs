@@ -46,6 +46,13 @@ pub(super) const NAMES: [&str; 40] = [
     "AREA_1",
 ];
 
+/// Half of them are words of the statements that blocks came with, which are names, too.
+pub(super) const NEW_NAMES: [&str; 32] = [
+    "a", "wait", "wheelL", "repeat", "left_1", "if", "robot_1", "else", "mov_1", "do", "b", "times", "x9",
+    "seconds", "distance", "clear", "bumper", "detect", "^robots", "within", "^moves", "in", "^wheel",
+    "reverse", "import", "^wait", "class", "^if", "rounds", "^else", "time", "Repeat",
+];
+
 /// Names of the wheels of one robot, by their sides.
 pub(super) const TWO_SIDES: [&str; 2] = ["wheelL", "wheelR"];
 pub(super) const FOUR_CORNERS: [&str; 4] = ["wheelL0", "wheelL1", "wheelR0", "wheelR1"];
@@ -99,6 +106,41 @@ pub(super) const SPEEDS: Numbers =
 pub(super) const ANGLES: Numbers = Numbers {
     usual: &["90", "45", "30.5", "180", "360"],
     doubtful: &["0", "-90", "360.01", "720", "-400", "-0.0", ENDLESS],
+};
+
+pub(super) const SHORT_DISTANCES: Numbers =
+    Numbers { usual: &["1", "0.5", "-2", "1.5", "-0.25", "0.333"], doubtful: DISTANCES.doubtful };
+
+/// Without speeds that take days.
+pub(super) const ROUND_SPEEDS: Numbers =
+    Numbers { usual: &["9.0", "12", "4.75", "20"], doubtful: SPEEDS.doubtful };
+
+/// Metres.
+pub(super) const CIRCLES: Numbers = Numbers {
+    usual: &["1", "0.5", "1.5", "0.1", "5"],
+    doubtful: &["0", "-0.5", "1000000", "1000000.5", "-0.0", ENDLESS],
+};
+
+pub(super) const ANGLES_ON_CIRCLES: Numbers = Numbers {
+    usual: &["90", "45", "6", "180", "360", "720"],
+    doubtful: &["0", "-90", "36000", "36000.5", "-0.0", ENDLESS],
+};
+
+pub(super) const COUNTS: Numbers = Numbers {
+    usual: &["2", "3", "4", "5", "10", "7"],
+    doubtful: &["0", "1", "-2", "2.5", "10000", "10001", "3.0", "99999999999999999999", ENDLESS],
+};
+
+/// Seconds.
+pub(super) const TIMES: Numbers = Numbers {
+    usual: &["2", "1", "0.5", "10", "60"],
+    doubtful: &["0", "-1", "86400", "86400.5", "-0.0", ENDLESS],
+};
+
+/// Metres.
+pub(super) const NEAR: Numbers = Numbers {
+    usual: &["0.4", "1", "0.25", "2"],
+    doubtful: &["0", "-1", "-0.0", "1000000", "1000001", ENDLESS],
 };
 
 pub(super) const PORTS: Numbers = Numbers {
