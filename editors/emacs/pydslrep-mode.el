@@ -12,6 +12,7 @@
 
 ;;; Code:
 
+(require 'seq)
 (require 'treesit)
 
 (defvar eglot-server-programs)
@@ -38,7 +39,8 @@
   '(
     "wheel" "wheelH" "with" "radius" "sensor" "ip" "robot" "type" "tw" "fw" "fwh" "port" "has" "wheels" "sensors"
     "parallel" "movement" "of" "move" "meters" "centimeters" "at" "turn" "left" "right" "until" "environment"
-    "robots" "moves" "distance" "bumper" "import")
+    "robots" "moves" "distance" "bumper" "import" "wait" "seconds" "repeat" "times" "if" "else" "do" "in" "reverse"
+    "clear" "detect" "within")
   "The keywords that are tokens of the parser.")
 
 (defconst pydslrep-keyword-nodes
@@ -62,10 +64,58 @@
   "Return a rule that gives the name after one of WORDS a FACE."
   `(,(concat "\\_<\\(?:" words "\\)\\s-+\\(\\_<.+?\\_>\\)") 1 ',face))
 
+(defconst pydslrep--action-words
+  (regexp-opt
+   (seq-difference pydslrep-keyword-tokens `(,@pydslrep-keywords "distance" "bumper" "import"))
+   'symbols)
+  "Matches the contextual words of actions.")
+
+(defun pydslrep--in-actions-p ()
+  "Return non-nil if the innermost brace around point is not that of a list."
+  (when-let* ((brace (nth 1 (syntax-ppss))))
+    (save-excursion
+      (goto-char brace)
+      (forward-comment (- (point)))
+      (or (not (looking-back "\\_<\\(?:has\\|with\\|sensors\\|until\\|if\\)" (line-beginning-position)))
+          ;; A robot of that name.
+          (looking-back "\\_<of\\s-+if" (line-beginning-position))))))
+
+(defun pydslrep--after-do-p ()
+  "Return non-nil if the word before point is `do' and no name itself."
+  (save-excursion
+    (let (is-after)
+      (while (progn
+               (forward-comment (- (point)))
+               (looking-back "\\_<do" (line-beginning-position)))
+        (setq is-after (not is-after))
+        (backward-char 2))
+      is-after)))
+
+(defun pydslrep--search-actions (regexp limit is-done)
+  "Find the next word of an action that matches REGEXP, up to LIMIT.
+If IS-DONE is non-nil, it is the name after `do'; otherwise, any other."
+  (let (is-found)
+    (while (and (not is-found) (re-search-forward regexp limit t))
+      (save-excursion
+        (save-match-data
+          (goto-char (match-beginning 0))
+          (setq is-found (and (eq (pydslrep--after-do-p) is-done) (pydslrep--in-actions-p))))))
+    is-found))
+
+(defun pydslrep--search-action-word (limit)
+  "Find the next contextual word of an action that is no name, up to LIMIT."
+  (pydslrep--search-actions pydslrep--action-words limit nil))
+
+(defun pydslrep--search-done (limit)
+  "Find the next name after `do', up to LIMIT."
+  (pydslrep--search-actions "\\_<\\^?[A-Za-z_][A-Za-z0-9_]*\\_>" limit t))
+
 (defvar pydslrep-font-lock-keywords
   `((,(regexp-opt pydslrep-keywords 'symbols) . 'font-lock-keyword-face)
     ("^\\s-*\\(import\\)\\s-*\"" 1 'font-lock-keyword-face)
     (":\\s-*\\(distance\\|bumper\\)\\_>" 1 'font-lock-keyword-face)
+    (pydslrep--search-action-word . 'font-lock-keyword-face)
+    (pydslrep--search-done . 'font-lock-function-call-face)
     ("\\_<-?[0-9]+\\(?:\\.[0-9]+\\)*" . 'font-lock-number-face)
     ,(pydslrep--declares "wheelH?" 'font-lock-variable-name-face)
     ,(pydslrep--declares "sensor" 'font-lock-property-name-face)
@@ -97,7 +147,8 @@
      (ip_clause ip: (name) @font-lock-constant-face)
      (movement_definition robot: (name) @font-lock-type-face)
      (robot_references (name) @font-lock-type-face)
-     (movement_references (name) @font-lock-function-call-face))))
+     (movement_references (name) @font-lock-function-call-face)
+     (do movement: (name) @font-lock-function-call-face))))
 
 (defun pydslrep-indent-line ()
   "Indent the line by two for each open brace."

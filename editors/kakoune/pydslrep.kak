@@ -12,6 +12,16 @@ add-highlighter shared/pydslrep/code default-region group
 add-highlighter shared/pydslrep/code/ regex '(?<![\w^])(wheel|wheelH|with|radius|sensor|ip|robot|type|tw|fw|fwh|port|has|wheels|sensors|parallel|movement|of|move|meters|centimeters|at|turn|left|right|until|slam|environment|robots|moves)(?!\w)' 0:keyword
 # End of the keywords.
 add-highlighter shared/pydslrep/code/ regex '^\h*(import)\h*(?=")' 1:keyword
+add-highlighter shared/pydslrep/code/ regex ':\s*(distance|bumper)(?!\w)' 1:keyword
+# Contextual keywords, as far as their neighbours tell; each is a name elsewhere.
+add-highlighter shared/pydslrep/code/ regex '(?<!ip\s)(?<![\w^])(wait|repeat)\s+(?:-?\d+(?:\.\d+)?(?![.\d])|until(?!\w))' 1:keyword
+add-highlighter shared/pydslrep/code/ regex '(?<![\w^.])-?\d+(?:\.\d+)?\s*(seconds|times)(?!\w)' 1:keyword
+add-highlighter shared/pydslrep/code/ regex '(?<!of\s)(?<![\w^])(if)\s*\{' 1:keyword
+add-highlighter shared/pydslrep/code/ regex '\}\s*(else)(?!\w)' 1:keyword
+add-highlighter shared/pydslrep/code/ regex '\}\s*(clear|detect)(?!\w)' 1:keyword
+add-highlighter shared/pydslrep/code/ regex '(?:\}|(?<![\w^])(?:clear|detect))\s*(?<![\w^])(within)\s+-?\d' 1:keyword
+add-highlighter shared/pydslrep/code/ regex '(?:(?<![\w^])(?:left|right|meters|centimeters)\s|(?<![\w^])-?\d+(?:\.\d+)?)\s*(in)\s+(reverse)(?!\w)' 1:keyword 2:keyword
+add-highlighter shared/pydslrep/code/ regex '(?:^\s*|\}\s*|(?<![\w^])(?:of\s+\^?\w+|times|clear|detect|else|meters|centimeters)\s*\{\s*|(?<![\w^])(?:slam|left|right|meters|centimeters)\s+|(?<![\w^.])-?\d+(?:\.\d+)?\s+)(do)\s+(\^?[A-Za-z_]\w*)' 1:keyword 2:function
 add-highlighter shared/pydslrep/code/ regex '(?<!\w)-?\d+(\.\d+)*' 0:value
 
 hook -group pydslrep-highlight global WinSetOption filetype=pydslrep %{

@@ -12,16 +12,21 @@ const read = (name) => readFileSync(new URL(name, import.meta.url), "utf8");
 const colours = JSON.parse(read("../colours.json"));
 const scope = (kind, detail) => [colours[kind].scope, detail, "pydslrep"].filter(Boolean).join(".");
 
-// The keywords are those of the published grammar, which a test compares with the lexer.
-const [rules] = read("../pydslrep.ebnf").split("(* Tokens.");
-const contextual = ["distance", "bumper", "import"];
-const quoted = [...rules.matchAll(/"([A-Za-z]+)"/g)].map(([, word]) => word);
-const keywords = [...new Set(quoted)].filter((word) => !contextual.includes(word));
+// The keywords are those of the published grammar, which a test compares with the lexer. Its comment on tokens names the
+// contextual ones, which are names wherever a name can be.
+const [rules, tokens] = read("../pydslrep.ebnf").split("(* Tokens.");
+const quoted = (text) => [...new Set([...text.matchAll(/"([A-Za-z]+)"/g)].map(([, word]) => word))];
+const contextual = quoted(tokens.split("*)")[0]);
+const keywords = quoted(rules).filter((word) => !contextual.includes(word));
+// The contextual keywords of a movement's actions: all but those of other entities.
+const actionWords = contextual.filter((word) => !["distance", "bumper", "import"].includes(word));
 const entities = ["wheel", "wheelH", "sensor", "ip", "robot", "parallel", "movement", "environment"];
 
 // A keyword does not continue as another word or as a malformed name: `wheels`, `wheel-a`.
 const oneOf = (words) => `(?:${words.join("|")})(?![\\p{L}\\p{M}\\p{N}_]|[-.'’][\\p{L}_])`;
 const name = `(?:\\^[A-Za-z_][A-Za-z0-9_]*|(?!${oneOf(keywords)})[A-Za-z_][A-Za-z0-9_]*)`;
+// An action's first words that are followed by what no name is followed by: where a name is wanted, it is missing.
+const missing = `(?=(?:wait|repeat)\\s+(?:-?[0-9]|${oneOf(["until"])})|if\\s*\\{)`;
 const nextEntity = `(?=${oneOf(entities)}|import(?=[ \\t]*"))`;
 
 const word = "[\\p{L}_][\\p{L}\\p{M}\\p{N}_]*";
@@ -61,7 +66,11 @@ const braces = (end, ...patterns) => ({
 });
 
 /** Names in braces. Where no brace closes them, the next word that is no name does. */
-const list = (kind) => braces(`(?=\\{|${oneOf(keywords)})|${nextEntity}`, named(kind));
+const list = (kind) => braces(`(?=\\{|${oneOf(keywords)})|${missing}|${nextEntity}`, named(kind));
+
+/** The condition after a word: the sensors in braces. */
+const condition = (word) =>
+  part(word, `(?<=\\})|(?=\\}|${oneOf(keywords)})|${missing}`, "property", list("property"));
 
 const grammar = {
   $schema: "https://raw.githubusercontent.com/martinring/tmlanguage/master/tmlanguage.json",
@@ -101,14 +110,29 @@ const grammar = {
         entity(
           ["movement"],
           part("of", "(?=[{}])", "class"),
-          braces(
-            nextEntity,
-            part("until", `(?<=\\})|(?=\\}|${oneOf(keywords)})`, "property", list("property")),
-          ),
+          ...include("actions"),
           named("function"),
         ),
       ],
     },
+    // Actions in braces. The only names are in conditions and after `do`, so every contextual word elsewhere is a keyword.
+    actions: braces(
+      nextEntity,
+      ...include("actions"),
+      condition("until"),
+      condition("if"),
+      {
+        // The name ends the rule.
+        begin: oneOf(["do"]),
+        beginCaptures: { 0: keyword },
+        end: `(?=[{}0-9"]|-[0-9]|${oneOf(keywords)})|${missing}|${nextEntity}|(${name})`,
+        endCaptures: { 1: { name: scope("function") } },
+        patterns: include("comment", "malformed-name"),
+      },
+      { match: oneOf(actionWords), ...keyword },
+      // Any other word is consumed as a whole.
+      { match: name },
+    ),
     environment: entity(
       ["environment"],
       {

@@ -11,11 +11,18 @@
 /// <reference types="tree-sitter-cli/dsl" />
 // @ts-check
 
+/** Words that begin or continue an action and are names wherever a name is wanted: in a list, and after `do`. */
+const CONTEXTUAL = [
+  "wait", "seconds", "repeat", "times", "if", "else", "do", "in", "reverse", "clear", "detect", "within",
+];
+
 module.exports = grammar({
   name: "pydslrep",
 
-  // `distance`, `bumper` and `import` are keywords only where the grammar expects them, and names elsewhere.
+  // `distance`, `bumper`, `import` and the words above are keywords only where the grammar expects them, and names elsewhere.
   word: ($) => $.name,
+  // After `do`, such a word is the movement's name, unless what follows shows that the name is missing: `do wait 2 seconds`.
+  conflicts: ($) => [[$.do]],
   extras: ($) => [/[ \t\r\n\f]/, $.comment],
 
   rules: {
@@ -64,21 +71,39 @@ module.exports = grammar({
         $.actions,
       ),
     actions: ($) => incomplete("{", repeat1($._action), "}"),
-    _action: ($) => choice($.move, $.turn, $.slam),
-    move: ($) =>
-      incomplete(
-        "move",
-        field("distance", $.number),
-        field("unit", choice("meters", "centimeters")),
-        incomplete("at", field("speed", $.number)),
-      ),
+    _action: ($) => choice($.move, $.turn, $.wait, $.repeat, $.if, $.do, $.slam),
+    move: ($) => incomplete("move", field("distance", $.number), field("unit", $._unit), speed($), until($)),
     turn: ($) =>
       incomplete(
         "turn",
         field("direction", choice("left", "right")),
-        choice(field("angle", $.number), incomplete("until", $.sensor_references)),
+        field("angle", $.number),
+        $.circle,
+        speed($),
+        incomplete("in", "reverse"),
+        until($),
       ),
+    circle: ($) => incomplete("with", "radius", field("radius", $.number), field("unit", $._unit)),
+    wait: ($) => incomplete("wait", field("seconds", $.number), "seconds", until($)),
+    // The first brace after `until` and `if` is that of a condition.
+    repeat: ($) =>
+      incomplete(
+        "repeat",
+        field("count", $.number),
+        "times",
+        choice(field("body", $.block), incomplete("until", guarded("body", $))),
+      ),
+    if: ($) => incomplete("if", guarded("then", $), incomplete("else", field("else", choice($.if, $.block)))),
+    do: ($) => seq("do", optional(prec.dynamic(1, field("movement", name($))))),
     slam: (_) => "slam",
+    block: ($) => incomplete("{", repeat1($._action), "}"),
+    condition: ($) =>
+      incomplete(
+        $.sensor_references,
+        field("word", choice("clear", "detect")),
+        incomplete("within", field("distance", $.number), field("unit", $._unit)),
+      ),
+    _unit: (_) => choice("meters", "centimeters"),
 
     environment_definition: ($) =>
       incomplete("environment", field("name", $.name), $.ip_clause, $.robots_clause, $.moves_clause, "with"),
@@ -87,10 +112,11 @@ module.exports = grammar({
     robots_clause: ($) => incomplete("has", $.robot_references, "robots"),
     moves_clause: ($) => incomplete(seq("with", $.movement_references), "moves"),
 
-    wheel_references: ($) => references($),
-    sensor_references: ($) => references($),
-    robot_references: ($) => references($),
-    movement_references: ($) => references($),
+    wheel_references: ($) => references($.name),
+    // Inside a movement, only a brace ends the list before an action whose first word may be a name.
+    sensor_references: ($) => references(name($)),
+    robot_references: ($) => references($.name),
+    movement_references: ($) => references($.name),
 
     name: (_) => /\^?[A-Za-z_][A-Za-z0-9_]*/,
     number: (_) => /-?[0-9]+(\.[0-9]+)?/,
@@ -121,11 +147,52 @@ function incomplete(first, ...others) {
 }
 
 /**
- * A list of names; the comma after each is optional.
+ * The speed of an action.
  *
  * @param {GrammarSymbols<string>} $
  * @returns {Rule}
  */
-function references($) {
-  return incomplete("{", repeat1(seq($.name, optional(","))), "}");
+function speed($) {
+  return incomplete("at", field("speed", $.number));
+}
+
+/**
+ * What ends an action early.
+ *
+ * @param {GrammarSymbols<string>} $
+ * @returns {Rule}
+ */
+function until($) {
+  return incomplete("until", $.condition);
+}
+
+/**
+ * A condition and the block that depends on it.
+ *
+ * @param {string} block The block's field.
+ * @param {GrammarSymbols<string>} $
+ * @returns {Rule}
+ */
+function guarded(block, $) {
+  return incomplete($.condition, field(block, $.block));
+}
+
+/**
+ * A name where an action may follow.
+ *
+ * @param {GrammarSymbols<string>} $
+ * @returns {Rule}
+ */
+function name($) {
+  return choice($.name, ...CONTEXTUAL.map((word) => alias(word, $.name)));
+}
+
+/**
+ * A list of names; the comma after each is optional.
+ *
+ * @param {Rule} name
+ * @returns {Rule}
+ */
+function references(name) {
+  return incomplete("{", repeat1(seq(name, optional(","))), "}");
 }

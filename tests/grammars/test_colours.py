@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from colours import (
     TABLE,
@@ -14,13 +16,15 @@ from colours import (
     random_programs,
 )
 
+ACTIONS = Path(__file__).with_name("actions.pyr")
+
 # The server's answers about each program.
 Programs = list[tuple[str, Colours]]
 
 
 @pytest.fixture(scope="module")
 def programs(server: LanguageServer) -> Programs:
-    texts = [path.read_bytes().decode() for path in examples()]
+    texts = [path.read_bytes().decode() for path in [*examples(), ACTIONS]]
     texts += [*random_programs(200, 25), "", "\ufeff", "\n", "// a", "/**/ /***/ /*/*/"]
     answers = [(text, *server.read(text)) for text in texts]
     assert [text for text, is_program, _ in answers if not is_program] == []

@@ -30,6 +30,24 @@ def words() -> set[str]:
     return set(re.findall(r'"([A-Za-z]+)"', rules))
 
 
+def contextual() -> set[str]:
+    """Those that are names wherever a name can be: the grammar's comment on tokens lists them."""
+    _, _, tokens = (GRAMMAR / "pydslrep.ebnf").read_text().partition("(* Tokens.")
+    return set(re.findall(r'"([A-Za-z]+)"', tokens.partition("*)")[0]))
+
+
+def textmate_keywords(
+    textmate: TextMate, before: str, candidates: list[str]
+) -> set[str]:
+    """The words that are keywords after a text."""
+    answers = textmate.read([before + word for word in candidates])
+    return {
+        word
+        for word, (_, colours) in zip(candidates, answers, strict=True)
+        if colours[len(before) :] == ["keyword"] * len(word)
+    }
+
+
 def test_the_tree_sitter_grammar_has_all_keywords() -> None:
     grammar = (TREE_SITTER / "src" / "grammar.json").read_text()
     literals = set(re.findall(r'"type": "STRING",\s*"value": "(\w+)"', grammar))
@@ -38,14 +56,14 @@ def test_the_tree_sitter_grammar_has_all_keywords() -> None:
 
 def test_textmate_has_exactly_the_keywords(textmate: TextMate) -> None:
     texts = [*sorted(words()), "colour", "radios", "4wheelx"]
-    answers = textmate.read([f"at {text}" for text in texts])
-    keywords = {
-        text
-        for text, (_, colours) in zip(texts, answers, strict=True)
-        if colours[3:] == ["keyword"] * len(text)
-    }
-    # The other two are keywords only after the `:` of a sensor.
-    assert keywords == words() - {"distance", "bumper"}
+    reserved = words() - contextual()
+    assert textmate_keywords(textmate, "at ", texts) == reserved | {"import"}
+    actions = contextual() - {"distance", "bumper", "import"}
+    for before in (
+        "movement m of r { ",
+        "movement m of r { repeat 2 times { if { a } ",
+    ):
+        assert textmate_keywords(textmate, before, texts) == reserved | actions
 
 
 def test_textmate_is_up_to_date() -> None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import random
 import re
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Protocol
 
 import pytest
 from colours import Colours, TextMate, TreeSitter, random_programs
 
+ACTIONS = Path(__file__).with_name("actions.pyr").read_text(encoding="utf-8")
 TOKEN = re.compile(
     r'//[^\r\n]*|/\*.*?\*/|"[^"\r\n]*"|\^?[A-Za-z_]\w*|-?[0-9][0-9.]*|[{}:,]', re.S
 )
@@ -18,7 +20,8 @@ BEGINS_ENTITY = re.compile(r"(wheelH?|sensor|ip|robot|parallel|movement|environm
 STRAY = re.split(
     " ",
     "with radius has { } , : 4.5 -1 name distance 1.2.3.4 port wheels sensors of move turn left until at meters robots "
-    "moves type tw slam § left-wheel größe ^ 4. ; ( ) = '",
+    "moves type tw slam § left-wheel größe ^ 4. ; ( ) = ' wait seconds repeat times if else do in reverse clear detect "
+    "within",
 )
 
 
@@ -65,9 +68,12 @@ def broken(program: str, starts: list[int], choose: random.Random) -> Broken:
 def mistakes(tree_sitter: TreeSitter) -> list[Broken]:
     choose = random.Random(7)
     found = []
-    for program in random_programs(80, 12):
+    for program, count in [
+        *((text, 4) for text in random_programs(80, 12)),
+        (ACTIONS, 200),
+    ]:
         starts = tree_sitter.entities(program)
-        found += [broken(program, starts, choose) for _ in range(4) if starts]
+        found += [broken(program, starts, choose) for _ in range(count) if starts]
     return found
 
 

@@ -29,7 +29,9 @@ syn match pydslrepMovement /\^\=\<\h\w*/ contained
 syn match pydslrepEnvironment /\^\=\<\h\w*/ contained
 syn match pydslrepName /\^\h\w*/
 
-" Contextual keywords.
+" Contextual keywords; those of actions are names in lists and after `do`.
+syn keyword pydslrepWord contained wait seconds repeat times if else in reverse clear detect within
+syn keyword pydslrepWord contained do nextgroup=pydslrepMovement skipwhite skipempty
 syn match pydslrepSensorKind /:\_s*\%(distance\|bumper\)\>/ contained contains=pydslrepKind
 syn keyword pydslrepKind contained distance bumper
 syn match pydslrepImport /\<import\>\%(\_s*"\)\@=/
@@ -37,15 +39,19 @@ syn match pydslrepImport /\<import\>\%(\_s*"\)\@=/
 syn match pydslrepNumber /-\=\<\d\+\%(\.\d\+\)*\>/
 syn match pydslrepString /"[^"]*"/
 
-" Braces: bodies of movements, which fold, and lists, whose kind depends on the keyword next to them.
+" Braces: bodies of movements and their blocks, which fold, and lists, whose kind depends on the keyword next to them.
 syn region pydslrepBody start=/{/ end=/}/ transparent fold
+      \ contains=ALLBUT,pydslrepWheel,pydslrepSensor,pydslrepSensorKind,pydslrepKind,pydslrepIp,pydslrepRobot,
+      \pydslrepMovement,pydslrepEnvironment
 let s:list = '{\%(/\*\_.\{-}\*/\|//.*\|\_[^{}]\)*}'
 let s:of = ' contains=pydslrepLineComment,pydslrepBlockComment,'
 exe 'syn match pydslrepWheels #' .. s:list .. '\%(\_s*wheels\>\)\@=#' .. s:of .. 'pydslrepWheel'
 exe 'syn match pydslrepRobots #' .. s:list .. '\%(\_s*robots\>\)\@=#' .. s:of .. 'pydslrepRobot'
 exe 'syn match pydslrepMoves #' .. s:list .. '\%(\_s*moves\>\)\@=#' .. s:of .. 'pydslrepMovement'
-exe 'syn match pydslrepSensors #\%(\<\%(sensors\|until\)\_s*\)\@<=' .. s:list .. '#' .. s:of .. 'pydslrepSensor'
-unlet s:list s:of
+" `if` is a robot in `movement m of if {`.
+let s:before = '\%(\%(\<\%(sensors\|until\)\|\%(\<of\_s\+\)\@<!\<if\)\_s*\)\@<='
+exe 'syn match pydslrepSensors #' .. s:before .. s:list .. '#' .. s:of .. 'pydslrepSensor'
+unlet s:list s:of s:before
 
 syn match pydslrepLineComment "//.*$" contains=@Spell
 syn region pydslrepBlockComment start="/\*" end="\*/" contains=@Spell fold
@@ -57,6 +63,7 @@ syn sync minlines=200
 hi def link pydslrepKeyword @keyword
 hi def link pydslrepKind @keyword
 hi def link pydslrepImport @keyword
+hi def link pydslrepWord @keyword
 hi def link pydslrepWheel @variable
 hi def link pydslrepSensor @property
 hi def link pydslrepIp @constant

@@ -110,6 +110,22 @@ def compiles(folder: Path) -> bool:
     )
 
 
+def follows_its_rules() -> bool:
+    """Whether the mode without the parser highlights and indents nested blocks."""
+    files = (
+        ROOT / "editors" / "emacs" / "pydslrep-mode.el",
+        Path(__file__).with_name("rules.el"),
+    )
+    load = [argument for file in files for argument in ("-l", str(file))]
+    return (
+        subprocess.run(
+            [*EMACS, "-Q", "--batch", *load, "-f", "ert-run-tests-batch-and-exit"],
+            check=False,
+        ).returncode
+        == 0
+    )
+
+
 def run(session: Session, takes_pictures: bool) -> None:
     session.program.write_text(PROGRAM)
     start = [*EMACS, "-nw", str(session.program)]
@@ -130,6 +146,7 @@ def main() -> None:
         settings.parent.mkdir()
         settings.write_text(QUIET + block[1].replace("/path/to/pydslrep", str(ROOT)))
         session.check("compiles without a warning", compiles(session.home))
+        session.check("highlights and indents blocks", follows_its_rules())
         print("== without the parser")
         run(session, takes_pictures=False)
         print("== with the parser")

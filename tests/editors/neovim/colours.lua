@@ -24,6 +24,16 @@ parallel movement m of first {
   slam
 }
 movement n of second { turn left }
+movement if of first {
+  repeat until { distance import } detect within 40 centimeters {
+    if { import } clear { do ^repeat } else if { bumper } detect { turn right with radius 2 meters in reverse } else {
+      wait 2.5 seconds until { bumper } clear
+      do if do
+        do
+    }
+  }
+  repeat 4 times { wait until { distance } detect }
+}
 environment e with ip home has { first, second } robots with { m, n } moves
 environment f has { first } robots
 ]]

@@ -98,6 +98,17 @@ movement m of r {
    * Then on.
    */
   slam
+  repeat until { front } detect {
+    if { front back } clear { // {
+      do side
+    } else if { back } detect {
+      repeat 4 times { turn left until { front } }
+    } else {
+      /* } */
+      slam
+    }
+    turn left
+  }
 }
 ]]
 

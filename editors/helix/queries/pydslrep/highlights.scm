@@ -4,7 +4,8 @@
 [
   "wheel" "wheelH" "with" "radius" "sensor" "ip" "robot" "type" "tw" "fw" "fwh" "port" "has" "wheels" "sensors"
   "parallel" "movement" "of" "move" "meters" "centimeters" "at" "turn" "left" "right" "until" "environment" "robots"
-  "moves" "distance" "bumper" "import"
+  "moves" "distance" "bumper" "import" "wait" "seconds" "repeat" "times" "if" "else" "do" "in" "reverse" "clear"
+  "detect" "within"
 ] @keyword
 (slam) @keyword
 ((ERROR (name) @keyword)
@@ -33,6 +34,7 @@
 
 (movement_definition name: (name) @function)
 (movement_references (name) @function)
+(do movement: (name) @function)
 
 (environment_definition name: (name) @namespace)
 

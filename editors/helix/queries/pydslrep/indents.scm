@@ -1,5 +1,6 @@
 [
   (actions)
+  (block)
   (wheel_references)
   (sensor_references)
   (robot_references)

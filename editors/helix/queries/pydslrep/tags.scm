@@ -8,3 +8,4 @@
 (movement_definition robot: (name) @name) @reference.class
 (robot_references (name) @name @reference.class)
 (movement_references (name) @name @reference.call)
+(do movement: (name) @name) @reference.call

@@ -14,3 +14,4 @@
 (movement_definition robot: (name) @local.reference)
 (robot_references (name) @local.reference)
 (movement_references (name) @local.reference)
+(do movement: (name) @local.reference)
