@@ -158,7 +158,8 @@ export class Follower {
   async locate(action: NumberedAction): Promise<Location | undefined> {
     const { uri, environment } = this;
     if (uri === undefined || environment === undefined) return undefined;
-    const params = { uri, environment, movement: action.movement, index: action.index };
+    const { movement, index, calls } = action;
+    const params = { uri, environment, movement, index, ...(calls ? { calls } : {}) };
     const found = await this.request("location", ACTION_LOCATION, params);
     return found === null || found instanceof Failure ? undefined : (found as Location | undefined);
   }

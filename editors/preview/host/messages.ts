@@ -101,6 +101,10 @@ function isPositive(value: unknown): value is number {
 }
 
 function isNumberedAction(value: unknown): value is NumberedAction {
+  return isStatement(value) && (value.calls === undefined || (Array.isArray(value.calls) && value.calls.every(isStatement)));
+}
+
+function isStatement(value: unknown): value is Record<string, unknown> {
   return isRecord(value) && typeof value.movement === "string" && Number.isInteger(value.index);
 }
 

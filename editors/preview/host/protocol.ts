@@ -85,6 +85,17 @@ export interface PlannedLeg {
 
 /** An action by its index in its movement. */
 export interface NumberedAction {
+  /** The movement that the environment lists. */
+  movement: string;
+  /** From 0, among the statements of the movement, those with blocks included; of the last one that is done, if there are calls. */
+  index: number;
+  /** The statements that lead to it by `do`, outermost first. */
+  calls?: PlannedCall[];
+}
+
+/** A statement that does another movement. */
+export interface PlannedCall {
+  /** The movement that the statement is in. */
   movement: string;
   /** From 0. */
   index: number;
@@ -93,6 +104,10 @@ export interface NumberedAction {
 export interface PlannedAction extends NumberedAction {
   /** As the program writes it, on one line. */
   text: string;
+  /** The rounds of the loops around it, from 1, outermost first. */
+  rounds?: number[];
+  /** The movement whose statement it is, if that is one that others do. */
+  done?: string;
 }
 
 export type Obstacle =

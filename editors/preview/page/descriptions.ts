@@ -1,4 +1,5 @@
 // Paths and actions in words, for the tooltip and for screen readers.
+import type { PlannedAction } from "../host/protocol";
 import * as format from "./format";
 import type { Hit } from "./hit";
 import type { Model } from "./model";
@@ -9,10 +10,18 @@ export function describeAction({ robot, leg }: Hit): string[] {
   const when = start === null ? "start time unknown" : `from ${format.duration(start)} to ${format.duration(start + duration)}`;
   return [
     action.text,
-    `${robot.name} · ${action.movement}, action ${action.index + 1}`,
+    `${robot.name} · ${describePlace(action)}`,
     `takes ${format.duration(duration)}, ${when}`,
     `ends at ${format.pose(leg.to)}`,
   ];
+}
+
+/** Where an action is: its movement and number, the rounds of the loops around it, and the movements that lead to it. */
+export function describePlace({ movement, index, calls = [], rounds = [], done = movement }: PlannedAction): string {
+  const round = rounds.length === 0 ? "" : ` in ${rounds.length === 1 ? "round" : "rounds"} ${rounds.join(", ")}`;
+  const parts = [done, `action ${index + 1}${round}`];
+  if (calls.length > 0) parts.push(`done by ${calls.map((call) => call.movement).join(" › ")}`);
+  return parts.join(", ");
 }
 
 export function describePath({ environment, robots, collisions, duration, isComplete }: Model): string {

@@ -12,7 +12,7 @@ export interface Leg {
   last: number;
   from: Pose;
   to: Pose;
-  /** Whether the robot turns on the spot. */
+  /** Whether the robot turns on the spot, or waits. */
   isTurn: boolean;
 }
 
@@ -104,7 +104,9 @@ function robotOf(robot: PlannedPath["robots"][number], colour: number): Robot {
     const first = robot.legs[index - 1]?.last ?? 0;
     const from = poses[first] ?? start;
     const to = poses[leg.last] ?? from;
-    return { ...leg, first, from, to, isTurn: Math.hypot(to.x - from.x, to.y - from.y) < 1e-9 };
+    // A full circle ends where it began, too.
+    const isTurn = poses.slice(first, leg.last + 1).every(({ x, y }) => Math.hypot(x - from.x, y - from.y) < 1e-9);
+    return { ...leg, first, from, to, isTurn };
   });
   return {
     name,
@@ -153,9 +155,12 @@ function shapeOf(obstacle: PlannedPath["obstacles"][number]): ObstacleShape {
     : { name: obstacle.name, x: obstacle.centre[0], y: obstacle.centre[1], radius: obstacle.radius };
 }
 
-/** Whether a leg belongs to an action; a movement may run more than once. */
+/** Whether a leg belongs to an action, or to a movement that it does; an action may run more than once. */
 export function isLegOf(leg: Leg, action: NumberedAction | null): boolean {
-  return action !== null && leg.action.index === action.index && leg.action.movement === action.movement;
+  if (action === null) return false;
+  const { movement, index, calls = [], done = movement } = leg.action;
+  const statements = [...calls, { movement: done, index }];
+  return statements.some((statement) => statement.movement === action.movement && statement.index === action.index);
 }
 
 /** How far the driven end is off the planned one: metres and radians. */

@@ -395,6 +395,6 @@ export class Preview {
   }
 }
 
-function numbered({ movement, index }: NumberedAction): NumberedAction {
-  return { movement, index };
+function numbered({ movement, index, calls }: NumberedAction): NumberedAction {
+  return { movement, index, ...(calls ? { calls } : {}) };
 }

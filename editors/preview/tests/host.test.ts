@@ -17,10 +17,12 @@ const ANSWERS: Record<string, unknown> = {
 /** A host of a shown program, with its requests, its messages to the page, and what it did. */
 async function hostOfProgram() {
   const requests: string[] = [];
+  const asked: unknown[] = [];
   const posted: ToPage[] = [];
   const done: unknown[] = [];
-  const request = (method: string) => {
+  const request = (method: string, params: unknown) => {
     requests.push(method);
+    asked.push(params);
     return Promise.resolve(ANSWERS[method] ?? null);
   };
   const host = new PreviewHost(request, (message) => posted.push(message), {
@@ -29,7 +31,7 @@ async function hostOfProgram() {
     export: () => done.push("export"),
   });
   await host.follower.follow(URI, { line: 0, character: 0 });
-  return { host, requests, posted, done };
+  return { host, requests, asked, posted, done };
 }
 
 test("a click in the page becomes the action's location", async () => {
@@ -39,6 +41,16 @@ test("a click in the page becomes the action's location", async () => {
   await host.received({ type: "export" });
   await host.received({ type: "reveal", action: "m 0" });
   assert.deepEqual(done, [LOCATION, ["addEnvironment", URI], "export"]);
+});
+
+test("a click on an action of a movement that others do says which statement does it", async () => {
+  const { host, asked } = await hostOfProgram();
+  const action = { movement: "m", index: 0, calls: [{ movement: "m", index: 2 }] };
+  await host.received({ type: "reveal", action });
+  assert.deepEqual(asked.at(-1), { uri: URI, environment: "yard", ...action });
+  asked.length = 0;
+  await host.received({ type: "reveal", action: { ...action, calls: [{ movement: "m" }] } });
+  assert.deepEqual(asked, []);
 });
 
 test("only the shown environment's path is requested again when paths change", async () => {

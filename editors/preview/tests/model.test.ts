@@ -1,7 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { boundsOf, deviation, drivenOf, isLegOf, modelOf } from "../page/model";
+import { describePlace } from "../page/descriptions";
+import { boundsOf, deviation, drivenOf, isLegOf, type Leg, modelOf } from "../page/model";
 import { poseAt } from "../page/time";
 import { plan } from "./plans";
 
@@ -21,6 +22,33 @@ test("legs have a first and a last pose, and may be turns", () => {
   ]);
   assert.deepEqual(rover.legs.map((leg) => isLegOf(leg, { movement: "go", index: 1 })), [false, true, false]);
   assert.ok(!rover.legs.some((leg) => isLegOf(leg, { movement: "stay", index: 1 }) || isLegOf(leg, null)));
+});
+
+test("a full circle is not a turn on the spot", () => {
+  const path = plan();
+  const [circle] = path.robots;
+  assert.ok(circle);
+  circle.poses = [0, 1, 2, 3, 4].map((t) => ({ t, x: Math.sin((t * Math.PI) / 2), y: 1 - Math.cos((t * Math.PI) / 2), theta: (t * Math.PI) / 2, action: null }));
+  circle.legs = [{ action: { movement: "go", index: 0, text: "turn left 360 with radius 1 meters" }, start: 0, duration: 4, last: 4 }];
+  assert.equal(modelOf(path).robots[0]?.legs[0]?.isTurn, false);
+});
+
+/** A leg of `side`, which the second statement of `go` does in a loop. */
+function done(): Leg {
+  const pose = { x: 0, y: 0, theta: 0 };
+  const action = { movement: "go", index: 0, text: "move 1 meters", calls: [{ movement: "go", index: 1 }], done: "side" };
+  return { action, start: 0, duration: 1, first: 0, last: 1, from: pose, to: pose, isTurn: false };
+}
+
+test("a leg belongs to its statement and to those that do its movement", () => {
+  const at = (movement: string, index: number): boolean => isLegOf(done(), { movement, index });
+  assert.deepEqual([at("side", 0), at("go", 1), at("go", 0), at("side", 1)], [true, true, false, false]);
+});
+
+test("an action says its movement, its rounds and who does it", () => {
+  const { action } = done();
+  assert.equal(describePlace({ ...action, rounds: [2, 1] }), "side, action 1 in rounds 2, 1, done by go");
+  assert.equal(describePlace({ movement: "go", index: 1, text: "turn left" }), "go, action 2");
 });
 
 test("after an action of unknown duration there is a line without times", () => {

@@ -37,7 +37,17 @@ export const path: PlannedPath = {
           "action": {
             "movement": "m",
             "index": 0,
-            "text": "move 1 meters"
+            "text": "move 1 meters",
+            "rounds": [
+              1
+            ],
+            "calls": [
+              {
+                "movement": "m",
+                "index": 1
+              }
+            ],
+            "done": "side"
           }
         },
         {
@@ -48,7 +58,17 @@ export const path: PlannedPath = {
           "action": {
             "movement": "m",
             "index": 0,
-            "text": "move 1 meters"
+            "text": "move 1 meters",
+            "rounds": [
+              1
+            ],
+            "calls": [
+              {
+                "movement": "m",
+                "index": 1
+              }
+            ],
+            "done": "side"
           }
         },
         {
@@ -59,7 +79,17 @@ export const path: PlannedPath = {
           "action": {
             "movement": "m",
             "index": 0,
-            "text": "move 1 meters"
+            "text": "move 1 meters",
+            "rounds": [
+              1
+            ],
+            "calls": [
+              {
+                "movement": "m",
+                "index": 1
+              }
+            ],
+            "done": "side"
           }
         },
         {
@@ -70,7 +100,17 @@ export const path: PlannedPath = {
           "action": {
             "movement": "m",
             "index": 0,
-            "text": "move 1 meters"
+            "text": "move 1 meters",
+            "rounds": [
+              1
+            ],
+            "calls": [
+              {
+                "movement": "m",
+                "index": 1
+              }
+            ],
+            "done": "side"
           }
         },
         {
@@ -81,7 +121,17 @@ export const path: PlannedPath = {
           "action": {
             "movement": "m",
             "index": 0,
-            "text": "move 1 meters"
+            "text": "move 1 meters",
+            "rounds": [
+              1
+            ],
+            "calls": [
+              {
+                "movement": "m",
+                "index": 1
+              }
+            ],
+            "done": "side"
           }
         },
         {
@@ -92,7 +142,17 @@ export const path: PlannedPath = {
           "action": {
             "movement": "m",
             "index": 0,
-            "text": "move 1 meters"
+            "text": "move 1 meters",
+            "rounds": [
+              1
+            ],
+            "calls": [
+              {
+                "movement": "m",
+                "index": 1
+              }
+            ],
+            "done": "side"
           }
         },
         {
@@ -103,7 +163,17 @@ export const path: PlannedPath = {
           "action": {
             "movement": "m",
             "index": 0,
-            "text": "move 1 meters"
+            "text": "move 1 meters",
+            "rounds": [
+              1
+            ],
+            "calls": [
+              {
+                "movement": "m",
+                "index": 1
+              }
+            ],
+            "done": "side"
           }
         },
         {
@@ -114,7 +184,185 @@ export const path: PlannedPath = {
           "action": {
             "movement": "m",
             "index": 0,
-            "text": "move 1 meters"
+            "text": "move 1 meters",
+            "rounds": [
+              1
+            ],
+            "calls": [
+              {
+                "movement": "m",
+                "index": 1
+              }
+            ],
+            "done": "side"
+          }
+        },
+        {
+          "t": 12.87125,
+          "x": 1.1206125,
+          "y": 0.0,
+          "theta": 0.0,
+          "action": {
+            "movement": "m",
+            "index": 0,
+            "text": "move 1 meters",
+            "rounds": [
+              2
+            ],
+            "calls": [
+              {
+                "movement": "m",
+                "index": 1
+              }
+            ],
+            "done": "side"
+          }
+        },
+        {
+          "t": 14.301388888888889,
+          "x": 1.249325,
+          "y": 0.0,
+          "theta": 0.0,
+          "action": {
+            "movement": "m",
+            "index": 0,
+            "text": "move 1 meters",
+            "rounds": [
+              2
+            ],
+            "calls": [
+              {
+                "movement": "m",
+                "index": 1
+              }
+            ],
+            "done": "side"
+          }
+        },
+        {
+          "t": 15.731527777777778,
+          "x": 1.3780375,
+          "y": 0.0,
+          "theta": 0.0,
+          "action": {
+            "movement": "m",
+            "index": 0,
+            "text": "move 1 meters",
+            "rounds": [
+              2
+            ],
+            "calls": [
+              {
+                "movement": "m",
+                "index": 1
+              }
+            ],
+            "done": "side"
+          }
+        },
+        {
+          "t": 17.161666666666665,
+          "x": 1.50675,
+          "y": 0.0,
+          "theta": 0.0,
+          "action": {
+            "movement": "m",
+            "index": 0,
+            "text": "move 1 meters",
+            "rounds": [
+              2
+            ],
+            "calls": [
+              {
+                "movement": "m",
+                "index": 1
+              }
+            ],
+            "done": "side"
+          }
+        },
+        {
+          "t": 18.591805555555556,
+          "x": 1.6354625,
+          "y": 0.0,
+          "theta": 0.0,
+          "action": {
+            "movement": "m",
+            "index": 0,
+            "text": "move 1 meters",
+            "rounds": [
+              2
+            ],
+            "calls": [
+              {
+                "movement": "m",
+                "index": 1
+              }
+            ],
+            "done": "side"
+          }
+        },
+        {
+          "t": 20.021944444444443,
+          "x": 1.7641749999999998,
+          "y": 0.0,
+          "theta": 0.0,
+          "action": {
+            "movement": "m",
+            "index": 0,
+            "text": "move 1 meters",
+            "rounds": [
+              2
+            ],
+            "calls": [
+              {
+                "movement": "m",
+                "index": 1
+              }
+            ],
+            "done": "side"
+          }
+        },
+        {
+          "t": 21.452083333333334,
+          "x": 1.8928875,
+          "y": 0.0,
+          "theta": 0.0,
+          "action": {
+            "movement": "m",
+            "index": 0,
+            "text": "move 1 meters",
+            "rounds": [
+              2
+            ],
+            "calls": [
+              {
+                "movement": "m",
+                "index": 1
+              }
+            ],
+            "done": "side"
+          }
+        },
+        {
+          "t": 22.88222222222222,
+          "x": 2.0,
+          "y": 0.0,
+          "theta": 0.0,
+          "action": {
+            "movement": "m",
+            "index": 0,
+            "text": "move 1 meters",
+            "rounds": [
+              2
+            ],
+            "calls": [
+              {
+                "movement": "m",
+                "index": 1
+              }
+            ],
+            "done": "side"
           }
         }
       ],
@@ -123,16 +371,46 @@ export const path: PlannedPath = {
           "action": {
             "movement": "m",
             "index": 0,
-            "text": "move 1 meters"
+            "text": "move 1 meters",
+            "rounds": [
+              1
+            ],
+            "calls": [
+              {
+                "movement": "m",
+                "index": 1
+              }
+            ],
+            "done": "side"
           },
           "start": 0.0,
           "duration": 11.44111111111111,
           "last": 8
+        },
+        {
+          "action": {
+            "movement": "m",
+            "index": 0,
+            "text": "move 1 meters",
+            "rounds": [
+              2
+            ],
+            "calls": [
+              {
+                "movement": "m",
+                "index": 1
+              }
+            ],
+            "done": "side"
+          },
+          "start": 11.44111111111111,
+          "duration": 11.44111111111111,
+          "last": 16
         }
       ],
       "unknownAfter": {
         "movement": "m",
-        "index": 1,
+        "index": 2,
         "text": "turn left until { front }"
       }
     }
@@ -174,7 +452,17 @@ export const path: PlannedPath = {
       "action": {
         "movement": "m",
         "index": 0,
-        "text": "move 1 meters"
+        "text": "move 1 meters",
+        "rounds": [
+          1
+        ],
+        "calls": [
+          {
+            "movement": "m",
+            "index": 1
+          }
+        ],
+        "done": "side"
       },
       "t": 2.862222222222222,
       "x": 0.24949999999999997,
