@@ -36,6 +36,9 @@ SCHEMAS = [
     for name in ("pydslrep.schema.json", "scene.schema.json")
 ]
 
+# A fragment that begins with one of these is a part of a movement.
+ACTION = re.compile(r"(move|turn|wait|repeat|if|do|slam)\b")
+
 # What nothing here can check: drawings of text, formulas, and the settings of editors, which their tests use.
 UNCHECKED = {"", "elisp", "lua", "text", "ebnf", "math"}
 # tests/repository/test_protocol_types.py compares these with the server's types.
@@ -98,7 +101,7 @@ def severe(found: list[dict[str, Any]]) -> list[str]:
 def check_program(session: Session, block: Block) -> list[str]:
     """What is wrong with a program in a page."""
     if "fragment" in block.info:
-        is_action = re.match(r"(move|turn|slam)\b", block.code)
+        is_action = re.match(ACTION, block.code)
         code = f"movement m of r {{\n{block.code}}}\n" if is_action else block.code
         path = session.folder / "fragment.pyr"
         path.write_text(code, encoding="utf-8")
@@ -220,7 +223,10 @@ def test_a_diagnostic_has_its_example(command: str, tmp_path: Path, page: Path) 
     found: dict[str, list[str]] = {}
     for target in ("coppeliasim", "vrep"):
         settings = session.folder / "pydslrep.toml"
-        settings.write_text(f'target = "{target}"\n', encoding="utf-8")
+        edition = "article" if page.stem == "not-in-article" else "current"
+        settings.write_text(
+            f'target = "{target}"\nedition = "{edition}"\n', encoding="utf-8"
+        )
         for block in blocks(page):
             if block.language == "text":
                 continue
