@@ -132,6 +132,36 @@ def test_what_is_pushed_drives(command: str, port: int, program: Path) -> None:
         assert sim.getObjectPosition(sim.getObject("/one"))[0] == pytest.approx(-1.0)
 
 
+def test_an_obstacle_that_moves_stays_at_its_first_point(
+    command: str, port: int, small_program: Path
+) -> None:
+    scene_file = small_program.with_name("yard.scene.toml")
+    scene_file.write_text(
+        scene_file.read_text()
+        + '[[cylinder]]\nname = "person"\nradius = 0.2\n'
+        + "path = [[0, 2, 0.5], [5, 2, -2]]\nrepeat = true\n"
+    )
+    done = scene(command, "push", small_program, port=port)
+    assert "obstacle `person` has a path, but does not move here" in done.stderr
+    assert "x 2 m, y 0.5 m" in " ".join(done.stderr.split())
+    assert "crate" not in done.stderr
+    with client(port) as sim:
+        person = sim.getObject("/person")
+        sim.setStepping(True)
+        sim.startSimulation()
+        for _ in range(3):
+            sim.step()
+        assert sim.getObjectPosition(person)[:2] == pytest.approx([2.0, 0.5])
+        sim.stopSimulation()
+    pulled = small_program.with_name("hall")
+    done = scene(command, "pull", pulled, port=port)
+    assert "warning" not in done.stderr, done.stderr
+    text = (pulled / "hall_area.scene.toml").read_text()
+    assert 'name = "person"' in text
+    assert "at = [2, 0.5]" in text
+    assert "path" not in text
+
+
 def test_objects_are_as_scripts_expect_them(
     command: str, port: int, program: Path
 ) -> None:

@@ -73,7 +73,7 @@ async def offered(
             "move 1 meters at 9.0\n  turn",
             "Extract into new movement `tour_2`",
             "",
-            "{ tour tour_2 tour_3 } moves",
+            "  do tour_2\n",
         ),
         ("refactor", "robot rover", "Add `type tw`", "", "robot rover type tw with"),
     ],

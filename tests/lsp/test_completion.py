@@ -13,6 +13,7 @@ pytestmark = pytest.mark.asyncio
 
 # Its columns differ in UTF-8, UTF-16 and UTF-32.
 WHEELS = "/* 🤖é */ wheel wheelL with radius 4.5\n"
+RECOVERY = pathlib.Path(__file__).parents[1] / "programs/0.3/11-recovery.pyr"
 ROBOT = "/* 🤖é */ robot rover with port 23000 has { wh"
 
 
@@ -112,3 +113,21 @@ async def test_a_space_opens_the_list_only_where_a_name_must_follow(
     )
     found = await offered(client, uri, text, typed_last)
     assert [item.label for item in found] == labels
+
+
+@pytest.mark.parametrize("movement", ["first", "second", "third", "fourth"])
+async def test_a_movement_with_a_mistake_is_completed(
+    client: LanguageClient, tmp_path: pathlib.Path, movement: str
+) -> None:
+    """A misspelt word, a missing brace of a block or of a list, an unknown unit or a missing name: the next line is known."""
+    text = RECOVERY.read_text(encoding="utf-8")
+    begin = text.index(f"movement {movement} ")
+    end = text.index("\n}", begin)
+    typed = f"{text[:end]}\n  mo{text[end:]}"
+    uri = Editor(client, tmp_path).open("a.pyr", typed)
+    place = position(typed, end + len("\n  mo"))
+    found = await client.text_document_completion_async(
+        types.CompletionParams(types.TextDocumentIdentifier(uri), place)
+    )
+    assert isinstance(found, types.CompletionList)
+    assert any(item.label.startswith("move") for item in found.items)

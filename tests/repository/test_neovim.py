@@ -36,18 +36,21 @@ def test_queries_are_those_of_the_grammar(name: str) -> None:
 def test_the_syntax_file_has_all_keywords() -> None:
     # A test in `syntax` compares the published grammar with the lexer.
     grammar = (ROOT / "grammar" / "pydslrep.ebnf").read_text(encoding="utf-8")
-    rules, _, _ = grammar.partition("(* Tokens.")
+    rules, _, tokens = grammar.partition("(* Tokens.")
     words = set(re.findall(r'"([A-Za-z]+)"', rules))
+    names = set(re.findall(r'"([A-Za-z]+)"', tokens.partition("*)")[0]))
 
     syntax = (PLUGIN / "syntax" / "pydslrep.vim").read_text(encoding="utf-8")
     plain, contextual = set[str](), set[str]()
     for line in re.findall(r"^syn keyword pydslrepKeyword (.*)", syntax, re.M):
         plain |= set(re.sub(r" (nextgroup|skip).*", "", line).split())
-    for line in re.findall(r"^syn keyword pydslrepKind contained (.*)", syntax, re.M):
-        contextual |= set(line.split())
+    for line in re.findall(
+        r"^syn keyword pydslrep(?:Kind|Word) contained (.*)", syntax, re.M
+    ):
+        contextual |= set(re.sub(r" nextgroup.*", "", line).split())
     contextual |= set(re.findall(r"^syn match pydslrepImport /\\<(\w+)", syntax, re.M))
     assert plain | contextual == words
-    assert contextual == {"distance", "bumper", "import"}
+    assert contextual == names
     assert not plain & contextual
 
 

@@ -68,8 +68,8 @@ def to_wall(x: float, y: float, bearing: float) -> float:
     angle = truth["theta"] + math.radians(bearing)
     cos, sin = math.cos(angle), math.sin(angle)
     left, low, right, high = ROOM
-    across = ((right if cos > 0.0 else left) - x) / (cos or 1e-9)
-    along = ((high if sin > 0.0 else low) - y) / (sin or 1e-9)
+    across = ((right if cos >= 0.0 else left) - x) / (cos or 1e-9)
+    along = ((high if sin >= 0.0 else low) - y) / (sin or 1e-9)
     return min(across, along)
 
 

@@ -62,7 +62,7 @@ def fixture_build(
         program = tmp_path / "program.pyr"
         program.write_text(text, encoding="utf-8")
         subprocess.run([command, "build", program], check=True, capture_output=True)
-        robot, explorer, _ = code_of_the_page()
+        robot, explorer, *_ = code_of_the_page()
         (tmp_path / "my_robot.py").write_text(f"{robot}\n{explorer}", encoding="utf-8")
         shutil.copy(DRIVER, tmp_path)
         return tmp_path
@@ -182,8 +182,24 @@ def test_ten_lines_by_hand_drive_a_robot(
     build: Callable[[str], pathlib.Path],
 ) -> None:
     folder = build(PROGRAM)
-    *_, by_hand = code_of_the_page()
+    _, _, by_hand, _ = code_of_the_page()
     (folder / "yard.py").write_text(by_hand, encoding="utf-8")
     truth, _ = drive(folder, 0, "", ROVER)
     assert math.hypot(truth["x"], truth["y"]) < 0.01
     assert truth["theta"] == pytest.approx(math.tau, abs=0.02)
+
+
+def test_a_script_by_hand_reacts(build: Callable[[str], pathlib.Path]) -> None:
+    folder = build(PROGRAM)
+    *_, reacting = code_of_the_page()
+    (folder / "yard.py").write_text(reacting, encoding="utf-8")
+    truth, _ = drive(folder, 0, "room", EXPLORER)
+    # The body keeps away from the walls of the room, wherever it has been led.
+    assert -0.35 < truth["x"] < 1.55
+    assert abs(truth["y"]) < 0.35
+    assert abs(truth["theta"]) > math.radians(80.0)
+    _, err = drive(folder, 1, "broken", EXPLORER)
+    assert re.match(
+        r"error: robot rover, movement patrol, action \d.*: no reply from sensor front$",
+        err.strip(),
+    )

@@ -78,7 +78,7 @@ test("a run shows output, progress and the driven path, and offers what it wrote
   await page.getByRole("progressbar").waitFor();
   assert.equal(await playground.ended(), 0);
   const log = await page.locator("#log").innerText();
-  assert.match(log, /scout +left_square +1: move 1 m/);
+  assert.match(log, /scout +left_square +2 in round 1: move 1 m/);
   assert.match(await page.locator("#log table").innerText(), /scout\s+0\.000 m, 0\.000 m, 0°\s+0\.000 m, 0\.000 m, 0°/);
   await playground.preview.getByText("Latest run").waitFor();
   const script = await playground.download("Script");

@@ -1,6 +1,6 @@
 """Turns a program into keys, as a person types it: key by key, without what the editor inserts by itself.
 
-Keys are characters and these names: Enter, Tab, Down, End, BSpace, C-u (deletes everything before the cursor).
+Keys are characters and these names: Enter, Tab, Down, End, Right, BSpace, C-u (deletes everything before the cursor).
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Behaviour:
     # Enter indents the next line. Otherwise, Tab does.
     indents: bool = True
     # `{` inserts a `}`. If Enter indents, Enter between them moves the `}` to its own line, and Down reaches it. Otherwise,
-    # it stays after the cursor, and End passes it.
+    # it stays after the cursor, and End passes it; Right does if those of outer blocks are there, too.
     closes_braces: bool = False
     # After a line comment, Enter starts another one with the `//` and blanks that this returns. It is deleted where the
     # program differs.
@@ -97,7 +97,8 @@ def _typed(program: str, behaviour: Behaviour) -> list[Stroke]:
             keys = ["Down", "End", *text.removeprefix("}")]
         elif closes:
             steps = (len(line) - len(text)) // STEP
-            keys = ["Enter", *["Tab"] * steps, "End", *text.removeprefix("}")]
+            passes = "End" if sum(open_braces) == 1 else "Right"
+            keys = ["Enter", *["Tab"] * steps, passes, *text.removeprefix("}")]
         else:
             steps = 0 if behaviour.indents else (len(line) - len(text)) // STEP
             before = lines[number - 1].lstrip()

@@ -34,6 +34,7 @@ SIGNS = {
     "BSpace": "⌫",
     "Down": "↓",
     "End": "⇲",
+    "Right": "→",
 }
 
 

@@ -90,6 +90,9 @@ class SimulatedEditor:
         end, newline, rest = self.after.partition("\n")
         self.before, self.after = self.before + end, newline + rest
 
+    def _Right(self) -> None:  # noqa: N802
+        self.before, self.after = self.before + self.after[:1], self.after[1:]
+
     def text(self) -> str:
         end = "\n" if self.behaviour.ends_last_line else ""
         return self.before + self.after + end

@@ -74,7 +74,7 @@ function drawn(frames) {
   });
 }
 
-const NAMES = { Down: "ArrowDown", End: "End", Enter: "Enter", Tab: "Tab" };
+const NAMES = { Down: "ArrowDown", End: "End", Right: "ArrowRight", Enter: "Enter", Tab: "Tab" };
 
 async function press(key) {
   await stage.page.keyboard.press(NAMES[key] ?? (key === " " ? "Space" : key));
