@@ -1,4 +1,4 @@
-"""The programs to type: the article's, the examples, generated ones, one with comments, and some with similar names."""
+"""The programs to type: the article's, the contract's, the examples, generated ones, and some with similar names."""
 
 from __future__ import annotations
 
@@ -26,6 +26,8 @@ FEW = (
     "names_00_tab",
     "table6_sensors_printed",
 )
+# Its syntax errors leave it without a layout.
+WITHOUT_LAYOUT = ("11-recovery",)
 # How many programs have similar names.
 SIMILAR = 6
 STEP = 2
@@ -53,9 +55,17 @@ class Program:
 
 def programs() -> list[Program]:
     """All programs, in a fixed order."""
-    folders = ("tests/paper", "examples", "tests/editors/typing/programs")
+    folders = (
+        "tests/paper",
+        "examples",
+        "tests/programs/0.3",
+        "tests/editors/typing/programs",
+    )
     files = [
-        file for folder in folders for file in sorted((ROOT / folder).glob("*.pyr"))
+        file
+        for folder in folders
+        for file in sorted((ROOT / folder).glob("*.pyr"))
+        if file.stem not in WITHOUT_LAYOUT
     ]
     texts = {file.stem: file.read_text() for file in files}
     texts |= {f"names_{seed:02}": similar_names(seed) for seed in range(SIMILAR)}
