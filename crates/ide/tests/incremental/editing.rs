@@ -58,7 +58,7 @@ pub(crate) enum Length {
     Tokens(u8),
 }
 
-const SIGNS: [&str; 60] = [
+const SIGNS: [&str; 76] = [
     "{",
     "}",
     ",",
@@ -118,11 +118,27 @@ const SIGNS: [&str; 60] = [
     "type fwh ",
     "until { s }",
     "with sensors { s } ",
+    "repeat 3 times { ",
+    "repeat until { s } detect {\n",
+    "if { s t } clear { ",
+    "} else { ",
+    "else if { t } detect within 0.5 meters { ",
+    "do m ",
+    "do n\n",
+    "wait 2 seconds ",
+    "wait until { s } clear ",
+    "until { s } detect within 30 centimeters ",
+    "with radius 1.5 meters ",
+    "in reverse ",
+    "10000 times ",
+    "clear ",
+    "move at 5 until ",
     "",
+    "} } ",
 ];
 
 /// Whole entities.
-const ENTITIES: [&str; 12] = [
+const ENTITIES: [&str; 16] = [
     "wheel a with radius 3\n",
     "wheel b with radius 5 ",
     "wheelH a with radius 3\n",
@@ -133,6 +149,10 @@ const ENTITIES: [&str; 12] = [
     "movement m of r { move 2 meters turn left }\n",
     "parallel movement m of r { move -1 meters at 20 }\n",
     "parallel movement n of q { turn right 30 move 1.5 meters }\n",
+    "movement n of r { repeat 3 times { do m repeat 2 times { turn left 30 with radius 50 centimeters } } }\n",
+    "movement m of r { repeat 10 times { if { s } detect { wait 1 seconds } else { move 1 meters } } }\n",
+    "movement o of q { do n repeat until { s } clear within 1 meters { move -0.1 meters } do n }\n",
+    "parallel movement n of r { wait until { s } detect do n }\n",
     "environment e has { q r } robots with { n m } moves\n",
     "environment f has { r q } robots with { m n m } moves\n",
 ];

@@ -11,8 +11,8 @@ pub(crate) const PATHS: [&str; 4] = ["main.pyr", "lib.pyr", "parts/more.pyr", "b
 pub(crate) const IMPORTS: [&str; 6] =
     ["lib.pyr", "parts/more.pyr", "main.pyr", "base.pyr", "missing.pyr", "/else/where.pyr"];
 
-/// The paper's programs and other handwritten ones.
-const WRITTEN: [&str; 8] = [
+/// The paper's programs, those of the contract, and other handwritten ones.
+const WRITTEN: [&str; 14] = [
     include_str!("../../../../tests/paper/table2_two_wheels.pyr"),
     include_str!("../../../../tests/paper/table3_four_wheels.pyr"),
     include_str!("../../../../tests/paper/table4_holonomic.pyr"),
@@ -20,6 +20,12 @@ const WRITTEN: [&str; 8] = [
     include_str!("../../../../tests/paper/table6_sensors.pyr"),
     include_str!("../../../../tests/paper/table7_slam.pyr"),
     include_str!("../../../../tests/programs/table5_with_wheels.pyr"),
+    include_str!("../../../../tests/programs/0.3/02-nested.pyr"),
+    include_str!("../../../../tests/programs/0.3/04-procedures.pyr"),
+    include_str!("../../../../tests/programs/0.3/05-names.pyr"),
+    include_str!("../../../../tests/programs/0.3/09-give-way.pyr"),
+    include_str!("../../../../tests/programs/0.3/10-limits.pyr"),
+    include_str!("../../../../tests/programs/0.3/11-recovery.pyr"),
     ROBOTS,
 ];
 
