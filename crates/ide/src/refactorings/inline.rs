@@ -168,6 +168,18 @@ mod tests {
     }
 
     #[test]
+    fn comments_beside_it_are_laid_out_with_it() {
+        let program = program("  slam /* a\n * b */ do side /* c\n * d */").replace("do side", "do $0side");
+        let program = program.replace("turn left\n", "turn left /* // */\n");
+        check_only_whole("inline", &program, &expect![[r#"
+            Inline: inline movement `side`
+                |  * b */ // ahead
+                |   move 1 meters // far
+                |   turn left /* // */ /* c
+        "#]]);
+    }
+
+    #[test]
     fn a_comment_at_the_end_swallows_nothing() {
         let program = program("  $0do side wait 1 seconds").replace("turn left\n", "turn left // ho\n");
         check_only_whole(
