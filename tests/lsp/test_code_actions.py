@@ -131,7 +131,11 @@ async def test_equal_actions_are_rolled_up_and_unrolled(
     uri = editor.open("square.pyr", SQUARE)
     for selected, title, after in [
         ("turn", "Roll up into `repeat 2 times`", ROLLED_UP),
-        ("repeat", "Unroll `repeat 2 times`", SQUARE.replace("meters\n", "meters // again\n")),
+        (
+            "repeat",
+            "Unroll `repeat 2 times`",
+            SQUARE.replace("meters\n", "meters // again\n"),
+        ),
     ]:
         found = await offered(client, editor, uri, selected, "refactor.rewrite")
         [action] = [action for action in found if action.title == title]
