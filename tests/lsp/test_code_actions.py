@@ -102,6 +102,48 @@ async def test_one_of_each_kind(
     assert come in after
 
 
+SQUARE = """\
+movement square of rover {
+  // ahead
+  move 1 meters
+  turn left
+  move 1 meters // again
+  turn left
+}
+"""
+
+ROLLED_UP = """\
+movement square of rover {
+  // ahead
+  repeat 2 times {
+    move 1 meters // again
+    turn left
+  }
+}
+"""
+
+
+@pytest.mark.parametrize("client", ["complete", "eager"], indirect=True)
+async def test_equal_actions_are_rolled_up_and_unrolled(
+    client: LanguageClient, tmp_path: pathlib.Path
+) -> None:
+    editor = Editor(client, tmp_path)
+    uri = editor.open("square.pyr", SQUARE)
+    for selected, title, after in [
+        ("turn", "Roll up into `repeat 2 times`", ROLLED_UP),
+        (
+            "repeat",
+            "Unroll `repeat 2 times`",
+            SQUARE.replace("meters\n", "meters // again\n"),
+        ),
+    ]:
+        found = await offered(client, editor, uri, selected, "refactor.rewrite")
+        [action] = [action for action in found if action.title == title]
+        assert action.edit
+        editor.apply(action.edit)
+        assert editor.text(uri) == after
+
+
 async def test_unavailable_actions_give_a_reason(
     client: LanguageClient, tmp_path: pathlib.Path
 ) -> None:

@@ -36,10 +36,8 @@ impl File {
 
     /// The line ending that the file uses.
     pub(crate) fn line_ending(&self) -> &'static str {
-        match self.text.lines().next() {
-            Some(line) if line.len_chars() >= 2 && line.char(line.len_chars() - 2) == '\r' => "\r\n",
-            _ => "\n",
-        }
+        let first = self.text.lines().next().map(|line| line.to_string()).unwrap_or_default();
+        ["\r\n", "\r"].into_iter().find(|ending| first.ends_with(ending)).unwrap_or("\n")
     }
 
     /// Takes `after` as the text, in which only `span` is replaced, and reads again what that may have changed. The

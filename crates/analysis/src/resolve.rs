@@ -558,7 +558,7 @@ fn count(number: &ast::Number) -> Option<u32> {
 }
 
 /// How often a block may be repeated.
-pub(crate) const COUNTS: std::ops::RangeInclusive<f64> = 1.0..=10_000.0;
+pub const COUNTS: std::ops::RangeInclusive<f64> = 1.0..=10_000.0;
 
 /// What a statement without blocks does that is no call.
 fn simple_kind(statement: &Statement, sensors: &[Sensor]) -> Option<ActionKind> {
@@ -639,7 +639,7 @@ fn speed(clause: Option<&ast::SpeedClause>) -> Option<f64> {
 }
 
 /// How far a `turn` without an angle turns, in degrees.
-pub(crate) const DEFAULT_ANGLE: f64 = 90.0;
+pub const DEFAULT_ANGLE: f64 = 90.0;
 
 /// Metres. Centimetres are divided, not multiplied, so that `400 centimeters` is exactly 4.
 fn length(number: &ast::Number, unit: Option<(ast::Unit, Span)>) -> Option<f64> {

@@ -1,16 +1,25 @@
-//! Refactorings: equivalent ways to write the selected code, and changes of unit, speed or schedule.
+//! Refactorings: equivalent ways to write the selected code, such as equal actions as a `repeat` and back, a movement in the place
+//! of its `do`, or an `if` with the opposite condition; and changes of unit, speed, schedule or path, which their titles name.
 
 mod actions;
+mod circle;
 mod drive_type;
 mod extract;
+mod inline;
+mod invert;
+mod meaning;
 mod parallel;
+mod rewriting;
+mod roll_up;
+mod rows;
 mod speed;
 mod units;
+mod unroll;
 
 #[cfg(test)]
 mod testing;
 
-use pydslrep_analysis::{Database, Edit, EntityRef, FileId};
+use pydslrep_analysis::{Database, Edit, Edition, EntityRef, FileId};
 use pydslrep_syntax::Span;
 
 /// The kind of a refactoring.
@@ -51,11 +60,27 @@ pub fn refactorings(database: &Database, file: FileId, range: Span) -> Vec<Refac
     if let Some(selection) = Selection::find(database, file, range) {
         found.extend(units::convert(&selection));
         found.extend(speed::refactorings(&selection));
-        found.extend(extract::extract(&selection));
+        found.extend(unroll::unroll(&selection));
+        found.extend(inline::inline(&selection));
+        found.extend(circle::in_place(&selection));
+        if database.edition(file) != Edition::Article {
+            found.extend(extending(&selection));
+        }
         found.extend(parallel::change(&selection));
         found.extend(drive_type::add(&selection));
     }
     found
+}
+
+/// Those that write what the article does not have.
+fn extending(selection: &Selection<'_>) -> impl Iterator<Item = Refactoring> {
+    let offers = [
+        extract::extract(selection),
+        roll_up::roll_up(selection),
+        invert::invert(selection),
+        circle::on_circle(selection),
+    ];
+    offers.into_iter().flatten()
 }
 
 /// The selected entity, which has no syntax errors, and the selection within it.
@@ -92,8 +117,46 @@ impl<'a> Selection<'a> {
         self.database.slice(self.file, span.shifted(self.entity.span.start))
     }
 
+    /// The text between the braces of a block.
+    fn inner_text(&self, block: Span) -> String {
+        self.text(Span::new(block.start + 1, block.end.saturating_sub(1)))
+    }
+
     /// An edit within the entity.
     fn edit(&self, span: Span, text: impl Into<String>) -> Edit {
         Edit { file: self.file, span: span.shifted(self.entity.span.start), text: text.into() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use super::testing::check_titles_of_article;
+
+    #[test]
+    fn nothing_writes_what_the_article_does_not_have() {
+        check_titles_of_article("  $0turn left\n  turn left$0\n  slam", &expect![[""]]);
+        check_titles_of_article(
+            "  turn left\n  $0turn left\n  move 1 meters",
+            &expect![[r#"
+            Rewrite: convert all lengths of `tour` to centimeters
+            Rewrite: make the default speed explicit in all moves of `tour`
+        "#]],
+        );
+        check_titles_of_article("  $0if { front } clear { slam } else { turn left }", &expect![[""]]);
+        check_titles_of_article(
+            "  $0repeat 2 times { turn left }",
+            &expect![[r#"
+            Rewrite: unroll `repeat 2 times`
+        "#]],
+        );
+        check_titles_of_article(
+            "  $0turn left with radius 1 meters",
+            &expect![[r#"
+            Rewrite: convert to centimeters
+            Rewrite: turn in place (changes the path)
+        "#]],
+        );
     }
 }

@@ -77,7 +77,7 @@ environment yard has { rover } robots with { tour } moves
 )
 async def refactorings_rewrite_programs(s: Session) -> None:
     for kind, before, after in (
-        ("refactor.extract", "turn left", "with { tour tour_2 } moves"),
+        ("refactor.extract", "turn left", "at 9.0 do tour_2 }"),
         ("refactor.inline", "move 1", "move 1 meters turn"),
         ("refactor.rewrite", "robot", "robot rover type tw with"),
         ("source.fixAll", "wheel a", "rover { move 1 meters at 9.0 turn"),

@@ -61,7 +61,7 @@ environment yard has { rover } robots with { trip } moves",
 };
 
 /// How many blocks may be one in another.
-const MOST_BLOCKS: usize = 16;
+pub const MOST_BLOCKS: usize = 16;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };

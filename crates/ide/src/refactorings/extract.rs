@@ -1,10 +1,10 @@
 //! Extract actions into a new movement of the same robot, which is done in their place.
 
 use pydslrep_analysis::{Database, Edit, FileId};
-use pydslrep_syntax::ast::{Action, Movement};
 use pydslrep_syntax::{EntityKind, Span, TokenKind, format};
 use smol_str::{SmolStr, format_smolstr};
 
+use super::rows::Row;
 use super::{Refactoring, RefactoringKind, Selection};
 
 /// The refactoring for selected actions; a cursor selects none.
@@ -23,63 +23,50 @@ pub(super) fn extract(selection: &Selection<'_>) -> Option<Refactoring> {
     })
 }
 
-/// The innermost block around the selection, and its selected actions.
+/// The innermost row around the selection, and its selected actions.
 struct Parts<'a> {
-    selection: &'a Selection<'a>,
-    movement: &'a Movement,
-    /// From brace to brace.
-    block: Span,
-    actions: &'a [Action],
+    row: Row<'a>,
     first: usize,
     /// The index after the last selected action.
     end: usize,
 }
 
 impl<'a> Parts<'a> {
-    fn find(selection: &'a Selection<'_>) -> Option<Self> {
-        let (movement, range) = (selection.movement()?, selection.range);
-        let (mut block, mut actions) = (movement.body?, &movement.actions[..]);
-        loop {
-            let selected = |action: &&Action| action.span.start < range.end && range.start < action.span.end;
-            let mut inside = actions.iter().filter(selected).flat_map(Action::blocks);
-            match inside.find(|inner| inner.span.start < range.start && range.end < inner.span.end) {
-                Some(inner) => (block, actions) = (inner.span, &inner.actions),
-                None => break,
-            }
-        }
+    fn find(selection: &Selection<'a>) -> Option<Self> {
+        let (row, range) = (selection.rows().pop()?, selection.range);
         let selected = |index: &usize| {
-            let span = actions[*index].span;
+            let span = row.actions[*index].span;
             span.start < range.end && range.start < span.end
         };
-        let mut indices = (0..actions.len()).filter(selected);
+        let mut indices = (0..row.actions.len()).filter(selected);
         let first = indices.next()?;
         let end = indices.next_back().unwrap_or(first) + 1;
-        Some(Self { selection, movement, block, actions, first, end })
+        Some(Self { row, first, end })
     }
 
     fn edits(&self) -> Result<(SmolStr, Vec<Edit>), String> {
         let broken = || "the movement is incomplete".to_owned();
-        let name = self.movement.name.as_ref().ok_or_else(broken)?;
-        let body = self.movement.body.ok_or_else(broken)?;
-        if self.block == body && self.first == 0 && self.end == self.actions.len() {
+        let (row, selection) = (self.row, self.row.selection);
+        let name = row.movement.name.as_ref().ok_or_else(broken)?;
+        let body = row.movement.body.ok_or_else(broken)?;
+        if row.braces == body && self.first == 0 && self.end == row.actions.len() {
             return Err(format!("these are all actions of `{}`; select only some of them", name.text));
         }
-        let new = free_name(self.selection.database, self.selection.file, &name.text).ok_or_else(broken)?;
-        let bounds = self.bounds();
-        let cut = Span::new(bounds[self.first], bounds[self.end]);
+        let new = free_name(selection.database, selection.file, &name.text).ok_or_else(broken)?;
+        let cut = Span::new(row.bound(self.first), self.cut_end());
         let added = self.entity(&new, cut).ok_or_else(broken)?;
         let edits = vec![
-            self.selection.edit(cut, self.call(&new, cut)),
-            self.selection.edit(Span::at(self.entity_end(body)), added),
+            selection.edit(cut, self.call(&new, cut)),
+            selection.edit(Span::at(self.entity_end(body)), added),
         ];
         Ok((new, edits))
     }
 
     /// What does the new movement, in the place of its actions.
     fn call(&self, new: &str, cut: Span) -> String {
-        let removed = self.selection.text(cut);
+        let removed = self.row.selection.text(cut);
         let blank = &removed[..removed.len() - removed.trim_start().len()];
-        let after = self.selection.text(Span::new(cut.end, self.block.end));
+        let after = self.row.selection.text(Span::new(cut.end, self.row.braces.end));
         // Nothing else would separate the name from the next word.
         let gap = if after.starts_with(|next: char| next.is_whitespace() || "}/".contains(next)) {
             ""
@@ -91,57 +78,31 @@ impl<'a> Parts<'a> {
         format!("{before}{word} {new}{gap}")
     }
 
-    /// The offsets that separate the actions: before the first, between two, after the last. Text on the line of an action
-    /// or on the lines before it belongs to the action.
-    fn bounds(&self) -> Vec<u32> {
-        let (actions, body) = (self.actions, self.block);
-        let ends = std::iter::once(body.start + 1).chain(actions.iter().map(|action| action.span.end));
-        let starts = actions.iter().map(|action| action.span.start).chain([body.end.saturating_sub(1)]);
-        let mut bounds: Vec<u32> = ends
-            .zip(starts)
-            .map(|(end, start)| {
-                let gap = Span::new(end, start);
-                self.line_end(gap).unwrap_or_else(|| self.after_comments(gap))
-            })
-            .collect();
-        if let (Some(last), Some(action)) = (bounds.last_mut(), actions.last()) {
-            *last = self.after_comments(Span::new(action.span.end, body.end.saturating_sub(1)));
+    /// What is after the last action of a row goes with it.
+    fn cut_end(&self) -> u32 {
+        if self.end < self.row.actions.len() {
+            self.row.bound(self.end)
+        } else {
+            self.row.after_comments(self.row.gap(self.end))
         }
-        bounds
-    }
-
-    /// The first line break in a gap that is not inside a comment.
-    fn line_end(&self, gap: Span) -> Option<u32> {
-        let text = self.selection.text(gap);
-        let ends = (gap.start..).zip(text.bytes()).filter(|(_, byte)| matches!(byte, b'\n' | b'\r'));
-        let mut ends = ends.map(|(at, _)| at);
-        ends.find(|at| !self.comments(gap).any(|comment| comment.start <= *at && *at < comment.end))
-    }
-
-    fn after_comments(&self, gap: Span) -> u32 {
-        self.comments(gap).last().map_or(gap.start, |comment| comment.end)
-    }
-
-    fn comments(&self, gap: Span) -> impl Iterator<Item = Span> {
-        let tokens = self.selection.entity.parse.tokens.iter();
-        let inside = move |span: &Span| gap.start <= span.start && span.end <= gap.end;
-        tokens.filter(|(token, _)| token.is_comment()).map(|(_, span)| *span).filter(inside)
     }
 
     /// The offset for a new entity after this one: the end of the line.
     fn entity_end(&self, body: Span) -> u32 {
-        let end = self.selection.entity.span.len();
-        let after = Span::new(body.end, end);
-        let next = self.selection.database.entity_at(self.selection.file, self.selection.entity.span.end);
-        let is_last = next.is_none_or(|next| next.id == self.selection.entity.id);
-        self.line_end(after).unwrap_or(if is_last { self.after_comments(after) } else { body.end })
+        let Selection { database, file, entity, .. } = self.row.selection;
+        let after = Span::new(body.end, entity.span.len());
+        let next = database.entity_at(file, entity.span.end);
+        let is_last = next.is_none_or(|next| next.id == entity.id);
+        let end = || if is_last { self.row.after_comments(after) } else { body.end };
+        self.row.line_end(after).unwrap_or_else(end)
     }
 
     /// The text of a new movement with the actions in a range, to be inserted after an entity.
     fn entity(&self, name: &str, actions: Span) -> Option<String> {
-        let line_end = self.selection.database.line_ending(self.selection.file);
-        let robot = self.selection.text(self.movement.robot.as_ref()?.span);
-        let actions = self.selection.text(actions);
+        let Row { selection, movement, .. } = self.row;
+        let line_end = selection.database.line_ending(selection.file);
+        let robot = selection.text(movement.robot.as_ref()?.span);
+        let actions = selection.text(actions);
         let whole = format!("movement {name} of {robot} {{{line_end}{actions}{line_end}}}{line_end}");
         Some(format!("{line_end}{line_end}{}", format(&whole).trim_end()))
     }
@@ -171,7 +132,7 @@ mod tests {
         check(
             "  // ahead\n  move 4.0 meters // far\n  // around\n  $0turn left // ho\n  turn$0 left\n\n  // back\n  move 1 meters\n  // done",
             &expect![[r#"
-                Rewrite: convert all moves of `tour` to centimeters
+                Rewrite: convert all lengths of `tour` to centimeters
                     |   move 400.0 centimeters // far
                     |   // around
                     |   turn left // ho
@@ -199,6 +160,10 @@ mod tests {
                     |   // around
                     |   turn left // ho
                     |   turn left
+                Rewrite: roll up into `repeat 2 times`
+                    |   repeat 2 times {
+                    |     turn left // ho
+                    |   }
             "#]],
         );
     }
@@ -210,7 +175,7 @@ mod tests {
             &expect![[r#"
                 Rewrite: convert to centimeters
                     |   move 400 centimeters
-                Rewrite: convert all moves of `tour` to centimeters
+                Rewrite: convert all lengths of `tour` to centimeters
                     |   move 400 centimeters
                     |   turn left
                     |   move 100 centimeters
@@ -235,7 +200,7 @@ mod tests {
             &expect![[r#"
                 Rewrite: convert to centimeters
                     |   turn left move 100 centimeters
-                Rewrite: convert all moves of `tour` to centimeters
+                Rewrite: convert all lengths of `tour` to centimeters
                     |   move 400 centimeters
                     |   turn left move 100 centimeters
                 Rewrite: make the default speed explicit
@@ -280,7 +245,7 @@ mod tests {
         check(
             "  repeat 4 times {\n    move 1 meters\n    $0turn left\n    wait 2 seconds$0\n    slam\n  }",
             &expect![[r#"
-                Rewrite: convert all moves of `tour` to centimeters
+                Rewrite: convert all lengths of `tour` to centimeters
                     |     move 100 centimeters
                 Rewrite: make the default speed explicit in all moves of `tour`
                     |     move 1 meters at 9.0
@@ -305,6 +270,10 @@ mod tests {
                     | 
                     | movement tour_2 of rover {
                     |   turn left
+                Rewrite: turn on a circle of 1.0 meters (changes the path)
+                    |   repeat 4 times {
+                    |     turn left with radius 1.0 meters
+                    |   }
             "#]],
         );
     }

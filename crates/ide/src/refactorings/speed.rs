@@ -119,7 +119,7 @@ mod tests {
             &expect![[r#"
                 Rewrite: convert to centimeters
                     |   move 400.0 centimeters at 9.0
-                Rewrite: convert all moves of `tour` to centimeters
+                Rewrite: convert all lengths of `tour` to centimeters
                     |   move 400.0 centimeters at 9.0
                     |   move 100 centimeters
                     |   move 200 centimeters at 9
@@ -142,7 +142,7 @@ mod tests {
             &expect![[r#"
                 Rewrite: convert to centimeters
                     |   move 400.0 centimeters at 20
-                Rewrite: convert all moves of `tour` to centimeters
+                Rewrite: convert all lengths of `tour` to centimeters
                     |   move 400.0 centimeters at 20
                     |   move 100 centimeters
                     |   move 200 centimeters at 9

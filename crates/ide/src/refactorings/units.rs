@@ -1,16 +1,18 @@
 //! Convert between metres and centimetres. Numbers are converted as text, so nothing is rounded.
 
 use pydslrep_analysis::Edit;
-use pydslrep_syntax::ast::{Move, Unit};
+use pydslrep_syntax::ast::Unit;
 
-use super::actions::moves;
+use super::actions::{Length, lengths};
 use super::{Refactoring, RefactoringKind, Selection};
 
-/// The refactorings for the selected moves, and for all moves of the movement.
+/// The refactorings for the selected lengths, and for all of the movement.
 pub(super) fn convert(selection: &Selection<'_>) -> Vec<Refactoring> {
     let Some(movement) = selection.movement() else { return Vec::new() };
-    let selected = selection.selected_moves();
-    let all: Vec<&Move> = moves(movement.all_actions()).collect();
+    let all = lengths(movement);
+    let is_selected = |length: &&Length<'_>| selection.touches(length.words);
+    let selected: Vec<&Length<'_>> = all.iter().filter(is_selected).collect();
+    let all: Vec<&Length<'_>> = all.iter().collect();
     let name = movement.name.as_ref().map_or("", |name| name.text.as_str());
     let mut offers = Vec::new();
     for unit in [Unit::Centimeters, Unit::Meters] {
@@ -21,23 +23,23 @@ pub(super) fn convert(selection: &Selection<'_>) -> Vec<Refactoring> {
         if !here.is_empty() {
             offers.push(rewrite(format!("convert to {word}"), here));
         }
-        // A single other move is not worth an extra title.
+        // A single other length is not worth an extra title.
         if more && (selected.is_empty() || everywhere.len() > 2) {
-            offers.push(rewrite(format!("convert all moves of `{name}` to {word}"), everywhere));
+            offers.push(rewrite(format!("convert all lengths of `{name}` to {word}"), everywhere));
         }
     }
     offers
 }
 
-/// The edits that convert the moves in the other unit.
-fn edits(selection: &Selection<'_>, moves: &[&Move], to: Unit) -> Vec<Edit> {
-    let edit = |step: &&Move| {
-        let (distance, (unit, unit_span)) = (step.distance.as_ref()?, step.unit?);
-        distance.value.filter(|_| unit != to)?;
-        let converted = shifted(&selection.text(distance.span), if to == Unit::Meters { -2 } else { 2 });
-        Some([selection.edit(distance.span, converted), selection.edit(unit_span, word(to))])
+/// The edits that convert the lengths in the other unit.
+fn edits(selection: &Selection<'_>, lengths: &[&Length<'_>], to: Unit) -> Vec<Edit> {
+    let edit = |length: &&Length<'_>| {
+        let Length { number, unit, unit_span, .. } = length;
+        number.value.filter(|_| *unit != to)?;
+        let converted = shifted(&selection.text(number.span), if to == Unit::Meters { -2 } else { 2 });
+        Some([selection.edit(number.span, converted), selection.edit(*unit_span, word(to))])
     };
-    moves.iter().filter_map(edit).flatten().collect()
+    lengths.iter().filter_map(edit).flatten().collect()
 }
 
 fn word(unit: Unit) -> &'static str {
@@ -72,7 +74,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::refactorings::testing::check;
+    use crate::refactorings::testing::{check, check_only};
 
     #[test]
     fn this_move_or_all() {
@@ -81,7 +83,7 @@ mod tests {
             &expect![[r#"
                 Rewrite: convert to centimeters
                     |   move 400.0 centimeters at 9.0
-                Rewrite: convert all moves of `tour` to centimeters
+                Rewrite: convert all lengths of `tour` to centimeters
                     |   move 400.0 centimeters at 9.0
                     |   turn left
                     |   move -12.5 centimeters
@@ -90,6 +92,37 @@ mod tests {
                 Rewrite: make the default speed explicit in all moves of `tour`
                     |   move -0.125 meters at 9.0
                     |   move 30 centimeters at 9.0
+            "#]],
+        );
+    }
+
+    #[test]
+    fn radii_and_what_is_near() {
+        check_only(
+            "convert",
+            "  $0turn left with radius 1.5 meters\n  repeat until { front } detect within 40 centimeters {\n    slam\n  }",
+            &expect![[r#"
+                Rewrite: convert to centimeters
+                    |   turn left with radius 150 centimeters
+            "#]],
+        );
+        check_only(
+            "convert",
+            "  if { front } clear { move 1 meters } else if$0 { front } detect within 0.4 meters { slam }\n  move 2 meters",
+            &expect![[r#"
+                Rewrite: convert to centimeters
+                    |   if { front } clear { move 1 meters } else if { front } detect within 40 centimeters { slam }
+                Rewrite: convert all lengths of `tour` to centimeters
+                    |   if { front } clear { move 100 centimeters } else if { front } detect within 40 centimeters { slam }
+                    |   move 200 centimeters
+            "#]],
+        );
+        check_only(
+            "convert",
+            "  turn left until { front }  clear within$0 40 centimeters\n  wait 1 seconds until { front } clear within 1 meters",
+            &expect![[r#"
+                Rewrite: convert to meters
+                    |   turn left until { front }  clear within 0.4 meters
             "#]],
         );
     }

@@ -1,0 +1,120 @@
+//! What the robots of a program do: by the plan as far as it is known, and by the statements, unrolled, where it is not.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use pydslrep_analysis::environment::{Action, ActionKind, Condition, Environment};
+use pydslrep_analysis::{Database, FileId, plan, scene};
+
+/// More statements are not compared.
+const MOST_STATEMENTS: usize = 50_000;
+
+/// What the robots of an environment do.
+#[derive(Debug)]
+pub(crate) struct Behaviour {
+    /// The pose at the end of each leg, when it starts and how long it takes; robot by robot.
+    legs: Vec<Vec<[f64; 5]>>,
+    duration: Option<f64>,
+    /// The statements of each movement that is listed, unrolled; `None` where they are too many.
+    pub(crate) statements: Option<Vec<String>>,
+}
+
+/// What each environment without errors does.
+pub(crate) fn behaviours(database: &Database, file: FileId) -> BTreeMap<String, Behaviour> {
+    let mut all = BTreeMap::new();
+    for (id, name) in database.environments(file) {
+        let Ok(environment) = database.environment(id) else { continue };
+        let plan = plan(&environment, &scene(&environment)).unwrap();
+        let legs = |robot: &pydslrep_kinematics::RobotPath| {
+            let numbers = |leg: &pydslrep_kinematics::Leg| {
+                [leg.to.x, leg.to.y, leg.to.theta, leg.start.unwrap_or(-1.0), leg.duration]
+            };
+            robot.legs.iter().map(numbers).collect()
+        };
+        let behaviour = Behaviour {
+            legs: plan.robots.iter().map(legs).collect(),
+            duration: plan.duration,
+            statements: statements(&environment),
+        };
+        all.insert(name.text.to_string(), behaviour);
+    }
+    all
+}
+
+fn close(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-9 * (1.0 + a.abs())
+}
+
+impl Behaviour {
+    /// Whether all legs end at the same poses; and, if asked for, at the same times.
+    pub(crate) fn has_same_legs(&self, other: &Self, with_times: bool) -> bool {
+        let count = if with_times { 5 } else { 3 };
+        let near = |a: &[f64; 5], b: &[f64; 5]| a.iter().zip(b).take(count).all(|(a, b)| close(*a, *b));
+        let same = |a: &Vec<[f64; 5]>, b: &Vec<[f64; 5]>| {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| near(a, b))
+        };
+        self.legs.len() == other.legs.len() && self.legs.iter().zip(&other.legs).all(|(a, b)| same(a, b))
+    }
+
+    pub(crate) fn has_same_duration(&self, other: &Self) -> bool {
+        match (self.duration, other.duration) {
+            (Some(before), Some(now)) => close(before, now),
+            (before, now) => before.is_some() == now.is_some(),
+        }
+    }
+}
+
+fn statements(environment: &Environment) -> Option<Vec<String>> {
+    let mut all = Vec::new();
+    for index in environment.schedule.iter().flatten() {
+        let movement = &environment.movements[*index];
+        all.push(format!("of {}", movement.robot));
+        unroll(environment, &movement.actions, &mut all)?;
+    }
+    Some(all)
+}
+
+/// Adds what is done; `None` if it is too much.
+fn unroll(environment: &Environment, actions: &[Action], all: &mut Vec<String>) -> Option<()> {
+    for action in actions {
+        if all.len() > MOST_STATEMENTS {
+            return None;
+        }
+        match &action.kind {
+            ActionKind::Repeat { count, body } => {
+                (0..*count).try_for_each(|_| unroll(environment, body, all))?;
+            }
+            ActionKind::Do { movement } => {
+                unroll(environment, &environment.movements[*movement].actions, all)?;
+            }
+            ActionKind::RepeatUntil { until, body } => {
+                let body = block(environment, body)?;
+                all.push(format!("repeat until {until:?} {{ {body} }}"));
+            }
+            ActionKind::If { branches, otherwise } => {
+                let mut rest = block(environment, otherwise)?;
+                for branch in branches.iter().rev() {
+                    rest = choice(&branch.condition, &block(environment, &branch.body)?, &rest);
+                }
+                all.push(rest);
+            }
+            kind => all.push(format!("{kind:?}")),
+        }
+    }
+    Some(())
+}
+
+fn block(environment: &Environment, actions: &[Action]) -> Option<String> {
+    let mut inner = Vec::new();
+    unroll(environment, actions, &mut inner)?;
+    Some(inner.join("; "))
+}
+
+/// What a choice comes to, whichever way round it asks.
+fn choice(condition: &Condition, then: &str, otherwise: &str) -> String {
+    let (detected, clear) = if condition.detect { (then, otherwise) } else { (otherwise, then) };
+    let mut text = String::new();
+    let Condition { sensors, within, .. } = condition;
+    write!(text, "if {sensors:?} within {within:?} {{ {detected} }} else {{ {clear} }}").unwrap();
+    text
+}
