@@ -114,8 +114,9 @@ export class Stage {
     const text = describeRounds(leg.action);
     if (text === "") return [];
     const middle = 2 * Math.round((leg.first + leg.last) / 2);
+    const isUpright = Math.abs(leg.to.y - leg.from.y) > Math.abs(leg.to.x - leg.from.x);
     const [x, y] = [this.view.toX(leg.line[middle] ?? 0), this.view.toY(leg.line[middle + 1] ?? 0)];
-    return [{ text, colour: robotColour(theme, robot.colour), x, y, radius: 6 }];
+    return [{ text, colour: robotColour(theme, robot.colour), x, y, radius: 6, isUpright }];
   }
 
   /**
