@@ -35,6 +35,8 @@ pub struct ActionPlace<'a> {
     pub number: usize,
     /// The rounds of the repetitions that it is in, from 1, the outermost first.
     pub rounds: Vec<u32>,
+    /// How many rounds each of these repetitions has.
+    pub counts: Vec<u32>,
     /// The statements that lead to it by `do`, the outermost first.
     pub calls: Vec<CallPlace<'a>>,
     /// The statement as the program writes it.
@@ -64,8 +66,8 @@ impl Environment {
         }
         let number = index.action + 1;
         let (text, source) = inner.statement(number)?;
-        let rounds = place.rounds().to_vec();
-        Some(ActionPlace { movement: &listed.name, number, rounds, calls, text, source })
+        let (rounds, counts) = (place.rounds().to_vec(), place.counts().to_vec());
+        Some(ActionPlace { movement: &listed.name, number, rounds, counts, calls, text, source })
     }
 }
 

@@ -18,7 +18,19 @@ pub struct PlannedAt {
     /// The environments declared at the position, or using the declaration there, directly or indirectly.
     pub using: Vec<String>,
     /// The action. On its line it includes the space around it.
-    pub action: Option<NumberedAction>,
+    pub action: Option<ActionAt>,
+}
+
+/// A statement at a position, with those in its blocks.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ActionAt {
+    /// The movement's name.
+    pub movement: String,
+    /// From 0, among the statements of its movement.
+    pub index: usize,
+    /// The index of the last statement in its blocks, if it has any there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub last: Option<usize>,
 }
 
 /// An action by its index in its movement.
@@ -99,7 +111,7 @@ fn users(database: &Database, entity: &EntityRef<'_>) -> FxHashSet<SmolStr> {
     environments
 }
 
-fn action_in(database: &Database, entity: &EntityRef<'_>, offset: u32) -> Option<NumberedAction> {
+fn action_in(database: &Database, entity: &EntityRef<'_>, offset: u32) -> Option<ActionAt> {
     let Entity::Movement(tree) = entity.parse.entity.as_ref()? else { return None };
     let statements: Vec<Span> =
         tree.statements().into_iter().map(|span| span.shifted(entity.span.start)).collect();
@@ -113,7 +125,9 @@ fn action_in(database: &Database, entity: &EntityRef<'_>, offset: u32) -> Option
         || statements.get(begun).filter(|next| is_one_line(Span::new(offset, next.start))).map(|_| begun);
     let body = tree.body?.shifted(entity.span.start);
     let index = before.or_else(after).filter(|_| body.touches(offset))?;
-    Some(NumberedAction { movement: tree.name.as_ref()?.text.to_string(), index, calls: Vec::new() })
+    let last = statements.partition_point(|span| span.start < statements[index].end) - 1;
+    let movement = tree.name.as_ref()?.text.to_string();
+    Some(ActionAt { movement, index, last: Some(last).filter(|last| *last > index) })
 }
 
 #[cfg(test)]
@@ -157,6 +171,31 @@ environment second has { rover } robots with { go } moves
         ] {
             let plain = place.replace('|', "");
             assert_eq!(action(&PROGRAM.replacen(&plain, place, 1)), expected, "{place:?}");
+        }
+    }
+
+    #[test]
+    fn a_statement_includes_those_in_its_blocks() {
+        let program = "movement go of rover {
+  repeat 2 times {
+    if { front } detect { turn left } else if { front } clear {
+      repeat 3 times { move 1 meters }
+    } else { }
+  }
+  turn left
+}";
+        for (place, expected) in [
+            ("  re|peat 2", (0, Some(5))),
+            ("    if {| front } detect", (1, Some(5))),
+            ("{ turn l|eft", (2, None)),
+            ("else i|f", (3, Some(5))),
+            ("re|peat 3", (4, Some(5))),
+            ("else {| }", (3, Some(5))),
+            ("  tur|n left\n}", (6, None)),
+        ] {
+            let plain = place.replace('|', "");
+            let found = at(&program.replacen(&plain, place, 1)).action.unwrap();
+            assert_eq!((found.index, found.last), expected, "{place:?}");
         }
     }
 

@@ -45,6 +45,19 @@ pub struct PlannedRobot {
     pub legs: Vec<PlannedLeg>,
     /// The action after which its poses cannot be planned.
     pub unknown_after: Option<PlannedAction>,
+    /// The ways that it may take from there, as far as they have a bound: one for an action that ends at the latest where
+    /// this way does, or one for each branch.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub possible: Vec<PossibleWay>,
+}
+
+/// A way that a robot may take where its path becomes unknown.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PossibleWay {
+    /// Its first pose is where the known path ends; times are those of the latest end.
+    pub poses: Vec<PlannedPose>,
+    /// Its drives, in order, with the indices of these poses.
+    pub legs: Vec<PlannedLeg>,
 }
 
 /// The outer size of a robot.
@@ -113,6 +126,9 @@ pub struct PlannedAction {
     /// The rounds of the repetitions that it is in, from 1, the outermost first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rounds: Vec<u32>,
+    /// How many rounds each of these repetitions has.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub counts: Vec<u32>,
     /// The statements that lead to it by `do`, the outermost first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub calls: Vec<PlannedCall>,
@@ -123,12 +139,23 @@ pub struct PlannedAction {
 
 /// An obstacle seen from above.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Obstacle {
+    /// Its name.
+    pub name: String,
+    /// Where it is; of one that moves, where it is at the start.
+    #[serde(flatten)]
+    pub outline: Outline,
+    /// How it moves, if it does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub path: Option<ObstaclePath>,
+}
+
+/// The outline of an obstacle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum Obstacle {
+pub enum Outline {
     /// A cylinder.
     Circle {
-        /// The obstacle's name.
-        name: String,
         /// x and y.
         centre: (f64, f64),
         /// Of the circle.
@@ -136,11 +163,18 @@ pub enum Obstacle {
     },
     /// Anything else.
     Polygon {
-        /// The obstacle's name.
-        name: String,
         /// x and y of each.
         corners: Vec<(f64, f64)>,
     },
+}
+
+/// How an obstacle moves: straight between points, each at a constant speed. Its heading stays.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ObstaclePath {
+    /// Seconds, x and y of each, in the order of their times.
+    pub points: Vec<(f64, f64, f64)>,
+    /// Whether it goes there and back, again and again; else it stays at the last point.
+    pub repeat: bool,
 }
 
 /// A robot that would run into something.
@@ -228,8 +262,9 @@ fn planned_robot(environment: &Environment, robot: &Robot, path: &RobotPath) -> 
         body: BodySize { length: robot.body.length, width: robot.body.width },
         sensors: robot.sensors.iter().map(sensor).collect(),
         poses: poses(environment, path),
-        legs: legs(environment, path),
+        legs: legs(environment, &path.legs),
         unknown_after: path.unknown_after.and_then(|index| action(environment, index, &path.unknown_place)),
+        possible: path.possible.iter().filter_map(|way| possible(environment, way)).collect(),
     }
 }
 
@@ -239,14 +274,17 @@ fn sensor(sensor: &scenery::Sensor) -> SensorCone {
 }
 
 fn obstacle(obstacle: &scenery::Obstacle) -> Obstacle {
-    let name = obstacle.name.clone();
-    match obstacle.shape {
-        Shape::Cylinder { radius } => {
-            Obstacle::Circle { name, centre: (obstacle.pose.x, obstacle.pose.y), radius }
-        }
+    let outline = match obstacle.shape {
+        Shape::Cylinder { radius } => Outline::Circle { centre: (obstacle.pose.x, obstacle.pose.y), radius },
         // What is not round has its own corners.
-        _ => Obstacle::Polygon { name, corners: obstacle.outline(0) },
-    }
+        _ => Outline::Polygon { corners: obstacle.outline(0) },
+    };
+    Obstacle { name: obstacle.name.clone(), outline, path: obstacle.trajectory.as_ref().map(obstacle_path) }
+}
+
+fn obstacle_path(trajectory: &scenery::Trajectory) -> ObstaclePath {
+    let points = trajectory.points().iter().map(|point| (point.time, point.x, point.y)).collect();
+    ObstaclePath { points, repeat: trajectory.repeats() }
 }
 
 fn collisions(environment: &Environment, scene: &Scene, plan: &Plan) -> Vec<PlannedCollision> {
@@ -267,8 +305,18 @@ fn collisions(environment: &Environment, scene: &Scene, plan: &Plan) -> Vec<Plan
 }
 
 fn poses(environment: &Environment, path: &RobotPath) -> Vec<PlannedPose> {
-    let start = planned_pose(Some(0.0), path.start, None);
-    std::iter::once(start).chain(path.legs.iter().flat_map(|leg| on_leg(environment, leg))).collect()
+    poses_of(environment, planned_pose(Some(0.0), path.start, None), &path.legs)
+}
+
+fn poses_of(environment: &Environment, start: PlannedPose, legs: &[Leg]) -> Vec<PlannedPose> {
+    std::iter::once(start).chain(legs.iter().flat_map(|leg| on_leg(environment, leg))).collect()
+}
+
+fn possible(environment: &Environment, way: &[Leg]) -> Option<PossibleWay> {
+    let first = way.first()?;
+    let start = planned_pose(first.start, first.from, None);
+    let poses = poses_of(environment, start, way);
+    Some(PossibleWay { poses, legs: legs(environment, way) })
 }
 
 fn on_leg(environment: &Environment, leg: &Leg) -> Vec<PlannedPose> {
@@ -285,13 +333,13 @@ fn planned_pose(t: Option<f64>, Pose { x, y, theta }: Pose, action: Option<Plann
     PlannedPose { t, x, y, theta, action }
 }
 
-fn legs(environment: &Environment, path: &RobotPath) -> Vec<PlannedLeg> {
+fn legs(environment: &Environment, legs: &[Leg]) -> Vec<PlannedLeg> {
     let ends = (1..).map(|number| number * POSES_PER_ACTION as usize);
     let planned = |(leg, last): (&Leg, usize)| {
         let action = action(environment, leg.index, &leg.place)?;
         Some(PlannedLeg { action, start: leg.start, duration: leg.duration, last })
     };
-    path.legs.iter().zip(ends).filter_map(planned).collect()
+    legs.iter().zip(ends).filter_map(planned).collect()
 }
 
 fn action(environment: &Environment, at: ActionIndex, place: &Place) -> Option<PlannedAction> {
@@ -306,6 +354,7 @@ fn action(environment: &Environment, at: ActionIndex, place: &Place) -> Option<P
             .map(|call| PlannedCall { movement: call.movement.to_owned(), index: call.number - 1 })
             .collect(),
         rounds: found.rounds,
+        counts: found.counts,
         done: done.map(|movement| movement.name.clone()),
     })
 }
@@ -366,7 +415,8 @@ mod tests {
         let call = PlannedCall { movement: "m".to_owned(), index: 2 };
         for (round, action) in (1..).zip(&actions[1..]) {
             assert_eq!((action.movement.as_str(), action.index), ("m", 0));
-            assert_eq!((&action.rounds[..], &action.calls[..]), (&[round][..], &[call.clone()][..]));
+            assert_eq!((&action.rounds[..], &action.counts[..]), (&[round][..], &[2][..]));
+            assert_eq!(action.calls, [call.clone()]);
             assert_eq!(action.done.as_deref(), Some("side"));
         }
         assert_eq!(actions.len(), 3);
@@ -381,7 +431,8 @@ mod tests {
         let id = database.environments(file)[0].0;
         database.set_scene(file, "e", Some("[[cylinder]]\nname = \"pole\"\nat = [0, 1]\nradius = 0.1"));
         let path = planned_path(&database, id).unwrap();
-        let pole = Obstacle::Circle { name: "pole".to_owned(), centre: (0.0, 1.0), radius: 0.1 };
+        let outline = Outline::Circle { centre: (0.0, 1.0), radius: 0.1 };
+        let pole = Obstacle { name: "pole".to_owned(), outline, path: None };
         assert_eq!(path.obstacles, [pole]);
         let [collision] = &path.collisions[..] else { panic!("{:?}", path.collisions) };
         assert_eq!((collision.robot.as_str(), &collision.with), ("rover", &Met::Obstacle("pole".to_owned())));
@@ -408,17 +459,60 @@ mod tests {
         assert_eq!(why.to_string(), "`e.scene.toml`: the environment has no robot `rovr`");
     }
 
+    #[test]
+    fn what_is_possible_is_beside_what_is_known() {
+        let path = path(
+            "movement m of rover { repeat 3 times {
+                move 1 meters
+                if { front } detect { turn left 90 with radius 1 meters } else { move 2 meters until { front } detect turn left }
+            } }
+            environment e has { rover } robots with { m } moves",
+        )
+        .unwrap();
+        let rover = &path.robots[0];
+        assert_eq!((path.duration, rover.legs.len(), rover.poses.len()), (None, 1, 9));
+        assert_eq!(rover.unknown_after.as_ref().unwrap().text, "if { front } detect");
+        let [circle, bounded] = &rover.possible[..] else { panic!("{:?}", rover.possible) };
+        for (way, text) in
+            [(circle, "turn left 90 with radius 1 meters"), (bounded, "move 2 meters until { front } detect")]
+        {
+            let (known, first) = (rover.poses.last().unwrap(), &way.poses[0]);
+            assert_eq!((first.t, first.x, first.y, &first.action), (known.t, known.x, known.y, &None));
+            let [leg] = &way.legs[..] else { panic!("{way:?}") };
+            assert_eq!((leg.action.text.as_str(), leg.last, way.poses.len()), (text, 8, 9));
+            assert_eq!((&leg.action.rounds[..], &leg.action.counts[..]), (&[1][..], &[3][..]));
+        }
+        let [there, ahead] = [circle, bounded].map(|way| way.poses.last().unwrap());
+        assert!((there.x - 2.0).hypot(there.y - 1.0) < 1e-9 && (ahead.x - 3.0).hypot(ahead.y) < 1e-9);
+        assert_eq!(path.collisions, [], "nothing is said of what may be");
+    }
+
+    #[test]
+    fn obstacles_that_move_say_how() {
+        let mut database = Database::new();
+        let rest = "environment e has { rover } robots";
+        let file = database.open("a.pyr", &format!("{PARTS}{rest}"));
+        let id = database.environments(file)[0].0;
+        let scene =
+            "[[cylinder]]\nname = \"cart\"\nradius = 0.1\npath = [[1, 0, 2], [3, 1, 2]]\nrepeat = true";
+        database.set_scene(file, "e", Some(scene));
+        let path = planned_path(&database, id).unwrap();
+        let outline = Outline::Circle { centre: (0.0, 2.0), radius: 0.1 };
+        let way = ObstaclePath { points: vec![(1.0, 0.0, 2.0), (3.0, 1.0, 2.0)], repeat: true };
+        assert_eq!(path.obstacles, [Obstacle { name: "cart".to_owned(), outline, path: Some(way) }]);
+    }
+
     /// `tsc` holds the types of the preview against this value.
     #[test]
     fn clients_know_the_shape() {
         let mut database = Database::new();
-        let rest = "movement m of rover { repeat 2 times { do side } turn left until { front } }
+        let rest = "movement m of rover { repeat 2 times { do side } move 1 meters until { front } detect }
             movement side of rover { move 1 meters }
             environment e has { rover } robots with { m } moves";
         let file = database.open("a.pyr", &format!("{PARTS}{rest}"));
         let id = database.environments(file)[0].0;
         let scene = "[[cylinder]]\nname = \"pole\"\nat = [0.5, 0]\nradius = 0.1\n
-            [[box]]\nname = \"crate\"\nat = [3, 3]\nsize = [1, 1]";
+            [[box]]\nname = \"crate\"\nsize = [1, 1]\npath = [[0, 3, 3], [5, 4, 3]]";
         database.set_scene(file, "e", Some(scene));
         let path = serde_json::to_string_pretty(&planned_path(&database, id).unwrap()).unwrap();
         expect_file!["../../../editors/preview/tests/planned_path.sample.ts"].assert_eq(&format!(

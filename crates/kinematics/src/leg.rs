@@ -32,19 +32,28 @@ pub struct Place(Option<Arc<Nested>>);
 #[derive(Debug, PartialEq, Eq)]
 struct Nested {
     rounds: Vec<u32>,
+    counts: Vec<u32>,
     calls: Vec<Call>,
 }
 
 impl Place {
-    pub(crate) fn new(rounds: &[u32], calls: &[Call]) -> Self {
+    pub(crate) fn new(rounds: &[u32], counts: &[u32], calls: &[Call]) -> Self {
         let is_outside = rounds.is_empty() && calls.is_empty();
-        let nested = || Arc::new(Nested { rounds: rounds.to_vec(), calls: calls.to_vec() });
+        let nested = || {
+            let (rounds, counts, calls) = (rounds.to_vec(), counts.to_vec(), calls.to_vec());
+            Arc::new(Nested { rounds, counts, calls })
+        };
         Self((!is_outside).then(nested))
     }
 
     /// The rounds of the repetitions around it, from 1, the outermost first, also of those around calls.
     pub fn rounds(&self) -> &[u32] {
         self.0.as_ref().map_or(&[], |nested| &nested.rounds)
+    }
+
+    /// How many rounds each of those repetitions has.
+    pub fn counts(&self) -> &[u32] {
+        self.0.as_ref().map_or(&[], |nested| &nested.counts)
     }
 
     /// The calls that lead to it, the outermost first.

@@ -53,16 +53,32 @@ impl RobotPath {
     /// last of them is the leg's end.
     pub fn sample(&self, per_leg: u32) -> Vec<TimedPose> {
         let mut poses = vec![TimedPose { time: Some(0.0), pose: self.start }];
-        for leg in &self.legs {
-            let at = |seconds: f64| leg.start.map(|start| start + seconds);
-            if poses.last().is_some_and(|last| last.time < leg.start) {
-                // It waited for others.
-                poses.push(TimedPose { time: leg.start, pose: leg.from });
-            }
-            let inner = (1..per_leg).map(|i| leg.duration * f64::from(i) / f64::from(per_leg));
-            poses.extend(inner.map(|seconds| TimedPose { time: at(seconds), pose: leg.pose_at(seconds) }));
-            poses.push(TimedPose { time: at(leg.duration), pose: leg.to });
-        }
+        sample_legs(&self.legs, per_leg, &mut poses);
         poses
+    }
+
+    /// Each way of [`Self::possible`] in the same manner, from where the known path ends.
+    pub fn sample_possible(&self, per_leg: u32) -> Vec<Vec<TimedPose>> {
+        let sample = |way: &Vec<Leg>| {
+            let first = way.first().map(|leg| TimedPose { time: leg.start, pose: leg.from });
+            let mut poses: Vec<TimedPose> = first.into_iter().collect();
+            sample_legs(way, per_leg, &mut poses);
+            poses
+        };
+        self.possible.iter().map(sample).collect()
+    }
+}
+
+/// Adds the poses of legs to those before them.
+fn sample_legs(legs: &[Leg], per_leg: u32, poses: &mut Vec<TimedPose>) {
+    for leg in legs {
+        let at = |seconds: f64| leg.start.map(|start| start + seconds);
+        if poses.last().is_some_and(|last| last.time < leg.start) {
+            // It waited for others.
+            poses.push(TimedPose { time: leg.start, pose: leg.from });
+        }
+        let inner = (1..per_leg).map(|i| leg.duration * f64::from(i) / f64::from(per_leg));
+        poses.extend(inner.map(|seconds| TimedPose { time: at(seconds), pose: leg.pose_at(seconds) }));
+        poses.push(TimedPose { time: at(leg.duration), pose: leg.to });
     }
 }

@@ -28,8 +28,10 @@ pub(crate) struct Walk<'p> {
     is_way: bool,
     frames: Vec<Frame<'p>>,
     rounds: Vec<u32>,
+    /// How many there are of each of `rounds`.
+    counts: Vec<u32>,
     calls: Vec<Call>,
-    /// That of `rounds` and `calls`, once it is asked for.
+    /// That of `rounds`, `counts` and `calls`, once it is asked for.
     place: Option<Place>,
 }
 
@@ -52,7 +54,6 @@ enum Entered {
 impl<'p> Walk<'p> {
     /// Starts at the end of `path` and lists so many legs at most.
     pub(crate) fn new(blocks: &'p [Block], path: RobotPath, most: u64) -> Self {
-        let (frames, rounds, calls) = (Vec::new(), Vec::new(), Vec::new());
         let index = ActionIndex { group: 0, run: 0, action: 0 };
         Self {
             blocks,
@@ -61,9 +62,10 @@ impl<'p> Walk<'p> {
             left: most,
             index,
             is_way: false,
-            frames,
-            rounds,
-            calls,
+            frames: Vec::new(),
+            rounds: Vec::new(),
+            counts: Vec::new(),
+            calls: Vec::new(),
             place: None,
         }
     }
@@ -113,6 +115,7 @@ impl<'p> Walk<'p> {
             NodeKind::Unknown(most) => self.lose(node.number, most.as_deref().map(Possible::Bound)),
             NodeKind::Repeat { count, body } => {
                 self.rounds.push(1);
+                self.counts.push(*count);
                 self.enter(body, Entered::Rounds { count: *count });
             }
             NodeKind::Branch { ways } => self.whole(node, Some(Possible::Ways(ways))),
@@ -136,7 +139,10 @@ impl<'p> Walk<'p> {
         match entered {
             Entered::Whole => {}
             Entered::Rounds { count } if self.next_round(block, count) => return,
-            Entered::Rounds { .. } => drop(self.rounds.pop()),
+            Entered::Rounds { .. } => {
+                self.rounds.pop();
+                self.counts.pop();
+            }
             Entered::Call => drop(self.calls.pop()),
         }
         self.place = None;
@@ -196,7 +202,7 @@ impl<'p> Walk<'p> {
     }
 
     fn place(&mut self) -> Place {
-        self.place.get_or_insert_with(|| Place::new(&self.rounds, &self.calls)).clone()
+        self.place.get_or_insert_with(|| Place::new(&self.rounds, &self.counts, &self.calls)).clone()
     }
 
     /// From here on nothing is known.
@@ -223,6 +229,7 @@ impl<'p> Walk<'p> {
                 index: self.index,
                 is_way: true,
                 rounds: self.rounds.clone(),
+                counts: self.counts.clone(),
                 calls: self.calls.clone(),
                 ..Walk::new(self.blocks, RobotPath::new(self.path.end), left)
             };
@@ -297,6 +304,7 @@ mod tests {
         comes_to(&path, 33, (0.0, 0.0, 0.0));
         assert_eq!(path.legs[32].place.rounds(), [3]);
         assert_eq!((path.legs[31].place.rounds(), path.legs[31].index.action), (&[3, 2, 4][..], 4));
+        assert_eq!((path.legs[32].place.counts(), path.legs[31].place.counts()), (&[3][..], &[3, 2, 4][..]));
     }
 
     #[test]
@@ -423,7 +431,7 @@ mod tests {
         assert_eq!(possible, [vec![4, 5], vec![6, 7]], "what follows an open action is not drawn");
         for way in &path.possible {
             assert_eq!((way[0].from, way[0].start), (path.end(), path.legs[1].end()));
-            assert_eq!(way[1].place.rounds(), [1]);
+            assert_eq!((way[1].place.rounds(), way[1].place.counts()), (&[1][..], &[3][..]));
         }
         assert!(path.possible[1][1].to.distance(&Pose::new(0.0, 3.5, 0.0)) < 1e-9);
     }

@@ -32,6 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             body: robot.body,
             planned,
             unknown_after: false,
+            possible: vec![],
             driven,
             seen: vec![],
             map: Map::default(),

@@ -4,10 +4,11 @@ use pydslrep_kinematics::{Pose, TimedPose, angle_between, heading_degrees};
 use svg::node::element::{Circle, Group, Line, Rectangle};
 
 use crate::floor::cross;
-use crate::robots::{DRIVEN_OPACITY, DRIVEN_WIDTH, END_FILL, MAP_WIDTH, SIGHTING, map_node};
+use crate::robots::{DRIVEN_OPACITY, DRIVEN_WIDTH, END_FILL, MAP_WIDTH, PLANNED_WIDTH, SIGHTING, map_node};
 use crate::route::{Picture, Route, is_drawable};
 use crate::style::{
-    DASHES, FINE_DASHES, INK, OBSTACLE, OBSTACLE_EDGE, QUIET, colour, line, pixels, shorten, text,
+    DASHES, FINE_DASHES, INK, OBSTACLE, OBSTACLE_EDGE, QUIET, SHORT_DASHES, colour, line, pixels, shorten,
+    text,
 };
 use crate::time_marks::arrowhead;
 
@@ -76,7 +77,10 @@ fn samples(picture: &Picture<'_>, key: Key) -> Vec<(String, Group)> {
     let mut samples: Vec<(String, Group)> = Vec::new();
     let mut add = |meaning: &str, sample: Group| samples.push((meaning.to_owned(), sample));
     if any(|route| !route.planned.is_empty()) {
-        add("planned", Group::new().add(stroke(1.4).set("stroke", INK).set("stroke-dasharray", DASHES)));
+        add("planned", Group::new().add(dashed(DASHES)));
+    }
+    if any(|route| route.open_ways().next().is_some()) {
+        add("possible, sensors decide", Group::new().add(dashed(SHORT_DASHES)));
     }
     if any(|route| !route.driven.is_empty()) {
         add("driven", Group::new().add(stroke(DRIVEN_WIDTH).set("stroke-opacity", DRIVEN_OPACITY)));
@@ -107,6 +111,10 @@ fn samples(picture: &Picture<'_>, key: Key) -> Vec<(String, Group)> {
         add("map", Group::new().add(stroke(MAP_WIDTH).set("stroke", INK)).add(map_node(18.0, 0.0)));
     }
     samples
+}
+
+fn dashed(dashes: &str) -> Line {
+    stroke(PLANNED_WIDTH).set("stroke", INK).set("stroke-dasharray", dashes)
 }
 
 fn stroke(width: f64) -> Line {

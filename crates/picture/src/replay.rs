@@ -40,8 +40,8 @@ impl Picture<'_> {
         let Some(seconds) = duration(self.routes) else { return self.svg() };
         let clock = Clock::of(seconds);
         let (view, sheet) = self.sheet(TIME_HEIGHT);
-        self.movers()
-            .fold(sheet, |sheet, mover| sheet.add(obstacle(&view, mover, &clock)))
+        let sheet = self.movers().fold(sheet, |sheet, mover| sheet.add(obstacle(&view, mover, &clock)));
+        self.with_ways(&view, sheet)
             .add(self.each(|route, colour| robots::planned(&view, route, colour)))
             .add(self.each(|route, colour| trail(&view, route, colour, &clock)))
             .add(self.each(|route, colour| body(&view, route, colour, &clock)))

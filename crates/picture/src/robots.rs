@@ -6,7 +6,7 @@ use pydslrep_trace::Map;
 use svg::node::element::{Circle, Group, Polygon, Polyline};
 
 use crate::route::{Route, is_drawable};
-use crate::style::{DASHES, INK, PAPER, line, list, pixels};
+use crate::style::{DASHES, INK, PAPER, SHORT_DASHES, line, list, pixels};
 use crate::view::View;
 
 /// The minimum distance between points of a line, pixels.
@@ -14,6 +14,9 @@ const MIN_POINT_DISTANCE: f64 = 0.7;
 
 /// The fill opacity of the body at the end.
 pub(crate) const END_FILL: f64 = 0.22;
+
+/// The width of the planned line, pixels.
+pub(crate) const PLANNED_WIDTH: f64 = 1.4;
 
 /// The width of the driven line, pixels, and its opacity: the dashes of the planned one must stay visible on it.
 pub(crate) const DRIVEN_WIDTH: f64 = 5.0;
@@ -70,12 +73,42 @@ pub(crate) fn lines(view: &View, route: &Route, colour: &str) -> Group {
 
 /// The dashed planned line; in ink if the driven line has the robot's colour.
 pub(crate) fn planned(view: &View, route: &Route, colour: &str) -> Group {
-    let planned = polyline(view, &route.planned)
-        .set("stroke", if route.driven.is_empty() { colour } else { INK })
-        .set("stroke-width", 1.4)
+    let colour = if route.driven.is_empty() { colour } else { INK };
+    Group::new().add(dashed(view, &route.planned, colour, DASHES))
+}
+
+/// What may be driven from the end of the planned line on, and the outline of the body where that ends: some ways are
+/// shorter than the body.
+pub(crate) fn ways(view: &View, route: &Route, colour: &str) -> Group {
+    route.open_ways().fold(Group::new(), |group, way| {
+        let group = group.add(dashed(view, way, colour, SHORT_DASHES));
+        match way.last().filter(|timed| is_drawable(timed)) {
+            Some(end) => group.add(outline(view, route.body, &end.pose, colour)),
+            None => group,
+        }
+    })
+}
+
+fn dashed(view: &View, path: &[TimedPose], colour: &str, dashes: &str) -> Polyline {
+    polyline(view, path)
+        .set("stroke", colour)
+        .set("stroke-width", PLANNED_WIDTH)
         .set("stroke-linecap", "butt")
-        .set("stroke-dasharray", DASHES);
-    Group::new().add(planned)
+        .set("stroke-dasharray", dashes)
+}
+
+/// The dashed outline of a body.
+fn outline(view: &View, body: Body, pose: &Pose, colour: &str) -> Polygon {
+    let corners = body.corners().map(|(x, y)| {
+        let corner = pose.compose(&Pose::new(x, y, 0.0));
+        view.place(corner.x, corner.y)
+    });
+    Polygon::new()
+        .set("points", list(&corners))
+        .set("fill", "none")
+        .set("stroke", colour)
+        .set("stroke-width", 1)
+        .set("stroke-dasharray", SHORT_DASHES)
 }
 
 fn polyline(view: &View, path: &[TimedPose]) -> Polyline {

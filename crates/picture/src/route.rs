@@ -28,6 +28,8 @@ pub struct Route {
     pub planned: Vec<TimedPose>,
     /// Whether the plan continues after its last pose with an action that cannot be planned.
     pub unknown_after: bool,
+    /// The ways that the robot may take there, as far as they have a bound; each begins where the plan ends.
+    pub possible: Vec<Vec<TimedPose>>,
     /// The driven poses in order; empty if nothing was driven.
     pub driven: Vec<TimedPose>,
     /// The points on the floor that the robot's sensors detected.
@@ -41,6 +43,12 @@ impl Route {
     pub(crate) fn path(&self) -> Vec<TimedPose> {
         let path = if self.driven.is_empty() { &self.planned } else { &self.driven };
         path.iter().filter(|timed| is_drawable(timed)).copied().collect()
+    }
+
+    /// The ways of [`Self::possible`] that lead anywhere; none if the robot drove, which decided what it does.
+    pub(crate) fn open_ways(&self) -> impl Iterator<Item = &Vec<TimedPose>> {
+        let ways = if self.driven.is_empty() { self.possible.as_slice() } else { &[] };
+        ways.iter().filter(|way| way.windows(2).any(|pair| pair[0].pose.distance(&pair[1].pose) > 0.0))
     }
 }
 

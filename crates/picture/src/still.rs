@@ -21,7 +21,7 @@ const RIGHT: f64 = 24.0;
 const TITLE_LETTER: f64 = 12.0;
 
 impl Picture<'_> {
-    /// Draws an SVG: the floor with a grid in metres, obstacles where they start with the paths of those that move, planned paths (dashed) and driven paths (solid) with time marks, bodies
+    /// Draws an SVG: the floor with a grid in metres, obstacles where they start with the paths of those that move, planned paths (dashed), what may be driven where they end (short dashes), and driven paths (solid) with time marks, bodies
     /// at start and end, sensor detections, maps, planned collisions, and a legend with the end of each route and its
     /// deviation from the plan.
     pub fn svg(&self) -> String {
@@ -33,12 +33,22 @@ impl Picture<'_> {
         };
         let sheet = sheet
             .add(self.each(|route, colour| robots::lines(&view, route, colour)))
-            .add(self.each(|route, colour| robots::bodies(&view, route, colour)))
+            .add(self.each(|route, colour| robots::bodies(&view, route, colour)));
+        let sheet = self
+            .with_ways(&view, sheet)
             .add(self.each(|route, colour| robots::sightings(&view, route, colour)))
             .add(self.each(|route, _| robots::map(&view, &route.map)))
             .add(time_marks::draw(&view, self.routes, step))
             .add(floor::collisions(&view, self.collisions));
         sheet.add(legend::draw(self, Key::Still(step), Picture::beside(&view))).to_string()
+    }
+
+    /// Adds what may be driven where plans end, if there is any.
+    pub(crate) fn with_ways(&self, view: &View, sheet: Document) -> Document {
+        if self.routes.iter().all(|route| route.open_ways().next().is_none()) {
+            return sheet;
+        }
+        sheet.add(self.each(|route, colour| robots::ways(view, route, colour)))
     }
 
     /// The obstacles that move.
@@ -91,7 +101,7 @@ mod tests {
     use pydslrep_trace::Map;
 
     use super::*;
-    use crate::style::{FINE_DASHES, OBSTACLE, list};
+    use crate::style::{FINE_DASHES, OBSTACLE, SHORT_DASHES, list};
     use crate::testing::route;
 
     fn draw(title: &str, routes: &[Route], obstacles: &[Obstacle]) -> String {
@@ -203,6 +213,28 @@ mod tests {
             assert_eq!(with.contains(&corner), is_drawn, "{corner} in {with}");
         }
         assert!(view.place(5.2, 0.5).0 < LEFT + view.width, "the picture contains all of its path");
+    }
+
+    #[test]
+    fn what_is_possible_has_dashes_of_its_own_until_the_robot_drives() {
+        let ways = vec![
+            untimed([Pose::default(), Pose::new(3.0, 0.0, 0.0)]),
+            untimed([Pose::default(), Pose::new(0.0, 2.0, 1.0)]),
+            untimed([Pose::default(), Pose::new(0.0, 0.0, 1.0)]),
+        ];
+        let planned = Route { driven: vec![], unknown_after: true, possible: ways, ..square() };
+        let routes = [planned.clone()];
+        let picture = draw("p", &routes, &[]);
+        let dashes = format!("stroke-dasharray=\"{SHORT_DASHES}\"");
+        // Two ways with a body at their ends, of which a turn in place is none, and the legend.
+        assert_eq!(picture.matches(&dashes).count(), 5, "{picture}");
+        assert!(picture.contains("possible, sensors decide"), "{picture}");
+        let view = View::of(&routes, &[], LEFT, TOP);
+        assert!(view.place(3.2, 0.0).0 < LEFT + view.width, "the picture contains all of them");
+        let replay = Picture { title: "p", routes: &routes, obstacles: &[], collisions: &[] }.replay();
+        assert_eq!(replay.matches(&dashes).count(), 5, "{replay}");
+        let driven = draw("p", &[Route { driven: square().driven, ..planned }], &[]);
+        assert!(!driven.contains(&dashes) && !driven.contains("possible"), "{driven}");
     }
 
     #[test]

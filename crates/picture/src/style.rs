@@ -18,6 +18,9 @@ pub(crate) const FONT: &str = "'Helvetica Neue', Arial, 'Liberation Sans', 'Deja
 /// Dash and gap of planned paths, pixels.
 pub(crate) const DASHES: &str = "6 4";
 
+/// Dash and gap of what may be driven where plans end, pixels: shorter dashes, so that nobody takes it for planned.
+pub(crate) const SHORT_DASHES: &str = "2 4";
+
 /// Dash and gap of the paths of obstacles, pixels.
 pub(crate) const FINE_DASHES: &str = "3 3";
 

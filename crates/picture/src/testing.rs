@@ -19,6 +19,7 @@ pub(crate) fn route(planned: Vec<TimedPose>) -> Route {
         body: Body { length: 0.3, width: 0.3 },
         planned,
         unknown_after: false,
+        possible: vec![],
         driven: vec![],
         seen: vec![],
         map: Map::default(),

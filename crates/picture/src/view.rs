@@ -40,7 +40,8 @@ impl View {
         let (mut x, mut y) = (Span::EMPTY, Span::EMPTY);
         for route in routes {
             let reach = route.body.length.hypot(route.body.width) / 2.0;
-            for timed in route.planned.iter().chain(&route.driven).filter(|timed| is_drawable(timed)) {
+            let known = route.planned.iter().chain(&route.driven);
+            for timed in known.chain(route.open_ways().flatten()).filter(|timed| is_drawable(timed)) {
                 let pose = timed.pose;
                 x.include(pose.x, reach);
                 y.include(pose.y, reach);

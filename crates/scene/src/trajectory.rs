@@ -99,6 +99,11 @@ impl Trajectory {
         &self.points
     }
 
+    /// Whether it goes there and back, again and again.
+    pub fn repeats(&self) -> bool {
+        self.repeats
+    }
+
     /// The place at a time, seconds since the start of the simulation; metres.
     pub fn at(&self, time: f64) -> (f64, f64) {
         let (first, last) = self.ends();

@@ -5,6 +5,7 @@ import {
   DRIVEN_PATH,
   PLANNED_AT,
   PLANNED_PATH,
+  type ActionAt,
   type DrivenPath,
   type EnvironmentId,
   type ErrorData,
@@ -22,7 +23,7 @@ export class Follower {
   private uri: string | undefined;
   private environment: string | undefined;
   private environments: string[] = [];
-  private action: NumberedAction | null = null;
+  private action: ActionAt | null = null;
   /** Whether the path of the shown environment, or why there is none, was requested. */
   private isPathRequested = false;
   /** Whether the server has named the program's environments. */

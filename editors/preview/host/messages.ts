@@ -1,5 +1,5 @@
 // The messages between the preview's page and its host.
-import type { DrivenPath, NumberedAction, PlannedPath } from "./protocol";
+import type { ActionAt, DrivenPath, NumberedAction, PlannedPath } from "./protocol";
 
 /** To the page. */
 export type ToPage =
@@ -9,7 +9,7 @@ export type ToPage =
   /** How the latest run ended; null when another one starts. */
   | { type: "result"; result: Result | null }
   | { type: "environments"; uri: string; names: string[]; shown: string | null; canRun?: boolean }
-  | { type: "cursor"; action: NumberedAction | null }
+  | { type: "cursor"; action: ActionAt | null }
   /** The latest run, if there was one, and whether it has just ended. */
   | { type: "driven"; uri: string; environment: string; driven: DrivenPath | null; isNew: boolean }
   /** Requests the picture as PNG. */

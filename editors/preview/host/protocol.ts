@@ -50,6 +50,16 @@ export interface PlannedRobot {
   legs: PlannedLeg[];
   /** The action after which the poses are unknown. */
   unknownAfter: PlannedAction | null;
+  /** What it may do from there, as far as that has a bound: an action up to its bound, or each branch of an `if`. */
+  possible?: PossibleWay[];
+}
+
+/** A way that a robot may take where its path becomes unknown; collisions are not looked for on it. */
+export interface PossibleWay {
+  /** The last known pose, then several for each action; times are the latest. */
+  poses: PlannedPose[];
+  /** The actions, in order, up to one that has no bound; `last` is an index of these poses. */
+  legs: PlannedLeg[];
 }
 
 /** A sensor's pose on its robot and its field of view: how far it sees, and how wide. */
@@ -106,13 +116,22 @@ export interface PlannedAction extends NumberedAction {
   text: string;
   /** The rounds of the loops around it, from 1, outermost first. */
   rounds?: number[];
+  /** How many rounds each of these loops has. */
+  counts?: number[];
   /** The movement whose statement it is, if that is one that others do. */
   done?: string;
 }
 
-export type Obstacle =
-  | { name: string; centre: [number, number]; radius: number }
-  | { name: string; corners: [number, number][] };
+/** An obstacle seen from above; one that moves, where it is at the start. */
+export type Obstacle = { name: string; path?: ObstaclePath } & ({ centre: [number, number]; radius: number } | { corners: [number, number][] });
+
+/** How an obstacle moves: straight between points, each at a constant speed; its heading stays. */
+export interface ObstaclePath {
+  /** Time, x and y of each, earliest first. Before the first one it is there, after the last one it stays. */
+  points: [number, number, number][];
+  /** Whether it goes there and back instead, again and again. */
+  repeat: boolean;
+}
 
 export interface PlannedCollision {
   robot: string;
@@ -127,6 +146,15 @@ export interface PlannedCollision {
   with: { obstacle: string } | { robot: string };
 }
 
+/** A statement at a position, by its index in its movement. */
+export interface ActionAt {
+  movement: string;
+  /** From 0, among the statements of the movement, those with blocks included. */
+  index: number;
+  /** The index of the last statement in its blocks, if there are any. */
+  last?: number;
+}
+
 /** What a position in a program refers to. */
 export interface PlannedAt {
   /** The program's environments, in order. */
@@ -134,7 +162,7 @@ export interface PlannedAt {
   /** Those that are declared there or use, directly or through others, the declaration at the position. */
   using: string[];
   /** The action there; it includes the space beside it on its line. */
-  action: NumberedAction | null;
+  action: ActionAt | null;
   /** The program's URI, if the position is in the scene of one of its environments. */
   program?: string;
 }

@@ -103,6 +103,8 @@ export interface Name {
   y: number;
   /** Of the robot, pixels. */
   radius: number;
+  /** Whether there is more room to its right and left than above and below it. */
+  isUpright?: boolean;
 }
 
 /** Draws names next to their robots, each on the first side where it covers no robot and no other name. */
@@ -110,14 +112,11 @@ export function drawNames(context: CanvasRenderingContext2D, view: View, theme: 
   context.font = `600 11px ${theme.font}`;
   context.textBaseline = "middle";
   const occupied = names.map(({ x, y, radius }) => ({ left: x - radius, right: x + radius, top: y - radius, bottom: y + radius }));
-  for (const { text, colour, x, y, radius } of names) {
+  for (const { text, colour, x, y, radius, isUpright = false } of names) {
     const half = context.measureText(text).width / 2;
-    const sides = [
-      { x, y: y - radius - 9 },
-      { x, y: y + radius + 10 },
-      { x: x + radius + half + 5, y },
-      { x: x - radius - half - 5, y },
-    ].map((box) => ({ ...box, left: box.x - half, right: box.x + half, top: box.y - 7, bottom: box.y + 7 }));
+    const upAndDown = [{ x, y: y - radius - 9 }, { x, y: y + radius + 10 }];
+    const beside = [{ x: x + radius + half + 5, y }, { x: x - radius - half - 5, y }];
+    const sides = (isUpright ? [...beside, ...upAndDown] : [...upAndDown, ...beside]).map((box) => ({ ...box, left: box.x - half, right: box.x + half, top: box.y - 7, bottom: box.y + 7 }));
     const isFree = (box: (typeof sides)[number]): boolean =>
       box.left > 4 && box.right < view.width - 4 && box.top > 4 && box.bottom < view.height - 22 &&
       occupied.every((other) => box.right < other.left || box.left > other.right || box.bottom < other.top || box.top > other.bottom);

@@ -7,21 +7,30 @@ import type { Model } from "./model";
 /** An action in short sentences; the first is its text. */
 export function describeAction({ robot, leg }: Hit): string[] {
   const { action, start, duration } = leg;
+  const facts = [action.text, `${robot.name} · ${describePlace(action)}`];
+  if (leg.isPossible) {
+    return [...facts, `possible, sensors decide: takes up to ${format.duration(duration)}`, `may end at ${format.pose(leg.to)}`];
+  }
   const when = start === null ? "start time unknown" : `from ${format.duration(start)} to ${format.duration(start + duration)}`;
-  return [
-    action.text,
-    `${robot.name} · ${describePlace(action)}`,
-    `takes ${format.duration(duration)}, ${when}`,
-    `ends at ${format.pose(leg.to)}`,
-  ];
+  return [...facts, `takes ${format.duration(duration)}, ${when}`, `ends at ${format.pose(leg.to)}`];
 }
 
 /** Where an action is: its movement and number, the rounds of the loops around it, and the movements that lead to it. */
-export function describePlace({ movement, index, calls = [], rounds = [], done = movement }: PlannedAction): string {
-  const round = rounds.length === 0 ? "" : ` in ${rounds.length === 1 ? "round" : "rounds"} ${rounds.join(", ")}`;
-  const parts = [done, `action ${index + 1}${round}`];
+export function describePlace(action: PlannedAction): string {
+  const { movement, index, calls = [], done = movement } = action;
+  const rounds = describeRounds(action);
+  const parts = [done, `action ${index + 1}${rounds === "" ? "" : ` in ${rounds}`}`];
   if (calls.length > 0) parts.push(`done by ${calls.map((call) => call.movement).join(" › ")}`);
   return parts.join(", ");
+}
+
+/** The rounds of the loops around an action, the outermost first; empty if there are none. */
+export function describeRounds({ rounds = [], counts = [] }: PlannedAction): string {
+  const [round, ...inner] = rounds;
+  if (round === undefined) return "";
+  if (inner.length > 0) return `rounds ${rounds.join(", ")}`;
+  const [count] = counts;
+  return `round ${round}${count === undefined ? "" : ` of ${count}`}`;
 }
 
 export function describePath({ environment, robots, collisions, duration, isComplete }: Model): string {

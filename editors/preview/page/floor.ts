@@ -1,5 +1,7 @@
 // Draws the floor: a grid in metres, obstacles and labels.
 import type { ObstacleShape } from "./model";
+import { offsetAt } from "./motion";
+import { trace } from "./paths";
 import type { Theme } from "./theme";
 import { ticks, type View } from "./view";
 import { tickLabel } from "./format";
@@ -33,25 +35,42 @@ export function drawScale(context: CanvasRenderingContext2D, view: View, theme: 
   }
 }
 
-export function drawObstacles(context: CanvasRenderingContext2D, view: View, theme: Theme, obstacles: readonly ObstacleShape[]): void {
+/** Draws obstacles where they are at a time. */
+export function drawObstacles(context: CanvasRenderingContext2D, view: View, theme: Theme, obstacles: readonly ObstacleShape[], time = 0): void {
   context.fillStyle = theme.obstacle;
   context.strokeStyle = theme.obstacleEdge;
   context.lineWidth = theme.isHighContrast ? 1.5 : 1;
   context.lineJoin = "round";
   for (const obstacle of obstacles) {
+    const moved = obstacle.motion ? offsetAt(obstacle.motion, time) : { x: 0, y: 0 };
     context.beginPath();
     if ("points" in obstacle) {
       obstacle.points.forEach(([x, y], index) => {
-        if (index === 0) context.moveTo(view.toX(x), view.toY(y));
-        else context.lineTo(view.toX(x), view.toY(y));
+        const [px, py] = [view.toX(x + moved.x), view.toY(y + moved.y)];
+        if (index === 0) context.moveTo(px, py);
+        else context.lineTo(px, py);
       });
       context.closePath();
     } else {
-      context.arc(view.toX(obstacle.x), view.toY(obstacle.y), obstacle.radius * view.scale, 0, 2 * Math.PI);
+      context.arc(view.toX(obstacle.x + moved.x), view.toY(obstacle.y + moved.y), obstacle.radius * view.scale, 0, 2 * Math.PI);
     }
     context.fill();
     context.stroke();
   }
+}
+
+/** Draws the ways of the obstacles that move. */
+export function drawObstaclePaths(context: CanvasRenderingContext2D, view: View, theme: Theme, obstacles: readonly ObstacleShape[]): void {
+  context.save();
+  context.strokeStyle = theme.obstacleEdge;
+  context.lineWidth = 1;
+  context.setLineDash([3, 3]);
+  for (const { motion } of obstacles) {
+    if (!motion) continue;
+    trace(context, view, motion.line, 0, motion.line.length / 2 - 1);
+    context.stroke();
+  }
+  context.restore();
 }
 
 /** Text with a halo, legible on any background. */

@@ -1,15 +1,15 @@
-// The legs that stand out: at the cursor of the editor, selected by keys, and under the pointer.
-import type { NumberedAction } from "../host/protocol";
+// The legs that stand out: at the cursor of the editor, selected by keys or a click, and under the pointer.
+import type { ActionAt } from "../host/protocol";
 import type { Hit } from "./hit";
-import { isLegOf, type Robot } from "./model";
+import { isLegOf, isStatementOf, type Robot } from "./model";
 
 export class Highlights {
   /** Under the pointer. */
   hovered: Hit | undefined;
-  /** Selected by keys. */
+  /** Selected by keys or a click. */
   selected: Hit | undefined;
-  private cursor: NumberedAction | null = null;
-  /** The legs of the action at the cursor, found once per path rather than once per frame. */
+  private cursor: ActionAt | null = null;
+  /** The legs of the statement at the cursor and of those in its blocks, found once per path rather than once per frame. */
   private atCursor: Hit[] = [];
 
   /** Drops the legs of the last path. */
@@ -18,9 +18,10 @@ export class Highlights {
     this.selected = undefined;
   }
 
-  setCursor(action: NumberedAction | null, robots: readonly Robot[]): void {
+  /** The selected leg stays selected while the cursor is at its statement, where a click leads: it is one of several rounds. */
+  setCursor(action: ActionAt | null, robots: readonly Robot[]): void {
     this.cursor = action;
-    this.selected = undefined;
+    if (this.selected && !isStatementOf(this.selected.leg, action)) this.selected = undefined;
     this.findCursor(robots);
   }
 
@@ -44,5 +45,5 @@ export class Highlights {
 }
 
 function hitsOf(robots: readonly Robot[]): Hit[] {
-  return robots.flatMap((robot) => robot.legs.map((leg) => ({ robot, leg })));
+  return robots.flatMap((robot) => robot.allLegs.map((leg) => ({ robot, leg })));
 }

@@ -10,15 +10,15 @@ export interface Hit {
 /** Pixels. */
 const MAX_DISTANCE = 7;
 
-/** The leg nearest to a point of the picture. Turns win at joints, the only points where they can be hit. */
+/** The leg nearest to a point of the picture; of those equally near, a known one before a possible one. Turns win at joints, the only points where they can be hit. */
 export function hitTest(robots: readonly Robot[], view: View, px: number, py: number): Hit | undefined {
   let best: Hit | undefined;
   let nearest = MAX_DISTANCE;
   for (const robot of robots) {
-    for (const leg of robot.legs) {
+    for (const leg of robot.allLegs) {
       const distance = leg.isTurn
         ? Math.hypot(view.toX(leg.from.x) - px, view.toY(leg.from.y) - py) - 2
-        : distanceToLine(robot.line, leg, view, px, py);
+        : distanceToLine(leg, view, px, py);
       if (distance < nearest) {
         nearest = distance;
         best = { robot, leg };
@@ -28,9 +28,9 @@ export function hitTest(robots: readonly Robot[], view: View, px: number, py: nu
   return best;
 }
 
-function distanceToLine(line: Float64Array, leg: Leg, view: View, px: number, py: number): number {
+function distanceToLine({ line, first, last }: Leg, view: View, px: number, py: number): number {
   let nearest = Infinity;
-  for (let index = leg.first; index < leg.last; index += 1) {
+  for (let index = first; index < last; index += 1) {
     const ax = view.toX(line[2 * index] ?? 0);
     const ay = view.toY(line[2 * index + 1] ?? 0);
     const bx = view.toX(line[2 * index + 2] ?? 0);

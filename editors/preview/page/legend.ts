@@ -1,7 +1,7 @@
 // The legend: the robots with their ends, the planned collisions, and the meaning of the lines.
 import { element } from "./elements";
 import * as format from "./format";
-import { deviation, type Collision, type Driven, type Model, type Robot } from "./model";
+import { deviation, possibleEnds, type Collision, type Driven, type Model, type Robot } from "./model";
 import { ROBOT_COLOURS } from "./theme";
 
 export interface LegendEvents {
@@ -83,11 +83,13 @@ function hasPath(driven: Driven): boolean {
 /** Samples of the lines and shapes in the picture. */
 function key({ model, driven, isRunShown }: LegendContent): HTMLElement {
   const samples = [["planned", "planned path"]];
+  if (model?.robots.some((robot) => possibleEnds(robot).length > 0)) samples.push(["possible", "possible, sensors decide"]);
   if (driven && isRunShown && hasPath(driven)) samples.push(["driven", "driven path"]);
   samples.push(["start", "start"]);
   if (model?.robots.some(({ legs }) => legs.length > 0)) samples.push(["end", "planned end"]);
   if (driven && isRunShown && [...driven.robots.values()].some(({ nodes }) => nodes.length > 0)) samples.push(["map", "map"]);
   if (model && model.obstacles.length > 0) samples.push(["obstacle", "obstacle"]);
+  if (model?.obstacles.some(({ motion }) => motion)) samples.push(["obstacle-path", "path of an obstacle"]);
   if (model && model.collisions.length > 0) samples.push(["collision", "collision"]);
   const items = samples.map(([kind = "", meaning = ""]) =>
     element("li", {}, sample(kind), meaning),

@@ -6,6 +6,9 @@ import type { View } from "./view";
 /** Of the joint between two actions, pixels. */
 const JOINT_RADIUS = 2.5;
 
+/** Dash and gap of what is possible, pixels. */
+const POSSIBLE = [5, 5];
+
 export function drawPlanned(context: CanvasRenderingContext2D, view: View, theme: Theme, robot: Robot, colour: string): void {
   context.strokeStyle = colour;
   context.lineWidth = 2;
@@ -13,6 +16,7 @@ export function drawPlanned(context: CanvasRenderingContext2D, view: View, theme
   context.lineJoin = "round";
   trace(context, view, robot.line, 0, robot.line.length / 2 - 1);
   context.stroke();
+  drawWays(context, view, robot);
   context.fillStyle = theme.background;
   context.lineWidth = 1.5;
   for (const leg of robot.legs) {
@@ -21,6 +25,18 @@ export function drawPlanned(context: CanvasRenderingContext2D, view: View, theme
     context.fill();
     context.stroke();
   }
+}
+
+/** What a robot may do where its path becomes unknown, in its colour. */
+function drawWays(context: CanvasRenderingContext2D, view: View, robot: Robot): void {
+  context.save();
+  context.lineCap = "butt";
+  context.setLineDash(POSSIBLE);
+  for (const { line } of robot.ways) {
+    trace(context, view, line, 0, line.length / 2 - 1);
+    context.stroke();
+  }
+  context.restore();
 }
 
 export function drawDriven(context: CanvasRenderingContext2D, view: View, theme: Theme, driven: DrivenRobot, colour: string): void {
@@ -67,11 +83,17 @@ export function drawHighlight(context: CanvasRenderingContext2D, view: View, the
   }
   context.strokeStyle = theme.highlight;
   context.lineWidth = 10;
-  trace(context, view, robot.line, leg.first, leg.last);
+  trace(context, view, leg.line, leg.first, leg.last);
   context.stroke();
+  context.save();
   context.strokeStyle = colour;
   context.lineWidth = 3.5;
+  if (leg.isPossible) {
+    context.lineCap = "butt";
+    context.setLineDash(POSSIBLE);
+  }
   context.stroke();
+  context.restore();
 }
 
 function ring(context: CanvasRenderingContext2D, x: number, y: number, radius: number, colour: string, width: number): void {
@@ -82,8 +104,8 @@ function ring(context: CanvasRenderingContext2D, x: number, y: number, radius: n
   context.stroke();
 }
 
-/** Traces part of a robot's line, skipping points on the same pixel. */
-function trace(context: CanvasRenderingContext2D, view: View, line: Float64Array, first: number, last: number): void {
+/** Traces part of a line, skipping points on the same pixel. */
+export function trace(context: CanvasRenderingContext2D, view: View, line: Float64Array, first: number, last: number): void {
   context.beginPath();
   let [beforeX, beforeY] = [NaN, NaN];
   for (let index = first; index <= last; index += 1) {

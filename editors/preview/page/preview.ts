@@ -3,7 +3,7 @@ import type { PageState, ToPage } from "../host/messages";
 import { keyOf, type NumberedAction } from "../host/protocol";
 import { Camera } from "./camera";
 import { Controls } from "./controls";
-import { describeAction, describePath } from "./descriptions";
+import { describeAction, describePath, describeRounds } from "./descriptions";
 import { element, focusOf } from "./elements";
 import * as format from "./format";
 import { Help } from "./help";
@@ -213,7 +213,7 @@ export class Preview {
       zoom: (factor, px, py) => this.camera.zoom(factor, px, py),
       hover: (px, py) => this.hover(px, py),
       leave: () => this.leave(),
-      click: (px, py) => this.reveal(this.hitAt(px, py)),
+      click: (px, py) => this.click(this.hitAt(px, py)),
       fit: () => this.fit(),
     });
     window.addEventListener("keydown", (event) => {
@@ -310,6 +310,14 @@ export class Preview {
     if (hit) this.host.post({ type: "reveal", action: numbered(hit.leg.action) });
   }
 
+  /** Selects a leg, so that its round is named, and goes to its action. */
+  private click(hit: Hit | undefined): void {
+    this.highlights.selected = hit;
+    if (hit) this.announcement.textContent = describeAction(hit).join(", ");
+    this.drawMoving();
+    this.reveal(hit);
+  }
+
   private selectAction(direction: 1 | -1): void {
     const hit = this.highlights.select(direction, this.visibleRobots);
     if (!hit) return;
@@ -367,8 +375,10 @@ export class Preview {
 
   private scene(): Scene {
     const highlights = this.highlights.all;
+    const { selected } = this.highlights;
     this.root.dataset.highlighted = highlights.map(({ leg: { action } }) => `${action.movement} ${action.index}`).join(", ");
-    return { model: this.model, driven: this.shownRun, hidden: this.hidden, highlights, time: this.playback.time };
+    this.root.dataset.round = selected ? describeRounds(selected.leg.action) : "";
+    return { model: this.model, driven: this.shownRun, hidden: this.hidden, highlights, selected, time: this.playback.time };
   }
 
   private draw(): void {

@@ -1,11 +1,13 @@
 // The picture, in two layers: what is fixed while time passes, and what moves. A step of time redraws only the second, whose
 // cost depends on the number of robots and not on their actions.
 import { drawBody, drawCollision, drawNames, drawSensors, type Name } from "./bodies";
-import { drawGrid, drawObstacles, drawScale } from "./floor";
-import type { Driven, DrivenRobot, Leg, Model, Robot } from "./model";
+import { describeRounds } from "./descriptions";
+import { drawGrid, drawObstaclePaths, drawObstacles, drawScale } from "./floor";
+import type { Hit } from "./hit";
+import { possibleEnds, type Driven, type DrivenRobot, type Model, type ObstacleShape, type Robot } from "./model";
 import { drawDriven, drawHighlight, drawMap, drawPlanned } from "./paths";
 import { robotColour, type Theme } from "./theme";
-import { poseAt, type Pose } from "./time";
+import { endOf, poseAt, type Pose } from "./time";
 import { View } from "./view";
 
 export interface Scene {
@@ -13,7 +15,9 @@ export interface Scene {
   /** The latest run, if it is to be shown. */
   driven: Driven | undefined;
   hidden: ReadonlySet<string>;
-  highlights: readonly { robot: Robot; leg: Leg }[];
+  highlights: readonly Hit[];
+  /** The leg whose round is named. */
+  selected: Hit | undefined;
   time: number;
 }
 
@@ -61,7 +65,8 @@ export class Stage {
     drawGrid(context, view, theme);
     const { model, driven } = scene;
     if (model) {
-      drawObstacles(context, view, theme, model.obstacles);
+      drawObstacles(context, view, theme, model.obstacles.filter((obstacle) => !isMoving(obstacle)));
+      drawObstaclePaths(context, view, theme, model.obstacles);
       const robots = visibleRobots(scene);
       for (const robot of robots) {
         const run = driven?.robots.get(robot.name);
@@ -72,6 +77,8 @@ export class Stage {
         const colour = robotColour(theme, robot.colour);
         drawBody(context, view, robot, robot.start, colour, "start", theme);
         if (robot.legs.length > 0) drawBody(context, view, robot, robot.end, colour, "end", theme);
+        // Some ways are shorter than the robot.
+        for (const end of possibleEnds(robot)) drawBody(context, view, robot, end, colour, "ghost", theme);
         const run = driven?.robots.get(robot.name);
         if (run) drawMap(context, view, theme, run);
       }
@@ -84,6 +91,7 @@ export class Stage {
     const { view } = this;
     const { model, driven, time } = scene;
     if (!model) return;
+    drawObstacles(context, view, theme, model.obstacles.filter(isMoving), time);
     for (const { robot, leg } of scene.highlights) {
       if (!scene.hidden.has(robot.name)) drawHighlight(context, view, theme, robot, leg, robotColour(theme, robot.colour));
     }
@@ -94,19 +102,34 @@ export class Stage {
       const radius = Math.max((Math.hypot(robot.body.length, robot.body.width) / 2) * view.scale, 6);
       if (model.robots.length > 1) names.push({ text: robot.name, colour, x: view.toX(pose.x), y: view.toY(pose.y), radius });
     }
+    if (scene.selected && !scene.hidden.has(scene.selected.robot.name)) names.push(...this.roundOf(scene.selected, theme));
     for (const collision of model.collisions) {
       if (!scene.hidden.has(collision.robot.name)) drawCollision(context, view, theme, collision);
     }
     drawNames(context, view, theme, names);
   }
 
-  /** A robot at a time: solid where the run has it, with the plan as a ghost; without a run the plan is solid. */
+  /** The round of a leg, if it is in a loop, as a name beside its middle. */
+  private roundOf({ robot, leg }: Hit, theme: Theme): Name[] {
+    const text = describeRounds(leg.action);
+    if (text === "") return [];
+    const middle = 2 * Math.round((leg.first + leg.last) / 2);
+    const isUpright = Math.abs(leg.to.y - leg.from.y) > Math.abs(leg.to.x - leg.from.x);
+    const [x, y] = [this.view.toX(leg.line[middle] ?? 0), this.view.toY(leg.line[middle + 1] ?? 0)];
+    return [{ text, colour: robotColour(theme, robot.colour), x, y, radius: 6, isUpright }];
+  }
+
+  /**
+   * A robot at a time: solid where the run has it, with the plan as a ghost; without a run the plan is solid, and a ghost
+   * where the robot was seen last, once nobody knows where it is.
+   */
   private drawRobot(context: CanvasRenderingContext2D, robot: Robot, run: DrivenRobot | undefined, time: number, colour: string, theme: Theme): Pose {
     const planned = poseAt(robot.track, time) ?? robot.start;
     const driven = run && poseAt(run.track, time);
     drawSensors(context, this.view, robot, driven ?? planned, colour, theme);
     if (driven) drawBody(context, this.view, robot, planned, colour, "ghost", theme);
-    drawBody(context, this.view, robot, driven ?? planned, colour, "solid", theme);
+    const isLost = !driven && robot.unknownAfter !== null && time > endOf(robot.track);
+    drawBody(context, this.view, robot, driven ?? planned, colour, isLost ? "ghost" : "solid", theme);
     return driven ?? planned;
   }
 
@@ -116,6 +139,10 @@ export class Stage {
     context.clearRect(0, 0, this.view.width, this.view.height);
     return context;
   }
+}
+
+function isMoving({ motion }: ObstacleShape): boolean {
+  return motion !== undefined;
 }
 
 function visibleRobots({ model, hidden }: Scene): Robot[] {

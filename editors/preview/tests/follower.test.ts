@@ -187,7 +187,7 @@ test("a renamed environment is still shown", async () => {
 
 test("the action at the cursor is sent once", async () => {
   const { follower, shown, next } = await opened(at(["yard"]));
-  const action = { movement: "go", index: 2 };
+  const action = { movement: "go", index: 2, last: 4 };
   for (let turn = 0; turn < 2; turn += 1) {
     const updating = follower.update(TOP);
     (await next(PLANNED_AT)).resolve({ ...at(["yard"]), action });

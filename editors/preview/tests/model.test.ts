@@ -1,10 +1,10 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { describePlace } from "../page/descriptions";
-import { boundsOf, deviation, drivenOf, isLegOf, type Leg, modelOf } from "../page/model";
+import { describeAction, describePlace } from "../page/descriptions";
+import { boundsOf, deviation, drivenOf, isLegOf, isStatementOf, type Leg, modelOf, possibleEnds } from "../page/model";
 import { poseAt } from "../page/time";
-import { plan } from "./plans";
+import { open, plan } from "./plans";
 
 test("a robot waits until its next action begins", () => {
   const [rover] = modelOf(plan()).robots;
@@ -37,7 +37,7 @@ test("a full circle is not a turn on the spot", () => {
 function done(): Leg {
   const pose = { x: 0, y: 0, theta: 0 };
   const action = { movement: "go", index: 0, text: "move 1 meters", calls: [{ movement: "go", index: 1 }], done: "side" };
-  return { action, start: 0, duration: 1, first: 0, last: 1, from: pose, to: pose, isTurn: false };
+  return { action, start: 0, duration: 1, line: new Float64Array(4), first: 0, last: 1, from: pose, to: pose, isTurn: false, isPossible: false };
 }
 
 test("a leg belongs to its statement and to those that do its movement", () => {
@@ -45,9 +45,16 @@ test("a leg belongs to its statement and to those that do its movement", () => {
   assert.deepEqual([at("side", 0), at("go", 1), at("go", 0), at("side", 1)], [true, true, false, false]);
 });
 
+test("a statement with blocks has the legs of those inside, and of what these do", () => {
+  const has = (movement: string, index: number, last: number): boolean => isLegOf(done(), { movement, index, last });
+  assert.deepEqual([has("go", 0, 1), has("go", 1, 4), has("go", 2, 4), has("side", 0, 0)], [true, true, false, true]);
+  assert.deepEqual([isStatementOf(done(), { movement: "side", index: 0 }), isStatementOf(done(), { movement: "go", index: 1 })], [true, false]);
+});
+
 test("an action says its movement, its rounds and who does it", () => {
   const { action } = done();
-  assert.equal(describePlace({ ...action, rounds: [2, 1] }), "side, action 1 in rounds 2, 1, done by go");
+  assert.equal(describePlace({ ...action, rounds: [2, 1], counts: [3, 4] }), "side, action 1 in rounds 2, 1, done by go");
+  assert.equal(describePlace({ ...action, rounds: [3], counts: [4] }), "side, action 1 in round 3 of 4, done by go");
   assert.equal(describePlace({ movement: "go", index: 1, text: "turn left" }), "go, action 2");
 });
 
@@ -63,6 +70,20 @@ test("after an action of unknown duration there is a line without times", () => 
   assert.equal(model.isComplete, false);
   assert.equal(model.robots[0]?.line.length, 14);
   assert.deepEqual(poseAt(model.robots[0].track, 100), { x: 2, y: 0, theta: 0 });
+});
+
+test("what is possible is beside the path, not in it", () => {
+  const model = modelOf(open());
+  const [rover] = model.robots;
+  assert.ok(rover);
+  assert.deepEqual(rover.legs.map(({ isPossible }) => isPossible), [false]);
+  assert.deepEqual(rover.allLegs.map(({ action, isPossible }) => [action.index, isPossible]), [[1, false], [3, true], [4, true], [5, true]]);
+  assert.deepEqual([rover.end, model.duration, model.isComplete], [{ t: 2, x: 2, y: 0, theta: 0, action: null }, 8, false]);
+  assert.deepEqual(possibleEnds(rover).map(({ x, y }) => [x, y]), [[5, 0], [2, 3]]);
+  const { right, top } = boundsOf(model, undefined);
+  assert.deepEqual([right, top], [9, 3.25], "the picture contains all of it");
+  const facts = rover.ways[0]?.legs.map((leg) => describeAction({ robot: rover, leg }))[0];
+  assert.deepEqual(facts, ["move 3 meters until { front } detect", "rover · go, action 4 in round 1 of 4", "possible, sensors decide: takes up to 3.0 s", "may end at (5.00, 0.00) m, 0°"]);
 });
 
 test("collisions of unknown robots are dropped", () => {

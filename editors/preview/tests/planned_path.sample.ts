@@ -41,6 +41,9 @@ export const path: PlannedPath = {
             "rounds": [
               1
             ],
+            "counts": [
+              2
+            ],
             "calls": [
               {
                 "movement": "m",
@@ -61,6 +64,9 @@ export const path: PlannedPath = {
             "text": "move 1 meters",
             "rounds": [
               1
+            ],
+            "counts": [
+              2
             ],
             "calls": [
               {
@@ -83,6 +89,9 @@ export const path: PlannedPath = {
             "rounds": [
               1
             ],
+            "counts": [
+              2
+            ],
             "calls": [
               {
                 "movement": "m",
@@ -103,6 +112,9 @@ export const path: PlannedPath = {
             "text": "move 1 meters",
             "rounds": [
               1
+            ],
+            "counts": [
+              2
             ],
             "calls": [
               {
@@ -125,6 +137,9 @@ export const path: PlannedPath = {
             "rounds": [
               1
             ],
+            "counts": [
+              2
+            ],
             "calls": [
               {
                 "movement": "m",
@@ -145,6 +160,9 @@ export const path: PlannedPath = {
             "text": "move 1 meters",
             "rounds": [
               1
+            ],
+            "counts": [
+              2
             ],
             "calls": [
               {
@@ -167,6 +185,9 @@ export const path: PlannedPath = {
             "rounds": [
               1
             ],
+            "counts": [
+              2
+            ],
             "calls": [
               {
                 "movement": "m",
@@ -188,6 +209,9 @@ export const path: PlannedPath = {
             "rounds": [
               1
             ],
+            "counts": [
+              2
+            ],
             "calls": [
               {
                 "movement": "m",
@@ -207,6 +231,9 @@ export const path: PlannedPath = {
             "index": 0,
             "text": "move 1 meters",
             "rounds": [
+              2
+            ],
+            "counts": [
               2
             ],
             "calls": [
@@ -230,6 +257,9 @@ export const path: PlannedPath = {
             "rounds": [
               2
             ],
+            "counts": [
+              2
+            ],
             "calls": [
               {
                 "movement": "m",
@@ -249,6 +279,9 @@ export const path: PlannedPath = {
             "index": 0,
             "text": "move 1 meters",
             "rounds": [
+              2
+            ],
+            "counts": [
               2
             ],
             "calls": [
@@ -272,6 +305,9 @@ export const path: PlannedPath = {
             "rounds": [
               2
             ],
+            "counts": [
+              2
+            ],
             "calls": [
               {
                 "movement": "m",
@@ -291,6 +327,9 @@ export const path: PlannedPath = {
             "index": 0,
             "text": "move 1 meters",
             "rounds": [
+              2
+            ],
+            "counts": [
               2
             ],
             "calls": [
@@ -314,6 +353,9 @@ export const path: PlannedPath = {
             "rounds": [
               2
             ],
+            "counts": [
+              2
+            ],
             "calls": [
               {
                 "movement": "m",
@@ -333,6 +375,9 @@ export const path: PlannedPath = {
             "index": 0,
             "text": "move 1 meters",
             "rounds": [
+              2
+            ],
+            "counts": [
               2
             ],
             "calls": [
@@ -356,6 +401,9 @@ export const path: PlannedPath = {
             "rounds": [
               2
             ],
+            "counts": [
+              2
+            ],
             "calls": [
               {
                 "movement": "m",
@@ -374,6 +422,9 @@ export const path: PlannedPath = {
             "text": "move 1 meters",
             "rounds": [
               1
+            ],
+            "counts": [
+              2
             ],
             "calls": [
               {
@@ -395,6 +446,9 @@ export const path: PlannedPath = {
             "rounds": [
               2
             ],
+            "counts": [
+              2
+            ],
             "calls": [
               {
                 "movement": "m",
@@ -411,8 +465,121 @@ export const path: PlannedPath = {
       "unknownAfter": {
         "movement": "m",
         "index": 2,
-        "text": "turn left until { front }"
-      }
+        "text": "move 1 meters until { front } detect"
+      },
+      "possible": [
+        {
+          "poses": [
+            {
+              "t": 22.88222222222222,
+              "x": 2.0,
+              "y": 0.0,
+              "theta": 0.0,
+              "action": null
+            },
+            {
+              "t": 24.31236111111111,
+              "x": 2.1206125,
+              "y": 0.0,
+              "theta": 0.0,
+              "action": {
+                "movement": "m",
+                "index": 2,
+                "text": "move 1 meters until { front } detect"
+              }
+            },
+            {
+              "t": 25.7425,
+              "x": 2.249325,
+              "y": 0.0,
+              "theta": 0.0,
+              "action": {
+                "movement": "m",
+                "index": 2,
+                "text": "move 1 meters until { front } detect"
+              }
+            },
+            {
+              "t": 27.172638888888887,
+              "x": 2.3780375,
+              "y": 0.0,
+              "theta": 0.0,
+              "action": {
+                "movement": "m",
+                "index": 2,
+                "text": "move 1 meters until { front } detect"
+              }
+            },
+            {
+              "t": 28.602777777777778,
+              "x": 2.5067500000000003,
+              "y": 0.0,
+              "theta": 0.0,
+              "action": {
+                "movement": "m",
+                "index": 2,
+                "text": "move 1 meters until { front } detect"
+              }
+            },
+            {
+              "t": 30.032916666666665,
+              "x": 2.6354625,
+              "y": 0.0,
+              "theta": 0.0,
+              "action": {
+                "movement": "m",
+                "index": 2,
+                "text": "move 1 meters until { front } detect"
+              }
+            },
+            {
+              "t": 31.463055555555556,
+              "x": 2.764175,
+              "y": 0.0,
+              "theta": 0.0,
+              "action": {
+                "movement": "m",
+                "index": 2,
+                "text": "move 1 meters until { front } detect"
+              }
+            },
+            {
+              "t": 32.89319444444445,
+              "x": 2.8928875,
+              "y": 0.0,
+              "theta": 0.0,
+              "action": {
+                "movement": "m",
+                "index": 2,
+                "text": "move 1 meters until { front } detect"
+              }
+            },
+            {
+              "t": 34.32333333333333,
+              "x": 3.0,
+              "y": 0.0,
+              "theta": 0.0,
+              "action": {
+                "movement": "m",
+                "index": 2,
+                "text": "move 1 meters until { front } detect"
+              }
+            }
+          ],
+          "legs": [
+            {
+              "action": {
+                "movement": "m",
+                "index": 2,
+                "text": "move 1 meters until { front } detect"
+              },
+              "start": 22.88222222222222,
+              "duration": 11.44111111111111,
+              "last": 8
+            }
+          ]
+        }
+      ]
     }
   ],
   "obstacles": [
@@ -443,7 +610,22 @@ export const path: PlannedPath = {
           3.5,
           2.5
         ]
-      ]
+      ],
+      "path": {
+        "points": [
+          [
+            0.0,
+            3.0,
+            3.0
+          ],
+          [
+            5.0,
+            4.0,
+            3.0
+          ]
+        ],
+        "repeat": false
+      }
     }
   ],
   "collisions": [
@@ -455,6 +637,9 @@ export const path: PlannedPath = {
         "text": "move 1 meters",
         "rounds": [
           1
+        ],
+        "counts": [
+          2
         ],
         "calls": [
           {

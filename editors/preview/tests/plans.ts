@@ -43,6 +43,46 @@ export function plan(): PlannedPath {
   };
 }
 
+/**
+ * A robot that drives 2 m in the first of four rounds and then, by what it sees, up to 3 m more, or turns and drives 3 m,
+ * among obstacles that move.
+ */
+export function open(): PlannedPath {
+  const at = (t: number, x: number, y: number, theta: number): PlannedPose => ({ t, x, y, theta, action: null });
+  const leg = (index: number, text: string, start: number, duration: number, last: number): PlannedLeg => ({
+    action: { movement: "go", index, text, rounds: [1], counts: [4] },
+    start,
+    duration,
+    last,
+  });
+  const [rover] = plan().robots;
+  if (!rover) throw new Error("there is one");
+  return {
+    ...plan(),
+    duration: null,
+    robots: [
+      {
+        ...rover,
+        poses: [at(0, 0, 0, 0), at(2, 2, 0, 0)],
+        legs: [leg(1, "move 2 meters", 0, 2, 1)],
+        unknownAfter: { movement: "go", index: 2, text: "if { front } clear", rounds: [1], counts: [4] },
+        possible: [
+          { poses: [at(2, 2, 0, 0), at(5, 5, 0, 0)], legs: [leg(3, "move 3 meters until { front } detect", 2, 3, 1)] },
+          {
+            poses: [at(2, 2, 0, 0), at(3, 2, 0, Math.PI / 2), at(6, 2, 3, Math.PI / 2)],
+            legs: [leg(4, "turn left", 2, 1, 1), leg(5, "move 3 meters", 3, 3, 2)],
+          },
+        ],
+      },
+    ],
+    obstacles: [
+      { name: "cart", corners: [[7, 0], [8, 0], [8, 1]], path: { points: [[2, 7, 0], [8, 8, 0]], repeat: false } },
+      { name: "person", centre: [-1, 0], radius: 0.5, path: { points: [[1, -1, 0], [4, -1, 1.5]], repeat: true } },
+    ],
+    collisions: [],
+  };
+}
+
 /** So many robots with so many legs each. */
 export function large(robots: number, legs: number): PlannedPath {
   const [only] = plan().robots;

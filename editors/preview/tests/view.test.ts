@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { hitTest, distanceToSegment } from "../page/hit";
 import { modelOf } from "../page/model";
 import { niceStep, ticks, View } from "../page/view";
-import { large, plan } from "./plans";
+import { large, open, plan } from "./plans";
 
 function view(): View {
   const made = new View();
@@ -65,6 +65,13 @@ test("the nearest leg is hit; at a joint, the turn", () => {
   assert.equal(at(2, 0.5), 2);
   assert.equal(hitTest([], made, 1, 1), undefined);
   assert.equal(distanceToSegment(3, 4, 0, 0, 0, 0), 5);
+});
+
+test("a click finds what is possible", () => {
+  const { robots } = modelOf(open());
+  const view = new View();
+  const at = (x: number, y: number): number | undefined => hitTest(robots, view, view.toX(x), view.toY(y))?.leg.action.index;
+  assert.deepEqual([at(1, 0), at(4, 0), at(2, 2), at(3, 2)], [1, 3, 5, undefined]);
 });
 
 test("one of many legs is hit", () => {

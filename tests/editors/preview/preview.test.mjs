@@ -412,6 +412,73 @@ test("the action at the cursor is highlighted", async () => {
   await panel.close();
 });
 
+test("the cursor at a loop highlights the legs of its block", async () => {
+  const { uri, text } = example("square");
+  const { panel, follower } = await follow(uri, text);
+  const legs = async () => (await panel.data("highlighted")).split(", ").filter(Boolean);
+  await follower.update(rangeOf(text, "repeat").start, true);
+  await panel.page.waitForFunction(() => document.querySelector("main").dataset.highlighted.includes(", "));
+  assert.equal((await legs()).length, 8);
+  await follower.update(rangeOf(text, "turn left").start, true);
+  await panel.page.waitForFunction(() => document.querySelector("main").dataset.highlighted.split(", ").length === 4);
+  assert.equal(new Set(await legs()).size, 1, "one statement in four rounds");
+  await panel.close();
+});
+
+test("a leg of a loop says its round, and a click keeps it", async () => {
+  const square = example("square");
+  const [uri, text] = [square.uri, square.text.replace("{ left_square right_square }", "{ left_square }")];
+  const { panel, follower } = await follow(uri, text);
+  panel.onMessage = ({ type, action }) => {
+    if (type === "reveal") void follower.locate(action).then(({ range }) => follower.update(range.start, true));
+  };
+  const { page } = panel;
+  const box = await panel.part("picture").boundingBox();
+  const tooltip = panel.part("tooltip");
+  const found = [];
+  for (let y = 10; y < box.height - 30; y += 4) {
+    await page.mouse.move(box.x + box.width / 2, box.y + y);
+    if (!(await tooltip.isVisible())) continue;
+    const [, movement, round] = /· (\w+), action 2 in (round \d of 4)/.exec(await tooltip.innerText());
+    if (found.includes(round)) continue;
+    found.push(round);
+    await page.mouse.click(box.x + box.width / 2, box.y + y);
+    assert.deepEqual(await panel.message("reveal"), { type: "reveal", action: { movement, index: 1 } });
+    assert.equal(await panel.data("round"), round);
+    assert.equal(await panel.data("highlighted"), `${movement} 1, ${movement} 1`, "the clicked round, and what is under the pointer: the same");
+    panel.received.length = 0;
+  }
+  assert.deepEqual(found, ["round 3 of 4", "round 1 of 4"], "the sides that cross the middle, from the top");
+  // The cursor has moved to the clicked action, which keeps its round; elsewhere it shows what is there.
+  await follower.update(rangeOf(text, "move 1 meters").start, true);
+  await page.mouse.move(box.x + 2, box.y + 2);
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+  assert.deepEqual([await panel.data("round"), await panel.data("highlighted")], ["round 1 of 4", "left_square 1"]);
+  await page.screenshot({ path: path.join(OUT, "round.png") });
+  await follower.update(rangeOf(text, "turn left").start, true);
+  await panel.until("round", "");
+  await panel.close();
+});
+
+test("what sensors decide is dashed, and obstacles are where they are at the time", async () => {
+  const { uri, text } = example("museum");
+  const { panel } = await follow(uri, text.replace("  repeat 6 times {\n    wait", "  move 1 meters\n  repeat 6 times {\n    move 2 meters until { eye } detect\n    wait"));
+  const key = () => panel.page.locator(".key li").allTextContents();
+  assert.deepEqual((await key()).filter((meaning) => /possible|path of/.test(meaning)), ["possible, sensors decide", "path of an obstacle"]);
+  assert.match(await panel.part("clock").textContent(), /^0\.0 s \/ 1 min 56\.0 s …$/, "until all obstacles have gone their way");
+  const before = await robotLayer(panel);
+  const [fixed] = await drawnPixels(panel);
+  await panel.part("slider").fill("60");
+  const after = await robotLayer(panel);
+  await panel.part("slider").fill("100");
+  assert.notEqual(before, after);
+  assert.equal(await robotLayer(panel), after, "guide and guard stand still from 60 s to 110 s");
+  assert.equal((await drawnPixels(panel))[0], fixed);
+  assert.deepEqual(panel.errors, []);
+  await panel.page.screenshot({ path: path.join(OUT, "museum.png") });
+  await panel.close();
+});
+
 test("keys play, step, jump, zoom and select actions", async () => {
   const { uri, text } = example("crossing");
   const { panel } = await follow(uri, text);

@@ -246,6 +246,9 @@ struct JsonRobot<'a> {
     name: &'a str,
     poses: Vec<JsonPose<'a>>,
     unknown_after: Option<JsonAction<'a>>,
+    /// The ways that it may take from there, as far as they have a bound: ends of actions, in order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    possible: Vec<Vec<JsonPose<'a>>>,
     /// Whether more actions are planned than are listed.
     #[serde(skip_serializing_if = "is_false")]
     truncated: bool,
@@ -300,10 +303,12 @@ fn json(plans: &[Planned]) -> Result<String, Failure> {
 
 fn json_plan(planned: &Planned) -> JsonPlan<'_> {
     let robots = planned.environment.robots.iter().zip(&planned.plan.robots);
+    let poses = |legs: &[Leg]| legs.iter().map(|leg| json_pose(planned, leg)).collect();
     let robots = robots.map(|(robot, path)| JsonRobot {
         name: &robot.name,
-        poses: path.legs.iter().map(|leg| json_pose(planned, leg)).collect(),
+        poses: poses(&path.legs),
         unknown_after: path.unknown_after.map(|index| json_action(planned, index, &path.unknown_place)),
+        possible: path.possible.iter().map(|way| poses(way)).collect(),
         truncated: path.truncated,
     });
     JsonPlan {

@@ -50,6 +50,7 @@ impl Planned {
             body: robot.body,
             planned: path.sample(POINTS_PER_LEG),
             unknown_after: path.unknown_after.is_some(),
+            possible: path.sample_possible(POINTS_PER_LEG),
             driven: Vec::new(),
             seen: Vec::new(),
             map: Map::default(),

@@ -38,6 +38,40 @@ fn what_the_world_decides_is_not_guessed() {
     assert_eq!(plans[0]["duration"], json!(null));
     assert_eq!(robot["poses"].as_array().unwrap().len(), 1);
     assert_eq!(robot["unknown_after"], json!({"movement": "mov_1", "run": 1, "action": 2, "line": 14}));
+    assert_eq!(robot.get("possible"), None, "it has no bound");
+}
+
+/// What is known is as if nothing were possible.
+#[test]
+fn what_may_be_driven_is_a_part_of_its_own() {
+    let program = "\
+wheel a with radius 4.5 wheel b with radius 4.5 sensor eye
+robot r with port 1 has { a b } wheels with sensors { eye }
+movement m of r {
+  repeat 2 times {
+    move 1 meters
+    if { eye } clear { move 2 meters until { eye } detect } else { turn left move 1 meters }
+  }
+}
+environment e has { r } robots with { m } moves";
+    let place = Place::with("x.pyr", program);
+    let done = place.run(&["plan", "--json", "x.pyr"]);
+    let plans: Value = serde_json::from_str(&done.out).unwrap();
+    let robot = &plans[0]["robots"][0];
+    assert_eq!((robot["poses"].as_array().unwrap().len(), &plans[0]["duration"]), (1, &json!(null)));
+    let lost = json!({"movement": "m", "run": 1, "action": 3, "line": 6, "rounds": [1]});
+    assert_eq!(robot["unknown_after"], lost);
+    let end =
+        |pose: &Value| (pose["action"].as_u64().unwrap(), format!("{:.1}", pose["x"].as_f64().unwrap()));
+    let ways = robot["possible"].as_array().unwrap().iter();
+    let ends: Vec<Vec<_>> = ways.map(|way| way.as_array().unwrap().iter().map(end).collect()).collect();
+    let [three, one] = ["3.0", "1.0"].map(str::to_owned);
+    assert_eq!(ends, [vec![(4, three)], vec![(5, one.clone()), (6, one)]]);
+    let first = &robot["possible"][0][0];
+    assert!(first["t"].as_f64() > robot["poses"][0]["t"].as_f64(), "{robot}");
+    assert_eq!((&first["rounds"], &first["line"]), (&json!([1]), &json!(6)));
+    assert_eq!(place.run(&["plan", "x.pyr", "--picture", "x.svg"]).code, Some(0));
+    assert!(place.read("x.svg").contains("possible, sensors decide"));
 }
 
 #[test]
