@@ -64,6 +64,7 @@ use pydslrep_syntax::Span;
 use self::consequences::Consequences;
 use self::context::Context;
 pub use self::manual::{Applicability, Page, index};
+pub use self::not_in_article::beyond_article;
 pub(crate) use self::planned_collision::PlannedRun;
 use self::problem::Brace;
 pub(crate) use self::problem::Problem;

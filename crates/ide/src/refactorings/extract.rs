@@ -1,15 +1,16 @@
 //! Extract actions into a new movement of the same robot, which is done in their place.
 
-use pydslrep_analysis::{Database, Edit, FileId};
+use pydslrep_analysis::{Database, Edit, Edition, FileId};
 use pydslrep_syntax::ast::{Action, Movement};
 use pydslrep_syntax::{EntityKind, Span, TokenKind, format};
 use smol_str::{SmolStr, format_smolstr};
 
 use super::{Refactoring, RefactoringKind, Selection};
 
-/// The refactoring for selected actions; a cursor selects none.
+/// The refactoring for selected actions; a cursor selects none. It leaves `do`, which the article does not have.
 pub(super) fn extract(selection: &Selection<'_>) -> Option<Refactoring> {
-    if selection.range.is_empty() {
+    let is_article = selection.database.edition(selection.file) == Edition::Article;
+    if selection.range.is_empty() || is_article {
         return None;
     }
     let parts = Parts::find(selection)?;
@@ -163,8 +164,26 @@ fn free_name(database: &Database, file: FileId, name: &SmolStr) -> Option<SmolSt
 #[cfg(test)]
 mod tests {
     use expect_test::expect;
+    use pydslrep_analysis::Edition;
 
+    use crate::fixture::{PARTS, at_cursor};
+    use crate::refactorings::refactorings;
     use crate::refactorings::testing::check;
+
+    #[test]
+    fn not_in_the_edition_of_the_article() {
+        let text = format!("{PARTS}movement tour of rover {{ turn left $0slam turn right }}");
+        let (mut database, position) = at_cursor(&text);
+        let range = pydslrep_syntax::Span::new(position.offset, position.offset + 4);
+        let mut titles = |edition| {
+            database.set_edition(position.file, edition);
+            let found = refactorings(&database, position.file, range);
+            found.into_iter().map(|offer| offer.title).collect::<Vec<_>>()
+        };
+        let title = "extract into new movement `tour_2`".to_owned();
+        assert!(titles(Edition::Current).contains(&title));
+        assert!(!titles(Edition::Article).iter().any(|title| title.contains("extract")));
+    }
 
     #[test]
     fn from_the_middle() {
