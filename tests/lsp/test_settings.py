@@ -235,3 +235,37 @@ def test_settings_pushed_by_the_client(server: str, tmp_path: pathlib.Path) -> N
             notification("workspace/didChangeConfiguration", {"settings": settings})
         )
         assert severities() == [2]
+
+
+@both
+def test_an_edition_on_the_command_line(
+    server: str, tmp_path: pathlib.Path, *, at_start: bool
+) -> None:
+    """It wins over the editor's settings and over those of the folder, from the first message on."""
+    (tmp_path / "pydslrep.toml").write_text("edition = 'current'", encoding="utf-8")
+    with RawServer(server, "--stdio", "--edition", "article") as raw:
+        editor = Editor(raw, tmp_path)
+        editor.program = PROGRAM.replace("turn left", "wait 1 seconds")
+        editor.start({"severity": {"unused-declaration": "off"}}, at_start=at_start)
+        assert editor.severities() == {"not-in-article": 1}
+        editor.set({"edition": "current", "severity": {"unused-declaration": "off"}})
+        assert editor.severities() == {"not-in-article": 1}
+        place = {"line": 7, "character": 2}
+        items = editor.talk.ask(
+            "textDocument/completion", {**editor.named, "position": place}
+        )
+        labels = [item["label"] for item in items["items"]]
+        assert "turn" in labels
+        assert "repeat" not in labels
+
+
+def test_the_edition_of_a_folder(editor: Editor) -> None:
+    """Without the option, the folder decides, and the editor over it."""
+    editor.program = PROGRAM.replace("turn left", "wait 1 seconds")
+    (editor.folder / "pydslrep.toml").write_text(
+        "edition = 'article'", encoding="utf-8"
+    )
+    editor.start({"severity": {"unused-declaration": "off"}}, at_start=True)
+    assert editor.severities() == {"not-in-article": 1}
+    editor.set({"edition": "current", "severity": {"unused-declaration": "off"}})
+    assert editor.severities() == {}

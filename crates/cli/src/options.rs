@@ -2,7 +2,8 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use pydslrep_analysis::environment::{Environment, Robot};
-use pydslrep_config::{Edition, Level, Severities, Target, find_rule};
+use pydslrep_config::{Level, Severities, Target, find_rule};
+pub(crate) use pydslrep_server::edition_parser;
 use pydslrep_simulator::Engine;
 
 use crate::failure::Failure;
@@ -12,13 +13,6 @@ pub(crate) fn target_parser() -> impl TypedValueParser<Value = Target> {
     let word = |target: Target| PossibleValue::new(target.word()).help(target.summary());
     PossibleValuesParser::new(Target::ALL.map(word))
         .try_map(|word| Target::from_word(&word).ok_or("no target"))
-}
-
-/// Parses an edition by its name in settings.
-pub(crate) fn edition_parser() -> impl TypedValueParser<Value = Edition> {
-    let word = |edition: Edition| PossibleValue::new(edition.word()).help(edition.summary());
-    PossibleValuesParser::new(Edition::ALL.map(word))
-        .try_map(|word| Edition::from_word(&word).ok_or("no edition"))
 }
 
 /// Parses an engine by its name.

@@ -6,13 +6,14 @@ mod actions;
 mod context;
 mod defaults;
 mod documentation;
+mod edition;
 pub(crate) mod filter;
 mod keywords;
 mod names;
 mod paths;
 mod snippets;
 
-use pydslrep_analysis::{Database, FileId};
+use pydslrep_analysis::{Database, Edition, FileId};
 use pydslrep_syntax::{EntityKind, Expected, Quantity, Span, TextEdit, TokenKind, expected_after};
 
 use self::context::CursorContext;
@@ -133,6 +134,7 @@ pub fn completions(
 ) -> Vec<Completion> {
     if let Some(string) = paths::string_at(database, position) {
         let items = match trigger {
+            _ if database.edition(position.file) == Edition::Article => Vec::new(),
             CompletionTrigger::Invoked
             | CompletionTrigger::Letter
             | CompletionTrigger::Character('"' | '/') => paths::paths(database, position.file, &string),
@@ -160,6 +162,7 @@ pub fn completions(
         let is_name = matches!(expected, Expected::ReferenceTo(_));
         if is_name || matches!(trigger, CompletionTrigger::Invoked | CompletionTrigger::Letter) {
             let mut found = items_for(&context, expected);
+            edition::retain(&context, expected, &mut found);
             if is_clause {
                 // On the same line, continuing the statement is more likely; on a new line, starting another one.
                 let rank = if context.begins_line() { Rank::Closing } else { Rank::Fitting };

@@ -6,8 +6,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use pydslrep_config::{Config, Edition};
 
-use crate::process::{run_socket, run_stdio};
+use crate::process::{Launch, run_socket, run_stdio};
 
 /// Serve an editor: the language server
 // The command's own arguments have the same name.
@@ -20,9 +22,19 @@ pub struct Arguments {
     /// Connect to the editor, which listens on this port of this machine
     #[arg(long, value_name = "PORT", value_parser = clap::value_parser!(u16).range(1..))]
     socket: Option<u16>,
+    /// Which statements programs may have [default: that of the settings, else current]
+    #[arg(long, value_name = "EDITION", value_parser = edition_parser())]
+    edition: Option<Edition>,
     /// Editors add it to every server, with the number that the protocol sends anyway
     #[arg(long = "clientProcessId", hide = true)]
     client: Option<u32>,
+}
+
+/// Parses an edition by its name in settings.
+pub fn edition_parser() -> impl TypedValueParser<Value = Edition> {
+    let word = |edition: Edition| PossibleValue::new(edition.word()).help(edition.summary());
+    PossibleValuesParser::new(Edition::ALL.map(word))
+        .try_map(|word| Edition::from_word(&word).ok_or("no edition"))
 }
 
 /// Why an editor cannot be served.
@@ -40,9 +52,10 @@ impl Arguments {
     ///
     /// If the client cannot be reached.
     pub fn serve(&self, command: PathBuf) -> Result<ExitCode, Unreachable> {
+        let launch = Launch { command, options: Config::of_edition(self.edition) };
         let served = match self.socket {
-            None => run_stdio(command),
-            Some(port) => run_socket(port, command),
+            None => run_stdio(launch),
+            Some(port) => run_socket(port, launch),
         };
         served.map_err(|error| Unreachable { port: self.socket, error })
     }

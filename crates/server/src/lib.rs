@@ -56,7 +56,7 @@ mod web;
 mod work;
 
 #[cfg(feature = "process")]
-pub use arguments::{Arguments, Unreachable};
+pub use arguments::{Arguments, Unreachable, edition_parser};
 #[cfg(feature = "process")]
 pub use file_preview::FilePreview;
 pub use message::Outbox;

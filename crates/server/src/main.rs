@@ -46,11 +46,19 @@ mod tests {
 
     #[test]
     fn editors_start_it_in_several_ways() {
-        for line in ["--stdio", "--stdio --clientProcessId=12", "--socket 4711", "--socket=4711"] {
+        for line in [
+            "--stdio",
+            "--stdio --clientProcessId=12",
+            "--socket 4711",
+            "--socket=4711",
+            "--stdio --edition article",
+        ] {
             let words = std::iter::once("pydslrep-lsp").chain(line.split(' '));
             assert!(Program::try_parse_from(words).is_ok(), "{line}");
         }
-        for line in ["", "--stdoi", "--socket", "--socket=0", "--socket=70000", "--stdio --socket=1"] {
+        for line in
+            ["", "--stdoi", "--socket", "--socket=0", "--socket=70000", "--stdio --socket=1", "--edition old"]
+        {
             let words = std::iter::once("pydslrep-lsp").chain(line.split_whitespace());
             assert!(Program::try_parse_from(words).is_err(), "{line}");
         }

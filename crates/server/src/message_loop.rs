@@ -7,7 +7,6 @@
 mod backlog;
 
 use std::io::{self, BufWriter, Read, Write};
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::mpsc::{self, Receiver};
 use std::thread;
@@ -19,6 +18,7 @@ use crate::frame::{Frame, FrameReader};
 use crate::load::Load;
 use crate::log::log;
 use crate::message::Outbox;
+use crate::process::Launch;
 use crate::session::{Ending, Session};
 
 /// So many bytes may wait to be written before no more requests are answered: more than any usual answer.
@@ -36,7 +36,7 @@ impl From<Ending> for ExitCode {
     }
 }
 
-/// Serves one client until it leaves; `command` runs environments.
+/// Serves one client until it leaves.
 ///
 /// # Errors
 ///
@@ -44,11 +44,11 @@ impl From<Ending> for ExitCode {
 pub(crate) fn serve(
     input: impl Read + Send + 'static,
     output: impl Write + Send + 'static,
-    command: PathBuf,
+    launch: Launch,
 ) -> io::Result<Ending> {
     serve_with(input, output, |outbox, runtime| {
         let session = Session::new(outbox, move |unfinished| drop(runtime.spawn(unfinished)));
-        session.run_with(command);
+        session.launch(launch);
         session
     })
 }

@@ -6,7 +6,18 @@ use std::net::{Ipv4Addr, TcpStream};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use pydslrep_config::Config;
+
 use crate::message_loop::serve;
+
+/// What the program that starts a session tells it.
+#[derive(Debug)]
+pub(crate) struct Launch {
+    /// The program that runs environments.
+    pub(crate) command: PathBuf,
+    /// What wins over all settings.
+    pub(crate) options: Config,
+}
 
 /// The most that Linux allows any process by default.
 #[cfg(target_os = "linux")]
@@ -18,9 +29,9 @@ const PIPE_SIZE: usize = 1 << 20;
 /// # Errors
 ///
 /// If standard input or output is closed, or a thread cannot be started.
-pub(crate) fn run_stdio(command: PathBuf) -> io::Result<ExitCode> {
+pub(crate) fn run_stdio(launch: Launch) -> io::Result<ExitCode> {
     let (input, output) = stdio()?;
-    serve(input, output, command).map(ExitCode::from)
+    serve(input, output, launch).map(ExitCode::from)
 }
 
 /// Serves the client that listens on a port of this machine; the exit code as for [`run_stdio`].
@@ -28,12 +39,12 @@ pub(crate) fn run_stdio(command: PathBuf) -> io::Result<ExitCode> {
 /// # Errors
 ///
 /// If nothing listens there, or a thread cannot be started.
-pub(crate) fn run_socket(port: u16, command: PathBuf) -> io::Result<ExitCode> {
+pub(crate) fn run_socket(port: u16, launch: Launch) -> io::Result<ExitCode> {
     let stream = TcpStream::connect((Ipv4Addr::LOCALHOST, port))?;
     // Messages are small and waited for: they must not be delayed to fill packets.
     stream.set_nodelay(true)?;
     let input = stream.try_clone()?;
-    serve(input, stream, command).map(ExitCode::from)
+    serve(input, stream, launch).map(ExitCode::from)
 }
 
 /// Standard input and output as plain files: those of the standard library would flush at each line break.

@@ -92,10 +92,11 @@ impl Session {
         Self { service, server, responses, spawn, outbox }
     }
 
-    /// Sets the program that runs environments.
+    /// Takes what the program says that starts it.
     #[cfg(feature = "process")]
-    pub(crate) fn run_with(&self, command: std::path::PathBuf) {
-        self.server.children().command = command;
+    pub(crate) fn launch(&self, launch: crate::process::Launch) {
+        self.server.children().command = launch.command;
+        self.server.state().set_options(launch.options);
     }
 
     /// What the session's handlers share.

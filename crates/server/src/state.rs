@@ -39,6 +39,8 @@ pub(crate) struct State {
     pub(crate) client: ClientFeatures,
     /// The documents that are open in the client, the files around them, and their analysis.
     pub(crate) workspace: SharedWorkspace,
+    /// What wins over the client's settings: how the server was started.
+    options: Config,
     /// The files that the client provides, where there is no disk.
     pub(crate) provided: Option<Arc<MemoryFiles>>,
     /// What the client has of documents, by their keys.
@@ -91,6 +93,7 @@ impl Default for State {
         Self {
             workspace: SharedWorkspace::new(Workspace::new(Arc::new(Disk))),
             client: ClientFeatures::default(),
+            options: Config::default(),
             provided: None,
             changes: Changes::default(),
             clients: FxHashMap::default(),
@@ -360,8 +363,15 @@ impl State {
     /// Applies the client's settings; returns what is wrong with them.
     pub(crate) fn set_client_settings(&mut self, value: &Value) -> Vec<Problem> {
         let (config, problems) = Config::from_json(value);
-        self.workspace.set_overrides(config);
+        self.workspace.set_overrides(self.options.clone().merged_over(config));
         problems
+    }
+
+    /// Sets what wins over the client's settings, before there are any.
+    #[cfg(feature = "process")]
+    pub(crate) fn set_options(&mut self, options: Config) {
+        self.workspace.set_overrides(options.clone());
+        self.options = options;
     }
 
     /// The analysis of all programs.

@@ -147,8 +147,8 @@ impl Database {
             }
             for (name, scene) in scenes {
                 let fingerprint = self.environment_called(*home, name).and_then(|id| self.fingerprint(id));
-                // Where something is met, other files may name a place that has moved.
-                if fingerprint != scene.touched_with || scene.meets_something() {
+                // Where there is something to say, other files may name a place that has moved.
+                if fingerprint != scene.touched_with || scene.has_problems() {
                     concerned.extend(&seen);
                 }
                 looked_at.push((*home, name.clone(), fingerprint));
@@ -172,10 +172,10 @@ impl Database {
 }
 
 impl SceneFile {
-    /// Whether it is known that the path meets something.
-    fn meets_something(&self) -> bool {
+    /// Whether it is known that there is something to say of the run.
+    fn has_problems(&self) -> bool {
         let known = self.run.lock().unwrap_or_else(PoisonError::into_inner);
-        known.as_ref().and_then(|(_, run)| run.as_ref()).is_some_and(|run| run.meets_something())
+        known.as_ref().and_then(|(_, run)| run.as_ref()).is_some_and(|run| run.has_problems())
     }
 }
 
@@ -248,7 +248,7 @@ mod tests {
         assert!(!Arc::ptr_eq(&second, &first));
         database.set_scene(file, "e", Some("[[box]]\nat = [1, 1]\nsize = [0.4, 0.4]"));
         assert!(!Arc::ptr_eq(&run(&database), &second));
-        assert!(!run(&database).meets_something());
+        assert!(!run(&database).has_problems());
     }
 
     /// What is typed elsewhere in the program does not make the imported files outdated.

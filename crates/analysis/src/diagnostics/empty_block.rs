@@ -1,9 +1,10 @@
 //! `empty-block`: a `repeat`, `if` or `else` without an action.
 
-use pydslrep_syntax::Span;
-use pydslrep_syntax::ast::{Action, ActionKind, Block, Entity, If, Repeat, Rounds};
+use pydslrep_syntax::ast::{Action, ActionKind, Block, Branch, Entity, If, Repeat, Rounds, SensorState};
+use pydslrep_syntax::{Span, TokenKind};
 
 use super::context::Context;
+use super::edits::ProblemEdit;
 use super::problem::Problem;
 use super::{Applicability, Page, Rule};
 use crate::Severity;
@@ -75,14 +76,35 @@ fn problem(context: &Context<'_>, action: &Action, block: &Block) -> Problem {
 }
 
 fn of_if(context: &Context<'_>, action: &Action, choice: &If, block: &Block, problem: Problem) -> Problem {
+    let is_it = |other: &Block| other.span == block.span;
     match (&choice.otherwise, choice.branches.as_slice()) {
-        (Some(last), [.., before]) if last.span == block.span => {
+        (Some(last), [.., before]) if is_it(last) => {
             let end = before.block.as_ref().map_or(before.span.end, |before| before.span.end);
             problem.suggestion("remove the `else`", [context.replace(Span::new(end, last.span.end), "")])
         }
+        (Some(last), [only]) => match opposite(context, only, last) {
+            Some(edits) => problem.suggestion("ask for the opposite", edits),
+            None => problem,
+        },
         (None, [_]) => problem.suggestion("remove the `if`", [context.remove(action.span)]),
+        (None, [.., before, last]) if last.block.as_ref().is_some_and(is_it) => {
+            let gap = Span::new(before.span.end, last.span.end);
+            problem.suggestion("remove the `else if`", [context.replace(gap, "")])
+        }
         _ => problem,
     }
+}
+
+/// The edits that leave of an `if` only its `else`: where the condition holds, nothing is done.
+fn opposite(context: &Context<'_>, branch: &Branch, otherwise: &Block) -> Option<[ProblemEdit; 2]> {
+    let (state, place) = branch.condition.as_ref()?.state?;
+    let block = branch.block.as_ref().filter(|_| !otherwise.actions.is_empty())?;
+    let word = match state {
+        SensorState::Clear => TokenKind::Detect,
+        SensorState::Detect => TokenKind::Clear,
+    };
+    let gap = Span::new(block.span.start, otherwise.span.start);
+    Some([context.replace(place, word.spelling()?), context.replace(gap, "")])
 }
 
 #[cfg(test)]
@@ -135,8 +157,24 @@ mod tests {
         check(
             &program("if { s } clear { } else { turn left }"),
             &expect![[r#"
-            warning[empty-block] 6:34 "{ }" this block has no actions, so nothing is done there
+                warning[empty-block] 6:34 "{ }" this block has no actions, so nothing is done there
+                  help: write actions between the braces, such as `move 1.0 meters` or `turn left`
+                  suggestion: ask for the opposite -> movement m of r { if { s } detect { turn left } }
+            "#]],
+        );
+        check(
+            &program("if { s } clear within 1 meters { } else if { t } clear { turn left }"),
+            &expect![[r#"
+                warning[empty-block] 6:50 "{ }" this block has no actions, so nothing is done there
+                  help: write actions between the braces, such as `move 1.0 meters` or `turn left`
+            "#]],
+        );
+        check(
+            &program("if { s } clear { turn left } else if { t } clear { } turn right"),
+            &expect![[r#"
+            warning[empty-block] 6:68 "{ }" this block has no actions, so nothing is done there
               help: write actions between the braces, such as `move 1.0 meters` or `turn left`
+              suggestion: remove the `else if` -> movement m of r { if { s } clear { turn left } turn right }
         "#]],
         );
         check_clean(&program("repeat 2 times { turn left }"));

@@ -1,9 +1,10 @@
 //! `invalid-count`: a block is repeated once, or no whole number of times from 1 to 10000.
 
-use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{Action, ActionKind, Block, Entity, Number, Repeat, Rounds};
+use pydslrep_syntax::{Span, Token};
 
 use super::context::Context;
+use super::edits::ProblemEdit;
 use super::problem::Problem;
 use super::{Applicability, Page, Rule};
 use crate::Severity;
@@ -71,16 +72,22 @@ fn none(context: &Context<'_>, count: &Number) -> Problem {
 
 fn once(context: &Context<'_>, action: &Action, count: &Number, block: Option<&Block>) -> Problem {
     let problem = RULE.problem(count.span, "a block that is repeated once is done without `repeat` as well");
-    let Some(block) = block.filter(|block| !block.actions.is_empty()) else { return problem };
-    let (start, end) = (block.actions[0].span.start, block.actions[block.actions.len() - 1].span.end);
-    let kept = |span: Span| {
-        context.tokens.iter().any(|(token, other)| token.is_comment() && span.touches(other.start))
-    };
-    let (before, after) = (Span::new(action.span.start, start), Span::new(end, block.span.end));
-    if kept(before) || kept(after) {
-        return problem;
+    match block.filter(|block| !block.actions.is_empty()).and_then(|block| unrolled(context, action, block)) {
+        Some(edits) => problem.fix("remove `repeat`", edits),
+        None => problem,
     }
-    problem.fix("remove `repeat`", [context.replace(before, ""), context.replace(after, "")])
+}
+
+/// The edits that leave of an action only what is in its block, with the comments there.
+fn unrolled(context: &Context<'_>, action: &Action, block: &Block) -> Option<[ProblemEdit; 2]> {
+    let head = Span::new(action.span.start, block.span.start);
+    let is_comment = |(token, span): &Token| token.is_comment() && head.touches(span.start);
+    if block.span.len() < 2 || context.tokens.iter().any(is_comment) {
+        return None;
+    }
+    let (_, first) = context.tokens.iter().find(|(_, span)| span.start > block.span.start)?;
+    let brace = Span::new(block.span.end - 1, block.span.end);
+    Some([context.replace(Span::new(action.span.start, first.start), ""), context.remove(brace)])
 }
 
 #[cfg(test)]
@@ -127,7 +134,14 @@ mod tests {
         "#]],
         );
         check(
-            &program("repeat 1 times { turn left // why\n }"),
+            &program("repeat 1 times { // how\n turn left // why\n }"),
+            &expect![[r#"
+                warning[invalid-count] 6:26 "1" a block that is repeated once is done without `repeat` as well
+                  fix: remove `repeat` -> movement m of r { // how ⏎  }
+            "#]],
+        );
+        check(
+            &program("repeat 1 times /* it */ { turn left }"),
             &expect![[r#"
             warning[invalid-count] 6:26 "1" a block that is repeated once is done without `repeat` as well
         "#]],

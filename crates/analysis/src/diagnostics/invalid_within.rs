@@ -1,14 +1,19 @@
 //! `invalid-within`: a distance after `within` that no sensor can see something at.
 
-use pydslrep_syntax::EntityKind;
-use pydslrep_syntax::ast::{Action, Condition, Entity, SensorKind, Within};
+use std::sync::Arc;
+
+use pydslrep_scene::{ENDING, Robot, Scene};
+use pydslrep_syntax::ast::{Action, Condition, Entity, Name, SensorKind, Within};
+use pydslrep_syntax::{EntityKind, Span};
 
 use super::context::Context;
 use super::number_out_of_range::FARTHEST;
+use super::planned_collision::PlannedRun;
 use super::problem::Problem;
 use super::{Applicability, Page, Rule};
-use crate::Severity;
+use crate::environment::Environment;
 use crate::signature::Signature;
+use crate::{Database, Diagnostic, EntityId, FileId, Severity};
 
 pub(super) static RULE: Rule = Rule {
     code: "invalid-within",
@@ -21,10 +26,11 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "The distance after `within` is zero or negative, or all sensors of the condition are bumpers, which \
-        is a warning.",
+    what: "The distance after `within` is zero or negative. It is a warning that all sensors of the condition are \
+        bumpers, or that the distance is beyond the range that all of them have in the scene of an environment.",
     why: "`within` counts only what is nearer than that, and nothing is nearer than nothing. A bumper tells \
-        that it touches something, but not how far away that is.",
+        that it touches something, but not how far away that is. Beyond the range of a sensor nothing is detected, \
+        so a longer distance is the same as none.",
     imports: &[],
     example: "\
 wheel wheelL with radius 4.5
@@ -72,6 +78,88 @@ fn problem(context: &Context<'_>, condition: &Condition, within: &Within) -> Opt
     })
 }
 
+/// A distance of a movement that is beyond what all sensors of its condition can see in a scene.
+#[derive(Debug)]
+pub(super) struct OutOfRange {
+    /// The movement that it is in.
+    movement: EntityId,
+    /// Where it is in that.
+    span: Span,
+    /// The greatest range of the sensors, metres.
+    range: f64,
+    /// How many sensors there are.
+    count: usize,
+}
+
+/// The distances that are out of range in the movements of an environment, which has them in the same order.
+pub(super) fn out_of_range(
+    database: &Database,
+    environment: &Environment,
+    scene: &Scene,
+    movements: &[EntityId],
+) -> Vec<OutOfRange> {
+    let mut found = Vec::new();
+    for (&movement, resolved) in movements.iter().zip(&environment.movements) {
+        let (Some(Entity::Movement(tree)), Some(robot)) =
+            (database.tree(movement), scene.robots.get(resolved.robot))
+        else {
+            continue;
+        };
+        for condition in tree.all_actions().flat_map(Action::conditions) {
+            if let Some((span, range)) = beyond_range(condition, robot) {
+                found.push(OutOfRange { movement, span, range, count: condition.sensors.names.len() });
+            }
+        }
+    }
+    found
+}
+
+/// The distance of a condition that none of its sensors reaches, and how far they do reach. Bumpers alone are another
+/// problem.
+fn beyond_range(condition: &Condition, robot: &Robot) -> Option<(Span, f64)> {
+    let within = condition.within.as_ref()?;
+    let distance = within.distance.as_ref()?;
+    let metres = distance.value? * within.unit?.0.in_metres();
+    let sensor = |name: &Name| robot.sensors.iter().find(|sensor| sensor.name == name.text);
+    let sensors: Vec<_> = condition.sensors.names.iter().map(sensor).collect::<Option<_>>()?;
+    let measures = sensors.iter().any(|sensor| sensor.kind == pydslrep_scene::SensorKind::Distance);
+    let range = sensors.iter().map(|sensor| sensor.mount.range).fold(0.0, f64::max);
+    (measures && metres > range).then_some((distance.span, range))
+}
+
+/// The problems of the conditions of a file in the runs of its environments; each once.
+pub(super) fn in_runs(database: &Database, file: FileId, runs: &[Arc<PlannedRun>]) -> Vec<Diagnostic> {
+    let mut diagnostics: Vec<Diagnostic> = Vec::new();
+    for run in runs {
+        let found = run.out_of_range.iter().filter_map(|found| located(database, run, found));
+        for diagnostic in found.filter(|diagnostic| diagnostic.file == file) {
+            if diagnostics.iter().all(|other| other.span != diagnostic.span) {
+                diagnostics.push(diagnostic);
+            }
+        }
+    }
+    diagnostics
+}
+
+fn located(database: &Database, run: &PlannedRun, found: &OutOfRange) -> Option<Diagnostic> {
+    let entity = database.entity(found.movement)?;
+    let environment = run.environment();
+    let sensors = if found.count == 1 { "this sensor sees nothing" } else { "these sensors see nothing" };
+    Some(Diagnostic {
+        rule: &RULE,
+        severity: Severity::Warning,
+        file: entity.file,
+        span: found.span.shifted(entity.span.start),
+        message: format!("{sensors} farther away than {} m", found.range),
+        help: Some(format!(
+            "write a shorter distance, leave out `within`, or change the `range` in `{environment}{ENDING}`"
+        )),
+        note: Some(format!("this is so for the environment `{environment}` in its scene")),
+        related: Vec::new(),
+        fixes: Vec::new(),
+    })
+}
+
 /// Whether all its sensors are known to be bumpers.
 fn are_bumpers(context: &Context<'_>, condition: &Condition) -> bool {
     let is_bumper = |name| {
@@ -86,7 +174,9 @@ fn are_bumpers(context: &Context<'_>, condition: &Condition) -> bool {
 #[cfg(test)]
 mod tests {
     use expect_test::expect;
+    use pydslrep_syntax::Span;
 
+    use crate::Database;
     use crate::diagnostics::testing::{check, check_clean};
 
     const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nsensor s\nsensor t : bumper\n\
@@ -106,6 +196,75 @@ mod tests {
         "#]],
         );
         check_clean(&program("move until { s } detect within 0.1 centimeters"));
+    }
+
+    /// The warnings of a program, whose environment has this scene.
+    fn warnings(database: &Database, path: &str) -> String {
+        let file = database.file(path).unwrap();
+        let diagnostics = database.diagnostics(file).into_iter();
+        let own = diagnostics.filter(|found| found.code() == "invalid-within");
+        own.map(|found| format!("{}: {}\n", database.slice(file, found.span), found.message)).collect()
+    }
+
+    const ENVIRONMENT: &str = "\nenvironment e has { r } robots with { m } moves";
+
+    #[test]
+    fn the_scene_has_the_ranges() {
+        let actions = "move until { s } detect within 3 meters if { s, t } clear within 150 centimeters { turn left } \
+            wait until { t } clear within 2 meters";
+        let text = program(actions) + ENVIRONMENT;
+        let mut database = Database::new();
+        let file = database.open("a.pyr", &text);
+        let mut said = |scene: Option<&str>| {
+            database.set_scene(file, "e", scene);
+            warnings(&database, "a.pyr")
+        };
+        let without = said(None);
+        expect![[r#"
+            2: a bumper does not measure distances
+        "#]]
+        .assert_eq(&without);
+        expect![[r#"
+            3: this sensor sees nothing farther away than 1 m
+            150: these sensors see nothing farther away than 1 m
+            2: a bumper does not measure distances
+        "#]]
+        .assert_eq(&said(Some("")));
+        expect![[r#"
+            3: this sensor sees nothing farther away than 2 m
+            2: a bumper does not measure distances
+        "#]]
+        .assert_eq(&said(Some("[robots.r.sensors.s]\nrange = 2")));
+        assert_eq!(said(Some("[robots.r.sensors.s]\nrange = 3")), without);
+        assert_eq!(
+            said(Some("[robots.r.sensors.s]\nrange = \"far\"")),
+            without,
+            "what is wrong is not known"
+        );
+    }
+
+    #[test]
+    fn in_the_file_of_the_movement_and_after_every_edit() {
+        let mut database = Database::new();
+        let parts = database.open("parts.pyr", &program("move until { s } detect within 3 meters"));
+        let main = database.open("main.pyr", &format!("import \"parts.pyr\"{ENVIRONMENT}"));
+        database.set_scene(main, "e", Some(""));
+        assert_eq!(warnings(&database, "main.pyr"), "");
+        let said = warnings(&database, "parts.pyr");
+        assert!(said.starts_with("3: this sensor sees nothing"), "{said}");
+        let f = format!("{ENVIRONMENT} environment f has {{ r }} robots with {{ m }} moves");
+        database.open("main.pyr", &format!("import \"parts.pyr\"{f}"));
+        database.set_scene(main, "f", Some(""));
+        assert_eq!(warnings(&database, "parts.pyr"), said, "once for all environments");
+        database.take_touched();
+        // Where the warning is has moved, which the movement itself does not tell.
+        database.edit(parts, Span::at(0), "\n");
+        assert!(database.take_touched().contains(&parts));
+        assert_eq!(warnings(&database, "parts.pyr"), said);
+        let text = database.text(parts).unwrap().to_string();
+        let place = u32::try_from(text.find("within 3").unwrap()).unwrap();
+        database.edit(parts, Span::new(place + 7, place + 8), "1");
+        assert_eq!(warnings(&database, "parts.pyr"), "");
     }
 
     #[test]

@@ -65,6 +65,7 @@ use self::consequences::Consequences;
 use self::context::Context;
 pub use self::manual::{Applicability, Page, index};
 pub use self::nested_too_deep::MOST_BLOCKS;
+pub use self::not_in_article::beyond_article;
 pub(crate) use self::planned_collision::PlannedRun;
 use self::problem::Brace;
 pub(crate) use self::problem::Problem;
@@ -207,8 +208,16 @@ pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
     });
     let mut diagnostics: Vec<Diagnostic> = located.collect();
     diagnostics.extend(no_environment::in_file(database, file));
-    diagnostics.extend(planned_collision::in_file(database, file));
+    diagnostics.extend(in_scenes(database, file));
     diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);
+    diagnostics
+}
+
+/// The problems that the actions of a file have in any environment with a scene. Without scenes there is nothing to do.
+fn in_scenes(database: &Database, file: FileId) -> Vec<Diagnostic> {
+    let runs = database.planned_runs(file);
+    let mut diagnostics = planned_collision::in_runs(database, file, &runs);
+    diagnostics.extend(invalid_within::in_runs(database, file, &runs));
     diagnostics
 }
 
@@ -223,7 +232,7 @@ pub(crate) fn visit_in_file(
         visit(problem.rule, problem.severity, problem.span.shifted(start).start);
     }
     let of_whole = no_environment::in_file(database, file).into_iter();
-    for diagnostic in of_whole.chain(planned_collision::in_file(database, file)) {
+    for diagnostic in of_whole.chain(in_scenes(database, file)) {
         visit(diagnostic.rule, diagnostic.severity, diagnostic.span.start);
     }
 }

@@ -1,8 +1,10 @@
 //! `nested-too-deep`: more than 16 blocks, one in another.
 
-use pydslrep_syntax::ast::{Action, Entity};
+use pydslrep_syntax::ast::{Action, Entity, Movement};
+use pydslrep_syntax::{EntityKind, escape, format};
 
 use super::context::Context;
+use super::edits::ProblemEdit;
 use super::problem::Problem;
 use super::{Applicability, Page, Rule};
 use crate::Severity;
@@ -12,7 +14,7 @@ pub(super) static RULE: Rule = Rule {
     severity: Severity::Error,
     summary: "more than 16 blocks, one in another",
     tag: None,
-    applicability: Applicability::Never,
+    applicability: Applicability::Suggested,
     page: PAGE,
     check,
 };
@@ -65,26 +67,51 @@ pub const MOST_BLOCKS: usize = 16;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
-    too_deep(context, &movement.actions, 0, problems);
+    let mut found = Vec::new();
+    too_deep(&movement.actions, 0, &mut found);
+    problems.extend(found.into_iter().map(|action| problem(context, movement, action)));
 }
 
 /// The actions whose blocks are one too many. The parser has left out what is much deeper.
-fn too_deep(context: &Context<'_>, actions: &[Action], depth: usize, problems: &mut Vec<Problem>) {
+fn too_deep<'a>(actions: &'a [Action], depth: usize, found: &mut Vec<&'a Action>) {
     for action in actions {
         let mut blocks = action.blocks().peekable();
         if depth == MOST_BLOCKS && blocks.peek().is_some() {
-            problems.push(problem(context, action));
+            found.push(action);
             continue;
         }
-        blocks.for_each(|block| too_deep(context, &block.actions, depth + 1, problems));
+        blocks.for_each(|block| too_deep(&block.actions, depth + 1, found));
     }
 }
 
-fn problem(context: &Context<'_>, action: &Action) -> Problem {
+fn problem(context: &Context<'_>, movement: &Movement, action: &Action) -> Problem {
     let keyword = context.tokens.iter().find(|(_, span)| span.start == action.span.start);
     let span = keyword.map_or(action.span, |(_, span)| *span);
-    RULE.problem(span, format!("more than {MOST_BLOCKS} blocks are one in another here"))
-        .help("put the inner blocks into a movement of their own, and `do` that")
+    let problem = RULE
+        .problem(span, format!("more than {MOST_BLOCKS} blocks are one in another here"))
+        .help("put the inner blocks into a movement of their own, and `do` that");
+    match extraction(context, movement, action) {
+        Some((name, edits)) => problem.suggestion(format!("extract into new movement `{name}`"), edits),
+        None => problem,
+    }
+}
+
+/// The edits that put an action into a movement of its own, which is done in its place, and the name of that.
+fn extraction(
+    context: &Context<'_>,
+    movement: &Movement,
+    action: &Action,
+) -> Option<(String, [ProblemEdit; 2])> {
+    let (own, robot) = (movement.name.as_ref()?, movement.robot.as_ref()?);
+    if !context.errors.is_empty() {
+        return None;
+    }
+    let mut names = (2_u32..).map(|number| format!("{}_{number}", own.text));
+    let name = names.find(|name| !context.is_declared(EntityKind::Movement, name))?;
+    let (robot, moved) = (escape(&robot.text), context.text(action.span).replace("\r\n", "\n"));
+    let declaration = format(&format!("movement {name} of {robot} {{\n{moved}\n}}\n"));
+    let call = context.replace(action.span, format!("do {name}"));
+    Some((name, [context.declare(format!("{}\n\n", declaration.trim_end())), call]))
 }
 
 #[cfg(test)]
@@ -107,9 +134,10 @@ mod tests {
         check(
             &program(&nested(18)),
             &expect![[r#"
-            error[nested-too-deep] 6:291 "repeat" more than 16 blocks are one in another here
-              help: put the inner blocks into a movement of their own, and `do` that
-        "#]],
+                error[nested-too-deep] 6:291 "repeat" more than 16 blocks are one in another here
+                  help: put the inner blocks into a movement of their own, and `do` that
+                  suggestion: extract into new movement `m_2` -> movement m_2 of r { ⏎   repeat 2 times { ⏎     repeat 2 times { ⏎       turn left ⏎     } ⏎   } ⏎ } ⏎  ⏎ movement m of r { repeat 2 times { repeat 2 times { repeat 2 times { repeat 2 times { repeat 2 times { repeat 2 times { repeat 2 times { repeat 2 times { repeat 2 times { repeat 2 times { repeat 2 times { repeat 2 times { repeat 2 times { repeat 2 times { repeat 2 times { repeat 2 times { do m_2 } } } } } } } } } } } } } } } } }
+            "#]],
         );
         check_clean(&program(&nested(16)));
     }

@@ -1,7 +1,7 @@
 //! `not-in-article`: what the article does not have, in a program of its edition.
 
-use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{Action, ActionKind, Entity, Turn, Until};
+use pydslrep_syntax::{Span, Token};
 
 use super::context::Context;
 use super::problem::Problem;
@@ -46,16 +46,21 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     if context.edition() != Edition::Article {
         return;
     }
-    match context.tree {
-        Some(Entity::Import(_)) => {
-            let keyword = context.tokens.iter().find(|(token, _)| !token.is_comment());
-            problems.extend(keyword.map(|(_, span)| problem(context, *span)));
+    let Some(tree) = context.tree else { return };
+    problems.extend(beyond_article(tree, context.tokens).into_iter().map(|span| problem(context, span)));
+}
+
+/// Where an entity with these tokens has what the article does not have.
+pub fn beyond_article(tree: &Entity, tokens: &[Token]) -> Vec<Span> {
+    match tree {
+        Entity::Import(_) => {
+            let keyword = tokens.iter().find(|(token, _)| !token.is_comment());
+            keyword.map(|(_, span)| *span).into_iter().collect()
         }
-        Some(Entity::Movement(movement)) => {
-            let found = movement.all_actions().flat_map(|action| extensions(context, action));
-            problems.extend(found.map(|span| problem(context, span)));
+        Entity::Movement(movement) => {
+            movement.all_actions().flat_map(|action| extensions(tokens, action)).collect()
         }
-        _ => {}
+        _ => Vec::new(),
     }
 }
 
@@ -66,13 +71,13 @@ fn problem(context: &Context<'_>, span: Span) -> Problem {
 }
 
 /// What an action has of it; the actions in its blocks are not looked at.
-fn extensions(context: &Context<'_>, action: &Action) -> Vec<Span> {
+fn extensions(tokens: &[Token], action: &Action) -> Vec<Span> {
     match &action.kind {
         ActionKind::Move(step) => step.until.iter().map(|until| until.span).collect(),
         ActionKind::Turn(turn) => in_turn(turn),
         ActionKind::Slam => Vec::new(),
         ActionKind::Wait(_) | ActionKind::Repeat(_) | ActionKind::If(_) | ActionKind::Do(_) => {
-            let keyword = context.tokens.iter().find(|(_, span)| span.start == action.span.start);
+            let keyword = tokens.iter().find(|(_, span)| span.start == action.span.start);
             vec![keyword.map_or(action.span, |(_, span)| *span)]
         }
     }

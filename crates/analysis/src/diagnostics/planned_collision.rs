@@ -1,10 +1,13 @@
 //! `planned-collision`: the planned path meets something.
 
+use std::sync::Arc;
+
 use pydslrep_kinematics::{ActionIndex, Place};
 use pydslrep_scene::{Collision, ENDING, Scene, Thing, collisions};
 use pydslrep_syntax::ast::Entity;
 
 use super::context::Context;
+use super::invalid_within::{self, OutOfRange};
 use super::problem::Problem;
 use super::{Applicability, Page, Rule};
 use crate::environment::Environment;
@@ -54,12 +57,11 @@ movement trip of rover {
 environment yard has { rover } robots with { trip } moves",
 };
 
-/// It takes a whole environment, see [`in_file`].
+/// It takes a whole environment, see [`in_runs`].
 fn check(_: &Context<'_>, _: &mut Vec<Problem>) {}
 
-/// The problems of the actions of a file, in any environment with a scene. Without scenes there is nothing to do.
-pub(super) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
-    let runs = database.planned_runs(file);
+/// The problems of the actions of a file in the runs of its environments.
+pub(super) fn in_runs(database: &Database, file: FileId, runs: &[Arc<PlannedRun>]) -> Vec<Diagnostic> {
     let problems = runs.iter().flat_map(|run| {
         let located = Located { database, run };
         run.met.iter().filter_map(move |collision| located.problem(collision))
@@ -75,6 +77,7 @@ pub(crate) struct PlannedRun {
     /// As in the environment.
     movements: Vec<EntityId>,
     met: Vec<Collision>,
+    pub(super) out_of_range: Vec<OutOfRange>,
 }
 
 impl PlannedRun {
@@ -84,12 +87,18 @@ impl PlannedRun {
         let scene = database.scene(id, &environment).ok()?;
         let plan = plan(&environment, &scene).ok()?;
         let met = collisions(&scene, &plan);
-        Some(Self { environment, scene, movements, met })
+        let out_of_range = invalid_within::out_of_range(database, &environment, &scene, &movements);
+        Some(Self { environment, scene, movements, met, out_of_range })
     }
 
-    /// Whether a robot runs into anything.
-    pub(crate) fn meets_something(&self) -> bool {
-        !self.met.is_empty()
+    /// Whether there is anything to say of it.
+    pub(crate) fn has_problems(&self) -> bool {
+        !self.met.is_empty() || !self.out_of_range.is_empty()
+    }
+
+    /// The name of the environment.
+    pub(super) fn environment(&self) -> &str {
+        &self.environment.name
     }
 
     fn name(&self, thing: Thing) -> &str {

@@ -11,6 +11,7 @@ const HELP: Help = Help {
     examples: &[
         ("pydslrep lsp", "for editors that start their servers"),
         ("pydslrep lsp --socket 4711", "for editors that wait on a port"),
+        ("pydslrep lsp --edition article", "for programs that only have what the article of 2020 has"),
     ],
     notes: &[],
 };

@@ -5,8 +5,8 @@ use chumsky::prelude::{Parser, choice, just, recursive, via_parser};
 
 use super::condition::{UNTIL, condition, until};
 use super::slot::{
-    NAME, NUMBER, action_ahead, keyword, misspelling, number, one_in, plain_name, skip_before,
-    skip_statement, skip_to_block, slot, slot_before,
+    HARD_ACTIONS, NUMBER, action_ahead, braced, keyword, misspelling, number, one_in, plain_name,
+    skip_before, skip_statement, skip_to_block, slot, slot_before,
 };
 use super::{Extra, Input, Rule};
 use crate::ast::{
@@ -33,22 +33,27 @@ const TURN_CLAUSES: TokenSet = WITH.or(AT).or(IN).or(UNTIL);
 
 type Actions<'s> = Rule<'s, Vec<Action>>;
 
-/// `{ … }` around actions.
+/// `{ … }` of a movement.
 pub(super) fn block<'s>() -> Rule<'s, Block> {
     let actions = recursive(|actions| {
-        let item = action(&block_of(actions.boxed()));
+        let item = action(&inner_block(&actions.boxed()));
         item.repeated().collect::<Vec<_>>().map(|actions| actions.into_iter().flatten().collect())
     });
-    block_of(actions.boxed())
+    let open = slot(just(TokenKind::OpenBrace).ignored(), OPEN, ACTIONS.or(CLOSE));
+    as_block(open.ignore_then(actions).then_ignore(close()))
 }
 
-fn block_of(actions: Actions<'_>) -> Rule<'_, Block> {
-    let open = slot(just(TokenKind::OpenBrace).ignored(), OPEN, ACTIONS.or(CLOSE));
-    let close = slot(just(TokenKind::CloseBrace).ignored(), CLOSE, TokenSet::default());
-    open.ignore_then(actions)
-        .then_ignore(close)
-        .map_with(|actions, extra| Block { actions, span: extra.span() })
-        .boxed()
+/// `{ … }` of an action.
+fn inner_block<'s>(actions: &Actions<'s>) -> Rule<'s, Block> {
+    as_block(braced(actions.clone().then_ignore(close()), ACTIONS.or(CLOSE)))
+}
+
+fn close<'s>() -> Rule<'s, Option<()>> {
+    slot(just(TokenKind::CloseBrace).ignored(), CLOSE, TokenSet::default())
+}
+
+fn as_block<'s>(actions: impl Parser<'s, Input<'s>, Vec<Action>, Extra<'s>> + Clone + 's) -> Rule<'s, Block> {
+    actions.map_with(|actions, extra| Block { actions, span: extra.span() }).boxed()
 }
 
 /// One action; several where a block belongs to nothing that is known, and none where nothing was understood.
@@ -93,9 +98,6 @@ fn unknown_block<'s>(block: &Rule<'s, Block>) -> Actions<'s> {
     let ahead = just(TokenKind::OpenBrace).then(inside).rewind();
     skip_to_block(NEXT).then_ignore(ahead).ignore_then(block.clone()).map(|block| block.actions).boxed()
 }
-
-/// The keywords that are no names and begin an action.
-const HARD_ACTIONS: TokenSet = ACTIONS.without(NAME);
 
 fn unit<'s>() -> impl Parser<'s, Input<'s>, (Unit, Span), Extra<'s>> + Clone {
     choice((just(TokenKind::Meters).to(Unit::Meters), just(TokenKind::Centimeters).to(Unit::Centimeters)))

@@ -3,7 +3,7 @@
 use chumsky::prelude::{Parser, choice, just};
 
 use super::actions::{OPEN, UNITS, length};
-use super::slot::{Fault, misspelling, one_in, references};
+use super::slot::{Fault, NAME, misspelling, no_list, one_in, references};
 use super::{Extra, Input, Rule};
 use crate::ast::{Condition, SensorState, Until, Within};
 use crate::{EntityKind, Expected, Span, TokenKind, TokenSet};
@@ -23,9 +23,12 @@ pub(super) fn until<'s>(later: TokenSet) -> Rule<'s, Until> {
 /// `{ front, left } clear within 40 centimeters`, where `later` can follow it. Whether the word may be left out is no matter
 /// of syntax.
 pub(super) fn condition<'s>(later: TokenSet) -> Rule<'s, Condition> {
-    references(EntityKind::Sensor, false, STATES.or(WITHIN).or(later))
-        .then(state().or_not())
-        .then_ignore(unknown_state().or_not())
+    let sensors = references(EntityKind::Sensor, false, STATES.or(WITHIN).or(later));
+    let known =
+        state().map(Some).then_ignore(unknown_words(&[TokenKind::Within, TokenKind::OpenBrace]).or_not());
+    let unknown = unknown_words(&[TokenKind::Clear, TokenKind::Detect]).or_not().map(|_| None);
+    choice((no_list(later.has(TokenKind::OpenBrace)), sensors))
+        .then(choice((known, unknown)))
         .then(within(later).or_not())
         .map_with(|((sensors, state), within), extra| Condition {
             sensors,
@@ -42,14 +45,22 @@ fn state<'s>() -> impl Parser<'s, Input<'s>, (SensorState, Span), Extra<'s>> + C
         .map_with(|state, extra| (state, extra.span()))
 }
 
-/// A word that is neither, where one of the two must be.
-fn unknown_state<'s>() -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
+/// A word where one of `expected` can be, and the condition that it combines with this one.
+fn unknown_words<'s>(expected: &'static [TokenKind]) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
     const WORD: TokenSet = TokenSet::of(&[TokenKind::Name, TokenKind::MalformedName]);
-    let words = [TokenKind::Clear, TokenKind::Detect].map(Expected::Word);
+    const LIST: TokenSet = NAME.or(TokenSet::of(&[TokenKind::Comma]));
+    let list = just(TokenKind::OpenBrace)
+        .ignore_then(one_in(LIST).repeated().at_least(1))
+        .then_ignore(just(TokenKind::CloseBrace));
+    let another = one_in(WORD).ignore_then(list).then_ignore(one_in(STATES.or(WITHIN).or(OPEN)).rewind());
+    let another = another.then_ignore(one_in(STATES).or_not()).ignored();
     // The doubled negation looks ahead without a trace: what fails behind the word would hide what is wrong with it.
+    let combined = another.clone().not().not().ignore_then(another);
     let ahead = one_in(WORD).then(one_in(OPEN.or(WITHIN))).not().not();
-    one_in(WORD).and_is(ahead).validate(move |_, extra, emitter| {
-        emitter.emit(Fault::Expected { at: extra.span(), expected: words.to_vec() });
+    let word = one_in(WORD).and_is(ahead).ignored();
+    choice((combined, word)).validate(move |(), extra, emitter| {
+        let expected = expected.iter().copied().map(Expected::Word).collect();
+        emitter.emit(Fault::Expected { at: extra.span(), expected });
         emitter.emit(Fault::Skipped(extra.span()));
     })
 }

@@ -13,6 +13,8 @@ mod pairs;
 mod robot;
 mod slot;
 
+use std::cmp::Ordering;
+
 use chumsky::Boxed;
 use chumsky::Parser as _;
 use chumsky::extra::{self, SimpleState};
@@ -25,8 +27,16 @@ use crate::cut::misspelt_beginning;
 use crate::{EntityKind, Expected, Span, SyntaxError, Token, TokenKind, cut, lex};
 
 type Input<'s> = MappedInput<'s, TokenKind, Span, &'s [Token]>;
-type Extra<'s> = extra::Full<Fault, SimpleState<&'s str>, ()>;
+type Extra<'s> = extra::Full<Fault, SimpleState<Source<'s>>, ()>;
 type Rule<'s, O> = Boxed<'s, 's, Input<'s>, O, Extra<'s>>;
+
+/// What the rules know of an entity beside its tokens.
+#[derive(Debug, Clone, Copy)]
+struct Source<'s> {
+    text: &'s str,
+    /// How many braces are closed in it, compared with those that are opened.
+    closed: Ordering,
+}
 
 /// What one piece of a file turned out to be.
 #[derive(Debug, Clone, PartialEq)]
@@ -236,7 +246,10 @@ impl<'s> Parser<'s> {
         let (index, build) = rule_for(first);
         let rule = self.rules[index].get_or_insert_with(build);
         let input = significant.split_token_span(Span::at(Span::of(text).end));
-        let (tree, faults) = rule.parse_with_state(input, &mut SimpleState(text)).into_output_errors();
+        let count = |brace| significant.iter().filter(|(token, _)| *token == brace).count();
+        let closed = count(TokenKind::CloseBrace).cmp(&count(TokenKind::OpenBrace));
+        let mut state = SimpleState(Source { text, closed });
+        let (tree, faults) = rule.parse_with_state(input, &mut state).into_output_errors();
         (tree.flatten(), faults)
     }
 }

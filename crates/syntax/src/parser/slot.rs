@@ -3,11 +3,13 @@
 //! A slot never fails. Where its content is absent it reports one fault, passes over what fits nowhere up to a token
 //! that the slot itself or something after it can begin with, and lets the rest of the entity go on.
 
+use std::cmp::Ordering;
+
 use chumsky::DefaultExpected;
 use chumsky::IterParser;
 use chumsky::error::{Error, LabelError};
 use chumsky::input::MapExtra;
-use chumsky::prelude::{Parser, any, choice, end, just, via_parser};
+use chumsky::prelude::{Parser, any, choice, empty, end, just, via_parser};
 use chumsky::primitive::select;
 use chumsky::util::MaybeRef;
 
@@ -32,6 +34,13 @@ pub(super) enum Fault {
     PortNotWhole(Span),
     /// This list must not be empty.
     EmptyList(Span, EntityKind),
+}
+
+impl Fault {
+    /// What a rule says that only looked ahead.
+    fn nothing(at: Span) -> Self {
+        Self::Expected { at, expected: Vec::new() }
+    }
 }
 
 impl<'s> Error<'s, Input<'s>> for Fault {
@@ -78,7 +87,7 @@ pub(super) fn take<'s, O>(
     judge: impl Fn(TokenKind, Span, &'s str) -> Option<O> + Clone + 's,
 ) -> impl Parser<'s, Input<'s>, O, Extra<'s>> + Clone {
     select(move |token, extra: &mut MapExtra<'s, '_, Input<'s>, Extra<'s>>| {
-        judge(token, extra.span(), extra.state().0)
+        judge(token, extra.span(), extra.state().text)
     })
 }
 
@@ -114,12 +123,64 @@ fn slot_passing<'s, O: 's>(
     first: TokenSet,
     later: TokenSet,
 ) -> Rule<'s, Option<O>> {
+    slot_or(passed, part.map(Some), empty().map(|()| None), first, later)
+}
+
+/// `part`, or `otherwise` and a fault.
+fn slot_or<'s, O: 's>(
+    passed: TokenSet,
+    part: impl Parser<'s, Input<'s>, O, Extra<'s>> + Clone + 's,
+    otherwise: impl Parser<'s, Input<'s>, O, Extra<'s>> + Clone + 's,
+    first: TokenSet,
+    later: TokenSet,
+) -> Rule<'s, O> {
     let stray = skip_before(passed, first).ignore_then(part.clone());
     part.clone()
-        .map(Some)
-        .recover_with(via_parser(stray.map(Some)))
-        .recover_with(via_parser(skip_to(first.or(later)).ignore_then(part.or_not())))
+        .recover_with(via_parser(stray))
+        .recover_with(via_parser(skip_to(first.or(later)).ignore_then(choice((part, otherwise)))))
         .boxed()
+}
+
+/// Something in braces that is in other braces, where `rest` is what is after the opening one. Without that it is not
+/// there, and the next closing brace belongs to what it is in, unless there is one too many.
+pub(super) fn braced<'s, O: Default + 's>(
+    rest: impl Parser<'s, Input<'s>, O, Extra<'s>> + Clone + 's,
+    later: TokenSet,
+) -> Rule<'s, O> {
+    const OPEN: TokenSet = TokenSet::of(&[TokenKind::OpenBrace]);
+    let is_closed = empty().try_map_with(|(), extra: &mut MapExtra<'s, '_, Input<'s>, Extra<'s>>| {
+        let span = extra.span();
+        (extra.state().closed == Ordering::Greater).then_some(()).ok_or_else(|| Fault::nothing(span))
+    });
+    let otherwise = choice((is_closed.ignore_then(rest.clone()), empty().map(|()| O::default())));
+    let part = just(TokenKind::OpenBrace).ignore_then(rest);
+    slot_or(ANY.without(later.and(ACTION_WORDS)), part, otherwise, OPEN, later)
+}
+
+/// Where the list of a condition is not there: before the brace that closes what it is in, and, where a block follows it,
+/// before the actions of that. It reports what is missing.
+pub(super) fn no_list<'s>(before_block: bool) -> impl Parser<'s, Input<'s>, References, Extra<'s>> + Clone {
+    let close = brace(TokenKind::CloseBrace, |closed| closed != Ordering::Greater)
+        .map(|at| (at, Expected::Word(TokenKind::OpenBrace)));
+    let block = brace(TokenKind::OpenBrace, move |closed| before_block && closed == Ordering::Equal)
+        .then_ignore(choice((one_in(HARD_ACTIONS).ignored(), action_ahead())))
+        .map(|at| (at, Expected::ReferenceTo(EntityKind::Sensor)));
+    let ahead = choice((close, block));
+    // The doubled negation looks ahead without a trace.
+    ahead.clone().not().not().ignore_then(ahead.rewind()).validate(|(at, expected), _, emitter| {
+        emitter.emit(Fault::Expected { at, expected: vec![expected] });
+        References { names: Vec::new(), span: Span::at(at.start), broken: true }
+    })
+}
+
+/// A brace in an entity whose braces are `judge`d like that.
+fn brace<'s>(
+    which: TokenKind,
+    judge: impl Fn(Ordering) -> bool + Clone + 's,
+) -> impl Parser<'s, Input<'s>, Span, Extra<'s>> + Clone {
+    select(move |token, extra: &mut MapExtra<'s, '_, Input<'s>, Extra<'s>>| {
+        (token == which && judge(extra.state().closed)).then(|| extra.span())
+    })
 }
 
 /// The keyword (or sign) `word`, forgiving a slip of spelling, or one other token in its place where what follows it
@@ -129,7 +190,10 @@ pub(super) fn keyword<'s>(word: TokenKind, next: TokenSet, later: TokenSet) -> R
     let exact = just(word).map_with(|_, extra| extra.span());
     let misspelt = misspelling(word);
     let replaced = any()
-        .filter(move |token: &TokenKind| (!later.has(*token) || token.is_name()) && !CURSOR.has(*token))
+        .filter(move |token: &TokenKind| {
+            let is_next = later.has(*token) && (!token.is_name() || ACTION_WORDS.has(*token));
+            !is_next && !CURSOR.has(*token)
+        })
         .then_ignore(one_in(next).rewind())
         .validate(|_, extra, emitter| emitter.emit(Fault::Skipped(extra.span())));
     exact
@@ -229,6 +293,9 @@ const CURSOR: TokenSet = TokenSet::of(&[TokenKind::Cursor]);
 
 /// The first tokens of a name.
 pub(super) const NAME: TokenSet = TokenKind::NAMES;
+
+/// The keywords that are no names and begin an action.
+pub(super) const HARD_ACTIONS: TokenSet = TokenSet::of(&TokenKind::ACTIONS).without(NAME);
 
 /// The keywords that begin an action wherever one can begin, and are names elsewhere.
 const ACTION_WORDS: TokenSet =

@@ -245,7 +245,7 @@ environment e has {{ r }} robots with moves { m }",
               8..14 Misplaced { written: "radius", to: 19, inside: Some(Wheel) }
             robot r None Some(Some(1)) {a b} -
               45..45 Unbraced { close: 27, inside: Some(Robot) }
-            movement m None [move turn until {}]
+            movement m None [move turn until {}?]
               68..69 Misplaced { written: "r", to: 15, inside: Some(Movement) }
               80..86 Misplaced { written: "meters", to: 31, inside: Some(Movement) }
               104..104 Missing { expected: [Word(OpenBrace)], found: Text("}"), inside: Some(Movement) }
@@ -460,6 +460,13 @@ fn one_mistake_in_a_block() {
         "repeat until { a } free { move 1 meters } turn left",
         "if { a } clear move 1 meters } turn left",
         "fi { a } clear { move 1 meters } turn left",
+        "if { move 1 meters } turn left",
+        "if { wait 1 seconds } turn left",
+        "repeat until { move 1 meters } turn left",
+        "if { a } detect then { move 1 meters } turn left",
+        "if { a } detect and { a } detect { move 1 meters } turn left",
+        "if { a } and { a } clear within 1 meters { move 1 meters } turn left",
+        "if { a } or { a, a } { do m } turn left",
         "while { a } clear { move 1 meters } turn left",
         "if { a } clear { move 1 meters } esle { move 1 meters } turn left",
         "if { a } clear { move 1 meters } else move 1 meters } turn left",
@@ -485,6 +492,56 @@ fn one_mistake_in_a_block() {
         let rendered = render(&format!("movement m of r {{ {text} }} sensor a"));
         assert_eq!(rendered.matches("\n  ").count(), 1, "{text}\n{rendered}");
         assert!(rendered.contains("turn") && rendered.contains("sensor a None"), "{text}\n{rendered}");
+    }
+}
+
+/// What somebody is writing right before the brace of the movement or of a block, which stays what it is.
+#[test]
+fn an_action_that_is_begun_takes_no_brace() {
+    for begun in [
+        "move",
+        "move 4",
+        "move 1 meters at",
+        "move 1 meters until",
+        "move until",
+        "turn",
+        "turn left until",
+        "turn left 90 with",
+        "turn left 90 with radius",
+        "turn left 90 with radius 1",
+        "turn left in",
+        "wait",
+        "wait 2",
+        "wait until",
+        "repeat",
+        "repeat 4",
+        "repeat 4 times",
+        "repeat until",
+        "repeat until { a } detect",
+        "if",
+        "if { a } detect",
+        "if { a } detect within",
+        "if { a } detect within 1",
+        "if { a } clear { slam } else",
+        "if { a } clear { slam } else if",
+        "do",
+    ] {
+        for (text, before, after) in [
+            (format!("turn left {begun} }} sensor a"), "[turn", "]"),
+            (format!("turn left {begun} repeat 2 times {{ slam }} }} sensor a"), "[turn", "repeat [slam]]"),
+            (format!("repeat 2 times {{ turn left {begun} }} slam }} sensor a"), "[repeat [turn", "] slam]"),
+            (
+                format!("repeat 2 times {{ {begun} move 1 meters }} slam }} sensor a"),
+                "[repeat [",
+                "move] slam]",
+            ),
+        ] {
+            let rendered = render(&format!("movement m of r {{ {text}"));
+            assert_eq!(rendered.matches("\n  ").count(), 1, "{text}\n{rendered}");
+            let tree = rendered.lines().next().unwrap_or_default();
+            assert!(tree.contains(before) && tree.ends_with(after), "{text}\n{rendered}");
+            assert!(rendered.contains("sensor a None"), "{text}\n{rendered}");
+        }
     }
 }
 

@@ -20,8 +20,11 @@ pub(super) fn problem(
     }
     quoted(&place, found)
         .or_else(|| distance_unit(&place, expected, found))
+        .or_else(|| time_unit(&place, expected, found))
         .or_else(|| glued_to_number(&place, expected))
         .or_else(|| number_for_name(&place, expected, found))
+        .or_else(|| needless_word(&place, found))
+        .or_else(|| combined(&place, found))
         .or_else(|| way_of_moving(&place, expected, found))
         .or_else(|| angle_first(&place, found))
         .or_else(|| foreign_action(&place, expected, found))
@@ -109,12 +112,37 @@ fn distance_unit(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> O
         }
         _ => return None,
     };
+    Some(written_out(place, word, found))
+}
+
+/// `wait 2 sec`, `wait 500 ms`
+fn time_unit(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
+    if !expected.contains(&Expected::Word(TokenKind::Seconds)) {
+        return None;
+    }
+    let factor = match found.to_lowercase().as_str() {
+        "s" | "sec" | "secs" => return Some(written_out(place, "seconds", found)),
+        "ms" | "msec" | "millis" | "millisecond" | "milliseconds" => 0.001,
+        "min" | "mins" | "minute" | "minutes" => 60.0,
+        "h" | "hour" | "hours" => 3600.0,
+        _ => return None,
+    };
+    let problem = RULE
+        .problem(place.span, format!("times are in `seconds`, not `{found}`"))
+        .help("convert the number and write `seconds`");
+    let (_, number) = place.before(1)?;
+    let Some(value) = converted(&place.context.text(number), factor) else { return Some(problem) };
+    let text = format!("{value} seconds");
+    let edit = place.context.replace(number.to(place.span), text.clone());
+    Some(problem.suggestion(format!("change to `{text}`"), [edit]))
+}
+
+/// A unit that was shortened.
+fn written_out(place: &Place<'_, '_>, word: &str, found: &str) -> Problem {
     let glued = place.before(1).is_some_and(|(_, before)| before.end == place.span.start);
     let text = if glued { format!(" {word}") } else { word.to_owned() };
-    Some(
-        RULE.problem(place.span, format!("units are written out: `{word}`, not `{found}`"))
-            .fix(format!("change to `{word}`"), [place.context.replace(place.span, text)]),
-    )
+    RULE.problem(place.span, format!("units are written out: `{word}`, not `{found}`"))
+        .fix(format!("change to `{word}`"), [place.context.replace(place.span, text)])
 }
 
 /// `radius 4.5 cm`, `at 9 cm/s`, `turn left 90 degrees`
@@ -304,7 +332,10 @@ fn quoted(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
 fn glued_to_number(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Problem> {
     let (number, before) = place.before(1)?;
     let glued = number.is_number() && before.end == place.span.start;
-    let units = expected.contains(&Expected::Word(TokenKind::Meters))
+    let is_unit = |word| expected.contains(&Expected::Word(word));
+    let units = is_unit(TokenKind::Meters)
+        || is_unit(TokenKind::Seconds)
+        || is_unit(TokenKind::Times)
         || needless_unit(place, &place.written()).is_some();
     let known = units && !place.written().contains(|c: char| c.is_ascii_digit());
     (glued && !known && place.here() == Some(TokenKind::Name)).then(|| {
@@ -330,6 +361,42 @@ fn number_for_name(place: &Place<'_, '_>, expected: &[Expected], found: &str) ->
         RULE.problem(place.span, format!("a name cannot start with a digit, as `{found}` does"))
             .help("names start with a letter or `_`, such as `wheel_1`")
     })
+}
+
+/// `turn left by 90`, `wait for 2 seconds`
+fn needless_word(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
+    let why = match place.before(1)?.0 {
+        TokenKind::Left | TokenKind::Right => "the angle comes right after the direction",
+        TokenKind::Move => "the distance comes right after `move`",
+        TokenKind::Wait => "the time comes right after `wait`",
+        TokenKind::Repeat => "the number of rounds comes right after `repeat`",
+        _ => return None,
+    };
+    if !["by", "for"].contains(&found) || !place.after()?.0.is_number() {
+        return None;
+    }
+    let problem = RULE.problem(place.span, format!("`{found}` is not needed: {why}"));
+    let edit = place.context.remove_word(place.span);
+    let fixed = repair::is_fixed(place.context, std::slice::from_ref(&edit));
+    Some(if fixed { problem.fix(format!("remove `{found}`"), [edit]) } else { problem })
+}
+
+/// `if { front } detect and { left } clear { … }`
+fn combined(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
+    let help = match found {
+        "and" => "put one `if` into the block of another, or list the sensors in one condition",
+        "or" => "list the sensors in one condition, or write one `if` after another",
+        _ => return None,
+    };
+    let follows = matches!(
+        place.before(1)?.0,
+        TokenKind::CloseBrace
+            | TokenKind::Clear
+            | TokenKind::Detect
+            | TokenKind::Meters
+            | TokenKind::Centimeters
+    );
+    follows.then(|| RULE.problem(place.span, format!("conditions are not combined by `{found}`")).help(help))
 }
 
 /// `move forward 4 meters`

@@ -171,7 +171,8 @@ fn missing(
     let clause = clause(&expected, found, inside);
     let what = clause.map_or_else(|| listed(&expected), |(what, _)| what.to_owned());
     let mut problem = RULE.problem(span, format!("missing {what}{place}"));
-    if let Some(shape) = shape(context, inside, &expected) {
+    let braces = before.and_then(|(token, _)| words::after(*token, &expected));
+    if let Some(shape) = braces.map(str::to_owned).or_else(|| shape(context, inside, &expected)) {
         problem = problem.help(shape);
     }
     if *found == Found::End && expected.contains(&Expected::Word(TokenKind::CloseBrace)) {

@@ -18,6 +18,26 @@ pub(super) fn action(keyword: TokenKind) -> String {
     format!("a {} is written {}", keyword.spelling().unwrap_or_default(), quoted(keyword.examples()))
 }
 
+const CONDITION: &str = "a condition is written `{ SENSORS } clear` or `{ SENSORS } detect`";
+
+/// What belongs between the braces that are missing after a word of an action.
+pub(super) fn after(before: TokenKind, expected: &[Expected]) -> Option<&'static str> {
+    let braces = expected == [Expected::Word(TokenKind::OpenBrace)];
+    if !braces && expected != [Expected::ReferenceTo(EntityKind::Sensor)] {
+        return None;
+    }
+    match before {
+        TokenKind::Until | TokenKind::If => Some(CONDITION),
+        TokenKind::Times
+        | TokenKind::Clear
+        | TokenKind::Detect
+        | TokenKind::Meters
+        | TokenKind::Centimeters
+        | TokenKind::Else => Some("its actions follow between braces: `{ ACTIONS }`"),
+        _ => None,
+    }
+}
+
 /// The pattern to follow.
 pub(super) fn shape(
     context: &Context<'_>,
@@ -48,7 +68,7 @@ pub(super) fn shape(
         return Some(action(TokenKind::Repeat));
     }
     if wants(&[word(TokenKind::Clear), word(TokenKind::Detect)]) {
-        return Some("a condition is written `{ SENSORS } clear` or `{ SENSORS } detect`".to_owned());
+        return Some(CONDITION.to_owned());
     }
     let in_turn =
         wants(&[word(TokenKind::Left), word(TokenKind::Right), word(TokenKind::Until)]) || wants(&turns);
