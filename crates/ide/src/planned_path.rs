@@ -416,7 +416,7 @@ mod tests {
         for (round, action) in (1..).zip(&actions[1..]) {
             assert_eq!((action.movement.as_str(), action.index), ("m", 0));
             assert_eq!((&action.rounds[..], &action.counts[..]), (&[round][..], &[2][..]));
-            assert_eq!(action.calls, [call.clone()]);
+            assert_eq!(action.calls, std::slice::from_ref(&call));
             assert_eq!(action.done.as_deref(), Some("side"));
         }
         assert_eq!(actions.len(), 3);
