@@ -241,7 +241,7 @@ mod tests {
 
     #[test]
     fn not_everywhere() {
-        let check = |program: &str, expected: &Expect| check_only_whole("inline", &program, expected);
+        let check = |program: &str, expected: &Expect| check_only_whole("inline", program, expected);
         check(&program("  $0do nothing"), &expect![[""]]);
         check(
             &program("  $0do tour"),
