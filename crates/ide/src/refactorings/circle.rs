@@ -14,9 +14,6 @@ const FULL_TURN: f64 = 360.0;
 /// The refactoring for the chosen turn in place.
 pub(super) fn on_circle(selection: &Selection<'_>) -> Option<Refactoring> {
     let (span, turn) = chosen(selection).filter(|(_, turn)| turn.circle.is_none())?;
-    if turn.angle.as_ref().is_some_and(|angle| angle.value.is_none_or(|value| value == 0.0)) {
-        return None;
-    }
     let mut edits = vec![unchanged(span.start)];
     edits.push((Span::at(side_end(turn)?), format!(" with radius {RADIUS} ")));
     if let Some(until) = turn.until.as_ref().filter(|_| turn.is_of_article()) {
@@ -49,12 +46,12 @@ pub(super) fn in_place(selection: &Selection<'_>) -> Option<Refactoring> {
     Some(Refactoring::new(title, RefactoringKind::Rewrite, vec![edit]))
 }
 
+/// The chosen turn, unless it is one of 0 degrees, which is a mistake whichever way.
 fn chosen<'a>(selection: &Selection<'a>) -> Option<(Span, &'a Turn)> {
     let (_, action) = selection.action()?;
-    match &action.kind {
-        ActionKind::Turn(turn) => Some((action.span, turn)),
-        _ => None,
-    }
+    let ActionKind::Turn(turn) = &action.kind else { return None };
+    let is_none = turn.angle.as_ref().is_some_and(|angle| angle.value.is_none_or(|value| value == 0.0));
+    (!is_none).then_some((action.span, turn))
 }
 
 /// An end of what is laid out.
@@ -149,6 +146,7 @@ mod tests {
     #[test]
     fn not_everywhere() {
         check_only("turn", "  $0turn left 0", &expect![[""]]);
+        check_only("turn", "  $0turn left 0 with radius 1 meters", &expect![[""]]);
         check_only(
             "turn",
             "  $0turn left 720 with radius 1 meters",

@@ -171,12 +171,16 @@ mod tests {
     fn comments_beside_it_are_laid_out_with_it() {
         let program = program("  slam /* a\n * b */ do side /* c\n * d */").replace("do side", "do $0side");
         let program = program.replace("turn left\n", "turn left /* // */\n");
-        check_only_whole("inline", &program, &expect![[r#"
+        check_only_whole(
+            "inline",
+            &program,
+            &expect![[r#"
             Inline: inline movement `side`
                 |  * b */ // ahead
                 |   move 1 meters // far
                 |   turn left /* // */ /* c
-        "#]]);
+        "#]],
+        );
     }
 
     #[test]
@@ -237,7 +241,7 @@ mod tests {
 
     #[test]
     fn not_everywhere() {
-        let check = |program: &str, expected: &Expect| check_only_whole("inline", &program, expected);
+        let check = |program: &str, expected: &Expect| check_only_whole("inline", program, expected);
         check(&program("  $0do nothing"), &expect![[""]]);
         check(
             &program("  $0do tour"),

@@ -32,10 +32,11 @@ pub(super) fn unroll(selection: &Selection<'_>) -> Option<Refactoring> {
 }
 
 /// The number of rounds, if they are not too many actions.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is whole and small")]
 fn bounded(rounds: f64, block: &Block) -> Option<usize> {
-    let rounds = if rounds <= MOST_ACTIONS as f64 { rounds as usize } else { return None };
-    (rounds * nested(&block.actions).count() <= MOST_ACTIONS).then_some(rounds)
+    let statements = nested(&block.actions).count();
+    let is_it =
+        |count: &usize| u32::try_from(*count).is_ok_and(|count| f64::from(count).total_cmp(&rounds).is_eq());
+    (1..=MOST_ACTIONS / statements.max(1)).find(is_it)
 }
 
 #[cfg(test)]

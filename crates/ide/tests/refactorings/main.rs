@@ -2,6 +2,7 @@
 //! programs. `PYDSLREP_REFACTORED` sets the number of each kind.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests are tests, too")]
+#![allow(clippy::print_stderr, reason = "what a long run has tried")]
 
 mod behaviour;
 
@@ -97,12 +98,11 @@ fn try_all(text: &str, tried: &mut BTreeMap<String, usize>) {
             }
             let now = behaviours(&database, file);
             let keeps_path = !title.ends_with(CHANGES_THE_PATH);
-            // A turn in place cannot be `in reverse`, one on a circle can.
-            assert!(now.len() == before.len() || now.len() > before.len() && !keeps_path, "{case}");
+            // There may be more environments without errors: fewer blocks are one in another, a turn is on a circle.
             for (name, before) in &before {
-                let now = now.get(name).unwrap_or_else(|| panic!("{name} is gone: {case}"));
+                assert!(now.contains_key(name), "{name} is gone: {case}");
                 if keeps_path {
-                    assert_same(title, before, now, &case);
+                    assert_same(title, before, &now[name], &case);
                 }
             }
             assert_eq!(lost_comment(text, &after), None, "{case}");
