@@ -9,7 +9,8 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use pydslrep_config::{Config, Edition};
 
-use crate::process::{Launch, run_socket, run_stdio};
+use crate::launch::Launch;
+use crate::process::{run_socket, run_stdio};
 
 /// Serve an editor: the language server
 // The command's own arguments have the same name.

@@ -30,6 +30,8 @@ mod file_preview;
 #[cfg(feature = "process")]
 mod frame;
 mod handlers;
+#[cfg(feature = "process")]
+mod launch;
 mod life_cycle;
 mod load;
 mod log;

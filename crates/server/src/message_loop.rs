@@ -15,10 +15,10 @@ use std::time::Duration;
 use tokio::runtime;
 
 use crate::frame::{Frame, FrameReader};
+use crate::launch::Launch;
 use crate::load::Load;
 use crate::log::log;
 use crate::message::Outbox;
-use crate::process::Launch;
 use crate::session::{Ending, Session};
 
 /// So many bytes may wait to be written before no more requests are answered: more than any usual answer.

@@ -3,21 +3,10 @@
 use std::fs::File;
 use std::io;
 use std::net::{Ipv4Addr, TcpStream};
-use std::path::PathBuf;
 use std::process::ExitCode;
 
-use pydslrep_config::Config;
-
+use crate::launch::Launch;
 use crate::message_loop::serve;
-
-/// What the program that starts a session tells it.
-#[derive(Debug)]
-pub(crate) struct Launch {
-    /// The program that runs environments.
-    pub(crate) command: PathBuf,
-    /// What wins over all settings.
-    pub(crate) options: Config,
-}
 
 /// The most that Linux allows any process by default.
 #[cfg(target_os = "linux")]

@@ -94,7 +94,7 @@ impl Session {
 
     /// Takes what the program says that starts it.
     #[cfg(feature = "process")]
-    pub(crate) fn launch(&self, launch: crate::process::Launch) {
+    pub(crate) fn launch(&self, launch: crate::launch::Launch) {
         self.server.children().command = launch.command;
         self.server.state().set_options(launch.options);
     }

@@ -59,7 +59,8 @@ fn may_do_without(action: &Action) -> bool {
 /// Whether its list and what follows that were read without a mistake, which may be the word.
 fn is_understood(context: &Context<'_>, condition: &Condition) -> bool {
     let around = |at: u32| condition.span.start <= at && at <= condition.span.end + 1;
-    !condition.sensors.broken && !context.errors.iter().any(|error| around(error.span.start))
+    let is_list = !condition.sensors.broken && !condition.sensors.names.is_empty();
+    is_list && !context.errors.iter().any(|error| around(error.span.start))
 }
 
 fn problem(context: &Context<'_>, condition: &Condition) -> Problem {
@@ -115,5 +116,16 @@ mod tests {
         check_clean(&program(
             "turn left until { s } move until { s } clear repeat until { t } detect { turn left }",
         ));
+    }
+
+    #[test]
+    fn a_condition_that_is_not_there_is_one_mistake() {
+        check(
+            &format!("{PARTS}movement m of r {{ move 1 meters until\n\nsensor q"),
+            &expect![[r#"
+                error[syntax-error] 6:38 "" missing `{` after `until`
+                  help: a condition is written `{ SENSORS } clear` or `{ SENSORS } detect`
+            "#]],
+        );
     }
 }

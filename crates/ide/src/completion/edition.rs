@@ -162,12 +162,5 @@ mod tests {
                 | other.pyr
             "#]],
         );
-        check(
-            &format!("{PARTS}robot r with port 1 has {{ }} wheels with sensors {{ $0 }}"),
-            &expect![[r#"
-                back, front
-                | elsewhere
-            "#]],
-        );
     }
 }
