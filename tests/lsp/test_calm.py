@@ -342,11 +342,13 @@ def test_parameters_that_are_asked_for_end_with_the_statement(editor: Editor) ->
     editor.open(PARTS + "movement m of rover {\n  move 1 meters\n  turn left 9\n}\n")
     shown = editor.parameters("  move ", {"triggerKind": 1, "isRetrigger": False})
     assert shown == editor.parameters("  move ", None)
-    [signature] = shown["signatures"]
+    signature, with_until = shown["signatures"]
     assert signature["label"].startswith("move DISTANCE")
+    assert with_until["label"].endswith("...")
     assert "documentation" not in signature, "one line"
-    assert editor.parameters("move 1 ", moved(shown))["signatures"] == [
-        {**signature, "activeParameter": 2}
-    ]
+    assert editor.parameters("move 1 ", moved(shown))["signatures"][0] == {
+        **signature,
+        "activeParameter": 2,
+    }
     assert editor.parameters("move 1 meters\n", moved(shown)) is None
     assert editor.parameters("turn left 9\n", moved(shown)) is None

@@ -89,7 +89,7 @@ async def test_a_statement_shows_its_shape(
     )
     assert shown
     assert shown.active_signature == 0
-    [signature] = shown.signatures
+    signature = shown.signatures[0]
     assert signature.parameters
     assert shown.active_parameter is not None
     current = signature.parameters[shown.active_parameter].label

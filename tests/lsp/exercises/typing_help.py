@@ -99,7 +99,8 @@ async def signatures_of_statements(s: Session) -> None:
         ("movement third of rover { turn right until {", "{", "SENSORS"),
         ("movement third of rover { turn right until { s,", ",", "SENSORS"),
         ("movement third of rover { turn right until { s ", " ", "SENSORS"),
-        ("movement third of rover { turn right until { s }", "}", None),
+        ("movement third of rover { turn right until { s }", "}", "clear | detect"),
+        ("movement third of rover { turn right until { s } }", "}", None),
     ):
         s.show(PROGRAM + typed)
         context = types.SignatureHelpContext(

@@ -48,7 +48,7 @@ fn share(selection: &Selection<'_>, name: &str, selected: &[&Move], all: &[&Move
     let edit = |other: &&Move| match &other.speed {
         Some(clause) => {
             let number = clause.value.as_ref()?;
-            (!same(number.value, value)).then(|| selection.edit(number.span, text.clone()))
+            (!same(number.value, value)).then(|| selection.edit(number.span, apart(selection, number, &text)))
         }
         None if same(Some(RIM_SPEED * 100.0), value) => None,
         None => with_speed(selection, other, &text),
@@ -56,6 +56,13 @@ fn share(selection: &Selection<'_>, name: &str, selected: &[&Move], all: &[&Move
     let edits: Vec<Edit> = all.iter().filter_map(edit).collect();
     let title = format!("use {text} cm/s for all moves of `{name}`");
     (!edits.is_empty()).then(|| Refactoring::new(title, RefactoringKind::Rewrite, edits))
+}
+
+/// A number in the place of another one: in `at-9`, only its sign separates it from the word before it.
+fn apart(selection: &Selection<'_>, number: &Number, text: &str) -> String {
+    let before = selection.text(Span::new(0, number.span.start));
+    let runs_on = before.ends_with(|c: char| c.is_ascii_alphanumeric());
+    if runs_on { format!(" {text}") } else { text.to_owned() }
 }
 
 fn speed(step: &Move) -> Option<&Number> {
@@ -154,6 +161,22 @@ mod tests {
                     |   move 1 meters at 20
                     |   move 2 meters at 20
             "#]],
+        );
+    }
+
+    #[test]
+    fn a_sign_that_separates_words_is_replaced_by_a_blank() {
+        check(
+            "  move 4.0 meters at $020\n  move 2 meters at-9",
+            &expect![[r#"
+            Rewrite: convert to centimeters
+                |   move 400.0 centimeters at 20
+            Rewrite: convert all lengths of `tour` to centimeters
+                |   move 400.0 centimeters at 20
+                |   move 200 centimeters at-9
+            Rewrite: use 20 cm/s for all moves of `tour`
+                |   move 2 meters at 20
+        "#]],
         );
     }
 }

@@ -530,11 +530,7 @@ fn an_action_that_is_begun_takes_no_brace() {
             (format!("turn left {begun} }} sensor a"), "[turn", "]"),
             (format!("turn left {begun} repeat 2 times {{ slam }} }} sensor a"), "[turn", "repeat [slam]]"),
             (format!("repeat 2 times {{ turn left {begun} }} slam }} sensor a"), "[repeat [turn", "] slam]"),
-            (
-                format!("repeat 2 times {{ {begun} move 1 meters }} slam }} sensor a"),
-                "[repeat [",
-                "move] slam]",
-            ),
+            (format!("repeat 2 times {{ {begun} turn right }} slam }} sensor a"), "[repeat [", "turn] slam]"),
         ] {
             let rendered = render(&format!("movement m of r {{ {text}"));
             assert_eq!(rendered.matches("\n  ").count(), 1, "{text}\n{rendered}");
