@@ -235,8 +235,12 @@ impl fmt::Display for NoPath {
     }
 }
 
-/// Poses of a planned action, at equal intervals of time: enough for a curve and for the ramps at its ends.
+/// Poses of a planned action, at equal intervals of time: enough for a turn and for the ramps at its ends.
 const POSES_PER_ACTION: u32 = 8;
+
+/// The angle between two poses on an arc, degrees: a polyline of them looks round. No arc has more than [`MAX_ARC_POSES`].
+const ARC_STEP: f64 = 5.0;
+const MAX_ARC_POSES: f64 = 720.0;
 
 /// The planned path of an environment.
 ///
@@ -322,11 +326,18 @@ fn possible(environment: &Environment, way: &[Leg]) -> Option<PossibleWay> {
 fn on_leg(environment: &Environment, leg: &Leg) -> Vec<PlannedPose> {
     check_cancelled();
     let action = action(environment, leg.index, &leg.place);
+    let count = pose_count(leg);
     let at = |number: u32| {
-        let seconds = leg.duration * f64::from(number) / f64::from(POSES_PER_ACTION);
+        let seconds = leg.duration * f64::from(number) / f64::from(count);
         planned_pose(leg.start.map(|start| start + seconds), leg.pose_at(seconds), action.clone())
     };
-    (1..=POSES_PER_ACTION).map(at).collect()
+    (1..=count).map(at).collect()
+}
+
+fn pose_count(leg: &Leg) -> u32 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is within bounds")]
+    let on_arc = (leg.arc().to_degrees() / ARC_STEP).ceil().clamp(0.0, MAX_ARC_POSES) as u32;
+    on_arc.max(POSES_PER_ACTION)
 }
 
 fn planned_pose(t: Option<f64>, Pose { x, y, theta }: Pose, action: Option<PlannedAction>) -> PlannedPose {
@@ -334,12 +345,13 @@ fn planned_pose(t: Option<f64>, Pose { x, y, theta }: Pose, action: Option<Plann
 }
 
 fn legs(environment: &Environment, legs: &[Leg]) -> Vec<PlannedLeg> {
-    let ends = (1..).map(|number| number * POSES_PER_ACTION as usize);
-    let planned = |(leg, last): (&Leg, usize)| {
+    let mut last = 0;
+    let planned = |leg: &Leg| {
+        last += pose_count(leg) as usize;
         let action = action(environment, leg.index, &leg.place)?;
         Some(PlannedLeg { action, start: leg.start, duration: leg.duration, last })
     };
-    legs.iter().zip(ends).filter_map(planned).collect()
+    legs.iter().filter_map(planned).collect()
 }
 
 fn action(environment: &Environment, at: ActionIndex, place: &Place) -> Option<PlannedAction> {
@@ -460,6 +472,24 @@ mod tests {
     }
 
     #[test]
+    fn an_arc_has_poses_enough_to_look_round() {
+        let path = path(
+            "movement m of rover { turn left turn left 360 with radius 2 meters move 1 meters }
+            environment e has { rover } robots with { m } moves",
+        )
+        .unwrap();
+        let rover = &path.robots[0];
+        let lasts: Vec<_> = rover.legs.iter().map(|leg| leg.last).collect();
+        assert_eq!(lasts, [8, 8 + 72, 8 + 72 + 8]);
+        let circle = &rover.poses[8..=80];
+        let off = circle.windows(2).map(|pair| {
+            let middle = ((pair[0].x + pair[1].x) / 2.0, (pair[0].y + pair[1].y) / 2.0);
+            2.0 - (middle.0 + 2.0).hypot(middle.1)
+        });
+        assert!(off.fold(0.0, f64::max) < 0.01, "a chord is less than 1 cm within its arc");
+    }
+
+    #[test]
     fn what_is_possible_is_beside_what_is_known() {
         let path = path(
             "movement m of rover { repeat 3 times {
@@ -473,13 +503,14 @@ mod tests {
         assert_eq!((path.duration, rover.legs.len(), rover.poses.len()), (None, 1, 9));
         assert_eq!(rover.unknown_after.as_ref().unwrap().text, "if { front } detect");
         let [circle, bounded] = &rover.possible[..] else { panic!("{:?}", rover.possible) };
-        for (way, text) in
-            [(circle, "turn left 90 with radius 1 meters"), (bounded, "move 2 meters until { front } detect")]
-        {
+        for (way, text, last) in [
+            (circle, "turn left 90 with radius 1 meters", 18),
+            (bounded, "move 2 meters until { front } detect", 8),
+        ] {
             let (known, first) = (rover.poses.last().unwrap(), &way.poses[0]);
             assert_eq!((first.t, first.x, first.y, &first.action), (known.t, known.x, known.y, &None));
             let [leg] = &way.legs[..] else { panic!("{way:?}") };
-            assert_eq!((leg.action.text.as_str(), leg.last, way.poses.len()), (text, 8, 9));
+            assert_eq!((leg.action.text.as_str(), leg.last, way.poses.len()), (text, last, last + 1));
             assert_eq!((&leg.action.rounds[..], &leg.action.counts[..]), (&[1][..], &[3][..]));
         }
         let [there, ahead] = [circle, bounded].map(|way| way.poses.last().unwrap());

@@ -101,6 +101,13 @@ impl Leg {
         (vx.hypot(vy) + omega.abs() * reach) * pace
     }
 
+    /// The angle of the arc that the robot's middle drives, radians, not negative; 0 on a line and for a turn in place.
+    pub fn arc(&self) -> f64 {
+        let Twist { vx, vy, omega } = self.twist;
+        let on_circle = self.kind == LegKind::Drive && vx.hypot(vy) > 0.0;
+        if on_circle { omega.abs() * self.profile.distance_at(self.profile.duration()) } else { 0.0 }
+    }
+
     /// The pose `seconds` after the leg's start.
     pub fn pose_at(&self, seconds: f64) -> Pose {
         if seconds >= self.duration {
