@@ -8,7 +8,9 @@ import { after, afterEach, before, test } from "node:test";
 import { Stage, program, spaced, until } from "./stage.mjs";
 
 const SQUARE = program("examples/square.pyr");
-const NO_ENVIRONMENT = SQUARE.slice(0, SQUARE.search(/^environment /mu));
+// Its last movement is so long that the end of the file is out of sight.
+const LONG = SQUARE.replace("right_square of scout {\n", `$&${"  turn left\n".repeat(20)}`);
+const NO_ENVIRONMENT = LONG.slice(0, LONG.search(/^environment /mu));
 
 const cache = mkdtempSync(path.join(os.tmpdir(), "pyr-cache-"));
 
