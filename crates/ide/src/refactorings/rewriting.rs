@@ -16,8 +16,9 @@ impl Selection<'_> {
         let after = apply_edits(&before, &edits);
         let (from_end, new_end) = (Span::of(&before).end - last.end, Span::of(&after).end);
         let (changed, text) = laid_out(&after, Span::new(first.start, new_end - from_end))?;
-        let end = Span::of(&before).end - (new_end - changed.end);
-        Some(self.edit(Span::new(changed.start, end), self.with_line_ends(&text)))
+        let whole = Span::new(changed.start, Span::of(&before).end - (new_end - changed.end));
+        let (part, text) = difference(whole.text(&before), &text);
+        Some(self.edit(part.shifted(whole.start), self.with_line_ends(text)))
     }
 
     /// A text with the line ending of the file: the entity alone may have no line break to infer it from.
@@ -56,6 +57,39 @@ impl Selection<'_> {
     }
 }
 
+/// The part of a text that another one changes, and what it is then. Line breaks are equal whatever their kind: those around
+/// the change stay as they are.
+fn difference<'a>(old: &str, new: &'a str) -> (Span, &'a str) {
+    let (olds, news) = (characters(old), characters(new));
+    let alike = |((_, old), (_, new)): &((Span, char), (Span, char))| old == new;
+    let zipped = olds.iter().copied().zip(news.iter().copied());
+    let head = zipped.take_while(alike).count();
+    let rest = olds[head..].iter().copied().rev().zip(news[head..].iter().copied().rev());
+    let tail = rest.take_while(alike).count();
+    let part = |characters: &[(Span, char)], text: &str| {
+        let inner = &characters[head..characters.len() - tail];
+        let start = characters.get(head).map_or(Span::of(text).end, |(span, _)| span.start);
+        Span::new(start, inner.last().map_or(start, |(span, _)| span.end))
+    };
+    (part(&olds, old), part(&news, new).text(new))
+}
+
+/// The characters of a text; a line break of any kind is one.
+fn characters(text: &str) -> Vec<(Span, char)> {
+    let mut found: Vec<(Span, char)> = Vec::new();
+    let mut start = 0;
+    for character in text.chars() {
+        let end = start + u32::try_from(character.len_utf8()).unwrap_or_default();
+        let follows_return = start > 0 && text.as_bytes().get(start as usize - 1) == Some(&b'\r');
+        match found.last_mut() {
+            Some((span, _)) if character == '\n' && follows_return => span.end = end,
+            _ => found.push((Span::new(start, end), if character == '\r' { '\n' } else { character })),
+        }
+        start = end;
+    }
+    found
+}
+
 /// A part of an entity in canonical layout, with the white space and comments around it; `None` where the entity has errors.
 fn laid_out(entity: &str, part: Span) -> Option<(Span, String)> {
     let pieces = parse(entity);
@@ -82,4 +116,25 @@ fn with_comments_around(tokens: &[Token], part: Span) -> Span {
     let after = tokens.iter().skip(end).take_while(is_comment).last();
     let whole = before.map_or(part, |(_, span)| part.to(*span));
     after.map_or(whole, |(_, span)| whole.to(*span))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::difference;
+
+    #[test]
+    fn only_what_is_different_is_written() {
+        let cases = [
+            ("a\r\nb\r\nc", "a\nB\nc", (3, 4, "B")),
+            ("a\rb", "a\nb", (3, 3, "")),
+            ("turn left\r\n", "turn left 90\n", (9, 9, " 90")),
+            ("aa", "a", (1, 2, "")),
+            ("", "é", (0, 0, "é")),
+            ("\n\n", "\r\n", (1, 2, "")),
+        ];
+        for (old, new, expected) in cases {
+            let (part, text) = difference(old, new);
+            assert_eq!((part.start, part.end, text), expected, "{old:?} {new:?}");
+        }
+    }
 }
