@@ -201,8 +201,7 @@ test("a new file is a program; generating its script asks to save it", async () 
   await stage.page.locator(".quick-input-widget .monaco-list-row", { hasText: "PyDSLRep Program" }).click();
   await stage.tab("Untitled-1").waitFor();
   await until("it is indented by two", async () => /Spaces: 2 .*PyDSLRep|PyDSLRep.* Spaces: 2/.test(await statusBar()));
-  const [head, environment] = [NO_ENVIRONMENT, SQUARE.slice(NO_ENVIRONMENT.length)];
-  await stage.page.keyboard.insertText(`${head}${environment}`);
+  await stage.page.keyboard.insertText(SQUARE);
   await stage.page.locator(".codelens-decoration", { hasText: "Generate script" }).first().waitFor({ state: "attached" });
   await stage.page.keyboard.press("Control+End");
   await stage.call("PyDSLRep: Generate Script");
