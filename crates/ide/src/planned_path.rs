@@ -483,7 +483,7 @@ mod tests {
         assert_eq!(lasts, [8, 8 + 72, 8 + 72 + 8]);
         let circle = &rover.poses[8..=80];
         let off = circle.windows(2).map(|pair| {
-            let middle = ((pair[0].x + pair[1].x) / 2.0, (pair[0].y + pair[1].y) / 2.0);
+            let middle = (f64::midpoint(pair[0].x, pair[1].x), f64::midpoint(pair[0].y, pair[1].y));
             2.0 - (middle.0 + 2.0).hypot(middle.1)
         });
         assert!(off.fold(0.0, f64::max) < 0.01, "a chord is less than 1 cm within its arc");
