@@ -203,7 +203,8 @@ mod tests {
         let file = database.file(path).unwrap();
         let diagnostics = database.diagnostics(file).into_iter();
         let own = diagnostics.filter(|found| found.code() == "invalid-within");
-        own.map(|found| format!("{}: {}\n", database.slice(file, found.span), found.message)).collect()
+        let lines = own.map(|found| format!("{}: {}\n", database.slice(file, found.span), found.message));
+        lines.collect::<Vec<_>>().concat()
     }
 
     const ENVIRONMENT: &str = "\nenvironment e has { r } robots with { m } moves";
