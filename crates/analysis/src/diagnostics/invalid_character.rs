@@ -135,17 +135,15 @@ fn pair(context: &Context<'_>, open: Span, close: Span, written: &str) -> Proble
     let braces = [context.replace(open, "{"), context.replace(close, "}")];
     let nothing = [context.remove_character(open), context.remove_character(close)];
     let body = matches!(context.tree, Some(Entity::Movement(_)));
-    let lists = context
-        .tokens
-        .iter()
-        .rev()
-        .find(|(token, span)| !token.is_comment() && span.end <= open.start)
-        .is_some_and(|(token, _)| {
-            matches!(token, TokenKind::Has | TokenKind::Sensors | TokenKind::With | TokenKind::Until)
-                || body && token.is_name()
-        });
+    let before =
+        context.tokens.iter().rev().find(|(token, span)| !token.is_comment() && span.end <= open.start);
     let spaced = context.text(Span::new(open.end, close.start)).starts_with([' ', '\n']);
-    if lists && ["(", "["].contains(&written) && (spaced || !body) {
+    let lists = before.is_some_and(|(token, _)| match token {
+        TokenKind::If | TokenKind::Until => true,
+        TokenKind::Has | TokenKind::Sensors | TokenKind::With => spaced || !body,
+        token => body && spaced && token.is_name(),
+    });
+    if lists && ["(", "["].contains(&written) {
         problem.help(BRACES).suggestion("write `{` and `}`", braces)
     } else {
         problem.help(help(written)).suggestion(format!("remove `{written}` and `{other}`"), nothing)

@@ -133,12 +133,13 @@ fn move_action<'s>() -> Rule<'s, ActionKind> {
         .map(|(((distance, unit), speed), until)| Move { distance, unit, speed, until });
     // Where the question is what follows `at`, it is a speed, and not the `until` after one that is missing.
     let asked = just(TokenKind::At).then(just(TokenKind::Cursor)).ignored();
-    let open_ended = asked.not().ignore_then(speed().or_not()).then(until(NEXT)).map(|(speed, until)| Move {
-        distance: None,
-        unit: None,
-        speed,
-        until: Some(until),
-    });
+    // `move at 4 meters`: what has a unit of length is how far, and `at` is the word too many.
+    let distance_at = just(TokenKind::At).then(one_in(NUMBER)).then(one_in(UNITS)).ignored();
+    let open_ended = choice((asked, distance_at))
+        .not()
+        .ignore_then(speed().or_not())
+        .then(until(NEXT))
+        .map(|(speed, until)| Move { distance: None, unit: None, speed, until: Some(until) });
     just(TokenKind::Move).ignore_then(choice((open_ended, far))).map(ActionKind::Move).boxed()
 }
 

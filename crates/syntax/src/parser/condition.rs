@@ -1,11 +1,13 @@
 //! The rules for conditions.
 
+use chumsky::IterParser;
+use chumsky::input::MapExtra;
 use chumsky::prelude::{Parser, choice, just};
 
 use super::actions::{OPEN, UNITS, length};
-use super::slot::{Fault, NAME, misspelling, no_list, one_in, references};
+use super::slot::{Fault, NAME, misspelling, no_list, one_in, plain_name, references};
 use super::{Extra, Input, Rule};
-use crate::ast::{Condition, SensorState, Until, Within};
+use crate::ast::{Condition, References, SensorState, Until, Within};
 use crate::{EntityKind, Expected, Span, TokenKind, TokenSet};
 
 pub(super) const UNTIL: TokenSet = TokenSet::of(&[TokenKind::Until]);
@@ -24,6 +26,7 @@ pub(super) fn until<'s>(later: TokenSet) -> Rule<'s, Until> {
 /// of syntax.
 pub(super) fn condition<'s>(later: TokenSet) -> Rule<'s, Condition> {
     let sensors = references(EntityKind::Sensor, false, STATES.or(WITHIN).or(later));
+    let sensors = choice((bare_sensors(), sensors));
     let known =
         state().map(Some).then_ignore(unknown_words(&[TokenKind::Within, TokenKind::OpenBrace]).or_not());
     let unknown = unknown_words(&[TokenKind::Clear, TokenKind::Detect]).or_not().map(|_| None);
@@ -37,6 +40,24 @@ pub(super) fn condition<'s>(later: TokenSet) -> Rule<'s, Condition> {
             span: extra.span(),
         })
         .boxed()
+}
+
+/// `front left detect`: sensors without their braces. The word after them says that they are sensors, and is not one of them.
+fn bare_sensors<'s>() -> impl Parser<'s, Input<'s>, References, Extra<'s>> + Clone {
+    let word = STATES.or(WITHIN);
+    let name = plain_name().and_is(one_in(word).not()).then_ignore(just(TokenKind::Comma).or_not());
+    let names = name.repeated().at_least(1).collect::<Vec<_>>();
+    let end = one_in(word).map_with(|_, extra: &mut MapExtra<'s, '_, Input<'s>, Extra<'s>>| extra.span());
+    // The doubled negation looks ahead without a trace: what is wrong with other lists is told by their own rule.
+    let ahead = names.clone().then(one_in(word)).not().not();
+    ahead.ignore_then(names.map_with(|names, extra| (names, extra.span()))).then(end.rewind()).validate(
+        |((names, span), end), _, emitter| {
+            for (at, brace) in [(span, TokenKind::OpenBrace), (end, TokenKind::CloseBrace)] {
+                emitter.emit(Fault::Expected { at, expected: vec![Expected::Word(brace)] });
+            }
+            References { names, span, broken: true }
+        },
+    )
 }
 
 fn state<'s>() -> impl Parser<'s, Input<'s>, (SensorState, Span), Extra<'s>> + Clone {

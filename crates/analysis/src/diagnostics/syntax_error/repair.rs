@@ -1,7 +1,7 @@
 //! Finding fixes: what could fix an entity is tried, and offered where it does.
 
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{Expected, Span, TokenKind, parse};
+use pydslrep_syntax::{Expected, Span, TokenKind, TokenSet, parse};
 
 use crate::diagnostics::context::Context;
 use crate::diagnostics::edits::ProblemEdit;
@@ -98,12 +98,15 @@ pub(super) fn is_body(context: &Context<'_>, place: Span) -> bool {
         context.tokens.iter().rev().filter(|(token, span)| !token.is_comment() && span.end <= place.start);
     let opened = before
         .map(|(token, _)| *token)
-        .find(|token| matches!(token, TokenKind::OpenBrace | TokenKind::Until));
-    let list = matches!(opened, Some(TokenKind::Until)) || is_until_list(context, place);
+        .find(|token| *token == TokenKind::OpenBrace || CONDITIONS.has(*token));
+    let list = opened.is_some_and(|token| CONDITIONS.has(token)) || is_in_condition(context, place);
     matches!(context.tree, Some(Entity::Movement(_))) && !list
 }
 
-fn is_until_list(context: &Context<'_>, place: Span) -> bool {
+/// What is before the list of a condition.
+const CONDITIONS: TokenSet = TokenSet::of(&[TokenKind::Until, TokenKind::If]);
+
+fn is_in_condition(context: &Context<'_>, place: Span) -> bool {
     let mut depth = Vec::new();
     let mut previous = None;
     for (token, span) in context.tokens.iter().filter(|(token, _)| !token.is_comment()) {
@@ -111,7 +114,7 @@ fn is_until_list(context: &Context<'_>, place: Span) -> bool {
             break;
         }
         match token {
-            TokenKind::OpenBrace => depth.push(previous == Some(TokenKind::Until)),
+            TokenKind::OpenBrace => depth.push(previous.is_some_and(|token| CONDITIONS.has(token))),
             TokenKind::CloseBrace => {
                 depth.pop();
             }
