@@ -11,11 +11,12 @@ use crate::resolve::DEFAULT_ANGLE;
 pub(crate) struct Summary {
     /// The movements that it does, each once, in the order of the text.
     pub(crate) does: Vec<SmolStr>,
-    /// How long it takes; `None` where only the world decides.
-    pub(crate) time: Option<Time>,
+    /// How long it takes at least.
+    pub(crate) time: Time,
 }
 
-/// The time of a row of actions, with robots of default size.
+/// The least time of a row of actions, with robots of default size: what the world decides, and what has a mistake, may be
+/// over at once.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Time {
     /// Seconds for each type of robot, in the order of [`Drive::ALL`], without what is done.
@@ -39,17 +40,23 @@ impl Summary {
 }
 
 impl Time {
-    /// That of a row of actions; `None` where a condition decides, or where something is missing.
-    pub(crate) fn of(actions: &[Action]) -> Option<Self> {
+    /// That of a row of actions.
+    pub(crate) fn of(actions: &[Action]) -> Self {
         let mut time = Self::default();
         for action in actions {
-            time.add(&Self::of_action(action)?, 1.0);
+            time.add(&Self::of_action(action), 1.0);
         }
-        Some(time)
+        time
     }
 
     /// That of one action with all rounds of its blocks.
-    pub(crate) fn of_action(action: &Action) -> Option<Self> {
+    pub(crate) fn of_action(action: &Action) -> Self {
+        let is_time = |time: &Self| time.seconds.iter().all(|seconds| seconds.is_finite() && *seconds >= 0.0);
+        // A number that is out of range is reported where it is.
+        Self::known(action).filter(is_time).unwrap_or_default()
+    }
+
+    fn known(action: &Action) -> Option<Self> {
         if action.until().is_some() {
             return None;
         }
@@ -65,15 +72,27 @@ impl Time {
             }
             ActionKind::Repeat(Repeat { rounds: Some(Rounds::Times(count)), block: Some(block) }) => {
                 let mut time = Self::default();
-                time.add(&Self::of(&block.actions)?, count.value?);
+                time.add(&Self::of(&block.actions), count.value?.max(0.0));
                 Some(time)
             }
             ActionKind::Do(call) => {
                 let name = call.movement.as_ref()?.text.clone();
                 Some(Self { seconds: Default::default(), calls: vec![(name, 1.0)] })
             }
-            ActionKind::Repeat(_) | ActionKind::If(_) | ActionKind::Slam => None,
+            ActionKind::If(branches) => Some(Self::of_ways(branches)),
+            ActionKind::Repeat(_) | ActionKind::Slam => None,
         }
+    }
+
+    /// The least of all ways. What is done in them may take no time.
+    fn of_ways(statement: &ast::If) -> Self {
+        if statement.otherwise.is_none() {
+            return Self::default();
+        }
+        let blocks = statement.branches.iter().filter_map(|branch| branch.block.as_ref());
+        let times = blocks.chain(&statement.otherwise).map(|block| Self::of(&block.actions).seconds);
+        let least = times.reduce(|one, other| std::array::from_fn(|drive| one[drive].min(other[drive])));
+        Self { seconds: least.unwrap_or_default(), calls: Vec::new() }
     }
 
     fn of_turn(turn: &ast::Turn) -> Option<Self> {

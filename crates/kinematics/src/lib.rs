@@ -45,5 +45,5 @@ pub use pose::{Pose, Twist, angle_between, heading_degrees, wrap_angle};
 pub use profile::SpeedProfile;
 pub use pydslrep_robots::Drive;
 pub use step::{Movement, Step, StepKind};
-pub use summary::{LONGEST_PLAN, Motion, Summary, too_long};
+pub use summary::{LONGEST_PLAN, Motion, Summary};
 pub use traction::{SCRIPT_TRACK_FACTOR, Traction, scrub_factor};

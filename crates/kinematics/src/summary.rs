@@ -1,7 +1,7 @@
 //! What a sequence of steps comes to, without a look at every round.
 
 use crate::block::Block;
-use crate::{Model, Pose, Step, StepKind, angle_between};
+use crate::{Model, Pose, Step, angle_between};
 
 /// The longest that a plan may take, seconds: thirty days.
 pub const LONGEST_PLAN: f64 = 30.0 * 24.0 * 3600.0;
@@ -52,8 +52,6 @@ impl Motion {
 pub struct Summary {
     /// `None` if only the world decides where or when it ends.
     pub motion: Option<Motion>,
-    /// How long it takes at least, seconds: what is unknown counts as nothing.
-    pub least_seconds: f64,
     /// How many entries it has in a plan, rounds and calls unrolled.
     pub entries: u64,
 }
@@ -73,24 +71,18 @@ impl Summary {
         Block::new(model, steps, called).summary
     }
 
-    /// Whether it takes more than [`LONGEST_PLAN`].
-    pub fn is_too_long(&self) -> bool {
-        self.least_seconds > LONGEST_PLAN
-    }
-
     pub(crate) fn known(motion: Motion, entries: u64) -> Self {
-        Self { motion: Some(motion), least_seconds: motion.seconds, entries }
+        Self { motion: Some(motion), entries }
     }
 
     /// Of one statement whose end only the world decides.
     pub(crate) fn unknown() -> Self {
-        Self { motion: None, least_seconds: 0.0, entries: 1 }
+        Self { motion: None, entries: 1 }
     }
 
     pub(crate) fn then(&self, next: &Self) -> Self {
         Self {
             motion: self.motion.zip(next.motion).map(|(motion, next)| motion.then(&next)),
-            least_seconds: self.least_seconds + next.least_seconds,
             entries: self.entries.saturating_add(next.entries),
         }
     }
@@ -98,7 +90,6 @@ impl Summary {
     pub(crate) fn repeated(&self, count: u32) -> Self {
         Self {
             motion: self.motion.map(|motion| motion.repeated(count)),
-            least_seconds: self.least_seconds * f64::from(count),
             entries: self.entries.saturating_mul(count.into()),
         }
     }
@@ -111,44 +102,8 @@ impl Summary {
         let alike = |motion: &Motion| {
             others.iter().all(|other| other.motion.is_some_and(|other| other.ends_like(motion)))
         };
-        Self {
-            motion: first.motion.filter(alike),
-            least_seconds: ways.iter().fold(f64::INFINITY, |least, way| least.min(way.least_seconds)),
-            entries: 1,
-        }
+        Self { motion: first.motion.filter(alike), entries: 1 }
     }
-}
-
-/// The numbers of the outermost [`StepKind::Repeat`]s because of which steps take more than [`LONGEST_PLAN`]: each that does so
-/// alone; if none does but all steps together do, the longest of them that is not in a way of a branch. None if no `Repeat` is
-/// the cause. `called` is as for [`Summary::of`].
-pub fn too_long(model: &Model, steps: &[Step], called: &dyn Fn(usize) -> Option<Summary>) -> Vec<usize> {
-    let mut found = Vec::new();
-    for_each_outermost(steps, &mut |step| {
-        if seconds(model, step, called) > LONGEST_PLAN {
-            found.push(step.number);
-        }
-    });
-    if found.is_empty() && Summary::of(model, steps, called).is_too_long() {
-        let repeats = steps.iter().filter(|step| matches!(step.kind, StepKind::Repeat { .. }));
-        let timed = repeats.map(|step| (seconds(model, step, called), step.number));
-        found.extend(timed.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, number)| number));
-    }
-    found
-}
-
-fn for_each_outermost<'a>(steps: &'a [Step], look: &mut dyn FnMut(&'a Step)) {
-    for step in steps {
-        match &step.kind {
-            StepKind::Repeat { .. } => look(step),
-            StepKind::Branch { ways } => ways.iter().for_each(|way| for_each_outermost(way, look)),
-            _ => {}
-        }
-    }
-}
-
-fn seconds(model: &Model, step: &Step, called: &dyn Fn(usize) -> Option<Summary>) -> f64 {
-    Summary::of(model, std::slice::from_ref(step), called).least_seconds
 }
 
 #[cfg(test)]
@@ -156,21 +111,15 @@ mod tests {
     use super::*;
     use crate::testing::{arc, either, forward, left, numbered, repeat, slam, turn, two_wheels, wait};
 
-    const DAY: f64 = 24.0 * 3600.0;
-
     fn of(steps: Vec<Step>) -> Summary {
         Summary::of(&two_wheels(), &numbered(steps), &|_| None)
-    }
-
-    fn causes(steps: Vec<Step>) -> Vec<usize> {
-        too_long(&two_wheels(), &numbered(steps), &|_| None)
     }
 
     #[test]
     fn a_million_million_rounds_are_as_quick_as_one() {
         let rounds = |body| repeat(10_000, vec![repeat(10_000, vec![repeat(10_000, body)])]);
         let line = of(vec![rounds(vec![forward(1.0)])]);
-        let once = of(vec![forward(1.0)]).least_seconds;
+        let once = of(vec![forward(1.0)]).motion.unwrap().seconds;
         let motion = line.motion.unwrap();
         assert_eq!((motion.change, line.entries), (Pose::new(1e12, 0.0, 0.0), 1_000_000_000_000));
         assert!((motion.seconds / (1e12 * once) - 1.0).abs() < 1e-12);
@@ -200,9 +149,8 @@ mod tests {
         assert!(known.motion.unwrap().ends_like(&alone.motion.unwrap()) && known.entries == 1);
         for other in [vec![], vec![forward(1.0)], vec![slam()], vec![forward(-1.0), forward(1.0), wait(2e-9)]]
         {
-            let shorter = of(other.clone()).least_seconds.min(alone.least_seconds);
             let open = of(vec![either(vec![there.clone(), back.clone(), other])]);
-            assert_eq!((open.motion, open.least_seconds), (None, shorter));
+            assert_eq!(open.motion, None);
         }
         assert!(of(vec![either(vec![vec![], vec![]])]).motion.is_some());
         assert!(of(vec![either(vec![vec![wait(1.0)], vec![wait(1.0 + 5e-10)]])]).motion.is_some());
@@ -210,15 +158,13 @@ mod tests {
     }
 
     #[test]
-    fn names_the_outermost_repetitions_that_take_too_long() {
-        let days = |count| repeat(count, vec![repeat(1, vec![wait(DAY)])]);
-        assert_eq!(causes(vec![days(30)]), []);
-        assert_eq!(causes(vec![days(30), forward(1.0)]), [0], "all together");
-        assert_eq!(causes(vec![wait(1.0), days(31), days(1), repeat(5, vec![days(10)])]), [1, 7]);
-        assert_eq!(causes(vec![days(10), days(12), days(11)]), [3], "the longest");
-        assert_eq!(causes(vec![either(vec![vec![forward(1.0), days(31)], vec![]])]), [2]);
-        assert_eq!(causes(vec![repeat(40, vec![slam(), wait(DAY)])]), [0], "it takes at least forty days");
-        assert_eq!(causes(vec![wait(40.0 * DAY)]), [], "nothing is repeated");
+    fn ends_are_alike_up_to_a_billionth() {
+        let motion = |x, theta, seconds| Motion { change: Pose::new(x, 0.0, theta), seconds };
+        for (apart, alike) in [(0.9e-9, true), (1.1e-9, false)] {
+            for other in [motion(apart, 0.0, 0.0), motion(0.0, apart, 0.0), motion(0.0, 0.0, apart)] {
+                assert_eq!(Motion::default().ends_like(&other), alike, "{other:?}");
+            }
+        }
     }
 
     #[test]

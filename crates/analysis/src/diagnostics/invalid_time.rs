@@ -1,9 +1,10 @@
-//! `invalid-time`: a wait of no time or of more than a day, or rounds that take more than 30 days.
+//! `invalid-time`: a wait of no time or of more than a day, or a plan of more than 30 days.
 
 use pydslrep_kinematics::{Drive, LONGEST_PLAN};
 use pydslrep_syntax::ast::{Action, ActionKind, Entity, Movement, Number, Repeat, Rounds, Wait};
 use rustc_hash::FxHashMap;
 
+use super::calls;
 use super::context::Context;
 use super::problem::Problem;
 use super::{Applicability, Page, Rule};
@@ -13,7 +14,7 @@ use crate::{EntityId, Severity};
 pub(super) static RULE: Rule = Rule {
     code: "invalid-time",
     severity: Severity::Warning,
-    summary: "a wait of 0 seconds; an error if negative, longer than a day, or if a `repeat` takes more than 30 days",
+    summary: "a wait of 0 seconds; an error if negative, longer than a day, or if rounds take more than 30 days",
     tag: None,
     applicability: Applicability::Safe,
     page: PAGE,
@@ -22,7 +23,8 @@ pub(super) static RULE: Rule = Rule {
 
 const PAGE: Page = Page {
     what: "A robot waits for a negative time, for more than a day, or for 0 seconds, which is a warning. Or the \
-        rounds of a `repeat` take more than 30 days.",
+        rounds of a `repeat` take more than 30 days, alone or with the rest of their movement: then the longest \
+        `repeat` is marked. Where a condition decides, the shortest time counts.",
     why: "A wait of 0 seconds does nothing. Nobody wants a robot to wait for days: usually there are some \
         zeros too many. For a whole day, write 86400.",
     imports: &[],
@@ -74,56 +76,78 @@ fn wait(context: &Context<'_>, action: &Action, seconds: &Number) -> Option<Prob
     })
 }
 
-/// The first loop whose rounds take longer than a plan may, if everything up to its end is known.
-fn too_long(context: &Context<'_>, movement: &Movement) -> Option<Problem> {
-    let is_loop = |action: &Action| matches!(action.kind, ActionKind::Repeat(_));
-    if !movement.actions.iter().any(is_loop) {
-        return None;
-    }
-    let (robot, _) = context.robot(movement.robot.as_ref()?)?;
-    let drive = context.drive(robot)?;
+/// The outermost loops that take longer than a plan may; if only all actions together do, the longest of the loops.
+fn too_long(context: &Context<'_>, movement: &Movement) -> Vec<Problem> {
+    let mut loops = Vec::new();
+    outermost_loops(&movement.actions, true, &mut loops);
+    let robot = movement.robot.as_ref().and_then(|name| context.robot(name));
+    let drive = robot.and_then(|(robot, _)| context.drive(robot));
+    let (false, Some(drive)) = (loops.is_empty(), drive) else { return Vec::new() };
     let mut clock = Clock { context, drive, totals: FxHashMap::default() };
-    for action in &movement.actions {
-        // A number that is out of range is reported where it is.
-        let seconds = clock.seconds(context.id, &Time::of_action(action)?, 0).filter(|it| it.is_finite())?;
-        let ActionKind::Repeat(Repeat { rounds: Some(Rounds::Times(count)), .. }) = &action.kind else {
-            continue;
-        };
-        if seconds > LONGEST_PLAN {
-            let days = LONGEST_PLAN / 86_400.0;
-            let problem = RULE.problem(count.span, format!("these rounds take more than {days} days"));
-            return Some(problem.severity(Severity::Error).help("repeat the block less often"));
-        }
+    let times = loops.iter().map(|found| clock.seconds(context.id, &Time::of_action(found.action), 0));
+    let times: Vec<f64> = times.collect();
+    let timed = || loops.iter().zip(times.iter().copied());
+    let alone = timed().filter(|(_, seconds)| *seconds > LONGEST_PLAN).map(|(found, _)| problem(found));
+    let alone: Vec<Problem> = alone.collect();
+    if !alone.is_empty() || clock.seconds(context.id, &Time::of(&movement.actions), 0) <= LONGEST_PLAN {
+        return alone;
     }
-    None
+    let always = timed().filter(|(found, _)| found.is_always_driven);
+    let longest = always.max_by(|(_, one), (_, other)| one.total_cmp(other));
+    longest.map(|(found, _)| problem(found)).into_iter().collect()
 }
 
-/// Adds up how long movements take that do others.
+/// A `repeat N times` that is in no other.
+struct Loop<'a> {
+    action: &'a Action,
+    count: &'a Number,
+    /// No condition decides about it.
+    is_always_driven: bool,
+}
+
+fn outermost_loops<'a>(actions: &'a [Action], is_always_driven: bool, found: &mut Vec<Loop<'a>>) {
+    for action in actions {
+        if let ActionKind::Repeat(Repeat { rounds: Some(Rounds::Times(count)), .. }) = &action.kind {
+            found.push(Loop { action, count, is_always_driven });
+        } else {
+            action.blocks().for_each(|block| outermost_loops(&block.actions, false, found));
+        }
+    }
+}
+
+fn problem(found: &Loop<'_>) -> Problem {
+    let days = LONGEST_PLAN / 86_400.0;
+    let problem = RULE.problem(found.count.span, format!("these rounds take more than {days} days"));
+    problem.severity(Severity::Error).help("repeat the block less often")
+}
+
+/// Adds up how long movements take at least that do others.
 struct Clock<'c, 'a> {
     context: &'c Context<'a>,
     drive: Drive,
-    totals: FxHashMap<EntityId, Option<f64>>,
+    totals: FxHashMap<EntityId, f64>,
 }
 
 impl Clock<'_, '_> {
     /// What is done is done by the movement with this id.
-    fn seconds(&mut self, id: EntityId, time: &Time, depth: usize) -> Option<f64> {
+    fn seconds(&mut self, id: EntityId, time: &Time, depth: usize) -> f64 {
         let mut seconds = time.seconds[self.drive as usize];
         for (name, count) in &time.calls {
-            let called = self.context.movement_of(id, name)?;
-            seconds += self.total(called, depth + 1)? * count;
+            if let Some(called) = self.context.movement_of(id, name) {
+                seconds += self.total(called, depth + 1) * count;
+            }
         }
-        Some(seconds)
+        seconds
     }
 
-    fn total(&mut self, id: EntityId, depth: usize) -> Option<f64> {
-        /// Movements do each other far less often in a row; it also ends what goes round in circles.
-        const DEEPEST: usize = 200;
+    fn total(&mut self, id: EntityId, depth: usize) -> f64 {
         if let Some(total) = self.totals.get(&id) {
             return *total;
         }
-        let time = self.context.summary(id)?.time.filter(|_| depth < DEEPEST);
-        let total = time.and_then(|time| self.seconds(id, &time, depth));
+        // What goes round in circles is another mistake, and what is deeper, too.
+        self.totals.insert(id, 0.0);
+        let summary = self.context.summary(id).filter(|_| depth < calls::LONGEST);
+        let total = summary.map_or(0.0, |summary| self.seconds(id, &summary.time, depth));
         self.totals.insert(id, total);
         total
     }
@@ -184,5 +208,33 @@ mod tests {
             program("repeat 29 times { do n }")
         ));
         check_clean(&program("repeat 10000 times { wait 80000 seconds until { s } clear }"));
+    }
+
+    #[test]
+    fn a_plan_counts_as_a_whole() {
+        let told = |actions: &str| {
+            let text = program(actions);
+            let mut database = crate::Database::new();
+            let file = database.open("a.pyr", &text);
+            let all = database.diagnostics(file).into_iter();
+            let own = all.filter(|found| found.code() == super::RULE.code);
+            own.map(|found| found.span.text(&text).to_owned()).collect::<Vec<_>>()
+        };
+        let day = "wait 86400 seconds";
+        let none: [&str; 0] = [];
+        assert_eq!(told(&format!("repeat 30 times {{ {day} }}")), none, "exactly thirty days");
+        assert_eq!(told(&format!("repeat 30 times {{ {day} }} wait 1 seconds")), ["30"]);
+        assert_eq!(
+            told(&format!("repeat 20 times {{ {day} }} repeat 11 times {{ {day} }}")),
+            ["20"],
+            "the longest"
+        );
+        // It takes so long at least, whatever the sensors say.
+        assert_eq!(told(&format!("repeat 40 times {{ wait until {{ s }} clear {day} }}")), ["40"]);
+        assert_eq!(told(&format!("wait until {{ s }} clear repeat 31 times {{ {day} }}")), ["31"]);
+        let ways = |other: &str| {
+            told(&format!("repeat 31 times {{ if {{ s }} clear {{ {day} }} else {{ {other} }} }}"))
+        };
+        assert_eq!((ways(day).len(), ways("turn left").len()), (1, 0), "the shortest way counts");
     }
 }

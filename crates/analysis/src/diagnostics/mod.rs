@@ -1,6 +1,7 @@
 //! The catalogue of problems: one module per code, with its check, its words, its fixes and its tests.
 
 mod ambiguous_import;
+mod calls;
 mod consequences;
 mod context;
 mod deprecated_ip_clause;

@@ -1,8 +1,9 @@
-//! `nested-too-deep`: more than 16 blocks, one in another.
+//! `nested-too-deep`: more than 16 blocks, one in another, or too many movements that do each other.
 
 use pydslrep_syntax::ast::{Action, Entity, Movement};
 use pydslrep_syntax::{EntityKind, escape, format};
 
+use super::calls::{self, Calls, LONGEST};
 use super::context::Context;
 use super::edits::ProblemEdit;
 use super::problem::Problem;
@@ -20,7 +21,7 @@ pub(super) static RULE: Rule = Rule {
 };
 
 const PAGE: Page = Page {
-    what: "More than 16 blocks are one in another, or more than 100 movements do each other in a row.",
+    what: "More than 16 blocks are one in another, or more than 200 movements do each other in a row.",
     why: "Python, in which scripts are written, has a limit for blocks within each other, and nobody can \
         follow so many. Put the inner ones into a movement of their own, and `do` that.",
     imports: &[],
@@ -70,6 +71,11 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let mut found = Vec::new();
     too_deep(&movement.actions, 0, &mut found);
     problems.extend(found.into_iter().map(|action| problem(context, movement, action)));
+    let done = calls::of(context, movement).filter(|(_, calls)| matches!(calls, Calls::TooMany));
+    problems.extend(done.map(|(name, _)| {
+        RULE.problem(name.span, format!("more than {LONGEST} movements do each other in a row from here"))
+            .help("put what they do into fewer movements")
+    }));
 }
 
 /// The actions whose blocks are one too many. The parser has left out what is much deeper.
@@ -140,5 +146,33 @@ mod tests {
             "#]],
         );
         check_clean(&program(&nested(16)));
+        assert_eq!(count(&program(&nested(17))), 1);
+    }
+
+    /// How often it is reported.
+    fn count(text: &str) -> usize {
+        let mut database = crate::Database::new();
+        let file = database.open("a.pyr", text);
+        database.diagnostics(file).iter().filter(|found| found.code() == super::RULE.code).count()
+    }
+
+    #[test]
+    fn blocks_of_what_is_done_do_not_count() {
+        let nested = |inner: &str| format!("{}{inner}{}", "repeat 2 times { ".repeat(16), " }".repeat(16));
+        let other = format!("\nmovement n of r {{ {} }}", nested("turn left"));
+        assert_eq!(count(&(program(&nested("do n")) + &other)), 0);
+    }
+
+    #[test]
+    fn movements_do_each_other_two_hundred_times() {
+        let row = |count: usize, last: &str| {
+            let each = (1..count).map(|n| format!("movement m{n} of r {{ do m{} }}\n", n + 1));
+            format!("{PARTS}{}movement m{count} of r {{ {last} }}\n", each.collect::<String>())
+        };
+        assert_eq!(count(&row(200, "turn left")), 0);
+        assert_eq!(count(&row(201, "turn left")), 0, "the first one does two hundred");
+        assert_eq!(count(&row(203, "turn left")), 2);
+        // Too large a circle to be called one, but not to be told.
+        assert_eq!(count(&row(300, "do m1")), 300);
     }
 }

@@ -29,8 +29,9 @@ const PAGE: Page = Page {
     why: "Contact stops a robot: the action would fail after five seconds without progress, and everything after it \
         would not happen. The first obstacle on each robot's way is reported, and for each two robots the first time \
         they meet. An obstacle that moves is looked for where it is at the time of the action; after an action of unknown \
-        duration, it is not looked for. What depends on the world, `turn … until` and `slam`, is not predicted, nor is what comes after \
-        it.",
+        duration, it is not looked for. What depends on the world is not predicted, nor is what comes after it: an action or \
+        a `repeat` with `until`, an `if` whose branches end differently, and `slam`. Only the first 100 000 actions of a robot \
+        are looked at, and of these as many as the search can follow in a bounded number of steps.",
     imports: &[("yard.scene.toml", "[[box]]\nname = \"crate\"\nat = [1.5, 0]\nsize = [0.4, 0.4]")],
     example: "\
 wheel wheelL with radius 4.5
@@ -237,6 +238,32 @@ mod tests {
     }
 
     #[test]
+    fn an_obstacle_that_comes_to_a_robot_that_waits() {
+        check(
+            "movement m of r { wait 20 seconds }\nenvironment e has { r } robots with { m } moves",
+            "[[cylinder]]\nname = \"person\"\nradius = 0.2\npath = [[0, 3, 0], [10, 0, 0]]",
+            &expect![[r#"
+            wait 20 seconds: `r` runs into `person` here after 8.8 s, at x 0 m, y 0 m
+        "#]],
+        );
+    }
+
+    #[test]
+    fn nothing_is_told_where_sensors_decide() {
+        for actions in [
+            "move 20 centimeters move 2 meters until { s } detect",
+            "move 20 centimeters if { s } clear { move 2 meters } else { turn left }",
+            "repeat until { s } detect { move 1 meters }",
+        ] {
+            let program = format!(
+                "sensor s robot c with port 3 has {{ a b }} wheels with sensors {{ s }}\n\
+                 movement m of c {{ {actions} }}\nenvironment e has {{ c }} robots with {{ m }} moves"
+            );
+            check(&program, CRATE, &expect![[""]]);
+        }
+    }
+
+    #[test]
     fn robots_that_meet() {
         let program = "parallel movement m of r { move 2 meters } parallel movement n of q { turn left move 2 meters }\n\
             environment e has { r q } robots with { m n } moves";
@@ -272,5 +299,16 @@ mod tests {
         let radius = u32::try_from(PARTS.find("4 wheel b").unwrap()).unwrap();
         database.edit(parts, Span::new(radius, radius + 1), "x");
         assert_eq!(said(&database, "parts.pyr"), "", "what has errors is not planned");
+    }
+
+    #[test]
+    fn the_page_says_what_is_not_looked_at() {
+        let why = super::PAGE.why;
+        let digits = why.replace(' ', "");
+        assert!(digits.contains(&format!("{}actions", pydslrep_kinematics::MOST_ACTIONS)), "{why}");
+        // The bound of the search is `MOST_STEPS` in `pydslrep_scene`.
+        for words in ["the search", "`until`", "`if`", "`slam`"] {
+            assert!(why.contains(words), "{words}: {why}");
+        }
     }
 }

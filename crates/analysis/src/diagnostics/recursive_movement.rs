@@ -1,8 +1,8 @@
 //! `recursive-movement`: a movement does itself, perhaps by way of others.
 
-use pydslrep_syntax::ast::{Action, Entity, Name};
-use rustc_hash::FxHashMap;
+use pydslrep_syntax::ast::{Entity, Name};
 
+use super::calls::{self, Calls};
 use super::context::Context;
 use super::problem::Problem;
 use super::{Applicability, Page, Rule};
@@ -40,45 +40,13 @@ movement trip of rover { repeat 100 times { move 1 meters } }
 environment yard has { rover } robots with { trip } moves",
 };
 
-/// The longest way that is followed: far more movements than do each other in any program.
-const LONGEST: usize = 200;
-
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
-    let mut ways = FxHashMap::default();
-    for done in movement.all_actions().filter_map(Action::done) {
-        let Some((id, _)) = context.movement(done) else { continue };
-        let way = ways.entry(id).or_insert_with(|| way_back(context, id));
-        problems.extend(way.as_ref().map(|way| problem(context, done, way)));
-    }
-}
-
-/// The shortest way of calls from a movement back to the one that is checked, both ends included.
-fn way_back(context: &Context<'_>, from: EntityId) -> Option<Vec<EntityId>> {
-    let mut before: FxHashMap<EntityId, EntityId> = FxHashMap::default();
-    let mut row = vec![from];
-    for _ in 0..LONGEST {
-        if row.contains(&context.id) {
-            let mut way = vec![context.id];
-            while let Some(id) = way.last().filter(|id| **id != from).and_then(|id| before.get(id)) {
-                way.push(*id);
-            }
-            way.reverse();
-            return Some(way);
-        }
-        let mut next = Vec::new();
-        for id in row {
-            let does = context.summary(id).map(|summary| summary.does).unwrap_or_default();
-            for other in does.iter().filter_map(|name| context.movement_of(id, name)) {
-                if other != from && !before.contains_key(&other) {
-                    before.insert(other, id);
-                    next.push(other);
-                }
-            }
-        }
-        row = next;
-    }
-    None
+    let done = calls::of(context, movement);
+    problems.extend(done.filter_map(|(name, calls)| match calls {
+        Calls::Back(way) => Some(problem(context, name, &way)),
+        Calls::TooMany | Calls::Elsewhere => None,
+    }));
 }
 
 fn problem(context: &Context<'_>, done: &Name, way: &[EntityId]) -> Problem {
@@ -146,5 +114,24 @@ mod tests {
         let file = database.open("a.pyr", &format!("{}\nmovement n of r {{ do n }}", program("do n")));
         let found = database.diagnostics(file);
         assert_eq!(found.iter().filter(|found| found.code() == "recursive-movement").count(), 1);
+    }
+
+    #[test]
+    fn circles_lead_over_files() {
+        let mut database = crate::Database::new();
+        let importing = format!("import \"b.pyr\"\n{}\nmovement o of r {{ do m }}", program("do n"));
+        let a = database.open("a.pyr", &importing);
+        let b = database.open("b.pyr", "import \"a.pyr\"\nmovement n of r { turn left do m }");
+        let mut said = Vec::new();
+        for file in [a, b] {
+            let own = database.diagnostics(file).into_iter().filter(|found| found.code() == super::RULE.code);
+            said.extend(own.map(|found| {
+                let way = found.related.iter().map(|step| (step.file, database.slice(step.file, step.span)));
+                (file, database.slice(file, found.span), way.collect::<Vec<_>>())
+            }));
+        }
+        let [n, m] = ["n", "m"].map(str::to_owned);
+        // Nothing is said of `o`, which only leads to it.
+        assert_eq!(said, [(a, n.clone(), vec![(b, n.clone())]), (b, m.clone(), vec![(a, m)])]);
     }
 }
