@@ -60,9 +60,9 @@ impl<'a> Statements<'a> {
     fn choice(&self, branches: &[Branch], otherwise: &[Action], indent: usize) -> String {
         let mut lines = Vec::with_capacity(branches.len() + 1);
         for (index, branch) in branches.iter().enumerate() {
-            let words = if index == 0 { Words::If } else { Words::Elif };
+            let (words, before) = if index == 0 { (Words::If, "") } else { (Words::Elif, "else ") };
             let head = self.clause(words, "check", vec![self.condition("", &branch.condition)]);
-            let comment = comment(&branch.source, &branch.text);
+            let comment = comment(&branch.source, &format!("{before}{}", branch.text));
             lines.push(self.block(&head, &comment, &branch.body, indent));
         }
         if !otherwise.is_empty() {

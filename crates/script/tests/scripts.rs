@@ -13,6 +13,7 @@ use common::{
     area_1, environment, four_robots, move_by, movement, robot, sensors, slam, turn, turn_until, with_sensors,
 };
 use expect_test::{Expect, expect, expect_file};
+use pydslrep_analysis::Database;
 use pydslrep_analysis::environment::{Action, Environment, Sensor, SensorKind, Source};
 use pydslrep_kinematics::Drive;
 use pydslrep_script::{Origin, REQUIREMENTS, REQUIREMENTS_SLAM, Target, file_name, generate, origin};
@@ -99,6 +100,112 @@ fn only_what_is_used_is_imported() {
     assert_eq!(imports(&area_1(Drive::FourWheel)), "FourWheelRobot movement");
     assert_eq!(imports(&area_1(Drive::FourMecanum)), "MecanumRobot movement");
     assert_eq!(imports(&four_robots()), "FourWheelRobot MecanumRobot TwoWheelRobot movement parallel");
+}
+
+/// One line for one line: the 20 statements of a program that has every form.
+#[test]
+fn statements_are_lines_nested_as_in_the_program() {
+    let program = "\
+wheel a with radius 4
+wheel b with radius 4
+sensor front
+sensor side
+sensor nose : bumper
+robot rover type tw with port 23000 has { a b } wheels with sensors { front, side, nose }
+movement trip of rover {
+  repeat 4 times {
+    do corner
+    move 3 meters until { front } detect within 40 centimeters
+  }
+  move at 20 until { front side } clear
+  repeat until { front } detect within 0.4 meters {
+    turn left 90 with radius 1.5 meters in reverse
+    turn right with radius 80 centimeters at 20
+  }
+  if { nose } detect {
+    wait 2 seconds
+  } else if { front } clear {
+    turn left until { front } detect
+  } else {
+    wait until { side } clear
+  }
+  if { side } clear { }
+  wait 5 seconds until { side } clear
+  turn left at 5
+  turn right 45 until { front } detect
+  turn left until { front }
+}
+movement nobody of rover { turn left }
+parallel movement corner of rover { turn left do step }
+movement step of rover { move 1 meters }
+environment yard has { rover } robots with { trip } moves
+";
+    let mut database = Database::new();
+    let file = database.open(PROGRAM, program);
+    let environment = database.environment(database.environments(file)[0].0).expect("no errors");
+    check(
+        &environment,
+        &expect![[r#"
+            rover = TwoWheelRobot(
+                "rover",
+                port=23000,
+                left=("a", 0.04),
+                right=("b", 0.04),
+                sensors=["front", "side"],
+                bumpers=["nose"],
+            )
+
+
+            @movement
+            async def step() -> None:
+                await rover.move(1.0)  # line 32: move 1 meters
+
+
+            @movement
+            async def corner() -> None:
+                await rover.turn(90.0)  # line 31: turn left
+                await step()  # line 31: do step
+
+
+            @movement
+            async def trip() -> None:
+                for _ in rover.repeat(4):  # line 8: repeat 4 times
+                    await corner()  # line 9: do corner
+                    # line 10: move 3 meters until { front } detect within 40 centimeters
+                    await rover.move(3.0, until=detects("front", within=0.4))
+                # line 12: move at 20 until { front side } clear
+                await rover.move(speed=0.2, until=clear("front", "side"))
+                # line 13: repeat until { front } detect within 0.4 meters
+                async for _ in rover.repeat_until(detects("front", within=0.4)):
+                    # line 14: turn left 90 with radius 1.5 meters in reverse
+                    await rover.arc(90.0, radius=1.5, reverse=True)
+                    # line 15: turn right with radius 80 centimeters at 20
+                    await rover.arc(-90.0, radius=0.8, speed=0.2)
+                if await rover.check(detects("nose")):  # line 17: if { nose } detect
+                    await rover.wait(2.0)  # line 18: wait 2 seconds
+                elif await rover.check(clear("front")):  # line 19: if { front } clear
+                    # line 20: turn left until { front } detect
+                    await rover.turn("left", until=detects("front"))
+                else:
+                    await rover.wait(until=clear("side"))  # line 22: wait until { side } clear
+                if await rover.check(clear("side")):  # line 24: if { side } clear
+                    pass
+                # line 25: wait 5 seconds until { side } clear
+                await rover.wait(5.0, until=clear("side"))
+                await rover.turn(90.0, speed=0.05)  # line 26: turn left at 5
+                # line 27: turn right 45 until { front } detect
+                await rover.turn(-45.0, until=detects("front"))
+                await rover.turn_until_free("left", "front")  # line 28: turn left until { front }
+
+
+            async def yard() -> None:
+                await trip()
+
+
+            if __name__ == "__main__":
+                run(yard, robots=[rover], version="0.2.0")
+        "#]],
+    );
 }
 
 #[test]
