@@ -157,7 +157,7 @@ def checks() -> list[Job]:
         Job(
             "wasm",
             (
-                "cargo check --locked --quiet --target wasm32-unknown-unknown --package pydslrep-browser --package pydslrep-picture",
+                "cargo clippy --locked --quiet --target wasm32-unknown-unknown --package pydslrep-browser --package pydslrep-picture -- --deny warnings",
             ),
             after=("build",),
             cargo=True,
