@@ -21,7 +21,7 @@ from pydslrep_runtime import (
     vrep,
 )
 from pydslrep_runtime.checked_backend import CheckedBackend
-from pydslrep_runtime.facts import RIM_SPEED
+from pydslrep_runtime.facts import RIM_ACCELERATION, RIM_SPEED
 
 # m of way to stop from 9 cm/s: by the ramp, and a step further.
 BRAKING = RIM_SPEED**2 / (2.0 * 0.5) + RIM_SPEED * 0.05
@@ -133,6 +133,22 @@ def test_a_move_stops_and_the_next_one_goes_on(
     drive_alone(FakeWorld(fake), monkeypatch, drive, actions)
 
 
+@pytest.mark.parametrize("speed", [0.03, RIM_SPEED, 0.3])
+def test_a_robot_brakes_by_its_ramp(
+    speed: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fake = robot_with(f=beyond(0.5))
+    drive_alone(
+        FakeWorld(fake),
+        monkeypatch,
+        "two-wheel",
+        lambda robot: robot.move(speed=speed, until=detects("f")),
+    )
+    braking = speed**2 / (2.0 * RIM_ACCELERATION) + speed * 0.05
+    # It is noticed a step later at most.
+    assert 0.5 <= fake.x < 0.5 + speed * 0.05 + braking
+
+
 def test_a_move_that_is_deflected_and_stops_fails(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -176,6 +192,22 @@ def test_a_distance_ends_a_move_normally(monkeypatch: pytest.MonkeyPatch) -> Non
 
     drive_alone(FakeWorld(fake), monkeypatch, "two-wheel", actions)
     assert errors(fake, -0.3, 0.2, math.radians(90.0))[0] < 0.001
+
+
+def test_a_time_ends_a_wait_and_an_angle_a_circle_normally(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    fake = robot_with(f=lambda _: False)
+
+    async def actions(robot: Robot) -> None:
+        await robot.wait(0.05)
+        began = robot.time
+        await robot.wait(0.5, until=detects("f"))
+        assert robot.time - began == pytest.approx(0.5)
+        await robot.arc(90.0, radius=0.3, until=detects("f"))
+
+    drive_alone(FakeWorld(fake), monkeypatch, "two-wheel", actions)
+    assert errors(fake, 0.3, 0.3, math.radians(90.0))[0] < 0.001
 
 
 def test_a_condition_that_holds_before_means_no_motion(
@@ -273,6 +305,24 @@ def test_an_action_without_an_end_fails(
     with pytest.raises(MovementError) as error:
         drive_alone(FakeWorld(fake), monkeypatch, "two-wheel", act)
     assert str(error.value) == f"robot r, movement m, action 1: {words}"
+
+
+def test_how_far_and_how_long_an_open_end_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    fake = robot_with(f=lambda _: False)
+    world = FakeWorld(fake)
+    times: list[float] = []
+
+    async def actions(robot: Robot) -> None:
+        with pytest.raises(MovementError):
+            await robot.move(speed=4.0, until=detects("f"))
+        assert fake.x == pytest.approx(100.0, abs=0.001)
+        times.append(robot.time)
+        with pytest.raises(MovementError):
+            await robot.wait(until=detects("f"))
+        times.append(robot.time)
+
+    drive_alone(world, monkeypatch, "two-wheel", actions)
+    assert times[1] - times[0] == pytest.approx(600.0, abs=world.dt)
 
 
 @pytest.mark.parametrize(

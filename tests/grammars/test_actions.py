@@ -135,3 +135,10 @@ def test_others_have_the_same_keywords(
     texts += [NESTED, ACTIONS]
     for text, (_, colours) in zip(texts, textmate.read(texts), strict=True):
         assert keywords(text, other(text)) == keywords(text, colours)
+
+
+def test_only_a_brace_ends_a_list_of_sensors(tree_sitter: TreeSitter) -> None:
+    """The words of actions are names there, so that an action cannot end it."""
+    begun = "movement m of r { repeat 2 times { turn left until { a wait repeat if"
+    assert tree_sitter.read(f"{begun} }} clear wait 1 seconds }} }}")[0]
+    assert not tree_sitter.read(f"{begun} clear wait 1 seconds }} }}")[0]

@@ -124,6 +124,9 @@ def test_scripts_pass_ruff_and_mypy(
         for file in (folder / "out").glob("*.py"):
             shutil.copy(file, scripts / f"script_{number}_{file.name}")
     check_scripts(scripts)
+    for script in scripts.iterdir():
+        # Python has a limit that the tools do not know.
+        compile(script.read_text(encoding="utf-8"), script.name, "exec")
 
 
 INNERMOST = 15

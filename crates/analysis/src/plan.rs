@@ -290,4 +290,49 @@ mod tests {
         assert!((end.theta.abs() - std::f64::consts::PI).abs() < 1e-9, "{end:?}");
         assert!(plan.duration.is_some_and(|seconds| seconds > 3.0 * 4.0 / 0.09));
     }
+
+    #[test]
+    fn circles_are_to_the_side_that_the_program_says() {
+        for (turn, (x, y, degrees)) in [
+            ("turn left with radius 1 meters", (1.0, 1.0, 90.0_f64)),
+            ("turn right with radius 100 centimeters at 5", (1.0, -1.0, -90.0)),
+            ("turn left -90 with radius 1 meters", (1.0, -1.0, -90.0)),
+            ("turn left with radius 1 meters in reverse", (-1.0, -1.0, 90.0)),
+            ("turn right -90 with radius 1 meters in reverse", (-1.0, -1.0, 90.0)),
+        ] {
+            let environment = environment(&format!(
+                "wheel l with radius 4\nwheel r with radius 4\nrobot a type tw with port 1 has {{ l r }} wheels\n\
+                 movement go of a {{ {turn} }}\nenvironment e has {{ a }} robots with {{ go }} moves\n"
+            ));
+            let end = plan(&environment, &scene(&environment)).unwrap().robots[0].end();
+            let there = kinematics::Pose::new(x, y, degrees.to_radians());
+            assert!(end.distance(&there) < 1e-9 && (end.theta - there.theta).abs() < 1e-9, "{turn}: {end:?}");
+        }
+    }
+
+    #[test]
+    fn what_sensors_decide_is_unknown() {
+        for (action, ways) in [
+            ("move 1 meters until { eye } detect", 1),
+            ("move until { eye } detect", 0),
+            ("turn left 30 until { eye } detect", 1),
+            ("turn left 30 with radius 1 meters until { eye } detect", 1),
+            ("turn left with radius 1 meters until { eye } detect", 0),
+            ("wait 1 seconds until { eye } detect", 1),
+            ("wait until { eye } detect", 0),
+            ("repeat until { eye } detect { wait 1 seconds }", 0),
+            ("if { eye } clear { turn left 360 }", 1),
+        ] {
+            let environment = environment(&format!(
+                "wheel l with radius 4\nwheel r with radius 4\nsensor eye\n\
+                 robot a type tw with port 1 has {{ l r }} wheels with sensors {{ eye }}\n\
+                 movement go of a {{ {action} move 1 meters }}\nenvironment e has {{ a }} robots with {{ go }} moves\n"
+            ));
+            let plan = plan(&environment, &scene(&environment)).unwrap();
+            let path = &plan.robots[0];
+            let lost = path.unknown_after.map(|index| index.action);
+            assert_eq!((path.legs.len(), lost, path.possible.len()), (0, Some(0), ways), "{action}");
+            assert_eq!(plan.duration, None, "{action}");
+        }
+    }
 }

@@ -718,6 +718,25 @@ environment e with ip here has { ^left q q } robots with { m n o m } moves";
     }
 
     #[test]
+    fn what_is_done_comes_before_what_does_it_and_what_nobody_runs_is_left_out() {
+        let environment = only(
+            "wheel a with radius 4 wheel b with radius 4 robot r with port 1 has { a b } wheels\n\
+             movement trip of r { do side repeat 2 times { do corner } } movement nobody of r { do side }\n\
+             parallel movement corner of r { turn left do step } movement step of r { move 1 meters }\n\
+             movement side of r { do step } parallel movement last of r { turn right }\n\
+             environment e has { r } robots with { last trip trip } moves",
+        )
+        .unwrap();
+        let names: Vec<&str> = environment.movements.iter().map(|movement| movement.name.as_str()).collect();
+        assert_eq!(names, ["last", "step", "side", "corner", "trip"]);
+        assert_eq!(
+            environment.schedule,
+            [vec![0], vec![4], vec![4]],
+            "`parallel` counts where it is listed only"
+        );
+    }
+
+    #[test]
     fn errors_anywhere_below_block_it() {
         let blocked = only(PROGRAM).unwrap_err();
         assert_eq!(blocked.errors.len(), 1, "{blocked:#?}");

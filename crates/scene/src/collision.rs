@@ -450,6 +450,39 @@ mod tests {
     }
 
     #[test]
+    fn nothing_is_said_of_what_is_not_listed() {
+        let wall = Obstacle::wall("w", (3.0, -1.0), (3.0, 1.0), 0.1);
+        let scene = scene(&[Pose::default(), Pose::new(2.0, -2.0, FRAC_PI_2)], vec![wall]);
+        let robots: Vec<_> = scene
+            .robots
+            .iter()
+            .map(|robot| RobotPlan { model: robot.model().unwrap(), start: robot.start })
+            .collect();
+        // It comes to where the other one is after its first move, which has gone on by then.
+        let slowly = Action::Move { distance: 2.0, speed: 0.05 };
+        let runs =
+            vec![Run { robot: 0, actions: vec![AHEAD, AHEAD] }, Run { robot: 1, actions: vec![slowly] }];
+        let mut plan = plan(&robots, &[runs]).unwrap();
+        let met = collisions(&scene, &plan);
+        assert!(met.len() == 1 && met[0].with == Thing::Obstacle(0), "{met:?}");
+        plan.robots[0].legs.truncate(1);
+        plan.robots[0].truncated = true;
+        assert_eq!(collisions(&scene, &plan), [], "nor does it stay where the list ends");
+    }
+
+    #[test]
+    fn the_search_has_a_bound() {
+        // Along a wall that is half a millimetre from a touch, each step is a millimetre.
+        let met = |x: f64| {
+            let beside = Obstacle::wall("beside", (-1.0, 0.2015), (40.0, 0.2015), 0.1);
+            let ahead = Obstacle::wall("ahead", (x, -1.0), (x, 0.0), 0.1);
+            let scene = scene(&[Pose::default()], vec![beside, ahead]);
+            found(&scene, &[&[(0, &[Action::Move { distance: 30.0, speed: 0.1 }])]]).len()
+        };
+        assert_eq!((met(15.0), met(25.0)), (1, 0));
+    }
+
+    #[test]
     fn a_body_at_rest_is_met_by_an_obstacle_that_comes() {
         let scene = scene(&[], vec![post(&[[0.0, 3.0, 0.0], [10.0, 3.0, 0.0], [40.0, 0.0, 0.0]], false)]);
         let mut obstacles = Obstacles::of(&scene);

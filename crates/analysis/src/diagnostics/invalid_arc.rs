@@ -107,6 +107,9 @@ mod tests {
                   help: write a shorter radius
             "#]],
         );
+        check_clean(&program(
+            "turn left with radius 1000000 meters turn left with radius 100000000 centimeters",
+        ));
         check(
             &program("turn left 0 with radius 1 meters turn left in reverse"),
             &expect![[r#"

@@ -203,7 +203,10 @@ mod tests {
         let file = database.file(path).unwrap();
         let diagnostics = database.diagnostics(file).into_iter();
         let own = diagnostics.filter(|found| found.code() == "invalid-within");
-        let lines = own.map(|found| format!("{}: {}\n", database.slice(file, found.span), found.message));
+        let lines = own.map(|found| {
+            assert_eq!(found.severity, crate::Severity::Warning);
+            format!("{}: {}\n", database.slice(file, found.span), found.message)
+        });
         lines.collect::<Vec<_>>().concat()
     }
 

@@ -101,4 +101,17 @@ mod tests {
         );
         check_clean(&format!("{}\nmovement n of r {{ turn left }}", program("do n")));
     }
+
+    #[test]
+    fn a_robot_of_the_same_name_is_another_one() {
+        let said = |own: &str| {
+            let mut database = crate::Database::new();
+            database.open("parts.pyr", &format!("{PARTS}movement n of r {{ turn left }}"));
+            let text = format!("import \"parts.pyr\"\n{own}movement m of r {{ do n }}");
+            let file = database.open("a.pyr", &text);
+            database.diagnostics(file).iter().filter(|found| found.code() == super::RULE.code).count()
+        };
+        let robot = "robot r with port 1 has { a b } wheels\n";
+        assert_eq!((said(""), said(robot)), (0, 1));
+    }
 }

@@ -122,5 +122,9 @@ mod tests {
         check_clean(&format!(
             "{PARTS}parallel movement n of q {{ turn left }}\nenvironment e has {{ r q }} robots with {{ m n }} moves"
         ));
+        // What another movement does is no part of a list.
+        check_clean(&format!(
+            "{PARTS}movement n of r {{ do m }}\nenvironment e has {{ r }} robots with {{ n }} moves"
+        ));
     }
 }

@@ -352,3 +352,28 @@ fn json_action<'a>(planned: &'a Planned, index: ActionIndex, place: &Place) -> J
         rounds: found.map(|found| found.rounds).unwrap_or_default(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use pydslrep_analysis::{Database, scene};
+    use serde_json::Value;
+
+    use super::*;
+
+    #[test]
+    fn a_list_that_ends_early_says_so() {
+        let program = "wheel a with radius 4 wheel b with radius 4 robot r type tw with port 1 has { a b } wheels\n\
+            movement m of r { move 1 meters } environment e has { r } robots with { m } moves";
+        let mut database = Database::new();
+        let file = database.open("x.pyr", program);
+        let environment = database.environment(database.environments(file)[0].0).unwrap();
+        let scene = scene(&environment);
+        let Ok(mut planned) = Planned::new(environment, scene) else { panic!("it can be planned") };
+        for truncated in [None, Some(Value::Bool(true))] {
+            planned.plan.robots[0].truncated = truncated.is_some();
+            let Ok(text) = json(std::slice::from_ref(&planned)) else { panic!("it can be written") };
+            let plans: Value = serde_json::from_str(&text).unwrap();
+            assert_eq!(plans[0]["robots"][0].get("truncated"), truncated.as_ref());
+        }
+    }
+}

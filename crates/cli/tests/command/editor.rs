@@ -38,3 +38,20 @@ fn shells_can_complete() {
         assert!(done.out.contains("pydslrep") && done.out.contains("check"), "{shell}");
     }
 }
+
+#[test]
+fn an_editor_is_served_in_an_edition() {
+    let messages = [
+        r#"{"jsonrpc":"2.0","id":1,"method":"initialize","params":{"capabilities":{"textDocument":{"diagnostic":{}}}}}"#,
+        r#"{"jsonrpc":"2.0","method":"initialized","params":{}}"#,
+        r#"{"jsonrpc":"2.0","method":"textDocument/didOpen","params":{"textDocument":{"uri":"file:///x.pyr","languageId":"pydslrep","version":1,"text":"movement m of r { wait 1 seconds }"}}}"#,
+        r#"{"jsonrpc":"2.0","id":2,"method":"textDocument/diagnostic","params":{"textDocument":{"uri":"file:///x.pyr"}}}"#,
+        r#"{"jsonrpc":"2.0","id":3,"method":"shutdown"}"#,
+        r#"{"jsonrpc":"2.0","method":"exit"}"#,
+    ];
+    let framed = messages.map(|message| format!("Content-Length: {}\r\n\r\n{message}", message.len()));
+    for (arguments, is_told) in [(&["lsp"][..], false), (&["lsp", "--edition", "article"], true)] {
+        let done = Place::new().run_with(arguments, framed.concat().as_bytes());
+        assert_eq!((done.code, done.out.contains("not-in-article")), (Some(0), is_told), "{}", done.out);
+    }
+}

@@ -75,6 +75,21 @@ environment e has { r } robots with { m } moves";
 }
 
 #[test]
+fn what_is_unknown_says_by_which_calls_it_is_reached() {
+    let program = "\
+wheel a with radius 4.5 wheel b with radius 4.5 sensor eye
+robot r with port 1 has { a b } wheels with sensors { eye }
+movement m of r { turn left repeat 2 times { do side } }
+movement side of r { move 1 meters wait until { eye } clear }
+environment e has { r } robots with { m } moves";
+    let done = Place::with("x.pyr", program).run(&["plan", "--json", "x.pyr"]);
+    let plans: Value = serde_json::from_str(&done.out).unwrap();
+    let calls = json!([{"movement": "m", "action": 3}]);
+    let lost = json!({"movement": "m", "run": 1, "action": 2, "line": 4, "rounds": [1], "calls": calls});
+    assert_eq!(plans[0]["robots"][0]["unknown_after"], lost);
+}
+
+#[test]
 fn a_table_for_people() {
     let program = "\
 wheel a with radius 4.5 wheel b with radius 9

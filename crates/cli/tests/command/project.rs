@@ -146,6 +146,24 @@ fn scripts_are_for_the_target_that_it_says() {
 }
 
 #[test]
+fn each_command_takes_an_edition() {
+    let place = Place::with("x.pyr", fine("yard").replace("move 1 meters", "wait 1 seconds"));
+    for command in ["check", "build", "plan", "run"] {
+        let done = place.run(&[command, "x.pyr", "--edition", "article"]);
+        assert_eq!(done.code, Some(1), "{command} {}", done.err);
+        let said = done.out + &done.err;
+        assert!(said.contains("error[not-in-article]: the article does not have `wait`"), "{command} {said}");
+        let done = place.run(&[command, "x.pyr", "--edition", "old"]);
+        assert_eq!(done.code, Some(2), "{command}");
+    }
+    assert!(!place.path("yard.py").exists());
+    assert_eq!(reported(&place, &[]), Vec::<String>::new());
+    place.write("pydslrep.toml", "edition = \"article\"\n");
+    assert_eq!(reported(&place, &[]), ["not-in-article error"]);
+    assert_eq!(reported(&place, &["--edition", "current"]), Vec::<String>::new(), "the option wins");
+}
+
+#[test]
 fn a_missing_client_of_vrep_is_explained() {
     let place = Place::with("x.pyr", fine("yard"));
     place.write("pydslrep.toml", "target = \"vrep\"\n");

@@ -209,6 +209,26 @@ fn a_robot_that_stands_still_and_is_struck_gets_a_warning() {
 }
 
 #[test]
+fn a_robot_that_waits_and_is_struck_goes_on_with_a_warning() {
+    let program = "\
+wheel a with radius 4.5 wheel b with radius 4.5
+robot guard with port 1 has { a b } wheels
+movement stand of guard { wait 8 seconds move 20 centimeters }
+environment hall has { guard } robots with { stand } moves";
+    let place = Place::with("x.pyr", program);
+    let path = "path = [[0, 0, 1], [3, 0, 1], [5, 0, -1], [6, -3, -1]]";
+    place.write("hall.scene.toml", format!("[[cylinder]]\nname = \"person\"\nradius = 0.2\n{path}\n"));
+    let done = run(&place, &["x.pyr", "--no-progress"]);
+    assert_eq!(done.code, Some(0), "{}", done.err);
+    let err = done.err.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        err.contains("`person` ran into `guard`") && err.contains("where it stood still"),
+        "{}",
+        done.err
+    );
+}
+
+#[test]
 fn a_robot_that_drives_and_is_struck_fails() {
     let done = run_with_person("[[0, 0.5, -3], [2, 0.5, -3], [4, 0.5, 3], [5, 5, 3]]", &[]);
     assert_eq!(done.code, Some(1), "{}", done.err);
