@@ -836,7 +836,7 @@ mod tests {
             let mut world = World::new(scene).unwrap();
             drive(&mut world, 0, [left, 2.0]);
             run(&mut world, 2.0);
-            (world.pose(0), [world.angle(0, 0), world.angle(0, 1)])
+            (world.pose(0), vec![world.angle(0, 0), world.angle(0, 1)])
         };
         for left in [2.0, -2.0] {
             let (exact, angles) = end(left, 0.0, 0.0);
