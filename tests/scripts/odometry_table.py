@@ -20,7 +20,6 @@ import socket
 import subprocess
 import sys
 import tempfile
-import time
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -81,7 +80,6 @@ class Result:
     errors: Sequence[float]
     uncertain: int
     seconds: float  # of simulation
-    wall_time: float
 
     @property
     def is_good(self) -> bool:
@@ -105,7 +103,6 @@ def explore(command: str, run: Run, folder: pathlib.Path) -> Result:
         [command, "build", "--stdout", str(program)], check=True, capture_output=True
     )
     (folder / "area_1.py").write_bytes(built.stdout)
-    began = time.monotonic()
     with simulator(command, program, run.seed, folder / "truth"):
         done = subprocess.run(
             [sys.executable, "area_1.py", "--odometry", *OUTPUTS],
@@ -119,14 +116,13 @@ def explore(command: str, run: Run, folder: pathlib.Path) -> Result:
         )
     assert done.returncode == 0, done.stderr
     found = json.loads((folder / "map.json").read_text(encoding="utf-8"))
-    return judged(rooms, found, folder, time.monotonic() - began)
+    return judged(rooms, found, folder)
 
 
 def judged(
     rooms: Rooms,
     found: dict[str, list[dict[str, float]]],
     folder: pathlib.Path,
-    wall_time: float,
 ) -> Result:
     """Compares a map with the simulator's trace."""
     times, places = trace(folder / "truth")
@@ -141,7 +137,6 @@ def judged(
         errors=sorted(errors),
         uncertain=sum("uncertain" in node for node in found["nodes"]),
         seconds=times[-1],
-        wall_time=wall_time,
     )
 
 
