@@ -10,7 +10,7 @@ from ideal_rover import HALF, MOUNTS, RADIUS, IdealRover, at_once, on
 from pydslrep_runtime.backend import SensorCone
 from pydslrep_runtime.errors import MovementError
 from pydslrep_runtime.facts import RIM_SPEED
-from pydslrep_runtime.pose import Pose
+from pydslrep_runtime.pose import Pose, wrap_angle
 from pydslrep_runtime.slam.occupancy_grid import OccupancyGrid, Position, Reading
 from pydslrep_runtime.slam.odometry.odometer import Odometer
 from pydslrep_runtime.slam.odometry.scan import Scan
@@ -27,7 +27,14 @@ class SlippingRobot:
     """The parts of a robot that the rover uses; `here` is its actual pose."""
 
     def __init__(
-        self, rooms: Rooms, slip: float = 0.0, noise: float = 0.0, seed: int = 1
+        self,
+        rooms: Rooms,
+        slip: float = 0.0,
+        noise: float = 0.0,
+        seed: int = 1,
+        *,
+        track_error: float = 0.0,
+        radius_error: float = 0.0,
     ) -> None:
         self.ideal = IdealRover(rooms, OccupancyGrid(RADIUS))
         self.here = Pose(*rooms.start, 0.0)
@@ -36,6 +43,9 @@ class SlippingRobot:
         self.blocks: list[Position] = []
         self.blocked_steps = math.inf  # after which it slides free
         self._dice, self._slip, self._noise = random.Random(seed), slip, noise
+        # What its wheels do not tell.
+        self._track = 2.0 * TURNING_RADIUS * (1.0 + track_error)
+        self._growth = 1.0 + radius_error
         self._wheels = [0.0, 0.0]
         self._angles = [0.0, 0.0]
         self._odometer: Odometer | None = None
@@ -75,19 +85,30 @@ class SlippingRobot:
     async def rotate(
         self,
         angle: float,
-        on_pose: Callable[[Pose], object],
+        on_pose: Callable[[Pose], object] | None = None,
         speed: float = RIM_SPEED,
     ) -> None:
         count = max(1, math.ceil(abs(angle) * TURNING_RADIUS / (speed * STEP)))
-        for _ in range(count):
-            self._roll(0.0, angle / count)
-            on_pose(self.pose())
+        before, left = self.pose(), angle
+        for steps in range(count, 0, -1):
+            self._roll(0.0, left / steps)
+            here = self.pose()
+            # Without odometry, it turns by its wheels.
+            rolled = left / steps
+            left -= (
+                rolled
+                if self._odometer is None
+                else wrap_angle(here.theta - before.theta)
+            )
+            before = here
+            if on_pose is not None:
+                on_pose(here)
 
     async def drive_to(self, goal: Pose, should_stop: Callable[[Pose], bool]) -> None:
         remaining = goal.relative_to(self.pose()).x
         count = max(1, math.ceil(abs(remaining) / (RIM_SPEED * STEP)))
-        for _ in range(count):
-            self._roll(remaining / count, 0.0)
+        for steps in range(count, 0, -1):
+            self._roll(goal.relative_to(self.pose()).x / steps, 0.0)
             if should_stop(self.pose()):
                 break
 
@@ -104,9 +125,10 @@ class SlippingRobot:
             angle + rim / WHEEL for angle, rim in zip(self._angles, rims, strict=True)
         ]
         left, right = (
-            rim * (1.0 + slip) for rim, slip in zip(rims, self._wheels, strict=True)
+            rim * self._growth * (1.0 + slip)
+            for rim, slip in zip(rims, self._wheels, strict=True)
         )
-        turned = (right - left) / (2.0 * TURNING_RADIUS)
+        turned = (right - left) / self._track
         here = self.here.turned(turned).ahead((left + right) / 2.0)
         if any(
             is_in_body(Pose(*block, 0.0).relative_to(here)) for block in self.blocks

@@ -10,7 +10,9 @@ import pytest
 from ideal_rover import at_once
 from pydslrep_runtime.pose import Pose
 from pydslrep_runtime.slam.occupancy_grid import Cell, OccupancyGrid, Reading
+from pydslrep_runtime.slam.odometry.calibration import Calibration
 from pydslrep_runtime.slam.odometry.graph_slam import GraphSlam
+from pydslrep_runtime.slam.odometry.odometer import Leg
 from pydslrep_runtime.slam.odometry.rover import OdometryRover
 from pydslrep_runtime.slam.odometry.scan_log import ScanLog
 from pydslrep_runtime.slam.odometry.surface import SurfacePoints
@@ -107,19 +109,22 @@ class Walls:
     def middle_pose(self) -> Pose:
         return Pose(0.0, 0.0, 0.0)
 
+    def turned(self) -> float:
+        return math.pi
+
     def surface_points(self) -> SurfacePoints:
         return self._points
 
 
 @pytest.mark.parametrize(("part", "corrected"), [(0.7, 0.0), (0.9, -12.0)])
 def test_few_oblique_walls_do_not_turn_the_robot(part: float, corrected: float) -> None:
-    slam, start = GraphSlam(), Pose(0.0, 0.0, 0.0)
+    slam, start = GraphSlam(Calibration()), Pose(0.0, 0.0, 0.0)
     first: Any = Walls(0.0, 1.0)
-    slam.add_keyframe(first, start, 0.0)
+    slam.add_keyframe(first, start, Leg(0.0))
     # Too far for a match with the first.
     second: Any = Walls(12.0, part)
     second.middle_pose = lambda: Pose(9.0, 0.0, 0.0)
-    here = slam.add_keyframe(second, Pose(9.0, 0.0, 0.0), 9.0)
+    here = slam.add_keyframe(second, Pose(9.0, 0.0, 0.0), Leg(9.0))
     assert math.degrees(here.theta) == pytest.approx(corrected, abs=3.0)
 
 

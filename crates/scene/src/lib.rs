@@ -39,18 +39,27 @@ pub struct Scene {
     pub collisions: bool,
 }
 
-/// Deviations from an ideal world, as standard deviations.
+/// Deviations from an ideal world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise {
-    /// Of the distance that a wheel drives the robot, as a share of the distance that it rolls.
+    /// Of the distance that a wheel drives the robot, as a share of the distance that it rolls: a standard deviation.
     pub wheel_slip: f64,
-    /// Of the readings of distances, metres.
+    /// By which share of it the track is wider than [`Robot::geometry`] says.
+    pub track_error: f64,
+    /// By which share of it the radius of each wheel is larger than [`Wheel::radius`] says.
+    pub radius_error: f64,
+    /// Of the readings of distances, metres: a standard deviation.
     pub sensor: f64,
 }
 
 impl Default for Noise {
     fn default() -> Self {
-        Self { wheel_slip: defaults::WHEEL_SLIP, sensor: defaults::SENSOR_NOISE }
+        Self {
+            wheel_slip: defaults::WHEEL_SLIP,
+            track_error: 0.0,
+            radius_error: 0.0,
+            sensor: defaults::SENSOR_NOISE,
+        }
     }
 }
 

@@ -173,9 +173,10 @@ impl Robot {
         model.with_scrub_factor(scrub_factor(self.drive, self.geometry, self.lateral_friction))
     }
 
-    /// How it moves when its wheels turn.
-    pub fn traction(&self) -> Traction {
-        Traction::new(self.drive, self.geometry, self.lateral_friction)
+    /// How it moves when its wheels turn, if its track is wider than the geometry says by a share of it.
+    pub fn traction(&self, track_error: f64) -> Traction {
+        let geometry = Geometry { track: self.geometry.track * (1.0 + track_error), ..self.geometry };
+        Traction::new(self.drive, geometry, self.lateral_friction)
     }
 }
 

@@ -41,7 +41,10 @@ pub struct World {
 
 #[derive(Debug, Clone)]
 struct RobotState {
+    /// As clients know them.
     radii: Vec<f64>,
+    /// By which share of it each radius really is larger.
+    radius_error: f64,
     traction: Traction,
     body: Body,
     pose: Pose,
@@ -399,9 +402,12 @@ fn robot_at_rest(scene: &Scene, index: usize) -> Result<RobotState, WorldError> 
         slip: Slip::new(scene.noise, scene.seed, index, wheel),
     };
     let joints = (0..model.settable().rates).map(joint).collect();
+    let (track_error, radius_error) =
+        scene.noise.map_or((0.0, 0.0), |noise| (noise.track_error, noise.radius_error));
     Ok(RobotState {
         radii: model.radii().to_vec(),
-        traction: robot.traction(),
+        traction: robot.traction(track_error),
+        radius_error,
         body: robot.body,
         pose: robot.start,
         jitter: [0.0; 3],
@@ -439,7 +445,7 @@ impl RobotState {
         let rims = self.joints.iter_mut().zip(&self.radii).map(|(joint, radius)| {
             let mean =
                 joint.advance(rim_acceleration / radius, rim_speed / radius, least_speed / radius, seconds);
-            let on_floor = radius * (1.0 + joint.slip.value - creep);
+            let on_floor = radius * (1.0 + self.radius_error) * (1.0 + joint.slip.value - creep);
             (joint.rate * on_floor, mean * on_floor)
         });
         let (rims, mean_rims): (PerWheel, PerWheel) = rims.unzip();
@@ -820,6 +826,29 @@ mod tests {
         let seen = world.sight(1, 0).unwrap();
         assert!((seen.distance - 0.2).abs() < 1e-9 && seen.what == Thing::Robot(2), "{seen:?}");
         assert_eq!((world.sight(2, 0), world.sight(9, 0), world.sight(0, 9)), (None, None, None));
+    }
+
+    #[test]
+    fn wheels_do_not_tell_that_track_and_radii_are_others() {
+        let end = |left: f64, track_error: f64, radius_error: f64| {
+            let mut scene = world(Drive::TwoWheel).scene().clone();
+            scene.noise = Some(Noise { wheel_slip: 0.0, track_error, radius_error, sensor: 0.0 });
+            let mut world = World::new(scene).unwrap();
+            drive(&mut world, 0, [left, 2.0]);
+            run(&mut world, 2.0);
+            (world.pose(0), vec![world.angle(0, 0), world.angle(0, 1)])
+        };
+        for left in [2.0, -2.0] {
+            let (exact, angles) = end(left, 0.0, 0.0);
+            assert!(exact.x > 0.1 || exact.theta > 0.5, "{exact:?}");
+            for (track_error, radius_error) in [(0.02, 0.0), (0.0, 0.02), (0.05, -0.03)] {
+                let (there, seen) = end(left, track_error, radius_error);
+                assert_eq!(seen, angles);
+                let (way, turn) = (1.0 + radius_error, (1.0 + radius_error) / (1.0 + track_error));
+                assert!((there.x - way * exact.x).abs() < 1e-9, "{there:?}");
+                assert!((there.theta - turn * exact.theta).abs() < 1e-9, "{there:?}");
+            }
+        }
     }
 
     #[test]

@@ -43,7 +43,7 @@ const TABLES: [Table; 9] = [
     Table {
         name: "noise",
         kind: TableKind::Once,
-        summary: "Deviations from an ideal world. Without this table there are none; with it, the defaults below apply. 0 \
+        summary: "Deviations from an ideal world, for all robots. Without this table there are none; with it, the defaults below apply. 0 \
                   switches one off.",
         keys: &[
             key(
@@ -54,6 +54,22 @@ const TABLES: [Table; 9] = [
             )
             .default("`2`")
             .example("5"),
+            key(
+                "track-error",
+                ERROR,
+                "How much wider than in the scene the track really is, in percent; narrower if negative. It does not change, \
+                 and scripts do not know of it: by wheel odometry, turns seem wider by as much.",
+            )
+            .default("`0`")
+            .example("1.5"),
+            key(
+                "radius-error",
+                ERROR,
+                "How much larger than in the program the radii of the wheels really are, in percent; smaller if negative. \
+                 It does not change, and scripts do not know of it: by wheel odometry, distances seem shorter by as much.",
+            )
+            .default("`0`")
+            .example("-1.5"),
             key("sensor", FROM_ZERO, "The error of measured distances: the standard deviation, in metres.")
                 .default("`0.01`")
                 .example("0.05"),
@@ -241,6 +257,8 @@ const COUNT: Values = Values::Number(
 );
 const FROM_ZERO: Values = Values::Number("a number from 0", Range::FROM_ZERO);
 const SHARE: Values = Values::Number("a number from 0 to 1", Range { max: 1.0, ..Range::FROM_ZERO });
+const ERROR: Values =
+    Values::Number("a number from -50 to 50", Range { min: -50.0, max: 50.0, ..Range::ANY });
 const ANGLE: Values = Values::Number("an angle in degrees", Range::ANY);
 const OPENING: Values =
     Values::Number("an angle above 0 and up to 180 degrees", Range { max: 180.0, ..Range::ABOVE_ZERO });

@@ -96,8 +96,11 @@ impl Reader {
 
     fn noise(&mut self, section: &Section) {
         let usual = Noise::default();
+        let share = |key, usual| section.number(key).map_or(usual, |percent| percent / 100.0);
         self.scene.noise = Some(Noise {
-            wheel_slip: section.number("wheel-slip").map_or(usual.wheel_slip, |percent| percent / 100.0),
+            wheel_slip: share("wheel-slip", usual.wheel_slip),
+            track_error: share("track-error", usual.track_error),
+            radius_error: share("radius-error", usual.radius_error),
             sensor: section.number("sensor").unwrap_or(usual.sensor),
         });
     }
@@ -332,14 +335,15 @@ mod tests {
     fn a_file_says_what_differs_from_an_empty_floor() {
         let scene = check(
             "[world]\nsize = [4, 3]\nseed = 9\n[[box]]\nat = [1, 1]\nsize = [0.5, 0.2]\nheading = 90\nname = \"crate\"\n\
-             [[wall]]\nfrom = [-1, 1.2]\nto = [0, 1.2]\n[noise]\nsensor = 0\n\
+             [[wall]]\nfrom = [-1, 1.2]\nto = [0, 1.2]\n[noise]\nsensor = 0\ntrack-error = 2\nradius-error = -1\n\
              [robots.robot_1]\nstart = [-1, 0.5, 180]\nbody = [0.5, 0.4]\nrim-speed = 0.3\n\
              [robots.robot_1.sensors]\nlSensor = { at = [0.1, 0.05], bearing = -90, range = 2, cone = 45 }\n",
             &expect![""],
         );
         let names: Vec<&str> = scene.obstacles.iter().map(|obstacle| obstacle.name.as_str()).collect();
         assert_eq!(names, ["wall_south", "wall_east", "wall_north", "wall_west", "crate", "wall_1"]);
-        assert_eq!((scene.seed, scene.noise), (9, Some(Noise { wheel_slip: 0.02, sensor: 0.0 })));
+        let noise = Noise { wheel_slip: 0.02, track_error: 0.02, radius_error: -0.01, sensor: 0.0 };
+        assert_eq!((scene.seed, scene.noise), (9, Some(noise)));
         let robot = &scene.robots[0];
         assert_eq!(robot.start, Pose::new(-1.0, 0.5, std::f64::consts::PI));
         assert!((robot.motor_speed, robot.body.length) == (0.3, 0.5));

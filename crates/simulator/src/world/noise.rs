@@ -79,7 +79,8 @@ pub(super) fn body_error(seed: u64, robot: usize, steps: u64) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    const NOISE: Option<Noise> = Some(Noise { wheel_slip: 0.02, sensor: 0.01 });
+    const NOISE: Option<Noise> =
+        Some(Noise { wheel_slip: 0.02, track_error: 0.0, radius_error: 0.0, sensor: 0.01 });
 
     #[allow(clippy::cast_precision_loss)]
     fn mean(values: &[f64]) -> f64 {

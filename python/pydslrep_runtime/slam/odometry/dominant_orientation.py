@@ -23,15 +23,21 @@ class DominantOrientation:
 
 
 def find_dominant_orientation(
-    points: SurfacePoints, guess: float, within: float
+    points: SurfacePoints,
+    guess: float,
+    within: float,
+    drift_sigma: float = DRIFT_SIGMA,
 ) -> DominantOrientation | None:
-    """The direction of most walls near a guess; None if there are too few points."""
+    """The direction of most walls near a guess; None if there are too few points.
+
+    `drift_sigma` is the standard deviation of the drift.
+    """
     if len(points) < 20:
         return None
     normal = np.angle(points.normal)
     angle, drift = most_common_orientation(normal, guess, within), 0.0
     jacobian = np.column_stack([np.ones(len(points)), -points.phase])
-    prior = np.diag([0.0, NORMAL_SPREAD**2 / DRIFT_SIGMA**2])
+    prior = np.diag([0.0, NORMAL_SPREAD**2 / drift_sigma**2])
     for _ in range(8):
         # Weighted least squares for both; outliers get little weight.
         error = deviation(normal + drift * points.phase - angle)

@@ -7,18 +7,23 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...pose import Pose, wrap_angle
+from .calibration import Calibration
 from .dominant_orientation import (
     RIGHT_ANGLE,
     DominantOrientation,
     find_dominant_orientation,
 )
+from .odometer import Leg
 from .pose_graph import Constraint, PoseGraph
 from .relocalisation import MIN_POINTS, is_same, relocalise, seen_through
 from .scan import Scan
-from .scan_matching import MapPoints, ScanMatch, match_scan
+from .scan_matching import DRIFT_SIGMA, MapPoints, ScanMatch, match_scan
 from .surface import Complex, SurfacePoints
 
+MIN_WAY = 0.2  # m between keyframes that tell how far the wheels drive
+MAX_WAY_ERROR = 0.005  # m of a match along the way; those that are less sure are short
 MAX_DRIFT = 0.1  # radians in a scan; more is a wrong match
+MAX_DRIFTS = 3.3  # standard deviations of the drift in a scan
 FEW_SEEN_THROUGH = (
     5  # known points behind which others are seen; more are doubtful, ...
 )
@@ -52,11 +57,16 @@ class GraphSlam:
     MIN_TURNED_RATIO = 0.75
     LARGE_TURN = 0.1  # radians
 
-    def __init__(self) -> None:
+    def __init__(self, calibration: Calibration) -> None:
+        """`calibration` is learnt from scans; the odometer applies it."""
+        self.calibration = calibration
         self._graph = PoseGraph()
+        self._has_heading: list[bool] = []  # of each keyframe, from walls
         self._points: list[SurfacePoints] = []
         self._wall_direction: float | None = None  # in the world
-        self._unoriented_travel = 0.0  # m travelled since the last heading estimate
+        # Since the last heading estimate:
+        self._unoriented_travel = 0.0  # m travelled
+        self._unoriented_turn = 0.0  # radians turned
         self._first = 0  # the keyframe since which all are connected with the last one
         self.uncertain: set[int] = set()  # keyframes since the robot lost its way
         self.has_slipped = False  # on the way to the last keyframe
@@ -72,36 +82,74 @@ class GraphSlam:
         found: Complex = (there - complex(here.x, here.y)) * np.exp(-1j * here.theta)
         return found
 
-    def add_keyframe(self, scan: Scan, here: Pose, wheel_travel: float) -> Pose:
+    def add_keyframe(self, scan: Scan, here: Pose, leg: Leg) -> Pose:
         """Adds a keyframe and returns the corrected pose of the robot.
 
-        `here` is the odometry's pose at the end of the scan, `wheel_travel` the distance
-        travelled since the previous keyframe, in metres.
+        `here` is the odometry's pose at the end of the scan, `leg` the way since the previous
+        keyframe.
         """
         middle_pose, points = scan.middle_pose(), scan.surface_points()
         number = self._graph.add(middle_pose)
-        self._unoriented_travel += wheel_travel
-        orientation = self._dominant_orientation(points, middle_pose)
-        self._add_odometry(number, middle_pose, wheel_travel)
+        self._unoriented_travel += leg.travel
+        self._unoriented_turn += leg.turn or 0.0
+        drift_sigma = math.hypot(
+            DRIFT_SIGMA, self.calibration.turn.sigma * scan.turned()
+        )
+        orientation = self._dominant_orientation(points, middle_pose, drift_sigma)
+        self._add_odometry(number, middle_pose, leg)
         drift = 0.0
         if orientation and not self.is_lost:
             drift = orientation.drift
             self._correct_heading(number, orientation, middle_pose)
         points = points.undistorted(drift).downsampled()
-        more = self._match(number, points, wheel_travel)
+        more = self._match(number, points, leg)
         self._points.append(points.undistorted(more))
         drift += more
+        self._has_heading.append(bool(orientation) and not self.is_lost)
+        self._calibrate_turn(number, leg)
         end = here.relative_to(middle_pose).transformed_by(self._graph.poses[number])
         return end.turned(drift / 2.0)
+
+    def _calibrate_turn(self, number: int, leg: Leg) -> None:
+        """Compares the turn between two keyframes with what the walls say of it."""
+        if number == 0 or leg.turn is None or self.has_slipped:
+            return
+        if not all(self._has_heading[number - 1 :]):
+            return
+        before, here = self._graph.poses[number - 1 :]
+        expected = self.calibration.turn.value * leg.turn
+        error = wrap_angle(here.theta - before.theta - expected)
+        slip = self.ROTATION_ERROR * math.sqrt(leg.travel)
+        sigma = math.hypot(slip, self.HEADING_ERROR, self.HEADING_ERROR)
+        self.calibration.turn.observe(leg.turn, expected + error, sigma)
+
+    def _calibrate_way(self, number: int, found: ScanMatch, leg: Leg) -> None:
+        """Compares the way between two keyframes with what walls across it say of it."""
+        before, here = self._graph.poses[number - 1], self._graph.poses[number]
+        way = np.array([here.x - before.x, here.y - before.y])
+        length = float(np.linalg.norm(way))
+        if leg.turn is None or length < MIN_WAY:
+            return
+        ahead = way / length
+        information = sum(found.information.values(), np.eye(3))
+        variance = float(ahead @ np.linalg.inv(information)[:2, :2] @ ahead)
+        if variance > MAX_WAY_ERROR**2:
+            return
+        error = float(ahead @ [found.pose.x - here.x, found.pose.y - here.y])
+        slip = self.TRANSLATION_ERROR * math.sqrt(leg.travel)
+        reported = length / self.calibration.way.value
+        self.calibration.way.observe(
+            reported, length + error, math.hypot(slip, MAX_WAY_ERROR)
+        )
 
     @property
     def is_lost(self) -> bool:
         """Whether the last keyframe may be somewhere else."""
         return self._first > 0
 
-    def _match(self, number: int, points: SurfacePoints, wheel_travel: float) -> float:
+    def _match(self, number: int, points: SurfacePoints, leg: Leg) -> float:
         """Matches a scan, wherever it fits if it does not fit here; returns the drift."""
-        match = self._add_scan_matches(number, points, wheel_travel)
+        match = self._add_scan_matches(number, points, leg)
         here = self._graph.poses[number]
         near = self._trusted(number, self._neighbours(here))
         # Few points may be of something that is not flat.
@@ -157,29 +205,33 @@ class GraphSlam:
             and (n >= self._first if self.is_lost else n not in self.uncertain)
         ]
 
-    def _add_odometry(
-        self, number: int, middle_pose: Pose, wheel_travel: float
-    ) -> None:
+    def _add_odometry(self, number: int, middle_pose: Pose, leg: Leg) -> None:
         if number == 0:
             return
         errors = self.TRANSLATION_ERROR, self.TRANSLATION_ERROR, self.ROTATION_ERROR
-        information = np.diag(1.0 / (np.square(errors) * wheel_travel + 1e-6))
         relative = middle_pose.relative_to(self._graph.poses[number - 1])
+        way = self.calibration.way.sigma * math.hypot(relative.x, relative.y)
+        turn = self.calibration.turn.sigma * (leg.turn or 0.0)
+        variances = np.square(errors) * leg.travel + np.square([way, way, turn])
+        information = np.diag(1.0 / (variances + 1e-6))
         self._graph.add_constraint(
             Constraint(number - 1, number, relative, information, is_odometry=True)
         )
 
     def _dominant_orientation(
-        self, points: SurfacePoints, middle_pose: Pose
+        self, points: SurfacePoints, middle_pose: Pose, drift_sigma: float
     ) -> DominantOrientation | None:
         """The dominant orientation of the walls in the scan's frame."""
         within, guess = RIGHT_ANGLE / 2.0, 0.0
         if self._wall_direction is not None:
-            turned = self.ROTATION_ERROR * math.sqrt(self._unoriented_travel)
+            turned = math.hypot(
+                self.ROTATION_ERROR * math.sqrt(self._unoriented_travel),
+                self.calibration.turn.sigma * self._unoriented_turn,
+            )
             within = min(within, 0.03 + 3.0 * turned)
             guess = self._wall_direction - middle_pose.theta
-        found = find_dominant_orientation(points, guess, within)
-        if found is None or abs(found.drift) > MAX_DRIFT:
+        found = find_dominant_orientation(points, guess, within, drift_sigma)
+        if found is None or abs(found.drift) > MAX_DRIFTS * drift_sigma:
             return None
         turn = abs(math.remainder(found.angle - guess, RIGHT_ANGLE))
         is_large = self._wall_direction is not None and turn > self.LARGE_TURN
@@ -190,11 +242,10 @@ class GraphSlam:
         self, number: int, orientation: DominantOrientation, middle_pose: Pose
     ) -> None:
         """Corrects the heading by the dominant orientation."""
-        self._unoriented_travel = 0.0
+        self._unoriented_travel = self._unoriented_turn = 0.0
         if self._wall_direction is None:
-            # The world's frame is that of the robot before its first scan.
-            middle_pose = middle_pose.turned(orientation.drift / 2.0)
-            self._graph.poses[number] = middle_pose
+            # In the middle of its first scan the robot looks where it did before: what it turned
+            # too far on one side it has turned too far on the other.
             self._wall_direction = middle_pose.theta + orientation.angle
             return
         walls = self._wall_direction - orientation.angle
@@ -206,7 +257,10 @@ class GraphSlam:
             self._graph.optimise()
 
     def _add_scan_matches(
-        self, number: int, points: SurfacePoints, wheel_travel: float
+        self,
+        number: int,
+        points: SurfacePoints,
+        leg: Leg,
     ) -> ScanMatch | None:
         """Matches a scan with keyframes nearby; returns the last match."""
         poses = self._graph.poses
@@ -219,9 +273,10 @@ class GraphSlam:
             map_points = self._map_points([n for n in group if n != number])
             if number in group:
                 found = match_neighbours(
-                    points, poses[number], map_points, self._sigma(wheel_travel)
+                    points, poses[number], map_points, self._sigma(leg.travel)
                 )
                 if found:
+                    self._calibrate_way(number, found, leg)
                     match, poses[number] = found, found.pose
                     for constraint in self._constraints(number, found):
                         self._graph.add_constraint(constraint)

@@ -10,6 +10,8 @@ from .surface import SurfacePoints
 
 # Radians that are tried: in rooms with right angles, a quarter turn more may look the same.
 TURNS = np.radians(np.arange(-60.0, 61.0, 6.0))
+# To where a match may go from there: farther away, others have not been looked for.
+MAX_FOUND_TURN = math.radians(72.0)
 GRAIN = 0.1  # m between positions that are tried
 SAMPLES = 60  # points that are compared before a match
 CANDIDATES = 8
@@ -39,8 +41,16 @@ def relocalise(
         # Along a bare wall, odometry is kept.
         here = Pose(guess.x, guess.y, start.theta)
         found = match_scan(points, here, (within / 2.0, 0.3), known, start)
-        if found and not any(is_same(found.pose, other.pose) for other in best):
-            best.append(found)
+        if (
+            found is None
+            or abs(wrap_angle(found.pose.theta - guess.theta)) > MAX_FOUND_TURN
+        ):
+            continue
+        # Of the matches of one place the best, as a worse one could make another place seem
+        # the only one.
+        same = [other for other in best if is_same(found.pose, other.pose)]
+        if all(found.inlier_ratio > other.inlier_ratio for other in same):
+            best = [*(other for other in best if other not in same), found]
     best.sort(key=score, reverse=True)
     if not best or not is_sure(best[0]):
         return None

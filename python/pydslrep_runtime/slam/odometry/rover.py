@@ -11,8 +11,9 @@ from ...pose import Pose, wrap_angle
 from ..occupancy_grid import Position
 from ..rover import SAFETY_MARGIN, SlamRover
 from ..session import SlamSession
+from .calibration import Calibration
 from .graph_slam import GraphSlam
-from .odometer import Odometer
+from .odometer import Leg, Odometer
 from .scan import Scan
 from .scan_log import ScanLog
 
@@ -40,10 +41,17 @@ class OdometryRover(SlamRover):
         robot.use_odometry(self._odometer)
         self._scan: Scan | None = None
         self._wheel_travel = 0.0  # m, up to the last keyframe
+        self._wheel_turns: list[float] = []  # radians, since the scan has begun
+        self._wheel_turn = 0.0  # radians, up to the last keyframe
         self._blocked_travel = 0.0  # m for a blocked turn at the last keyframe
-        self._slam = GraphSlam()
+        self._slam = GraphSlam(self.calibration)
         self._log = ScanLog()
         self._grid_keyframes: list[Pose] = []  # the poses that the grid is built from
+
+    @property
+    def calibration(self) -> Calibration:
+        """How much further it turns and drives than its wheels report."""
+        return self._odometer.calibration
 
     async def drive_to(self, goal: Position, should_stop: Callable[[], bool]) -> bool:
         """Turns to a goal and drives there, or until an obstacle is near."""
@@ -100,23 +108,36 @@ class OdometryRover(SlamRover):
 
     async def _take_keyframe(self) -> bool:
         """Scans in a turn; returns whether something has blocked it."""
-        self._scan = scan = Scan()
-        # The first keyframe is the reference for all others, so scan it slowly.
-        speed = self.turning_speed * (1.0 if self._positions else 0.5)
-        await self._robot.rotate(self._blind_angle(), self._observe, speed)
+        angle, speed = self._blind_angle(), self.turning_speed
+        if not self._positions:
+            # The first keyframe is the reference for all others, so scan it slowly. Its middle
+            # is where the robot looks now, whatever the track is.
+            speed *= 0.25
+            await self._robot.rotate(-angle / 2.0, None, speed)
+        self._scan, self._wheel_turns = Scan(), []
+        scan = self._scan
+        await self._robot.rotate(angle, self._observe, speed)
         self._scan = None
         lost = scan.correct()
         if lost:
             self._robot.correct(self.pose().turned(-lost))
         self._log_scan(scan)
-        # The keyframe is halfway through the turn, so the next leg is uncertain, too.
-        before, self._blocked_travel = self._blocked_travel, BLOCKED_TRAVEL * bool(lost)
-        travelled = self._odometer.wheel_travel - self._wheel_travel
-        travelled += max(before, self._blocked_travel)
-        self._wheel_travel = self._odometer.wheel_travel
-        self._robot.correct(self._slam.add_keyframe(scan, self.pose(), travelled))
+        leg = self._leg(is_blocked=lost != 0.0)
+        self._robot.correct(self._slam.add_keyframe(scan, self.pose(), leg))
         self._update_grid(scan.middle_pose())
         return lost != 0.0
+
+    def _leg(self, *, is_blocked: bool) -> Leg:
+        """What the wheels report of the way from the last keyframe to this one."""
+        # The keyframe is halfway through the turn, so the next leg is uncertain, too.
+        before, self._blocked_travel = self._blocked_travel, BLOCKED_TRAVEL * is_blocked
+        travelled = self._odometer.wheel_travel - self._wheel_travel
+        travelled += max(before, self._blocked_travel)
+        turned = -self._wheel_turn
+        self._wheel_travel = self._odometer.wheel_travel
+        self._wheel_turn = self._wheel_turns[len(self._wheel_turns) // 2]
+        was_blocked = before > 0.0 or is_blocked
+        return Leg(travelled, None if was_blocked else turned + self._wheel_turn)
 
     def _log_scan(self, scan: Scan) -> None:
         """Keeps as many of a scan's readings as the grid needs."""
@@ -141,6 +162,7 @@ class OdometryRover(SlamRover):
         """Reads all sensors if the robot has moved or scans; returns if it has moved."""
         if self._scan is not None:
             self._scan.add(here, self._read_sensors())
+            self._wheel_turns.append(self._odometer.wheel_turn)
             return False
         if not self._has_moved(here):
             return False

@@ -44,6 +44,11 @@ class Scan:
         """The robot's pose halfway through: the origin of the scan's frame."""
         return self._poses[len(self._poses) // 2]
 
+    def turned(self) -> float:
+        """The angle that the robot has turned, in radians, as reported."""
+        headings = np.unwrap([pose.theta for pose in self._poses])
+        return float(headings[-1] - headings[0])
+
     def correct(self) -> float:
         """Corrects the poses if something has blocked the turn.
 
