@@ -9,7 +9,7 @@ FEATURES = ROOT / "crates" / "ide" / "src"
 PAGE = ROOT / "docs" / "editor-features.md"
 
 # Modules that are not features.
-PARTS = {"cursor", "fixture", "keyword_pages", "statements", "unsettled"}
+PARTS = {"cursor", "fixture", "keyword_pages", "statements", "unsettled", "users"}
 
 # The file of each feature, and its messages.
 GROUPS: dict[str, dict[str, list[str]]] = {

@@ -36,6 +36,6 @@ pub use edition::Edition;
 pub use fix_validator::{FixValidator, Offers};
 pub use fixing::Fixing;
 pub use plan::{Driver, plan, plan_movement, reach, scene, summary_of_movement};
-pub use resolve::{Blocked, COUNTS, DEFAULT_ANGLE, Fingerprint};
+pub use resolve::{Blocked, COUNTS, DEFAULT_ANGLE, Fingerprint, KnownStatements};
 pub use snapshot::Snapshot;
 pub use target::Target;

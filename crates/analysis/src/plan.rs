@@ -144,22 +144,26 @@ pub fn summary_of_movement(
     driven: &Robot,
     movements: &[Movement],
 ) -> Result<kinematics::Summary, kinematics::ModelError> {
-    let model = robot(driven).model()?;
+    Ok(summaries(&robot(driven).model()?, movements).pop().unwrap_or_default())
+}
+
+/// What movements come to, each of which may do those before it.
+fn summaries(model: &kinematics::Model, movements: &[Movement]) -> Vec<kinematics::Summary> {
     let mut summaries: Vec<kinematics::Summary> = Vec::with_capacity(movements.len());
     for movement in movements {
         let called = |index: usize| summaries.get(index).copied();
-        let summary = kinematics::Summary::of(&model, &movement_steps(movement), &called);
+        let summary = kinematics::Summary::of(model, &movement_steps(movement), &called);
         summaries.push(summary);
     }
-    Ok(summaries.pop().unwrap_or_default())
+    summaries
 }
 
 /// A robot of default size, to be driven one action at a time.
 #[derive(Debug)]
 pub struct Driver {
     model: kinematics::Model,
-    /// The steps of the movements that it may do.
-    done: Vec<Vec<kinematics::Step>>,
+    /// What the movements come to that it may do.
+    done: Vec<kinematics::Summary>,
 }
 
 impl Driver {
@@ -174,8 +178,13 @@ impl Driver {
     /// The same, of a robot that may do some movements, each after those that it does itself.
     #[must_use]
     pub fn with_done(mut self, movements: &[Movement]) -> Self {
-        self.done = movements.iter().map(movement_steps).collect();
+        self.done = summaries(&self.model, movements);
         self
+    }
+
+    /// How it drives.
+    pub fn model(&self) -> &kinematics::Model {
+        &self.model
     }
 
     /// The drive of one action, one with blocks as a whole; `None` where only the world decides when it ends.
@@ -186,7 +195,8 @@ impl Driver {
             kind => kind,
         };
         let step = kinematics::Step { number: 0, kind };
-        kinematics::plan_steps(&self.model, from, &[step], &self.done).legs.pop()
+        let called = |index: usize| self.done.get(index).copied();
+        kinematics::plan_step(&self.model, from, step, &called).legs.pop()
     }
 }
 

@@ -183,25 +183,16 @@ impl Database {
         parts.robot(parts.resolve(movement, EntityKind::Robot, tree.robot.as_ref()?)?)
     }
 
-    /// What each action of a movement does, driven by this robot; `None` where one is broken, or does what is. The movements
-    /// that they do are indices into those beside them, each of which is after those that it does itself.
-    pub fn known_actions(
-        &self,
-        movement: EntityId,
-        robot: Option<&Robot>,
-    ) -> (Vec<Option<ActionKind>>, Vec<Movement>) {
+    /// What is known of the statements of a movement, driven by this robot, while it is being written.
+    pub fn known_statements(&self, movement: EntityId, robot: Option<&Robot>) -> Option<KnownStatements<'_>> {
         let parts = Parts { database: self, file: self.file_of(movement) };
-        let (Some(Entity::Movement(tree)), Some(entity)) = (self.tree(movement), self.entity(movement))
-        else {
-            return (Vec::new(), Vec::new());
-        };
+        let Entity::Movement(tree) = self.tree(movement)? else { return None };
+        let entity = self.entity(movement)?;
         let done = robot.map(|robot| parts.known_done(movement, tree, robot)).unwrap_or_default();
         let places = indices_of(&done);
-        let sensors = robot.map_or(&[][..], |robot| &robot.sensors);
-        let mut statements = Statements { parts: &parts, entity, sensors, places: &places, number: 0 };
-        let kinds = tree.actions.iter().map(|action| statements.action(action).map(|action| action.kind));
-        let kinds = kinds.collect();
-        (kinds, robot.and_then(|robot| self.done_movements(&done, robot)).unwrap_or_default())
+        let sensors = robot.map(|robot| robot.sensors.clone()).unwrap_or_default();
+        let done = robot.and_then(|robot| self.done_movements(&done, robot)).unwrap_or_default();
+        Some(KnownStatements { parts, entity, sensors, places, done })
     }
 
     /// Movements of one robot, each after those that it does; `None` where something is missing or broken.
@@ -217,6 +208,11 @@ impl Database {
     /// An action as the program writes it, on one line, without comments; its place counts from its entity's start.
     pub fn action_text(&self, entity: &EntityRef<'_>, action: Span) -> String {
         Parts { database: self, file: None }.folded_text(entity, action)
+    }
+
+    /// The same of an action without its blocks: [`Action::text`].
+    pub fn action_head(&self, entity: &EntityRef<'_>, action: &ast::Action) -> String {
+        self.action_text(entity, head(action.span, action.blocks().next()))
     }
 
     /// Where the errors of an entity are in its file.
@@ -466,6 +462,30 @@ impl<'a> Parts<'a> {
         let file =
             (Some(entity.file) != self.file).then(|| path.rsplit('/').next().unwrap_or(path).to_owned());
         Some(Source { file, line: u32::try_from(line).ok()? })
+    }
+}
+
+/// The statements of a movement of which some may be broken.
+pub struct KnownStatements<'a> {
+    parts: Parts<'a>,
+    entity: EntityRef<'a>,
+    sensors: Vec<Sensor>,
+    places: FxHashMap<EntityId, usize>,
+    done: Vec<Movement>,
+}
+
+impl KnownStatements<'_> {
+    /// What an action of the movement does; `None` where it is broken, or does what is. The movements that it does are
+    /// indices into [`Self::done`].
+    pub fn kind(&self, action: &ast::Action) -> Option<ActionKind> {
+        let Self { parts, sensors, places, .. } = self;
+        let entity = self.entity;
+        Statements { parts, entity, sensors, places, number: 0 }.kind(&action.kind)
+    }
+
+    /// The movements that it does, each after those that it does itself.
+    pub fn done(&self) -> &[Movement] {
+        &self.done
     }
 }
 

@@ -1,4 +1,4 @@
-//! Folding: collapses entities, comments, regions and imports.
+//! Folding: collapses entities, blocks, comments, regions and imports.
 //!
 //! A region reaches from `// #region` (or `// region`) to its `// endregion`, with or without `#`; regions nest.
 

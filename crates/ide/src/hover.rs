@@ -1,9 +1,16 @@
 //! Hover: details of the item under the cursor: the circumference of a wheel, the equations of a robot with its numbers,
-//! the duration and poses of an action, the timeline of an environment, and the syntax of a keyword with an example.
+//! the duration and poses of an action, what the rounds of a `repeat` come to, the circle of each wheel in a turn with a
+//! radius, what the sensors of a condition see and where the robot stands that they stop, the timeline of an environment,
+//! and the syntax of a keyword with an example.
 
+pub(crate) mod action;
+mod arc;
+mod condition;
 pub(crate) mod format;
-pub(crate) mod motion;
+mod motion;
 mod parts;
+mod way;
+pub(crate) mod within;
 
 use pydslrep_analysis::{Database, EntityId};
 use pydslrep_syntax::ast::{Entity, nested};
@@ -24,7 +31,8 @@ pub struct Hover {
 
 /// The hover text at a position.
 pub fn hover(database: &Database, position: FilePosition) -> Option<Hover> {
-    name(database, position).or_else(|| action(database, position)).or_else(|| keyword(database, position))
+    let own_words = || condition(database, position).or_else(|| action(database, position));
+    name(database, position).or_else(own_words).or_else(|| keyword(database, position))
 }
 
 fn name(database: &Database, position: FilePosition) -> Option<Hover> {
@@ -50,6 +58,20 @@ pub(crate) fn describe(database: &Database, id: EntityId) -> Option<String> {
     }
 }
 
+/// What the condition under the cursor asks.
+fn condition(database: &Database, position: FilePosition) -> Option<Hover> {
+    entities_at(database, position).into_iter().find_map(|entity| {
+        let Some(Entity::Movement(movement)) = &entity.parse.entity else { return None };
+        let touches = |span: Span| span.shifted(entity.span.start).touches(position.offset);
+        let conditions = movement
+            .all_actions()
+            .flat_map(|action| action.conditions().map(move |condition| (action, condition)));
+        let (action, condition) = { conditions }.find(|(_, condition)| touches(condition.span))?;
+        let markdown = condition::describe(database, &entity, action, condition)?;
+        Some(Hover { span: condition.span.shifted(entity.span.start), markdown })
+    })
+}
+
 /// The details of the innermost action under the cursor.
 fn action(database: &Database, position: FilePosition) -> Option<Hover> {
     entities_at(database, position).into_iter().find_map(|entity| {
@@ -59,7 +81,7 @@ fn action(database: &Database, position: FilePosition) -> Option<Hover> {
         let inside = nested(&movement.actions[index..=index]).filter(|action| touches(action.span));
         let span = inside.min_by_key(|action| action.span.len())?.span;
         let number = movement.statements().iter().position(|statement| *statement == span)? + 1;
-        let markdown = motion::action(database, entity.id, index, number)?;
+        let markdown = action::action(database, entity.id, index, number)?;
         Some(Hover { span: span.shifted(entity.span.start), markdown })
     })
 }
@@ -382,6 +404,8 @@ mod tests {
             repeat 4 times
             ```
             Takes 2 min 30.0 s. From (1 m, 0 m, 0°) to (1 m, 0 m, 0°), relative to the start of the movement.
+
+            4 rounds, each of which drives 2.785 m and turns 180° in 37.5 s: together 11.142 m and turns 720° in 2 min 30.0 s.
             ----
             ```pydslrep
             move 1 meters
@@ -394,13 +418,27 @@ mod tests {
             do side
             ```
             Takes 14.4 s. In the first round from (2 m, 0 m, 0°) to (3 m, 0 m, 90°), relative to the start of the movement.
+
+            `side` drives 1 m and turns 90° in 14.4 s. It ends at (1 m, 0 m, 90°) relative to its start.
             ----
             ```pydslrep
             turn left 90 with radius 50 centimeters
             ```
             Takes 11.7 s. In the first round from (3 m, 0 m, 90°) to (2.5 m, 0.5 m, 180°), relative to the start of the movement.
 
-            Wheel rates: `wheelL` 1.08 rad/s, `wheelR` 2 rad/s.
+            The centre of rotation is at (2.5 m, 0 m), 0.5 m to the left of the robot. At the highest speed v = 0.069 m/s and ω = 0.138 rad/s.
+
+            | wheel | radius of its circle | rate |
+            |---|---|---|
+            | `wheelL` | 0.35 m | 1.08 rad/s |
+            | `wheelR` | 0.65 m | 2 rad/s |
+
+            Wheel rates in rad/s:
+            ```text
+            left  = (v − ω d/2) / r
+            right = (v + ω d/2) / r
+            ```
+            r = 0.045 m, d = 0.3 m unless the scene overrides them.
             ----
             ```pydslrep
             wait 2 seconds
@@ -431,24 +469,296 @@ mod tests {
             ```pydslrep
             wait 2 seconds
             ```
-            Takes 2.0 s. The start pose cannot be planned: what `repeat 2 times` does depends on what sensors detect.
+            Takes 2.0 s. If it is done in the first round, from (1 m, 0 m, 0°) to (1 m, 0 m, 0°), relative to the start of the movement.
 
             Wheel rates: `wheelL` 0 rad/s, `wheelR` 0 rad/s.
             ----
             ```pydslrep
             slam
             ```
-            The end pose cannot be planned: the path of `slam` depends on what it explores.
+            The start pose cannot be planned: what `if { front } detect` does depends on its sensors.
             ----
             ```pydslrep
             move 2 meters
             ```
-            Takes 22.6 s. The start pose cannot be planned: what `repeat 2 times` does depends on what sensors detect.
+            Takes 22.6 s. The start pose cannot be planned: what `if { front } detect` does depends on its sensors.
 
             Wheel rates: `wheelL` 2 rad/s, `wheelR` 2 rad/s.
         "#]].assert_eq(&shown(
             "  repeat 2 times {\n    move 1 me$0ters\n    i$0f { front } detect {\n      w$0ait 2 seconds\n    }\n    sl$0am\n  }\n  mo$0ve 2 meters",
         ));
+    }
+
+    #[test]
+    fn an_arc_has_its_circles() {
+        expect![[r#"
+            ```pydslrep
+            turn right with radius 1.5 meters in reverse
+            ```
+            Takes 29.1 s. From (1 m, 0 m, 0°) to (-0.5 m, 1.5 m, -90°), relative to the start of the movement.
+
+            The centre of rotation is at (1 m, 1.5 m), 1.5 m to the left of the robot. Backwards, the heading turns to the right, as if wheels were steered to the left. At the highest speed v = -0.082 m/s and ω = -0.055 rad/s.
+
+            | wheel | radius of its circle | rate |
+            |---|---|---|
+            | `wheelL` | 1.35 m | -1.64 rad/s |
+            | `wheelR` | 1.65 m | -2 rad/s |
+
+            Wheel rates in rad/s:
+            ```text
+            left  = (v − ω d/2) / r
+            right = (v + ω d/2) / r
+            ```
+            r = 0.045 m, d = 0.3 m unless the scene overrides them.
+        "#]]
+            .assert_eq(&shown("  move 1 meters\n  turn $0right with radius 1.5 meters in reverse at 20"));
+        expect![[r#"
+            ```pydslrep
+            turn left with radius 10 centimeters until { front } detect
+            ```
+            The start pose cannot be planned: the path of `slam` depends on what it explores.
+
+            The centre of rotation is 0.1 m to the left of the robot. At the highest speed v = 0.036 m/s and ω = 0.36 rad/s.
+
+            | wheel | radius of its circle | rate |
+            |---|---|---|
+            | `wheelL` | 0.05 m | -0.4 rad/s |
+            | `wheelR` | 0.25 m | 2 rad/s |
+
+            Wheel rates in rad/s:
+            ```text
+            left  = (v − ω d/2) / r
+            right = (v + ω d/2) / r
+            ```
+            r = 0.045 m, d = 0.3 m unless the scene overrides them.
+            ----
+            ```pydslrep
+            turn left -90 with radius 1 meters
+            ```
+            Takes 20.4 s. The start pose cannot be planned: the path of `slam` depends on what it explores.
+
+            The centre of rotation is 1 m to the right of the robot. At the highest speed v = 0.078 m/s and ω = -0.078 rad/s.
+
+            | wheel | radius of its circle | rate |
+            |---|---|---|
+            | `wheelL` | 1.15 m | 2 rad/s |
+            | `wheelR` | 0.85 m | 1.48 rad/s |
+
+            Wheel rates in rad/s:
+            ```text
+            left  = (v − ω d/2) / r
+            right = (v + ω d/2) / r
+            ```
+            r = 0.045 m, d = 0.3 m unless the scene overrides them.
+        "#]].assert_eq(&shown(
+            "  slam\n  turn $0left with radius 10 centimeters until { front } detect\n  turn left -90 with$0 radius 1 meters",
+        ));
+    }
+
+    #[test]
+    fn rounds_say_what_they_come_to() {
+        expect![[r#"
+            ```pydslrep
+            repeat 3 times
+            ```
+            Takes 2 min 4.6 s. From (0 m, 0 m, 0°) to (0.5 m, 0.5 m, 180°), relative to the start of the movement.
+
+            3 rounds, each of which drives 3 m and turns 180° in 41.5 s: together 9 m and turns 540° in 2 min 4.6 s.
+            ----
+            ```pydslrep
+            repeat 2 times
+            ```
+            Takes 40.5 s. In the first round from (0 m, 0 m, 0°) to (0.5 m, 0.5 m, 180°), relative to the start of the movement.
+
+            2 rounds, each of which drives 1.5 m and turns 90° in 20.3 s: together 3 m and turns 180° in 40.5 s.
+            ----
+            ```pydslrep
+            repeat until { front } detect
+            ```
+            The end pose cannot be planned: `repeat until { front } detect` ends when its condition holds.
+
+            A round drives 1 m and turns 0° in 11.4 s.
+            ----
+            ```pydslrep
+            repeat 2 times
+            ```
+            The start pose cannot be planned: `repeat until { front } detect` ends when its condition holds.
+
+            2 rounds, each of which drives 1 m and turns 0°, what sensors decide not counted.
+            ----
+            ```pydslrep
+            do side
+            ```
+            Takes 14.4 s. The start pose cannot be planned: `repeat until { front } detect` ends when its condition holds.
+
+            `side` drives 1 m and turns 90° in 14.4 s. It ends at (1 m, 0 m, 90°) relative to its start.
+        "#]].assert_eq(&shown(
+            "  rep$0eat 3 times { rep$0eat 2 times { move -50 centimeters do side } wait 1 seconds }\n  \
+             repeat$0 until { front } detect { move 1 meters }\n  repeat$0 2 times { move until { front } detect move 1 meters }\n  d$0o side",
+        ));
+    }
+
+    #[test]
+    fn a_condition_says_what_its_sensors_see_and_where_the_robot_stands() {
+        expect![[r#"
+            ```pydslrep
+            { front } detect within 40 centimeters
+            ```
+            Holds while `front` detects something nearer than 0.4 m.
+
+            | sensor | mounted | sees |
+            |---|---|---|
+            | `front` | 0.15 m ahead, facing ahead | 1 m, in a cone of 20° |
+
+            Unless a scene says otherwise.
+
+            When it holds, the robot brakes. From 50 cm/s it stands 27.5 cm farther on: v²/2a = 25 cm and a step of 2.5 cm at the fastest rim. What `front` detects straight ahead is then 12.5 cm away.
+            ----
+            ```pydslrep
+            { front } detect within 20 centimeters
+            ```
+            Holds while `front` detects something nearer than 0.2 m.
+
+            | sensor | mounted | sees |
+            |---|---|---|
+            | `front` | 0.15 m ahead, facing ahead | 1 m, in a cone of 20° |
+
+            Unless a scene says otherwise.
+
+            When it holds, the robot brakes. From 50 cm/s it stands 27.5 cm farther on: v²/2a = 25 cm and a step of 2.5 cm at the fastest rim. That is too late for what `front` detects straight ahead.
+            ----
+            ```pydslrep
+            { front } detect
+            ```
+            Holds while `front` detects something.
+
+            | sensor | mounted | sees |
+            |---|---|---|
+            | `front` | 0.15 m ahead, facing ahead | 1 m, in a cone of 20° |
+
+            Unless a scene says otherwise.
+
+            When it holds, the robot brakes. From 9 cm/s it stands 1.3 cm farther on: v²/2a = 0.8 cm and a step of 0.4 cm at the fastest rim.
+            ----
+            ```pydslrep
+            { front }
+            ```
+            Holds while `front` detects nothing.
+
+            | sensor | mounted | sees |
+            |---|---|---|
+            | `front` | 0.15 m ahead, facing ahead | 1 m, in a cone of 20° |
+
+            Unless a scene says otherwise.
+
+            When it holds, the robot brakes. From 9 cm/s it stands 4.8° farther on: v²/2a = 0.8 cm and a step of 0.4 cm at the fastest rim.
+            ----
+            ```pydslrep
+            { front } clear
+            ```
+            Holds while `front` detects nothing.
+
+            | sensor | mounted | sees |
+            |---|---|---|
+            | `front` | 0.15 m ahead, facing ahead | 1 m, in a cone of 20° |
+
+            Unless a scene says otherwise.
+
+            When it holds, the robot brakes. From 20 cm/s it stands 2.5° or 4.3 cm farther on: v²/2a = 4 cm and a step of 1 cm at the fastest rim.
+            ----
+            ```pydslrep
+            { front } detect within 2 meters
+            ```
+            Holds while `front` detects something nearer than 2 m.
+
+            | sensor | mounted | sees |
+            |---|---|---|
+            | `front` | 0.15 m ahead, facing ahead | 1 m, in a cone of 20° |
+
+            Unless a scene says otherwise.
+
+            It is asked once, of the latest step, which takes no time.
+            ----
+            ```pydslrep
+            { front } clear
+            ```
+            Holds while `front` detects nothing.
+
+            | sensor | mounted | sees |
+            |---|---|---|
+            | `front` | 0.15 m ahead, facing ahead | 1 m, in a cone of 20° |
+
+            Unless a scene says otherwise.
+            ----
+            ```pydslrep
+            { front } detect
+            ```
+            Holds while `front` detects something.
+
+            | sensor | mounted | sees |
+            |---|---|---|
+            | `front` | 0.15 m ahead, facing ahead | 1 m, in a cone of 20° |
+
+            Unless a scene says otherwise.
+
+            It is asked before each round, of the latest step, which takes no time.
+        "#]].assert_eq(&shown(
+            "  move at 50 until { front } det$0ect within 40 centimeters\n  move at 50 until { front } det$0ect within 20 centimeters\n  move -1 meters until { front } de$0tect\n  \
+             turn left until {$0 front }\n  turn left with radius 1 meters at 20 until { front } clear$0\n  \
+             if { front } detect wi$0thin 2 meters { turn left }\n  wait until { front } cl$0ear\n  repeat until { front } det$0ect { slam }",
+        ));
+    }
+
+    const MANY: &str = "sensor left_eye\nsensor back : bumper\nsensor far\n\
+        robot scout type tw with port 1 has { wheelL wheelR } wheels with sensors { front, left_eye, back, far }\n\
+        movement m of scout { do n }\nmovement n of scout { if { front, left_eye, back, far } cl$0ear { slam } }\n";
+
+    #[test]
+    fn sensors_are_where_the_scene_of_an_environment_has_them() {
+        check(
+            &format!("{PARTS}{MANY}"),
+            &expect![[r#"
+            { front, left_eye, back, far } clear
+            ---
+            ```pydslrep
+            { front, left_eye, back, far } clear
+            ```
+            Holds while none of its sensors detects anything.
+
+            | sensor | mounted | sees |
+            |---|---|---|
+            | `front` | 0.15 m ahead and 0.15 m to the left, facing 45° to the left | 1 m, in a cone of 20° |
+            | `left_eye` | 0.15 m to the left, facing left | 1 m, in a cone of 20° |
+            | `back` | 0.15 m behind, facing back | what it touches: 0.05 m |
+            | `far` | 0.15 m ahead and 0.15 m to the right, facing 45° to the right | 1 m, in a cone of 20° |
+
+            Unless a scene says otherwise.
+
+            It is asked once, of the latest step, which takes no time.
+        "#]],
+        );
+        let text = format!("{PARTS}{MANY}environment e has {{ scout }} robots with {{ m }} moves");
+        let (mut database, position) = at_cursor(&text.replace("slam", "turn left"));
+        let scene = "[robots.scout.sensors.far]\nat = [0.1, -0.05]\nbearing = -30\nrange = 2.5\ncone = 10\n";
+        database.set_scene(position.file, "e", Some(scene));
+        let shown = hover(&database, position).map(|hover| hover.markdown).unwrap_or_default();
+        expect![[r#"
+            ```pydslrep
+            { front, left_eye, back, far } clear
+            ```
+            Holds while none of its sensors detects anything.
+
+            | sensor | mounted | sees |
+            |---|---|---|
+            | `front` | 0.15 m ahead and 0.15 m to the left, facing 45° to the left | 1 m, in a cone of 20° |
+            | `left_eye` | 0.15 m to the left, facing left | 1 m, in a cone of 20° |
+            | `back` | 0.15 m behind, facing back | what it touches: 0.05 m |
+            | `far` | 0.1 m ahead and 0.05 m to the right, facing 30° to the right | 2.5 m, in a cone of 10° |
+
+            In the scene of `e`.
+
+            It is asked once, of the latest step, which takes no time."#]]
+        .assert_eq(&shown);
     }
 
     #[test]

@@ -34,6 +34,7 @@ mod symbols;
 mod toml;
 mod type_definition;
 mod unsettled;
+mod users;
 mod workspace_symbols;
 
 #[cfg(test)]

@@ -77,6 +77,19 @@ mod tests {
     }
 
     #[test]
+    fn a_movement_is_linked_where_it_is_done() {
+        check(
+            &[(
+                "a.pyr",
+                "movement side of r { slam }\nmovement all of r { repeat 2 times { do si$0de } do side }",
+            )],
+            &expect![[r"
+                movement [side] of r { slam }
+                movement all of r { repeat 2 times { do [side] } do [side] }"]],
+        );
+    }
+
+    #[test]
     fn names_used_in_other_files_are_not_linked() {
         check_none(&[
             ("a.pyr", "wheel a$0 with radius 4\nrobot r with port 1 has { a } wheels"),

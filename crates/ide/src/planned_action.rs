@@ -5,10 +5,10 @@ use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Span};
 use rustc_hash::FxHashSet;
 use serde::{Deserialize, Serialize};
-use smol_str::SmolStr;
 
 use crate::FilePosition;
 use crate::cursor::entities_at;
+use crate::users::environments_using;
 
 /// The parts of planned paths at a position.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -63,9 +63,11 @@ pub fn planned_at(database: &Database, position: FilePosition) -> PlannedAt {
         }
     }
     let entities = entities_at(database, position);
-    let used = entities.first().map(|entity| users(database, entity));
-    let is_used = |name: &&String| used.as_ref().is_some_and(|users| users.contains(name.as_str()));
-    let using = environments.iter().filter(is_used).cloned().collect();
+    let users = entities.first().map(|entity| environments_using(database, entity.id, &[entity.file]));
+    let users = users.unwrap_or_default();
+    let names: FxHashSet<&str> =
+        users.iter().filter_map(|id| Some(database.tree(*id)?.name()?.text.as_str())).collect();
+    let using = environments.iter().filter(|name| names.contains(name.as_str())).cloned().collect();
     let action = entities.iter().find_map(|entity| action_in(database, entity, position.offset));
     PlannedAt { environments, using, action }
 }
@@ -93,22 +95,6 @@ fn done_by(database: &Database, movement: EntityId, index: usize) -> Option<Enti
     let span = *tree.statements().get(index)?;
     let name = tree.all_actions().find(|action| action.span == span)?.done()?;
     database.resolve(entity.file, EntityKind::Movement, &name.text).entity()
-}
-
-/// The environments of a file that use one of its entities, directly or indirectly; an environment uses itself.
-fn users(database: &Database, entity: &EntityRef<'_>) -> FxHashSet<SmolStr> {
-    let mut environments = FxHashSet::default();
-    let mut open = vec![entity.id];
-    let mut seen: FxHashSet<EntityId> = open.iter().copied().collect();
-    while let Some(id) = open.pop() {
-        let named = database.tree(id).and_then(|tree| Some((tree.kind()?, &tree.name()?.text)));
-        let Some((kind, name)) = named else { continue };
-        if kind == EntityKind::Environment {
-            environments.insert(name.clone());
-        }
-        open.extend(database.users(entity.file, kind, name).iter().filter(|user| seen.insert(**user)));
-    }
-    environments
 }
 
 fn action_in(database: &Database, entity: &EntityRef<'_>, offset: u32) -> Option<ActionAt> {

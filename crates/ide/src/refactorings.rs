@@ -49,6 +49,15 @@ impl Refactoring {
         Self { title: title.into(), kind, edits: Ok(edits) }
     }
 
+    /// One that rewrites code in one place.
+    fn rewrite(title: impl Into<String>, edit: Edit) -> Self {
+        Self::new(title, RefactoringKind::Rewrite, vec![edit])
+    }
+
+    fn no_rewrite(title: impl Into<String>, reason: impl Into<String>) -> Self {
+        Self::unavailable(title, RefactoringKind::Rewrite, reason)
+    }
+
     fn unavailable(title: impl Into<String>, kind: RefactoringKind, reason: impl Into<String>) -> Self {
         Self { title: title.into(), kind, edits: Err(reason.into()) }
     }

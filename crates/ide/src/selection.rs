@@ -1,5 +1,5 @@
-//! Expand selection: from a word to its list, clause, action, movement, entity, adjacent entities of the same kind, and
-//! file.
+//! Expand selection: from a word to its list, clause, action, block, movement, entity, adjacent entities of the same kind,
+//! and file.
 
 use pydslrep_analysis::{Database, EntityRef, FileId};
 use pydslrep_syntax::ast::{Action, ActionKind, Entity, Move, References};

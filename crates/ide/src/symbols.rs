@@ -1,4 +1,4 @@
-//! Document symbols: the outline of a file.
+//! Document symbols: the outline of a file, with the actions in their blocks.
 
 use pydslrep_analysis::{EntityRef, Snapshot};
 use pydslrep_syntax::ast::{Action, Entity, References};

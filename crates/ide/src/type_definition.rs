@@ -70,6 +70,17 @@ mod tests {
     }
 
     #[test]
+    fn a_movement_that_is_done_leads_to_its_robot() {
+        check(
+            &[(
+                "a.pyr",
+                "robot r with port 1\nmovement m of r { slam }\nmovement n of r { repeat 2 times { do $0m } }",
+            )],
+            &expect!["m -> a.pyr: robot r with port 1"],
+        );
+    }
+
+    #[test]
     fn the_robot_is_the_one_the_movement_sees() {
         check(
             &[

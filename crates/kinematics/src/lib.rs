@@ -39,7 +39,7 @@ pub use model::{Geometry, Model, ModelError, Settable, Setting, Turning};
 pub use path::{RobotPath, TimedPose};
 pub use per_wheel::PerWheel;
 pub use plan::{
-    MOST_ACTIONS, Plan, PlanError, RobotPlan, Run, plan, plan_movement, plan_schedule, plan_steps,
+    MOST_ACTIONS, Plan, PlanError, RobotPlan, Run, plan, plan_movement, plan_schedule, plan_step, plan_steps,
 };
 pub use pose::{Pose, Twist, angle_between, heading_degrees, wrap_angle};
 pub use profile::SpeedProfile;

@@ -6,7 +6,7 @@ use std::fmt;
 use crate::block::Block;
 use crate::path::RobotPath;
 use crate::walk::Walk;
-use crate::{Action, Model, Movement, Pose, Step};
+use crate::{Action, Model, Movement, Pose, Step, Summary};
 
 /// The most actions that a plan lists.
 pub const MOST_ACTIONS: u64 = 100_000;
@@ -87,6 +87,19 @@ pub fn plan_steps(model: &Model, start: Pose, steps: &[Step], called: &[Vec<Step
     let blocks = blocks(&called, &[model]);
     let block = Block::new(model, steps, &|other| blocks.get(other).map(|block| block.summary));
     let mut walk = Walk::new(&blocks, RobotPath::new(start), MOST_ACTIONS);
+    walk.run(&block, 0, 0, Some(0.0));
+    walk.into_path()
+}
+
+/// The path of one step alone: from `start` at time 0. A call in it is one leg; `called` is as for [`Summary::of`].
+pub fn plan_step(
+    model: &Model,
+    start: Pose,
+    step: Step,
+    called: &dyn Fn(usize) -> Option<Summary>,
+) -> RobotPath {
+    let block = Block::new(model, &[step], called);
+    let mut walk = Walk::new(&[], RobotPath::new(start), MOST_ACTIONS);
     walk.run(&block, 0, 0, Some(0.0));
     walk.into_path()
 }

@@ -265,7 +265,7 @@ mod tests {
     };
     use crate::{
         Action, LegKind, MOST_ACTIONS, Movement, Plan, Pose, RobotPlan, Step, StepKind, plan_movement,
-        plan_schedule, plan_steps,
+        plan_schedule, plan_step, plan_steps,
     };
 
     fn path(steps: Vec<Step>) -> RobotPath {
@@ -327,6 +327,17 @@ mod tests {
         let last = &path.legs[15];
         assert_eq!((last.index.action, last.place.rounds()), (1, &[2][..]));
         assert_eq!(calls(&last.place), [(1, 1), (2, 0)]);
+    }
+
+    #[test]
+    fn a_call_alone_is_one_leg_to_where_its_movement_ends() {
+        let side = numbered(vec![forward(1.0), left()]);
+        let start = Pose::new(1.0, 2.0, 0.5);
+        let summary = Summary::of(&two_wheels(), &side, &|_| None);
+        let alone = plan_step(&two_wheels(), start, call(0), &|_| Some(summary));
+        let whole = plan_steps(&two_wheels(), start, &numbered(vec![call(0)]), &[side]);
+        assert!(alone.end().distance(&whole.end()) < 1e-12 && alone.legs.len() == 1, "{alone:?}");
+        assert_eq!(plan_step(&two_wheels(), start, call(0), &|_| None).legs, []);
     }
 
     #[test]

@@ -630,12 +630,37 @@ test("after a run the driven path is drawn with the planned one", async () => {
   await panel.close();
 });
 
+/** A truck that drives around twice, and then on one of two ways. */
+function undecided(text) {
+  const [parts] = text.split("movement dock");
+  return `sensor front\n${parts.replace("{ wheelL wheelR } wheels", "$& with sensors { front }")}movement dock of truck {
+  repeat 2 times {
+    move 1.2 meters at 20
+    turn left 180 with radius 30 centimeters at 20
+  }
+  move 1.5 meters at 20
+  if { front } detect within 80 centimeters {
+    turn left 90 with radius 60 centimeters at 10
+    move 60 centimeters
+  } else {
+    move 1 meters
+    turn right
+    move 1 meters until { front } detect within 40 centimeters
+  }
+}
+
+environment dock has { truck } robots with { dock } moves
+`;
+}
+
 test("pictures", async () => {
   const colours = { light: "#0072b2", dark: "#56b4e9", "high-contrast": "#4cc2ff", "high-contrast-light": "#00538a" };
   const crashing = (text) => text.replace("turn left 45\n  move 1.4", "turn left 85\n  move 1.4");
   const scenes = [
     { file: "preview-light", name: "crossing", theme: "light", time: 0.4, at: "move 1.4" },
     { file: "preview-high-contrast", name: "crossing", theme: "high-contrast", time: 0.45, change: crashing },
+    { file: "preview-possible", name: "dock", theme: "light", time: 0.3, change: undecided, at: "if {" },
+    { file: "possible-dark", name: "dock", theme: "dark", time: 0.3, change: undecided, at: "if {" },
     { file: "crossing-dark", name: "crossing", theme: "dark", time: 0.4 },
     { file: "crossing-high-contrast-light", name: "crossing", theme: "high-contrast-light", time: 0.4, at: "turn left" },
     { file: "convoy-light", name: "convoy", theme: "light", time: 0.5 },
@@ -648,7 +673,7 @@ test("pictures", async () => {
     const { uri, text } = example(name);
     const { panel, follower } = await follow(uri, change(text), { theme, ...size });
     if (ranEnvironment) await run(panel, uri, ranEnvironment);
-    if (at) await follower.update(rangeOf(text, at).start, true);
+    if (at) await follower.update(rangeOf(change(text), at).start, true);
     await panel.part("slider").evaluate((input, share) => {
       input.value = String(Number(input.max) * share);
       input.dispatchEvent(new Event("input"));

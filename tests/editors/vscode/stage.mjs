@@ -1,6 +1,6 @@
 // A real editor for tests: code-server with a fresh profile and the extension, in a headless Chromium.
 import { execFileSync, spawn } from "node:child_process";
-import { cpSync, mkdirSync, mkdtempSync, readFileSync, renameSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, renameSync, rmSync, writeFileSync } from "node:fs";
 import net from "node:net";
 import os from "node:os";
 import path from "node:path";
@@ -71,6 +71,22 @@ export class Stage {
     } finally {
       await stage.close();
     }
+  }
+
+  /** As `with`, after the tests of a file in `api` have run in the extension host; the test gets their results. */
+  static async withApi(options, tests, test) {
+    const out = path.join(os.tmpdir(), `pyr-api-${process.pid}.json`);
+    const testsPath = path.join(TEST_EXTENSION, tests);
+    const prepare = async (page) => {
+      await page.exposeFunction("codeAutomationExit", () => undefined);
+      await page.exposeFunction("codeAutomationLog", () => undefined);
+    };
+    rmSync(out, { force: true });
+    await Stage.with({ env: { API_RESULTS: out }, prepare, testsPath, ...options }, async (stage) => {
+      const written = () => existsSync(out) && readFileSync(out, "utf8");
+      await test(stage, JSON.parse(await until("the tests have ended", written, 240_000)));
+    });
+    rmSync(out, { force: true });
   }
 
   /** Saves a screenshot, to find out why a test failed. */

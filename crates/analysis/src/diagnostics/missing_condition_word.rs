@@ -79,14 +79,7 @@ fn problem(context: &Context<'_>, condition: &Condition) -> Problem {
 mod tests {
     use expect_test::expect;
 
-    use crate::diagnostics::testing::{check, check_clean};
-
-    const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nsensor s\nsensor t : bumper\n\
-        robot r with port 1 has { a b } wheels with sensors { s, t }\n";
-
-    fn program(actions: &str) -> String {
-        format!("{PARTS}movement m of r {{ {actions} }}")
-    }
+    use crate::diagnostics::testing::{PARTS, check, check_clean, program};
 
     #[test]
     fn either_word_is_offered() {

@@ -9,6 +9,15 @@ use crate::{Database, Diagnostic, Edit, FileId, Fix};
 /// Rules about what is still to be written; fixtures are fragments and would all break them.
 const OF_WHOLE_PROGRAMS: [&str; 3] = ["unused-declaration", "idle-robot", "no-environment"];
 
+/// A robot `r` with a distance sensor `s` and a bumper `t`.
+pub(super) const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nsensor s\nsensor t : bumper\n\
+    robot r with port 1 has { a b } wheels with sensors { s, t }\n";
+
+/// A movement `m` of that robot.
+pub(super) fn program(actions: &str) -> String {
+    format!("{PARTS}movement m of r {{ {actions} }}")
+}
+
 /// Compares the problems of a fragment with what is expected, and holds every fix to its promise: the problem is gone
 /// and none has come.
 #[track_caller]

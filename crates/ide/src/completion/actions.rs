@@ -222,3 +222,87 @@ pub(super) fn otherwise(context: &CursorContext<'_>) -> Vec<Completion> {
         Snippet::new("else { … }", "what is done if the condition does not hold", format!("else {BLOCK}"));
     completions(context, vec![snippet])
 }
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::completion::testing::{asked, labels_in};
+    use crate::fixture::PARTS;
+
+    #[test]
+    fn each_clause_is_offered_in_its_place() {
+        let fixtures = [
+            "wait 2 $0",
+            "wait until { front } $0",
+            "wait until { front } clear within 2 $0",
+            "repeat 4 $0",
+            "repeat 4 $0\n}",
+            "repeat 4 $0 { slam }",
+            "repeat 4 times $0",
+            "if { front } $0",
+            "if { front } clear $0",
+            "turn left 90 with $0",
+            "turn left 90 with radius 2 meters in $0",
+            "wait $0",
+        ];
+        let shown = |fixture: &&str| format!("{fixture:?}: {:?}\n", labels_in(fixture));
+        let shown: String = fixtures.iter().map(shown).collect();
+        expect![[r#"
+            "wait 2 $0": ["seconds"]
+            "wait until { front } $0": ["clear", "detect", "within", "move … meters", "move … meters at …", "move … centimeters", "move … centimeters at …", "move until … detect", "turn left", "turn right", "turn left …", "turn right …", "turn left … with radius …", "turn right … with radius …", "turn left until …", "repeat … times { … }", "repeat until … detect { … }", "wait … seconds", "wait until … clear", "if … detect { … }", "do …", "move", "turn", "wait", "repeat", "if", "do", "slam", "}"]
+            "wait until { front } clear within 2 $0": ["meters", "centimeters"]
+            "repeat 4 $0": ["times { … }", "times"]
+            "repeat 4 $0\n}": ["times { … }", "times"]
+            "repeat 4 $0 { slam }": ["times"]
+            "repeat 4 times $0": ["{"]
+            "if { front } $0": ["clear", "detect", "within", "{"]
+            "if { front } clear $0": ["within", "{"]
+            "turn left 90 with $0": ["radius"]
+            "turn left 90 with radius 2 meters in $0": ["reverse"]
+            "wait $0": ["until … clear", "until … detect", "until { … }"]
+        "#]].assert_eq(&shown);
+    }
+
+    /// Those that are no actions of their own.
+    #[test]
+    fn clauses_come_before_the_next_action() {
+        let first =
+            |fixture: &str, count: usize| labels_in(fixture).into_iter().take(count).collect::<Vec<_>>();
+        assert_eq!(
+            first("turn left 90 $0", 8),
+            [
+                "with radius …",
+                "with radius",
+                "at …",
+                "at",
+                "until … clear",
+                "until … detect",
+                "until { … }",
+                "in reverse"
+            ]
+        );
+        assert_eq!(first("if { front } clear { slam } $0", 2), ["else { … }", "else"]);
+        assert_eq!(first("wait 2 seconds $0 }", 3), ["until … clear", "until … detect", "until"]);
+        assert_eq!(first("move until { front } $0", 3), ["clear", "detect", "within"]);
+    }
+
+    #[test]
+    fn words_of_statements_are_offered_only_where_they_fit() {
+        for fixture in
+            ["turn left until { $0 } }", "turn left until { w$0 } }", "repeat $0", "do $0", "wait 2 s$0 x"]
+        {
+            let found = labels_in(fixture);
+            let words = ["wait", "repeat", "if", "do", "else", "clear", "detect", "times", "within"];
+            assert!(!found.iter().any(|label| words.contains(&label.as_str())), "{fixture}: {found:?}");
+        }
+        for fixture in ["sensor re$0", "wheel wai$0", "robot i$0", "movement d$0", "movement m of cl$0 {"] {
+            assert_eq!(asked(&format!("{PARTS}{fixture}")), [""; 0], "{fixture}");
+        }
+        let names = "sensor wait sensor clear robot r type tw with port 1 has { } wheels with sensors { wait clear }\n";
+        assert_eq!(
+            asked(&format!("{names}movement m of r {{ if {{ $0 }} clear {{ slam }} }}")),
+            ["wait", "clear"]
+        );
+    }
+}

@@ -28,3 +28,24 @@ pub fn completion_documentation(
     let first = facts.lines().next().unwrap_or_default();
     Some(format!("```pydslrep\n{}\n```\n{first}", lines.join("\n")).trim_end().to_owned())
 }
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::completion::{CompletionTrigger, Documentation, completion_documentation, completions};
+    use crate::fixture::{PARTS, at_cursor};
+
+    #[test]
+    fn a_name_is_documented_on_request() {
+        let (database, position) = at_cursor(&format!("{PARTS}movement m of $0"));
+        let item = completions(&database, position, CompletionTrigger::Invoked, 9.0).remove(0);
+        let Documentation::Of(home, kind) = item.documentation else { panic!("{item:?}") };
+        expect![[r#"
+            ```pydslrep
+            robot rover type tw with port 23000 has { wheelL wheelR } wheels with sensors { front }
+            ```
+            Two-wheel differential drive (`tw`), port 23000."#]]
+        .assert_eq(&completion_documentation(&database, home, kind, &item.label.into()).unwrap_or_default());
+    }
+}

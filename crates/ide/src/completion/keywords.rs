@@ -189,3 +189,202 @@ pub(super) fn port(context: &CursorContext<'_>, own: Option<EntityId>) -> Option
     let free = |port: &u16| taken.binary_search(port).is_err();
     port.or_else(|| (first..=u16::MAX).chain(1..first).find(free)).map(|port| port.to_string())
 }
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::completion::testing::{check, opens};
+    use crate::fixture::PARTS;
+
+    #[test]
+    fn an_empty_file_offers_declarations() {
+        check(
+            "$0",
+            &expect![[r#"
+                program … [a two-wheel robot, a movement and an environment] "" -> "wheel wheelL with radius ${4:4.5}\nwheel wheelR with radius ${4:4.5}\n\nrobot ${1:rover} type tw with port ${5:23000} has { wheelL wheelR } wheels\n\nmovement ${2:patrol} of ${1:rover} {\n  move ${6:1.0} meters\n  $0\n}\n\nenvironment ${3:yard} has { ${1:rover} } robots with { ${2:patrol} } moves\n"
+                wheel … [a complete wheel declaration] "" -> "wheel ${1:wheelL} with radius ${2:4.5}"
+                wheelH … [a complete mecanum wheel declaration] "" -> "wheelH ${1:wheelL} with radius ${2:4.5}"
+                sensor … [a complete sensor declaration] "" -> "sensor ${1:front}"
+                ip … [a complete address declaration] "" -> "ip ${1:lab} ${2:127.0.0.1}"
+                robot … [a complete robot declaration] "" -> "robot ${1:rover} type ${5:tw} with port ${4:23000} has { $2 } wheels"
+                movement … [a complete movement declaration] "" -> "movement ${1:patrol} of $2 {\n  $0\n}"
+                parallel movement … [a movement that runs at the same time as others] "" -> "parallel movement ${1:patrol} of $2 {\n  $0\n}"
+                environment … [a complete environment declaration] "" -> "environment ${1:area} has { $2 } robots with { $3 } moves"
+                import [import "FILE.pyr"] "" -> "import"
+                wheel [wheel NAME with radius CENTIMETRES] "" -> "wheel"
+                wheelH [wheelH NAME with radius CENTIMETRES] "" -> "wheelH"
+                sensor [sensor NAME [: distance | bumper]] "" -> "sensor"
+                ip [ip NAME 127.0.0.1] "" -> "ip"
+                robot [robot NAME [type tw | fw | fwh] with port PORT has { WHEELS } wheels [with sensors { SENSORS }]] "" -> "robot"
+                movement [[parallel] movement NAME of ROBOT { ACTIONS }] "" -> "movement"
+                parallel [[parallel] movement NAME of ROBOT { ACTIONS }] "" -> "parallel"
+                environment [environment NAME [with ip IP] has { ROBOTS } robots [with { MOVEMENTS } moves]] "" -> "environment"
+            "#]],
+        );
+    }
+
+    #[test]
+    fn keywords_bring_those_that_must_follow() {
+        check(
+            "wheel w $0",
+            &expect![[r#"
+                with radius [with radius CENTIMETRES] "" -> "with radius"
+            "#]],
+        );
+        check(
+            &format!("{PARTS}robot r $0"),
+            &expect![[r#"
+                with port [with port NUMBER] "" -> "with port"
+                type [type tw | fw | fwh] "" -> "type"
+            "#]],
+        );
+        check(
+            &format!("{PARTS}robot r with port 1 $0"),
+            &expect![[r#"
+                has { … } wheels [has { WHEELS } wheels] "" -> "has { ${1:wheelL wheelR} } wheels"
+            "#]],
+        );
+        check(
+            &format!("{PARTS}environment e $0"),
+            &expect![[r#"
+                with ip [ip NAME 127.0.0.1] "" -> "with ip"
+                has { … } robots [has { ROBOTS } robots] "" -> "has { ${1:rover} } robots"
+            "#]],
+        );
+        check(
+            "robot r type $0",
+            &expect![[r#"
+                tw with port [Two-wheel differential drive] "" -> "tw with port"
+                fw with port [Four-wheel skid-steer drive] "" -> "fw with port"
+                fwh with port [Mecanum drive] "" -> "fwh with port"
+            "#]],
+        );
+        check(
+            "robot r with port $0",
+            &expect![[r#"
+                23000 [simulator port] "" -> "23000"
+            "#]],
+        );
+    }
+
+    #[test]
+    fn keywords_bring_nothing_that_is_already_there() {
+        check(
+            &format!("{PARTS}robot r type $0 with port 1 has {{ wheelL wheelR }} wheels"),
+            &expect![[r#"
+                tw [Two-wheel differential drive] "" -> "tw"
+                fw [Four-wheel skid-steer drive] "" -> "fw"
+                fwh [Mecanum drive] "" -> "fwh"
+            "#]],
+        );
+    }
+
+    #[test]
+    fn a_distance_is_followed_by_its_unit() {
+        check(
+            &format!("{PARTS}movement m of rover {{ move 4.0 $0 }}"),
+            &expect![[r#"
+                meters [move DISTANCE meters | centimeters [at SPEED]] "" -> "meters"
+                centimeters [move DISTANCE centimeters] "" -> "centimeters"
+            "#]],
+        );
+        check(
+            &format!("{PARTS}movement m of rover {{ move 4.0 me$0 turn left }}"),
+            &expect![[r#"
+                meters [move DISTANCE meters | centimeters [at SPEED]] "me" -> "meters"
+            "#]],
+        );
+        check(
+            &format!("{PARTS}movement m of rover {{ move 4.0 meters $0 }}"),
+            &expect![[r#"
+                at … [a speed (cm/s)] "" -> "at ${1:9.0}"
+                at [move DISTANCE meters | centimeters [at SPEED]] "" -> "at"
+                until … detect [until a sensor detects an obstacle] "" -> "until { ${1:front} } detect"
+                until … clear [until no sensor detects an obstacle] "" -> "until { ${1:front} } clear"
+                until [until { SENSORS } clear | detect [within DISTANCE meters | centimeters]] "" -> "until"
+                turn left [in place by 90 degrees] "" -> "turn left"
+                turn right [in place by 90 degrees] "" -> "turn right"
+                turn left … [in place by this angle (degrees)] "" -> "turn left ${1:90}"
+                turn right … [in place by this angle (degrees)] "" -> "turn right ${1:90}"
+                turn left … with radius … [on a circle] "" -> "turn left ${1:90} with radius ${2:1.0} meters"
+                turn right … with radius … [on a circle] "" -> "turn right ${1:90} with radius ${2:1.0} meters"
+                turn left until … [in place until no sensor detects an obstacle] "" -> "turn left until { ${1:front} }"
+                move … meters [straight ahead] "" -> "move ${1:4.0} meters"
+                move … meters at … [straight ahead at this speed (cm/s)] "" -> "move ${1:4.0} meters at ${2:9.0}"
+                move … centimeters [straight ahead] "" -> "move ${1:50} centimeters"
+                move … centimeters at … [straight ahead at this speed (cm/s)] "" -> "move ${1:50} centimeters at ${2:9.0}"
+                move until … detect [straight ahead until a sensor detects an obstacle] "" -> "move until { ${1:front} } detect"
+                repeat … times { … } [a number of times] "" -> "repeat ${1:4} times {\n  $0\n}"
+                repeat until … detect { … } [until a sensor detects an obstacle] "" -> "repeat until { ${1:front} } detect {\n  $0\n}"
+                wait … seconds [stands still] "" -> "wait ${1:2} seconds"
+                wait until … clear [stands still until no sensor detects an obstacle] "" -> "wait until { ${1:front} } clear"
+                if … detect { … } [only if a sensor detects an obstacle] "" -> "if { ${1:front} } detect {\n  $0\n}"
+                move [move DISTANCE meters | centimeters [at SPEED]] "" -> "move"
+                turn [turn left | right [DEGREES] [with radius DISTANCE meters | centimeters] [at SPEED] [in reverse]] "" -> "turn"
+                wait [wait SECONDS seconds] "" -> "wait"
+                repeat [repeat COUNT times { ACTIONS }] "" -> "repeat"
+                if [if { SENSORS } clear | detect [within DISTANCE meters | centimeters] { ACTIONS } [else { ACTIONS }]] "" -> "if"
+                do [do MOVEMENT] "" -> "do"
+                slam [slam] "" -> "slam"
+                } [] "" -> "}"
+            "#]],
+        );
+    }
+
+    #[test]
+    fn a_half_typed_keyword_is_a_word() {
+        check(
+            "wheel w with radius 4\nrob$0",
+            &expect![[r#"
+                robot … [a complete robot declaration] "rob" -> "robot ${1:rover} type ${5:tw} with port ${4:23000} has { $2 } wheels"
+                robot [robot NAME [type tw | fw | fwh] with port PORT has { WHEELS } wheels [with sensors { SENSORS }]] "rob" -> "robot"
+            "#]],
+        );
+    }
+
+    #[test]
+    fn clauses_are_offered_for_their_first_word_only() {
+        let robot = |typed: &str| {
+            format!("{PARTS}robot r type tw with port 1 has {{ wheelL wheelR }} wheels\n{typed}$0")
+        };
+        assert_eq!(opens(&robot("w")), ["wheel …", "wheelH …", "wheel", "wheelH", "with sensors { … }"]);
+        assert_eq!(opens(&robot("s")), ["sensor …", "sensor"]);
+    }
+
+    #[test]
+    fn nothing_is_offered_for_names_and_in_comments() {
+        check("wheel $0", &expect![]);
+        check("// a$0", &expect![]);
+        check("import \"$0", &expect![]);
+        check("import \"a$0\"", &expect![]);
+    }
+
+    #[test]
+    fn a_port_that_is_free() {
+        check(
+            "robot r with port 65535 has { } wheels robot q with port $0",
+            &expect![[r#"
+                65535 [simulator port] "" -> "65535"
+            "#]],
+        );
+        check(
+            "robot r with port 20000 has { } wheels robot q with port $0",
+            &expect![[r#"
+                20000 [simulator port] "" -> "20000"
+            "#]],
+        );
+    }
+
+    #[test]
+    fn a_number_is_left_alone() {
+        check("movement m of r { move 4$0.0 meters }", &expect![]);
+        check("movement m of r { move 4$0 }", &expect![""]);
+        check(
+            "movement m of r { move 4 meters at $0 }",
+            &expect![[r#"
+                9.0 [centimetres per second] "" -> "9.0"
+            "#]],
+        );
+    }
+}

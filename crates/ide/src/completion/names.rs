@@ -349,3 +349,175 @@ fn unimported(context: &CursorContext<'_>, wanted: &Wanted<'_>) -> Vec<Completio
     }
     items
 }
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::completion::testing::{asked, check, check_in, opens};
+    use crate::completion::{CompletionTrigger, MAX_ITEMS, completions};
+    use crate::fixture::{PARTS, at_cursor};
+
+    #[test]
+    fn a_list_offers_names_it_does_not_have_yet() {
+        check(
+            &format!("{PARTS}robot r type tw with port 1 has {{ wheelL $0 }} wheels"),
+            &expect![[r#"
+                wheelR [wheel] "" -> "wheelR"
+                } [] "" -> "}"
+            "#]],
+        );
+        check(
+            &format!("{PARTS}robot r type fwh with port 1 has {{ $0 }} wheels"),
+            &expect![[r#"
+                } [] "" -> "}"
+            "#]],
+        );
+        check(
+            &format!("{PARTS}robot r type tw with port 1 has {{ wheelL whe$0 }} wheels"),
+            &expect![[r#"
+                wheelR [wheel] "whe" -> "wheelR"
+            "#]],
+        );
+    }
+
+    #[test]
+    fn a_turn_offers_its_robots_sensors() {
+        check(
+            &format!("{PARTS}movement m of rover {{ turn left until {{ $0"),
+            &expect![[r#"
+                front [sensor] "" -> "front"
+            "#]],
+        );
+    }
+
+    #[test]
+    fn an_environment_offers_its_robots_movements() {
+        check(
+            &format!(
+                "{PARTS}robot other with port 2 has {{ wheelL wheelR }} wheels movement m of rover {{ slam }} movement n of other {{ slam }}\nenvironment e has {{ rover }} robots with {{ $0"
+            ),
+            &expect![[r#"
+                m [movement] "" -> "m"
+                } moves [with { MOVEMENTS } moves] "" -> "} moves"
+            "#]],
+        );
+    }
+
+    #[test]
+    fn do_offers_movements_of_the_same_robot_that_do_not_lead_back() {
+        let movements = format!(
+            "{PARTS}robot other type tw with port 1 has {{ wheelL wheelR }} wheels\n\
+             movement leg of rover {{ slam }}\nmovement back of rover {{ repeat 2 times {{ do m }} }}\n\
+             movement far of rover {{ do back }}\nmovement foreign of other {{ slam }}\n\
+             movement done of rover {{ do leg }}\n"
+        );
+        let inside = |actions: &str| format!("{movements}movement m of rover {{ {actions}");
+        assert_eq!(asked(&inside("do $0")), ["done", "leg"]);
+        assert_eq!(asked(&inside("do d$0 wait 1 seconds }")), ["done"]);
+        assert_eq!(opens(&inside("repeat 2 times { do $0 } }")), ["done", "leg"]);
+        assert_eq!(asked(&inside("if { front } clear { slam } else { do $0")), ["done", "leg"]);
+        // Names, not actions.
+        assert_eq!(opens(&inside("turn left until { do $0 }")), [""; 0]);
+        assert_eq!(opens(&inside("do leg $0 }")), [""; 0]);
+    }
+
+    #[test]
+    fn names_of_other_files_bring_their_import() {
+        let wheels = ("lib/wheels.pyr", "wheel big with radius 9 wheelH round with radius 9");
+        let more = ("more.pyr", "wheel ^type with radius 1 wheel big with radius 2");
+        check_in(
+            &[wheels, more, ("a.pyr", "import \"more.pyr\"\nrobot r type tw with port 1 has { $0 } wheels")],
+            &expect![[r#"
+                big [wheel from more.pyr] "" -> "big"
+                type [wheel from more.pyr] "" -> "^type"
+                } [] "" -> "}"
+            "#]],
+        );
+        check_in(
+            &[wheels, more, ("a.pyr", "// head\nimport \"more.pyr\"\nrobot r with port 1 has { r$0")],
+            &expect![[r#"
+                round [wheel from lib/wheels.pyr, adds the import] "r" -> "round" and "import \"lib/wheels.pyr\"\n" at 8
+            "#]],
+        );
+        check_in(
+            &[wheels, ("a.pyr", "wheel rear with radius 1\nrobot r with port 1 has { r$0")],
+            &expect![[r#"
+                rear [wheel] "r" -> "rear"
+            "#]],
+        );
+        check_in(
+            &[wheels, ("a.pyr", "wheelH rear with radius 1\nrobot r type tw with port 1 has { $0")],
+            &expect![[r#"
+                } wheels [has { WHEELS } wheels] "" -> "} wheels"
+                big [wheel from lib/wheels.pyr, adds the import] "" -> "big" and "import \"lib/wheels.pyr\"\n\n" at 0
+            "#]],
+        );
+        check_in(
+            &[wheels, ("a.pyr", "\u{feff}robot r type fwh with port 1 has { $0 } wheels")],
+            &expect![[r#"
+            } [] "" -> "}"
+            round [wheel from lib/wheels.pyr, adds the import] "" -> "round" and "import \"lib/wheels.pyr\"\n\n" at 3
+        "#]],
+        );
+    }
+
+    #[test]
+    fn keywords_as_names_are_escaped() {
+        check(
+            "sensor ^robots robot r with port 1 has { } wheels with sensors { ro$0",
+            &expect![[r#"
+            robots [sensor] "ro" -> "^robots"
+        "#]],
+        );
+        check(
+            "sensor ^robots sensor s robot r with port 1 has { } wheels with sensors { ^$0 }",
+            &expect![[r#"
+            robots [sensor] "^" -> "^robots"
+            s [sensor] "^" -> "s"
+        "#]],
+        );
+    }
+
+    #[test]
+    fn the_likeliest_wheels_come_first() {
+        check(
+            "wheel a with radius 9 wheel b with radius 4 wheel c with radius 4 wheel d with radius 4 wheelH e with radius 4\n\
+             robot q with port 1 has { b } wheels robot r with port 1 has { c $0 } wheels",
+            &expect![[r#"
+                d [wheel] "" -> "d"
+                b [wheel] "" -> "b"
+                a [wheel] "" -> "a"
+                } [] "" -> "}"
+            "#]],
+        );
+        check(
+            "wheelH a with radius 4 wheelH b with radius 4 wheelH c with radius 4 wheelH d with radius 4\n\
+             robot r type $0 with port 1 has { a b c d } wheels",
+            &expect![[r#"
+                fwh [Mecanum drive] "" -> "fwh"
+                tw [Two-wheel differential drive] "" -> "tw"
+                fw [Four-wheel skid-steer drive] "" -> "fw"
+            "#]],
+        );
+    }
+
+    #[test]
+    fn lists_have_a_maximum_length() {
+        let many: Vec<String> = (0..5_000).map(|number| format!("sensor s{number:04}end")).collect();
+        let many = many.join("\n");
+        let found = |typed: &str| {
+            let (database, position) = at_cursor(&format!(
+                "sensor zigzag\n{many}\nsensor near robot r with port 1 has {{ }} wheels with sensors {{ {typed}$0"
+            ));
+            let found = completions(&database, position, CompletionTrigger::Invoked, 9.0);
+            found.into_iter().map(|item| item.label).collect::<Vec<String>>()
+        };
+        let labels = found("");
+        assert_eq!(labels.len(), MAX_ITEMS);
+        assert!(labels.contains(&"near".to_owned()), "the nearest declaration");
+        assert_eq!(found("s4321end"), ["s4321end"]);
+        assert_eq!(found("s432").iter().filter(|label| label.starts_with("s432")).count(), 10);
+        assert_eq!(found("Z"), ["zigzag"]);
+    }
+}

@@ -109,3 +109,35 @@ fn is_first(database: &Database, file: FileId, offset: u32) -> bool {
     let mut before = database.entities(file).take_while(|entity| entity.span.start < offset);
     before.all(|entity| entity.parse.tokens.iter().all(comment))
 }
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+
+    use crate::completion::testing::check_in;
+
+    #[test]
+    fn imports_offer_existing_files() {
+        let files =
+            |last| [("lib/wheels.pyr", "wheel big with radius 9"), ("b.pyr", ""), ("lib/a.pyr", last)];
+        check_in(
+            &files("import \"$0\""),
+            &expect![[r#"
+            wheels.pyr [1 wheel] "" -> "wheels.pyr"
+            ../b.pyr [declares nothing] "" -> "../b.pyr"
+        "#]],
+        );
+        check_in(
+            &files("import \"whe$0\nsensor s"),
+            &expect![[r#"
+                wheels.pyr [1 wheel] "whe" -> "wheels.pyr\""
+            "#]],
+        );
+        check_in(
+            &files("import \"wheels.pyr\" import $0"),
+            &expect![[r#"
+            "../b.pyr" [declares nothing] "" -> "\"../b.pyr\""
+        "#]],
+        );
+    }
+}

@@ -55,7 +55,7 @@ pub(super) fn robot(database: &Database, id: EntityId) -> Option<String> {
 }
 
 /// The inverse kinematics with this robot's radius. Other lengths come from the scene, so they stay symbols.
-fn equations(robot: &Robot) -> String {
+pub(super) fn equations(robot: &Robot) -> String {
     let radius = robot.wheels.first().map_or_else(String::new, |wheel| number(wheel.radius, 4));
     let row = robot.drive.row();
     let geometry = defaults::GEOMETRY;

@@ -3,7 +3,7 @@
 use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{ActionKind, Circle, Turn};
 
-use super::{Refactoring, RefactoringKind, Selection};
+use super::{Refactoring, Selection};
 
 /// A circle to begin with: the number is there to be changed.
 const RADIUS: &str = "1.0 meters";
@@ -23,7 +23,7 @@ pub(super) fn on_circle(selection: &Selection<'_>) -> Option<Refactoring> {
     edits.push(unchanged(span.end));
     let edit = selection.rewrite(&edits)?;
     let title = format!("turn on a circle of {RADIUS} (changes the path)");
-    Some(Refactoring::new(title, RefactoringKind::Rewrite, vec![edit]))
+    Some(Refactoring::rewrite(title, edit))
 }
 
 /// The refactoring for the chosen turn on a circle.
@@ -33,7 +33,7 @@ pub(super) fn in_place(selection: &Selection<'_>) -> Option<Refactoring> {
     let title = "turn in place (changes the path)";
     if turn.angle.as_ref().is_some_and(|angle| angle.value.is_none_or(|value| value.abs() > FULL_TURN)) {
         let reason = "it is more than a full turn";
-        return Some(Refactoring::unavailable(title, RefactoringKind::Rewrite, reason));
+        return Some(Refactoring::no_rewrite(title, reason));
     }
     let without = |span: Span| {
         let comments = selection.comment_lines(span);
@@ -43,7 +43,7 @@ pub(super) fn in_place(selection: &Selection<'_>) -> Option<Refactoring> {
     edits.extend(turn.reverse.map(|reverse| without(Span::new(before_reverse(turn, circle), reverse.end))));
     edits.push(unchanged(span.end));
     let edit = selection.rewrite(&edits)?;
-    Some(Refactoring::new(title, RefactoringKind::Rewrite, vec![edit]))
+    Some(Refactoring::rewrite(title, edit))
 }
 
 /// The chosen turn, unless it is one of 0 degrees, which is a mistake whichever way.

@@ -4,7 +4,7 @@ use pydslrep_analysis::Database;
 use pydslrep_syntax::ast::{Drive, Entity, Name, Robot};
 use pydslrep_syntax::{EntityKind, Span};
 
-use super::{Refactoring, RefactoringKind, Selection};
+use super::{Refactoring, Selection};
 use crate::cursor::resolved;
 
 /// The refactoring for a robot without a type, if its wheels determine it.
@@ -12,7 +12,7 @@ pub(super) fn add(selection: &Selection<'_>) -> Option<Refactoring> {
     let Some(Entity::Robot(robot)) = &selection.entity.parse.entity else { return None };
     let word = inferred(selection, robot)?.word();
     let edit = selection.edit(Span::at(robot.name.as_ref()?.span.end), format!(" type {word}"));
-    Some(Refactoring::new(format!("add `type {word}`"), RefactoringKind::Rewrite, vec![edit]))
+    Some(Refactoring::rewrite(format!("add `type {word}`"), edit))
 }
 
 fn inferred(selection: &Selection<'_>, robot: &Robot) -> Option<Drive> {

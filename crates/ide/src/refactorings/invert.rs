@@ -3,7 +3,7 @@
 use pydslrep_syntax::ast::{ActionKind, Block, Branch, If, SensorState};
 use pydslrep_syntax::{Span, TokenKind};
 
-use super::{Refactoring, RefactoringKind, Selection};
+use super::{Refactoring, Selection};
 
 const TITLE: &str = "invert `if`";
 
@@ -37,11 +37,11 @@ pub(super) fn invert(selection: &Selection<'_>) -> Option<Refactoring> {
         (state.1, opposite(state.0)?.to_owned()),
         (Span::new(condition.span.end, otherwise.span.end), blocks),
     ])?;
-    Some(Refactoring::new(TITLE, RefactoringKind::Rewrite, vec![edit]))
+    Some(Refactoring::rewrite(TITLE, edit))
 }
 
 fn unavailable(reason: &str) -> Refactoring {
-    Refactoring::unavailable(TITLE, RefactoringKind::Rewrite, reason)
+    Refactoring::no_rewrite(TITLE, reason)
 }
 
 /// Whether the selection is at the last branch, or there is no other.

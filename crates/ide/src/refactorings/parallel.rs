@@ -22,7 +22,7 @@ pub(super) fn change(selection: &Selection<'_>) -> Vec<Refactoring> {
     let offers = make_parallel(&lists, selection.entity.id);
     offers.unwrap_or_else(|reason| {
         let title = format!("make `{}` parallel", name.text);
-        vec![Refactoring::unavailable(title, RefactoringKind::Rewrite, reason)]
+        vec![Refactoring::no_rewrite(title, reason)]
     })
 }
 

@@ -9,7 +9,7 @@ use pydslrep_syntax::ast::Action;
 
 use super::meaning::meaning;
 use super::rows::Row;
-use super::{Refactoring, RefactoringKind, Selection};
+use super::{Refactoring, Selection};
 
 /// The longest group that is looked for, in actions.
 const LONGEST_GROUP: usize = 100;
@@ -21,7 +21,7 @@ pub(super) fn roll_up(selection: &Selection<'_>) -> Option<Refactoring> {
     let (row, run) = rows.find_map(|row| Some((row, longest_run(&row)?)))?;
     let edit = row.rolled_up(&run)?;
     let title = format!("roll up into `repeat {} times`", run.count);
-    Some(Refactoring::new(title, RefactoringKind::Rewrite, vec![edit]))
+    Some(Refactoring::rewrite(title, edit))
 }
 
 /// Groups of actions that do the same, one after the other.

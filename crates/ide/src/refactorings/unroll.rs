@@ -3,7 +3,7 @@
 use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{ActionKind, Block, Repeat, Rounds, nested};
 
-use super::{Refactoring, RefactoringKind, Selection};
+use super::{Refactoring, Selection};
 
 /// More statements than these are not for people.
 const MOST_ACTIONS: usize = 200;
@@ -22,13 +22,13 @@ pub(super) fn unroll(selection: &Selection<'_>) -> Option<Refactoring> {
     let title = format!("unroll `repeat {rounds} times`");
     let Some(rounds) = bounded(rounds, block) else {
         let reason = format!("that would be more than {MOST_ACTIONS} actions");
-        return Some(Refactoring::unavailable(title, RefactoringKind::Rewrite, reason));
+        return Some(Refactoring::no_rewrite(title, reason));
     };
     let head = selection.comment_lines(Span::new(action.span.start, block.span.start));
     let round = selection.inner_text(block.span);
     let text = vec![round.trim(); rounds].join("\n");
     let edit = selection.rewrite(&[selection.in_place_of(action.span, &head, &text)])?;
-    Some(Refactoring::new(title, RefactoringKind::Rewrite, vec![edit]))
+    Some(Refactoring::rewrite(title, edit))
 }
 
 /// The number of rounds, if they are not too many actions.

@@ -1,37 +1,9 @@
 // Runs in the extension host: asks the editor what it would show.
 const assert = require("node:assert/strict");
-const { writeFileSync } = require("node:fs");
 
 const vscode = require("vscode");
 
-const folder = vscode.workspace.workspaceFolders[0].uri;
-const file = (name) => vscode.Uri.joinPath(folder, name);
-const ask = (provider, ...args) => vscode.commands.executeCommand(`vscode.${provider}`, ...args);
-
-async function until(what, check, patience = 30_000) {
-  const end = Date.now() + patience;
-  for (;;) {
-    const value = await check();
-    if (value) {
-      return value;
-    }
-    assert.ok(Date.now() < end, `timed out waiting until ${what}`);
-    await new Promise((resolve) => setTimeout(resolve, 50));
-  }
-}
-
-async function open(name) {
-  const document = await vscode.workspace.openTextDocument(file(name));
-  await vscode.window.showTextDocument(document);
-  return document;
-}
-
-/** The position of a text in a document, after some of its characters. */
-function at(document, text, offset = 0) {
-  const start = document.getText().indexOf(text);
-  assert.notEqual(start, -1, text);
-  return document.positionAt(start + offset);
-}
+const { ask, at, file, open, running, until } = require("./asking.cjs");
 
 const problems = (name) => vscode.languages.getDiagnostics(file(name));
 const labels = ({ items }) => items.map(({ label }) => label.label ?? label);
@@ -82,8 +54,8 @@ const tests = {
     assert.ok(symbols.some(({ name }) => name === "yard"));
     assert.ok((await ask("executeFoldingRangeProvider", document.uri)).length > 0);
     const whole = new vscode.Range(0, 0, document.lineCount, 0);
-    // One after each block.
-    assert.equal((await ask("executeInlayHintProvider", document.uri, whole)).length, 2);
+    // One after each action and block, and two for what one square leaves out.
+    assert.equal((await ask("executeInlayHintProvider", document.uri, whole)).length, 8);
     const lenses = await ask("executeCodeLensProvider", document.uri, 100);
     const titles = lenses.map(({ command }) => command?.title);
     for (const title of ["Generate script", "Run", "Preview"]) {
@@ -198,15 +170,4 @@ const tests = {
   },
 };
 
-exports.run = async () => {
-  const results = [];
-  for (const [name, test] of Object.entries(tests)) {
-    try {
-      await test();
-      results.push({ name });
-    } catch (error) {
-      results.push({ name, error: String(error.stack ?? error) });
-    }
-  }
-  writeFileSync(process.env.API_RESULTS, JSON.stringify(results));
-};
+exports.run = running(tests);

@@ -1,0 +1,174 @@
+//! An action: how long it takes, where it leads, and what its rounds, its circle or the movement that it does come to.
+
+use pydslrep_analysis::environment::{Action, ActionKind, Movement, Robot};
+use pydslrep_analysis::{Database, Driver, EntityId};
+use pydslrep_kinematics::{Leg, Pose};
+
+use super::arc::Arc;
+use super::format::{number, pose, time};
+use super::motion::facts;
+use super::way::Way;
+use super::within::Within;
+
+/// The statement with a number, which is the action with an index or in its blocks, of a movement that starts at the
+/// origin.
+pub(super) fn action(database: &Database, id: EntityId, index: usize, number: usize) -> Option<String> {
+    let (robot, movements) = database.movement_start(id, index + 1)?;
+    let (movement, done) = movements.split_last()?;
+    let driver = Driver::new(&robot).ok()?.with_done(done);
+    let start = Ok(Pose::default());
+    let statement = find(&driver, &movement.actions, number, start, Within::default())?;
+    let text = &statement.action.text;
+    let details = Details { robot: &robot, done, driver: &driver }.describe(&statement);
+    Some(format!("```pydslrep\n{text}\n```\n{details}"))
+}
+
+/// An action in its place.
+struct Statement<'a> {
+    action: &'a Action,
+    /// Its start pose; the action that makes it unknown.
+    start: Result<Pose, &'a Action>,
+    within: Within,
+}
+
+/// The statement with a number among some actions and those in their blocks, of which the first starts at a pose.
+fn find<'a>(
+    driver: &Driver,
+    actions: &'a [Action],
+    number: usize,
+    mut start: Result<Pose, &'a Action>,
+    within: Within,
+) -> Option<Statement<'a>> {
+    let begun = actions.partition_point(|action| action.number <= number).checked_sub(1)?;
+    for action in actions.get(..begun)? {
+        let end = |pose| driver.drive(pose, &action.kind).map(|leg| leg.to);
+        start = start.and_then(|pose| end(pose).ok_or_else(|| cause(driver, action)));
+    }
+    let action = actions.get(begun)?;
+    if action.number == number {
+        return Some(Statement { action, start, within });
+    }
+    let within = match action.kind {
+        ActionKind::Repeat { .. } => within.rounds(),
+        ActionKind::RepeatUntil { .. } => within.rounds().condition(),
+        _ => within.condition(),
+    };
+    action.blocks().into_iter().find_map(|block| find(driver, block, number, start, within))
+}
+
+/// What makes the end of an action unknown: of rounds, the first such action in them.
+fn cause<'a>(driver: &Driver, action: &'a Action) -> &'a Action {
+    let ActionKind::Repeat { body, .. } = &action.kind else { return action };
+    let inner = body.iter().find(|inner| driver.drive(Pose::default(), &inner.kind).is_none());
+    inner.map_or(action, |inner| cause(driver, inner))
+}
+
+struct Details<'a> {
+    robot: &'a Robot,
+    /// The movements that may be done, each after those that it does.
+    done: &'a [Movement],
+    driver: &'a Driver,
+}
+
+impl Details<'_> {
+    fn describe(&self, statement: &Statement<'_>) -> String {
+        let &Statement { action, start, within } = statement;
+        let leg = self.driver.drive(start.unwrap_or_default(), &action.kind);
+        let unknown_start =
+            |cause: &Action| format!("The start pose cannot be planned: {}.", open_end(cause));
+        let poses = match (&leg, start) {
+            (Some(leg), Ok(_)) => format!("{} {}", within.opening(), way_of(leg)),
+            (None, Ok(_)) => format!("The end pose cannot be planned: {}.", open_end(action)),
+            (_, Err(cause)) => unknown_start(cause),
+        };
+        let more = self.more(action, leg.as_ref(), start.ok());
+        let text = match &leg {
+            Some(leg) if more.is_none() => describe_leg(self.robot, leg, &poses),
+            Some(leg) => format!("Takes {}. {poses}", time(leg.duration)),
+            None => poses,
+        };
+        more.map_or_else(|| text.clone(), |more| format!("{text}\n\n{more}"))
+    }
+
+    /// What is special about an action.
+    fn more(&self, action: &Action, leg: Option<&Leg>, start: Option<Pose>) -> Option<String> {
+        match &action.kind {
+            ActionKind::Repeat { count, body } => Some(self.rounds(*count, body)),
+            ActionKind::RepeatUntil { body, .. } => {
+                let times =
+                    self.time_of(body).map_or_else(String::new, |seconds| format!(" in {}", time(seconds)));
+                Some(format!("A round drives {}{times}.", self.way_of(body)))
+            }
+            ActionKind::Do { movement } => {
+                let done = self.done.get(..=*movement)?;
+                Some(format!("`{}` {}", done.last()?.name, facts(self.robot, done)?))
+            }
+            ActionKind::Turn { circle: Some(_), .. } => {
+                Some(Arc::new(self.robot, self.driver.model(), &action.kind)?.describe(leg, start))
+            }
+            _ => None,
+        }
+    }
+
+    /// What the rounds of a block come to.
+    fn rounds(&self, count: u32, body: &[Action]) -> String {
+        let way = self.way_of(body);
+        let all = Way::default().and(way, f64::from(count));
+        match self.time_of(body) {
+            Some(seconds) => format!(
+                "{count} rounds, each of which drives {way} in {}: together {all} in {}.",
+                time(seconds),
+                time(seconds * f64::from(count))
+            ),
+            None => format!("{count} rounds, each of which drives {way}, what sensors decide not counted."),
+        }
+    }
+
+    fn way_of(&self, body: &[Action]) -> Way {
+        Way::of(body, &Way::of_movements(self.done))
+    }
+
+    /// Seconds, if they are known.
+    fn time_of(&self, body: &[Action]) -> Option<f64> {
+        let round = ActionKind::Repeat { count: 1, body: body.to_vec() };
+        self.driver.drive(Pose::default(), &round).map(|leg| leg.duration)
+    }
+}
+
+/// The details of a leg; `poses` describes its poses.
+pub(crate) fn describe_leg(robot: &Robot, leg: &Leg, poses: &str) -> String {
+    let rates: Vec<String> = robot
+        .wheels
+        .iter()
+        .zip(&leg.rates)
+        .map(|(wheel, rate)| format!("`{}` {} rad/s", wheel.name, number(*rate, 2)))
+        .collect();
+    let rates =
+        if rates.is_empty() { String::new() } else { format!("\n\nWheel rates: {}.", rates.join(", ")) };
+    format!("Takes {}. {poses}{rates}", time(leg.duration))
+}
+
+/// The poses at the start and end of a leg, after *from*.
+pub(crate) fn way_of(leg: &Leg) -> String {
+    format!("{} to {}, relative to the start of the movement.", pose(&leg.from), pose(&leg.to))
+}
+
+pub(super) fn open_end(action: &Action) -> String {
+    open_end_reason(&action.kind, &action.text)
+}
+
+/// Why the end of an action depends on the world.
+pub(crate) fn open_end_reason(kind: &ActionKind, text: &str) -> String {
+    match kind {
+        ActionKind::Slam => "the path of `slam` depends on what it explores".to_owned(),
+        ActionKind::TurnUntil { .. } => format!("`{text}` ends when the way is clear"),
+        ActionKind::If { .. } => format!("what `{text}` does depends on its sensors"),
+        ActionKind::Repeat { .. } | ActionKind::Do { .. } => {
+            format!("what `{text}` does depends on what sensors detect")
+        }
+        ActionKind::Move { .. }
+        | ActionKind::Turn { .. }
+        | ActionKind::Wait { .. }
+        | ActionKind::RepeatUntil { .. } => format!("`{text}` ends when its condition holds"),
+    }
+}
