@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 
 from .facts import RIM_ACCELERATION
+from .pace import Pace
 from .pose import Pose
 from .settings import ARRIVAL_TOLERANCE, CLOSE_TOLERANCE, STALL_TIME
 
@@ -12,6 +13,7 @@ from .settings import ARRIVAL_TOLERANCE, CLOSE_TOLERANCE, STALL_TIME
 CLOSE_PROGRESS = 0.9
 CLOSE_STEPS = 4
 CLOSE_TIME = 1.0  # s that a slow action has for it, at most
+CLOSING_RATE, CLOSING_SHARE = 10.0, 0.6  # 1/s, and of the distance per step
 CRAWL = 2.0  # times its planned duration, and the time of a stall, after which an action crawls
 
 
@@ -21,18 +23,15 @@ class Approach:
     Distances are in metres at the wheels' rims, for moves and turns alike.
     """
 
-    def __init__(self, top_speed: float, time_step: float) -> None:
-        self.time_step = time_step
+    def __init__(self, top_speed: float, pace: Pace) -> None:
         self.top_speed = top_speed
         self.speed = 0.0
-        # Near the goal the speed is proportional to the distance (1/s): at most half of it
-        # per step, so that wheels with a delay do not oscillate.
-        self._closing_rate = min(10.0, 0.5 / time_step)
+        self._pace = pace
         # An action may be as slow as that by itself.
         slow_steps = (
-            2.0 * (1.0 - CLOSE_PROGRESS) * CLOSE_TOLERANCE / (top_speed * time_step)
+            2.0 * (1.0 - CLOSE_PROGRESS) * CLOSE_TOLERANCE / (top_speed * pace.usual)
         )
-        self._close_limit = max(CLOSE_STEPS, min(slow_steps, CLOSE_TIME / time_step))
+        self._close_limit = max(CLOSE_STEPS, min(slow_steps, CLOSE_TIME / pace.usual))
         self._close_steps = 0
         self._closest = math.inf
         self._nearest = math.inf
@@ -41,7 +40,7 @@ class Approach:
 
     def next_speed(self, remaining: float) -> float:
         """The signed rim speed for the next step, with `remaining` metres to go."""
-        gain = self.speed + math.copysign(RIM_ACCELERATION * self.time_step, remaining)
+        gain = self.speed + math.copysign(RIM_ACCELERATION * self._pace.last, remaining)
         braking = self._braking_speed(abs(remaining))
         wanted = math.copysign(min(self.top_speed, braking), remaining)
         self.speed = min(gain, wanted) if remaining > 0.0 else max(gain, wanted)
@@ -51,14 +50,17 @@ class Approach:
         """The speed from which braking ends at the goal: a root, then a line."""
         # A speed holds for a whole step while the braking curve falls, so brake early.
         deceleration = 0.75 * RIM_ACCELERATION
-        linear = deceleration / self._closing_rate**2
+        # Near the goal the speed is proportional to the distance (1/s), and takes a robot over no more than a share of
+        # it per step, so that wheels with a delay do not oscillate.
+        closing_rate = min(CLOSING_RATE, CLOSING_SHARE / self._pace.usual)
+        linear = deceleration / closing_rate**2
         if distance < linear:
-            return self._closing_rate * distance
+            return closing_rate * distance
         return math.sqrt(2.0 * deceleration * (distance - linear / 2.0))
 
     def decelerate(self) -> float:
         """The rim speed for the next step while braking to a stop."""
-        change = RIM_ACCELERATION * self.time_step
+        change = RIM_ACCELERATION * self._pace.last
         self.speed = math.copysign(max(0.0, abs(self.speed) - change), self.speed)
         return self.speed
 
@@ -86,7 +88,7 @@ class Approach:
         least = min(0.001, 0.25 * self.top_speed * STALL_TIME)
         if abs(remaining) < self._nearest - least:
             self._nearest, self._progress_time = abs(remaining), time
-        return time - self._progress_time > STALL_TIME - self.time_step / 2.0
+        return time - self._progress_time > STALL_TIME - self._pace.usual / 2.0
 
 
 class Brake:

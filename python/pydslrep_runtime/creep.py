@@ -21,11 +21,11 @@ class Creep:
         """How much faster than planned wheels have to roll; exactly 1 where bodies move as their wheels roll."""
         return self._gain
 
-    def observe(self, speed: float, moved: float, time_step: float) -> None:
-        """Adds a step in which a robot, or its rims in a turn, should have moved at a speed in m/s, and has so many metres."""
+    def observe(self, speed: float, moved: float, elapsed: float) -> None:
+        """Adds a step of seconds in which a robot, or its rims in a turn, should have moved at a speed in m/s, and has so many metres."""
         # While a robot speeds up or brakes, it may lag behind.
         is_steady, self._speed = speed == self._speed, speed
-        rolled = speed * self._gain * time_step
+        rolled = speed * self._gain * elapsed
         # A robot that does something else is not slipping: it may be held by an obstacle.
         if is_steady and LEAST * rolled**2 < moved * rolled < MOST * rolled**2:
             self._rolled = MEMORY * self._rolled + rolled**2

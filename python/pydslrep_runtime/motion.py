@@ -15,6 +15,7 @@ from .errors import MovementError
 from .event_loop import SimulationLoop
 from .facts import RIM_SPEED
 from .notes import Notes
+from .pace import Pace
 from .places import Place
 from .pose import Pose, wrap_angle
 from .scrub import Scrub
@@ -89,6 +90,9 @@ class Motion:
         self._odometer: Odometer | None = None
         self._on_pose: Callable[[Pose], object] | None = None
         self._drift, self._creep, self._scrub = Drift(), Creep(), Scrub()
+        # Known from the start on, when the clock knows it.
+        self._steps: Pace | None = None
+        self._elapsed = 0.0  # s of the latest step, as measured
         self._notes = Notes()
         # The action of which it was said that it crawls.
         self._crawling: tuple[Place, str] | None = None
@@ -163,7 +167,11 @@ class Motion:
         self._rates = rates
         self.backend.set_wheel_rates(rates)
         clock = self.backend.clock
+        begun = clock.time
         await self._loop.next_step(clock, self._order)
+        # Times are sums of steps; the last digits are not the clock's.
+        self._elapsed = round(clock.time - begun, 9)
+        self._pace().observe(self._elapsed)
         here = self.pose()
         self._record(here, rates)
         return here
@@ -207,7 +215,7 @@ class Motion:
         """Stays where it is for seconds of simulation time."""
         clock, here = self.backend.clock, self.pose()
         self._planned = self._start(here)
-        end = clock.time + seconds - clock.time_step / 2.0
+        end = clock.time + seconds - self._pace().usual / 2.0
         is_over = clock.time >= end
         while not is_over:
             here = await self.step(self.zero_rates())
@@ -324,7 +332,7 @@ class Motion:
             ahead = brake.next_speed(approach, here, remaining)
             there = await self.step(self.drive.follow(ahead, offset, remaining, 0.0))
             moved = there.relative_to(here).x
-            self._creep.observe(ahead, moved, self.backend.clock.time_step)
+            self._creep.observe(ahead, moved, self._elapsed)
             here = there
         if brake.is_on:
             here = await self._come_to_rest(here)
@@ -353,7 +361,7 @@ class Motion:
             here = await self._follow(here, ahead, offset, to_go, curvature)
             before, turned = turned, circle.angle_at(here, turned)
             moved = (turned - before) / curvature
-            self._creep.observe(ahead, moved, self.backend.clock.time_step)
+            self._creep.observe(ahead, moved, self._elapsed)
         return here, turned
 
     def _way_of_rims(self, curvature: float) -> float:
@@ -368,7 +376,7 @@ class Motion:
         rates = self.drive.follow(ahead, offset, to_go, curvature, factor)
         there = await self.step(rates)
         if self.drive.scrubs:
-            asked = self.drive.turn_rate(rates) * self.backend.clock.time_step
+            asked = self.drive.turn_rate(rates) * self._elapsed
             self._scrub.observe(asked, wrap_angle(there.theta - here.theta))
         return there
 
@@ -385,7 +393,13 @@ class Motion:
         self._trace.add(time, self.name, here, rates, self.place, self.action)
 
     def _approach(self, speed: float) -> Approach:
-        return Approach(speed, self.backend.clock.time_step)
+        return Approach(speed, self._pace())
+
+    def _pace(self) -> Pace:
+        """How long steps take; simulators tell how long they should when they have started."""
+        if self._steps is None:
+            self._steps = Pace(self.backend.clock.time_step)
+        return self._steps
 
     async def _rotate(
         self,
@@ -419,7 +433,7 @@ class Motion:
             self._drift.observe(before, here)
             if not self.drive.scrubs:
                 moved = step * self.drive.turning_radius
-                self._creep.observe(rim_speed, moved, self.backend.clock.time_step)
+                self._creep.observe(rim_speed, moved, self._elapsed)
             if self._on_pose is not None:
                 self._on_pose(here)
         here = await self._come_to_rest(here)
