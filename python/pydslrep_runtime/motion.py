@@ -19,7 +19,7 @@ from .pace import Pace
 from .places import Place
 from .pose import Pose, wrap_angle
 from .scrub import Scrub
-from .settings import MAX_IDLE_ACTIONS, MAX_IDLE_ROUNDS, MAX_LATERAL_ERROR, STALL_TIME
+from .settings import MAX_DEFLECTION, MAX_IDLE_ACTIONS, MAX_IDLE_ROUNDS, STALL_TIME
 from .steering import Drift
 from .trace import Trace
 
@@ -36,6 +36,11 @@ StopsAt = Callable[[Pose], bool]
 def never(_here: Pose) -> bool:
     """A motion that ends at its goal."""
     return False
+
+
+def apart(here: Pose, there: Pose) -> float:
+    """The distance between two positions in metres."""
+    return math.hypot(here.x - there.x, here.y - there.y)
 
 
 class Instant:
@@ -231,7 +236,7 @@ class Motion:
         brake, aside = Brake(should_stop), abs(here.relative_to(goal).y)
         here = await self._drive_line(here, goal, speed, brake)
         # On its way, a robot may not be back on its line yet.
-        self._check_arrival(here.relative_to(goal).y, aside if brake.is_on else 0.0)
+        self._check_side(here.relative_to(goal).y, aside if brake.is_on else 0.0)
         # Correct a residual rotation, and rest.
         return await self._rotate(here, 0.0)
 
@@ -259,7 +264,7 @@ class Motion:
             here = await self._come_to_rest(here)
             angle = circle.angle_at(here, turned)
         self._planned = goal = circle.pose_at(angle)
-        self._check_arrival(here.relative_to(goal).y, aside if brake.is_on else 0.0)
+        self._check_side(here.relative_to(goal).y, aside if brake.is_on else 0.0)
         return await self._rotate(here, 0.0)
 
     async def rotate(
@@ -276,13 +281,17 @@ class Motion:
         `speed` is that of the rims in m/s; `on_pose` is called after every step. Without `may_end`, the robot will stop
         somewhere on the way.
         """
+        here, brake = self.pose(), Brake(should_stop)
+        away = apart(here, self._start(here))
         self._on_pose = on_pose
         try:
-            return await self._rotate(
-                self.pose(), angle, speed, should_stop, may_end=may_end
-            )
+            here = await self._rotate(here, angle, speed, brake, may_end=may_end)
         finally:
             self._on_pose = None
+        # Who looks around on the way goes on from where the robot is.
+        if on_pose is None:
+            self._check_spot(here, away if brake.is_on else 0.0)
+        return here
 
     async def rotate_while(
         self, side: float, condition: Callable[[], bool]
@@ -293,6 +302,7 @@ class Motion:
         """
         here = await self.wait()
         start = self._start(here)
+        away = apart(here, start)
         radius = self.drive.turning_radius
         full_turn = side * math.tau * radius
         approach = self._approach(RIM_SPEED)
@@ -311,6 +321,7 @@ class Motion:
             turned += wrap_angle(here.theta - before.theta)
         here = await self._come_to_rest(here)
         self._planned = Pose(start.x, start.y, here.theta)
+        self._check_spot(here, away)
         return here
 
     async def drive_to(self, goal: Pose, should_stop: StopsAt) -> None:
@@ -406,13 +417,13 @@ class Motion:
         here: Pose,
         angle: float,
         speed: float = RIM_SPEED,
-        should_stop: StopsAt = never,
+        brake: Brake | None = None,
         *,
         may_end: bool = True,
     ) -> Pose:
         start = self._start(here)
         goal = start.turned(angle)
-        approach, brake = self._approach(speed), Brake(should_stop)
+        approach, brake = self._approach(speed), brake or Brake(never)
         turned = wrap_angle(here.theta - start.theta)
         while not brake.has_stopped(approach):
             remaining = (angle - turned) * self.drive.turning_radius
@@ -477,12 +488,18 @@ class Motion:
         if events.current.is_read:
             events.current.contact(self.moment(self.pose()))
 
-    def _check_arrival(self, lateral_error: float, before: float) -> None:
-        """Fails if a robot is far beside its path; `before` is how far it may have been before, in metres."""
-        if abs(lateral_error) > before + MAX_LATERAL_ERROR:
+    def _check_side(self, aside: float, before: float) -> None:
+        """Fails if a robot is far to the side of its path; `before` is how far it may have been before, in metres."""
+        side = "left" if aside > 0.0 else "right"
+        self._check_end(abs(aside), before, f"to the {side} of")
+
+    def _check_spot(self, here: Pose, before: float) -> None:
+        """Fails if a robot has turned far from its spot."""
+        self._check_end(apart(here, self._start(here)), before, "from")
+
+    def _check_end(self, away: float, before: float, where: str) -> None:
+        if away > before + MAX_DEFLECTION:
             self._report_contact()
-            side = "left" if lateral_error > 0.0 else "right"
             raise self.failure(
-                f"ended {abs(lateral_error):.3f} m to the {side} of the goal; "
-                "an obstacle may have deflected it"
+                f"ended {away:.3f} m {where} the goal; an obstacle may have deflected it"
             )

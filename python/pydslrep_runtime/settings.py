@@ -22,7 +22,7 @@ CLOSE_TOLERANCE = (
     0.001  # m at the rim within which it is complete if the robot comes no nearer
 )
 STALL_TIME = 5.0  # s of simulation time without progress before an action fails
-MAX_LATERAL_ERROR = 0.05  # m to the side of its goal, above which a move fails
+MAX_DEFLECTION = 0.05  # m to the side of its line, or off its spot, above which a move or turn fails
 CONNECT_TIMEOUT = limit(
     "CONNECT_TIMEOUT", 5.0
 )  # s to wait for the simulator's first reply
