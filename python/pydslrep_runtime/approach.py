@@ -6,13 +6,18 @@ from collections.abc import Callable
 from .facts import RIM_ACCELERATION
 from .pace import Pace
 from .pose import Pose
-from .settings import ARRIVAL_TOLERANCE, CLOSE_TOLERANCE, STALL_TIME
+from .settings import ARRIVAL_TOLERANCE, CLOSE_TOLERANCE, END_DISTANCE, STALL_TIME
 
 # Near the goal, a robot that does not get to this share of its distance within so many steps has arrived: the motion is
 # below the tremor of its contacts, or its motors do not turn that slowly.
 CLOSE_PROGRESS = 0.9
 CLOSE_STEPS = 4
 CLOSE_TIME = 1.0  # s that a slow action has for it, at most
+# Motors that are slower under load stop before the goal, where they are told to be slow: a robot that has moved less than
+# this share of its way in so many steps is told to be faster by ever more.
+PUSH_SHARE, PUSH_STEPS = 0.5, 5
+PUSH_DISTANCE = 0.01  # m from the goal, at most
+PUSH_TIME = 0.2  # s in which what it is told near its goal doubles
 CLOSING_RATE, CLOSING_SHARE = 10.0, 0.6  # 1/s, and of the distance per step
 CRAWL = 2.0  # times its planned duration, and the time of a stall, after which an action crawls
 
@@ -23,7 +28,11 @@ class Approach:
     Distances are in metres at the wheels' rims, for moves and turns alike.
     """
 
-    def __init__(self, top_speed: float, pace: Pace) -> None:
+    def __init__(
+        self, top_speed: float, pace: Pace, tolerance: float = END_DISTANCE
+    ) -> None:
+        """Within `tolerance` metres of its goal, a robot that stands still has arrived."""
+        self.tolerance = tolerance
         self.top_speed = top_speed
         self.speed = 0.0
         self._pace = pace
@@ -32,6 +41,9 @@ class Approach:
             2.0 * (1.0 - CLOSE_PROGRESS) * CLOSE_TOLERANCE / (top_speed * pace.usual)
         )
         self._close_limit = max(CLOSE_STEPS, min(slow_steps, CLOSE_TIME / pace.usual))
+        self._push = 0.0  # m/s
+        self._before = math.inf  # metres to go one step ago
+        self._stuck_steps = 0
         self._close_steps = 0
         self._closest = math.inf
         self._nearest = math.inf
@@ -40,9 +52,10 @@ class Approach:
 
     def next_speed(self, remaining: float) -> float:
         """The signed rim speed for the next step, with `remaining` metres to go."""
+        self._observe_standstill(remaining)
         gain = self.speed + math.copysign(RIM_ACCELERATION * self._pace.last, remaining)
         braking = self._braking_speed(abs(remaining))
-        wanted = math.copysign(min(self.top_speed, braking), remaining)
+        wanted = math.copysign(min(self.top_speed, braking + self._push), remaining)
         self.speed = min(gain, wanted) if remaining > 0.0 else max(gain, wanted)
         return self.speed
 
@@ -57,6 +70,20 @@ class Approach:
         if distance < linear:
             return closing_rate * distance
         return math.sqrt(2.0 * deceleration * (distance - linear / 2.0))
+
+    def _observe_standstill(self, remaining: float) -> None:
+        """Pushes a robot that stands still shortly before its goal."""
+        distance = abs(remaining)
+        moved, was_before = abs(self._before) - distance, self._before * remaining > 0.0
+        self._before = remaining
+        if distance > PUSH_DISTANCE or not was_before:
+            self._push, self._stuck_steps = 0.0, 0
+        elif moved >= PUSH_SHARE * abs(self.speed) * self._pace.last:
+            self._stuck_steps = 0
+        elif distance > CLOSE_TOLERANCE:
+            self._stuck_steps += 1
+            if self._stuck_steps >= PUSH_STEPS:
+                self._push += CLOSING_RATE * distance * self._pace.last / PUSH_TIME
 
     def decelerate(self) -> float:
         """The rim speed for the next step while braking to a stop."""

@@ -19,7 +19,14 @@ from .pace import Pace
 from .places import Place
 from .pose import Pose, wrap_angle
 from .scrub import Scrub
-from .settings import MAX_DEFLECTION, MAX_IDLE_ACTIONS, MAX_IDLE_ROUNDS, STALL_TIME
+from .settings import (
+    END_ANGLE,
+    END_DISTANCE,
+    MAX_DEFLECTION,
+    MAX_IDLE_ACTIONS,
+    MAX_IDLE_ROUNDS,
+    STALL_TIME,
+)
 from .steering import Drift
 from .trace import Trace
 
@@ -305,13 +312,12 @@ class Motion:
         away = apart(here, start)
         radius = self.drive.turning_radius
         full_turn = side * math.tau * radius
-        approach = self._approach(RIM_SPEED)
+        approach = self._approach(RIM_SPEED, radius)
         turned = 0.0
         while (holds := condition()) or approach.speed:
             remaining = full_turn - turned * radius
-            if approach.arrived(remaining):
+            if self._has_arrived(approach, remaining):
                 return None
-            self._check_progress(approach, remaining)
             rim_speed = (
                 approach.next_speed(remaining) if holds else approach.decelerate()
             )
@@ -337,9 +343,8 @@ class Motion:
         while True:
             offset = here.relative_to(goal)
             remaining = -offset.x
-            if approach.arrived(remaining) or brake.has_stopped(approach):
+            if brake.has_stopped(approach) or self._has_arrived(approach, remaining):
                 break
-            self._check_progress(approach, remaining)
             ahead = brake.next_speed(approach, here, remaining)
             there = await self.step(self.drive.follow(ahead, offset, remaining, 0.0))
             moved = there.relative_to(here).x
@@ -358,13 +363,12 @@ class Motion:
         curvature = circle.curvature
         # Distances are those of the fastest wheel, as it seems now: what is to go must not grow on the way.
         rims = self._way_of_rims(curvature)
-        approach = self._approach(speed)
+        approach = self._approach(speed, rims)
         turned = circle.angle_at(here, 0.0)
         while not brake.has_stopped(approach):
             remaining = (angle - turned) * rims
-            if approach.arrived(remaining):
+            if self._has_arrived(approach, remaining):
                 break
-            self._check_progress(approach, remaining)
             rim_speed = brake.next_speed(approach, here, remaining)
             ahead = rim_speed / self._way_of_rims(curvature) / curvature
             offset = here.relative_to(circle.pose_at(turned))
@@ -403,8 +407,10 @@ class Motion:
         time = self.backend.clock.time
         self._trace.add(time, self.name, here, rates, self.place, self.action)
 
-    def _approach(self, speed: float) -> Approach:
-        return Approach(speed, self._pace())
+    def _approach(self, speed: float, rims: float = math.inf) -> Approach:
+        """The approach of an action in which rims roll so many metres per radian."""
+        tolerance = min(END_DISTANCE, END_ANGLE * rims)
+        return Approach(speed, self._pace(), tolerance)
 
     def _pace(self) -> Pace:
         """How long steps take; simulators tell how long they should when they have started."""
@@ -423,13 +429,13 @@ class Motion:
     ) -> Pose:
         start = self._start(here)
         goal = start.turned(angle)
-        approach, brake = self._approach(speed), brake or Brake(never)
+        radius = self.drive.turning_radius
+        approach, brake = self._approach(speed, radius), brake or Brake(never)
         turned = wrap_angle(here.theta - start.theta)
         while not brake.has_stopped(approach):
-            remaining = (angle - turned) * self.drive.turning_radius
-            if approach.arrived(remaining):
+            remaining = (angle - turned) * radius
+            if self._has_arrived(approach, remaining):
                 break
-            self._check_progress(approach, remaining)
             rim_speed = brake.next_speed(approach, here, remaining)
             offset, before = here.relative_to(goal), here
             rates = self.drive.turn_in_place(
@@ -443,7 +449,7 @@ class Motion:
             turned += step
             self._drift.observe(before, here)
             if not self.drive.scrubs:
-                moved = step * self.drive.turning_radius
+                moved = step * radius
                 self._creep.observe(rim_speed, moved, self._elapsed)
             if self._on_pose is not None:
                 self._on_pose(here)
@@ -465,15 +471,22 @@ class Motion:
                 last = way
         return here
 
-    def _check_progress(self, approach: Approach, remaining: float) -> None:
-        if approach.crawls(remaining, self.backend.clock.time):
+    def _has_arrived(self, approach: Approach, remaining: float) -> bool:
+        """Whether a robot is where an action ends; fails if it comes no nearer."""
+        if approach.arrived(remaining):
+            return True
+        time = self.backend.clock.time
+        if approach.crawls(remaining, time):
             self._say_crawl()
-        if approach.stalled(remaining, self.backend.clock.time):
-            self._report_contact()
-            raise self.failure(
-                f"no progress for {STALL_TIME:g} s, {abs(remaining):.3f} m from the goal; "
-                + self.backend.stall_reason()
-            )
+        if not approach.stalled(remaining, time):
+            return False
+        if abs(remaining) <= approach.tolerance:
+            return True
+        self._report_contact()
+        raise self.failure(
+            f"no progress for {STALL_TIME:g} s, {abs(remaining):.3f} m from the goal; "
+            + self.backend.stall_reason()
+        )
 
     def _say_crawl(self) -> None:
         """Says once why an action takes so long: to find out takes calls."""
