@@ -8,17 +8,28 @@ from .pace import Pace
 from .pose import Pose
 from .settings import ARRIVAL_TOLERANCE, CLOSE_TOLERANCE, END_DISTANCE, STALL_TIME
 
-# Near the goal, a robot that does not get to this share of its distance within so many steps has arrived: the motion is
-# below the tremor of its contacts, or its motors do not turn that slowly.
+NEAR = 0.01  # m from the goal
+# Within CLOSE_TOLERANCE, a robot that does not get to this share of its distance within so many steps has arrived: the motion
+# is below the tremor of its contacts, or its motors do not turn that slowly.
 CLOSE_PROGRESS = 0.9
 CLOSE_STEPS = 4
 CLOSE_TIME = 1.0  # s that a slow action has for it, at most
+# And so has one that has moved less than this share of what it was told, twice: its motors only just turn.
+SLOW_SHARE, SLOW_STEPS = 0.8, 2
+# One that has passed its goal does not come back from so many metres, where it comes to rest after half its latest step:
+# wheels that follow late would have it swing about the goal for longer than a step is worth.
+PASSED = 0.003
 # Motors that are slower under load stop before the goal, where they are told to be slow: a robot that has moved less than
 # this share of its way in so many steps is told to be faster by ever more.
 PUSH_SHARE, PUSH_STEPS = 0.5, 5
-PUSH_DISTANCE = 0.01  # m from the goal, at most
 PUSH_TIME = 0.2  # s in which what it is told near its goal doubles
+LOSS = (
+    0.003  # m/s by which a robot may be too slow near its goal that are added at once
+)
 CLOSING_RATE, CLOSING_SHARE = 10.0, 0.6  # 1/s, and of the distance per step
+BRAKING = (
+    0.75 * RIM_ACCELERATION
+)  # a speed holds for a whole step while the braking curve falls, so brake early
 CRAWL = 2.0  # times its planned duration, and the time of a stall, after which an action crawls
 
 
@@ -41,9 +52,9 @@ class Approach:
             2.0 * (1.0 - CLOSE_PROGRESS) * CLOSE_TOLERANCE / (top_speed * pace.usual)
         )
         self._close_limit = max(CLOSE_STEPS, min(slow_steps, CLOSE_TIME / pace.usual))
-        self._push = 0.0  # m/s
+        self._push = self._lost = 0.0  # m/s
         self._before = math.inf  # metres to go one step ago
-        self._stuck_steps = 0
+        self._stuck_steps = self._slow_steps = 0
         self._close_steps = 0
         self._closest = math.inf
         self._nearest = math.inf
@@ -52,38 +63,21 @@ class Approach:
 
     def next_speed(self, remaining: float) -> float:
         """The signed rim speed for the next step, with `remaining` metres to go."""
-        self._observe_standstill(remaining)
         gain = self.speed + math.copysign(RIM_ACCELERATION * self._pace.last, remaining)
-        braking = self._braking_speed(abs(remaining))
-        wanted = math.copysign(min(self.top_speed, braking + self._push), remaining)
+        braking = self._braking_speed(abs(remaining)) + self._lost + self._push
+        wanted = math.copysign(min(self.top_speed, braking), remaining)
         self.speed = min(gain, wanted) if remaining > 0.0 else max(gain, wanted)
         return self.speed
 
     def _braking_speed(self, distance: float) -> float:
         """The speed from which braking ends at the goal: a root, then a line."""
-        # A speed holds for a whole step while the braking curve falls, so brake early.
-        deceleration = 0.75 * RIM_ACCELERATION
-        # Near the goal the speed is proportional to the distance (1/s), and takes a robot over no more than a share of
-        # it per step, so that wheels with a delay do not oscillate.
+        # Near the goal the speed is proportional to the distance, and takes a robot over no more than a share of it per
+        # step, so that wheels with a delay do not oscillate.
         closing_rate = min(CLOSING_RATE, CLOSING_SHARE / self._pace.usual)
-        linear = deceleration / closing_rate**2
+        linear = BRAKING / closing_rate**2
         if distance < linear:
             return closing_rate * distance
-        return math.sqrt(2.0 * deceleration * (distance - linear / 2.0))
-
-    def _observe_standstill(self, remaining: float) -> None:
-        """Pushes a robot that stands still shortly before its goal."""
-        distance = abs(remaining)
-        moved, was_before = abs(self._before) - distance, self._before * remaining > 0.0
-        self._before = remaining
-        if distance > PUSH_DISTANCE or not was_before:
-            self._push, self._stuck_steps = 0.0, 0
-        elif moved >= PUSH_SHARE * abs(self.speed) * self._pace.last:
-            self._stuck_steps = 0
-        elif distance > CLOSE_TOLERANCE:
-            self._stuck_steps += 1
-            if self._stuck_steps >= PUSH_STEPS:
-                self._push += CLOSING_RATE * distance * self._pace.last / PUSH_TIME
+        return math.sqrt(2.0 * BRAKING * (distance - linear / 2.0))
 
     def decelerate(self) -> float:
         """The rim speed for the next step while braking to a stop."""
@@ -93,14 +87,48 @@ class Approach:
 
     def arrived(self, remaining: float) -> bool:
         """Whether the robot is at the goal, or near it and comes no nearer."""
+        before, self._before = self._before, remaining
         distance = abs(remaining)
+        if distance > NEAR or before * remaining <= 0.0:
+            self._push = self._lost = 0.0
+            self._stuck_steps = self._slow_steps = 0
+        if distance > NEAR:
+            return False
+        if before * remaining < 0.0 and self._comes_to_rest(before, remaining):
+            return True
+        if before * remaining > 0.0 and abs(before) < math.inf:
+            self._observe_step(abs(before) - distance, distance)
+        return distance <= ARRIVAL_TOLERANCE or self._comes_no_nearer(distance)
+
+    def _comes_to_rest(self, before: float, remaining: float) -> bool:
+        """Whether a robot that has passed its goal will stand near enough."""
+        rest = abs(remaining) + abs(before - remaining) / 2.0
+        return rest < min(PASSED, self.tolerance)
+
+    def _observe_step(self, moved: float, distance: float) -> None:
+        """Helps a robot that moves less near its goal than it was told, and counts its steps."""
+        elapsed = self._pace.last
+        told = abs(self.speed) * elapsed
+        self._lost = max(0.0, min(LOSS, (told - moved) / elapsed)) if elapsed else 0.0
+        self._slow_steps = self._slow_steps + 1 if moved < SLOW_SHARE * told else 0
+        if moved >= PUSH_SHARE * told:
+            self._stuck_steps = 0
+        elif distance > CLOSE_TOLERANCE:
+            self._stuck_steps += 1
+            if self._stuck_steps >= PUSH_STEPS:
+                self._push += CLOSING_RATE * distance * elapsed / PUSH_TIME
+
+    def _comes_no_nearer(self, distance: float) -> bool:
         if distance > CLOSE_TOLERANCE:
             self._close_steps, self._closest = 0, math.inf
-        elif distance < CLOSE_PROGRESS * self._closest:
+            return False
+        if distance < CLOSE_PROGRESS * self._closest:
             self._close_steps, self._closest = 0, distance
         else:
             self._close_steps += 1
-        return distance <= ARRIVAL_TOLERANCE or self._close_steps >= self._close_limit
+        if self._slow_steps >= SLOW_STEPS:
+            return True
+        return self._close_steps >= self._close_limit
 
     def crawls(self, remaining: float, time: float) -> bool:
         """Whether the action takes far longer than planned, at a simulation time in seconds."""

@@ -101,7 +101,8 @@ class Motion:
         self._rates: Sequence[float] = ()
         self._odometer: Odometer | None = None
         self._on_pose: Callable[[Pose], object] | None = None
-        self._drift, self._creep, self._scrub = Drift(), Creep(), Scrub()
+        self._drift, self._creep = Drift(), Creep()
+        self._scrub = Scrub(drive.rims_per_radian / drive.turning_radius)
         # Known from the start on, when the clock knows it.
         self._steps: Pace | None = None
         self._elapsed = 0.0  # s of the latest step, as measured
@@ -310,7 +311,7 @@ class Motion:
         here = await self.wait()
         start = self._start(here)
         away = apart(here, start)
-        radius = self.drive.turning_radius
+        radius = self.drive.rims_per_radian
         full_turn = side * math.tau * radius
         approach = self._approach(RIM_SPEED, radius)
         turned = 0.0
@@ -381,7 +382,7 @@ class Motion:
 
     def _way_of_rims(self, curvature: float) -> float:
         """The way of the fastest wheel on a circle, in metres per radian."""
-        return 1.0 / abs(curvature) + self.drive.turning_radius * self._scrub.factor
+        return 1.0 / abs(curvature) + self.drive.rims_per_radian * self._scrub.factor
 
     async def _follow(
         self, here: Pose, ahead: float, offset: Pose, to_go: float, curvature: float
@@ -429,7 +430,7 @@ class Motion:
     ) -> Pose:
         start = self._start(here)
         goal = start.turned(angle)
-        radius = self.drive.turning_radius
+        radius = self.drive.rims_per_radian
         approach, brake = self._approach(speed, radius), brake or Brake(never)
         turned = wrap_angle(here.theta - start.theta)
         while not brake.has_stopped(approach):

@@ -26,7 +26,9 @@ CLOSE_TOLERANCE = (
 END_DISTANCE = 0.005  # m
 END_ANGLE = math.radians(0.5)
 STALL_TIME = 5.0  # s of simulation time without progress before an action fails
-MAX_DEFLECTION = 0.05  # m to the side of its line, or off its spot, above which a move or turn fails
+MAX_DEFLECTION = (
+    0.05  # m to the side of its line, or off its spot, above which a move or turn fails
+)
 CONNECT_TIMEOUT = limit(
     "CONNECT_TIMEOUT", 5.0
 )  # s to wait for the simulator's first reply

@@ -36,7 +36,9 @@ class Physics:
     late: float = 0.0  # by which steps take longer, as a share
     jitter: float = 0.0  # by which that varies, evenly to both sides, as a share
     lag: float = 0.0  # s after which a motor has made 63 % of a change
-    bounce: float = 0.0  # s; the body follows its wheels as a spring does, and overshoots
+    bounce: float = (
+        0.0  # s; the body follows its wheels as a spring does, and overshoots
+    )
     droop: float = 0.0  # m/s by which rims are slower than told where wheels scrub
     scrub: float = SCRUB  # by how much less four plain wheels turn the body
     slide: float = 0.0  # m along y per radian that the body turns, wherever it faces
@@ -98,7 +100,9 @@ class StandIn(Backend):
 
     def move_on(self, dt: float) -> None:
         """Lets a part of a step pass."""
-        share = 1.0 if self.physics.lag == 0.0 else 1.0 - math.exp(-dt / self.physics.lag)
+        share = (
+            1.0 if self.physics.lag == 0.0 else 1.0 - math.exp(-dt / self.physics.lag)
+        )
         loses = self.physics.droop if self._scrubs() else 0.0
         for wheel, told in enumerate(self.told):
             wanted = math.copysign(max(0.0, abs(told) - loses), told)
@@ -164,14 +168,14 @@ def drive(
     return robot.clock.time
 
 
-def planned(kind: str, *actions: tuple[str, float]) -> float:
-    """How long a plan says that moves in metres and turns in degrees take: docs/kinematics.md."""
-    speed, acceleration, rest = 0.09, 0.5, 0.15
-    rims = {"two-wheel": TRACK / 2.0, "four-wheel": SCRUB * TRACK / 2.0}
-    radius = rims.get(kind, (TRACK + WHEELBASE) / 2.0)
+def planned(kind: str, *actions: tuple[str, float] | tuple[str, float, float]) -> float:
+    """How long a plan says that moves in metres and turns in degrees take, at m/s: docs/kinematics.md."""
+    acceleration, rest = 0.5, 0.15
+    arms = {"two-wheel": TRACK / 2.0, "four-wheel": SCRUB * TRACK / 2.0}
+    arm = arms.get(kind, (TRACK + WHEELBASE) / 2.0)
     total = 0.0
-    for what, amount in actions:
-        way = abs(amount) * (1.0 if what == "move" else math.radians(radius))
-        peak = min(speed, math.sqrt(acceleration * way))
+    for what, amount, *speed in actions:
+        way = abs(amount) if what == "move" else math.radians(abs(amount)) * arm
+        peak = min(speed[0] if speed else 0.09, math.sqrt(acceleration * way))
         total += way / peak + peak / acceleration + rest
     return total

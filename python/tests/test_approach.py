@@ -94,9 +94,8 @@ def test_ramps_are_as_steep_as_they_should_be_with_steps_that_are_late(
     pace = Pace(0.05)
     for _ in range(100):
         pace.observe(dt)
-    approach, speeds = Approach(0.09, pace), []
-    for _ in range(4):
-        speeds.append(approach.next_speed(1.0))
+    approach = Approach(0.09, pace)
+    speeds = [approach.next_speed(1.0) for _ in range(4)]
     ramp = [RIM_ACCELERATION * dt * step for step in (1, 2, 3, 4)]
     assert speeds == pytest.approx([min(0.09, speed) for speed in ramp])
     assert approach.decelerate() == pytest.approx(speeds[-1] - RIM_ACCELERATION * dt)

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from driving import DRIVES
 from pydslrep_runtime import Robot
 from pydslrep_runtime.pace import LONGEST, Pace
 from stand_in import Physics, StandIn, drive, planned
@@ -15,7 +16,7 @@ async def square(robot: Robot) -> None:
         await getattr(robot, what)(amount)
 
 
-@pytest.mark.parametrize("kind", ["two-wheel", "mecanum"])
+@pytest.mark.parametrize("kind", DRIVES)
 @pytest.mark.parametrize(
     ("late", "jitter"),
     [
