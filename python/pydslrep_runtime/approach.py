@@ -52,32 +52,52 @@ class Approach:
             2.0 * (1.0 - CLOSE_PROGRESS) * CLOSE_TOLERANCE / (top_speed * pace.usual)
         )
         self._close_limit = max(CLOSE_STEPS, min(slow_steps, CLOSE_TIME / pace.usual))
-        self._push = self._lost = 0.0  # m/s
+        self._is_near = False
+        self._push = self._lost = 0.0  # m/s, near the goal
         self._before = math.inf  # metres to go one step ago
         self._stuck_steps = self._slow_steps = 0
         self._close_steps = 0
         self._closest = math.inf
+        self._usual = math.nan  # s of a step that the two following are for
+        self._closing_rate = self._braking_way = math.nan
         self._nearest = math.inf
-        self._progress_time = math.nan
-        self._start_time = self._way = math.nan
+        self._least_progress = min(0.001, 0.25 * top_speed * STALL_TIME)
+        self._progress_time = self._crawl_time = math.nan
 
     def next_speed(self, remaining: float) -> float:
         """The signed rim speed for the next step, with `remaining` metres to go."""
-        gain = self.speed + math.copysign(RIM_ACCELERATION * self._pace.last, remaining)
-        braking = self._braking_speed(abs(remaining)) + self._lost + self._push
-        wanted = math.copysign(min(self.top_speed, braking), remaining)
-        self.speed = min(gain, wanted) if remaining > 0.0 else max(gain, wanted)
+        if self._usual != self._pace.usual:
+            self._adapt()
+        change = RIM_ACCELERATION * self._pace.last
+        distance, wanted = abs(remaining), self.top_speed
+        if distance < self._braking_way:
+            wanted = self._braking_speed(distance)
+            if self._is_near:
+                wanted += self._lost + self._push
+            wanted = min(wanted, self.top_speed)
+        if remaining > 0.0:
+            self.speed = min(self.speed + change, wanted)
+        else:
+            self.speed = max(self.speed - change, -wanted)
         return self.speed
+
+    def _adapt(self) -> None:
+        """Adapts the approach to how long steps take."""
+        # Near the goal the speed is proportional to the distance (1/s), and takes a robot over no more than a share of it
+        # per step, so that wheels with a delay do not oscillate.
+        self._usual = self._pace.usual
+        self._closing_rate = min(CLOSING_RATE, CLOSING_SHARE / self._usual)
+        line = BRAKING / self._closing_rate**2
+        root = self.top_speed**2 / (2.0 * BRAKING) + line / 2.0
+        # From there on the way is a line for slow actions, too.
+        self._braking_way = max(root, line, self.top_speed / self._closing_rate)
 
     def _braking_speed(self, distance: float) -> float:
         """The speed from which braking ends at the goal: a root, then a line."""
-        # Near the goal the speed is proportional to the distance, and takes a robot over no more than a share of it per
-        # step, so that wheels with a delay do not oscillate.
-        closing_rate = min(CLOSING_RATE, CLOSING_SHARE / self._pace.usual)
-        linear = BRAKING / closing_rate**2
-        if distance < linear:
-            return closing_rate * distance
-        return math.sqrt(2.0 * BRAKING * (distance - linear / 2.0))
+        line = BRAKING / self._closing_rate**2
+        if distance < line:
+            return self._closing_rate * distance
+        return math.sqrt(2.0 * BRAKING * (distance - line / 2.0))
 
     def decelerate(self) -> float:
         """The rim speed for the next step while braking to a stop."""
@@ -89,11 +109,12 @@ class Approach:
         """Whether the robot is at the goal, or near it and comes no nearer."""
         before, self._before = self._before, remaining
         distance = abs(remaining)
-        if distance > NEAR or before * remaining <= 0.0:
-            self._push = self._lost = 0.0
-            self._stuck_steps = self._slow_steps = 0
         if distance > NEAR:
+            self._is_near = False
             return False
+        if not self._is_near or before * remaining <= 0.0:
+            self._is_near, self._push, self._lost = True, 0.0, 0.0
+            self._stuck_steps = self._slow_steps = 0
         if before * remaining < 0.0 and self._comes_to_rest(before, remaining):
             return True
         if before * remaining > 0.0 and abs(before) < math.inf:
@@ -130,19 +151,25 @@ class Approach:
             return True
         return self._close_steps >= self._close_limit
 
+    def progresses(self, remaining: float, time: float) -> bool:
+        """Whether the robot comes nearer and does not crawl, at a simulation time in seconds."""
+        distance = abs(remaining)
+        if distance < self._nearest - self._least_progress:
+            self._nearest, self._progress_time = distance, time
+            return time <= self._crawl_time
+        return False
+
     def crawls(self, remaining: float, time: float) -> bool:
         """Whether the action takes far longer than planned, at a simulation time in seconds."""
-        if math.isnan(self._start_time):
-            self._start_time, self._way = time, abs(remaining)
-        ramps = 2.0 * self.top_speed / RIM_ACCELERATION
-        planned = self._way / self.top_speed + ramps
-        return time - self._start_time > CRAWL * planned + STALL_TIME
+        if math.isnan(self._crawl_time):
+            ramps = 2.0 * self.top_speed / RIM_ACCELERATION
+            planned = abs(remaining) / self.top_speed + ramps
+            self._crawl_time = time + CRAWL * planned + STALL_TIME
+        return time > self._crawl_time
 
     def stalled(self, remaining: float, time: float) -> bool:
         """Whether the robot has made no progress for STALL_TIME, at a simulation time in seconds."""
-        least = min(0.001, 0.25 * self.top_speed * STALL_TIME)
-        if abs(remaining) < self._nearest - least:
-            self._nearest, self._progress_time = abs(remaining), time
+        self.progresses(remaining, time)
         return time - self._progress_time > STALL_TIME - self._pace.usual / 2.0
 
 

@@ -111,7 +111,7 @@ class Motion:
         self._crawling: tuple[Place, str] | None = None
         # Actions and checks of conditions, and rounds of loops, since time has passed.
         self._begun, self._rounds = Instant(), Instant()
-        self._is_recorded = False  # whether the trace has the pose that it starts from
+        self._has_moved = False  # since the start, which the trace has to have, too
 
     @property
     def action(self) -> str:
@@ -175,18 +175,24 @@ class Motion:
 
     async def step(self, rates: Sequence[float]) -> Pose:
         """Sets the wheels' rates in rad/s, waits for the next step, and returns the pose."""
-        if self._creep.gain != 1.0:
-            rates = [rate * self._creep.gain for rate in rates]
+        backend, gain = self.backend, self._creep.gain
+        if gain != 1.0:
+            rates = [rate * gain for rate in rates]
         self._rates = rates
-        self.backend.set_wheel_rates(rates)
-        clock = self.backend.clock
+        backend.set_wheel_rates(rates)
+        clock, pace = backend.clock, self._pace()
         begun = clock.time
-        await self._loop.next_step(clock, self._order)
+        if not self._loop.step_at_once(clock):
+            await self._loop.next_step(clock, self._order)
         # Times are sums of steps; the last digits are not the clock's.
-        self._elapsed = round(clock.time - begun, 9)
-        self._pace().observe(self._elapsed)
-        here = self.pose()
-        self._record(here, rates)
+        self._elapsed = elapsed = round(clock.time - begun, 9)
+        if elapsed != pace.last or elapsed != pace.usual:
+            pace.observe(elapsed)
+        odometer = self._odometer
+        here = backend.pose() if odometer is None else odometer.pose()
+        if self._trace.is_written:
+            self._record(here, rates)
+        self._has_moved = True
         return here
 
     async def wait(self) -> Pose:
@@ -348,8 +354,7 @@ class Motion:
                 break
             ahead = brake.next_speed(approach, here, remaining)
             there = await self.step(self.drive.follow(ahead, offset, remaining, 0.0))
-            moved = there.relative_to(here).x
-            self._creep.observe(ahead, moved, self._elapsed)
+            self._creep.observe(ahead, there.ahead_of(here), self._elapsed)
             here = there
         if brake.is_on:
             here = await self._come_to_rest(here)
@@ -398,13 +403,13 @@ class Motion:
 
     def _start(self, here: Pose) -> Pose:
         """The planned start of a motion: the planned end of the last one."""
-        if not self._is_recorded:
+        if not self._has_moved:
             # The first step has moved it already.
             self._record(here, self.zero_rates())
+            self._has_moved = True
         return self._planned or here
 
     def _record(self, here: Pose, rates: Sequence[float]) -> None:
-        self._is_recorded = True
         time = self.backend.clock.time
         self._trace.add(time, self.name, here, rates, self.place, self.action)
 
@@ -477,6 +482,8 @@ class Motion:
         if approach.arrived(remaining):
             return True
         time = self.backend.clock.time
+        if approach.progresses(remaining, time):
+            return False
         if approach.crawls(remaining, time):
             self._say_crawl()
         if not approach.stalled(remaining, time):
