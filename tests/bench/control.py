@@ -1,6 +1,6 @@
 """Measures what it takes to control robots in Python: no simulator, no sockets, an ideal robot in the same process.
 
-    python tests/bench/control.py [--robots 1,4] [--runs 15] [--profile]
+    python3 tests/bench/control.py [--robots 1,4] [--runs 15] [--profile]
 
 A robot drives a square of 2 m; figures are microseconds of processor time per step and robot, those of the ideal robot left
 out. `--profile` lists the functions that they pass in.
