@@ -127,12 +127,13 @@ class SimulationLoop(asyncio.SelectorEventLoop):
         ticker.advance()
         return True
 
-    def next_step(self, clock: Clock, order: int) -> asyncio.Future[None]:
-        """Is done after the clock's next step; has the error that its `advance` raises."""
+    async def next_step(self, clock: Clock, order: int) -> None:
+        """Returns after the clock's next step; raises what its `advance` raises."""
+        if self.step_at_once(clock):
+            return
         wake_up: asyncio.Future[None] = asyncio.Future(loop=self)
-        ticker = self._tickers.get(id(clock)) or self._ticker_of(clock)
-        ticker.waiting.append(Waiter(order, wake_up))
-        return wake_up
+        self._ticker_of(clock).waiting.append(Waiter(order, wake_up))
+        await wake_up
 
     def _ticker_of(self, clock: Clock) -> Ticker:
         ticker = self._tickers.get(id(clock))

@@ -182,8 +182,7 @@ class Motion:
         backend.set_wheel_rates(rates)
         clock, pace = backend.clock, self._pace()
         begun = clock.time
-        if not self._loop.step_at_once(clock):
-            await self._loop.next_step(clock, self._order)
+        await self._loop.next_step(clock, self._order)
         # Times are sums of steps; the last digits are not the clock's.
         self._elapsed = elapsed = round(clock.time - begun, 9)
         if elapsed != pace.last or elapsed != pace.usual:
@@ -353,7 +352,9 @@ class Motion:
             if brake.has_stopped(approach) or self._has_arrived(approach, remaining):
                 break
             ahead = brake.next_speed(approach, here, remaining)
-            there = await self.step(self.drive.follow(ahead, offset, remaining, 0.0))
+            # On a line, wheels slide sideways too little to count on it.
+            rates = self.drive.follow(ahead, offset, remaining, 0.0, self._scrub.least)
+            there = await self.step(rates)
             self._creep.observe(ahead, there.ahead_of(here), self._elapsed)
             here = there
         if brake.is_on:

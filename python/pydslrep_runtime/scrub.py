@@ -13,13 +13,15 @@ class Scrub:
 
     def __init__(self, expected: float) -> None:
         """`expected` is how much less a robot with its wheels should turn than they roll."""
-        self._least, self._most = 1.0 / expected, MOST / expected
+        self.least = 1.0 / expected
+        """Of the factor: that of wheels that do not slide."""
+        self._most = MOST / expected
         self._asked = self._turned = DOUBT
 
     @property
     def factor(self) -> float:
         """How much wider its track seems than is expected; 1 before there is evidence."""
-        return min(max(self._asked / self._turned, self._least), self._most)
+        return min(max(self._asked / self._turned, self.least), self._most)
 
     def observe(self, asked: float, turned: float) -> None:
         """Adds a step in which the wheels' rates should have turned the robot by radians, and by how much it has turned."""
