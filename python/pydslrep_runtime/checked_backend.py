@@ -25,6 +25,22 @@ from .readings import (
 # Infinite if there is no reading yet.
 AGE = Form("seconds, 0 or more", lambda value: is_number(value) and value >= 0.0)
 
+TRUTH = Form("True or False", lambda value: isinstance(value, int))
+POSE = Form("a Pose", lambda value: isinstance(value, Pose))
+CONE = Form("a SensorCone", lambda value: isinstance(value, SensorCone))
+DISTANCE_OR_NONE = optional(DISTANCE)
+
+
+def is_sound(pose: Any) -> bool:
+    """Whether a pose is one as it should be, with Python's own numbers: any other is looked at more closely."""
+    return (
+        type(pose) is Pose
+        and type(pose.x) is type(pose.y) is type(pose.theta) is float
+        and -MAX_LENGTH <= pose.x <= MAX_LENGTH
+        and -MAX_LENGTH <= pose.y <= MAX_LENGTH
+        and -MAX_ANGLE <= pose.theta <= MAX_ANGLE
+    )
+
 
 class CheckedBackend(Backend):
     """Passes on what another backend answers, if that can be."""
@@ -33,6 +49,11 @@ class CheckedBackend(Backend):
         """Raises SetupError if its clock is none."""
         self._backend, self._count = backend, len(spec.wheels)
         self._name = type(backend).__name__
+        angles = numbers(self._count, self._count, MAX_ANGLE)
+        self._angles = Form(
+            f"the angles of {self._count} wheels",
+            lambda value: isinstance(value, Sequence) and angles.accepts([*value]),
+        )
         self.clock: Clock = backend.clock
         try:
             self._check(
@@ -59,7 +80,8 @@ class CheckedBackend(Backend):
 
     def pose(self) -> Pose:
         """The pose of the wheels' centre."""
-        return self._pose("pose", self._backend.pose())
+        pose = self._backend.pose()
+        return pose if is_sound(pose) else self._pose("pose", pose)
 
     def set_wheel_rates(self, rates: Sequence[float]) -> None:
         """Sets the rates of the wheels."""
@@ -70,17 +92,13 @@ class CheckedBackend(Backend):
         found: Any = self._backend.detects(sensor)
         # Those of numpy are not Python's own.
         found = found.item() if hasattr(found, "item") else found
-        self._check(
-            "detects",
-            found,
-            Form("True or False", lambda value: isinstance(value, int)),
-        )
+        self._check("detects", found, TRUTH)
         return bool(found)
 
     def distance(self, sensor: str) -> float | None:
         """The distance that a sensor measures."""
         found = self._backend.distance(sensor)
-        self._check("distance", found, optional(DISTANCE))
+        self._check("distance", found, DISTANCE_OR_NONE)
         return None if found is None else float(found)
 
     def reading_age(self, sensor: str) -> float:
@@ -93,23 +111,15 @@ class CheckedBackend(Backend):
     def sensor_cone(self, sensor: str) -> SensorCone:
         """The mount and detection volume of a sensor."""
         cone: Any = self._backend.sensor_cone(sensor)
-        is_cone = Form("a SensorCone", lambda value: isinstance(value, SensorCone))
-        self._check("sensor_cone", cone, is_cone)
-        self._check("sensor_cone", cone.range, optional(DISTANCE))
-        self._check("sensor_cone", cone.angle, optional(DISTANCE))
+        self._check("sensor_cone", cone, CONE)
+        self._check("sensor_cone", cone.range, DISTANCE_OR_NONE)
+        self._check("sensor_cone", cone.angle, DISTANCE_OR_NONE)
         return SensorCone(self._pose("sensor_cone", cone.mount), cone.range, cone.angle)
 
     def wheel_angles(self) -> Sequence[float]:
         """The angles of the wheels."""
         angles: Any = self._backend.wheel_angles()
-        form = Form(
-            f"the angles of {self._count} wheels",
-            lambda value: (
-                isinstance(value, Sequence)
-                and numbers(self._count, self._count, MAX_ANGLE).accepts([*value])
-            ),
-        )
-        self._check("wheel_angles", angles, form)
+        self._check("wheel_angles", angles, self._angles)
         return [float(angle) for angle in angles]
 
     def stall_reason(self) -> str:
@@ -125,10 +135,11 @@ class CheckedBackend(Backend):
         self._backend.close()
 
     def _pose(self, call: str, pose: Any) -> Pose:
-        self._check(call, pose, Form("a Pose", lambda value: isinstance(value, Pose)))
+        self._check(call, pose, POSE)
         for axis, form in (("x", LENGTH), ("y", LENGTH), ("theta", ANGLE)):
             self._check(f"{call}().{axis}", getattr(pose, axis), form)
         return Pose(float(pose.x), float(pose.y), float(pose.theta))
 
     def _check(self, call: str, value: Any, form: Form) -> None:
-        check(f"{self._name}.{call}", value, form)
+        if not form.accepts(value):  # most do: then there is no name to put together
+            check(f"{self._name}.{call}", value, form)

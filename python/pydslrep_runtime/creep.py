@@ -11,29 +11,27 @@ class Creep:
     """Makes up for wheels that slip: in physics engines, bodies move some percent less than their wheels roll."""
 
     def __init__(self) -> None:
-        self._gain = 1.0
+        self.gain = 1.0
+        """How much faster than planned wheels have to roll; exactly 1 where bodies move as their wheels roll."""
         self._rolled = self._moved = 0.0
         self._steps = 0
         self._speed = 0.0
 
-    @property
-    def gain(self) -> float:
-        """How much faster than planned wheels have to roll; exactly 1 where bodies move as their wheels roll."""
-        return self._gain
-
-    def observe(self, speed: float, moved: float, time_step: float) -> None:
-        """Adds a step in which a robot, or its rims in a turn, should have moved at a speed in m/s, and has so many metres."""
-        # While a robot speeds up or brakes, it may lag behind.
-        is_steady, self._speed = speed == self._speed, speed
-        rolled = speed * self._gain * time_step
+    def observe(self, speed: float, moved: float, elapsed: float) -> None:
+        """Adds a step of seconds in which a robot, or its rims in a turn, should have moved at a speed in m/s, and has so many metres."""
+        if speed != self._speed:  # while a robot speeds up or brakes, it may lag behind
+            self._speed = speed
+            return
+        rolled = speed * self.gain * elapsed
+        square, product = rolled * rolled, moved * rolled
         # A robot that does something else is not slipping: it may be held by an obstacle.
-        if is_steady and LEAST * rolled**2 < moved * rolled < MOST * rolled**2:
-            self._rolled = MEMORY * self._rolled + rolled**2
-            self._moved = MEMORY * self._moved + moved * rolled
+        if LEAST * square < product < MOST * square:
+            self._rolled = MEMORY * self._rolled + square
+            self._moved = MEMORY * self._moved + product
             self._steps += 1
             if self._steps >= STEPS:
                 self._update()
 
     def _update(self) -> None:
         gain = self._rolled / self._moved
-        self._gain = 1.0 if abs(gain - 1.0) < IGNORED else min(max(gain, LEAST), MOST)
+        self.gain = 1.0 if abs(gain - 1.0) < IGNORED else min(max(gain, LEAST), MOST)

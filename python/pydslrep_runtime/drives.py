@@ -18,7 +18,8 @@ from .steering import arc_speed, circling, return_speed, steer
 class Drive(Protocol):
     """What motion control needs to know about the wheels of a robot."""
 
-    turning_radius: float  # m from the centre to the rims, in a turn in place
+    turning_radius: float  # m from the centre to the wheels, as they count in a turn
+    rims_per_radian: float  # m that rims roll in a turn in place
     radii: tuple[float, ...]  # of the wheels, in metres
     scrubs: bool  # whether wheels slide sideways in turns, which then take longer
 
@@ -33,7 +34,7 @@ class Drive(Protocol):
         """Wheel rates that drive along a line or circle, with m/s and `remaining` metres to go.
 
         `offset` is the pose relative to the nearest point of the path, whose curvature in 1/m is positive to the left.
-        `scrub` is how much wider than it is the track seems, 1 unless wheels slide sideways.
+        `scrub` is how much wider the track seems than it is taken to be, 1 unless wheels slide sideways.
         """
 
     def turn_rate(self, rates: Sequence[float]) -> float:
@@ -57,10 +58,20 @@ class DriveType(Protocol):
         """Raises SetupError if the wheels are not where the drive has them."""
 
 
+def track_and_wheelbase(mounts: Sequence[tuple[float, float]]) -> tuple[float, float]:
+    """How far the sides of four wheels are apart, and the axles; raises SetupError if the sides are exchanged."""
+    (lf_x, lf_y), (lr_x, lr_y), (rf_x, rf_y), (rr_x, rr_y) = mounts
+    track = (lf_y + lr_y - rf_y - rr_y) / 2.0
+    if track <= 0.0:
+        raise SetupError("the left wheels are not to the left of the right wheels")
+    return track, (lf_x + rf_x - lr_x - rr_x) / 2.0
+
+
 class SteeredDrive(ABC):
     """A drive that cannot move sideways: it steers back to its line, and drives an arc back to its spot."""
 
     turning_radius: float  # m
+    rims_per_radian: float  # m
     scrubs = False
 
     @abstractmethod
@@ -87,7 +98,7 @@ class SteeredDrive(ABC):
         self, rim_speed: float, offset: Pose, turn: float | None, drift: float
     ) -> list[float]:
         """Wheel rates that turn on a spot; `offset` is the pose relative to it."""
-        turn_rate = rim_speed / self.turning_radius
+        turn_rate = rim_speed / self.rims_per_radian
         ahead = (
             return_speed(offset)
             if turn is None
@@ -108,7 +119,7 @@ class TwoWheelDrive(SteeredDrive):
         if self.track <= 0.0:
             raise SetupError("the left wheel is not to the left of the right wheel")
         self.radii = tuple(radii)
-        self.turning_radius = self.track / 2.0
+        self.turning_radius = self.rims_per_radian = self.track / 2.0
 
     def wheel_rates(self, speed: float, turn_rate: float) -> list[float]:
         """Inverse kinematics: wheel rates in rad/s for the body's m/s and rad/s."""
@@ -130,22 +141,19 @@ class FourWheelDrive(SteeredDrive):
     Both wheels on a side have the same rim speed, as in a differential drive.
     """
 
-    # Wheels scrub sideways in a turn, so the robot turns less than they roll. Set this
-    # factor if you have measured it; closed-loop control corrects the rest.
-    TRACK_FACTOR = facts.TRACK_FACTOR
+    # Wheels scrub sideways in a turn, so the robot turns less than they roll, as if its track were wider. This is their
+    # friction sideways as a share of that along, as in plans and scenes; closed-loop control corrects the rest.
+    GRIP = facts.ROBOT_TYPES["fw"].grip
     scrubs = True
 
     def __init__(
         self, mounts: Sequence[tuple[float, float]], radii: Sequence[float]
     ) -> None:
         """`mounts` are the wheels' x (forward) and y (left) in the body, in metres."""
-        left_front, left_rear, right_front, right_rear = (y for _, y in mounts)
-        track = (left_front + left_rear - right_front - right_rear) / 2.0
-        if track <= 0.0:
-            raise SetupError("the left wheels are not to the left of the right wheels")
-        self.track = track * self.TRACK_FACTOR
+        track, wheelbase = track_and_wheelbase(mounts)
+        self.track = track * (1.0 + self.GRIP * (wheelbase / track) ** 2)
         self.radii = tuple(radii)
-        self.turning_radius = self.track / 2.0
+        self.turning_radius, self.rims_per_radian = track / 2.0, self.track / 2.0
 
     def wheel_rates(self, speed: float, turn_rate: float) -> list[float]:
         """Inverse kinematics: wheel rates in rad/s for the body's m/s and rad/s."""
@@ -178,19 +186,12 @@ class FourMecanumDrive:
         self, mounts: Sequence[tuple[float, float]], radii: Sequence[float]
     ) -> None:
         """`mounts` are the wheels' x (forward) and y (left) in the body, in metres."""
-        left_front, left_rear, right_front, right_rear = mounts
-        track = (left_front[1] + left_rear[1] - right_front[1] - right_rear[1]) / 2.0
-        wheelbase = (
-            left_front[0] + right_front[0] - left_rear[0] - right_rear[0]
-        ) / 2.0
-        if track <= 0.0:
-            raise SetupError("the left wheels are not to the left of the right wheels")
-        if wheelbase <= 0.0:
+        self.track, self.wheelbase = track_and_wheelbase(mounts)
+        if self.wheelbase <= 0.0:
             raise SetupError("the front wheels are not ahead of the rear wheels")
-        self.track = track
-        self.wheelbase = wheelbase
         self.radii = tuple(radii)
-        self.turning_radius = (wheelbase + track) / 2.0
+        self.turning_radius = (self.wheelbase + self.track) / 2.0
+        self.rims_per_radian = self.turning_radius
 
     def wheel_rates(
         self, forward: float, sideways: float, turn_rate: float
@@ -234,7 +235,7 @@ class FourMecanumDrive:
         drift: float,  # noqa: ARG002
     ) -> list[float]:
         """Wheel rates that turn on a spot; `offset` is the pose relative to it."""
-        turn_rate = rim_speed / self.turning_radius
+        turn_rate = rim_speed / self.rims_per_radian
         ahead, sideways = self._correction(offset.x), self._correction(offset.y)
         return self._along(offset.theta, ahead, sideways, turn_rate)
 

@@ -8,7 +8,8 @@ time, robots in parallel tasks take each step together, and nothing depends on t
 import asyncio
 import selectors
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
+from operator import attrgetter
 from typing import NamedTuple
 
 from .backend import Clock
@@ -17,14 +18,51 @@ from .readings import check_time
 from .settings import STANDSTILL_LIMIT
 
 MAX_CORRECTION = 100  # steps by which a clock may be put back
+USUAL_GAP = 1.0  # s of a step that needs no further look
+STEPS_PER_TURN = 8  # of a task that is alone, after which the loop has its turn
+OWN_FILES = 1  # that the loop listens to: it wakes itself up by a pipe
 
 
 class Waiter(NamedTuple):
     """A robot that waits for its clock's next step."""
 
-    clock: Clock
     order: int  # robots that wait for the same step act in this order
     wake_up: asyncio.Future[None]
+
+
+class Ticker:
+    """A clock, and what is known of it."""
+
+    def __init__(self, clock: Clock) -> None:
+        self.clock = clock
+        self.time = self.latest = clock.time  # the last ones that were times
+        self.waiting: list[Waiter] = []
+        self.passed: float | None = None  # when time passed last, in real time
+        self._name = f"{type(clock).__name__}.time"
+
+    def advance(self) -> None:
+        """Takes a step; raises SimulatorError if its time is none."""
+        clock, latest = self.clock, self.latest
+        clock.advance()
+        now = clock.time
+        if type(now) is not float or not latest <= now <= latest + USUAL_GAP:
+            # A simulator's clock may find that it has counted steps which were not taken.
+            check_time(self._name, latest, now, MAX_CORRECTION * clock.time_step)
+        self.time = now
+        real = time.monotonic()
+        if now > latest:
+            self.latest, self.passed = now, real
+        elif self.passed is None:
+            self.passed = real
+        # A step may take no time now and then.
+        elif real - self.passed > STANDSTILL_LIMIT:
+            raise SimulatorError(
+                f"{self._name} stands still at {latest:g} s, although steps were taken for {STANDSTILL_LIMIT:g} s"
+            )
+
+    def next_step_due(self) -> float:
+        """When its next step ends, in its own time."""
+        return self.time + self.clock.time_step
 
 
 class StepSelector(selectors.DefaultSelector):
@@ -47,86 +85,98 @@ class SimulationLoop(asyncio.SelectorEventLoop):
     """The event loop of a run."""
 
     def __init__(self) -> None:
-        self._clock: Clock | None = None
-        self._waiting: list[Waiter] = []
-        self._times: dict[Clock, float] = {}  # the last one of each that was a time
-        self._latest: dict[Clock, float] = {}
-        self._passed: dict[Clock, float] = {}  # when time passed last, in real time
-        super().__init__(StepSelector(self._advance))
+        self._ticker: Ticker | None = None  # whose time it is
+        self._tickers: dict[int, Ticker] = {}
+        self._turn = 0  # steps since the loop has looked for wake-ups
+        selector = StepSelector(self._advance)
+        super().__init__(selector)
+        self._files = selector.get_map()
 
     def time(self) -> float:
         """Seconds of simulation time, or of real time while there is no clock."""
-        return super().time() if self._clock is None else self._time_of(self._clock)
+        ticker = self._ticker
+        return super().time() if ticker is None else ticker.time
 
     def use_clock(self, clock: Clock | None) -> None:
         """Sets the clock that `time` reads; without one, no clock advances any more."""
-        self._clock = clock
+        self._ticker = None if clock is None else self._ticker_of(clock)
 
     def has_advanced(self, clock: Clock) -> bool:
         """Whether a clock has taken a step in this run; before that, sensors have no readings."""
-        return clock in self._passed
+        return self._ticker_of(clock).passed is not None
+
+    def step_at_once(self, clock: Clock) -> bool:
+        """Takes a clock's next step if nobody else could act before it; raises what its `advance` raises.
+
+        It spares a task that is alone the way through the loop, which takes as long as the control of a robot.
+        """
+        ticker = self._ticker
+        self._turn = (self._turn + 1) % STEPS_PER_TURN
+        if (
+            self._turn == 0
+            or ticker is None
+            or ticker.clock is not clock
+            or ticker.waiting
+            or len(self._tickers) > 1
+            # What can run and which timers there are, only asyncio knows; if it calls them otherwise, all steps go through it.
+            or getattr(self, "_ready", True)
+            or getattr(self, "_scheduled", True)
+            or len(self._files) > OWN_FILES
+        ):
+            return False
+        ticker.advance()
+        return True
 
     async def next_step(self, clock: Clock, order: int) -> None:
         """Returns after the clock's next step; raises what its `advance` raises."""
-        wake_up = self.create_future()
-        self._waiting.append(Waiter(clock, order, wake_up))
+        if self.step_at_once(clock):
+            return
+        wake_up: asyncio.Future[None] = asyncio.Future(loop=self)
+        self._ticker_of(clock).waiting.append(Waiter(order, wake_up))
         await wake_up
+
+    def _ticker_of(self, clock: Clock) -> Ticker:
+        ticker = self._tickers.get(id(clock))
+        if ticker is None:
+            ticker = self._tickers[id(clock)] = Ticker(clock)
+        return ticker
 
     def _advance(self, until_timer: float | None) -> bool:
         """Advances the clock whose next step comes first; False if there is none."""
-        if self._clock is None:
+        ticker = self._ticker
+        if ticker is None:
             return False
-        waiting = [waiter for waiter in self._waiting if not waiter.wake_up.done()]
-        clocks = [waiter.clock for waiter in waiting]
-        if until_timer is not None or not clocks:
-            clocks.append(self._clock)
-        clock = min(clocks, key=self._next_step_due)
-        due = [waiter for waiter in waiting if waiter.clock is clock]
-        self._waiting = [waiter for waiter in waiting if waiter.clock is not clock]
+        if len(self._tickers) > 1:
+            ticker = self._first(until_timer, ticker)
+        due, ticker.waiting = in_order(ticker.waiting), []
         try:
-            self._take_step(clock)
+            ticker.advance()
         except Exception as error:
             if not due:
                 raise
-            fail(due, error)
+            for waiter in due:
+                waiter.wake_up.set_exception(error)
         else:
-            for waiter in in_order(due):
+            for waiter in due:
                 waiter.wake_up.set_result(None)
         return True
 
-    def _take_step(self, clock: Clock) -> None:
-        """Advances a clock; raises SimulatorError if its time is none."""
-        before, name = self._time_of(clock), type(clock).__name__
-        self._times[clock] = before
-        latest = self._latest.setdefault(clock, before)
-        clock.advance()
-        # A simulator's clock may find that it has counted steps which were not taken.
-        check_time(f"{name}.time", latest, clock.time, MAX_CORRECTION * clock.time_step)
-        self._times[clock] = clock.time
-        self._latest[clock] = max(latest, clock.time)
-        now = time.monotonic()
-        if clock.time > latest:
-            self._passed[clock] = now
-        # A step may take no time now and then.
-        elif now - self._passed.setdefault(clock, now) > STANDSTILL_LIMIT:
-            raise SimulatorError(
-                f"{name}.time stands still at {latest:g} s, although steps were taken for {STANDSTILL_LIMIT:g} s"
-            )
-
-    def _time_of(self, clock: Clock) -> float:
-        return self._times.get(clock, clock.time)
-
-    def _next_step_due(self, clock: Clock) -> float:
-        """When a clock's next step ends, in its own time."""
-        return self._time_of(clock) + clock.time_step
+    def _first(self, until_timer: float | None, own: Ticker) -> Ticker:
+        """The clock whose next step comes first, of those that somebody waits for."""
+        tickers = [
+            ticker for ticker in self._tickers.values() if in_order(ticker.waiting)
+        ]
+        if until_timer is not None or not tickers:
+            tickers.append(own)
+        return min(tickers, key=Ticker.next_step_due)
 
 
-def in_order(waiters: Iterable[Waiter]) -> list[Waiter]:
-    """The waiters in the order in which they act."""
-    return sorted(waiters, key=lambda waiter: waiter.order)
+def in_order(waiters: list[Waiter]) -> list[Waiter]:
+    """The waiters that have not been cancelled, in the order in which they act."""
+    left = [waiter for waiter in waiters if not waiter.wake_up.done()]
+    if len(left) > 1:
+        left.sort(key=order_of)
+    return left
 
 
-def fail(waiters: Iterable[Waiter], error: Exception) -> None:
-    """Wakes up waiters with an error."""
-    for waiter in in_order(waiters):
-        waiter.wake_up.set_exception(error)
+order_of = attrgetter("order")

@@ -10,7 +10,6 @@ STEP = 0.05  # s of simulation time, unless a scene has other steps
 RIM_SPEED = 0.09  # m/s at the wheels' rims, in turns and in moves without a speed
 RIM_ACCELERATION = 0.5  # m/s² at the rims, when accelerating and braking
 MOTOR_ACCELERATION = 1.0  # m/s² at the rims, at most, unless a scene has it
-TRACK_FACTOR = 1.0  # how much wider tracks of wheels that scrub are taken to be
 SENSOR_RANGE = 1.0  # m of a distance sensor, unless a scene has it
 SENSOR_CONE = math.radians(20.0)  # opening angle of a sensor, unless a scene has it
 

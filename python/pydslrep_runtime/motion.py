@@ -15,10 +15,18 @@ from .errors import MovementError
 from .event_loop import SimulationLoop
 from .facts import RIM_SPEED
 from .notes import Notes
+from .pace import Pace
 from .places import Place
 from .pose import Pose, wrap_angle
 from .scrub import Scrub
-from .settings import MAX_IDLE_ACTIONS, MAX_IDLE_ROUNDS, MAX_LATERAL_ERROR, STALL_TIME
+from .settings import (
+    END_ANGLE,
+    END_DISTANCE,
+    MAX_DEFLECTION,
+    MAX_IDLE_ACTIONS,
+    MAX_IDLE_ROUNDS,
+    STALL_TIME,
+)
 from .steering import Drift
 from .trace import Trace
 
@@ -35,6 +43,11 @@ StopsAt = Callable[[Pose], bool]
 def never(_here: Pose) -> bool:
     """A motion that ends at its goal."""
     return False
+
+
+def apart(here: Pose, there: Pose) -> float:
+    """The distance between two positions in metres."""
+    return math.hypot(here.x - there.x, here.y - there.y)
 
 
 class Instant:
@@ -88,13 +101,17 @@ class Motion:
         self._rates: Sequence[float] = ()
         self._odometer: Odometer | None = None
         self._on_pose: Callable[[Pose], object] | None = None
-        self._drift, self._creep, self._scrub = Drift(), Creep(), Scrub()
+        self._drift, self._creep = Drift(), Creep()
+        self._scrub = Scrub(drive.rims_per_radian / drive.turning_radius)
+        # Known from the start on, when the clock knows it.
+        self._steps: Pace | None = None
+        self._elapsed = 0.0  # s of the latest step, as measured
         self._notes = Notes()
         # The action of which it was said that it crawls.
         self._crawling: tuple[Place, str] | None = None
         # Actions and checks of conditions, and rounds of loops, since time has passed.
         self._begun, self._rounds = Instant(), Instant()
-        self._is_recorded = False  # whether the trace has the pose that it starts from
+        self._has_moved = False  # since the start, which the trace has to have, too
 
     @property
     def action(self) -> str:
@@ -158,14 +175,23 @@ class Motion:
 
     async def step(self, rates: Sequence[float]) -> Pose:
         """Sets the wheels' rates in rad/s, waits for the next step, and returns the pose."""
-        if self._creep.gain != 1.0:
-            rates = [rate * self._creep.gain for rate in rates]
+        backend, gain = self.backend, self._creep.gain
+        if gain != 1.0:
+            rates = [rate * gain for rate in rates]
         self._rates = rates
-        self.backend.set_wheel_rates(rates)
-        clock = self.backend.clock
+        backend.set_wheel_rates(rates)
+        clock, pace = backend.clock, self._pace()
+        begun = clock.time
         await self._loop.next_step(clock, self._order)
-        here = self.pose()
-        self._record(here, rates)
+        # Times are sums of steps; the last digits are not the clock's.
+        self._elapsed = elapsed = round(clock.time - begun, 9)
+        if elapsed != pace.last or elapsed != pace.usual:
+            pace.observe(elapsed)
+        odometer = self._odometer
+        here = backend.pose() if odometer is None else odometer.pose()
+        if self._trace.is_written:
+            self._record(here, rates)
+        self._has_moved = True
         return here
 
     async def wait(self) -> Pose:
@@ -207,7 +233,7 @@ class Motion:
         """Stays where it is for seconds of simulation time."""
         clock, here = self.backend.clock, self.pose()
         self._planned = self._start(here)
-        end = clock.time + seconds - clock.time_step / 2.0
+        end = clock.time + seconds - self._pace().usual / 2.0
         is_over = clock.time >= end
         while not is_over:
             here = await self.step(self.zero_rates())
@@ -223,7 +249,7 @@ class Motion:
         brake, aside = Brake(should_stop), abs(here.relative_to(goal).y)
         here = await self._drive_line(here, goal, speed, brake)
         # On its way, a robot may not be back on its line yet.
-        self._check_arrival(here.relative_to(goal).y, aside if brake.is_on else 0.0)
+        self._check_side(here.relative_to(goal).y, aside if brake.is_on else 0.0)
         # Correct a residual rotation, and rest.
         return await self._rotate(here, 0.0)
 
@@ -251,7 +277,7 @@ class Motion:
             here = await self._come_to_rest(here)
             angle = circle.angle_at(here, turned)
         self._planned = goal = circle.pose_at(angle)
-        self._check_arrival(here.relative_to(goal).y, aside if brake.is_on else 0.0)
+        self._check_side(here.relative_to(goal).y, aside if brake.is_on else 0.0)
         return await self._rotate(here, 0.0)
 
     async def rotate(
@@ -268,13 +294,17 @@ class Motion:
         `speed` is that of the rims in m/s; `on_pose` is called after every step. Without `may_end`, the robot will stop
         somewhere on the way.
         """
+        here, brake = self.pose(), Brake(should_stop)
+        away = apart(here, self._start(here))
         self._on_pose = on_pose
         try:
-            return await self._rotate(
-                self.pose(), angle, speed, should_stop, may_end=may_end
-            )
+            here = await self._rotate(here, angle, speed, brake, may_end=may_end)
         finally:
             self._on_pose = None
+        # Who looks around on the way goes on from where the robot is.
+        if on_pose is None:
+            self._check_spot(here, away if brake.is_on else 0.0)
+        return here
 
     async def rotate_while(
         self, side: float, condition: Callable[[], bool]
@@ -285,15 +315,15 @@ class Motion:
         """
         here = await self.wait()
         start = self._start(here)
-        radius = self.drive.turning_radius
+        away = apart(here, start)
+        radius = self.drive.rims_per_radian
         full_turn = side * math.tau * radius
-        approach = self._approach(RIM_SPEED)
+        approach = self._approach(RIM_SPEED, radius)
         turned = 0.0
         while (holds := condition()) or approach.speed:
             remaining = full_turn - turned * radius
-            if approach.arrived(remaining):
+            if self._has_arrived(approach, remaining):
                 return None
-            self._check_progress(approach, remaining)
             rim_speed = (
                 approach.next_speed(remaining) if holds else approach.decelerate()
             )
@@ -303,6 +333,7 @@ class Motion:
             turned += wrap_angle(here.theta - before.theta)
         here = await self._come_to_rest(here)
         self._planned = Pose(start.x, start.y, here.theta)
+        self._check_spot(here, away)
         return here
 
     async def drive_to(self, goal: Pose, should_stop: StopsAt) -> None:
@@ -318,13 +349,13 @@ class Motion:
         while True:
             offset = here.relative_to(goal)
             remaining = -offset.x
-            if approach.arrived(remaining) or brake.has_stopped(approach):
+            if brake.has_stopped(approach) or self._has_arrived(approach, remaining):
                 break
-            self._check_progress(approach, remaining)
             ahead = brake.next_speed(approach, here, remaining)
-            there = await self.step(self.drive.follow(ahead, offset, remaining, 0.0))
-            moved = there.relative_to(here).x
-            self._creep.observe(ahead, moved, self.backend.clock.time_step)
+            # On a line, wheels slide sideways too little to count on it.
+            rates = self.drive.follow(ahead, offset, remaining, 0.0, self._scrub.least)
+            there = await self.step(rates)
+            self._creep.observe(ahead, there.ahead_of(here), self._elapsed)
             here = there
         if brake.is_on:
             here = await self._come_to_rest(here)
@@ -339,13 +370,12 @@ class Motion:
         curvature = circle.curvature
         # Distances are those of the fastest wheel, as it seems now: what is to go must not grow on the way.
         rims = self._way_of_rims(curvature)
-        approach = self._approach(speed)
+        approach = self._approach(speed, rims)
         turned = circle.angle_at(here, 0.0)
         while not brake.has_stopped(approach):
             remaining = (angle - turned) * rims
-            if approach.arrived(remaining):
+            if self._has_arrived(approach, remaining):
                 break
-            self._check_progress(approach, remaining)
             rim_speed = brake.next_speed(approach, here, remaining)
             ahead = rim_speed / self._way_of_rims(curvature) / curvature
             offset = here.relative_to(circle.pose_at(turned))
@@ -353,12 +383,12 @@ class Motion:
             here = await self._follow(here, ahead, offset, to_go, curvature)
             before, turned = turned, circle.angle_at(here, turned)
             moved = (turned - before) / curvature
-            self._creep.observe(ahead, moved, self.backend.clock.time_step)
+            self._creep.observe(ahead, moved, self._elapsed)
         return here, turned
 
     def _way_of_rims(self, curvature: float) -> float:
         """The way of the fastest wheel on a circle, in metres per radian."""
-        return 1.0 / abs(curvature) + self.drive.turning_radius * self._scrub.factor
+        return 1.0 / abs(curvature) + self.drive.rims_per_radian * self._scrub.factor
 
     async def _follow(
         self, here: Pose, ahead: float, offset: Pose, to_go: float, curvature: float
@@ -368,43 +398,51 @@ class Motion:
         rates = self.drive.follow(ahead, offset, to_go, curvature, factor)
         there = await self.step(rates)
         if self.drive.scrubs:
-            asked = self.drive.turn_rate(rates) * self.backend.clock.time_step
+            asked = self.drive.turn_rate(rates) * self._elapsed
             self._scrub.observe(asked, wrap_angle(there.theta - here.theta))
         return there
 
     def _start(self, here: Pose) -> Pose:
         """The planned start of a motion: the planned end of the last one."""
-        if not self._is_recorded:
+        if not self._has_moved:
             # The first step has moved it already.
             self._record(here, self.zero_rates())
+            self._has_moved = True
         return self._planned or here
 
     def _record(self, here: Pose, rates: Sequence[float]) -> None:
-        self._is_recorded = True
         time = self.backend.clock.time
         self._trace.add(time, self.name, here, rates, self.place, self.action)
 
-    def _approach(self, speed: float) -> Approach:
-        return Approach(speed, self.backend.clock.time_step)
+    def _approach(self, speed: float, rims: float = math.inf) -> Approach:
+        """The approach of an action in which rims roll so many metres per radian."""
+        tolerance = min(END_DISTANCE, END_ANGLE * rims)
+        return Approach(speed, self._pace(), tolerance)
+
+    def _pace(self) -> Pace:
+        """How long steps take; simulators tell how long they should when they have started."""
+        if self._steps is None:
+            self._steps = Pace(self.backend.clock.time_step)
+        return self._steps
 
     async def _rotate(
         self,
         here: Pose,
         angle: float,
         speed: float = RIM_SPEED,
-        should_stop: StopsAt = never,
+        brake: Brake | None = None,
         *,
         may_end: bool = True,
     ) -> Pose:
         start = self._start(here)
         goal = start.turned(angle)
-        approach, brake = self._approach(speed), Brake(should_stop)
+        radius = self.drive.rims_per_radian
+        approach, brake = self._approach(speed, radius), brake or Brake(never)
         turned = wrap_angle(here.theta - start.theta)
         while not brake.has_stopped(approach):
-            remaining = (angle - turned) * self.drive.turning_radius
-            if approach.arrived(remaining):
+            remaining = (angle - turned) * radius
+            if self._has_arrived(approach, remaining):
                 break
-            self._check_progress(approach, remaining)
             rim_speed = brake.next_speed(approach, here, remaining)
             offset, before = here.relative_to(goal), here
             rates = self.drive.turn_in_place(
@@ -418,8 +456,8 @@ class Motion:
             turned += step
             self._drift.observe(before, here)
             if not self.drive.scrubs:
-                moved = step * self.drive.turning_radius
-                self._creep.observe(rim_speed, moved, self.backend.clock.time_step)
+                moved = step * radius
+                self._creep.observe(rim_speed, moved, self._elapsed)
             if self._on_pose is not None:
                 self._on_pose(here)
         here = await self._come_to_rest(here)
@@ -440,15 +478,24 @@ class Motion:
                 last = way
         return here
 
-    def _check_progress(self, approach: Approach, remaining: float) -> None:
-        if approach.crawls(remaining, self.backend.clock.time):
+    def _has_arrived(self, approach: Approach, remaining: float) -> bool:
+        """Whether a robot is where an action ends; fails if it comes no nearer."""
+        if approach.arrived(remaining):
+            return True
+        time = self.backend.clock.time
+        if approach.progresses(remaining, time):
+            return False
+        if approach.crawls(remaining, time):
             self._say_crawl()
-        if approach.stalled(remaining, self.backend.clock.time):
-            self._report_contact()
-            raise self.failure(
-                f"no progress for {STALL_TIME:g} s, {abs(remaining):.3f} m from the goal; "
-                + self.backend.stall_reason()
-            )
+        if not approach.stalled(remaining, time):
+            return False
+        if abs(remaining) <= approach.tolerance:
+            return True
+        self._report_contact()
+        raise self.failure(
+            f"no progress for {STALL_TIME:g} s, {abs(remaining):.3f} m from the goal; "
+            + self.backend.stall_reason()
+        )
 
     def _say_crawl(self) -> None:
         """Says once why an action takes so long: to find out takes calls."""
@@ -463,12 +510,18 @@ class Motion:
         if events.current.is_read:
             events.current.contact(self.moment(self.pose()))
 
-    def _check_arrival(self, lateral_error: float, before: float) -> None:
-        """Fails if a robot is far beside its path; `before` is how far it may have been before, in metres."""
-        if abs(lateral_error) > before + MAX_LATERAL_ERROR:
+    def _check_side(self, aside: float, before: float) -> None:
+        """Fails if a robot is far to the side of its path; `before` is how far it may have been before, in metres."""
+        side = "left" if aside > 0.0 else "right"
+        self._check_end(abs(aside), before, f"to the {side} of")
+
+    def _check_spot(self, here: Pose, before: float) -> None:
+        """Fails if a robot has turned far from its spot."""
+        self._check_end(apart(here, self._start(here)), before, "from")
+
+    def _check_end(self, away: float, before: float, where: str) -> None:
+        if away > before + MAX_DEFLECTION:
             self._report_contact()
-            side = "left" if lateral_error > 0.0 else "right"
             raise self.failure(
-                f"ended {abs(lateral_error):.3f} m to the {side} of the goal; "
-                "an obstacle may have deflected it"
+                f"ended {away:.3f} m {where} the goal; an obstacle may have deflected it"
             )

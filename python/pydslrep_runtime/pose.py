@@ -1,7 +1,7 @@
 """Positions and headings."""
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
 def wrap_angle(angle: float) -> float:
@@ -15,8 +15,7 @@ def heading_degrees(theta: float) -> float:
     return 180.0 if degrees <= -180.0 else degrees
 
 
-@dataclass(frozen=True)
-class Pose:
+class Pose(NamedTuple):
     """A position and a heading: x forward and y left in metres, theta in radians.
 
     Angles are counter-clockwise, seen from above.
@@ -49,10 +48,13 @@ class Pose:
 
     def relative_to(self, origin: "Pose") -> "Pose":
         """The pose in the frame of `origin`: x ahead of it, y to its left."""
-        dx, dy = self.x - origin.x, self.y - origin.y
-        cos, sin = math.cos(origin.theta), math.sin(origin.theta)
-        return Pose(
-            cos * dx + sin * dy,
-            cos * dy - sin * dx,
-            wrap_angle(self.theta - origin.theta),
-        )
+        x, y, theta = origin
+        dx, dy = self.x - x, self.y - y
+        cos, sin = math.cos(theta), math.sin(theta)
+        turned = math.remainder(self.theta - theta, math.tau)
+        return Pose(cos * dx + sin * dy, cos * dy - sin * dx, turned)
+
+    def ahead_of(self, origin: "Pose") -> float:
+        """How far it is ahead of `origin`, in metres."""
+        x, y, theta = origin
+        return math.cos(theta) * (self.x - x) + math.sin(theta) * (self.y - y)

@@ -61,7 +61,7 @@ def shown(value: object) -> str:
             return f'"{shortened(value, SHOWN)}"'
         case bytes():
             return f"{len(value)} bytes"
-        case list() | tuple():
+        case list() | tuple() if type(value) in (list, tuple):  # poses have a name
             items = ", ".join(shown(item) for item in value[:SHOWN_ITEMS])
             more = f", ... ({len(value)} values)" if len(value) > SHOWN_ITEMS else ""
             return shortened(f"[{items}{more}]", 2 * SHOWN)

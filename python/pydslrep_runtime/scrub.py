@@ -1,6 +1,6 @@
 """How much less a robot turns than its wheels roll, as observed while it drives along circles."""
 
-MOST = 4.0  # times the rate at which its wheels should turn it, at most
+MOST = 4.0  # times the rate at which wheels that do not slide would turn it, at most
 DOUBT = 1e-4  # rad² of observed steps at which half of what is observed is believed
 MEMORY = 0.99  # the share of a step's weight that remains after another one
 
@@ -11,13 +11,17 @@ class Scrub:
     Steering alone would leave it on a larger circle: it acts on an error, and here the cause of the error goes on.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, expected: float) -> None:
+        """`expected` is how much less a robot with its wheels should turn than they roll."""
+        self.least = 1.0 / expected
+        """Of the factor: that of wheels that do not slide."""
+        self._most = MOST / expected
         self._asked = self._turned = DOUBT
 
     @property
     def factor(self) -> float:
-        """How much wider its track seems; 1 before there is evidence."""
-        return min(max(self._asked / self._turned, 1.0), MOST)
+        """How much wider its track seems than is expected; 1 before there is evidence."""
+        return min(max(self._asked / self._turned, self.least), self._most)
 
     def observe(self, asked: float, turned: float) -> None:
         """Adds a step in which the wheels' rates should have turned the robot by radians, and by how much it has turned."""
@@ -25,4 +29,4 @@ class Scrub:
         self._asked = DOUBT + MEMORY * (self._asked - DOUBT) + asked**2
         self._turned = DOUBT + MEMORY * (self._turned - DOUBT) + asked * turned
         # A robot that is pushed around has not scrubbed.
-        self._turned = max(self._turned, self._asked / MOST)
+        self._turned = max(self._turned, self._asked / self._most)

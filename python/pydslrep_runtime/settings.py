@@ -1,5 +1,6 @@
 """Tolerances and timeouts; speeds are in `facts`, which the command shares."""
 
+import math
 import os
 from contextlib import suppress
 
@@ -21,8 +22,13 @@ ARRIVAL_TOLERANCE = 0.0001  # m at the rim within which an action is complete
 CLOSE_TOLERANCE = (
     0.001  # m at the rim within which it is complete if the robot comes no nearer
 )
+# An action that comes no nearer is complete within these, and fails outside of them.
+END_DISTANCE = 0.005  # m
+END_ANGLE = math.radians(0.5)
 STALL_TIME = 5.0  # s of simulation time without progress before an action fails
-MAX_LATERAL_ERROR = 0.05  # m to the side of its goal, above which a move fails
+MAX_DEFLECTION = (
+    0.05  # m to the side of its line, or off its spot, above which a move or turn fails
+)
 CONNECT_TIMEOUT = limit(
     "CONNECT_TIMEOUT", 5.0
 )  # s to wait for the simulator's first reply

@@ -13,6 +13,7 @@ class Trace:
 
     def __init__(self, file: TextIO | None = None) -> None:
         self._file = file
+        self.is_written = file is not None
 
     def add(
         self,

@@ -46,7 +46,8 @@ class FakeRobot:
     motor_acceleration: float = 40.0  # rad/s²
     slip: float = 0.0  # standard deviation of each wheel's traction
     creep: float = 0.0  # how much less it moves than its wheels roll
-    scrub: float = 0.0  # how much less it turns than its wheels roll
+    # How much less it turns than its wheels roll; None for as much as four plain wheels with full friction.
+    scrub: float | None = None
     drift: float = 0.0  # m that it slides to its left per radian that it turns
     is_static: bool = False
     tremor: float = 0.0  # m and radians that contacts move it in every step
@@ -62,6 +63,8 @@ class FakeRobot:
 
     def __post_init__(self) -> None:
         self.start = self.x, self.y, self.theta
+        if self.scrub is None:
+            self.scrub = usual_scrub(self.joints)
 
     def advance(self, dt: float, noise: random.Random) -> None:
         """Moves for dt seconds."""
@@ -92,7 +95,6 @@ class FakeRobot:
             joint.rate += max(-limit, min(limit, change))
             joint.angle += joint.rate * dt
         vx, vy, omega = self.twist(traction)
-        omega *= 1.0 - self.scrub
         middle = self.theta + omega * dt / 2.0
         if self.x + (vx * math.cos(middle) - vy * math.sin(middle)) * dt > self.wall:
             return
@@ -120,8 +122,18 @@ class FakeRobot:
         omega = -sum(r * a for r, a in zip(rims, arms, strict=True)) / sum(
             a * a for a in arms
         )
+        omega *= 1.0 - (self.scrub or 0.0)
         # from the wheels' centre to the body's origin
         return vx + omega * cy, vy - omega * cx, omega
+
+
+def usual_scrub(joints: Sequence[FakeJoint]) -> float:
+    """How much less plain wheels turn a robot than they roll: docs/kinematics.md."""
+    if any(joint.roller for joint in joints):
+        return 0.0
+    long = max(joint.x for joint in joints) - min(joint.x for joint in joints)
+    wide = max(joint.y for joint in joints) - min(joint.y for joint in joints)
+    return 1.0 - 1.0 / (1.0 + (long / wide) ** 2) if wide else 0.0
 
 
 def two_wheel_joints(track: float = 0.3, **options: Any) -> list[FakeJoint]:

@@ -1,6 +1,8 @@
 """Time in the event loop: clocks advance when all tasks wait, in the order of their next steps."""
 
 import asyncio
+import os
+import threading
 from collections.abc import Callable, Coroutine
 from dataclasses import dataclass, field
 from typing import Any
@@ -153,3 +155,111 @@ def test_cancelled_waiters_are_forgotten() -> None:
 
     run(main, first, other)
     assert log == ["first 0.5"]
+
+
+async def steps_alone(loop: SimulationLoop, clock: Clock, count: int) -> None:
+    """Takes steps."""
+    for _ in range(count):
+        await loop.next_step(clock, 0)
+
+
+def test_a_task_that_is_alone_steps_at_once_but_now_and_then(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    clock, done = Clock("clock", 0.5, []), []
+
+    async def main(loop: SimulationLoop) -> None:
+        step_at_once = loop.step_at_once
+
+        def counted(clock: Any) -> bool:
+            done.append(step_at_once(clock))
+            return done[-1]
+
+        monkeypatch.setattr(loop, "step_at_once", counted)
+        await steps_alone(loop, clock, 80)
+
+    run(main, clock)
+    assert (len(done), sum(done)) == (80, 70)
+    assert clock.time == 40.0
+
+
+def test_who_steps_at_once_does_not_overtake_others() -> None:
+    log: list[str] = []
+    clock = Clock("clock", 0.5, log)
+
+    async def main(loop: SimulationLoop) -> None:
+        async def act(name: str) -> None:
+            for _ in range(20):
+                await steps_alone(loop, clock, 1)
+                log.append(name)
+
+        await asyncio.gather(act("a"), act("b"))
+
+    run(main, clock)
+    assert log[1::3] == ["a"] * 20
+    assert log[2::3] == ["b"] * 20
+
+
+def test_who_steps_at_once_meets_timers_in_time() -> None:
+    clock = Clock("clock", 0.5, [])
+
+    async def main(loop: SimulationLoop) -> None:
+        rung: list[float] = []
+        loop.call_later(2.25, lambda: rung.append(clock.time))
+        await steps_alone(loop, clock, 20)
+        assert rung == [2.5]
+        with pytest.raises(TimeoutError):
+            async with asyncio.timeout(3.0):
+                await steps_alone(loop, clock, 20)
+        assert clock.time == 13.0
+
+    run(main, clock)
+
+
+def test_who_steps_at_once_hears_other_threads_and_files() -> None:
+    clock = Clock("clock", 0.5, [])
+
+    async def main(loop: SimulationLoop) -> None:
+        heard: list[str] = []
+        thread = threading.Thread(
+            target=loop.call_soon_threadsafe, args=(heard.append, "thread")
+        )
+        thread.start()
+        thread.join()
+        await steps_alone(loop, clock, 1)
+        assert heard == ["thread"]
+        reader, writer = os.pipe()
+        loop.add_reader(reader, lambda: heard.append(os.read(reader, 10).decode()))
+        os.write(writer, b"file")
+        await steps_alone(loop, clock, 2)
+        assert heard == ["thread", "file"]
+        loop.remove_reader(reader)
+        os.close(reader)
+        os.close(writer)
+
+    run(main, clock)
+
+
+def test_an_error_of_a_clock_reaches_who_steps_at_once() -> None:
+    clock = Clock("clock", 0.5, [], error=SimulatorError("gone"))
+
+    async def main(loop: SimulationLoop) -> None:
+        for _ in range(10):
+            with pytest.raises(SimulatorError, match="gone"):
+                await steps_alone(loop, clock, 1)
+
+    run(main, clock)
+
+
+def test_who_steps_at_once_can_be_cancelled() -> None:
+    clock = Clock("clock", 0.5, [])
+
+    async def main(loop: SimulationLoop) -> None:
+        task = asyncio.current_task()
+        assert task is not None
+        loop.call_soon(task.cancel)
+        with pytest.raises(asyncio.CancelledError):
+            await steps_alone(loop, clock, 100)
+        assert clock.time <= 1.0
+
+    run(main, clock)

@@ -5,7 +5,7 @@ import inspect
 import pydslrep_runtime
 import pytest
 from pydslrep_runtime import Robot, drives, robots
-from pydslrep_runtime.facts import ROBOT_TYPES, TRACK_FACTOR, RobotType
+from pydslrep_runtime.facts import ROBOT_TYPES, RobotType
 
 NOT_WHEELS = {"name", "port", "sensors", "bumpers", "objects"}
 
@@ -60,5 +60,18 @@ def test_wheels_are_where_their_names_say(kind: RobotType) -> None:
         assert [rate / 10.0 for rate in sideways] == pytest.approx(list(kind.pushes))
 
 
-def test_the_factor_of_the_track_is_that_of_the_command() -> None:
-    assert drives.FourWheelDrive.TRACK_FACTOR == TRACK_FACTOR
+@pytest.mark.parametrize(("track", "wheelbase"), [(0.30, 0.25), (0.4, 0.1)])
+def test_wheels_that_scrub_make_the_track_wider_as_in_plans(
+    track: float, wheelbase: float
+) -> None:
+    # docs/kinematics.md; 1.69 for the default robot, wherever its origin is.
+    x, y = wheelbase / 2.0, track / 2.0
+    mounts = [(x, y), (-x, y), (x, -y), (-x, -y)]
+    mounts = [(there + 0.07, aside - 0.03) for there, aside in mounts]
+    drive = drives.FourWheelDrive(mounts, [0.1] * 4)
+    scrub = 1.0 + ROBOT_TYPES["fw"].grip * (wheelbase / track) ** 2
+    assert drive.rims_per_radian == pytest.approx(scrub * track / 2.0)
+    assert drive.turning_radius == pytest.approx(track / 2.0)
+    right_front = drive.wheel_rates(0.0, 1.0)[2]
+    assert right_front * 0.1 == pytest.approx(scrub * track / 2.0)
+    assert drive.turn_rate(drive.wheel_rates(0.3, 0.7)) == pytest.approx(0.7)

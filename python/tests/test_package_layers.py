@@ -24,6 +24,7 @@ LAYERS = (
     "notes",
     "circles",
     "statements",
+    "pace",
     "approach",
     "steering",
     "creep",

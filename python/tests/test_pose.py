@@ -59,3 +59,10 @@ def test_seen_from_inverts_going_there(origin: Pose, pose: Pose) -> None:
     assert wrap_angle(origin.theta + seen.theta - pose.theta) == pytest.approx(
         0.0, abs=1e-12
     )
+
+
+@pytest.mark.parametrize("theta", [0.0, 1.0, -2.5, math.pi])
+def test_how_far_one_is_ahead_is_a_part_of_where_it_is(theta: float) -> None:
+    origin, here = Pose(1.0, -2.0, theta), Pose(3.0, 0.5, 0.3)
+    assert here.ahead_of(origin) == pytest.approx(here.relative_to(origin).x)
+    assert origin.ahead(0.7).ahead_of(origin) == pytest.approx(0.7)

@@ -39,3 +39,14 @@ def test_the_program_has_no_problems(command: str, tmp_path: pathlib.Path) -> No
         [command, "check", path], capture_output=True, text=True, check=False
     )
     assert done.stdout == "No problems in 1 file.\n", done.stdout
+
+
+def test_control_is_measured() -> None:
+    bench = pathlib.Path(__file__).with_name("control.py")
+    options = ["--robots", "1,2", "--runs", "1"]
+    done = subprocess.run(
+        [sys.executable, bench, *options], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    assert [line.split(": ")[0] for line in lines] == ["1 robots", "2 robots"]

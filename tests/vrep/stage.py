@@ -39,7 +39,9 @@ BLOCKING = sim.simx_opmode_blocking
 MEETING = """
 
 class HaltingTrace(Trace):
-    steps = 0
+    def __init__(self, *file: object) -> None:
+        super().__init__(*file)
+        self.steps, self.is_written = 0, True
 
     def add(self, *values: object) -> None:
         super().add(*values)

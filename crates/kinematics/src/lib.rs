@@ -46,4 +46,4 @@ pub use profile::SpeedProfile;
 pub use pydslrep_robots::Drive;
 pub use step::{Movement, Step, StepKind};
 pub use summary::{LONGEST_PLAN, Motion, Summary};
-pub use traction::{SCRIPT_TRACK_FACTOR, Traction, scrub_factor};
+pub use traction::{Traction, scrub_factor};

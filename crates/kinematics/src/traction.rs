@@ -5,11 +5,6 @@ use pydslrep_robots::{Drive, MAX_WHEELS, WheelPlace};
 
 use crate::{Geometry, Twist};
 
-/// The factor by which scripts take the track to be wider in turns of a robot whose wheels scrub. It is 1: scripts close the
-/// loop on the pose, which corrects what [`scrub_factor`] foretells and plans and the simulator count on. The runtime's figure
-/// is written from this one.
-pub const SCRIPT_TRACK_FACTOR: f64 = 1.0;
-
 /// How a robot moves when its wheels turn, with all that they are dragged across the floor. Where [`crate::Model`] says
 /// how a robot should move, this is about how it does.
 ///
@@ -56,6 +51,9 @@ impl Traction {
 }
 
 /// How much wider a skid-steered robot seems when it turns; 1 for others, whose wheels follow.
+///
+/// Plans and scripts take its track to be wider by this factor; scripts compute it from where they find the wheels, with
+/// the friction of its type (`python/pydslrep_runtime/drives.py`).
 pub fn scrub_factor(drive: Drive, geometry: Geometry, lateral_friction: f64) -> f64 {
     if drive.row().scrubs() {
         1.0 + lateral_friction * (geometry.wheelbase / geometry.track).powi(2)

@@ -4,7 +4,7 @@
 use std::fmt::Write;
 
 use expect_test::expect_file;
-use pydslrep_kinematics::{Drive, SCRIPT_TRACK_FACTOR, motion};
+use pydslrep_kinematics::{Drive, motion};
 use pydslrep_scene::{SensorKind, defaults};
 
 #[test]
@@ -26,7 +26,6 @@ STEP = {step:?}  # s of simulation time, unless a scene has other steps
 RIM_SPEED = {speed:?}  # m/s at the wheels' rims, in turns and in moves without a speed
 RIM_ACCELERATION = {acceleration:?}  # m/s² at the rims, when accelerating and braking
 MOTOR_ACCELERATION = {motor:?}  # m/s² at the rims, at most, unless a scene has it
-TRACK_FACTOR = {track:?}  # how much wider tracks of wheels that scrub are taken to be
 SENSOR_RANGE = {range:?}  # m of a distance sensor, unless a scene has it
 SENSOR_CONE = math.radians({cone:?})  # opening angle of a sensor, unless a scene has it
 "#,
@@ -34,7 +33,6 @@ SENSOR_CONE = math.radians({cone:?})  # opening angle of a sensor, unless a scen
         speed = motion::RIM_SPEED,
         acceleration = motion::RIM_ACCELERATION,
         motor = defaults::MOTOR_ACCELERATION,
-        track = SCRIPT_TRACK_FACTOR,
         range = defaults::range(SensorKind::Distance),
         cone = defaults::CONE_DEGREES,
     )

@@ -1,0 +1,25 @@
+"""How long the steps of a clock take, as measured: those of a busy computer or a physical robot are late."""
+
+MEMORY = (
+    0.9  # the share of a step's weight in the usual one that remains after another step
+)
+LONGEST = 2.0  # usual steps that one may take; what takes longer was a pause
+
+
+class Pace:
+    """The steps of one robot."""
+
+    def __init__(self, time_step: float) -> None:
+        """`time_step` is how long they should take, in seconds."""
+        self.last = time_step
+        """Seconds of the latest one, without a pause; 0 if no time has passed."""
+        self.usual = time_step
+        """Seconds of one as far as is known."""
+
+    def observe(self, elapsed: float) -> None:
+        """Adds a step, in seconds."""
+        if elapsed == self.last == self.usual:
+            return
+        self.last = min(max(elapsed, 0.0), LONGEST * self.usual)
+        if self.last > 0.0:
+            self.usual += (1.0 - MEMORY) * (self.last - self.usual)
