@@ -73,7 +73,7 @@ fn problem(context: &Context<'_>, done: &Name, own: &Name, (id, theirs): (Entity
 mod tests {
     use expect_test::expect;
 
-    use crate::diagnostics::testing::{check, check_clean, program};
+    use crate::diagnostics::testing::{PARTS, check, check_clean, program};
 
     #[test]
     fn a_robot_does_its_own_movements() {

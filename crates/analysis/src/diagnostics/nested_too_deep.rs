@@ -124,7 +124,7 @@ fn extraction(
 mod tests {
     use expect_test::expect;
 
-    use crate::diagnostics::testing::{check, check_clean, program};
+    use crate::diagnostics::testing::{PARTS, check, check_clean, program};
 
     #[test]
     fn blocks_are_nested_to_sixteen() {
