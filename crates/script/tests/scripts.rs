@@ -183,7 +183,7 @@ environment yard has { rover } robots with { trip } moves
                     await rover.arc(-90.0, radius=0.8, speed=0.2)
                 if await rover.check(detects("nose")):  # line 17: if { nose } detect
                     await rover.wait(2.0)  # line 18: wait 2 seconds
-                elif await rover.check(clear("front")):  # line 19: if { front } clear
+                elif await rover.check(clear("front")):  # line 19: else if { front } clear
                     # line 20: turn left until { front } detect
                     await rover.turn("left", until=detects("front"))
                 else:
