@@ -162,10 +162,12 @@ environment {robot}_yard has {{ {robot} }} robots with {{ deep }} moves
 
 def test_deep_blocks_are_formatted(command: str, tmp_path: pathlib.Path) -> None:
     """Names of all lengths move what does not fit on a line."""
-    block = "wait 1 seconds"
-    for depth in range(INNERMOST):
-        block = BLOCK.format(count=10 ** (depth % 5), inner=block)
     for length in range(1, 41):
+        block = "wait 1 seconds"
+        for depth in range(INNERMOST):
+            # One count of up to five digits: more of them would take more than 30 days.
+            many = 10 ** (length % 5) if depth == length % INNERMOST else 1
+            block = BLOCK.format(count=many, inner=block)
         file = tmp_path / f"{length}.pyr"
         text = DEEP.format(robot="r" * length, block=block)
         file.write_text(text, encoding="utf-8")
