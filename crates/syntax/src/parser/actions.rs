@@ -10,8 +10,8 @@ use super::slot::{
 };
 use super::{Extra, Input, Rule};
 use crate::ast::{
-    Action, ActionKind, Block, Branch, Circle, Direction, Do, If, Move, Number, Repeat, Rounds, SpeedClause,
-    Turn, Unit, Wait,
+    Action, ActionKind, Block, Branch, Circle, Condition, Direction, Do, If, Move, Number, Repeat, Rounds,
+    SpeedClause, Turn, Unit, Until, Wait,
 };
 use crate::{EntityKind, Expected, Quantity, Span, TokenKind, TokenSet};
 
@@ -58,20 +58,26 @@ fn as_block<'s>(actions: impl Parser<'s, Input<'s>, Vec<Action>, Extra<'s>> + Cl
 
 /// One action; several where a block belongs to nothing that is known, and none where nothing was understood.
 fn action<'s>(block: &Rule<'s, Block>) -> Actions<'s> {
+    // What several rules have in common is built once: a key in a movement builds all of them anew.
+    let until = until(NEXT);
+    let (waits, repeats) = (after_wait(&until), after_repeat(block));
+    let condition_and_block = condition(OPEN.or(NEXT)).then(block.clone()).boxed();
+    let ifs = |word| if_action(word, &condition_and_block, block);
+    let exact = |word| just(word).ignored();
     let kinds = choice((
-        move_action(),
-        turn_action(),
-        wait_action(just(TokenKind::Wait).ignored().boxed()),
-        repeat_action(just(TokenKind::Repeat).ignored().boxed(), block),
-        if_action(just(TokenKind::If).ignored().boxed(), block),
+        move_action(&until),
+        turn_action(&until),
+        exact(TokenKind::Wait).ignore_then(waits.clone()),
+        exact(TokenKind::Repeat).ignore_then(repeats.clone()),
+        ifs(exact(TokenKind::If).boxed()),
         do_action(),
         just(TokenKind::Slam).to(ActionKind::Slam).boxed(),
     ));
     let known = spanned(kinds).labelled(Expected::Action);
     let misspelt = spanned(choice((
-        wait_action(misspelt_before(TokenKind::Wait, NUMBER.or(UNTIL))),
-        repeat_action(misspelt_before(TokenKind::Repeat, NUMBER.or(UNTIL)), block),
-        if_action(misspelt_before(TokenKind::If, OPEN), block),
+        misspelt_before(TokenKind::Wait, NUMBER.or(UNTIL)).ignore_then(waits),
+        misspelt_before(TokenKind::Repeat, NUMBER.or(UNTIL)).ignore_then(repeats),
+        ifs(misspelt_before(TokenKind::If, OPEN)),
     )));
     known
         .map(|action| vec![action])
@@ -126,10 +132,10 @@ fn speed<'s>() -> Rule<'s, SpeedClause> {
         .boxed()
 }
 
-fn move_action<'s>() -> Rule<'s, ActionKind> {
+fn move_action<'s>(until: &Rule<'s, Until>) -> Rule<'s, ActionKind> {
     let far = distance()
         .then(speed().or_not())
-        .then(until(NEXT).or_not())
+        .then(until.clone().or_not())
         .map(|(((distance, unit), speed), until)| Move { distance, unit, speed, until });
     // Where the question is what follows `at`, it is a speed, and not the `until` after one that is missing.
     let asked = just(TokenKind::At).then(just(TokenKind::Cursor)).ignored();
@@ -138,12 +144,12 @@ fn move_action<'s>() -> Rule<'s, ActionKind> {
     let open_ended = choice((asked, distance_at))
         .not()
         .ignore_then(speed().or_not())
-        .then(until(NEXT))
+        .then(until.clone())
         .map(|(speed, until)| Move { distance: None, unit: None, speed, until: Some(until) });
     just(TokenKind::Move).ignore_then(choice((open_ended, far))).map(ActionKind::Move).boxed()
 }
 
-fn turn_action<'s>() -> Rule<'s, ActionKind> {
+fn turn_action<'s>(until: &Rule<'s, Until>) -> Rule<'s, ActionKind> {
     let direction =
         choice((just(TokenKind::Left).to(Direction::Left), just(TokenKind::Right).to(Direction::Right)))
             .map_with(|direction, extra| (direction, extra.span()));
@@ -156,7 +162,7 @@ fn turn_action<'s>() -> Rule<'s, ActionKind> {
         .then(circle().or_not())
         .then(speed().or_not())
         .then(in_reverse().or_not())
-        .then(until(NEXT).or_not())
+        .then(until.clone().or_not())
         .map(|(((((direction, angle), circle), speed), reverse), until)| {
             ActionKind::Turn(Turn { direction, angle, circle, speed, reverse, until })
         })
@@ -181,33 +187,44 @@ fn in_reverse<'s>() -> Rule<'s, Span> {
         .boxed()
 }
 
-fn wait_action(word: Rule<'_, ()>) -> Rule<'_, ActionKind> {
+fn after_wait<'s>(until: &Rule<'s, Until>) -> Rule<'s, ActionKind> {
     let long =
         slot_before(number(Quantity::Time), NUMBER, TokenSet::of(&[TokenKind::Seconds]).or(UNTIL).or(NEXT))
             .then_ignore(keyword(TokenKind::Seconds, NEXT.or(UNTIL), NEXT.or(UNTIL)))
-            .then(until(NEXT).or_not())
+            .then(until.clone().or_not())
             .map(|(seconds, until)| Wait { seconds, until });
-    let open_ended = until(NEXT).map(|until| Wait { seconds: None, until: Some(until) });
-    word.ignore_then(choice((open_ended, long))).map(ActionKind::Wait).boxed()
+    let open_ended = until.clone().map(|until| Wait { seconds: None, until: Some(until) });
+    choice((open_ended, long)).map(ActionKind::Wait).boxed()
 }
 
-fn repeat_action<'s>(word: Rule<'s, ()>, block: &Rule<'s, Block>) -> Rule<'s, ActionKind> {
+fn after_repeat<'s>(block: &Rule<'s, Block>) -> Rule<'s, ActionKind> {
     let later = OPEN.or(NEXT);
     let times = slot_before(number(Quantity::Count), NUMBER, TokenSet::of(&[TokenKind::Times]).or(later))
         .then_ignore(keyword(TokenKind::Times, OPEN, NEXT))
         .map(|count| count.map(Rounds::Times));
     let open_ended = until(later).map(|until| Some(Rounds::Until(until)));
-    word.ignore_then(choice((open_ended, times)))
+    choice((open_ended, times))
         .then(block.clone())
         .map(|(rounds, block)| ActionKind::Repeat(Repeat { rounds, block: Some(block) }))
         .boxed()
 }
 
-fn if_action<'s>(word: Rule<'s, ()>, block: &Rule<'s, Block>) -> Rule<'s, ActionKind> {
+fn if_action<'s>(
+    word: Rule<'s, ()>,
+    condition_and_block: &Rule<'s, (Condition, Block)>,
+    block: &Rule<'s, Block>,
+) -> Rule<'s, ActionKind> {
     let exact = just(TokenKind::Else).ignored();
     let other = choice((exact, misspelt_before(TokenKind::Else, OPEN.or(IF)))).boxed();
-    let more = other.clone().ignore_then(branch(just(TokenKind::If).ignored().boxed(), block));
-    branch(word, block)
+    let branch = |word: Rule<'s, ()>| {
+        word.ignore_then(condition_and_block.clone()).map_with(|(condition, block), extra| Branch {
+            condition: Some(condition),
+            block: Some(block),
+            span: extra.span(),
+        })
+    };
+    let more = other.clone().ignore_then(branch(just(TokenKind::If).ignored().boxed()));
+    branch(word)
         .map(|first| vec![first])
         .foldl(more.repeated(), |mut branches, branch| {
             branches.push(branch);
@@ -215,17 +232,6 @@ fn if_action<'s>(word: Rule<'s, ()>, block: &Rule<'s, Block>) -> Rule<'s, Action
         })
         .then(other.ignore_then(block.clone()).or_not())
         .map(|(branches, otherwise)| ActionKind::If(If { branches, otherwise }))
-        .boxed()
-}
-
-fn branch<'s>(word: Rule<'s, ()>, block: &Rule<'s, Block>) -> Rule<'s, Branch> {
-    word.ignore_then(condition(OPEN.or(NEXT)))
-        .then(block.clone())
-        .map_with(|(condition, block), extra| Branch {
-            condition: Some(condition),
-            block: Some(block),
-            span: extra.span(),
-        })
         .boxed()
 }
 
