@@ -23,13 +23,11 @@ PASSED = 0.003
 # this share of its way in so many steps is told to be faster by ever more.
 PUSH_SHARE, PUSH_STEPS = 0.5, 5
 PUSH_TIME = 0.2  # s in which what it is told near its goal doubles
-LOSS = (
-    0.003  # m/s by which a robot may be too slow near its goal that are added at once
-)
+# By so many m/s a robot may be too slow near its goal that are added at once.
+LOSS = 0.003
 CLOSING_RATE, CLOSING_SHARE = 10.0, 0.6  # 1/s, and of the distance per step
-BRAKING = (
-    0.75 * RIM_ACCELERATION
-)  # a speed holds for a whole step while the braking curve falls, so brake early
+# A speed holds for a whole step while the braking curve falls, so brake early.
+BRAKING = 0.75 * RIM_ACCELERATION
 CRAWL = 2.0  # times its planned duration, and the time of a stall, after which an action crawls
 
 

@@ -1,8 +1,7 @@
 """How long the steps of a clock take, as measured: those of a busy computer or a physical robot are late."""
 
-MEMORY = (
-    0.9  # the share of a step's weight in the usual one that remains after another step
-)
+# The share of a step's weight in the usual one that remains after another step.
+MEMORY = 0.9
 LONGEST = 2.0  # usual steps that one may take; what takes longer was a pause
 
 
