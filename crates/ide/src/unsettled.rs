@@ -1,5 +1,7 @@
 //! What the next word of the statement being typed will settle: problems that editors do not show until its line is left.
 
+use std::cell::OnceCell;
+
 use pydslrep_analysis::{Database, Diagnostic, EntityRef};
 use pydslrep_syntax::ast::{Entity, References};
 use pydslrep_syntax::{Expected, Span, Token, TokenKind, expected_after};
@@ -10,6 +12,7 @@ use crate::cursor::body;
 /// The statement being typed.
 #[derive(Debug)]
 pub struct TypedStatement<'a> {
+    database: &'a Database,
     position: FilePosition,
     entity: EntityRef<'a>,
     /// The tokens of the entity, with their ranges in the file.
@@ -20,10 +23,11 @@ pub struct TypedStatement<'a> {
     is_list_open: bool,
     /// Whether the last character may begin a comment or an escaped name.
     is_sign_begun: bool,
-    /// What follows the cursor and is read as part of the statement, because that is not complete.
-    taken: Option<Span>,
+    /// What follows the cursor and is read as part of the statement, because that is not complete. Only some problems ask
+    /// for it, and it costs as much as reading the entity again.
+    taken: OnceCell<Option<Span>>,
     /// The same if the word at the cursor is not the one that is meant.
-    taken_without_word: Option<Span>,
+    taken_without_word: OnceCell<Option<Span>>,
 }
 
 impl<'a> TypedStatement<'a> {
@@ -47,11 +51,20 @@ impl<'a> TypedStatement<'a> {
         };
         let opened = braces(TokenKind::OpenBrace, Span::new(begin, place));
         let is_list_open = opened > braces(TokenKind::CloseBrace, Span::new(begin, end));
-        let taken = taken_by_statement(database, &entity, place, false);
-        let taken_without_word = taken_by_statement(database, &entity, place, true);
         let is_sign_begun =
             matches!(database.slice(position.file, Span::new(place - 1, place)).as_str(), "/" | "^");
-        Some(Self { position, entity, tokens, gap, is_list_open, is_sign_begun, taken, taken_without_word })
+        let (taken, taken_without_word) = Default::default();
+        Some(Self {
+            database,
+            position,
+            entity,
+            tokens,
+            gap,
+            is_list_open,
+            is_sign_begun,
+            taken,
+            taken_without_word,
+        })
     }
 
     /// The offset of the cursor.
@@ -112,11 +125,21 @@ impl<'a> TypedStatement<'a> {
     fn lacks_taken_brace(&self, error: Span) -> bool {
         let is_brace = |taken: Span| self.tokens.contains(&(TokenKind::CloseBrace, taken));
         let end = body(&self.entity).end;
-        error == Span::at(end) && self.taken.or(self.taken_without_word).is_some_and(is_brace)
+        error == Span::at(end) && self.taken().or_else(|| self.taken_without_word()).is_some_and(is_brace)
     }
 
     fn takes(&self, span: Span) -> bool {
-        self.taken.is_some_and(|taken| taken.start <= span.start && span.end <= taken.end)
+        self.taken().is_some_and(|taken| taken.start <= span.start && span.end <= taken.end)
+    }
+
+    fn taken(&self) -> Option<Span> {
+        let place = self.position.offset;
+        *self.taken.get_or_init(|| taken_by_statement(self.database, &self.entity, place, false))
+    }
+
+    fn taken_without_word(&self) -> Option<Span> {
+        let place = self.position.offset;
+        *self.taken_without_word.get_or_init(|| taken_by_statement(self.database, &self.entity, place, true))
     }
 
     /// Whether an error is at a keyword that begins a declaration, of which the cursor is the next word.

@@ -133,7 +133,6 @@ fn is_sent(state: &State, watched: &Watched) -> bool {
 /// need them.
 pub(crate) fn announce(state: &mut State, outbox: &Outbox) {
     let watched = std::mem::take(&mut state.watched);
-    let is_error_unsettled = state.is_error_unsettled();
     for mut watched in watched {
         let fingerprint = fingerprint(state, &watched.which);
         // Most edits do not affect the path: then nothing is planned again.
@@ -141,7 +140,7 @@ pub(crate) fn announce(state: &mut State, outbox: &Outbox) {
         if is_the_same || is_sent(state, &watched) {
             watched.fingerprint = fingerprint;
             state.watched.push(watched);
-        } else if is_error_unsettled && plan(state, &watched.which).is_err() {
+        } else if state.is_error_unsettled() && plan(state, &watched.which).is_err() {
             // What was sent stays until the line is left.
             state.watched.push(watched);
         } else {
