@@ -346,11 +346,14 @@ impl<'a> Iterator for Nested<'a> {
     fn next(&mut self) -> Option<&'a Action> {
         loop {
             if let Some(action) = self.open.last_mut()?.next() {
-                let depth = self.open.len();
-                let first = self.blocks.len();
-                self.blocks.extend(action.blocks().map(|block| (depth, block)));
-                self.blocks[first..].reverse();
-                self.enter(depth);
+                // Most actions have none.
+                if matches!(action.kind, ActionKind::Repeat(_) | ActionKind::If(_)) {
+                    let depth = self.open.len();
+                    let first = self.blocks.len();
+                    self.blocks.extend(action.blocks().map(|block| (depth, block)));
+                    self.blocks[first..].reverse();
+                    self.enter(depth);
+                }
                 return Some(action);
             }
             self.open.pop();

@@ -1,6 +1,6 @@
 //! What a rule sees.
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 
 use pydslrep_kinematics::Drive;
 use pydslrep_syntax::ast::{Entity, Name, Robot, Wheel};
@@ -32,6 +32,8 @@ pub(super) struct Context<'a> {
     pub(super) tree: Option<&'a Entity>,
     pub(super) errors: &'a [SyntaxError],
     pub(super) tokens: &'a [Token],
+    /// Its text, once a rule has asked for a part of it.
+    text: OnceCell<String>,
     /// The names that it uses, in the order of the text.
     pub(super) references: Vec<(EntityKind, &'a Name)>,
     /// The statements that are one problem each, whatever their syntax errors are.
@@ -50,6 +52,7 @@ impl<'a> Context<'a> {
             tree: parse.entity.as_ref(),
             errors: &parse.errors,
             tokens: &parse.tokens,
+            text: OnceCell::new(),
             references: parse.entity.as_ref().map(Entity::references).unwrap_or_default(),
             rewrites: Vec::new(),
             reads: RefCell::default(),
@@ -69,18 +72,24 @@ impl<'a> Context<'a> {
     }
 
     /// The text of a range of this entity.
-    pub(super) fn text(&self, span: Span) -> String {
-        let Some(entity) = self.database.entity(self.id) else { return String::new() };
-        let end = span.end.min(entity.span.len());
-        let own = Span::new(span.start.min(end), end);
-        self.database.slice(self.file, own.shifted(entity.span.start))
+    pub(super) fn text(&self, span: Span) -> &str {
+        let all = self.text.get_or_init(|| {
+            let entity = self.database.entity(self.id);
+            entity.map_or_else(String::new, |entity| self.database.slice(self.file, entity.span))
+        });
+        let end = (span.end as usize).min(all.len());
+        all.get((span.start as usize).min(end)..end).unwrap_or_default()
     }
 
     /// The text of a number for a message: not all of hundreds of digits.
     pub(super) fn short_text(&self, span: Span) -> String {
         const MOST: usize = 20;
         let text = self.text(span);
-        if text.chars().count() <= MOST { text } else { text.chars().take(MOST).chain(['…']).collect() }
+        let mut short: String = text.chars().take(MOST).collect();
+        if short.len() < text.len() {
+            short.push('…');
+        }
+        short
     }
 
     /// How long its text is.

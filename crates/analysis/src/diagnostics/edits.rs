@@ -79,7 +79,7 @@ impl Context<'_> {
     /// Removes characters, with one space where they have one on both sides.
     pub(super) fn remove_character(&self, span: Span) -> ProblemEdit {
         let end = self.len().unwrap_or(span.end);
-        let blank = |span: Span| [" ", "\t"].contains(&self.text(span).as_str());
+        let blank = |span: Span| [" ", "\t"].contains(&self.text(span));
         let before = span.start > 0 && blank(Span::new(span.start - 1, span.start));
         let following = self.text(Span::new(span.end, end.min(span.end + 1)));
         if before && (following.is_empty() || following.starts_with(char::is_whitespace)) {

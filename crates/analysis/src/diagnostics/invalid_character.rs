@@ -97,7 +97,7 @@ fn plain_name(written: &str) -> String {
 fn comment(context: &Context<'_>, span: Span, written: &str) -> Problem {
     let problem = RULE.problem(span, format!("`{written}` does not start a comment"));
     let line = context.tokens.iter().find(|(_, other)| other.start == span.start);
-    let text = line.map_or_else(String::new, |(_, line)| context.text(*line));
+    let text = line.map_or("", |(_, line)| context.text(*line));
     let problem = problem.help(if text.starts_with("#include") {
         "another file is read by `import \"wheels.pyr\"`; a comment starts with `//`"
     } else {

@@ -53,7 +53,7 @@ fn bare_sensors<'s>() -> impl Parser<'s, Input<'s>, References, Extra<'s>> + Clo
     ahead.ignore_then(names.map_with(|names, extra| (names, extra.span()))).then(end.rewind()).validate(
         |((names, span), end), _, emitter| {
             for (at, brace) in [(span, TokenKind::OpenBrace), (end, TokenKind::CloseBrace)] {
-                emitter.emit(Fault::Expected { at, expected: vec![Expected::Word(brace)] });
+                emitter.emit(Fault::Expected { at, expected: Expected::Word(brace).into() });
             }
             References { names, span, broken: true }
         },

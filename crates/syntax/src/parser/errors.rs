@@ -5,6 +5,7 @@
 
 use smol_str::SmolStr;
 
+use super::expectation::Expectation;
 use super::pairs;
 use super::slot::Fault;
 use crate::{EntityKind, Expected, Found, Span, SyntaxError, SyntaxErrorKind, Token, TokenKind};
@@ -60,10 +61,10 @@ struct EntitySource<'a> {
 }
 
 /// Complaints about one place.
-struct Complaint<'a> {
+struct Complaint {
     /// Index into the significant tokens; their number for the end.
     index: usize,
-    expected: &'a [Expected],
+    expected: Expectation,
 }
 
 impl EntitySource<'_> {
@@ -175,7 +176,7 @@ impl EntitySource<'_> {
         errors
     }
 
-    fn complaints(&self) -> Vec<Complaint<'_>> {
+    fn complaints(&self) -> Vec<Complaint> {
         let mut complaints: Vec<Complaint> = self
             .faults
             .iter()
@@ -183,7 +184,7 @@ impl EntitySource<'_> {
                 // A rule that only looked ahead expects nothing.
                 Fault::Expected { at, expected } if !expected.is_empty() => {
                     let index = self.significant.partition_point(|(_, span)| span.start < at.start);
-                    Some(Complaint { index, expected })
+                    Some(Complaint { index, expected: *expected })
                 }
                 _ => None,
             })
@@ -223,10 +224,8 @@ impl EntitySource<'_> {
         taken || after_string || self.tokens.iter().any(no_token)
     }
 
-    fn expectation_error(&self, complaint: &Complaint<'_>, skipped: bool) -> SyntaxError {
-        let mut expected = complaint.expected.to_vec();
-        expected.sort_unstable();
-        expected.dedup();
+    fn expectation_error(&self, complaint: &Complaint, skipped: bool) -> SyntaxError {
+        let expected = complaint.expected.to_vec();
         let Some(&(token, span)) = self.significant.get(complaint.index) else {
             return self.missing(complaint.index, expected, Found::End);
         };

@@ -8,6 +8,7 @@ mod components;
 mod condition;
 mod environment;
 mod errors;
+mod expectation;
 mod movement;
 mod pairs;
 mod robot;
@@ -103,12 +104,10 @@ pub fn expected_after(text: &str, tokens: &[Token]) -> Vec<Expected> {
     significant.push((TokenKind::Cursor, Span::at(cursor)));
     let (_, faults) = Parser::new().run(text, &significant);
     let expected = faults.iter().find_map(|fault| match fault {
-        Fault::Expected { at, expected } if at.start >= cursor => Some(expected.clone()),
+        Fault::Expected { at, expected } if at.start >= cursor => Some(expected.to_vec()),
         _ => None,
     });
     let mut expected = expected.unwrap_or_default();
-    expected.sort_unstable();
-    expected.dedup();
     let brace = Expected::Word(TokenKind::CloseBrace);
     if expected.contains(&brace) && must_not_close(text, &significant) {
         expected.retain(|other| *other != brace);

@@ -32,10 +32,8 @@ pub(super) fn robot<'s>() -> Rule<'s, Option<Entity>> {
         .then_ignore(nothing_more())
         .validate(|(((((before, name), after), port), wheels), sensors), _, emitter| {
             if let (Some(_), Some(second)) = (&before, &after) {
-                emitter.emit(Fault::Expected {
-                    at: second.span,
-                    expected: vec![Expected::Word(TokenKind::With)],
-                });
+                let expected = Expected::Word(TokenKind::With).into();
+                emitter.emit(Fault::Expected { at: second.span, expected });
                 emitter.emit(Fault::Skipped(second.span));
             }
             let before = before.map(|clause| DriveClause { before_name: true, ..clause });

@@ -13,6 +13,7 @@ use chumsky::prelude::{Parser, any, choice, empty, end, just, via_parser};
 use chumsky::primitive::select;
 use chumsky::util::MaybeRef;
 
+use super::expectation::Expectation;
 use super::{Extra, Input, Rule};
 use crate::ast::{Name, Number, References};
 use crate::{EntityKind, Expected, Quantity, Span, TokenKind, TokenSet};
@@ -21,7 +22,7 @@ use crate::{EntityKind, Expected, Quantity, Span, TokenKind, TokenSet};
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Fault {
     /// Something else was expected at this token (or at the end).
-    Expected { at: Span, expected: Vec<Expected> },
+    Expected { at: Span, expected: Expectation },
     /// These tokens were passed over.
     Skipped(Span),
     /// This token was taken for that keyword.
@@ -39,14 +40,14 @@ pub(super) enum Fault {
 impl Fault {
     /// What a rule says that only looked ahead.
     fn nothing(at: Span) -> Self {
-        Self::Expected { at, expected: Vec::new() }
+        Self::Expected { at, expected: Expectation::default() }
     }
 }
 
 impl<'s> Error<'s, Input<'s>> for Fault {
     fn merge(mut self, other: Self) -> Self {
         if let (Self::Expected { expected, .. }, Self::Expected { expected: more, .. }) = (&mut self, other) {
-            expected.extend(more);
+            *expected = expected.or(more);
         }
         self
     }
@@ -77,7 +78,7 @@ impl<'s> LabelError<'s, Input<'s>, Expected> for Fault {
 
     fn label_with(&mut self, label: Expected) {
         if let Self::Expected { expected, .. } = self {
-            *expected = vec![label];
+            *expected = label.into();
         }
     }
 }
@@ -168,7 +169,7 @@ pub(super) fn no_list<'s>(before_block: bool) -> impl Parser<'s, Input<'s>, Refe
     let ahead = choice((close, block));
     // The doubled negation looks ahead without a trace.
     ahead.clone().not().not().ignore_then(ahead.rewind()).validate(|(at, expected), _, emitter| {
-        emitter.emit(Fault::Expected { at, expected: vec![expected] });
+        emitter.emit(Fault::Expected { at, expected: expected.into() });
         References { names: Vec::new(), span: Span::at(at.start), broken: true }
     })
 }

@@ -66,7 +66,7 @@ impl<'a, 'c> Place<'a, 'c> {
         self.tokens.get(self.index.checked_sub(by)?).copied()
     }
 
-    fn written(&self) -> String {
+    fn written(&self) -> &str {
         self.context.text(self.span)
     }
 
@@ -434,7 +434,7 @@ fn angle_first(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
         return None;
     }
     let word = place.context.text(direction);
-    let edits = [place.context.replace(place.span, word.clone()), place.context.replace(direction, found)];
+    let edits = [place.context.replace(place.span, word), place.context.replace(direction, found)];
     let problem =
         RULE.problem(place.span, format!("the angle comes after the direction: `turn {word} {found}`"));
     Some(if repair::is_fixed(place.context, &edits) {

@@ -50,7 +50,7 @@ fn words_near(context: &Context<'_>, error: Span) -> Vec<Span> {
 
 /// Separates a word so that fewer errors are left, if that is possible in one way.
 fn separated(context: &Context<'_>, span: Span) -> Option<Glued> {
-    let written = context.text(span);
+    let written = context.text(span).to_owned();
     let (only_keywords, mut with_names): (Vec<Vec<&str>>, Vec<Vec<&str>>) =
         divisions(&written).into_iter().partition(|parts| parts.iter().all(|part| !is_name(part)));
     let fixes = |parts: &Vec<&str>| repair::is_split(context, &[edit(context, span, &parts.join(" "))]);

@@ -37,7 +37,7 @@ fn entities_and_errors(context: &Context<'_>, edits: &[ProblemEdit]) -> Option<(
     if context.errors.len() > MOST_ERRORS || end > LONGEST {
         return None;
     }
-    let mut text = context.text(Span::new(0, end));
+    let mut text = context.text(Span::new(0, end)).to_owned();
     let mut edits: Vec<&ProblemEdit> = edits.iter().collect();
     edits.sort_by_key(|edit| std::cmp::Reverse(edit.span.start));
     for edit in edits {

@@ -128,7 +128,7 @@ fn words_of(context: &Context<'_>, tokens: &[Token]) -> Option<Vec<Word>> {
     }
     let mut words: Vec<Word> = Vec::new();
     for &(token, span) in tokens {
-        let text = context.text(span);
+        let text = context.text(span).to_owned();
         match (token, &mut words[..]) {
             (TokenKind::Integer, [.., whole, comma])
                 if whole.token == TokenKind::Integer

@@ -113,13 +113,16 @@ fn statement_as_action(
     statement: &[Token],
     follows: bool,
 ) -> Option<(Rewrite, String)> {
-    let words = words_of(context, statement)?;
-    let errors = errors_in(context, span_of(&words)?);
-    let first = words.first()?;
+    let is_word = |(token, _): &&Token| !token.is_comment();
+    let (_, start) = statement.iter().find(is_word)?;
+    let (_, end) = statement.iter().rfind(is_word)?;
+    let errors = errors_in(context, start.to(*end));
     let passed_over = follows && !begins_action(statement);
     if errors == 0 && !passed_over {
         return None;
     }
+    let words = words_of(context, statement)?;
+    let first = words.first()?;
     let (text, help) = action(&words)?;
     let is_call = words.iter().any(|word| word.token == TokenKind::Invalid && word.text.contains('('))
         || first.token == TokenKind::MalformedName;
