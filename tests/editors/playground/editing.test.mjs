@@ -85,6 +85,44 @@ inPage("names and keywords are completed", async (playground, page) => {
   assert.match(await playground.text(), /turn left\n  turn/);
 });
 
+test("blocks are indented at once, and stay so when the server answers late", async () => {
+  const context = await browser.newContext();
+  await context.addInitScript(() => {
+    const receive = (listener) => (event) => {
+      if (globalThis.held) globalThis.held.push(() => listener(event));
+      else listener(event);
+    };
+    globalThis.Worker = class extends Worker {
+      addEventListener(type, listener, options) {
+        super.addEventListener(type, receive(listener), options);
+      }
+    };
+  });
+  const playground = await Playground.openIn(context, site.address);
+  const { keyboard } = playground.page;
+  await playground.pathShown("yard");
+  await playground.write(PROGRAM.replace(/ \{\n  move[^}]*\}/, ""));
+  await playground.place("there of rover");
+  await playground.page.evaluate(() => {
+    globalThis.held = [];
+  });
+  for (const line of [" {", "repeat 2 times {", "repeat 3 times {", "move 1 meters"]) {
+    await keyboard.type(line);
+    if (line.endsWith("{")) await keyboard.press("Enter");
+  }
+  const typed = PROGRAM.replace(/\{\n  move[^}]*\}/, "{\n  repeat 2 times {\n    repeat 3 times {\n      move 1 meters\n    }\n  }\n}");
+  assert.equal(await playground.text(), typed);
+  await playground.page.evaluate(() => {
+    const { held } = globalThis;
+    globalThis.held = undefined;
+    for (const answer of held) answer();
+  });
+  // It is asked for after everything else.
+  await playground.editor.locator(".hint", { hasText: "6.00, 0.00" }).first().waitFor();
+  assert.equal(await playground.text(), typed);
+  await context.close();
+});
+
 inPage("hovering over an action says where it ends", async (playground) => {
   await playground.write(PROGRAM);
   await playground.pathShown("area");

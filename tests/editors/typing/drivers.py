@@ -55,8 +55,8 @@ class Editor:
         """Quits the editor."""
         raise NotImplementedError
 
-    def covered(self) -> list[str]:
-        """The popups that have covered the line being typed or the one above since the last call."""
+    def problems(self) -> list[str]:
+        """What was wrong while the latest program was typed, such as popups over its lines."""
         return []
 
     def screen(self) -> str:
@@ -257,35 +257,23 @@ class Emacs(InTerminal):
         self.press("C-x", "C-s")
 
 
-class VsCode(Editor):
-    """Visual Studio Code, controlled by vscode.mjs."""
+class InBrowser(Editor):
+    """An editor in a browser, controlled by a script for Node."""
 
-    def __init__(
-        self,
-        session: Session,
-        settings: dict[str, object] | None = None,
-        indents: bool = True,
-    ) -> None:
-        self.behaviour = Behaviour(closes_braces=True, indents=indents)
-        self.file = ""
+    script: str
+
+    def __init__(self) -> None:
+        self.file = Path()
+        self.found: list[str] = []
         self.node = subprocess.Popen(
-            ["node", str(HERE / "vscode.mjs")],
+            ["node", str(HERE / self.script)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
         )
-        self.found: list[str] = []
-        folder = session.program.parent
-        files = {
-            str(file.relative_to(folder)): file.read_text()
-            for file in folder.rglob("*")
-            if file.is_file()
-        }
-        started = self.request("start", files=files, settings=settings or {})
-        self.work = Path(started["folder"])
 
     def request(self, action: str, **details: object) -> dict[str, Any]:
-        """Sends an action to vscode.mjs and returns its answer."""
+        """Sends an action to the script and returns its answer."""
         assert self.node.stdin
         assert self.node.stdout
         self.node.stdin.write(json.dumps({"action": action, **details}) + "\n")
@@ -296,12 +284,12 @@ class VsCode(Editor):
         return cast("dict[str, Any]", json.loads(answer))
 
     def open(self, file: Path) -> None:
-        self.file = file.stem
+        self.file = file
         self.request("open", name=file.name)
 
     def type(self, keys: list[str], pace: float) -> float:
         kept = os.environ.get("FRAMES")
-        frames = str(Path(kept, self.file)) if kept else None
+        frames = str(Path(kept, self.file.stem)) if kept else None
         details = {"pace": pace, "frames": frames, "patient": self.is_patient}
         typed = self.request("type", keys=keys, **details)
         self.found = typed["covered"]
@@ -315,8 +303,47 @@ class VsCode(Editor):
         self.node.stdin.close()
         self.node.wait()
 
-    def covered(self) -> list[str]:
+    def problems(self) -> list[str]:
         return self.found
+
+
+class VsCode(InBrowser):
+    """Visual Studio Code."""
+
+    script = "vscode.mjs"
+
+    def __init__(
+        self,
+        session: Session,
+        settings: dict[str, object] | None = None,
+        indents: bool = True,
+    ) -> None:
+        super().__init__()
+        self.behaviour = Behaviour(closes_braces=True, indents=indents)
+        folder = session.program.parent
+        files = {
+            str(file.relative_to(folder)): file.read_text()
+            for file in folder.rglob("*")
+            if file.is_file()
+        }
+        started = self.request("start", files=files, settings=settings or {})
+        self.work = Path(started["folder"])
+
+
+class InPlayground(InBrowser):
+    """The playground, which sees no files but those that the examples import."""
+
+    script = "playground.mjs"
+    behaviour = Behaviour(closes_braces=True)
+
+    def __init__(self, session: Session) -> None:
+        super().__init__()
+        self.work = session.program.parent
+        self.request("start")
+
+    def save(self) -> None:
+        errors = self.request("save", file=str(self.file))["errors"]
+        self.found += [f"the page: {error}" for error in errors]
 
 
 EDITORS: dict[str, Callable[[Session], Editor]] = {
@@ -332,4 +359,5 @@ EDITORS: dict[str, Callable[[Session], Editor]] = {
     "emacs-company": lambda session: Emacs(session, "company"),
     "emacs-corfu": lambda session: Emacs(session, "corfu"),
     "kakoune": Kakoune,
+    "playground": InPlayground,
 }

@@ -99,20 +99,21 @@ def arguments() -> argparse.Namespace:
 
 def tasks(options: argparse.Namespace) -> Iterator[Task]:
     """The tasks that the options select."""
-    paces = options.pace or (PACES if options.all else FEW_PACES)
-    for program in programs():
+    for number, program in enumerate(programs()):
         if options.programs:
             is_chosen = fnmatch(program.name, options.programs)
         else:
             is_chosen = options.all or program.name in FEW
-        for pace in paces if is_chosen else ():
-            if (
-                options.all
-                or options.pace
-                or pace == FEW_PACES[0]
-                or program.name == FEW[0]
-            ):
+        if is_chosen:
+            for pace in options.pace or paces(program, number, options.all):
                 yield Task(program, pace)
+
+
+def paces(program: Program, number: int, is_all: bool) -> tuple[int, ...]:
+    """The paces for a program. Those that differ only by chance take turns."""
+    if not is_all:
+        return FEW_PACES if program.name == FEW[0] else FEW_PACES[:1]
+    return (PACES[number % len(PACES)],) if program.is_generated else PACES
 
 
 def record(name: str, share: list[Task], patient: bool = False) -> list[Outcome]:
@@ -161,8 +162,8 @@ def typed(editor: Editor, task: Task) -> Outcome:
     keys = [stroke.key for stroke in all_strokes]
     editor.open(file)
     outcome = Outcome(task, len(keys), editor.type(keys, task.pace / 1000))
-    outcome.problems += editor.covered()
     editor.save()
+    outcome.problems += editor.problems()
     text = saved(file, program)
     if not program.matches(text):
         outcome.problems.append(difference(program.text, text, all_strokes))

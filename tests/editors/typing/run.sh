@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Types programs key by key into real editors: `run.sh typing [--editor NAME]... [OPTIONS]`, see README.md. The default
-# editors are VS Code and Neovim.
+# editors are VS Code, Neovim and the playground.
 set -euo pipefail
 typing=$(cd "$(dirname "$0")" && pwd)
 . "$typing/../debian.sh"
@@ -12,7 +12,7 @@ while [ $# -gt 0 ]; do
     *) options+=("$1"); shift ;;
   esac
 done
-[ ${#editors[@]} -gt 0 ] || editors=(vscode neovim)
+[ ${#editors[@]} -gt 0 ] || editors=(vscode neovim playground)
 
 # The generator of programs is not part of the product.
 if [ -z "${PYDSLREP:-}" ] || [ -z "${PYDSLREP_LSP:-}" ] || [ -z "${RANDOM_PROGRAMS:-}" ]; then
@@ -26,7 +26,7 @@ type_into() { # editor
   local editor=$1 package
   local record=(python3 "$typing/record.py" --editor "$editor" "${options[@]}")
   case $editor in
-    vscode*) record=("$repository/tests/editors/vscode/run.sh" --then "${record[@]}") ;;
+    vscode* | playground) record=("$repository/tests/editors/${editor%%-*}/run.sh" --then "${record[@]}") ;;
     *) need tmux tmux ;;
   esac
   case $editor in

@@ -12,6 +12,7 @@ import { drawSelection, EditorView, highlightActiveLine, highlightActiveLineGutt
 
 import { actions, showActions } from "./actions";
 import { completion } from "./completion";
+import { indent } from "./indent";
 import { nextProblem } from "./next_problem";
 import { formatOnType } from "./on_type";
 import { theme } from "./theme";
@@ -76,7 +77,7 @@ export class TextView {
         extensions: [
           COMMON,
           WRITING,
-          language === "toml" ? StreamLanguage.define(toml) : [formatOnType, EditorState.languageData.of(() => [{ commentTokens: { line: "//" } }])],
+          language === "toml" ? StreamLanguage.define(toml) : [formatOnType, indent, EditorState.languageData.of(() => [{ commentTokens: { line: "//" } }])],
           EditorView.contentAttributes.of({ "aria-label": label, "aria-multiline": "true", tabindex: "0" }),
           EditorView.updateListener.of(({ docChanged, selectionSet }) => {
             if (docChanged || selectionSet) events.changed({ isNew: docChanged });
