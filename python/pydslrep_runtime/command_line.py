@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Generic, TypeVar
 
 from .robots import Robot
-from .slam.session import add_slam_options
+from .slam.session import add_slam_options, parse_positive
 
 T = TypeVar("T")
 
@@ -112,13 +112,34 @@ def parse_arguments(
             action="store_true",
             help="stop a simulation that runs already, which puts everything back, and start it again",
         )
+    add_mujoco_options(parser)
     add_slam_options(parser, environment)
     options = parser.parse_args()
+    if options.mujoco is None and (options.view or options.speed is not None):
+        parser.error("--view and --speed are for --mujoco")
     ports = {robot.name: robot.port for robot in robots}
     options.ports = by_robot(ports, options.port, parser.error)
     classes: dict[str, str | None] = dict.fromkeys(ports)
     options.classes = by_robot(classes, options.robot, parser.error)
     return options
+
+
+def add_mujoco_options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options of scripts whose robots drive in MuJoCo."""
+    group = parser.add_argument_group("MuJoCo")
+    group.add_argument(
+        "--mujoco",
+        type=Path,
+        metavar="FILE",
+        help="drive in MuJoCo instead, in the world that `pydslrep plan --mjcf FILE` has written",
+    )
+    group.add_argument("--view", action="store_true", help="show the world in a window")
+    group.add_argument(
+        "--speed",
+        type=parse_positive,
+        metavar="X",
+        help="simulated seconds per second (default: as fast as possible, with --view 1)",
+    )
 
 
 def by_robot(

@@ -2,6 +2,7 @@
 
 import argparse
 import asyncio
+import importlib
 import inspect
 import os
 import sys
@@ -221,7 +222,14 @@ class Fleet:
 
 
 def connect_to(backend: BackendName, options: argparse.Namespace) -> Simulator:
-    """A simulator, whose client library is imported only if it is used; raises SetupError."""
+    """A simulator, whose library is imported only if it is used; raises SetupError."""
+    if options.mujoco is not None:
+        engine = importlib.import_module("pydslrep_runtime.mujoco_engine")
+        speed = 1.0 if options.realtime and options.speed is None else options.speed
+        simulator: Simulator = engine.MuJoCo(
+            options.mujoco, speed=speed, view=options.view
+        )
+        return simulator
     if backend == "vrep":
         from .vrep import VRep
 

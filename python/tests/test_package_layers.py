@@ -40,6 +40,8 @@ LAYERS = (
     "scene",
     "coppeliasim",
     "vrep",
+    "obstacle_path",
+    "mujoco_engine",
     "event_loop",
     "motion",
     "movements",
@@ -55,6 +57,7 @@ LAYERS = (
 # Everything else that is not Python's own is for these modules only.
 LIBRARIES = {
     "remote_api": {"zmq", "coppeliasim_zmqremoteapi_client"},
+    "mujoco_engine": {"mujoco", "numpy"},
     "slam/odometry": {"numpy", "scipy"},
 }
 

@@ -8,7 +8,9 @@ import pytest
 PYTHON = pathlib.Path(__file__).parents[2] / "python"
 
 
-@pytest.mark.parametrize("name", ["requirements", "requirements-slam"])
+@pytest.mark.parametrize(
+    "name", ["requirements", "requirements-mujoco", "requirements-slam"]
+)
 def test_every_requirement_is_locked_with_its_hashes(name: str) -> None:
     wanted = re.findall(r"^[\w-]+==\S+$", (PYTHON / f"{name}.in").read_text(), re.M)
     locked = (PYTHON / f"{name}.txt").read_text()

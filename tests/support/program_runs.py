@@ -72,3 +72,19 @@ def assert_near(
     turned = math.degrees(math.remainder(row["theta"] - goal["theta"], math.tau))
     assert off <= metres, f"{row}: {1000.0 * off:.1f} mm off"
     assert abs(turned) <= degrees, f"{row}: {turned:.2f} deg off"
+
+
+def offsets(plan: Row, events: list[Row]) -> list[tuple[float, float]]:
+    """How far each action that has ended is from its plan, in metres and degrees, robot by robot."""
+    found = []
+    for robot in plan["robots"]:
+        ended = [
+            event
+            for event in events
+            if event["event"] == "action-ended" and event["robot"] == robot["name"]
+        ]
+        for goal, end in zip(robot["poses"], ended, strict=False):
+            away = math.hypot(end["x"] - goal["x"], end["y"] - goal["y"])
+            turned = math.remainder(end["theta"] - goal["theta"], math.tau)
+            found.append((away, abs(math.degrees(turned))))
+    return found

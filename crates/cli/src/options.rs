@@ -22,6 +22,33 @@ pub(crate) fn engine_parser() -> impl TypedValueParser<Value = Engine> {
         .try_map(|word| Engine::from_word(&word).ok_or("no engine"))
 }
 
+/// What moves the robots of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum RunEngine {
+    /// The embedded simulator.
+    Embedded(Engine),
+    /// `MuJoCo`, in the process of the script.
+    MuJoCo,
+}
+
+/// What moves the robots of a run, by name.
+pub(crate) fn run_engine_parser() -> impl TypedValueParser<Value = RunEngine> {
+    let embedded = Engine::ALL.map(|engine| match engine {
+        Engine::Ideal => PossibleValue::new(EMBEDDED).alias(engine.word()).help(engine.summary()),
+        _ => PossibleValue::new(engine.word()).help(engine.summary()),
+    });
+    let mujoco =
+        PossibleValue::new(MUJOCO).help("Wheels roll by friction, bodies collide: the physics engine MuJoCo");
+    PossibleValuesParser::new(embedded.into_iter().chain([mujoco])).try_map(|word| match word.as_str() {
+        MUJOCO => Ok(RunEngine::MuJoCo),
+        EMBEDDED => Ok(RunEngine::Embedded(Engine::Ideal)),
+        word => Engine::from_word(word).map(RunEngine::Embedded).ok_or("no engine"),
+    })
+}
+
+const EMBEDDED: &str = "embedded";
+const MUJOCO: &str = "mujoco";
+
 /// Parses a number above zero.
 pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
     let speed = text.parse().ok().filter(|speed: &f64| speed.is_finite() && *speed > 0.0);

@@ -16,6 +16,9 @@ const START: u64 = 64 << 10;
 /// What pictures say of themselves (`picture/src/lib.rs`).
 const PICTURE_MARK: &str = "Drawn by PyDSLRep";
 
+/// How worlds begin (`scene/src/mjcf/mod.rs`).
+const WORLD_MARK: &[u8] = b"<!-- A world for MuJoCo, written by PyDSLRep -->";
+
 /// What a file that this program writes is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -31,6 +34,8 @@ pub enum Kind {
     Picture,
     /// What happens in a run, as JSON lines.
     Events,
+    /// A world for `MuJoCo`, as MJCF.
+    World,
 }
 
 impl Kind {
@@ -43,13 +48,14 @@ impl Kind {
             Self::Figures => "the result of a run",
             Self::Picture => "a picture by PyDSLRep",
             Self::Events => "a file of events",
+            Self::World => "a world by PyDSLRep",
         }
     }
 
     /// Whether a file is of this kind, and as this program wrote it.
     pub(crate) fn inspect(self, path: &Path) -> Result<Origin, ReadError> {
         let content = match self {
-            Self::Trace | Self::Picture | Self::Events => read_start(path, START)?,
+            Self::Trace | Self::Picture | Self::Events | Self::World => read_start(path, START)?,
             Self::Script | Self::Map | Self::Figures => match read_bytes(path, MAX_BYTES) {
                 Err(ReadError::TooLarge) => return Ok(Origin::Foreign),
                 read => read?,
@@ -67,6 +73,7 @@ impl Kind {
             Self::Map => has_keys(content, &["environment", "nodes", "edges"]),
             Self::Figures => has_keys(content, &["environment", "complete", "simulated", "robots"]),
             Self::Picture => is_picture(content),
+            Self::World => content.starts_with(WORLD_MARK),
         };
         if is_ours { Origin::Generated } else { Origin::Foreign }
     }
@@ -93,11 +100,12 @@ mod tests {
 
     #[test]
     fn each_kind_knows_its_own() {
-        let ours: [(Kind, &str); 5] = [
+        let ours: [(Kind, &str); 6] = [
             (Kind::Trace, "{\"t\": 0.05, \"robot\": \"r\", \"x\": 0, \"y\": 0, \"theta\": 0}\nand so on"),
             (Kind::Map, "{\"environment\": \"e\", \"nodes\": [], \"edges\": []}"),
             (Kind::Figures, "{\"environment\":\"e\",\"complete\":true,\"simulated\":1,\"robots\":[]}"),
             (Kind::Events, "{\"event\": \"started\"}\n{\"event\": \"note\"}"),
+            (Kind::World, "<!-- A world for MuJoCo, written by PyDSLRep -->\n<mujoco/>"),
             (Kind::Picture, "<svg><!-- Drawn by PyDSLRep --></svg>"),
         ];
         for (kind, content) in ours {

@@ -21,6 +21,18 @@ pub const MOTOR_ACCELERATION: f64 = 1.0;
 /// The thickness of walls, metres.
 pub const WALL_THICKNESS: f64 = 0.1;
 
+/// The height of obstacles, metres: above every robot.
+pub const HEIGHT: f64 = 0.5;
+
+/// The coefficient of sliding friction between wheels and the floor.
+pub const FRICTION: f64 = 0.8;
+
+/// How strongly motors hold their speed: newtons at the rim for each metre per second that it is off.
+pub const MOTOR_GAIN: f64 = 500.0;
+
+/// The width of standard wheels, metres.
+pub const WHEEL_WIDTH: f64 = 0.024;
+
 /// The seed of noise.
 pub const SEED: u64 = 1;
 

@@ -5,11 +5,13 @@
 //!
 //! * [`Scene`] is the value. [`read`] makes one from a scene file; [`SCHEMA`] is the list of what it can contain.
 //! * [`Space`] computes distances and what a sensor sees; [`collisions`] finds those of planned paths.
+//! * [`mjcf()`] writes it for MuJoCo.
 //! * [`Trajectory`] says where an obstacle that moves is at which time.
 
 mod collision;
 pub mod defaults;
 mod file;
+mod mjcf;
 mod mount;
 mod obstacle;
 mod robot;
@@ -18,6 +20,7 @@ mod trajectory;
 
 pub use collision::{Collision, collisions};
 pub use file::{ENDING, SCHEMA, json_schema, manual, problems, read};
+pub use mjcf::mjcf;
 pub use mount::{Mount, mounts_by_name};
 pub use obstacle::{Obstacle, Shape};
 pub use robot::{Body, Frame, Objects, Robot, Sensor, SensorKind, Wheel};
@@ -37,6 +40,8 @@ pub struct Scene {
     pub seed: u64,
     /// Whether robots are stopped by what they touch.
     pub collisions: bool,
+    /// The coefficient of sliding friction between wheels and the floor.
+    pub friction: f64,
 }
 
 /// Deviations from an ideal world.
@@ -71,6 +76,7 @@ impl Default for Scene {
             noise: None,
             seed: defaults::SEED,
             collisions: true,
+            friction: defaults::FRICTION,
         }
     }
 }

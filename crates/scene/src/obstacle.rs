@@ -2,7 +2,7 @@
 
 use pydslrep_kinematics::Pose;
 
-use crate::{Body, Trajectory};
+use crate::{Body, Trajectory, defaults};
 
 /// Something that robots cannot drive through.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,6 +13,8 @@ pub struct Obstacle {
     pub pose: Pose,
     /// Its outline.
     pub shape: Shape,
+    /// How far it rises from the floor, metres.
+    pub height: f64,
     /// Where its middle is at which time, if it moves; its heading stays.
     pub trajectory: Option<Trajectory>,
 }
@@ -34,19 +36,25 @@ pub enum Shape {
 impl Obstacle {
     /// One that does not move.
     pub fn fixed(name: impl Into<String>, pose: Pose, shape: Shape) -> Self {
-        Self { name: name.into(), pose, shape, trajectory: None }
+        Self { name: name.into(), pose, shape, height: defaults::HEIGHT, trajectory: None }
     }
 
     /// One that moves and keeps its heading, radians.
     pub fn moving(name: impl Into<String>, heading: f64, shape: Shape, trajectory: Trajectory) -> Self {
         let (x, y) = trajectory.at(0.0);
-        Self { name: name.into(), pose: Pose::new(x, y, heading), shape, trajectory: Some(trajectory) }
+        Self { trajectory: Some(trajectory), ..Self::fixed(name, Pose::new(x, y, heading), shape) }
     }
 
     /// Its pose at a time, seconds since the start of the simulation.
     pub fn pose_at(&self, time: f64) -> Pose {
         let place = self.trajectory.as_ref().map(|trajectory| trajectory.at(time));
         place.map_or(self.pose, |(x, y)| Pose { x, y, ..self.pose })
+    }
+
+    /// It with another height, metres.
+    #[must_use]
+    pub fn of_height(self, height: f64) -> Self {
+        Self { height, ..self }
     }
 
     /// A straight wall between two points, `thickness` metres thick.

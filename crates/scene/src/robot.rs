@@ -30,6 +30,10 @@ pub struct Robot {
     pub motor_acceleration: f64,
     /// The greatest speed of the wheels' rims, metres per second; infinite for no limit.
     pub motor_speed: f64,
+    /// How strongly the motors hold their speed: newtons at the wheels' rims for each metre per second that it is off.
+    pub motor_gain: f64,
+    /// The width of its wheels if they are standard ones, metres.
+    pub wheel_width: f64,
     /// How clients of the remote API see the object that has its name.
     pub frame: Frame,
     /// Where it and its parts are in `CoppeliaSim`'s scene, if their objects have other names there.
@@ -158,6 +162,8 @@ impl Robot {
             lateral_friction: drive.row().lateral_friction,
             motor_acceleration: defaults::MOTOR_ACCELERATION,
             motor_speed: f64::INFINITY,
+            motor_gain: defaults::MOTOR_GAIN,
+            wheel_width: defaults::WHEEL_WIDTH,
             frame: Frame::default(),
             objects: Objects::new(),
         }

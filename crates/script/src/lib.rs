@@ -29,6 +29,9 @@ pub const REQUIREMENTS: &str = include_str!("../../../python/requirements.txt");
 /// What `--odometry` needs in addition.
 pub const REQUIREMENTS_SLAM: &str = include_str!("../../../python/requirements-slam.txt");
 
+/// What `--engine mujoco` needs, in place of the first.
+pub const REQUIREMENTS_MUJOCO: &str = include_str!("../../../python/requirements-mujoco.txt");
+
 /// The minimum Python version for scripts; also stated in the documentation.
 pub const OLDEST_PYTHON: (u32, u32) = (3, 11);
 

@@ -16,7 +16,9 @@ use expect_test::{Expect, expect, expect_file};
 use pydslrep_analysis::Database;
 use pydslrep_analysis::environment::{Action, Environment, Sensor, SensorKind, Source};
 use pydslrep_kinematics::Drive;
-use pydslrep_script::{Origin, REQUIREMENTS, REQUIREMENTS_SLAM, Target, file_name, generate, origin};
+use pydslrep_script::{
+    Origin, REQUIREMENTS, REQUIREMENTS_MUJOCO, REQUIREMENTS_SLAM, Target, file_name, generate, origin,
+};
 
 const PROGRAM: &str = "table2.pyr";
 
@@ -630,7 +632,12 @@ fn the_program_says_what_its_scripts_are_called() {
 
 #[test]
 fn every_requirement_has_a_fixed_version() {
-    for (text, name) in [(REQUIREMENTS, "coppeliasim-zmqremoteapi-client"), (REQUIREMENTS_SLAM, "scipy")] {
+    let all = [
+        (REQUIREMENTS, "coppeliasim-zmqremoteapi-client"),
+        (REQUIREMENTS_MUJOCO, "mujoco"),
+        (REQUIREMENTS_SLAM, "scipy"),
+    ];
+    for (text, name) in all {
         let lines: Vec<_> = text.lines().filter(|line| line.starts_with(char::is_alphanumeric)).collect();
         assert!(lines.iter().any(|line| line.starts_with(&format!("{name}=="))), "{lines:?}");
         assert!(lines.iter().all(|line| line.contains("==")), "{lines:?}");

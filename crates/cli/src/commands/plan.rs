@@ -1,6 +1,6 @@
 //! `pydslrep plan`: planned poses and times, without a simulator.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
@@ -8,8 +8,8 @@ use comfy_table::{ColumnConstraint, ContentArrangement};
 use pydslrep_analysis::environment::Environment;
 use pydslrep_config::{Config, Edition};
 use pydslrep_kinematics::{ActionIndex, Leg, Place, Pose, RobotPath};
-use pydslrep_output::check_outputs;
-use pydslrep_scene::{Collision, Scene, Thing, collisions};
+use pydslrep_output::{Kind, check_outputs, write_output};
+use pydslrep_scene::{Collision, Scene, Thing, collisions, mjcf};
 use serde::Serialize;
 
 use crate::failure::Failure;
@@ -29,6 +29,10 @@ const HELP: Help = Help {
         ("pydslrep plan patrol.pyr --json", ""),
         ("pydslrep plan patrol.pyr --picture patrol.svg", ""),
         ("pydslrep plan patrol.pyr --replay patrol.svg", "an animated SVG for a browser"),
+        (
+            "pydslrep plan patrol.pyr --mjcf yard.xml",
+            "the world for MuJoCo, and for scripts that you start yourself",
+        ),
     ],
     notes: &[],
 };
@@ -50,9 +54,19 @@ pub(crate) struct Arguments {
     edition: Option<Edition>,
     #[command(flatten)]
     pictures: Pictures,
+    /// Write the world for MuJoCo, as MJCF
+    #[arg(long, value_name = "FILE")]
+    mjcf: Option<PathBuf>,
     /// The scene to plan in [default: ENVIRONMENT.scene.toml next to the program, if it exists]
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
+}
+
+impl Arguments {
+    /// The files to write.
+    fn outputs(&self) -> impl Iterator<Item = (&Path, Kind)> {
+        self.pictures.outputs().chain(self.mjcf.iter().map(|path| (path.as_path(), Kind::World)))
+    }
 }
 
 /// Runs the command.
@@ -62,14 +76,14 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let (mut inputs, file) = Inputs::open_one(&arguments.program, &Config::of_edition(arguments.edition))?;
     let ids = program::environments(&inputs, file, arguments.environment.as_deref());
-    if ids.is_empty() || arguments.pictures.are_wanted() || arguments.scene.is_some() {
-        // A picture shows one environment, as a scene is of one; and where there is none, this says which there are.
+    if ids.is_empty() || arguments.outputs().next().is_some() || arguments.scene.is_some() {
+        // A picture or a world is of one environment, as a scene is; and where there is none, this says which there are.
         program::environment(&inputs, file, arguments.environment.as_deref())?;
     }
     if let (Some(scene), [id, ..]) = (&arguments.scene, ids.as_slice()) {
         inputs.use_scene(file, *id, scene)?;
     }
-    check_outputs(&arguments.pictures.outputs().collect::<Vec<_>>(), &inputs.read_paths())?;
+    check_outputs(&arguments.outputs().collect::<Vec<_>>(), &inputs.read_paths())?;
     let prepared = program::prepare(&inputs, file, &ids);
     let planned = |environment: Environment| {
         let scene = inputs.scene(file, &environment)?;
@@ -80,6 +94,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     if let Some(planned) = plans.first() {
         planned.draw(&arguments.pictures, "planned path", &planned.routes())?;
         arguments.pictures.report(&Reporter::for_people());
+        if let Some(path) = &arguments.mjcf {
+            write_output(path, Kind::World, mjcf(&planned.scene).as_bytes())?;
+            output::say(&format!("world: {}\n", path.display()));
+        }
     }
     Ok(ExitCode::from(u8::from(prepared.has_errors)))
 }

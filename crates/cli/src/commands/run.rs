@@ -18,10 +18,11 @@ use pydslrep_trace::{FailureClass, FileKind, Map, RunEvent, RunFailure};
 use crate::failure::Failure;
 use crate::help::Help;
 use crate::inputs::{Inputs, paths, program};
-use crate::options::{above_zero, edition_parser, engine_parser, target_parser};
+use crate::options::{RunEngine, above_zero, edition_parser, run_engine_parser, target_parser};
 use crate::report::output;
 use crate::run::driven::Driven;
 use crate::run::interrupt::{self, Interrupts};
+use crate::run::mujoco::World;
 use crate::run::outcome::Outcome;
 use crate::run::own_robots::{self, OwnRobot};
 use crate::run::pictures::Pictures;
@@ -38,6 +39,7 @@ const HELP: Help = Help {
         ("pydslrep run patrol.pyr --picture patrol.svg", "and draw planned and driven path"),
         ("pydslrep run patrol.pyr --replay driven.svg", "and draw an animated SVG for a browser"),
         ("pydslrep run patrol.pyr --scene hall.scene.toml", "with the obstacles of a hall"),
+        ("pydslrep run patrol.pyr --engine mujoco", "in the physics engine MuJoCo"),
         ("pydslrep run patrol.pyr --host 127.0.0.1 --port 23000", "in a CoppeliaSim that is running there"),
         ("pydslrep run patrol.pyr --target vrep", "with V-REP's legacy remote API"),
         ("pydslrep run patrol.pyr --events -", "and tell a program what happens"),
@@ -48,7 +50,7 @@ const HELP: Help = Help {
     ],
     notes: &["The first run creates a Python virtual environment in your cache folder and installs the \
          CoppeliaSim client library into it, which needs Python 3.11 or later and network access. The first \
-         run with --odometry does the same with NumPy and SciPy. With --target vrep, your own Python runs \
+         run with --odometry does the same with NumPy and SciPy, and the first one with --engine mujoco with MuJoCo. With --target vrep, your own Python runs \
          the script with V-REP's client (sim.py or vrep.py and its library) from the program's folder or \
          from Python's path. If all robots are your own, your own Python runs the script without a \
          simulator."],
@@ -70,9 +72,12 @@ pub(crate) struct Arguments {
     /// The seed of the scene's noise and the engine's: the same seed gives the same run
     #[arg(long, value_name = "N", conflicts_with = "host")]
     seed: Option<u64>,
-    /// The engine to imitate: what a physics engine does to robots, and its server to scripts
-    #[arg(long, value_name = "ENGINE", default_value = "ideal", value_parser = engine_parser(), conflicts_with = "host")]
-    engine: Engine,
+    /// What moves the robots: the embedded simulator, as it is or imitating an engine, or MuJoCo
+    #[arg(long, value_name = "ENGINE", default_value = "embedded", value_parser = run_engine_parser(), conflicts_with = "host")]
+    engine: RunEngine,
+    /// Watch the robots in MuJoCo's window, in real time unless --speed says otherwise
+    #[arg(long, conflicts_with = "host")]
+    view: bool,
     /// The simulator that the script is for [default: that of pydslrep.toml, else coppeliasim]
     #[arg(long, value_name = "TARGET", value_parser = target_parser())]
     target: Option<Target>,
@@ -126,6 +131,14 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
+    /// What the embedded simulator imitates, where it is used.
+    fn embedded_engine(&self) -> Engine {
+        match self.engine {
+            RunEngine::Embedded(engine) => engine,
+            RunEngine::MuJoCo => Engine::default(),
+        }
+    }
+
     /// The files to write.
     fn outputs<'a>(&'a self, map: Option<&'a Path>) -> Vec<(&'a Path, Kind)> {
         let others = [
@@ -163,7 +176,7 @@ fn perform(arguments: &Arguments, reporter: &mut Reporter) -> Result<ExitCode, F
         check_outputs(&[(path, Kind::Events)], &inputs.read_paths())?;
         *reporter = Reporter::open(events)?;
     }
-    let target = inputs.settings(file).target;
+    let target = target(arguments, inputs.settings(file).target)?;
     if arguments.restart && target == Target::VRep {
         return Err(Failure::new(
             "--restart is for CoppeliaSim: V-REP may listen only while its simulation runs",
@@ -199,6 +212,24 @@ fn perform(arguments: &Arguments, reporter: &mut Reporter) -> Result<ExitCode, F
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let code = runtime.map_err(|error| unstarted(&error))?.block_on(run.drive(&name, &text))?;
     Ok(ExitCode::from(code))
+}
+
+/// The simulator that the script is for. It makes no difference to one that drives in `MuJoCo`.
+///
+/// # Errors
+/// If options contradict each other.
+fn target(arguments: &Arguments, chosen: Target) -> Result<Target, Failure> {
+    if arguments.engine != RunEngine::MuJoCo {
+        let refusal =
+            || Failure::new("--view is for --engine mujoco").help("draw an animated SVG with --replay");
+        return if arguments.view { Err(refusal()) } else { Ok(chosen) };
+    }
+    if arguments.target.is_some_and(|target| target != Target::CoppeliaSim) {
+        return Err(Failure::new(
+            "--target is for another simulator than --engine mujoco: leave one of them out",
+        ));
+    }
+    Ok(Target::CoppeliaSim)
 }
 
 fn unstarted(error: &dyn std::fmt::Display) -> Failure {
@@ -244,9 +275,10 @@ impl Run<'_> {
         let runtime = python::cache().and_then(|cache| Ok(provide_runtime(&cache)?));
         // Without a cache, the package is written for this run only.
         let runtime = runtime.or_else(|_| provide_runtime(folder.path()))?;
-        let is_embedded = self.arguments.host.is_none() && self.needs_simulator();
+        let is_embedded = self.arguments.host.is_none() && self.needs_simulator() && !self.is_in_mujoco();
         let token = token(folder.path());
         let simulator = if is_embedded { Some(self.simulator(&token)?) } else { None };
+        let world = if self.is_in_mujoco() { Some(self.world(folder.path())?) } else { None };
         let path = folder.path().join(name);
         fs::write(&path, text).map_err(|error| Failure::unwritten(&path, &error))?;
         let trace = self.trace(folder.path());
@@ -257,7 +289,13 @@ impl Run<'_> {
             runtime,
             modules: if self.has_own_robots() { Some(paths::absolute(&self.home)?) } else { None },
             token: is_embedded.then_some(token),
-            arguments: self.script_arguments(&path, &map, trace.as_deref(), simulator.as_ref()),
+            arguments: self.script_arguments(
+                &path,
+                &map,
+                trace.as_deref(),
+                simulator.as_ref(),
+                world.as_ref(),
+            ),
         };
         let robots = self.planned.environment.robots.iter().map(|robot| robot.name.as_str());
         let in_scene = if is_embedded { self.simulated.clone() } else { Vec::new() };
@@ -296,9 +334,18 @@ impl Run<'_> {
         !self.arguments.robot.is_empty()
     }
 
+    /// Whether there are robots that drive in `MuJoCo`.
+    fn is_in_mujoco(&self) -> bool {
+        self.arguments.engine == RunEngine::MuJoCo && self.needs_simulator()
+    }
+
+    fn world(&self, folder: &Path) -> Result<World, Failure> {
+        World::write(&self.simulated_scene(), folder, self.arguments.speed, self.arguments.view)
+    }
+
     /// Whether the script alone knows some of the paths.
     fn needs_trace(&self) -> bool {
-        self.arguments.host.is_some() || self.has_own_robots()
+        self.arguments.host.is_some() || self.has_own_robots() || self.is_in_mujoco()
     }
 
     async fn python(&self) -> Result<PathBuf, Failure> {
@@ -312,10 +359,12 @@ impl Run<'_> {
     }
 
     fn packages(&self) -> Packages {
-        if self.arguments.odometry && exploring::explores(&self.planned.environment) {
-            Packages::ClientAndOdometry
-        } else {
-            Packages::Client
+        let odometry = self.arguments.odometry && exploring::explores(&self.planned.environment);
+        match (self.is_in_mujoco(), odometry) {
+            (false, false) => Packages::Client,
+            (false, true) => Packages::ClientAndOdometry,
+            (true, false) => Packages::MuJoCo,
+            (true, true) => Packages::MuJoCoAndOdometry,
         }
     }
 
@@ -337,7 +386,7 @@ impl Run<'_> {
         let options = Options {
             ports: self.simulated_robots().map(|_| 0).collect(),
             token: Some(token.to_owned()),
-            engine: self.arguments.engine,
+            engine: self.arguments.embedded_engine(),
             speed: self.arguments.speed.unwrap_or(1.0),
             paced: self.arguments.speed.is_some(),
             ..Options::default()
@@ -357,6 +406,7 @@ impl Run<'_> {
         map: &Path,
         trace: Option<&Path>,
         simulator: Option<&Simulator>,
+        world: Option<&World>,
     ) -> Vec<OsString> {
         let mut all: Vec<OsString> = vec![path.into()];
         let host = self.arguments.host.as_deref().unwrap_or("127.0.0.1");
@@ -373,6 +423,7 @@ impl Run<'_> {
         for port in ports {
             all.extend(["--port".into(), port.into()]);
         }
+        all.extend(world.map(World::arguments).unwrap_or_default());
         all.extend(self.arguments.restart.then(|| "--restart".into()));
         if let Some(trace) = trace {
             all.extend(["--trace".into(), trace.into()]);
@@ -383,7 +434,7 @@ impl Run<'_> {
             if let Some(extent) = self.arguments.extent {
                 all.extend(["--extent".into(), extent.to_string().into()]);
             }
-            if simulator.is_some() {
+            if simulator.is_some() || world.is_some() {
                 all.extend(exploring::arguments(&self.simulated_scene()));
             }
         }

@@ -1,12 +1,13 @@
 //! Runs: from a Python interpreter to the result.
 //!
 //! [`python`] and [`vrep_client`] prepare what a script needs, [`script`] runs it and reads its events, [`progress`] shows
-//! them, [`reporter`] passes them on, [`outcome`] compares [`driven`] with [`planned`], and [`strikes`] warns of what moving obstacles ran into. [`scene_tasks`]
+//! them, [`mujoco`] is another simulator, [`reporter`] passes them on, [`outcome`] compares [`driven`] with [`planned`], and [`strikes`] warns of what moving obstacles ran into. [`scene_tasks`]
 //! reads and changes the scene of a simulator that runs elsewhere.
 
 pub(crate) mod driven;
 pub(crate) mod exploring;
 pub(crate) mod interrupt;
+pub(crate) mod mujoco;
 pub(crate) mod outcome;
 pub(crate) mod own_robots;
 pub(crate) mod pictures;

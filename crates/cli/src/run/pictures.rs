@@ -21,11 +21,6 @@ pub(crate) struct Pictures {
 }
 
 impl Pictures {
-    /// Whether any picture is wanted.
-    pub(crate) fn are_wanted(&self) -> bool {
-        self.picture.is_some() || self.replay.is_some()
-    }
-
     /// The files to write.
     pub(crate) fn outputs(&self) -> impl Iterator<Item = (&Path, Kind)> {
         [&self.picture, &self.replay].into_iter().flatten().map(|path| (path.as_path(), Kind::Picture))

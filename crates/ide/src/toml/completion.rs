@@ -513,6 +513,7 @@ mod tests {
             &expect![[r#"
                 size | required | "size = $0"
                 heading | default: 0 | "heading = $0"
+                height | default: 0.5 | "height = $0"
                 path | default: it does not move | "path = $0"
                 repeat | default: false | "repeat = $0"
                 name | default: the table's name and a number: box_1 | "name = \"$0\""

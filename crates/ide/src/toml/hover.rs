@@ -164,6 +164,7 @@ mod tests {
                 * `corner`: The corner of the floor with the smallest x and y.
                 * `walls`: Whether there are walls around a floor with a `size`.
                 * `collisions`: Whether robots are stopped by what they touch; sensors see it either way.
+                * `friction`: How well wheels grip the floor in MuJoCo: the coefficient of sliding friction, about 0.1 on ice. In the embedded simulator, wheels do not slide.
                 * `seed`: The seed of noise: with the same seed, runs are the same.
             "#]],
         );

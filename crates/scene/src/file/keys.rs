@@ -35,6 +35,14 @@ const TABLES: [Table; 9] = [
             )
             .default("`true`")
             .example("false"),
+            key(
+                "friction",
+                Values::ABOVE_ZERO,
+                "How well wheels grip the floor in MuJoCo: the coefficient of sliding friction, about 0.1 on ice. In the \
+                 embedded simulator, wheels do not slide.",
+            )
+            .default("`0.8`")
+            .example("0.3"),
             key("seed", COUNT, "The seed of noise: with the same seed, runs are the same.")
                 .default("`1`")
                 .example("7"),
@@ -83,6 +91,7 @@ const TABLES: [Table; 9] = [
             key("from", POINT, "The middle of one of its ends.").required().example("[-1.0, 1.0]"),
             key("to", POINT, "The middle of its other end.").required().example("[1.0, 1.5]"),
             key("thickness", Values::ABOVE_ZERO, "Its thickness.").default("`0.1`").example("0.2"),
+            HEIGHT,
             NAME,
         ],
     },
@@ -96,6 +105,7 @@ const TABLES: [Table; 9] = [
                 .required()
                 .example("[0.6, 0.4]"),
             HEADING,
+            HEIGHT,
             TRAJECTORY,
             REPEAT,
             NAME,
@@ -108,6 +118,7 @@ const TABLES: [Table; 9] = [
         keys: &[
             AT,
             key("radius", Values::ABOVE_ZERO, "Its radius.").required().example("0.25"),
+            HEIGHT,
             TRAJECTORY,
             REPEAT,
             NAME,
@@ -121,6 +132,7 @@ const TABLES: [Table; 9] = [
             key("corners", POINTS, "Its corners, in order, in either direction.")
                 .required()
                 .example("[[0.0, 1.0], [1.0, 1.0], [0.2, 2.0]]"),
+            HEIGHT,
             NAME,
         ],
     },
@@ -160,6 +172,22 @@ const TABLES: [Table; 9] = [
             )
             .default("`1.0`")
             .example("0.7"),
+            key(
+                "motor-gain",
+                Values::ABOVE_ZERO,
+                "How strongly its motors hold their speed in MuJoCo: newtons at the wheels' rims for each metre per second \
+                 that it is off.",
+            )
+            .default("`500`")
+            .example("150"),
+            key(
+                "wheel-width",
+                Values::ABOVE_ZERO,
+                "The width of its wheels in MuJoCo, where wide ones turn less easily; mecanum wheels are as wide as their \
+                 rollers.",
+            )
+            .default("`0.024`")
+            .example("0.04"),
             key(
                 "frame",
                 Values::Words(&FRAMES),
@@ -242,6 +270,11 @@ const REPEAT: Key = key(
 
 const HEADING: Key =
     key("heading", ANGLE, "Its rotation about its middle, counter-clockwise.").default("`0`").example("30");
+
+const HEIGHT: Key =
+    key("height", Values::ABOVE_ZERO, "Its height in MuJoCo, where sensors look over what is low.")
+        .default("`0.5`")
+        .example("0.1");
 
 const FRAMES: [Word; 5] = [
     Word { word: Frame::Ahead.word(), summary: "x ahead, y to the left, z up" },

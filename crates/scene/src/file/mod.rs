@@ -99,6 +99,12 @@ mod tests {
         assert_eq!(robot("track"), format!("`{:.2}`", defaults::GEOMETRY.track));
         assert_eq!(robot("wheelbase"), format!("`{:.2}`", defaults::GEOMETRY.wheelbase));
         assert_eq!(robot("rim-acceleration"), format!("`{:?}`", defaults::MOTOR_ACCELERATION));
+        assert_eq!(robot("motor-gain"), format!("`{}`", defaults::MOTOR_GAIN));
+        assert_eq!(robot("wheel-width"), format!("`{}`", defaults::WHEEL_WIDTH));
+        assert_eq!(documented("world", "friction"), format!("`{:?}`", defaults::FRICTION));
+        for table in ["wall", "box", "cylinder", "polygon"] {
+            assert_eq!(documented(table, "height"), format!("`{:?}`", defaults::HEIGHT));
+        }
         let [two, four, mecanum] = Drive::ALL.map(Drive::row);
         let body = |(length, width): (f64, f64)| format!("`[{length:.2}, {width:.2}]`");
         assert_eq!(

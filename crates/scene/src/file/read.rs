@@ -83,6 +83,7 @@ impl Reader {
 
     fn world(&mut self, section: &Section) {
         self.scene.collisions = section.flag("collisions").unwrap_or(self.scene.collisions);
+        self.scene.friction = section.number("friction").unwrap_or(self.scene.friction);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // the reader lets only counts pass
         let seed = section.number("seed").map(|seed| seed as u64);
         self.scene.seed = seed.unwrap_or(self.scene.seed);
@@ -120,7 +121,10 @@ impl Reader {
             Shape::Box(body) if body.length == 0.0 => {
                 self.problems.push(refusal(section, "to", "`wall.to` is where the wall begins"));
             }
-            _ => self.scene.obstacles.push(obstacle),
+            _ => {
+                let height = section.number("height").unwrap_or(obstacle.height);
+                self.scene.obstacles.push(obstacle.of_height(height));
+            }
         }
     }
 
@@ -171,6 +175,8 @@ impl Reader {
         robot.lateral_friction = section.number("grip").unwrap_or(robot.lateral_friction);
         robot.motor_speed = section.number("rim-speed").unwrap_or(robot.motor_speed);
         robot.motor_acceleration = section.number("rim-acceleration").unwrap_or(robot.motor_acceleration);
+        robot.motor_gain = section.number("motor-gain").unwrap_or(robot.motor_gain);
+        robot.wheel_width = section.number("wheel-width").unwrap_or(robot.wheel_width);
         robot.frame = section.text("frame").and_then(Frame::from_word).unwrap_or(robot.frame);
         if let Some(body) = body(section, "body") {
             robot.body = body;
@@ -392,7 +398,7 @@ mod tests {
                 unknown-key `sise`: there is no key `world.sise`
                   help: did you mean `size`?
                 unknown-key `x`: there is no key `world.x`
-                  help: the keys here are size, corner, walls, collisions, seed
+                  help: the keys here are size, corner, walls, collisions, friction, seed
                 unknown-name `robt_1`: the environment has no robot `robt_1`
                   help: did you mean `robot_1`?
                 unknown-name `x`: the environment has no robot `x`
@@ -574,9 +580,9 @@ mod tests {
              [[polygon]]\ncorners = [[5, 5], [6, 5], [5, 6]]\nrepeat = true\n",
             &expect![[r#"
                 unknown-key `path`: there is no key `wall.path`
-                  help: the keys here are from, to, thickness, name
+                  help: the keys here are from, to, thickness, height, name
                 unknown-key `repeat`: there is no key `polygon.repeat`
-                  help: the keys here are corners, name
+                  help: the keys here are corners, height, name
             "#]],
         );
     }

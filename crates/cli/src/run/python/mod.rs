@@ -12,7 +12,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use pydslrep_script::{REQUIREMENTS, REQUIREMENTS_SLAM};
+use pydslrep_script::{REQUIREMENTS, REQUIREMENTS_MUJOCO, REQUIREMENTS_SLAM};
 
 use self::environment::Environment;
 use crate::failure::Failure;
@@ -25,6 +25,10 @@ pub(crate) enum Packages {
     Client,
     /// And what slam by odometry computes with.
     ClientAndOdometry,
+    /// `MuJoCo`, instead of the client.
+    MuJoCo,
+    /// And what slam by odometry computes with.
+    MuJoCoAndOdometry,
 }
 
 impl Packages {
@@ -33,6 +37,8 @@ impl Packages {
         match self {
             Self::Client => REQUIREMENTS.to_owned(),
             Self::ClientAndOdometry => format!("{REQUIREMENTS}{REQUIREMENTS_SLAM}"),
+            Self::MuJoCo => REQUIREMENTS_MUJOCO.to_owned(),
+            Self::MuJoCoAndOdometry => format!("{REQUIREMENTS_MUJOCO}{REQUIREMENTS_SLAM}"),
         }
     }
 
@@ -41,6 +47,8 @@ impl Packages {
         match self {
             Self::Client => &["coppeliasim_zmqremoteapi_client"],
             Self::ClientAndOdometry => &["coppeliasim_zmqremoteapi_client", "numpy", "scipy"],
+            Self::MuJoCo => &["mujoco", "numpy"],
+            Self::MuJoCoAndOdometry => &["mujoco", "numpy", "scipy"],
         }
     }
 
@@ -48,6 +56,8 @@ impl Packages {
         match self {
             Self::Client => "the CoppeliaSim client library",
             Self::ClientAndOdometry => "the CoppeliaSim client library, NumPy and SciPy",
+            Self::MuJoCo => "MuJoCo",
+            Self::MuJoCoAndOdometry => "MuJoCo, NumPy and SciPy",
         }
     }
 
@@ -56,6 +66,8 @@ impl Packages {
         match self {
             Self::Client => "the first run",
             Self::ClientAndOdometry => "the first run with --odometry",
+            Self::MuJoCo => "the first run with --engine mujoco",
+            Self::MuJoCoAndOdometry => "the first run with --engine mujoco and --odometry",
         }
     }
 }

@@ -1,0 +1,124 @@
+//! A wheel: a cylinder that rolls, or a hub with rollers that turn freely.
+
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
+
+use super::xml::Element;
+use super::{FLOOR, OBSTACLE, SLIPPERY, UNSEEN};
+use crate::Robot;
+
+/// The inertia of a motor's rotor at the rim, kilograms. With less, motors swing.
+const ROTOR: f64 = 0.5;
+
+/// What brakes a wheel, newtons at the rim for each metre per second.
+const DRAG: f64 = 0.5;
+
+/// Kilograms.
+const WHEEL_MASS: f64 = 0.2;
+const HUB_MASS: f64 = 0.1;
+const ROLLER_MASS: f64 = 0.012;
+
+/// Of a mecanum wheel.
+const ROLLERS: u32 = 9;
+
+/// The distance of a roller's axis from the axle, as a share of the wheel's radius.
+const ROLLER_AXIS: f64 = 0.73;
+
+/// The inertia of a roller about its axis, kilograms, and what brakes it, newtons for each metre per second; both at the rim of
+/// the wheel. They keep it from chattering, and are too small to drag.
+const ROLLER_ROTOR: f64 = 0.001;
+const ROLLER_DRAG: f64 = 0.01;
+
+/// From an axis along z to one along y.
+const ALONG_Y: [f64; 4] = [FRAC_1_SQRT_2, FRAC_1_SQRT_2, 0.0, 0.0];
+
+/// Where a wheel is, and where scripts believe it to be.
+pub(super) struct Mount {
+    /// Of its body, joint and motor.
+    pub(super) name: String,
+    /// Metres ahead and to the left.
+    pub(super) known: (f64, f64),
+    pub(super) known_radius: f64,
+    pub(super) place: (f64, f64),
+    pub(super) radius: f64,
+    /// Which way it pushes, [`pydslrep_kinematics::WheelPlace::push`].
+    pub(super) push: f64,
+}
+
+/// The body of a wheel, with its joint.
+pub(super) fn wheel(robot: &Robot, mount: &Mount) -> Element {
+    let (radius, inertia) = (mount.radius, mount.radius.powi(2));
+    let known = [mount.known_radius, mount.known.0, mount.known.1, robot.motor_acceleration];
+    let joint = Element::new("joint")
+        .text("name", &mount.name)
+        .numbers("axis", &[0.0, 1.0, 0.0])
+        .numbers("armature", &[ROTOR * inertia])
+        .numbers("damping", &[DRAG * inertia])
+        .numbers("user", &known);
+    let body = Element::new("body")
+        .text("name", &mount.name)
+        .numbers("pos", &[mount.place.0, mount.place.1, radius])
+        .with([joint]);
+    if robot.drive.row().mecanum {
+        body.with([hub(radius)]).with((0..ROLLERS).map(|index| roller(radius, mount.push, index)))
+    } else {
+        body.with([tyre(radius, robot.wheel_width)])
+    }
+}
+
+fn tyre(radius: f64, width: f64) -> Element {
+    rolling(
+        Element::new("geom")
+            .text("type", "cylinder")
+            .numbers("size", &[radius, width / 2.0])
+            .numbers("quat", &ALONG_Y)
+            .numbers("mass", &[WHEEL_MASS])
+            .numbers("rgba", &[0.15, 0.15, 0.15, 1.0]),
+    )
+}
+
+/// What rolls on the floor, and on nothing of its own robot: the rollers of a wheel would brake each other, and MuJoCo lets
+/// those of one wheel collide.
+fn rolling(geom: Element) -> Element {
+    geom.text("contype", "0")
+        .text("conaffinity", (FLOOR | OBSTACLE).to_string())
+        .text("condim", "4")
+        .numbers("friction", &SLIPPERY)
+        .text("group", UNSEEN)
+}
+
+/// What rollers are mounted on; it touches nothing.
+fn hub(radius: f64) -> Element {
+    Element::new("geom")
+        .text("type", "cylinder")
+        .numbers("size", &[radius * 0.3, radius * 0.3])
+        .numbers("quat", &ALONG_Y)
+        .numbers("mass", &[HUB_MASS])
+        .text("contype", "0")
+        .text("conaffinity", "0")
+        .text("group", UNSEEN)
+        .numbers("rgba", &[0.4, 0.4, 0.4, 1.0])
+}
+
+/// A roller: an ellipsoid whose axis leads, where it touches the floor, the way that the wheel pushes. It is as long as makes the
+/// wheel round there.
+fn roller(radius: f64, push: f64, index: u32) -> Element {
+    let centre = ROLLER_AXIS * radius;
+    let thickness = radius - centre;
+    // The lowest point of an ellipsoid of these half axes, seen from the axle, is at the same distance to the second order of the
+    // angle by which the wheel turns.
+    let half = (2.0 * centre * thickness + thickness.powi(2)).sqrt();
+    let (sin, cos) = (TAU * f64::from(index) / f64::from(ROLLERS)).sin_cos();
+    let axis = [cos * FRAC_1_SQRT_2, push * FRAC_1_SQRT_2, -sin * FRAC_1_SQRT_2];
+    let inertia = radius.powi(2);
+    let joint = Element::new("joint")
+        .numbers("axis", &axis)
+        .numbers("armature", &[ROLLER_ROTOR * inertia])
+        .numbers("damping", &[ROLLER_DRAG * inertia]);
+    let geom = Element::new("geom")
+        .text("type", "ellipsoid")
+        .numbers("size", &[thickness, thickness, half])
+        .numbers("zaxis", &axis)
+        .numbers("mass", &[ROLLER_MASS])
+        .numbers("rgba", &[0.15, 0.15, 0.15, 1.0]);
+    Element::new("body").numbers("pos", &[-centre * sin, 0.0, -centre * cos]).with([joint, rolling(geom)])
+}
