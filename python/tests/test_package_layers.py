@@ -19,6 +19,7 @@ LAYERS = (
     "errors",
     "readings",
     "outputs",
+    "ros2_topics",
     "pose",
     "events",
     "notes",
@@ -40,6 +41,9 @@ LAYERS = (
     "scene",
     "coppeliasim",
     "vrep",
+    "ros2_link",
+    "ros2",
+    "ros2_world",
     "event_loop",
     "motion",
     "movements",
@@ -56,6 +60,7 @@ LAYERS = (
 LIBRARIES = {
     "remote_api": {"zmq", "coppeliasim_zmqremoteapi_client"},
     "slam/odometry": {"numpy", "scipy"},
+    "ros2_link": {"rclpy"},
 }
 
 

@@ -13,6 +13,7 @@ mod file;
 mod mount;
 mod obstacle;
 mod robot;
+mod ros2;
 mod space;
 mod trajectory;
 
@@ -21,6 +22,7 @@ pub use file::{ENDING, SCHEMA, json_schema, manual, problems, read};
 pub use mount::{Mount, mounts_by_name};
 pub use obstacle::{Obstacle, Shape};
 pub use robot::{Body, Frame, Objects, Robot, Sensor, SensorKind, Wheel};
+pub use ros2::{Ros2, Ros2Value};
 pub use space::{Near, Sighting, Space, Thing, distance_between, triangulate};
 pub use trajectory::{Piece, Trajectory, TrajectoryError, Waypoint};
 
