@@ -222,13 +222,10 @@ fn ros2_steps(arguments: &Arguments, program: &Path) -> String {
     let option = |name: &str, value: Option<&Path>| {
         value.map(|value| format!(" {name} {}", quoted(value))).unwrap_or_default()
     };
-    let options = [
-        option("--python", arguments.python.as_deref()),
-        option("--scene", arguments.scene.as_deref()),
-        if arguments.lockstep { " --sim-time".to_owned() } else { String::new() },
-    ];
+    let options =
+        [option("--python", arguments.python.as_deref()), option("--scene", arguments.scene.as_deref())];
     format!(
-        "Ready. Press Ctrl+C to stop.\nTo drive in it, run this in another terminal:\n\n    pydslrep run {} --target ros2{}\n",
+        "Ready. Press Ctrl+C to stop.\nTo drive in it, run this in another terminal:\n\n    pydslrep run {} --target ros2 --sim-time{}\n",
         quoted(program),
         options.concat(),
     )
